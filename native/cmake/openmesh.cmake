@@ -1,0 +1,43 @@
+# OpenMesh's core as a static library with its asserts off.
+#
+# Debian's package is a shared library whose asserts abort the process, which inside Blender would cost the artist's
+# work. PyPI's source package of the OpenMesh bindings carries the C++ sources, and pip is a registry we can count on.
+set(SADDLEBACK_OPENMESH_VERSION 1.2.1)
+set(SADDLEBACK_OPENMESH_SOURCE "" CACHE PATH "Folder of the unpacked openmesh source package; empty: fetched with pip")
+
+if(NOT SADDLEBACK_OPENMESH_SOURCE)
+  find_package(Python 3.10 REQUIRED COMPONENTS Interpreter)
+  set(_deps ${CMAKE_BINARY_DIR}/_deps)
+  set(SADDLEBACK_OPENMESH_SOURCE ${_deps}/openmesh-${SADDLEBACK_OPENMESH_VERSION})
+  if(NOT EXISTS ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src)
+    message(STATUS "Fetching the sources of openmesh ${SADDLEBACK_OPENMESH_VERSION} with pip")
+    execute_process(
+      COMMAND ${Python_EXECUTABLE} -m pip download --quiet --no-deps --no-binary :all: --dest ${_deps}
+        openmesh==${SADDLEBACK_OPENMESH_VERSION}
+      COMMAND_ERROR_IS_FATAL ANY)
+    file(ARCHIVE_EXTRACT INPUT ${_deps}/openmesh-${SADDLEBACK_OPENMESH_VERSION}.tar.gz DESTINATION ${_deps})
+  endif()
+endif()
+
+set(_core ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src/OpenMesh/Core)
+add_library(OpenMeshCore STATIC
+  ${_core}/IO/BinaryHelper.cc
+  ${_core}/IO/IOManager.cc
+  ${_core}/IO/OMFormat.cc
+  ${_core}/IO/reader/BaseReader.cc
+  ${_core}/IO/reader/OBJReader.cc
+  ${_core}/IO/reader/OFFReader.cc
+  ${_core}/IO/reader/PLYReader.cc
+  ${_core}/IO/reader/STLReader.cc
+  ${_core}/Mesh/ArrayKernel.cc
+  ${_core}/Mesh/BaseKernel.cc
+  ${_core}/Mesh/PolyConnectivity.cc
+  ${_core}/Mesh/TriConnectivity.cc
+  ${_core}/System/omstream.cc
+  ${_core}/Utils/BaseProperty.cc
+  ${_core}/Utils/Endian.cc
+  ${_core}/Utils/PropertyCreator.cc
+  ${_core}/Utils/RandomNumberGenerator.cc)
+target_include_directories(OpenMeshCore SYSTEM PUBLIC ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src)
+target_compile_definitions(OpenMeshCore PUBLIC OM_STATIC_BUILD _USE_MATH_DEFINES PRIVATE NDEBUG)
+target_compile_options(OpenMeshCore PRIVATE -w)

@@ -1,0 +1,55 @@
+#pragma once
+// Progress and cancellation of long work, shared between the thread that computes and the one that watches.
+
+#include <atomic>
+#include <mutex>
+#include <string>
+
+namespace saddleback {
+
+/// A token that one thread computes with and any other thread may read (`fraction`, `text`) or stop (`cancel`).
+/// Work that takes a Job* accepts nullptr, meaning nobody watches. Reused Jobs start again from 0.
+class Job {
+ public:
+  /// Share of the work done, 0 to 1, never falling during one call.
+  double fraction() const { return fraction_.load(std::memory_order_relaxed); }
+  /// What is being done, for a person to read.
+  std::string text() const;
+  /// Asks the work to stop; it does so within 0.1 s by throwing Cancelled.
+  void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+
+ private:
+  friend class JobStage;
+  std::atomic<double> fraction_{0.0};
+  std::atomic<bool> cancelled_{false};
+  mutable std::mutex text_mutex_;
+  std::string text_;
+};
+
+/// One part of a job's work: maps its own 0..1 onto [begin, end] of the job, so that algorithms built from others report
+/// one rising fraction. A JobStage without a job costs nothing. Safe to use from several threads.
+class JobStage {
+ public:
+  JobStage() = default;
+  /// The whole of `job` (may be null); resets its fraction to 0.
+  JobStage(Job* job, const std::string& text);
+  /// A part of this stage, from `begin` to `end` in its own 0..1.
+  JobStage part(double begin, double end, const std::string& text = {}) const;
+
+  /// Reports progress in 0..1 of this stage and throws Cancelled when asked to stop.
+  void update(double fraction) const;
+  /// Throws Cancelled when asked to stop. Cheap enough for every few microseconds of work.
+  void check() const {
+    if (job_ && job_->cancelled()) throw_cancelled();
+  }
+  bool cancelled() const { return job_ && job_->cancelled(); }
+
+ private:
+  [[noreturn]] static void throw_cancelled();
+  void set_text(const std::string& text) const;
+  Job* job_ = nullptr;
+  double begin_ = 0, end_ = 1;
+};
+
+}  // namespace saddleback

@@ -1,0 +1,41 @@
+#pragma once
+// Points anywhere on a mesh.
+
+#include <vector>
+
+#include "saddleback/mesh.h"
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+/// A point of the surface: a face and barycentric coordinates (>= 0, sum 1) in the order of the face's corners.
+struct SurfacePoint {
+  Index face = 0;
+  Vec3 barycentric = Vec3(1, 0, 0);
+};
+
+using SurfacePoints = std::vector<SurfacePoint>;
+
+/// Position in space.
+Vec3 position(const Mesh& mesh, const SurfacePoint& point);
+
+/// The surface point that is exactly the vertex.
+SurfacePoint at_vertex(const Mesh& mesh, Index vertex);
+
+/// The vertex that the point is exactly at (a barycentric coordinate equal to 1), else k_none.
+Index vertex_at(const Mesh& mesh, const SurfacePoint& point);
+
+/// \throw InputError naming `argument` and the first offender: face out of range, coordinates not finite, negative or
+/// not summing to 1 (beyond rounding).
+void check_surface_points(const Mesh& mesh, const SurfacePoints& points, const char* argument);
+
+/// A face's own plane: corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it. Angles of directions at
+/// a point in the face are measured in this chart, from the x axis counter-clockwise.
+struct FaceChart {
+  Vec2 corner[3];
+  FaceChart(const Mesh& mesh, Index face);
+  Vec2 to_plane(const Vec3& barycentric) const;
+  Vec3 to_barycentric(const Vec2& xy) const;
+};
+
+}  // namespace saddleback
