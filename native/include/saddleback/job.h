@@ -27,8 +27,8 @@ class Job {
   std::string text_;
 };
 
-/// One part of a job's work: maps its own 0..1 onto [begin, end] of the job, so that algorithms built from others report
-/// one rising fraction. A JobStage without a job costs nothing. Safe to use from several threads.
+/// One part of a job's work: maps its own 0..1 onto [begin, end] of the job, so that algorithms built from others
+/// report one rising fraction. A JobStage without a job costs nothing. Safe to use from several threads.
 class JobStage {
  public:
   JobStage() = default;

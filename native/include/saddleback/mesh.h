@@ -18,8 +18,8 @@ class Mesh {
  public:
   /// Checks and copies. `xyz` holds three coordinates a vertex; `triangles` three vertices a face.
   /// \throw MeshError naming the first offenders: no faces, a coordinate that is not finite, an index out of range, a
-  /// degenerate face (repeated vertex or no area), a duplicate face, a non-manifold edge or vertex, neighbours of opposite
-  /// orientation, an unreferenced vertex. O(V + F).
+  /// degenerate face (repeated vertex or no area), a duplicate face, a non-manifold edge or vertex, neighbours of
+  /// opposite orientation, an unreferenced vertex. O(V + F).
   Mesh(std::span<const double> xyz, std::span<const Index> triangles);
 
   Index vertex_count() const { return static_cast<Index>(positions_.size()); }
@@ -41,8 +41,8 @@ class Mesh {
   double length(Index h) const { return lengths_[h]; }              ///< equal to the bit for both twins
   double corner_angle(Index h) const { return corner_angles_[h]; }  ///< at from(h), inside h's face, radians
 
-  /// First half-edge out of a vertex in counter-clockwise order; on a boundary vertex the one whose clockwise side is the
-  /// boundary. Go on with `rotate` until k_none (boundary) or the first again.
+  /// First half-edge out of a vertex in counter-clockwise order; on a boundary vertex the one whose clockwise side is
+  /// the boundary. Go on with `rotate` until k_none (boundary) or the first again.
   Index first_halfedge(Index vertex) const { return first_halfedges_[vertex]; }
   /// The next half-edge counter-clockwise out of the same vertex, k_none where the boundary comes.
   Index rotate(Index h) const { return twins_[prev(h)]; }

@@ -29,8 +29,8 @@ Index vertex_at(const Mesh& mesh, const SurfacePoint& point);
 /// not summing to 1 (beyond rounding).
 void check_surface_points(const Mesh& mesh, const SurfacePoints& points, const char* argument);
 
-/// A face's own plane: corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it. Angles of directions at
-/// a point in the face are measured in this chart, from the x axis counter-clockwise.
+/// A face's own plane: corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it. Angles of directions
+/// at a point in the face are measured in this chart, from the x axis counter-clockwise.
 struct FaceChart {
   Vec2 corner[3];
   FaceChart(const Mesh& mesh, Index face);

@@ -20,9 +20,9 @@ struct TraceResult {
   bool hit_boundary = false;
 };
 
-/// Walks straight on from `start` for `length`. The angle is measured in the FaceChart of start.face or, when the point is
-/// exactly a vertex, from first_halfedge(vertex) counter-clockwise on the surface (0 to total_angle). Through a vertex it
-/// goes on with half the total angle on either side (Polthier and Schmies 1998); at the boundary it stops.
+/// Walks straight on from `start` for `length`. The angle is measured in the FaceChart of start.face or, when the point
+/// is exactly a vertex, from first_halfedge(vertex) counter-clockwise on the surface (0 to total_angle). Through a
+/// vertex it goes on with half the total angle on either side (Polthier and Schmies 1998); at the boundary it stops.
 /// \throw InputError for a point off the mesh, a negative or non-finite length, a non-finite angle. O(faces crossed).
 TraceResult trace(const Mesh& mesh, const SurfacePoint& start, double angle, double length);
 

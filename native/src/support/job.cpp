@@ -31,8 +31,7 @@ void JobStage::update(double fraction) const {
   check();
   const double wanted = begin_ + (end_ - begin_) * std::clamp(fraction, 0.0, 1.0);
   double seen = job_->fraction_.load(std::memory_order_relaxed);
-  while (wanted > seen && !job_->fraction_.compare_exchange_weak(seen, wanted, std::memory_order_relaxed)) {
-  }
+  while (wanted > seen && !job_->fraction_.compare_exchange_weak(seen, wanted, std::memory_order_relaxed)) {}
 }
 
 void JobStage::set_text(const std::string& text) const {

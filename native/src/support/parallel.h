@@ -1,11 +1,10 @@
 #pragma once
 // Threads: one loop, dynamic scheduling, errors carried to the caller.
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <omp.h>
 
 #include "saddleback/types.h"
 
@@ -21,7 +20,8 @@ template <class Body>
 void parallel_for(Index count, int threads, Index chunk, Body&& body) {
   std::exception_ptr error;
   std::atomic<bool> failed{false};
-  const int team = static_cast<int>(std::min<Index>(thread_count(threads), std::max<Index>(1, (count + chunk - 1) / chunk)));
+  const int team =
+      static_cast<int>(std::min<Index>(thread_count(threads), std::max<Index>(1, (count + chunk - 1) / chunk)));
 #pragma omp parallel for schedule(dynamic, chunk) num_threads(team)
   for (Index i = 0; i < count; ++i) {
     if (failed.load(std::memory_order_relaxed)) continue;
