@@ -68,6 +68,11 @@ class Mesh {
   std::uint64_t fingerprint() const { return fingerprint_; }
 
  private:
+  void order_vertices();
+  void measure();
+  void find_components();
+  void find_boundary_loops();
+
   std::vector<Vec3> positions_;
   std::vector<Triangle> triangles_;
   std::vector<Index> twins_, first_halfedges_, components_;

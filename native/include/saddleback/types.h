@@ -2,6 +2,7 @@
 // The few types that every public header shares.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>  // cross products
 #include <array>
 #include <cstdint>
 

@@ -1,0 +1,161 @@
+// Builds the flat half-edge structure: copy, check, twins from the edge table, then what follows from them. Each step
+// relies on what the checks before it proved, so nothing here can meet a broken mesh.
+#include "saddleback/mesh.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <numeric>
+
+#include "mesh/edge_table.h"
+#include "mesh/face_shape.h"
+#include "mesh/offenders.h"
+#include "mesh/validate.h"
+
+namespace saddleback {
+namespace {
+
+// The corner angles' rounding errors add up to well below this share of 2 pi, so that a flat or developable vertex is
+// not taken for a saddle; a true saddle sharper than flat by less than that bends no path measurably.
+constexpr double k_saddle_tolerance = 1e-10;
+
+std::vector<Vec3> copy_positions(std::span<const double> xyz) {
+  if (xyz.size() % 3 != 0) throw MeshError(message("vertices: ", xyz.size(), " coordinates are not a multiple of 3"));
+  std::vector<Vec3> positions(xyz.size() / 3);
+  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = Vec3(xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]);
+  return positions;
+}
+
+std::vector<Triangle> copy_triangles(std::span<const Index> indices) {
+  if (indices.size() % 3 != 0) throw MeshError(message("triangles: ", indices.size(), " indices are not a multiple of 3"));
+  std::vector<Triangle> triangles(indices.size() / 3);
+  if (!indices.empty()) std::memcpy(triangles.data(), indices.data(), indices.size_bytes());
+  return triangles;
+}
+
+std::vector<Index> twins_of(const EdgeTable& edges) {
+  std::vector<Index> twins(edges.halfedges.size(), k_none);
+  for (Index e = 0; e < edges.edge_count(); ++e) {
+    const std::span<const Index> around = edges.edge(e);
+    if (around.size() != 2) continue;
+    twins[around[0]] = around[1];
+    twins[around[1]] = around[0];
+  }
+  return twins;
+}
+
+std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
+  hash = (hash ^ value) * 0x9e3779b97f4a7c15u;
+  return hash ^ (hash >> 29);
+}
+
+std::uint64_t hash_mesh(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+  std::uint64_t hash = mix(positions.size(), triangles.size());
+  for (const Vec3& p : positions)
+    for (int i = 0; i < 3; ++i) hash = mix(hash, std::bit_cast<std::uint64_t>(p[i] + 0.0));  // -0 and 0 are one place
+  for (const Triangle& t : triangles)
+    for (const Index v : t) hash = mix(hash, static_cast<std::uint32_t>(v));
+  return hash;
+}
+
+}  // namespace
+
+Mesh::Mesh(std::span<const double> xyz, std::span<const Index> triangles)
+    : positions_(copy_positions(xyz)), triangles_(copy_triangles(triangles)) {
+  check_faces(positions_, triangles_);
+  {
+    const EdgeTable edges = build_edge_table(triangles_, vertex_count());
+    check_edges(triangles_, edges);
+    edge_count_ = edges.edge_count();
+    twins_ = twins_of(edges);
+  }
+  order_vertices();
+  measure();
+  find_components();
+  find_boundary_loops();
+  const Index euler = vertex_count() - edge_count_ + face_count();
+  genus_ = component_count_ - (euler + static_cast<Index>(boundary_loops_.size())) / 2;
+  fingerprint_ = hash_mesh(positions_, triangles_);
+}
+
+// One half-edge a vertex, the clockwise-most on a boundary; a vertex whose half-edges are not all met by rotating from it
+// joins several fans and is refused.
+void Mesh::order_vertices() {
+  first_halfedges_.assign(vertex_count(), k_none);
+  boundary_.assign(vertex_count(), 0);
+  std::vector<Index> degrees(vertex_count(), 0);
+  for (Index h = 0; h < halfedge_count(); ++h) {
+    const Index v = from(h);
+    ++degrees[v];
+    if (first_halfedges_[v] == k_none || twins_[h] == k_none) first_halfedges_[v] = h;
+    if (twins_[h] == k_none) boundary_[v] = boundary_[to(h)] = 1;
+  }
+  Offenders bow_ties;
+  for (Index v = 0; v < vertex_count(); ++v) {
+    Index met = 0, h = first_halfedges_[v];
+    do {
+      ++met;
+      h = rotate(h);
+    } while (h != k_none && h != first_halfedges_[v]);
+    if (met != degrees[v])
+      bow_ties.add([&] { return message("vertex ", v, " joins ", degrees[v], " faces that are not one fan"); });
+  }
+  bow_ties.throw_if_any("non-manifold vertex", "non-manifold vertices", "saddleback.repair mends this");
+}
+
+void Mesh::measure() {
+  lengths_.resize(halfedge_count());
+  corner_angles_.resize(halfedge_count());
+  face_areas_.resize(face_count());
+  total_angles_.assign(vertex_count(), 0.0);
+  double length_sum = 0;
+  for (Index f = 0; f < face_count(); ++f) {
+    const Triangle& t = triangles_[f];
+    const FaceShape shape = measure_face(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+    face_areas_[f] = shape.area;
+    area_ += shape.area;
+    for (int i = 0; i < 3; ++i) {
+      const Index h = 3 * f + i;
+      lengths_[h] = shape.length[i];
+      corner_angles_[h] = shape.angle[i];
+      total_angles_[t[i]] += shape.angle[i];
+      if (twins_[h] < h) length_sum += shape.length[i];  // once an edge; the boundary's twin is -1
+    }
+  }
+  mean_edge_length_ = length_sum / edge_count_;
+  saddle_.resize(vertex_count());
+  constexpr double k_flat = 2 * std::numbers::pi * (1 + k_saddle_tolerance);
+  for (Index v = 0; v < vertex_count(); ++v) saddle_[v] = boundary_[v] || total_angles_[v] > k_flat;
+}
+
+void Mesh::find_components() {
+  std::vector<Index> parent(vertex_count());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](Index v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : triangles_)
+    for (int i = 1; i < 3; ++i) {
+      const Index a = root(t[0]), b = root(t[i]);
+      parent[std::max(a, b)] = std::min(a, b);  // roots are smallest: labels come in the order of first vertices
+    }
+  components_.resize(vertex_count());
+  for (Index v = 0; v < vertex_count(); ++v) components_[v] = root(v) == v ? component_count_++ : components_[root(v)];
+}
+
+void Mesh::find_boundary_loops() {
+  std::vector<std::uint8_t> visited(vertex_count(), 0);
+  for (Index v = 0; v < vertex_count(); ++v) {
+    if (!boundary_[v] || visited[v]) continue;
+    std::vector<Index>& loop = boundary_loops_.emplace_back();
+    // The first half-edge out of a boundary vertex is the boundary's own, and a manifold vertex has only one.
+    for (Index at = v; !visited[at]; at = to(first_halfedges_[at])) {
+      visited[at] = 1;
+      loop.push_back(at);
+    }
+  }
+}
+
+}  // namespace saddleback
