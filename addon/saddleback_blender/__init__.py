@@ -1,0 +1,27 @@
+"""Saddleback: geodesic cells, even tessellations and distances on painted meshes."""
+
+from __future__ import annotations
+
+bl_info = {
+    "name": "Saddleback",
+    "author": "The Saddleback maintainers",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "3D View > Sidebar > Saddleback",
+    "description": "Geodesic Voronoi cells and even tessellations of painted meshes",
+    "category": "Mesh",
+}
+
+
+def register() -> None:
+    from . import ops, prefs, props
+
+    for module in (props, prefs, ops):
+        module.register()
+
+
+def unregister() -> None:
+    from . import ops, prefs, props
+
+    for module in (ops, prefs, props):
+        module.unregister()

@@ -1,0 +1,1 @@
+"""The only border between Blender's data and numpy arrays."""

@@ -1,0 +1,90 @@
+"""A Blender mesh -> the arrays of a surface, in world space."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import Iterator
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import compat
+from ..core.requests import Surface
+from ..core.results import Indices, Reals
+
+
+class BadInput(Exception):
+    """The object cannot be used as asked; one sentence that names it and says what to do."""
+
+
+@contextmanager
+def mesh_of(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> Iterator[bpy.types.Mesh]:
+    """The object's mesh, or with `use_modifiers` its evaluated one, to be read only inside the `with`."""
+    if not use_modifiers:
+        yield source.data
+        return
+    depsgraph = context.evaluated_depsgraph_get()
+    evaluated = source.evaluated_get(depsgraph)
+    mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
+    try:
+        yield mesh
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def read_surface(source: bpy.types.Object, mesh: bpy.types.Mesh) -> Surface:
+    """The surface of `mesh` as placed in the world by `source`: scale applied, polygons cut into triangles."""
+    vertices = to_world(source, compat.read_positions(mesh))
+    if not np.isfinite(vertices).all():
+        vertex = int(np.nonzero(~np.isfinite(vertices).all(axis=1))[0][0])
+        raise BadInput(f"'{source.name}': vertex {vertex} is not at a finite place; delete it or press Repair")
+    triangles = read_triangles(mesh)
+    if not len(triangles):
+        raise BadInput(f"'{source.name}' has no faces; choose an object with a surface")
+    if source.matrix_world.determinant() < 0:  # a mirrored object shows its faces from the other side
+        triangles = np.ascontiguousarray(triangles[:, ::-1])
+    used, triangles = _compact(triangles, len(vertices))
+    count = len(vertices)
+    return Surface(source.name, vertices if used is None else vertices[used], triangles, count, used)
+
+
+def read_triangles(mesh: bpy.types.Mesh) -> Indices:
+    """(F, 3) vertices of the mesh's triangles, polygons cut as Blender draws them."""
+    if len(mesh.loops) == 3 * len(mesh.polygons) and _all_triangles(mesh):
+        return compat.read_corner_vertices(mesh).reshape(-1, 3)
+    mesh.calc_loop_triangles()
+    triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles)
+    return triangles.reshape(-1, 3)
+
+
+def read_triangle_polygons(mesh: bpy.types.Mesh) -> Indices:
+    """(F,) polygon that each triangle of `read_triangles` is part of."""
+    mesh.calc_loop_triangles()
+    polygons = np.empty(len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("polygon_index", polygons)
+    return polygons
+
+
+def to_world(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals:
+    """(n, 3) object-space positions -> world space, in double precision."""
+    matrix = np.array(source.matrix_world, np.float64)
+    return positions.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _all_triangles(mesh: bpy.types.Mesh) -> bool:
+    totals = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", totals)
+    return bool((totals == 3).all())
+
+
+def _compact(triangles: Indices, vertex_count: int) -> tuple[Indices | None, Indices]:
+    """Drops the numbers that no triangle uses: (n,) old number of each vertex left, or None when all are; triangles."""
+    is_used = np.zeros(vertex_count, bool)
+    is_used[triangles.ravel()] = True
+    if is_used.all():
+        return None, triangles
+    used = np.nonzero(is_used)[0].astype(np.int32)
+    numbers = np.cumsum(is_used, dtype=np.int32) - np.int32(1)
+    return used, numbers[triangles]

@@ -1,0 +1,1 @@
+"""Everything that is decided without Blender: numpy and saddleback only, never bpy."""

@@ -1,0 +1,73 @@
+"""What the core is given: arrays of one surface and a way to find it again."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .results import Indices, Reals
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The triangles of one Blender mesh in world space, without its loose vertices.
+
+    `vertices` (n, 3) and `triangles` (F, 3), counter-clockwise seen from outside. `used` (n,) gives each vertex its number
+    in the Blender mesh of `vertex_count` vertices; None where all are used.
+    """
+
+    name: str  # of the object, for messages
+    vertices: Reals
+    triangles: Indices
+    vertex_count: int
+    used: Indices | None = None
+
+    @cached_property
+    def key(self) -> str:
+        """Content hash: equal for equal geometry, whatever the object. O(n + F)."""
+        digest = hashlib.blake2b(digest_size=16)
+        digest.update(np.int64(len(self.vertices)).tobytes())
+        digest.update(np.ascontiguousarray(self.vertices).data)
+        digest.update(np.ascontiguousarray(self.triangles).data)
+        return digest.hexdigest()
+
+    @cached_property
+    def _compact(self) -> Indices:
+        numbers = np.full(self.vertex_count, -1, np.int32)
+        numbers[self.used] = np.arange(len(self.vertices), dtype=np.int32)
+        return numbers
+
+    def compact(self, vertices: NDArray[np.integer]) -> Indices:
+        """Numbers in `vertices` of the Blender mesh's vertices, -1 for loose ones."""
+        if self.used is None:
+            return np.asarray(vertices, np.int32)
+        return self._compact[vertices]
+
+    def gather(self, values: NDArray[np.floating]) -> Reals:
+        """(V,) values of the Blender mesh's vertices -> (n,) of `vertices`."""
+        return np.ascontiguousarray(values if self.used is None else values[self.used], np.float64)
+
+    def spread(self, values: NDArray[np.generic], fill: float) -> NDArray[np.generic]:
+        """(n,) values of `vertices` -> (V,) of the Blender mesh's, loose ones `fill`."""
+        if self.used is None:
+            return values
+        full = np.full(self.vertex_count, fill, values.dtype)
+        full[self.used] = values
+        return full
+
+
+def digest(*parts: object) -> str:
+    """One short name for any mixture of numbers, strings and arrays, equal only for equal content."""
+    hashed = hashlib.blake2b(digest_size=16)
+    for part in parts:
+        if isinstance(part, np.ndarray):
+            hashed.update(f"{part.dtype.str}{part.shape}".encode())
+            hashed.update(np.ascontiguousarray(part).data)
+        else:
+            hashed.update(repr(part).encode())
+        hashed.update(b"\0")
+    return hashed.hexdigest()

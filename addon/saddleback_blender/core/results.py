@@ -1,0 +1,61 @@
+"""What a run answers: frozen dataclasses of numpy arrays in world space, with the Blender mesh's own vertex numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Reals = NDArray[np.float64]
+Indices = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class CellsResult:
+    """Geodesic cells of a mesh of V vertices.
+
+    V counts the Blender mesh's vertices. A vertex of no face, or of a part of the surface without a site, has cell -1 and
+    distance inf. n cells, e edges (polylines between two cells), S vertices and T triangles of the mesh cut along them.
+    """
+
+    vertex_cell: Indices  # (V,) cell of each vertex, -1 = none
+    vertex_distance: Reals  # (V,) world units to the cell's site, inf = unreached
+    vertex_density: Reals | None  # (V,) the density used, None = uniform
+    sites_position: Reals  # (n, 3)
+    sites_normal: Reals  # (n, 3) unit length
+    cell_area: Reals  # (n,)
+    edge_points: Reals  # (m, 3) polyline points of all edges, one after another
+    edge_offsets: Indices  # (e + 1,) edge i owns edge_points[edge_offsets[i]:edge_offsets[i + 1]]
+    edge_cells: Indices  # (e, 2) the cells on both sides
+    edge_closed: NDArray[np.bool_]  # (e,) the last point joins the first
+    split_vertices: Reals  # (S, 3)
+    split_triangles: Indices  # (T, 3) each inside exactly one cell
+    split_cell: Indices  # (T,)
+    split_origin: Indices  # (S,) vertex of the Blender mesh that it is, -1 = made by the cut
+    energy: Reals  # (k,) of each iteration, empty where nothing was relaxed
+    iterations: int
+    stop_reason: str
+
+    @property
+    def count(self) -> int:
+        return len(self.sites_position)
+
+    @property
+    def nbytes(self) -> int:
+        return _nbytes(self)
+
+
+@dataclass(frozen=True)
+class DistanceResult:
+    """Geodesic distances of a mesh of V vertices to the nearest source: world units, inf = unreached."""
+
+    vertex_distance: Reals  # (V,)
+
+    @property
+    def nbytes(self) -> int:
+        return _nbytes(self)
+
+
+def _nbytes(result: object) -> int:
+    return sum(value.nbytes for value in vars(result).values() if isinstance(value, np.ndarray))

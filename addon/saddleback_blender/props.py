@@ -1,0 +1,235 @@
+"""Every setting once: as a property of its operator and, for the panel and the next session, kept on the object."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any, TypeVar
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+from .core.settings import DistanceSettings, RepairSettings, TessellateSettings
+
+Settings = TypeVar("Settings", TessellateSettings, DistanceSettings, RepairSettings)
+
+# An operator names objects by strings, so that scripts and presets can; the object itself keeps pointers, which survive
+# renaming. These names are pointers on the object and strings on the operator.
+OBJECT_NAMES = ("sites_object", "instance_object")
+COLLECTION_NAMES = ("sources_collection",)
+
+SITES_SOURCES = (
+    ("COUNT", "Count", "Place this many sites, by the density"),
+    ("SELECTED", "Selected Vertices", "One cell for each vertex selected in Edit Mode"),
+    ("OBJECT", "Object", "One cell for each vertex of another object, brought to the nearest point of the surface"),
+)
+DENSITY_SOURCES = (
+    ("UNIFORM", "Uniform", "Cells of equal size everywhere"),
+    ("VERTEX_GROUP", "Vertex Group", "Painted weights"),
+    ("ATTRIBUTE", "Attribute", "A number attribute of vertices, edges, faces or face corners"),
+    ("COLOR", "Color Attribute", "Painted colors"),
+    ("MASK", "Sculpt Mask", "The sculpt mask"),
+)
+CHANNELS = (
+    ("LUMINANCE", "Luminance", "Brightness of the linear color (Rec. 709)"),
+    ("R", "Red", "Linear red"),
+    ("G", "Green", "Linear green"),
+    ("B", "Blue", "Linear blue"),
+    ("A", "Alpha", "Alpha"),
+)
+EDGE_KINDS = (
+    ("MESH", "Mesh", "A mesh of edges, made into tubes by a modifier"),
+    ("CURVE", "Curve", "A curve object with a bevel"),
+)
+DISTANCE_SOURCES = (
+    ("SELECTED", "Selected Vertices", "Vertices selected in Edit Mode"),
+    ("VERTEX_GROUP", "Vertex Group", "Vertices whose weight in the group is above one half"),
+    ("EMPTIES", "Empties", "Empties of a collection, or those parented to the object, brought to the nearest point"),
+)
+
+
+def _detail() -> Any:
+    return IntProperty(
+        name="Detail",
+        description="Vertices in each vertex's neighbourhood of the distance graph: more is more exact and slower",
+        default=50,
+        min=1,
+        max=10000,
+        soft_min=10,
+        soft_max=500,
+        options={"SKIP_SAVE"},
+    )
+
+
+def _use_modifiers() -> Any:
+    return BoolProperty(
+        name="Use Modifiers",
+        description="Work on the object as its modifiers shape it; where they change the vertices, a new object is made",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+
+
+def _name(label: str, description: str, default: str = "") -> Any:
+    return StringProperty(name=label, description=description, default=default, options={"SKIP_SAVE"})
+
+
+def _length(label: str, description: str, default: float) -> Any:
+    return FloatProperty(
+        name=label, description=description, default=default, min=0.0, soft_max=10.0, precision=4, step=1,
+        subtype="DISTANCE", options={"SKIP_SAVE"},
+    )  # fmt: skip
+
+
+def _switch(label: str, description: str, default: bool) -> Any:
+    return BoolProperty(name=label, description=description, default=default, options={"SKIP_SAVE"})
+
+
+def _choice(label: str, description: str, items: tuple[tuple[str, str, str], ...], default: str) -> Any:
+    return EnumProperty(name=label, description=description, items=items, default=default, options={"SKIP_SAVE"})
+
+
+TESSELLATE: dict[str, Any] = {
+    "count": IntProperty(
+        name="Count", description="Number of cells", default=200, min=1, soft_max=20000, options={"SKIP_SAVE"}
+    ),
+    "seed": IntProperty(
+        name="Seed", description="Another number gives another pattern", default=0, min=0, options={"SKIP_SAVE"}
+    ),
+    "iterations": IntProperty(
+        name="Iterations",
+        description="Steps that make the cells even; 0 leaves the sites where chance put them",
+        default=30,
+        min=0,
+        soft_max=200,
+        options={"SKIP_SAVE"},
+    ),
+    "sites_source": _choice("Sites", "Where the cells' centres come from", SITES_SOURCES, "COUNT"),
+    "sites_object": _name("Sites Object", "The object whose vertices become sites"),
+    "relax_sites": _switch("Relax Sites", "Move the chosen sites to even the cells out", False),
+    "density_source": _choice("Density", "What says where cells are small", DENSITY_SOURCES, "UNIFORM"),
+    "density_name": _name("Density Name", "The vertex group or attribute; empty means the active one"),
+    "density_channel": _choice("Channel", "Which part of the color counts", CHANNELS, "LUMINANCE"),
+    "density_invert": _switch("Invert", "Small cells where little is painted", False),
+    "density_contrast": FloatProperty(
+        name="Contrast",
+        description="Exponent of the density: 1 makes cells per area proportional to the paint, 0 ignores the paint",
+        default=1.0,
+        min=0.0,
+        max=8.0,
+        options={"SKIP_SAVE"},
+    ),
+    "k": _detail(),
+    "use_modifiers": _use_modifiers(),
+    "make_edges": _switch("Edges", "Make an object of the lines between cells", True),
+    "edge_kind": _choice("Edge Object", "What the lines between cells become", EDGE_KINDS, "MESH"),
+    "edge_radius": _length("Radius", "Half the thickness of the lines between cells", 0.01),
+    "make_cells": _switch("Cells", "Make a mesh of the cells", False),
+    "gap": _length("Gap", "Width of the gap between neighbouring cells", 0.0),
+    "inset": _length("Inset", "Width of a border ring inside each cell", 0.0),
+    "thickness": _length("Thickness", "Thickness of the cells", 0.0),
+    "make_centres": _switch("Centres", "Make an object of points at the cells' centres", False),
+    "instance_object": _name("Instance", "The object to put on every centre"),
+    "instance_scale": FloatProperty(
+        name="Instance Scale",
+        description="Size of the instances, times the size of their cells",
+        default=1.0,
+        min=0.0,
+        soft_max=10.0,
+        options={"SKIP_SAVE"},
+    ),
+    "cell_attribute": _name("Cell Attribute", "Where each vertex's cell is written", "saddleback_cell"),
+    "distance_attribute": _name("Distance Attribute", "Where distances are written", "saddleback_distance"),
+    "density_attribute": _name("Density Attribute", "Where the density used is written", "saddleback_density"),
+}
+
+DISTANCE: dict[str, Any] = {
+    "sources": _choice("From", "Where distances are measured from", DISTANCE_SOURCES, "SELECTED"),
+    "sources_group": _name("Vertex Group", "The group whose vertices are sources; empty means the active one"),
+    "sources_collection": _name("Collection", "Its empties are sources; empty means those parented to the object"),
+    "limit": _length("Limit", "Measure no farther than this; 0 means everywhere", 0.0),
+    "k": _detail(),
+    "use_modifiers": _use_modifiers(),
+    "distance_attribute": _name("Attribute", "Where distances are written", "saddleback_distance"),
+}
+
+REPAIR: dict[str, Any] = {
+    "weld_distance": _length("Weld Distance", "Join vertices closer than this; 0 joins those at the same place", 0.0),
+}
+
+
+def _kept(properties: dict[str, Any]) -> dict[str, Any]:
+    """The same properties for an object to keep: named objects and collections become pointers."""
+    pointers = {name: bpy.types.Object for name in OBJECT_NAMES} | {name: bpy.types.Collection for name in COLLECTION_NAMES}
+    kept = {}
+    for name, prop in properties.items():
+        if name in pointers:
+            kept[name] = PointerProperty(
+                type=pointers[name], name=prop.keywords["name"], description=prop.keywords["description"]
+            )
+        else:
+            kept[name] = prop
+    return kept
+
+
+class SaddlebackTessellateProps(bpy.types.PropertyGroup):
+    __annotations__ = _kept(TESSELLATE)
+
+
+class SaddlebackDistanceProps(bpy.types.PropertyGroup):
+    __annotations__ = _kept(DISTANCE)
+
+
+class SaddlebackRepairProps(bpy.types.PropertyGroup):
+    __annotations__ = _kept(REPAIR)
+
+
+class SaddlebackObjectProps(bpy.types.PropertyGroup):
+    """`Object.saddleback`: the settings of each operator, as last used or set in the panel."""
+
+    __annotations__ = {
+        "tessellate": PointerProperty(type=SaddlebackTessellateProps),
+        "distance": PointerProperty(type=SaddlebackDistanceProps),
+        "repair": PointerProperty(type=SaddlebackRepairProps),
+    }
+
+
+CLASSES = (SaddlebackTessellateProps, SaddlebackDistanceProps, SaddlebackRepairProps, SaddlebackObjectProps)
+
+
+def fill_operator(operator: bpy.types.Operator, group: bpy.types.PropertyGroup, names: dict[str, Any]) -> None:
+    """Gives each property of the operator that the caller did not set the value that the object keeps."""
+    for name in names:
+        if not operator.properties.is_property_set(name):
+            value = getattr(group, name)
+            if name in OBJECT_NAMES + COLLECTION_NAMES:
+                value = value.name if value is not None else ""
+            setattr(operator, name, value)
+
+
+def keep_settings(settings: Settings, group: bpy.types.PropertyGroup) -> None:
+    """Writes the settings of a run to the object, so that tomorrow's run is the same."""
+    for field in fields(settings):
+        value = getattr(settings, field.name)
+        if field.name in OBJECT_NAMES:
+            value = bpy.data.objects.get(value)
+        elif field.name in COLLECTION_NAMES:
+            value = bpy.data.collections.get(value)
+        if getattr(group, field.name) != value:
+            setattr(group, field.name, value)
+
+
+def settings_of(operator: bpy.types.Operator, kind: type[Settings]) -> Settings:
+    """The operator's properties as the core's dataclass."""
+    return kind(**{field.name: getattr(operator, field.name) for field in fields(kind)})
+
+
+def register() -> None:
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Object.saddleback = PointerProperty(type=SaddlebackObjectProps)
+
+
+def unregister() -> None:
+    del bpy.types.Object.saddleback
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
