@@ -1,6 +1,7 @@
 """Shared by all tests."""
 
-import sys
-from pathlib import Path
+from hypothesis import HealthCheck, settings
 
-sys.path.insert(0, str(Path(__file__).parent))
+# Slow shared machines must not fail a property; the same examples every time keep a red test red.
+settings.register_profile("saddleback", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("saddleback")
