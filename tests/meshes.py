@@ -97,16 +97,15 @@ def cone(around: int = 24, along: int = 8, radius: float = 1.0, height: float = 
     share = np.arange(1, along + 1) / along
     angle = 2 * np.pi * np.arange(around) / around
     ring = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
-    vertices = np.concatenate(
-        [[[0.0, 0.0, height]], np.concatenate([np.column_stack([s * ring, np.full(around, height * (1 - s))]) for s in share])]
-    )
+    rings = [np.column_stack([s * ring, np.full(around, height * (1 - s))]) for s in share]
+    vertices = np.concatenate([np.array([[0.0, 0.0, height]]), *rings])
     apex = [(0, 1 + i, 1 + (i + 1) % around) for i in range(around)]
     sides = _wrap(around, along)[:, ::-1] + 1  # rings go down: reversed to face outward
     return vertices, np.concatenate([np.array(apex, dtype=np.int32), sides]).astype(np.int32)
 
 
 def saddle(size: int = 13) -> Arrays:
-    """z = x^2 - y^2: every inner vertex has more than 2 pi around it."""
+    """The graph of x^2 - y^2: every inner vertex has more than 2 pi around it."""
     vertices, triangles = grid(size, size)
     vertices[:, :2] = 2 * vertices[:, :2] - 1
     vertices[:, 2] = vertices[:, 0] ** 2 - vertices[:, 1] ** 2
@@ -152,8 +151,9 @@ def icosphere(level: int = 2, radius: float = 1.0) -> Arrays:
     vertices, triangles = _arrays(
         [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g),
          (0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1)],
-        [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6), (7, 1, 8),
-         (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)],
+        [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
+         (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8),
+         (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)],
     )  # fmt: skip
     for _ in range(level):
         vertices, triangles = subdivide(vertices, triangles)
@@ -215,7 +215,7 @@ def double_torus() -> Arrays:
 def two_components() -> Arrays:
     """A sphere and a torus that stand apart."""
     vertices, triangles = torus(24, 10)
-    return merge(icosphere(1), (vertices + (3.0, 0.0, 0.0), triangles))
+    return merge(icosphere(1), (vertices + np.array([3.0, 0.0, 0.0]), triangles))
 
 
 # --- broken -----------------------------------------------------------------------------------------------------------
@@ -315,6 +315,7 @@ def good() -> tuple[Case, ...]:
 @functools.cache
 def broken() -> tuple[Case, ...]:
     sphere_v, sphere_t = icosphere(2)
+    with_repeat = np.vstack([sphere_t, np.array([(3, 3, 9)], dtype=np.int32)])
     return (
         _case("moebius", moebius(), fault="opposite orientation"),
         _case("bow_tie", bow_tie(), fault="non-manifold vertex"),
@@ -324,7 +325,7 @@ def broken() -> tuple[Case, ...]:
         _case("collapsed_edge", collapsed_edge(), fault="no area"),
         _case("cap", with_cap(), fault="no area"),
         _case("mixed_orientation", mixed_orientation(), fault="opposite orientation"),
-        _case("repeated_index", (sphere_v, np.vstack([sphere_t, [(3, 3, 9)]]).astype(np.int32)), fault="uses a vertex twice"),
+        _case("repeated_index", (sphere_v, with_repeat), fault="uses a vertex twice"),
         _case("duplicate_face", (sphere_v, np.vstack([sphere_t, sphere_t[5, [1, 2, 0]]])), fault="duplicate face"),
         _case("mirrored_duplicate", (sphere_v, np.vstack([sphere_t, sphere_t[5, ::-1]])), fault="duplicate face"),
         _case("unreferenced", (np.vstack([sphere_v, [(5, 5, 5)]]), sphere_t), fault="belongs to no face"),

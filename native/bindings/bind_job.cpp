@@ -3,12 +3,14 @@
 namespace saddleback::bindings {
 
 void bind_job(py::module_& m) {
-  py::class_<Job>(m, "Job", py::module_local(), R"(A token for long work: one thread computes with it, another watches or stops it.
+  py::class_<Job>(m, "Job", py::module_local(),
+                  R"(A token for long work: one thread computes with it, another watches or stops it.
 
 Pass it as ``job=`` and read ``fraction`` and ``text`` from any other thread meanwhile. A job may be used again; its
 fraction then starts from 0. Once cancelled it stays cancelled.)")
       .def(py::init<>())
-      .def_property_readonly("fraction", &Job::fraction, "Share of the work done, 0 to 1, never falling during one call.")
+      .def_property_readonly("fraction", &Job::fraction,
+                             "Share of the work done, 0 to 1, never falling during one call.")
       .def_property_readonly("text", &Job::text, "What is being done, for a person to read.")
       .def_property_readonly("cancelled", &Job::cancelled, "True once `cancel` was called.")
       .def("cancel", &Job::cancel, "Ask the work to stop: within 0.1 s its call raises `Cancelled`.")

@@ -32,8 +32,10 @@ py::list boundary_loops(const py::object& self) {
 void bind_mesh(py::module_& m) {
   py::class_<Mesh, std::shared_ptr<Mesh>>(m, "Mesh", py::module_local(), "An oriented manifold triangle mesh.")
       .def(py::init(&make_mesh), py::arg("vertices"), py::arg("triangles"))
-      .def_property_readonly("vertices", [](const py::object& self) { return view_of(mesh_of(self).positions(), self); })
-      .def_property_readonly("triangles", [](const py::object& self) { return view_of(mesh_of(self).triangles(), self); })
+      .def_property_readonly("vertices",
+                             [](const py::object& self) { return view_of(mesh_of(self).positions(), self); })
+      .def_property_readonly("triangles",
+                             [](const py::object& self) { return view_of(mesh_of(self).triangles(), self); })
       .def_property_readonly("saddle_vertices",
                              [](const Mesh& mesh) { return read_only(to_array(saddle_vertices(mesh))); })
       .def_property_readonly("boundary_loops", &boundary_loops)

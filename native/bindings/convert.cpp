@@ -30,7 +30,8 @@ py::array as_array(const py::object& value, const char* name, const std::string&
   }
 }
 
-// columns: 0 for a flat array, else the number that each row must have. An empty list has no columns to show: it passes.
+// columns: 0 for a flat array, else the number that each row must have. An empty list has no columns to show: it
+// passes.
 py::array shaped(const py::object& value, const char* name, py::ssize_t columns, const std::string& wanted) {
   py::array array = as_array(value, name, wanted);
   if (columns > 0 && array.ndim() == 1 && array.size() == 0) return array.reshape({py::ssize_t{0}, columns});
@@ -44,7 +45,8 @@ std::string dtype_name(const py::array& array) { return py::cast<std::string>(py
 Index row_count(const py::array& array, const char* name) {
   const py::ssize_t rows = array.shape(0);
   if (rows >= std::numeric_limits<Index>::max())
-    throw InputError(message(name, ": ", rows, " rows are too many; 32-bit indices allow ", std::numeric_limits<Index>::max() - 1));
+    throw InputError(
+        message(name, ": ", rows, " rows are too many; 32-bit indices allow ", std::numeric_limits<Index>::max() - 1));
   return static_cast<Index>(rows);
 }
 
@@ -87,7 +89,8 @@ ArrayIn<Index> integers(const py::object& value, const char* name, py::ssize_t c
 
 // A numpy scalar or a Python number; refuses bool, which is an int only by inheritance.
 py::object whole_number(const py::object& value, const char* name) {
-  if (py::isinstance<py::bool_>(value) || !PyIndex_Check(value.ptr())) refuse(name, "an integer", "a " + type_of(value));
+  if (py::isinstance<py::bool_>(value) || !PyIndex_Check(value.ptr()))
+    refuse(name, "an integer", "a " + type_of(value));
   PyObject* const number = PyNumber_Index(value.ptr());
   if (!number) {
     PyErr_Clear();
@@ -133,8 +136,9 @@ Vec3 as_vec3(const py::object& value, const char* name) {
 }
 
 double as_real(const py::object& value, const char* name) {
-  const bool is_number = PyFloat_Check(value.ptr()) || PyIndex_Check(value.ptr()) ||
-                         (PyNumber_Check(value.ptr()) && py::hasattr(value, "__float__") && !py::hasattr(value, "__len__"));
+  const bool is_number =
+      PyFloat_Check(value.ptr()) || PyIndex_Check(value.ptr()) ||
+      (PyNumber_Check(value.ptr()) && py::hasattr(value, "__float__") && !py::hasattr(value, "__len__"));
   if (py::isinstance<py::bool_>(value) || !is_number) refuse(name, "a real number", "a " + type_of(value));
   const double number = PyFloat_AsDouble(value.ptr());
   if (number == -1.0 && PyErr_Occurred()) {

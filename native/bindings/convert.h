@@ -2,11 +2,10 @@
 // numpy in and out. Every argument arrives as a py::object, so that what is wrong with it can be said by its name;
 // results leave without a copy.
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-
 #include <memory>
 #include <optional>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
 #include <span>
 #include <string>
 #include <utility>
@@ -29,18 +28,18 @@ struct ArrayIn {
   Index count = 0;            ///< rows
 };
 
-// Each throws InputError "NAME: wanted ..., got ...". Reals are any float or integer type; indices any integer type, and
-// every value must fit 32 bits.
-ArrayIn<double> as_points3(const py::object& value, const char* name);   ///< (n, 3) reals
-ArrayIn<double> as_points2(const py::object& value, const char* name);   ///< (n, 2) reals
-ArrayIn<double> as_reals(const py::object& value, const char* name);     ///< (n,) reals
+// Each throws InputError "NAME: wanted ..., got ...". Reals are any float or integer type; indices any integer type,
+// and every value must fit 32 bits.
+ArrayIn<double> as_points3(const py::object& value, const char* name);             ///< (n, 3) reals
+ArrayIn<double> as_points2(const py::object& value, const char* name);             ///< (n, 2) reals
+ArrayIn<double> as_reals(const py::object& value, const char* name);               ///< (n,) reals
 ArrayIn<double> as_reals(const py::object& value, const char* name, Index count);  ///< (count,) reals
-ArrayIn<Index> as_indices(const py::object& value, const char* name);    ///< (n,) integers
-ArrayIn<Index> as_triangles(const py::object& value, const char* name);  ///< (n, 3) integers
-Vec3 as_vec3(const py::object& value, const char* name);                 ///< three reals
+ArrayIn<Index> as_indices(const py::object& value, const char* name);              ///< (n,) integers
+ArrayIn<Index> as_triangles(const py::object& value, const char* name);            ///< (n, 3) integers
+Vec3 as_vec3(const py::object& value, const char* name);                           ///< three reals
 
-double as_real(const py::object& value, const char* name);               ///< a float or int, numpy's too
-Index as_integer(const py::object& value, const char* name);             ///< an int (not a float), numpy's too
+double as_real(const py::object& value, const char* name);    ///< a float or int, numpy's too
+Index as_integer(const py::object& value, const char* name);  ///< an int (not a float), numpy's too
 /// As as_integer, for seeds: 0 to 2^64 - 1.
 std::uint64_t as_seed(const py::object& value, const char* name);
 /// A saddleback.Job, or nullptr for None.
@@ -88,8 +87,12 @@ py::array view_of_rows(std::span<const Row> rows, const py::object& owner) {
                                        static_cast<py::ssize_t>(sizeof(Row) / sizeof(Scalar))};
   return read_only(py::array_t<Scalar>(shape, reinterpret_cast<const Scalar*>(rows.data()), owner));
 }
-inline py::array view_of(std::span<const Vec3> rows, const py::object& owner) { return view_of_rows<double>(rows, owner); }
-inline py::array view_of(std::span<const Triangle> rows, const py::object& owner) { return view_of_rows<Index>(rows, owner); }
+inline py::array view_of(std::span<const Vec3> rows, const py::object& owner) {
+  return view_of_rows<double>(rows, owner);
+}
+inline py::array view_of(std::span<const Triangle> rows, const py::object& owner) {
+  return view_of_rows<Index>(rows, owner);
+}
 
 /// Calls `work` without the GIL; it must not touch Python.
 template <class Work>

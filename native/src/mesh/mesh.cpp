@@ -28,7 +28,8 @@ std::vector<Vec3> copy_positions(std::span<const double> xyz) {
 }
 
 std::vector<Triangle> copy_triangles(std::span<const Index> indices) {
-  if (indices.size() % 3 != 0) throw MeshError(message("triangles: ", indices.size(), " indices are not a multiple of 3"));
+  if (indices.size() % 3 != 0)
+    throw MeshError(message("triangles: ", indices.size(), " indices are not a multiple of 3"));
   std::vector<Triangle> triangles(indices.size() / 3);
   if (!indices.empty()) std::memcpy(triangles.data(), indices.data(), indices.size_bytes());
   return triangles;
@@ -79,8 +80,8 @@ Mesh::Mesh(std::span<const double> xyz, std::span<const Index> triangles)
   fingerprint_ = hash_mesh(positions_, triangles_);
 }
 
-// One half-edge a vertex, the clockwise-most on a boundary; a vertex whose half-edges are not all met by rotating from it
-// joins several fans and is refused.
+// One half-edge a vertex, the clockwise-most on a boundary; a vertex whose half-edges are not all met by rotating from
+// it joins several fans and is refused.
 void Mesh::order_vertices() {
   first_halfedges_.assign(vertex_count(), k_none);
   boundary_.assign(vertex_count(), 0);

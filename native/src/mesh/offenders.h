@@ -18,11 +18,12 @@ class Offenders {
   }
   bool empty() const { return count_ == 0; }
 
-  /// \throw MeshError "2 non-manifold edges: edge (0, 1) has 3 faces, ...; saddleback.repair mends this", if there are any.
+  /// \throw MeshError "2 non-manifold edges: edge (0, 1) has 3 faces, ...; saddleback.repair mends this", if there are
+  /// any.
   void throw_if_any(const std::string& singular, const std::string& plural, const std::string& remedy) const {
     if (count_ == 0) return;
-    throw MeshError(message(count_, " ", count_ == 1 ? singular : plural, ": ", text_,
-                            count_ > k_named ? ", ..." : "", "; ", remedy));
+    throw MeshError(message(count_, " ", count_ == 1 ? singular : plural, ": ", text_, count_ > k_named ? ", ..." : "",
+                            "; ", remedy));
   }
 
  private:

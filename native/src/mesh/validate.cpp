@@ -45,8 +45,9 @@ void check_indices(Index vertex_count, std::span<const Triangle> triangles) {
     }
     if (in_range && (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])) repeated.add([&] { return name_face(f, t); });
   }
-  out_of_range.throw_if_any("vertex index out of range", "vertex indices out of range",
-                            message("the mesh has ", vertex_count, " vertices, so give indices from 0 to ", vertex_count - 1));
+  out_of_range.throw_if_any(
+      "vertex index out of range", "vertex indices out of range",
+      message("the mesh has ", vertex_count, " vertices, so give indices from 0 to ", vertex_count - 1));
   repeated.throw_if_any("face uses a vertex twice", "faces use a vertex twice", k_repair);
   Offenders unused;
   for (Index v = 0; v < vertex_count; ++v)
@@ -74,7 +75,8 @@ void check_areas(std::span<const Vec3> positions, std::span<const Triangle> tria
   Offenders flat;
   for (Index f = 0; f < static_cast<Index>(triangles.size()); ++f) {
     const Triangle& t = triangles[f];
-    if (is_degenerate_face(positions[t[0]], positions[t[1]], positions[t[2]])) flat.add([&] { return name_face(f, t); });
+    if (is_degenerate_face(positions[t[0]], positions[t[1]], positions[t[2]]))
+      flat.add([&] { return name_face(f, t); });
   }
   flat.throw_if_any("face has no area", "faces have no area", k_repair);
 }
@@ -105,7 +107,8 @@ void check_edges(std::span<const Triangle> triangles, const EdgeTable& edges) {
     if (around.size() > 2) {
       crowded.add([&] { return message("edge (", a, ", ", b, ") has ", around.size(), " faces"); });
     } else if (halfedge_from(triangles, around[1]) == a) {
-      opposed.add([&] { return message("faces ", around[0] / 3, " and ", around[1] / 3, " at edge (", a, ", ", b, ")"); });
+      opposed.add(
+          [&] { return message("faces ", around[0] / 3, " and ", around[1] / 3, " at edge (", a, ", ", b, ")"); });
     }
   }
   duplicate.throw_if_any("duplicate face", "duplicate faces", k_repair);

@@ -3,13 +3,14 @@
 
 #include <span>
 
-#include "mesh/edge_table.h"
 #include "saddleback/types.h"
+
+#include "mesh/edge_table.h"
 
 namespace saddleback {
 
-/// The checks that need no edges: sizes, index range, finite coordinates, repeated vertices, unreferenced vertices, area.
-/// \throw MeshError with the first offenders.
+/// The checks that need no edges: sizes, index range, finite coordinates, repeated vertices, unreferenced vertices,
+/// area. \throw MeshError with the first offenders.
 void check_faces(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
 /// Duplicate faces, non-manifold edges, opposite orientations. \pre check_faces passed. \throw MeshError
