@@ -1,0 +1,25 @@
+// The optional module `_saddleback_cuda`: everything that needs CUDA, and nothing that works without.
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "saddleback/cuda_devices.h"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_saddleback_cuda, module) {
+  using saddleback::CudaDevice;
+  using saddleback::CudaDevices;
+  module.attr("__version__") = SADDLEBACK_VERSION;
+
+  py::class_<CudaDevice>(module, "CudaDevice", py::module_local())
+      .def_readonly("index", &CudaDevice::index)
+      .def_readonly("name", &CudaDevice::name)
+      .def_readonly("memory", &CudaDevice::memory)
+      .def_readonly("compute_major", &CudaDevice::compute_major)
+      .def_readonly("compute_minor", &CudaDevice::compute_minor);
+  py::class_<CudaDevices>(module, "CudaDevices", py::module_local())
+      .def_readonly("usable", &CudaDevices::usable)
+      .def_readonly("reason", &CudaDevices::reason);
+  module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
+}

@@ -1,0 +1,21 @@
+# The optional CUDA part: a library and a Python module of their own, so that the rest neither needs them nor links to
+# them. cudart is linked statically: the module loads on a machine without a driver and says so when asked.
+set(SADDLEBACK_CUDA_OLDEST 75)
+if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+  # Machine code for each; the last also as PTX, from which the driver makes code for whatever comes later.
+  set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 86-real 89-real 90 CACHE STRING "CUDA architectures")
+endif()
+enable_language(CUDA)
+set(CMAKE_CUDA_STANDARD 20)
+set(CMAKE_CUDA_STANDARD_REQUIRED ON)
+set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
+
+add_library(saddleback_cuda STATIC
+  src/support/cuda_devices.cu
+)
+target_include_directories(saddleback_cuda PUBLIC include PRIVATE src)
+target_compile_definitions(saddleback_cuda PRIVATE SADDLEBACK_CUDA_OLDEST=${SADDLEBACK_CUDA_OLDEST})
+target_compile_options(saddleback_cuda PRIVATE
+  -Xcompiler=-Wall,-Wextra,-Wshadow
+  $<$<BOOL:${SADDLEBACK_WARNINGS_AS_ERRORS}>:-Werror=all-warnings>)
+set_target_properties(saddleback_cuda PROPERTIES CUDA_VISIBILITY_PRESET hidden)
