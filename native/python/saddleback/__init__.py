@@ -1,5 +1,6 @@
 """Geodesic Voronoi cells and even tessellations on triangle meshes."""
 
+from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
     Cancelled,
     DeviceError,
@@ -13,6 +14,7 @@ from saddleback._saddleback import (
 
 __all__ = [
     "Cancelled",
+    "Device",
     "DeviceError",
     "Error",
     "InputError",
@@ -20,4 +22,6 @@ __all__ = [
     "Mesh",
     "MeshError",
     "__version__",
+    "cuda_status",
+    "devices",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 from dataclasses import dataclass
 from typing import Any
@@ -91,9 +92,8 @@ def _cuda() -> tuple[list[Device], str]:
 def _cuda_module() -> Any:
     """Return the CUDA module, or a sentence telling why there is none."""
     try:
-        from . import _saddleback_cuda
+        return importlib.import_module("saddleback._saddleback_cuda")
     except ModuleNotFoundError:
         return "This build of saddleback has no CUDA module"
     except ImportError as error:
         return f"The CUDA module cannot be loaded: {error}"
-    return _saddleback_cuda
