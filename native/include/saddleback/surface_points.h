@@ -16,6 +16,9 @@ struct SurfacePoint {
 
 using SurfacePoints = std::vector<SurfacePoint>;
 
+/// What counts as rounding in given barycentric coordinates: they often come as float32 (relative 6e-8), or from sums.
+inline constexpr double k_barycentric_tolerance = 1e-6;
+
 /// Position in space.
 Vec3 position(const Mesh& mesh, const SurfacePoint& point);
 
@@ -26,16 +29,26 @@ SurfacePoint at_vertex(const Mesh& mesh, Index vertex);
 Index vertex_at(const Mesh& mesh, const SurfacePoint& point);
 
 /// \throw InputError naming `argument` and the first offender: face out of range, coordinates not finite, negative or
-/// not summing to 1 (beyond rounding).
+/// not summing to 1 (beyond rounding, k_barycentric_tolerance).
 void check_surface_points(const Mesh& mesh, const SurfacePoints& points, const char* argument);
 
-/// A face's own plane: corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it. Angles of directions
-/// at a point in the face are measured in this chart, from the x axis counter-clockwise.
+/// The same for one point.
+void check_surface_point(const Mesh& mesh, const SurfacePoint& point, const char* argument);
+
+/// Coordinates with the rounding removed: negative ones set to 0, then scaled to sum 1. A point within rounding of a
+/// vertex's (1, 0, 0) only becomes exactly that when its other two coordinates are not positive.
+Vec3 normalised_barycentric(const Vec3& barycentric);
+
+/// A face's own plane: corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it. Angles of directions at
+/// a point in the face are measured in this chart, from the x axis counter-clockwise.
 struct FaceChart {
   Vec2 corner[3];
   FaceChart(const Mesh& mesh, Index face);
   Vec2 to_plane(const Vec3& barycentric) const;
   Vec3 to_barycentric(const Vec2& xy) const;
 };
+
+/// The direction in a face's chart as a unit vector in space.
+Vec3 direction_in_space(const Mesh& mesh, Index face, double angle);
 
 }  // namespace saddleback

@@ -1,0 +1,90 @@
+// Points on a mesh as a face and barycentric coordinates, and the flat chart of a face.
+
+#include "saddleback/surface_points.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <string>
+
+#include "saddleback/error.h"
+
+namespace saddleback {
+namespace {
+
+/// What is wrong with a point, empty when nothing is.
+std::string fault_of(const Mesh& mesh, const SurfacePoint& point) {
+  if (point.face < 0 || point.face >= mesh.face_count())
+    return message("has face ", point.face, ", but the mesh has ", mesh.face_count(), " faces");
+  const Vec3& b = point.barycentric;
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(b[i])) return message("has barycentric coordinate ", i, " = ", b[i], ", which is not finite");
+    if (b[i] < -k_barycentric_tolerance) return message("has barycentric coordinate ", i, " = ", b[i], ", which is negative");
+  }
+  if (std::abs(b.sum() - 1) > k_barycentric_tolerance)
+    return message("has barycentric coordinates that sum to ", b.sum(), " instead of 1");
+  return {};
+}
+
+}  // namespace
+
+Vec3 position(const Mesh& mesh, const SurfacePoint& point) {
+  const Triangle& triangle = mesh.triangles()[point.face];
+  return point.barycentric[0] * mesh.position(triangle[0]) + point.barycentric[1] * mesh.position(triangle[1]) +
+         point.barycentric[2] * mesh.position(triangle[2]);
+}
+
+SurfacePoint at_vertex(const Mesh& mesh, Index vertex) {
+  const Index h = mesh.first_halfedge(vertex);
+  return {Mesh::face_of(h), Vec3::Unit(h % 3)};
+}
+
+Index vertex_at(const Mesh& mesh, const SurfacePoint& point) {
+  for (int i = 0; i < 3; ++i)
+    if (point.barycentric[i] == 1.0) return mesh.triangles()[point.face][i];
+  return k_none;
+}
+
+void check_surface_points(const Mesh& mesh, const SurfacePoints& points, const char* argument) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (const std::string fault = fault_of(mesh, points[i]); !fault.empty())
+      throw InputError(message(argument, ": point ", i, " ", fault));
+}
+
+void check_surface_point(const Mesh& mesh, const SurfacePoint& point, const char* argument) {
+  if (const std::string fault = fault_of(mesh, point); !fault.empty()) throw InputError(message(argument, ": the point ", fault));
+}
+
+Vec3 normalised_barycentric(const Vec3& barycentric) {
+  const Vec3 positive = barycentric.cwiseMax(0.0);
+  return positive / positive.sum();
+}
+
+FaceChart::FaceChart(const Mesh& mesh, Index face) {
+  // From positions, not from the three lengths: dot and cross products keep a needle's short side accurate.
+  const Triangle& t = mesh.triangles()[face];
+  const Vec3 u = mesh.position(t[1]) - mesh.position(t[0]);
+  const Vec3 v = mesh.position(t[2]) - mesh.position(t[0]);
+  const double length = u.norm();
+  corner[0] = Vec2(0, 0);
+  corner[1] = Vec2(length, 0);
+  corner[2] = Vec2(u.dot(v) / length, u.cross(v).norm() / length);
+}
+
+Vec2 FaceChart::to_plane(const Vec3& barycentric) const {
+  return barycentric[0] * corner[0] + barycentric[1] * corner[1] + barycentric[2] * corner[2];
+}
+
+Vec3 FaceChart::to_barycentric(const Vec2& xy) const {
+  const double b2 = xy.y() / corner[2].y();
+  const double b1 = (xy.x() - b2 * corner[2].x()) / corner[1].x();
+  return {1 - b1 - b2, b1, b2};
+}
+
+Vec3 direction_in_space(const Mesh& mesh, Index face, double angle) {
+  const Triangle& t = mesh.triangles()[face];
+  const Vec3 x = (mesh.position(t[1]) - mesh.position(t[0])).normalized();
+  const Vec3 normal = x.cross(mesh.position(t[2]) - mesh.position(t[0])).normalized();
+  return std::cos(angle) * x + std::sin(angle) * normal.cross(x);
+}
+
+}  // namespace saddleback
