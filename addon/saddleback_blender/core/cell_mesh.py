@@ -1,0 +1,121 @@
+"""The cells of a tessellation as a mesh: a gap between cells, a bevelled rim, a raised plateau.
+
+Input is the split mesh (every triangle inside one cell). The distance to the boundary of the own cell is linear over
+the triangles; the mesh is cut where it equals half the gap, and again one inset further in, where the plateau begins.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .boundary_distance import boundary_distance, find_boundary
+from .cell_solid import raise_surface, vertex_normals
+from .level_cut import cut_at_level, open_chords
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+POSITION, NORMAL, DISTANCE = slice(0, 3), slice(3, 6), 6
+
+
+@dataclass(frozen=True)
+class CellShape:
+    """Lengths in the unit of the vertices: the gap between cells, the width of the rim, the height of the plateau."""
+
+    gap: float = 0.0
+    inset: float = 0.0
+    thickness: float = 0.0
+    underside: bool = False  # close each cell from below
+
+    def __post_init__(self) -> None:
+        for name in ("gap", "inset", "thickness"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0.0):
+                raise ValueError(f"{name} is {value}: it must be a length of zero or more")
+
+    @property
+    def rim_start(self) -> float:
+        """Distance from the cell boundary at which the cell begins."""
+        return 0.5 * self.gap
+
+    @property
+    def rim_end(self) -> float:
+        """Distance from the cell boundary at which the plateau begins."""
+        return 0.5 * self.gap + self.inset
+
+    @property
+    def cuts(self) -> bool:
+        """Whether the cells differ from the split mesh before raising."""
+        return self.gap > 0.0 or self.inset > 0.0
+
+
+@dataclass(frozen=True)
+class CellMesh:
+    """Vertices (n,3), triangles (m,3), the cell of each (m,), and the cells (k,) that the gap swallowed whole."""
+
+    vertices: Floats
+    triangles: Ints
+    triangle_cell: Ints
+    vanished: Ints
+
+
+def build_cell_mesh(vertices: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> CellMesh:
+    """Make the mesh of the cells from a split mesh: vertices (V,3), triangles (T,3), triangle_cell (T,).
+
+    Each cell is an island of its own when there is a gap; without gap, inset and thickness vertices stay shared. With a
+    thickness but no inset the sides are upright walls. O(T log T).
+    """
+    triangles = np.ascontiguousarray(triangles, dtype=np.int32)
+    triangle_cell = np.ascontiguousarray(triangle_cell, dtype=np.int32)
+    fields = np.zeros((len(vertices), 7))
+    fields[:, POSITION] = vertices
+    if shape.thickness > 0.0:
+        fields[:, NORMAL] = vertex_normals(fields[:, POSITION], triangles)
+    cells = triangle_cell
+    if shape.cuts and len(triangles):
+        fields, triangles, cells = _cut_cells(fields, triangles, triangle_cell, shape)
+    present = np.unique(triangle_cell)
+    vanished = np.setdiff1d(present, cells).astype(np.int32)
+    if shape.thickness > 0.0:
+        share = _plateau_share(fields[:, DISTANCE], shape)
+        solid = raise_surface(fields[:, :6], triangles, shape.thickness * share, shape.underside)
+        positions, triangles, cells = solid.vertices, solid.triangles, cells[solid.parent]
+    else:
+        positions = fields[:, POSITION]
+    return CellMesh(*drop_unused(positions, triangles), cells, vanished)
+
+
+def _cut_cells(fields: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> tuple[Floats, Ints, Ints]:
+    """Drop what lies within half the gap of a boundary, and put an edge line where the plateau begins."""
+    boundary = find_boundary(len(fields), triangles, triangle_cell)
+    opened = open_chords(fields, triangles, boundary.segments)
+    fields, triangles, cells = opened.fields, opened.triangles, triangle_cell[opened.parent]
+    touches = np.pad(boundary.touches, (0, len(fields) - len(boundary.touches)))  # no new vertex is on a boundary
+    boundary = replace(boundary, touches=touches)
+    fields[:, DISTANCE] = boundary_distance(fields[:, POSITION], triangles, cells, boundary, shape.rim_end)
+    if shape.gap > 0.0:
+        outer = cut_at_level(fields, triangles, DISTANCE, shape.rim_start)
+        fields, triangles, cells = outer.fields, outer.triangles[outer.above], cells[outer.parent[outer.above]]
+    if shape.inset > 0.0:
+        inner = cut_at_level(fields, triangles, DISTANCE, shape.rim_end)
+        fields, triangles, cells = inner.fields, inner.triangles, cells[inner.parent]
+    return fields, triangles, cells
+
+
+def _plateau_share(distance: Floats, shape: CellShape) -> Floats:
+    """The height (V,) as a part of the thickness: from 0 where the cell begins to 1 on the plateau."""
+    if shape.inset == 0.0:
+        return np.ones_like(distance)
+    return np.clip((distance - shape.rim_start) / shape.inset, 0.0, 1.0)
+
+
+def drop_unused(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+    """Leave out the vertices that no triangle uses."""
+    used = np.zeros(len(vertices), dtype=np.bool_)
+    used[triangles.ravel()] = True
+    number = np.cumsum(used, dtype=np.int32) - 1
+    return vertices[used], number[triangles].astype(np.int32)
