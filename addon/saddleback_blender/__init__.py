@@ -14,14 +14,14 @@ bl_info = {
 
 
 def register() -> None:
-    from . import ops, prefs, props
+    from . import jobs, ops, prefs, props
 
-    for module in (props, prefs, ops):
+    for module in (props, prefs, jobs, ops):
         module.register()
 
 
 def unregister() -> None:
-    from . import ops, prefs, props
+    from . import jobs, ops, prefs, props
 
-    for module in (ops, prefs, props):
+    for module in (ops, jobs, prefs, props):
         module.unregister()

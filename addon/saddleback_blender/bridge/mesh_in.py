@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Iterator
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import compat
+from ..core.errors import BadInput
 from ..core.requests import Surface
 from ..core.results import Indices, Reals
-
-
-class BadInput(Exception):
-    """The object cannot be used as asked; one sentence that names it and says what to do."""
 
 
 @contextmanager

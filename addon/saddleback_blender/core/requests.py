@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .results import Indices, Reals
+from .settings import DistanceSettings, TessellateSettings
 
 
 @dataclass(frozen=True)
@@ -71,3 +72,27 @@ def digest(*parts: object) -> str:
             hashed.update(repr(part).encode())
         hashed.update(b"\0")
     return hashed.hexdigest()
+
+
+Points = NDArray[np.int32] | Reals  # vertices of the Blender mesh (n,), or places in the world (n, 3)
+
+
+@dataclass(frozen=True)
+class TessellateRequest:
+    """One tessellation. `density` (V,) and `sites` speak of the Blender mesh's vertices."""
+
+    surface: Surface
+    settings: TessellateSettings
+    density: Reals | None = None
+    sites: Points | None = None  # None: place `settings.count`
+    threads: int = 0
+
+
+@dataclass(frozen=True)
+class DistanceRequest:
+    """One distance field, from the nearest of `sources`."""
+
+    surface: Surface
+    settings: DistanceSettings
+    sources: Points
+    threads: int = 0

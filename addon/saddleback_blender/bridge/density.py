@@ -1,0 +1,123 @@
+"""Reads what was painted on a mesh, from any of its sources, as one number a vertex."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import compat
+from ..core import density as density_maths
+from ..core.density import DensityError
+from ..core.errors import BadInput
+from ..core.results import Reals
+from ..core.settings import TessellateSettings
+
+# How each number type of attribute is read: the property's name and the exact type that Blender copies in one go.
+NUMBER_TYPES = {
+    "FLOAT": ("value", np.float32),
+    "INT": ("value", np.int32),
+    "INT8": ("value", np.int8),
+    "BOOLEAN": ("value", np.bool_),
+}
+
+
+def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: TessellateSettings) -> Reals | None:
+    """(V,) density of all vertices of `mesh` (the object's own or evaluated one); None for uniform.
+
+    Raises BadInput naming the object and what is missing or wrong.
+    """
+    if settings.density_source == "UNIFORM":
+        return None
+    upper: float | None = 1.0
+    if settings.density_source == "VERTEX_GROUP":
+        values, label = read_vertex_group(source, mesh, settings.density_name)
+    elif settings.density_source == "ATTRIBUTE":
+        values, label = read_attribute(source, mesh, settings.density_name)
+        upper = None
+    elif settings.density_source == "COLOR":
+        values, label = read_color(source, mesh, settings.density_name, settings.density_channel)
+    else:
+        values, label = read_mask(source, mesh)
+    try:
+        return density_maths.shape(values, settings.density_invert, settings.density_contrast, upper)
+    except DensityError as error:
+        raise BadInput(f"'{source.name}': {label} {error}") from error
+
+
+def read_vertex_group(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[NDArray[np.float64], str]:
+    """(V,) weights, 0 for vertices outside the group, and its name for messages. About 0.7 s a million vertices."""
+    group = source.vertex_groups.get(name) if name else source.vertex_groups.active
+    if group is None:
+        missing = f"no vertex group '{name}'" if name else "no vertex group"
+        raise BadInput(f"'{source.name}' has {missing}; paint one or choose another density")
+    index = group.index
+    vertices: list[int] = []
+    weights: list[float] = []
+    for number, vertex in enumerate(mesh.vertices):
+        for element in vertex.groups:
+            if element.group == index:
+                vertices.append(number)
+                weights.append(element.weight)
+    values = np.zeros(len(mesh.vertices))
+    values[vertices] = weights
+    return values, f"vertex group '{group.name}'"
+
+
+def read_attribute(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[NDArray[np.float64], str]:
+    """(V,) values of a number attribute of any domain, averaged to the vertices, and its name for messages."""
+    attribute = mesh.attributes.get(name) if name else None
+    if attribute is None:
+        wanted = (
+            f"has no attribute '{name}'; check its name" if name else "needs the name of an attribute for the density"
+        )
+        raise BadInput(f"'{source.name}' {wanted} or choose another density")
+    label = f"attribute '{name}'"
+    if attribute.data_type not in NUMBER_TYPES:
+        kind = attribute.data_type.lower().replace("_", " ")
+        raise BadInput(
+            f"'{source.name}': {label} holds {kind}s, not numbers; choose a number attribute, or Color Attribute"
+        )
+    prop, dtype = NUMBER_TYPES[attribute.data_type]
+    values = np.zeros(len(attribute.data), dtype)
+    attribute.data.foreach_get(prop, values)
+    return to_vertices(mesh, values, attribute.domain), label
+
+
+def read_color(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, channel: str
+) -> tuple[NDArray[np.float64], str]:
+    """(V,) one channel of a colour attribute, in linear space, and its name for messages."""
+    name = name or compat.active_color_name(mesh)
+    attribute = mesh.color_attributes.get(name)
+    if attribute is None:
+        missing = f"no color attribute '{name}'" if name else "no color attribute"
+        raise BadInput(f"'{source.name}' has {missing}; paint one or choose another density")
+    colors = np.empty(4 * len(attribute.data), np.float32)
+    attribute.data.foreach_get("color", colors)
+    values = density_maths.channel(colors.reshape(-1, 4), channel)
+    return to_vertices(mesh, values, attribute.domain), f"color attribute '{name}'"
+
+
+def read_mask(source: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[NDArray[np.float64], str]:
+    """(V,) sculpt mask, and its name for messages."""
+    values = compat.read_sculpt_mask(mesh)
+    if values is None:
+        raise BadInput(f"'{source.name}' has no sculpt mask; paint one in Sculpt Mode or choose another density")
+    return values.astype(np.float64), "the sculpt mask"
+
+
+def to_vertices(mesh: bpy.types.Mesh, values: NDArray[np.generic], domain: str) -> NDArray[np.float64]:
+    """Values of a mesh domain (POINT, EDGE, FACE or CORNER) -> means at its vertices."""
+    count = len(mesh.vertices)
+    if domain == "POINT":
+        return values.astype(np.float64)
+    if domain == "EDGE":
+        edges = compat.read_edge_vertices(mesh)
+        return density_maths.average_to_vertices(np.repeat(values, 2), edges.ravel(), count)
+    corners = compat.read_corner_vertices(mesh)
+    if domain == "FACE":
+        totals = np.empty(len(mesh.polygons), np.int32)
+        mesh.polygons.foreach_get("loop_total", totals)
+        values = np.repeat(values, totals)
+    return density_maths.average_to_vertices(values, corners, count)

@@ -1,0 +1,55 @@
+"""The mesh that attributes go to: the object's own or, where modifiers made other vertices, a new object beside it."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from .. import compat
+from ..core.errors import BadInput
+from .mesh_in import mesh_of
+from .out_collection import replace_object
+
+SURFACE_ROLE = "surface"
+
+
+def output_surface(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> bpy.types.Object:
+    """The object whose mesh has the vertices that were read."""
+    if not use_modifiers or _same_topology(context, source):
+        return source
+    depsgraph = context.evaluated_depsgraph_get()
+    mesh = bpy.data.meshes.new_from_object(
+        source.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph
+    )
+    return replace_object(context, source, SURFACE_ROLE, mesh)
+
+
+def check_attribute_names(source: bpy.types.Object, names: dict[str, str], types: dict[str, str]) -> None:
+    """Refuses names that would overwrite something else. `names`: property -> attribute; `types`: property -> data type."""
+    seen: set[str] = set()
+    for prop, name in names.items():
+        label = prop.replace("_", " ")
+        if not name or name.startswith(".") or name in ("position", "material_index"):
+            raise BadInput(f"'{source.name}': the {label} cannot be called '{name}'; choose another name")
+        if name in seen:
+            raise BadInput(f"'{source.name}': two attributes are to be called '{name}'; choose another name for one")
+        seen.add(name)
+        if name in source.vertex_groups:
+            raise BadInput(f"'{source.name}' has a vertex group '{name}': choose another name for the {label}")
+        old = source.data.attributes.get(name)
+        if old is not None and (old.domain != "POINT" or old.data_type != types[prop]):
+            raise BadInput(
+                f"'{source.name}' has another kind of attribute '{name}': choose another name for the {label}"
+            )
+
+
+def _same_topology(context: bpy.types.Context, source: bpy.types.Object) -> bool:
+    with mesh_of(context, source, True) as mesh:
+        own = source.data
+        if (len(mesh.vertices), len(mesh.loops), len(mesh.polygons)) != (
+            len(own.vertices),
+            len(own.loops),
+            len(own.polygons),
+        ):
+            return False
+        return bool(np.array_equal(compat.read_corner_vertices(mesh), compat.read_corner_vertices(own)))

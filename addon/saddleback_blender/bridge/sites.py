@@ -1,0 +1,85 @@
+"""Where cells are centred and distances begin: selected vertices, vertex groups, other objects, empties."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import compat
+from ..core.errors import BadInput
+from ..core.requests import Points
+from ..core.results import Reals
+from ..core.settings import DistanceSettings, TessellateSettings
+from .density import read_vertex_group
+from .mesh_in import mesh_of, to_world
+
+
+def read_sites(
+    context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, settings: TessellateSettings
+) -> Points | None:
+    """The chosen sites; None where a count is to be placed."""
+    if settings.sites_source == "SELECTED":
+        return selected_vertices(source, mesh)
+    if settings.sites_source == "OBJECT":
+        return object_points(context, source, settings.sites_object)
+    return None
+
+
+def read_sources(
+    context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DistanceSettings
+) -> Points:
+    """Where distances are measured from."""
+    if settings.sources == "VERTEX_GROUP":
+        weights, label = read_vertex_group(source, mesh, settings.sources_group)
+        vertices = np.nonzero(weights > 0.5)[0].astype(np.int32)
+        if not len(vertices):
+            raise BadInput(
+                f"'{source.name}': no vertex has a weight above 0.5 in {label}; paint it, or choose another source"
+            )
+        return vertices
+    if settings.sources == "EMPTIES":
+        return empty_points(context, source, settings.sources_collection)
+    return selected_vertices(source, mesh)
+
+
+def selected_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """(n,) vertices selected in Edit Mode."""
+    vertices = np.nonzero(compat.read_selected_vertices(mesh))[0].astype(np.int32)
+    if not len(vertices):
+        raise BadInput(f"'{source.name}' has no selected vertex; select some in Edit Mode, then leave it")
+    return vertices
+
+
+def object_points(context: bpy.types.Context, source: bpy.types.Object, name: str) -> Reals:
+    """(n, 3) world places of another mesh object's vertices, as its modifiers leave them."""
+    other = bpy.data.objects.get(name) if name else None
+    if other is None:
+        raise BadInput(f"'{source.name}': there is no object '{name}' to take sites from; choose one")
+    if other == source:
+        raise BadInput(
+            f"'{source.name}' cannot take its sites from itself; choose another object, or Selected Vertices"
+        )
+    if other.type != "MESH":
+        raise BadInput(f"'{name}' is no mesh object, so '{source.name}' cannot take sites from it; choose a mesh")
+    with mesh_of(context, other, True) as mesh:
+        points = to_world(other, compat.read_positions(mesh))
+    if not len(points):
+        raise BadInput(f"'{name}' has no vertices, so '{source.name}' cannot take sites from it; choose another object")
+    return points
+
+
+def empty_points(context: bpy.types.Context, source: bpy.types.Object, collection: str) -> Reals:
+    """(n, 3) world places of the empties in a collection or, without one, of those parented to the object."""
+    if collection:
+        group = bpy.data.collections.get(collection)
+        if group is None:
+            raise BadInput(f"'{source.name}': there is no collection '{collection}' to take empties from; choose one")
+        candidates, where = list(group.all_objects), f"in collection '{collection}'"
+    else:
+        candidates, where = list(source.children), f"parented to '{source.name}'"
+    # By name, so that the sources' order does not depend on the order of linking.
+    empties = sorted((item for item in candidates if item.type == "EMPTY"), key=lambda item: item.name)
+    if not empties:
+        raise BadInput(f"'{source.name}': no empty is {where}; add one at each place to measure from")
+    return np.array([item.matrix_world.translation[:] for item in empties], np.float64)

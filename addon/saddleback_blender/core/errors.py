@@ -1,0 +1,7 @@
+"""The one exception that carries a sentence for the user."""
+
+from __future__ import annotations
+
+
+class BadInput(Exception):
+    """What was asked cannot be done; one sentence that names the object and says what to do."""

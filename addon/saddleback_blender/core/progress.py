@@ -1,0 +1,57 @@
+"""The watched part of a run: several native calls told as one rising fraction, stopped by one cancel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+
+class Progress:
+    """Shows a run to another thread. The thread that computes opens stages; any other reads, or cancels.
+
+    Each stage has a native Job of its own, since a used one still shows the call before until the next call begins.
+    """
+
+    def __init__(self, make_job: Callable[[], Any], cancelled_error: type[Exception]) -> None:
+        self._make_job = make_job
+        self._cancelled_error = cancelled_error
+        self._job = make_job()
+        self._begin, self._end, self._reached = 0.0, 0.0, 0.0
+        self._cancelled = False
+        self.text = ""  # what is being done, for a person to read
+
+    @property
+    def fraction(self) -> float:
+        """Share of the run done, 0 to 1; never falls."""
+        begin, end, job = self._begin, self._end, self._job
+        self._reached = max(self._reached, begin + (end - begin) * job.fraction)
+        return self._reached
+
+    @property
+    def cancelled(self) -> bool:
+        return self._cancelled
+
+    def cancel(self) -> None:
+        """Asks the run to stop: it ends within 0.1 s."""
+        # The flag first: a stage that begins between the two lines sees it, one that had begun has its job stopped.
+        self._cancelled = True
+        self._job.cancel()
+
+    def check(self) -> None:
+        """Raises the library's Cancelled when asked to stop; for the steps between native calls."""
+        if self._cancelled:
+            raise self._cancelled_error("cancelled")
+
+    @contextmanager
+    def stage(self, end: float, text: str) -> Iterator[Any]:
+        """Yields the job for one native call that takes the run up to `end`, in 0 to 1."""
+        job = self._make_job()
+        self._begin = self._end = self._reached
+        self._job = job
+        self.check()
+        self.text = text
+        self._end = end
+        yield job
+        self._begin = self._end
+        self.check()

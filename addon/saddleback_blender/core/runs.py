@@ -1,0 +1,229 @@
+"""The runs themselves: from a request to a result through the native library and the cache."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from . import cache as cache_module
+from . import native
+from .cache import Cache
+from .errors import BadInput
+from .normals import normals_at
+from .progress import Progress
+from .requests import DistanceRequest, Points, Surface, TessellateRequest, digest
+from .results import CellsResult, DistanceResult, Indices, Reals
+
+# Bytes that the native mesh holds beside its input, per vertex and face: half-edge twins, lengths, angles, areas, flags.
+MESH_BYTES_PER_VERTEX, MESH_BYTES_PER_FACE = 48, 84
+
+
+def new_progress() -> Progress:
+    """A progress to give to one run. Raises native.NativeMissing."""
+    sb = native.load()
+    return Progress(sb.Job, sb.Cancelled)
+
+
+def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | None = None) -> CellsResult:
+    """Cells of a surface. Only what changed since an earlier run is computed: mesh, graph, cells, cut, in this order.
+
+    Raises BadInput, the library's MeshError and InputError with sentences, and its Cancelled.
+    """
+    cache = cache or cache_module.shared
+    settings, surface = request.settings, request.surface
+    if request.sites is None and settings.count > len(surface.vertices):
+        raise BadInput(
+            f"'{surface.name}': {settings.count} cells do not fit on {len(surface.vertices)} vertices; "
+            "ask for fewer, or subdivide the mesh"
+        )
+    sites = None if request.sites is None else _compact_sites(surface, request.sites, "site")
+    density = None if request.density is None else surface.gather(request.density)
+    mesh = _mesh(surface, progress, cache)
+    graph = _graph(surface, mesh, settings.k, request.threads, progress, cache)
+    moves = sites is None or settings.relax_sites
+    iterations = settings.iterations if moves else 0
+    what = digest(
+        settings.count if sites is None else sites,
+        settings.seed if sites is None else 0,
+        iterations,
+        density if sites is None or iterations else None,
+    )
+    key = (surface.key, str(min(settings.k, len(surface.vertices))), what)
+
+    def solve() -> _Solved:
+        return _solve(request, mesh, graph, sites, density, iterations, progress)
+
+    solved = cache.get(("cells", *key), solve, _solved_bytes)
+    result = _result(request, solved)
+    if settings.make_cells:
+        with progress.stage(0.98, "cutting the cells out"):
+            split = cache.get(("split", *key), solved.cells.split, _split_bytes)
+        result = replace(
+            result,
+            split_vertices=split.vertices,
+            split_triangles=split.triangles,
+            split_cell=split.triangle_cell,
+            split_origin=_blender_numbers(surface, split.vertex_origin),
+        )
+    progress.check()
+    return result
+
+
+def distance(request: DistanceRequest, progress: Progress, cache: Cache | None = None) -> DistanceResult:
+    """Distance of every vertex to the nearest source. Raises as `tessellate` does."""
+    cache = cache or cache_module.shared
+    settings, surface = request.settings, request.surface
+    sources = _compact_sites(surface, request.sources, "source")
+    mesh = _mesh(surface, progress, cache)
+    graph = _graph(surface, mesh, settings.k, request.threads, progress, cache)
+    limit = settings.limit if settings.limit > 0 else np.inf
+
+    def solve() -> Reals:
+        points = _surface_points(mesh, sources)
+        with progress.stage(0.98, "measuring distances"):
+            values: Reals = graph.distances(points, limit=limit)
+        return values
+
+    key = ("distance", surface.key, str(min(settings.k, len(surface.vertices))), digest(sources, limit))
+    values = cache.get(key, solve, lambda array: array.nbytes)
+    progress.check()
+    return DistanceResult(surface.spread(values, np.inf))
+
+
+@dataclass(frozen=True)
+class _Solved:
+    """Cells as the library gives them, and how they came about."""
+
+    cells: Any
+    site_positions: Reals
+    site_normals: Reals
+    energy: Reals
+    iterations: int
+    stop_reason: str
+
+
+def _mesh(surface: Surface, progress: Progress, cache: Cache) -> Any:
+    def build() -> Any:
+        with progress.stage(0.05, "checking the mesh"):
+            return native.load().Mesh(surface.vertices, surface.triangles)
+
+    size = surface.vertices.nbytes + surface.triangles.nbytes
+    size += MESH_BYTES_PER_VERTEX * len(surface.vertices) + MESH_BYTES_PER_FACE * len(surface.triangles)
+    return cache.get(("mesh", surface.key), build, lambda _: size)
+
+
+def _graph(surface: Surface, mesh: Any, k: int, threads: int, progress: Progress, cache: Cache) -> Any:
+    k = min(k, len(surface.vertices))  # a neighbourhood cannot hold more than the whole surface
+
+    def build() -> Any:
+        with progress.stage(0.5, "building the distance graph") as job:
+            return native.load().SaddleVertexGraph(mesh, k=k, threads=threads, job=job)
+
+    return cache.get(("graph", surface.key, str(k)), build, lambda graph: int(graph.nbytes))
+
+
+def _solve(
+    request: TessellateRequest,
+    mesh: Any,
+    graph: Any,
+    sites: Points | None,
+    density: Reals | None,
+    iterations: int,
+    progress: Progress,
+) -> _Solved:
+    sb, settings = native.load(), request.settings
+    points = None if sites is None else _surface_points(mesh, sites)
+    energy, done, reason = np.empty(0), 0, "sites kept"
+    if iterations:
+        choice = {"count": settings.count} if points is None else {"sites": points}
+        with progress.stage(0.9, "evening out the cells") as job:
+            cvt = sb.centroidal_voronoi(
+                graph, density=density, max_iterations=iterations, seed=settings.seed, threads=request.threads, job=job,
+                **choice,
+            )  # fmt: skip
+        cells, points = cvt.cells, cvt.sites
+        energy, done, reason = np.asarray(cvt.energy, np.float64), int(cvt.iterations), str(cvt.stop_reason)
+    else:
+        if points is None:
+            points = sb.sample(mesh, settings.count, density=density, seed=settings.seed)
+        with progress.stage(0.9, "finding the cells") as job:
+            cells = sb.geodesic_voronoi(graph, points, threads=request.threads, job=job)
+    faces, barycentric = _faces_and_weights(mesh, points)
+    progress.check()
+    vertices, triangles = mesh.vertices, mesh.triangles
+    positions = np.einsum("ni,nij->nj", barycentric, vertices[triangles[faces]])
+    normals = normals_at(vertices, triangles, faces, barycentric)
+    return _Solved(cells, positions, normals, energy, done, reason)
+
+
+def _result(request: TessellateRequest, solved: _Solved) -> CellsResult:
+    cells, surface = solved.cells, request.surface
+    return CellsResult(
+        vertex_cell=surface.spread(cells.vertex_cell, -1),
+        vertex_distance=surface.spread(cells.vertex_distance, np.inf),
+        vertex_density=request.density,
+        sites_position=solved.site_positions,
+        sites_normal=solved.site_normals,
+        cell_area=np.asarray(cells.areas, np.float64),
+        edge_points=cells.edge_points,
+        edge_offsets=cells.edge_offsets,
+        edge_cells=cells.edge_cells,
+        edge_closed=np.asarray(cells.edge_closed, bool),
+        split_vertices=np.empty((0, 3)),
+        split_triangles=np.empty((0, 3), np.int32),
+        split_cell=np.empty(0, np.int32),
+        split_origin=np.empty(0, np.int32),
+        energy=solved.energy,
+        iterations=solved.iterations,
+        stop_reason=solved.stop_reason,
+    )
+
+
+def _compact_sites(surface: Surface, points: Points, what: str) -> Points:
+    """Vertex numbers of the Blender mesh -> numbers of the surface; places in the world stay."""
+    if points.ndim == 2:
+        return points
+    vertices = surface.compact(points)
+    loose = np.nonzero(vertices < 0)[0]
+    if len(loose):
+        raise BadInput(
+            f"'{surface.name}': the {what} at vertex {points[loose[0]]} belongs to no face; choose vertices of the surface"
+        )
+    return vertices
+
+
+def _surface_points(mesh: Any, points: Points) -> Any:
+    """Vertex numbers as they are; places in the world -> the nearest points of the surface."""
+    return points if points.ndim == 1 else native.load().project(mesh, points)
+
+
+def _faces_and_weights(mesh: Any, points: Any) -> tuple[Indices, Reals]:
+    """Faces (n,) and barycentric coordinates (n, 3) of vertices or surface points."""
+    if not isinstance(points, np.ndarray):
+        return points.faces, points.barycentric
+    corners = mesh.triangles.ravel()
+    first = np.empty(len(mesh.vertices), np.int64)
+    first[corners[::-1]] = np.arange(len(corners))[::-1]  # the last writer stays: each vertex's first corner
+    faces, corner = np.divmod(first[points], 3)
+    return faces.astype(np.int32), np.eye(3)[corner]
+
+
+def _blender_numbers(surface: Surface, origin: Indices) -> Indices:
+    """Numbers of the surface's vertices (-1 = none) -> of the Blender mesh's."""
+    if surface.used is None:
+        return origin
+    return np.where(origin >= 0, surface.used[np.maximum(origin, 0)], np.int32(-1)).astype(np.int32)
+
+
+def _solved_bytes(solved: _Solved) -> int:
+    cells = solved.cells
+    arrays = (cells.vertex_cell, cells.vertex_distance, cells.edge_points, cells.edge_offsets, cells.edge_cells)
+    # Twice: the library holds its own copy beside the arrays that it hands out.
+    return 2 * sum(array.nbytes for array in arrays) + solved.site_positions.nbytes + solved.site_normals.nbytes
+
+
+def _split_bytes(split: Any) -> int:
+    arrays = (split.vertices, split.triangles, split.triangle_cell, split.vertex_origin)
+    return sum(int(array.nbytes) for array in arrays)

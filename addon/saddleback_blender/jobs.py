@@ -1,0 +1,132 @@
+"""Runs that go on while Blender stays usable: one worker thread each, watched by a timer, ended before Blender quits.
+
+The thread works on arrays and never touches bpy; progress and cancel go through a token, never a call into Python from
+native threads. What the panel shows of a run is read through properties of the window manager that store nothing, so a
+run leaves no trace in the file.
+"""
+
+from __future__ import annotations
+
+import atexit
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, FloatProperty, StringProperty
+
+from .core.progress import Progress
+
+WINDOW_MANAGER_PROPERTIES = {
+    "saddleback_running": BoolProperty(
+        name="Running", description="A run is going on", get=lambda _: state.task is not None
+    ),
+    "saddleback_fraction": FloatProperty(
+        name="Progress", description="Share of the run done", min=0.0, max=1.0, subtype="FACTOR",
+        get=lambda _: state.task.progress.fraction if state.task is not None else 0.0,
+    ),
+    "saddleback_text": StringProperty(
+        name="Doing", description="What is being done", get=lambda _: state.task.text if state.task is not None else ""
+    ),
+    "saddleback_needs_repair": StringProperty(
+        name="Needs Repair", description="Object whose mesh was refused by the last run", get=lambda _: state.needs_repair
+    ),
+}  # fmt: skip
+
+
+class Task:
+    """One call in one thread. `done`, `result` and `error` are read by the timer; `cancel` returns at once."""
+
+    def __init__(self, call: Callable[[Progress], Any], progress: Progress, name: str) -> None:
+        self.progress = progress
+        self.name = name
+        self.result: Any = None
+        self.error: BaseException | None = None
+        self._call = call
+        self._thread = threading.Thread(target=self._run, name="saddleback", daemon=True)
+
+    @property
+    def text(self) -> str:
+        return f"{self.name}: {self.progress.text}" if self.progress.text else self.name
+
+    @property
+    def done(self) -> bool:
+        return not self._thread.is_alive()
+
+    def start(self) -> None:
+        _unfinished.append(self)
+        self._thread.start()
+
+    def cancel(self) -> None:
+        self.progress.cancel()
+
+    def join(self, seconds: float | None = None) -> None:
+        self._thread.join(seconds)
+
+    def _run(self) -> None:
+        try:
+            self.result = self._call(self.progress)
+        except BaseException as error:  # handed to the main thread, which tells it in words
+            self.error = error
+
+
+class State:
+    """What the panel shows: the task that a modal operator watches, and the object that was refused last."""
+
+    def __init__(self) -> None:
+        self.task: Task | None = None
+        self.needs_repair = ""
+
+
+state = State()
+_unfinished: list[Task] = []
+
+
+def start(call: Callable[[Progress], Any], progress: Progress, name: str) -> Task:
+    """Starts a task and shows it in the panel; the caller must end it with `finish`."""
+    _unfinished[:] = [task for task in _unfinished if not task.done]
+    task = Task(call, progress, name)
+    task.start()
+    state.task = task
+    return task
+
+
+def finish(task: Task) -> None:
+    """Takes the task off the panel. A cancelled one may still need a moment to end; nobody waits for it."""
+    if state.task is task:
+        state.task = None
+
+
+def stop_all(seconds: float = 5.0) -> None:
+    """Cancels and awaits every thread: native code must not outlive the interpreter."""
+    for task in _unfinished:
+        task.cancel()
+    for task in _unfinished:
+        task.join(seconds)
+    _unfinished.clear()
+    state.task = None
+
+
+def redraw(context: bpy.types.Context) -> None:
+    """Redraws the sidebars and status bars only: a redraw of the viewport costs far more than the progress is worth."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "STATUSBAR":
+                area.tag_redraw()
+            elif area.type == "VIEW_3D":
+                for region in area.regions:
+                    if region.type == "UI":
+                        region.tag_redraw()
+
+
+def register() -> None:
+    for name, prop in WINDOW_MANAGER_PROPERTIES.items():
+        setattr(bpy.types.WindowManager, name, prop)
+    atexit.register(stop_all)
+
+
+def unregister() -> None:
+    stop_all()
+    atexit.unregister(stop_all)
+    for name in WINDOW_MANAGER_PROPERTIES:
+        delattr(bpy.types.WindowManager, name)

@@ -1,0 +1,163 @@
+"""What every operator that computes shares: gather, run (at once for scripts, in a thread for the panel), write."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+
+from .. import jobs
+from ..bridge.source import Source, usable_source, why_not
+from ..core import native, runs
+from ..core.errors import BadInput
+from ..core.progress import Progress
+from ..props import fill_operator
+
+# Seconds between looks at the thread: a run's end, and a progress step, are seen this late at most. ESC is an event of
+# its own and does not wait for it.
+TIMER_STEP = 0.05
+
+
+class SurfaceOperator:
+    """Mixin for operators on the active object. A subclass names its `settings` group and says how to gather and write.
+
+    `execute` computes before it returns; `invoke` starts a thread and `modal` waits for it, so the window stays usable and
+    ESC stops the run. Nothing in the file changes before the result is there.
+    """
+
+    settings_name: str  # of the group in Object.saddleback
+    property_names: dict[str, Any]
+    report: Callable[..., None]
+
+    _task: jobs.Task | None = None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        problem = why_not(context)
+        if not problem and jobs.state.task is not None:
+            problem = f"{jobs.state.task.name} is being computed: wait, or press ESC"
+        if problem:
+            cls.poll_message_set(problem)  # type: ignore[attr-defined]  # of bpy.types.Operator
+        return not problem
+
+    def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], Any]:
+        """Reads everything from Blender; returns the call that computes without it."""
+        raise NotImplementedError
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, result: Any) -> str:
+        """Writes the result into Blender; returns one line that tells it."""
+        raise NotImplementedError
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            source, call = self._prepare(context)
+            result = call(runs.new_progress())
+        except Exception as error:
+            return self._refuse(error, context)
+        return self._succeed(context, source, result)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        try:
+            source, call = self._prepare(context)
+            self._source = Source.of(context, source, getattr(self, "use_modifiers", False))
+            progress = runs.new_progress()
+        except Exception as error:
+            return self._refuse(error, context)
+        self._task = jobs.start(call, progress, source.name)
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(TIMER_STEP, window=context.window)
+        manager.modal_handler_add(self)
+        self._show(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        task = self._task
+        if task is None:
+            return {"CANCELLED"}
+        if event.type == "ESC" and event.value == "PRESS":
+            self.cancel(context)
+            self.report({"INFO"}, "Stopped; nothing was changed")
+            return {"CANCELLED"}
+        if event.type == "TIMER" and task.done:
+            self._leave(context)
+            return self._end(context, task)
+        if event.type == "TIMER":
+            self._show(context)
+        # Undo would take the file from under the run; everything else (turning the view, say) goes its way.
+        is_undo = event.type == "Z" and (event.ctrl or event.oskey)
+        return {"RUNNING_MODAL"} if is_undo else {"PASS_THROUGH"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """ESC, or Blender closing the window or the file."""
+        if self._task is not None:
+            self._task.cancel()
+            self._leave(context)
+
+    def _prepare(self, context: bpy.types.Context) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
+        source = usable_source(context)
+        fill_operator(self, getattr(source.saddleback, self.settings_name), self.property_names)
+        native.load()
+        return source, self.gather(context, source)
+
+    def _end(self, context: bpy.types.Context, task: jobs.Task) -> set[str]:
+        if isinstance(task.error, Exception):
+            return self._refuse(task.error, context)
+        if task.error is not None:
+            raise task.error
+        try:
+            source = self._source.find(context)
+        except BadInput as error:
+            return self._refuse(error, context)
+        return self._succeed(context, source, task.result)
+
+    def _succeed(self, context: bpy.types.Context, source: bpy.types.Object, result: Any) -> set[str]:
+        try:
+            line = self.write(context, source, result)
+        except BadInput as error:
+            return self._refuse(error, context)
+        if jobs.state.needs_repair == source.name:
+            jobs.state.needs_repair = ""
+        self.report({"INFO"}, line)
+        return {"FINISHED"}
+
+    def _refuse(self, error: Exception, context: bpy.types.Context) -> set[str]:
+        """Tells an error that has a sentence; any other is a defect of ours and goes on as it is."""
+        if isinstance(error, (BadInput, native.NativeMissing)):
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        sb = native.load()
+        if isinstance(error, sb.Cancelled):
+            self.report({"INFO"}, "Stopped; nothing was changed")
+            return {"CANCELLED"}
+        if not isinstance(error, (sb.Error, MemoryError)):
+            raise error
+        active = context.view_layer.objects.active
+        name = self._task.name if self._task is not None else active.name if active is not None else ""
+        text = str(error) or "there is not enough memory"
+        if isinstance(error, sb.MeshError):
+            jobs.state.needs_repair = name
+            text += "; press Repair in the Saddleback tab, then run again"
+        self.report({"ERROR"}, f"'{name}': {text}")
+        return {"CANCELLED"}
+
+    def _show(self, context: bpy.types.Context) -> None:
+        task = self._task
+        if task is not None and context.workspace is not None:
+            context.workspace.status_text_set(
+                f"Saddleback: {task.text} {100 * task.progress.fraction:.0f}%    ESC: stop"
+            )
+            jobs.redraw(context)
+
+    def _leave(self, context: bpy.types.Context) -> None:
+        """Ends the watching: timer, status bar, panel."""
+        if self._task is None:
+            return
+        jobs.finish(self._task)
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        jobs.redraw(context)
+        self._task = None

@@ -1,0 +1,39 @@
+"""`saddleback.clear`: removes what the other operators made for the active object, and nothing else."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import jobs
+from ..bridge.out_collection import clear_outputs
+from ..bridge.source import usable_source, why_not
+from ..core.errors import BadInput
+
+
+class SADDLEBACK_OT_clear(bpy.types.Operator):
+    bl_idname = "saddleback.clear"
+    bl_label = "Clear"
+    bl_description = "Remove the objects and attributes that Saddleback made for the active object"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        problem = why_not(context)
+        if problem:
+            cls.poll_message_set(problem)
+        return not problem
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            source = usable_source(context)
+        except BadInput as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        removed = clear_outputs(context, source)
+        if jobs.state.needs_repair == source.name:
+            jobs.state.needs_repair = ""
+        self.report({"INFO"}, f"'{source.name}': {removed} outputs removed" if removed else "Nothing to clear")
+        return {"FINISHED"} if removed else {"CANCELLED"}
+
+
+CLASSES = (SADDLEBACK_OT_clear,)

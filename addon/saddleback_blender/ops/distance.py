@@ -1,0 +1,64 @@
+"""`saddleback.distance`: how far every vertex is from the nearest source, along the surface."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import bpy
+import numpy as np
+
+from .. import prefs
+from ..bridge.mesh_in import mesh_of, read_surface
+from ..bridge.out_attributes import write_vertex_attributes
+from ..bridge.output_surface import check_attribute_names, output_surface
+from ..bridge.sites import read_sources
+from ..bridge.source import shared_mesh_warning
+from ..core import runs
+from ..core.progress import Progress
+from ..core.requests import DistanceRequest
+from ..core.results import DistanceResult
+from ..core.settings import DistanceSettings
+from ..props import DISTANCE, keep_settings, settings_of
+from .base import SurfaceOperator
+
+
+class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
+    bl_idname = "saddleback.distance"
+    bl_label = "Distance"
+    bl_description = "Measure along the surface how far each vertex of the active object is from the nearest source"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = dict(DISTANCE)
+
+    settings_name = "distance"
+    property_names = DISTANCE
+
+    def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], DistanceResult]:
+        settings = settings_of(self, DistanceSettings)
+        check_attribute_names(
+            source, {"distance_attribute": settings.distance_attribute}, {"distance_attribute": "FLOAT"}
+        )
+        with mesh_of(context, source, settings.use_modifiers) as mesh:
+            request = DistanceRequest(
+                surface=read_surface(source, mesh),
+                settings=settings,
+                sources=read_sources(context, source, mesh, settings),
+                threads=prefs.threads(context),
+            )
+        return partial(runs.distance, request)
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, result: DistanceResult) -> str:
+        settings = settings_of(self, DistanceSettings)
+        warning = shared_mesh_warning(source)
+        surface = output_surface(context, source, settings.use_modifiers)
+        distances = result.vertex_distance
+        write_vertex_attributes(surface, {settings.distance_attribute: distances.astype(np.float32)})
+        keep_settings(settings, source.saddleback.distance)
+        if warning:
+            self.report({"WARNING"}, warning)
+        reached = np.isfinite(distances)
+        farthest = distances[reached].max(initial=0.0)
+        return f"'{source.name}': {int(reached.sum())} vertices reached, the farthest at {farthest:.4g}"
+
+
+CLASSES = (SADDLEBACK_OT_distance,)

@@ -1,0 +1,100 @@
+"""`saddleback.tessellate`: geodesic cells, even ones, and everything that can be made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import bpy
+import numpy as np
+
+from .. import prefs
+from ..bridge.density import read_density
+from ..bridge.mesh_in import mesh_of, read_surface
+from ..bridge.out_attributes import write_vertex_attributes
+from ..bridge.out_cells import write_cells
+from ..bridge.out_centres import write_centres
+from ..bridge.out_edges import write_edges
+from ..bridge.output_surface import check_attribute_names, output_surface
+from ..bridge.sites import read_sites
+from ..bridge.source import shared_mesh_warning
+from ..core import runs
+from ..core.errors import BadInput
+from ..core.progress import Progress
+from ..core.requests import TessellateRequest
+from ..core.results import CellsResult
+from ..core.settings import TessellateSettings
+from ..props import TESSELLATE, keep_settings, settings_of
+from .base import SurfaceOperator
+
+
+class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
+    bl_idname = "saddleback.tessellate"
+    bl_label = "Tessellate"
+    bl_description = "Cover the surface of the active object with cells of even size, small where the density is high"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = dict(TESSELLATE)
+
+    settings_name = "tessellate"
+    property_names = TESSELLATE
+
+    def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
+        settings = settings_of(self, TessellateSettings)
+        _check(source, settings)
+        with mesh_of(context, source, settings.use_modifiers) as mesh:
+            request = TessellateRequest(
+                surface=read_surface(source, mesh),
+                settings=settings,
+                density=read_density(source, mesh, settings),
+                sites=read_sites(context, source, mesh, settings),
+                threads=prefs.threads(context),
+            )
+        return partial(runs.tessellate, request)
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, result: CellsResult) -> str:
+        settings = settings_of(self, TessellateSettings)
+        warning = shared_mesh_warning(source)
+        surface = output_surface(context, source, settings.use_modifiers)
+        values: dict[str, np.ndarray[Any, Any]] = {
+            settings.cell_attribute: result.vertex_cell.astype(np.int32, copy=False),
+            settings.distance_attribute: result.vertex_distance.astype(np.float32),
+        }
+        if result.vertex_density is not None:
+            values[settings.density_attribute] = result.vertex_density.astype(np.float32)
+        write_vertex_attributes(surface, values)
+        if settings.make_edges:
+            write_edges(context, source, result, settings)
+        if settings.make_cells:
+            write_cells(context, source, result, settings)
+        if settings.make_centres:
+            write_centres(context, source, result, settings)
+        keep_settings(settings, source.saddleback.tessellate)
+        if warning:
+            self.report({"WARNING"}, warning)
+        steps = f", {result.iterations} iterations ({result.stop_reason})" if result.iterations else ""
+        return f"'{source.name}': {result.count} cells{steps}"
+
+
+def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:
+    """Refuses names that lead nowhere or would overwrite what they are made from, before anything is computed."""
+    names = {"cell_attribute": settings.cell_attribute, "distance_attribute": settings.distance_attribute}
+    if settings.density_source != "UNIFORM":
+        names["density_attribute"] = settings.density_attribute
+        if settings.density_source in ("ATTRIBUTE", "COLOR") and settings.density_name in names.values():
+            raise BadInput(
+                f"'{source.name}': the result would overwrite its density '{settings.density_name}'; "
+                "choose another name for the attributes that are written"
+            )
+    check_attribute_names(
+        source, names, {"cell_attribute": "INT", "distance_attribute": "FLOAT", "density_attribute": "FLOAT"}
+    )
+    if settings.make_centres and settings.instance_object:
+        instance = bpy.data.objects.get(settings.instance_object)
+        if instance is None:
+            raise BadInput(f"'{source.name}': there is no object '{settings.instance_object}' to put on the centres")
+        if instance == source:
+            raise BadInput(f"'{source.name}' cannot be put on its own centres; choose another object for them")
+
+
+CLASSES = (SADDLEBACK_OT_tessellate,)

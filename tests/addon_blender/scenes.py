@@ -1,0 +1,91 @@
+"""Objects made for tests, and what is read back from them."""
+
+import bpy
+import numpy as np
+
+
+def add_object(name, vertices, faces, active=True):
+    """A mesh object in the scene."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata([tuple(map(float, v)) for v in vertices], [], [tuple(map(int, f)) for f in faces])
+    mesh.update(calc_edges=True)
+    item = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(item)
+    if active:
+        bpy.context.view_layer.objects.active = item
+        item.select_set(True)
+    bpy.context.view_layer.update()
+    return item
+
+
+def grid_arrays(n=12, size=1.0):
+    """A flat square of n by n quads."""
+    ticks = np.linspace(0.0, size, n + 1)
+    x, y = np.meshgrid(ticks, ticks)
+    vertices = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    number = np.arange(x.size).reshape(n + 1, n + 1)
+    faces = np.stack([number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]], axis=-1).reshape(-1, 4)
+    return vertices, faces
+
+
+def grid(name="Grid", n=12, size=1.0):
+    """A flat square of n by n quads as an object."""
+    return add_object(name, *grid_arrays(n, size))
+
+
+def sphere(name="Sphere", subdivisions=3, radius=1.0):
+    """An icosphere object."""
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=subdivisions, radius=radius)
+    item = bpy.context.active_object
+    item.name = item.data.name = name
+    return item
+
+
+def attribute(item, name):
+    """(V,) values of a vertex attribute."""
+    data = item.data.attributes[name].data
+    values = np.empty(len(data), {"FLOAT": np.float32, "INT": np.int32}[item.data.attributes[name].data_type])
+    data.foreach_get("value", values)
+    return values
+
+
+def positions(mesh):
+    """(V, 3) places in object space."""
+    values = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", values)
+    return values.reshape(-1, 3)
+
+
+def select(item, vertices):
+    """Selects exactly these vertices."""
+    chosen = np.zeros(len(item.data.vertices), bool)
+    chosen[list(vertices)] = True
+    for kind in ("polygons", "edges"):
+        elements = getattr(item.data, kind)
+        elements.foreach_set("select", np.zeros(len(elements), bool))
+    item.data.vertices.foreach_set("select", chosen)
+
+
+def fingerprint():
+    """Everything in the file that a run could touch: data-blocks, shapes, attributes, settings, links."""
+    seen = []
+    for kind in ("objects", "meshes", "curves", "collections", "node_groups", "materials"):
+        seen.append((kind, sorted((block.name, block.users, tuple(block.keys())) for block in getattr(bpy.data, kind))))
+    for item in bpy.data.objects:
+        settings = {name: repr(value) for name, value in _flat(item.saddleback)}
+        seen.append((item.name, tuple(map(tuple, item.matrix_world)), item.modifiers.keys(), sorted(settings.items())))
+    for mesh in bpy.data.meshes:
+        kinds = [(a.name, a.domain, a.data_type) for a in mesh.attributes]
+        seen.append((mesh.name, positions(mesh).tobytes(), len(mesh.polygons), sorted(kinds)))
+    return seen
+
+
+def _flat(group, prefix=""):
+    for name in group.bl_rna.properties.keys():
+        if name in ("rna_type", "name"):
+            continue
+        value = getattr(group, name)
+        if isinstance(value, bpy.types.PropertyGroup):
+            yield from _flat(value, prefix + name + ".")
+        else:
+            yield prefix + name, value
