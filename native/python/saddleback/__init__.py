@@ -5,11 +5,15 @@ from saddleback._saddleback import (
     Cancelled,
     DeviceError,
     Error,
+    GeodesicPath,
     InputError,
     Job,
     Mesh,
     MeshError,
+    SurfacePoints,
+    TracedPath,
     __version__,
+    trace,
 )
 
 __all__ = [
@@ -17,11 +21,15 @@ __all__ = [
     "Device",
     "DeviceError",
     "Error",
+    "GeodesicPath",
     "InputError",
     "Job",
     "Mesh",
     "MeshError",
+    "SurfacePoints",
+    "TracedPath",
     "__version__",
     "cuda_status",
     "devices",
+    "trace",
 ]

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "saddleback/error.h"
@@ -11,14 +12,15 @@
 namespace saddleback {
 namespace {
 
-/// What is wrong with a point, empty when nothing is.
-std::string fault_of(const Mesh& mesh, const SurfacePoint& point) {
-  if (point.face < 0 || point.face >= mesh.face_count())
-    return message("has face ", point.face, ", but the mesh has ", mesh.face_count(), " faces");
+/// What is wrong with a point on a mesh of that many faces, empty when nothing is.
+std::string fault_of(const SurfacePoint& point, Index face_count) {
+  if (point.face < 0 || point.face >= face_count)
+    return message("has face ", point.face, ", but the mesh has ", face_count, " faces");
   const Vec3& b = point.barycentric;
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(b[i])) return message("has barycentric coordinate ", i, " = ", b[i], ", which is not finite");
-    if (b[i] < -k_barycentric_tolerance) return message("has barycentric coordinate ", i, " = ", b[i], ", which is negative");
+    if (b[i] < -k_barycentric_tolerance)
+      return message("has barycentric coordinate ", i, " = ", b[i], ", which is negative");
   }
   if (std::abs(b.sum() - 1) > k_barycentric_tolerance)
     return message("has barycentric coordinates that sum to ", b.sum(), " instead of 1");
@@ -44,14 +46,30 @@ Index vertex_at(const Mesh& mesh, const SurfacePoint& point) {
   return k_none;
 }
 
+SurfacePoints surface_points(std::span<const Index> faces, std::span<const double> barycentric) {
+  if (barycentric.size() != 3 * faces.size())
+    throw InputError(message("barycentric: ", barycentric.size() / 3, " rows, but faces has ", faces.size()));
+  SurfacePoints result(faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    SurfacePoint& point = result[i];
+    point = {faces[i], Vec3(barycentric[3 * i], barycentric[3 * i + 1], barycentric[3 * i + 2])};
+    if (point.face < 0) throw InputError(message("faces: face ", point.face, " at [", i, "] is negative"));
+    if (const std::string fault = fault_of(point, std::numeric_limits<Index>::max()); !fault.empty())
+      throw InputError(message("barycentric: point ", i, " ", fault));
+    point.barycentric = normalised_barycentric(point.barycentric);
+  }
+  return result;
+}
+
 void check_surface_points(const Mesh& mesh, const SurfacePoints& points, const char* argument) {
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (const std::string fault = fault_of(mesh, points[i]); !fault.empty())
+    if (const std::string fault = fault_of(points[i], mesh.face_count()); !fault.empty())
       throw InputError(message(argument, ": point ", i, " ", fault));
 }
 
 void check_surface_point(const Mesh& mesh, const SurfacePoint& point, const char* argument) {
-  if (const std::string fault = fault_of(mesh, point); !fault.empty()) throw InputError(message(argument, ": the point ", fault));
+  if (const std::string fault = fault_of(point, mesh.face_count()); !fault.empty())
+    throw InputError(message(argument, ": the point ", fault));
 }
 
 Vec3 normalised_barycentric(const Vec3& barycentric) {

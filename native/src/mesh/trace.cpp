@@ -339,9 +339,12 @@ TraceEnd walk(const Mesh& mesh, const SurfacePoint& start, double angle, double 
   return vertex == k_none ? walk.from_point(start, angle) : walk.from_vertex(start, vertex, angle);
 }
 
-/// The direction among those of the closed corner at h that is nearest to `direction`: its angle from h and its cosine.
+/// The direction among those of the closed corner at h that is nearest to a unit vector.
 struct NearestDirection {
-  double angle, cosine;
+  double angle;       ///< from h, 0 to the corner's angle
+  double cosine;      ///< with the vector
+  double free_angle;  ///< as if the face's plane went on beyond the corner
+  double share;       ///< length of the vector's part in that plane
 };
 NearestDirection nearest_in_corner(const Mesh& mesh, Index h, const Vec3& direction) {
   const Vec3& origin = mesh.position(mesh.from(h));
@@ -350,9 +353,33 @@ NearestDirection nearest_in_corner(const Mesh& mesh, Index h, const Vec3& direct
   const Vec3 y = x.cross(last).normalized().cross(x);
   const Vec2 flat(direction.dot(x), direction.dot(y));
   const double corner = mesh.corner_angle(h), angle = std::atan2(flat.y(), flat.x());
-  if (angle >= 0 && angle <= corner) return {angle, flat.norm()};
+  if (angle >= 0 && angle <= corner) return {angle, flat.norm(), angle, flat.norm()};
   const double at_first = flat.x(), at_last = direction.dot(last.normalized());
-  return at_first >= at_last ? NearestDirection{0, at_first} : NearestDirection{corner, at_last};
+  constexpr double k_turn = 2 * std::numbers::pi;
+  if (at_first >= at_last) return {0, at_first, angle < 0 ? angle : angle - k_turn, flat.norm()};
+  return {corner, at_last, angle > corner ? angle : angle + k_turn, flat.norm()};
+}
+
+/// The angle about a vertex for a unit vector, and how much of the vector lies along the surface.
+struct VertexDirection {
+  double angle, share;
+};
+VertexDirection direction_at_vertex(const Mesh& mesh, Index vertex, const Vec3& unit) {
+  NearestDirection best{0, -2, 0, 0};
+  double best_fan = 0, fan = 0;
+  const Index first = mesh.first_halfedge(vertex);
+  Index h = first;
+  do {
+    const NearestDirection found = nearest_in_corner(mesh, h, unit);
+    if (found.cosine > best.cosine) best = found, best_fan = fan;
+    fan += mesh.corner_angle(h);
+    h = mesh.rotate(h);
+  } while (h != k_none && h != first);
+  // Off the rim of the surface: keep the direction that leaves it rather than bend it along the rim.
+  const bool off_the_rim = mesh.is_boundary(vertex) && best.angle != best.free_angle &&
+                           (best_fan + best.angle == 0 || best_fan + best.angle == fan);
+  if (off_the_rim) return {best_fan + best.free_angle, best.share};
+  return {best_fan + best.angle, best.cosine};
 }
 
 }  // namespace
@@ -377,17 +404,9 @@ double start_angle(const Mesh& mesh, const SurfacePoint& start, const Vec3& dire
     along_surface(flat.norm());
     return std::atan2(flat.y(), flat.x());
   }
-  double best_angle = 0, best_cosine = -2, fan = 0;
-  const Index first = mesh.first_halfedge(vertex);
-  Index h = first;
-  do {
-    const NearestDirection found = nearest_in_corner(mesh, h, unit);
-    if (found.cosine > best_cosine) best_cosine = found.cosine, best_angle = fan + found.angle;
-    fan += mesh.corner_angle(h);
-    h = mesh.rotate(h);
-  } while (h != k_none && h != first);
-  along_surface(best_cosine);
-  return best_angle;
+  const VertexDirection found = direction_at_vertex(mesh, vertex, unit);
+  along_surface(found.share);
+  return found.angle;
 }
 
 double angle_about(const Mesh& mesh, const SurfacePoint& point, double chart_angle) {
