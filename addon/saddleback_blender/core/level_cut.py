@@ -33,7 +33,7 @@ class Cut:
 
 
 def shared_midpoints(pairs: Ints, vertex_count: int) -> tuple[Ints, Ints]:
-    """Number the different edges in pairs (n,2): edges (m,2), the lower vertex first, and the edge of each pair (n,)."""
+    """Number the different edges in pairs (n,2): edges (m,2), lower vertex first, and the edge of each pair (n,)."""
     key, index = np.unique(edge_keys(pairs[:, 0], pairs[:, 1], vertex_count), return_inverse=True)
     edges = np.stack([key // vertex_count, key % vertex_count], axis=1).astype(np.int32)
     return edges, index.astype(np.int32)
