@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -19,8 +20,8 @@ class Mesh {
   /// Checks and copies. `xyz` holds three coordinates a vertex; `triangles` three vertices a face.
   /// \throw MeshError naming the first offenders: no faces, a coordinate that is not finite, an index out of range, a
   /// degenerate face (repeated vertex or no area), a duplicate face, a non-manifold edge or vertex, neighbours of
-  /// opposite orientation, an unreferenced vertex. O(V + F).
-  Mesh(std::span<const double> xyz, std::span<const Index> triangles);
+  /// opposite orientation, an unreferenced vertex, a coordinate beyond 1e60. O(V + F).
+  Mesh(std::span<const double> xyz, std::span<const Index> triangles, Job* job = nullptr);
 
   Index vertex_count() const { return static_cast<Index>(positions_.size()); }
   Index face_count() const { return static_cast<Index>(triangles_.size()); }
@@ -40,6 +41,9 @@ class Mesh {
   Index twin(Index h) const { return twins_[h]; }                   ///< k_none on the boundary
   double length(Index h) const { return lengths_[h]; }              ///< equal to the bit for both twins
   double corner_angle(Index h) const { return corner_angles_[h]; }  ///< at from(h), inside h's face, radians
+  std::span<const Index> twins() const { return twins_; }
+  std::span<const double> lengths() const { return lengths_; }
+  std::span<const double> corner_angles() const { return corner_angles_; }
 
   /// First half-edge out of a vertex in counter-clockwise order; on a boundary vertex the one whose clockwise side is
   /// the boundary. Go on with `rotate` until k_none (boundary) or the first again.
@@ -53,14 +57,21 @@ class Mesh {
   /// Interior vertex whose total angle exceeds 2 pi, or any boundary vertex: where a shortest path may bend.
   bool is_saddle(Index vertex) const { return saddle_[vertex] != 0; }
   Index component_of(Index vertex) const { return components_[vertex]; }
+  std::span<const double> total_angles() const { return total_angles_; }
+  std::span<const Index> components() const { return components_; }  ///< labels in the order of their first vertices
+  std::vector<Index> saddle_vertices() const;
+  std::vector<Index> boundary_vertices() const;
 
   // The whole.
   double face_area(Index face) const { return face_areas_[face]; }
+  std::span<const double> face_areas() const { return face_areas_; }
   double area() const { return area_; }
   Index component_count() const { return component_count_; }
   /// Sum of the genera of the components, boundary loops thought closed by disks.
   Index genus() const { return genus_; }
   Index edge_count() const { return edge_count_; }
+  /// The half-edge that speaks for each edge: of two twins the one of the smaller face.
+  std::vector<Index> edge_halfedges() const;
   /// Each loop as vertices in order, the surface on its left.
   const std::vector<std::vector<Index>>& boundary_loops() const { return boundary_loops_; }
   double mean_edge_length() const { return mean_edge_length_; }

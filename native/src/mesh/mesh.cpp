@@ -2,6 +2,7 @@
 // relies on what the checks before it proved, so nothing here can meet a broken mesh.
 #include "saddleback/mesh.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include "mesh/face_shape.h"
 #include "mesh/offenders.h"
 #include "mesh/validate.h"
+#include "support/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -62,22 +64,28 @@ std::uint64_t hash_mesh(std::span<const Vec3> positions, std::span<const Triangl
 
 }  // namespace
 
-Mesh::Mesh(std::span<const double> xyz, std::span<const Index> triangles)
+Mesh::Mesh(std::span<const double> xyz, std::span<const Index> triangles, Job* job)
     : positions_(copy_positions(xyz)), triangles_(copy_triangles(triangles)) {
+  const JobStage stage(job, "Checking the mesh");
   check_faces(positions_, triangles_);
+  stage.update(0.15);
   {
     const EdgeTable edges = build_edge_table(triangles_, vertex_count());
     check_edges(triangles_, edges);
+    stage.update(0.4);
     edge_count_ = edges.edge_count();
     twins_ = twins_of(edges);
   }
   order_vertices();
+  stage.update(0.5);
   measure();
+  stage.update(0.8);
   find_components();
   find_boundary_loops();
   const Index euler = vertex_count() - edge_count_ + face_count();
   genus_ = component_count_ - (euler + static_cast<Index>(boundary_loops_.size())) / 2;
   fingerprint_ = hash_mesh(positions_, triangles_);
+  stage.update(1.0);
 }
 
 // One half-edge a vertex, the clockwise-most on a boundary; a vertex whose half-edges are not all met by rotating from
@@ -106,25 +114,26 @@ void Mesh::order_vertices() {
 }
 
 void Mesh::measure() {
+  constexpr Index k_chunk = 4096;  // faces a thread takes at once
   lengths_.resize(halfedge_count());
   corner_angles_.resize(halfedge_count());
   face_areas_.resize(face_count());
-  total_angles_.assign(vertex_count(), 0.0);
-  double length_sum = 0;
-  for (Index f = 0; f < face_count(); ++f) {
+  parallel_for(face_count(), 0, k_chunk, [&](Index f, int) {
     const Triangle& t = triangles_[f];
     const FaceShape shape = measure_face(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
     face_areas_[f] = shape.area;
-    area_ += shape.area;
-    for (int i = 0; i < 3; ++i) {
-      const Index h = 3 * f + i;
-      lengths_[h] = shape.length[i];
-      corner_angles_[h] = shape.angle[i];
-      total_angles_[t[i]] += shape.angle[i];
-      if (twins_[h] < h) length_sum += shape.length[i];  // once an edge; the boundary's twin is -1
-    }
+    std::copy(shape.length.begin(), shape.length.end(), lengths_.begin() + 3 * f);
+    std::copy(shape.angle.begin(), shape.angle.end(), corner_angles_.begin() + 3 * f);
+  });
+  // Sums go in the order of the faces, whatever the number of threads.
+  total_angles_.assign(vertex_count(), 0.0);
+  double length_sum = 0;
+  for (Index h = 0; h < halfedge_count(); ++h) {
+    total_angles_[from(h)] += corner_angles_[h];
+    if (twins_[h] < h) length_sum += lengths_[h];  // once an edge; the boundary's twin is -1
   }
   mean_edge_length_ = length_sum / edge_count_;
+  area_ = std::accumulate(face_areas_.begin(), face_areas_.end(), 0.0);
   saddle_.resize(vertex_count());
   constexpr double k_flat = 2 * std::numbers::pi * (1 + k_saddle_tolerance);
   for (Index v = 0; v < vertex_count(); ++v) saddle_[v] = boundary_[v] || total_angles_[v] > k_flat;
@@ -157,6 +166,28 @@ void Mesh::find_boundary_loops() {
       loop.push_back(at);
     }
   }
+}
+
+std::vector<Index> Mesh::saddle_vertices() const {
+  std::vector<Index> result;
+  for (Index v = 0; v < vertex_count(); ++v)
+    if (is_saddle(v)) result.push_back(v);
+  return result;
+}
+
+std::vector<Index> Mesh::boundary_vertices() const {
+  std::vector<Index> result;
+  for (Index v = 0; v < vertex_count(); ++v)
+    if (is_boundary(v)) result.push_back(v);
+  return result;
+}
+
+std::vector<Index> Mesh::edge_halfedges() const {
+  std::vector<Index> result;
+  result.reserve(edge_count_);
+  for (Index h = 0; h < halfedge_count(); ++h)
+    if (twins_[h] == k_none || h < twins_[h]) result.push_back(h);
+  return result;
 }
 
 }  // namespace saddleback

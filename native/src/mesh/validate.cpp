@@ -12,11 +12,6 @@ namespace {
 
 const char* const k_repair = "saddleback.repair mends this";
 
-Triangle sorted(Triangle t) {
-  std::sort(t.begin(), t.end());
-  return t;
-}
-
 std::string name_face(Index f, const Triangle& t) {
   return message("face ", f, " (", t[0], ", ", t[1], ", ", t[2], ")");
 }
@@ -96,14 +91,9 @@ void check_edges(std::span<const Triangle> triangles, const EdgeTable& edges) {
     const std::span<const Index> around = edges.edge(e);
     if (around.size() == 1) continue;
     const Index a = halfedge_from(triangles, around[0]), b = halfedge_to(triangles, around[0]);
-    for (std::size_t i = 1; i < around.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) {
-        // Each pair of equal faces meets in three edges: report it at the one without its largest vertex.
-        const Index f = around[j] / 3, g = around[i] / 3;
-        const Triangle t = sorted(triangles[f]);
-        if (std::max(a, b) == t[1] && t == sorted(triangles[g]))
-          duplicate.add([&] { return message(name_face(g, triangles[g]), " repeats face ", f); });
-      }
+    for_each_duplicate(triangles, around, [&](Index f, Index g) {
+      duplicate.add([&] { return message(name_face(g, triangles[g]), " repeats face ", f); });
+    });
     if (around.size() > 2) {
       crowded.add([&] { return message("edge (", a, ", ", b, ") has ", around.size(), " faces"); });
     } else if (halfedge_from(triangles, around[1]) == a) {
