@@ -36,8 +36,7 @@ add_library(OpenMeshCore STATIC
   ${_core}/System/omstream.cc
   ${_core}/Utils/BaseProperty.cc
   ${_core}/Utils/Endian.cc
-  ${_core}/Utils/PropertyCreator.cc
   ${_core}/Utils/RandomNumberGenerator.cc)
 target_include_directories(OpenMeshCore SYSTEM PUBLIC ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src)
 target_compile_definitions(OpenMeshCore PUBLIC OM_STATIC_BUILD _USE_MATH_DEFINES PRIVATE NDEBUG)
-target_compile_options(OpenMeshCore PRIVATE -w)
+target_compile_options(OpenMeshCore PRIVATE -w -O1)  # reading files waits for the disk: -O3 takes minutes to compile and gains nothing
