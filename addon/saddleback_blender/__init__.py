@@ -14,6 +14,7 @@ bl_info = {
 
 
 def register() -> None:
+    """Makes everything of this module known to Blender."""
     from . import jobs, ops, prefs, props
 
     for module in (props, prefs, jobs, ops):
@@ -21,6 +22,7 @@ def register() -> None:
 
 
 def unregister() -> None:
+    """Takes it back, in the opposite order."""
     from . import jobs, ops, prefs, props
 
     for module in (ops, jobs, prefs, props):

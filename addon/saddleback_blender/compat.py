@@ -76,7 +76,7 @@ def active_color_name(mesh: bpy.types.Mesh) -> str:
 
 
 def identity(data: bpy.types.ID) -> int:
-    """A number that tells a data-block from another of the same name made later in the session, where Blender has one."""
+    """A number of its own for each data-block of a session, where Blender has one; else 0."""
     return int(getattr(data, "session_uid", 0))
 
 

@@ -17,22 +17,6 @@ from bpy.props import BoolProperty, FloatProperty, StringProperty
 
 from .core.progress import Progress
 
-WINDOW_MANAGER_PROPERTIES = {
-    "saddleback_running": BoolProperty(
-        name="Running", description="A run is going on", get=lambda _: state.task is not None
-    ),
-    "saddleback_fraction": FloatProperty(
-        name="Progress", description="Share of the run done", min=0.0, max=1.0, subtype="FACTOR",
-        get=lambda _: state.task.progress.fraction if state.task is not None else 0.0,
-    ),
-    "saddleback_text": StringProperty(
-        name="Doing", description="What is being done", get=lambda _: state.task.text if state.task is not None else ""
-    ),
-    "saddleback_needs_repair": StringProperty(
-        name="Needs Repair", description="Object whose mesh was refused by the last run", get=lambda _: state.needs_repair
-    ),
-}  # fmt: skip
-
 
 class Task:
     """One call in one thread. `done`, `result` and `error` are read by the timer; `cancel` returns at once."""
@@ -47,20 +31,25 @@ class Task:
 
     @property
     def text(self) -> str:
+        """Whose run it is and what is being done."""
         return f"{self.name}: {self.progress.text}" if self.progress.text else self.name
 
     @property
     def done(self) -> bool:
+        """True once the thread has ended."""
         return not self._thread.is_alive()
 
     def start(self) -> None:
+        """Starts the thread."""
         _unfinished.append(self)
         self._thread.start()
 
     def cancel(self) -> None:
+        """Asks it to stop, without waiting."""
         self.progress.cancel()
 
     def join(self, seconds: float | None = None) -> None:
+        """Waits for the end of the thread, at most `seconds`."""
         self._thread.join(seconds)
 
     def _run(self) -> None:
@@ -80,6 +69,23 @@ class State:
 
 state = State()
 _unfinished: list[Task] = []
+
+
+WINDOW_MANAGER_PROPERTIES = {
+    "saddleback_running": BoolProperty(
+        name="Running", description="A run is going on", get=lambda _: state.task is not None
+    ),
+    "saddleback_fraction": FloatProperty(
+        name="Progress", description="Share of the run done", min=0.0, max=1.0, subtype="FACTOR",
+        get=lambda _: state.task.progress.fraction if state.task is not None else 0.0,
+    ),
+    "saddleback_text": StringProperty(
+        name="Doing", description="What is being done", get=lambda _: state.task.text if state.task is not None else ""
+    ),
+    "saddleback_needs_repair": StringProperty(
+        name="Needs Repair", description="Object refused by the last run", get=lambda _: state.needs_repair
+    ),
+}  # fmt: skip
 
 
 def start(call: Callable[[Progress], Any], progress: Progress, name: str) -> Task:
@@ -120,12 +126,14 @@ def redraw(context: bpy.types.Context) -> None:
 
 
 def register() -> None:
+    """Makes everything of this module known to Blender."""
     for name, prop in WINDOW_MANAGER_PROPERTIES.items():
         setattr(bpy.types.WindowManager, name, prop)
     atexit.register(stop_all)
 
 
 def unregister() -> None:
+    """Takes it back, in the opposite order."""
     stop_all()
     atexit.unregister(stop_all)
     for name in WINDOW_MANAGER_PROPERTIES:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import cast
-
 import bpy
 from bpy.props import IntProperty
 
@@ -15,7 +13,9 @@ def _resize_cache(preferences: bpy.types.AddonPreferences, _context: bpy.types.C
 
 
 class SaddlebackPreferences(bpy.types.AddonPreferences):
-    bl_idname = cast(str, __package__)
+    """What holds for the whole computer rather than for one file."""
+
+    bl_idname = __package__
 
     __annotations__ = {
         "threads": IntProperty(
@@ -32,6 +32,7 @@ class SaddlebackPreferences(bpy.types.AddonPreferences):
     }
 
     def draw(self, _context: bpy.types.Context) -> None:
+        """Draws the preferences."""
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "threads")
@@ -44,16 +45,18 @@ class SaddlebackPreferences(bpy.types.AddonPreferences):
 
 def threads(context: bpy.types.Context) -> int:
     """The number of threads to compute with, 0 = all."""
-    addon = context.preferences.addons.get(cast(str, __package__))
+    addon = context.preferences.addons.get(__package__)
     return int(addon.preferences.threads) if addon is not None and addon.preferences is not None else 0
 
 
 def register() -> None:
+    """Makes everything of this module known to Blender."""
     bpy.utils.register_class(SaddlebackPreferences)
-    addon = bpy.context.preferences.addons.get(cast(str, __package__))
+    addon = bpy.context.preferences.addons.get(__package__)
     if addon is not None and addon.preferences is not None:
         cache.shared.resize(addon.preferences.cache_megabytes * 2**20)
 
 
 def unregister() -> None:
+    """Takes it back, in the opposite order."""
     bpy.utils.unregister_class(SaddlebackPreferences)

@@ -63,7 +63,7 @@ def _detail() -> Any:
 def _use_modifiers() -> Any:
     return BoolProperty(
         name="Use Modifiers",
-        description="Work on the object as its modifiers shape it; where they change the vertices, a new object is made",
+        description="Work on what the modifiers make of the object; where they add vertices, a new object is made",
         default=False,
         options={"SKIP_SAVE"},
     )
@@ -159,7 +159,7 @@ REPAIR: dict[str, Any] = {
 
 def _kept(properties: dict[str, Any]) -> dict[str, Any]:
     """The same properties for an object to keep: named objects and collections become pointers."""
-    pointers = {name: bpy.types.Object for name in OBJECT_NAMES} | {name: bpy.types.Collection for name in COLLECTION_NAMES}
+    pointers = dict.fromkeys(OBJECT_NAMES, bpy.types.Object) | dict.fromkeys(COLLECTION_NAMES, bpy.types.Collection)
     kept = {}
     for name, prop in properties.items():
         if name in pointers:
@@ -172,14 +172,20 @@ def _kept(properties: dict[str, Any]) -> dict[str, Any]:
 
 
 class SaddlebackTessellateProps(bpy.types.PropertyGroup):
+    """Settings of `saddleback.tessellate`."""
+
     __annotations__ = _kept(TESSELLATE)
 
 
 class SaddlebackDistanceProps(bpy.types.PropertyGroup):
+    """Settings of `saddleback.distance`."""
+
     __annotations__ = _kept(DISTANCE)
 
 
 class SaddlebackRepairProps(bpy.types.PropertyGroup):
+    """Settings of `saddleback.repair`."""
+
     __annotations__ = _kept(REPAIR)
 
 
@@ -224,12 +230,14 @@ def settings_of(operator: bpy.types.Operator, kind: type[Settings]) -> Settings:
 
 
 def register() -> None:
+    """Makes everything of this module known to Blender."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Object.saddleback = PointerProperty(type=SaddlebackObjectProps)
 
 
 def unregister() -> None:
+    """Takes it back, in the opposite order."""
     del bpy.types.Object.saddleback
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

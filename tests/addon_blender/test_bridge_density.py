@@ -6,7 +6,7 @@ import pytest
 from scenes import grid
 
 from saddleback_blender.bridge.density import read_density
-from saddleback_blender.core.errors import BadInput
+from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.settings import TessellateSettings
 
 
@@ -57,7 +57,7 @@ def test_invert_and_contrast(item):
 def test_number_attributes_of_vertices(item, kind):
     values = np.arange(len(item.data.vertices)) % 2
     attribute = item.data.attributes.new("Wanted", kind, "POINT")
-    for element, value in zip(attribute.data, values):
+    for element, value in zip(attribute.data, values, strict=True):
         element.value = value
     np.testing.assert_array_equal(density(item, density_source="ATTRIBUTE", density_name="Wanted"), values)
 
@@ -112,7 +112,7 @@ def paint_mask(item, values):
         mesh = bmesh.new()
         mesh.from_mesh(item.data)
         layer = mesh.verts.layers.paint_mask.verify()
-        for vertex, value in zip(mesh.verts, values):
+        for vertex, value in zip(mesh.verts, values, strict=True):
             vertex[layer] = value
         mesh.to_mesh(item.data)
         mesh.free()
@@ -150,7 +150,7 @@ def test_weights_of_the_evaluated_mesh(item):
     ],
 )
 def test_missing_paint_is_named(item, settings, sentence):
-    with pytest.raises(BadInput) as caught:
+    with pytest.raises(BadInputError) as caught:
         density(item, **settings)
     assert str(caught.value).startswith(sentence)
 
@@ -167,11 +167,11 @@ def test_missing_paint_is_named(item, settings, sentence):
 def test_useless_paint_is_refused(item, values, words):
     attribute = item.data.attributes.new("Wanted", "FLOAT", "POINT")
     attribute.data.foreach_set("value", np.full(len(attribute.data), values, np.float32))
-    with pytest.raises(BadInput, match=f"'Grid': attribute 'Wanted' .*{words}"):
+    with pytest.raises(BadInputError, match=f"'Grid': attribute 'Wanted' .*{words}"):
         density(item, density_source="ATTRIBUTE", density_name="Wanted")
 
 
 def test_a_vector_attribute_is_no_number(item):
     item.data.attributes.new("Wanted", "FLOAT_VECTOR", "POINT")
-    with pytest.raises(BadInput, match="holds float vectors, not numbers"):
+    with pytest.raises(BadInputError, match="holds float vectors, not numbers"):
         density(item, density_source="ATTRIBUTE", density_name="Wanted")

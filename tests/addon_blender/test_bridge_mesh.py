@@ -7,7 +7,7 @@ from mathutils import Matrix
 from scenes import add_object, grid, grid_arrays, sphere
 
 from saddleback_blender.bridge import mesh_in
-from saddleback_blender.core.errors import BadInput
+from saddleback_blender.core.errors import BadInputError
 
 
 def read(item, use_modifiers=False):
@@ -107,9 +107,9 @@ def test_equal_geometry_has_one_key():
 
 
 def test_no_faces_and_bad_numbers_are_refused_by_name():
-    with pytest.raises(BadInput, match="'Wire' has no faces"):
+    with pytest.raises(BadInputError, match="'Wire' has no faces"):
         read(add_object("Wire", [(0, 0, 0), (1, 0, 0)], []))
     item = grid("Broken", n=2)
     item.data.vertices[4].co.x = float("nan")
-    with pytest.raises(BadInput, match="'Broken': vertex 4 "):
+    with pytest.raises(BadInputError, match="'Broken': vertex 4 "):
         read(item)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .. import compat
 from ..core import density as density_maths
 from ..core.density import DensityError
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 from ..core.results import Reals
 from ..core.settings import TessellateSettings
 
@@ -25,7 +25,7 @@ NUMBER_TYPES = {
 def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: TessellateSettings) -> Reals | None:
     """(V,) density of all vertices of `mesh` (the object's own or evaluated one); None for uniform.
 
-    Raises BadInput naming the object and what is missing or wrong.
+    Raises BadInputError naming the object and what is missing or wrong.
     """
     if settings.density_source == "UNIFORM":
         return None
@@ -42,7 +42,7 @@ def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: Tesse
     try:
         return density_maths.shape(values, settings.density_invert, settings.density_contrast, upper)
     except DensityError as error:
-        raise BadInput(f"'{source.name}': {label} {error}") from error
+        raise BadInputError(f"'{source.name}': {label} {error}") from error
 
 
 def read_vertex_group(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[NDArray[np.float64], str]:
@@ -50,7 +50,7 @@ def read_vertex_group(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str)
     group = source.vertex_groups.get(name) if name else source.vertex_groups.active
     if group is None:
         missing = f"no vertex group '{name}'" if name else "no vertex group"
-        raise BadInput(f"'{source.name}' has {missing}; paint one or choose another density")
+        raise BadInputError(f"'{source.name}' has {missing}; paint one or choose another density")
     index = group.index
     vertices: list[int] = []
     weights: list[float] = []
@@ -71,15 +71,15 @@ def read_attribute(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) ->
         wanted = (
             f"has no attribute '{name}'; check its name" if name else "needs the name of an attribute for the density"
         )
-        raise BadInput(f"'{source.name}' {wanted} or choose another density")
+        raise BadInputError(f"'{source.name}' {wanted} or choose another density")
     label = f"attribute '{name}'"
     if attribute.data_type not in NUMBER_TYPES:
         kind = attribute.data_type.lower().replace("_", " ")
-        raise BadInput(
+        raise BadInputError(
             f"'{source.name}': {label} holds {kind}s, not numbers; choose a number attribute, or Color Attribute"
         )
     prop, dtype = NUMBER_TYPES[attribute.data_type]
-    values = np.zeros(len(attribute.data), dtype)
+    values: NDArray[np.generic] = np.zeros(len(attribute.data), dtype)
     attribute.data.foreach_get(prop, values)
     return to_vertices(mesh, values, attribute.domain), label
 
@@ -92,7 +92,7 @@ def read_color(
     attribute = mesh.color_attributes.get(name)
     if attribute is None:
         missing = f"no color attribute '{name}'" if name else "no color attribute"
-        raise BadInput(f"'{source.name}' has {missing}; paint one or choose another density")
+        raise BadInputError(f"'{source.name}' has {missing}; paint one or choose another density")
     colors = np.empty(4 * len(attribute.data), np.float32)
     attribute.data.foreach_get("color", colors)
     values = density_maths.channel(colors.reshape(-1, 4), channel)
@@ -103,7 +103,7 @@ def read_mask(source: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[NDArray[n
     """(V,) sculpt mask, and its name for messages."""
     values = compat.read_sculpt_mask(mesh)
     if values is None:
-        raise BadInput(f"'{source.name}' has no sculpt mask; paint one in Sculpt Mode or choose another density")
+        raise BadInputError(f"'{source.name}' has no sculpt mask; paint one in Sculpt Mode or choose another density")
     return values.astype(np.float64), "the sculpt mask"
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import compat
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 from ..core.requests import Surface
 from ..core.results import Indices, Reals
 
@@ -30,15 +30,18 @@ def mesh_of(context: bpy.types.Context, source: bpy.types.Object, use_modifiers:
         evaluated.to_mesh_clear()
 
 
-def read_surface(source: bpy.types.Object, mesh: bpy.types.Mesh) -> Surface:
-    """The surface of `mesh` as placed in the world by `source`: scale applied, polygons cut into triangles."""
+def read_surface(source: bpy.types.Object, mesh: bpy.types.Mesh, check: bool = True) -> Surface:
+    """The surface of `mesh` as placed in the world by `source`: scale applied, polygons cut into triangles.
+
+    Raises BadInputError for a mesh without faces and, with `check`, for coordinates that are not finite.
+    """
     vertices = to_world(source, compat.read_positions(mesh))
-    if not np.isfinite(vertices).all():
+    if check and not np.isfinite(vertices).all():
         vertex = int(np.nonzero(~np.isfinite(vertices).all(axis=1))[0][0])
-        raise BadInput(f"'{source.name}': vertex {vertex} is not at a finite place; delete it or press Repair")
+        raise BadInputError(f"'{source.name}': vertex {vertex} is not at a finite place; delete it or press Repair")
     triangles = read_triangles(mesh)
     if not len(triangles):
-        raise BadInput(f"'{source.name}' has no faces; choose an object with a surface")
+        raise BadInputError(f"'{source.name}' has no faces; choose an object with a surface")
     if source.matrix_world.determinant() < 0:  # a mirrored object shows its faces from the other side
         triangles = np.ascontiguousarray(triangles[:, ::-1])
     used, triangles = _compact(triangles, len(vertices))
@@ -68,6 +71,13 @@ def to_world(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals
     """(n, 3) object-space positions -> world space, in double precision."""
     matrix = np.array(source.matrix_world, np.float64)
     return positions.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def from_world(source: bpy.types.Object, points: Reals) -> Reals:
+    """(n, 3) world space -> the object's own space."""
+    matrix = np.linalg.inv(np.array(source.matrix_world, np.float64))
+    own: Reals = points @ matrix[:3, :3].T + matrix[:3, 3]
+    return own
 
 
 def _all_triangles(mesh: bpy.types.Mesh) -> bool:

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from .. import compat
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 from .mesh_in import mesh_of
 from .out_collection import replace_object
 
@@ -25,20 +25,25 @@ def output_surface(context: bpy.types.Context, source: bpy.types.Object, use_mod
 
 
 def check_attribute_names(source: bpy.types.Object, names: dict[str, str], types: dict[str, str]) -> None:
-    """Refuses names that would overwrite something else. `names`: property -> attribute; `types`: property -> data type."""
+    """Refuses names that would overwrite something else.
+
+    `names`: property -> attribute to be written; `types`: property -> its data type.
+    """
     seen: set[str] = set()
     for prop, name in names.items():
         label = prop.replace("_", " ")
         if not name or name.startswith(".") or name in ("position", "material_index"):
-            raise BadInput(f"'{source.name}': the {label} cannot be called '{name}'; choose another name")
+            raise BadInputError(f"'{source.name}': the {label} cannot be called '{name}'; choose another name")
         if name in seen:
-            raise BadInput(f"'{source.name}': two attributes are to be called '{name}'; choose another name for one")
+            raise BadInputError(
+                f"'{source.name}': two attributes are to be called '{name}'; choose another name for one"
+            )
         seen.add(name)
         if name in source.vertex_groups:
-            raise BadInput(f"'{source.name}' has a vertex group '{name}': choose another name for the {label}")
+            raise BadInputError(f"'{source.name}' has a vertex group '{name}': choose another name for the {label}")
         old = source.data.attributes.get(name)
         if old is not None and (old.domain != "POINT" or old.data_type != types[prop]):
-            raise BadInput(
+            raise BadInputError(
                 f"'{source.name}' has another kind of attribute '{name}': choose another name for the {label}"
             )
 

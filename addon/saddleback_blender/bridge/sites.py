@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import compat
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 from ..core.requests import Points
 from ..core.results import Reals
 from ..core.settings import DistanceSettings, TessellateSettings
@@ -34,7 +34,7 @@ def read_sources(
         weights, label = read_vertex_group(source, mesh, settings.sources_group)
         vertices = np.nonzero(weights > 0.5)[0].astype(np.int32)
         if not len(vertices):
-            raise BadInput(
+            raise BadInputError(
                 f"'{source.name}': no vertex has a weight above 0.5 in {label}; paint it, or choose another source"
             )
         return vertices
@@ -47,7 +47,7 @@ def selected_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh) -> NDArray
     """(n,) vertices selected in Edit Mode."""
     vertices = np.nonzero(compat.read_selected_vertices(mesh))[0].astype(np.int32)
     if not len(vertices):
-        raise BadInput(f"'{source.name}' has no selected vertex; select some in Edit Mode, then leave it")
+        raise BadInputError(f"'{source.name}' has no selected vertex; select some in Edit Mode, then leave it")
     return vertices
 
 
@@ -55,17 +55,19 @@ def object_points(context: bpy.types.Context, source: bpy.types.Object, name: st
     """(n, 3) world places of another mesh object's vertices, as its modifiers leave them."""
     other = bpy.data.objects.get(name) if name else None
     if other is None:
-        raise BadInput(f"'{source.name}': there is no object '{name}' to take sites from; choose one")
+        raise BadInputError(f"'{source.name}': there is no object '{name}' to take sites from; choose one")
     if other == source:
-        raise BadInput(
+        raise BadInputError(
             f"'{source.name}' cannot take its sites from itself; choose another object, or Selected Vertices"
         )
     if other.type != "MESH":
-        raise BadInput(f"'{name}' is no mesh object, so '{source.name}' cannot take sites from it; choose a mesh")
+        raise BadInputError(f"'{name}' is no mesh object, so '{source.name}' cannot take sites from it; choose a mesh")
     with mesh_of(context, other, True) as mesh:
         points = to_world(other, compat.read_positions(mesh))
     if not len(points):
-        raise BadInput(f"'{name}' has no vertices, so '{source.name}' cannot take sites from it; choose another object")
+        raise BadInputError(
+            f"'{name}' has no vertices, so '{source.name}' cannot take sites from it; choose another object"
+        )
     return points
 
 
@@ -74,12 +76,14 @@ def empty_points(context: bpy.types.Context, source: bpy.types.Object, collectio
     if collection:
         group = bpy.data.collections.get(collection)
         if group is None:
-            raise BadInput(f"'{source.name}': there is no collection '{collection}' to take empties from; choose one")
+            raise BadInputError(
+                f"'{source.name}': there is no collection '{collection}' to take empties from; choose one"
+            )
         candidates, where = list(group.all_objects), f"in collection '{collection}'"
     else:
         candidates, where = list(source.children), f"parented to '{source.name}'"
     # By name, so that the sources' order does not depend on the order of linking.
     empties = sorted((item for item in candidates if item.type == "EMPTY"), key=lambda item: item.name)
     if not empties:
-        raise BadInput(f"'{source.name}': no empty is {where}; add one at each place to measure from")
+        raise BadInputError(f"'{source.name}': no empty is {where}; add one at each place to measure from")
     return np.array([item.matrix_world.translation[:] for item in empties], np.float64)

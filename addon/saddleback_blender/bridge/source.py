@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from .. import compat
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 from .mesh_in import mesh_of
 
 # Share of the volume of its edge lengths below which a transform's parallelepiped counts as flat.
@@ -29,22 +29,22 @@ def why_not(context: bpy.types.Context) -> str:
 
 
 def usable_source(context: bpy.types.Context) -> bpy.types.Object:
-    """The active object. Raises BadInput saying why it cannot be used."""
+    """The active object. Raises BadInputError saying why it cannot be used."""
     problem = why_not(context)
     if problem:
-        raise BadInput(problem)
+        raise BadInputError(problem)
     source = context.view_layer.objects.active
     name = source.name
     if source.library is not None or source.data.library is not None:
         library = (source.library or source.data.library).filepath
-        raise BadInput(f"'{name}' is linked from {library}: make it and its mesh local first (Object > Relations)")
+        raise BadInputError(f"'{name}' is linked from {library}: make it and its mesh local first (Object > Relations)")
     if not source.visible_get(view_layer=context.view_layer):
-        raise BadInput(f"'{name}' is hidden: show it first")
+        raise BadInputError(f"'{name}' is hidden: show it first")
     if source.mode == "SCULPT" and source.use_dynamic_topology_sculpting:
-        raise BadInput(f"'{name}' is sculpted with dynamic topology: leave Sculpt Mode first")
+        raise BadInputError(f"'{name}' is sculpted with dynamic topology: leave Sculpt Mode first")
     _check_transform(source)
     if not len(source.data.vertices):
-        raise BadInput(f"'{name}' is empty: it has no vertices")
+        raise BadInputError(f"'{name}' is empty: it has no vertices")
     return source
 
 
@@ -67,21 +67,22 @@ class Source:
 
     @classmethod
     def of(cls, context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> Source:
+        """Notes what is needed to know the object again."""
         return cls(source.name, compat.identity(source), use_modifiers, _content(context, source, use_modifiers))
 
     def find(self, context: bpy.types.Context) -> bpy.types.Object:
-        """The object, unchanged. Raises BadInput when it is gone, busy or another."""
+        """The object, unchanged. Raises BadInputError when it is gone, busy or another."""
         source = bpy.data.objects.get(self.name)
         if source is None or compat.identity(source) != self.identity or source.type != "MESH":
-            raise BadInput(f"'{self.name}' was deleted or renamed during the run: nothing was written")
+            raise BadInputError(f"'{self.name}' was deleted or renamed during the run: nothing was written")
         if source.mode == "EDIT":
-            raise BadInput(
+            raise BadInputError(
                 f"'{self.name}' went into Edit Mode during the run, so nothing was written: leave it and run again"
             )
         if source.name not in context.view_layer.objects:
-            raise BadInput(f"'{self.name}' left the view layer during the run: nothing was written")
+            raise BadInputError(f"'{self.name}' left the view layer during the run: nothing was written")
         if _content(context, source, self.use_modifiers) != self.content:
-            raise BadInput(f"'{self.name}' was changed during the run, so nothing was written: run again")
+            raise BadInputError(f"'{self.name}' was changed during the run, so nothing was written: run again")
         return source
 
 
@@ -97,13 +98,17 @@ def _content(context: bpy.types.Context, source: bpy.types.Object, use_modifiers
 def _check_transform(source: bpy.types.Object) -> None:
     matrix = np.array(source.matrix_world, np.float64)
     if not np.isfinite(matrix).all():
-        raise BadInput(f"'{source.name}' has a transform that is not finite: clear its location, rotation and scale")
+        raise BadInputError(
+            f"'{source.name}' has a transform that is not finite: clear its location, rotation and scale"
+        )
     lengths = np.linalg.norm(matrix[:3, :3], axis=0)
     if (
         abs(np.linalg.det(matrix[:3, :3])) <= FLAT_TRANSFORM * lengths.max() * np.sort(lengths)[1] ** 2
         or not lengths.all()
     ):
-        axes = " and ".join(axis for axis, length in zip("XYZ", lengths) if length <= FLAT_TRANSFORM * lengths.max())
-        raise BadInput(
+        axes = " and ".join(
+            axis for axis, length in zip("XYZ", lengths, strict=True) if length <= FLAT_TRANSFORM * lengths.max()
+        )
+        raise BadInputError(
             f"'{source.name}' has zero scale{' along ' + axes if axes else ''}: set a scale that is not zero"
         )

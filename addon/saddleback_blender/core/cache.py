@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import threading
 from collections import Counter, OrderedDict
-from typing import Any, Callable, TypeVar
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 Value = TypeVar("Value")
 
@@ -43,6 +44,7 @@ class Cache:
 
     @property
     def nbytes(self) -> int:
+        """Sum of what is kept."""
         with self._lock:
             return sum(nbytes for _, nbytes in self._entries.values())
 
@@ -53,6 +55,7 @@ class Cache:
             self._trim()
 
     def clear(self) -> None:
+        """Forgets everything."""
         with self._lock:
             self._entries.clear()
 

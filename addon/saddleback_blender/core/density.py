@@ -17,7 +17,8 @@ class DensityError(ValueError):
 def channel(colors: NDArray[np.floating], name: str) -> Reals:
     """(n, 4) linear colours -> (n,) the channel LUMINANCE, R, G, B or A."""
     if name == "LUMINANCE":
-        return colors[:, :3].astype(np.float64) @ REC_709
+        luminance: Reals = colors[:, :3].astype(np.float64) @ REC_709
+        return luminance
     return colors[:, "RGBA".index(name)].astype(np.float64)
 
 

@@ -3,5 +3,5 @@
 from __future__ import annotations
 
 
-class BadInput(Exception):
+class BadInputError(Exception):
     """What was asked cannot be done; one sentence that names the object and says what to do."""

@@ -5,6 +5,7 @@ In the extension the library is a wheel that Blender installs; in the legacy zip
 
 from __future__ import annotations
 
+import importlib
 import platform
 import sys
 import sysconfig
@@ -16,12 +17,12 @@ REQUIRED_VERSION = (0, 1)  # major and minor of the library that this add-on was
 LIBRARY_FOLDER = Path(__file__).resolve().parent.parent / "lib"
 
 
-class NativeMissing(Exception):
+class NativeMissingError(Exception):
     """The native library cannot be loaded; the message says why and what to do."""
 
 
 def load() -> Any:
-    """The module `saddleback`. Raises NativeMissing with one readable sentence."""
+    """The module `saddleback`. Raises NativeMissingError with one readable sentence."""
     module = sys.modules.get("saddleback")
     if module is None:
         module = _import()
@@ -33,7 +34,7 @@ def problem() -> str:
     """Why the native library cannot be used, or "" when it can."""
     try:
         load()
-    except NativeMissing as error:
+    except NativeMissingError as error:
         return str(error)
     return ""
 
@@ -42,7 +43,7 @@ def description() -> str:
     """One line for people: the library's version and the devices that it sees."""
     try:
         module = load()
-    except NativeMissing as error:
+    except NativeMissingError as error:
         return str(error)
     devices = getattr(module, "devices", None)
     seen = ", ".join(str(device) for device in devices()) if devices else "CPU"
@@ -53,15 +54,14 @@ def _import() -> ModuleType:
     if LIBRARY_FOLDER.is_dir() and str(LIBRARY_FOLDER) not in sys.path:
         sys.path.append(str(LIBRARY_FOLDER))
     try:
-        import saddleback
+        return importlib.import_module("saddleback")
     except ImportError as error:
         suffix = sysconfig.get_config_var("EXT_SUFFIX")
-        raise NativeMissing(
+        raise NativeMissingError(
             f"Saddleback's native library does not load ({error}): install the package made for {platform.system()} "
             f"{platform.machine()} and Python {sys.version_info.major}.{sys.version_info.minor} (it holds "
             f"_saddleback{suffix}), then restart Blender"
         ) from error
-    return saddleback
 
 
 def _check_version(module: ModuleType) -> None:
@@ -72,7 +72,7 @@ def _check_version(module: ModuleType) -> None:
         version = ()
     if version != REQUIRED_VERSION:
         wanted = ".".join(map(str, REQUIRED_VERSION))
-        raise NativeMissing(
+        raise NativeMissingError(
             f"Saddleback's add-on needs its native library {wanted}, but {text or 'an unknown version'} is loaded from "
             f"{getattr(module, '__file__', '?')}: restart Blender after an update, or reinstall the add-on"
         )

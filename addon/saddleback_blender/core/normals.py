@@ -15,13 +15,13 @@ def normals_at(vertices: Reals, triangles: Indices, faces: Indices, barycentric:
     corners = triangles[faces]
     wanted = np.zeros(len(vertices), bool)
     wanted[corners.ravel()] = True
-    near = triangles[wanted[triangles].any(axis=1)]
+    near: Indices = triangles[wanted[triangles].any(axis=1)]
     a, b, c = (vertices[near[:, i]] for i in range(3))
     face_normals = np.cross(b - a, c - a)  # length = twice the area, so the sum below is weighted by area
-    vertex_normals = np.stack(
+    vertex_normals: Reals = np.stack(
         [np.bincount(near.ravel(), np.repeat(face_normals[:, i], 3), minlength=len(vertices)) for i in range(3)], axis=1
     )
-    normals = _unit(np.einsum("ni,nij->nj", barycentric, _unit(vertex_normals[corners])))
+    normals = _unit((barycentric[:, :, None] * _unit(vertex_normals[corners])).sum(axis=1))
     # Where the normals around a point cancel out (a fold, a needle's tip) its own face's normal stands.
     lost = ~normals.any(axis=1)
     if lost.any():
@@ -32,4 +32,5 @@ def normals_at(vertices: Reals, triangles: Indices, faces: Indices, barycentric:
 
 def _unit(vectors: Reals) -> Reals:
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
+    units: Reals = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
+    return units

@@ -30,6 +30,7 @@ class Progress:
 
     @property
     def cancelled(self) -> bool:
+        """True once `cancel` was called."""
         return self._cancelled
 
     def cancel(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +13,15 @@ from numpy.typing import NDArray
 from .results import Indices, Reals
 from .settings import DistanceSettings, TessellateSettings
 
+Number = TypeVar("Number", bound=np.generic)
+
 
 @dataclass(frozen=True)
 class Surface:
     """The triangles of one Blender mesh in world space, without its loose vertices.
 
-    `vertices` (n, 3) and `triangles` (F, 3), counter-clockwise seen from outside. `used` (n,) gives each vertex its number
-    in the Blender mesh of `vertex_count` vertices; None where all are used.
+    `vertices` (n, 3) and `triangles` (F, 3), counter-clockwise seen from outside. `used` (n,) gives each vertex its
+    number in the Blender mesh of `vertex_count` vertices; None where all are used.
     """
 
     name: str  # of the object, for messages
@@ -46,13 +49,14 @@ class Surface:
         """Numbers in `vertices` of the Blender mesh's vertices, -1 for loose ones."""
         if self.used is None:
             return np.asarray(vertices, np.int32)
-        return self._compact[vertices]
+        found: Indices = self._compact[vertices]
+        return found
 
     def gather(self, values: NDArray[np.floating]) -> Reals:
         """(V,) values of the Blender mesh's vertices -> (n,) of `vertices`."""
         return np.ascontiguousarray(values if self.used is None else values[self.used], np.float64)
 
-    def spread(self, values: NDArray[np.generic], fill: float) -> NDArray[np.generic]:
+    def spread(self, values: NDArray[Number], fill: float) -> NDArray[Number]:
         """(n,) values of `vertices` -> (V,) of the Blender mesh's, loose ones `fill`."""
         if self.used is None:
             return values

@@ -15,8 +15,9 @@ Indices = NDArray[np.int32]
 class CellsResult:
     """Geodesic cells of a mesh of V vertices.
 
-    V counts the Blender mesh's vertices. A vertex of no face, or of a part of the surface without a site, has cell -1 and
-    distance inf. n cells, e edges (polylines between two cells), S vertices and T triangles of the mesh cut along them.
+    V counts the Blender mesh's vertices. A vertex of no face, or of a part of the surface without a site, has cell -1
+    and distance inf. n cells, e edges (polylines between two cells), S vertices and T triangles of the mesh cut along
+    them.
     """
 
     vertex_cell: Indices  # (V,) cell of each vertex, -1 = none
@@ -39,10 +40,12 @@ class CellsResult:
 
     @property
     def count(self) -> int:
+        """Number of cells."""
         return len(self.sites_position)
 
     @property
     def nbytes(self) -> int:
+        """Memory of the arrays."""
         return _nbytes(self)
 
 
@@ -54,7 +57,24 @@ class DistanceResult:
 
     @property
     def nbytes(self) -> int:
+        """Memory of the arrays."""
         return _nbytes(self)
+
+
+@dataclass(frozen=True)
+class RepairResult:
+    """A repaired surface: what became of the vertices and triangles of the one given, and how much was changed."""
+
+    vertices: Reals  # (n, 3)
+    triangles: Indices  # (F, 3)
+    vertex_map: Indices  # (old n,) new vertex, the first copy if it was split, -1 = gone
+    face_map: Indices  # (old F,) new triangle, the first part if it was divided, -1 = gone
+    changes: dict[str, int]  # by kind; empty when there was nothing to repair
+
+    @property
+    def text(self) -> str:
+        """The changes for a person to read."""
+        return ", ".join(f"{count} {kind.replace('_', ' ')}" for kind, count in sorted(self.changes.items()))
 
 
 def _nbytes(result: object) -> int:

@@ -10,18 +10,18 @@ import numpy as np
 from . import cache as cache_module
 from . import native
 from .cache import Cache
-from .errors import BadInput
+from .errors import BadInputError
 from .normals import normals_at
 from .progress import Progress
 from .requests import DistanceRequest, Points, Surface, TessellateRequest, digest
-from .results import CellsResult, DistanceResult, Indices, Reals
+from .results import CellsResult, DistanceResult, Indices, Reals, RepairResult
 
-# Bytes that the native mesh holds beside its input, per vertex and face: half-edge twins, lengths, angles, areas, flags.
+# Bytes that the native mesh holds beside its input: half-edge twins, lengths, angles, areas, flags.
 MESH_BYTES_PER_VERTEX, MESH_BYTES_PER_FACE = 48, 84
 
 
 def new_progress() -> Progress:
-    """A progress to give to one run. Raises native.NativeMissing."""
+    """A progress to give to one run. Raises native.NativeMissingError."""
     sb = native.load()
     return Progress(sb.Job, sb.Cancelled)
 
@@ -29,12 +29,12 @@ def new_progress() -> Progress:
 def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | None = None) -> CellsResult:
     """Cells of a surface. Only what changed since an earlier run is computed: mesh, graph, cells, cut, in this order.
 
-    Raises BadInput, the library's MeshError and InputError with sentences, and its Cancelled.
+    Raises BadInputError, the library's MeshError and InputError with sentences, and its Cancelled.
     """
     cache = cache or cache_module.shared
     settings, surface = request.settings, request.surface
     if request.sites is None and settings.count > len(surface.vertices):
-        raise BadInput(
+        raise BadInputError(
             f"'{surface.name}': {settings.count} cells do not fit on {len(surface.vertices)} vertices; "
             "ask for fewer, or subdivide the mesh"
         )
@@ -92,6 +92,14 @@ def distance(request: DistanceRequest, progress: Progress, cache: Cache | None =
     return DistanceResult(surface.spread(values, np.inf))
 
 
+def repair(surface: Surface, weld_distance: float, progress: Progress) -> RepairResult:
+    """The library's repair of a surface that may be anything but a good mesh. Raises its MeshError if nothing is left."""
+    with progress.stage(0.98, "repairing the mesh") as job:
+        mesh, report = native.load().repair(surface.vertices, surface.triangles, weld_distance=weld_distance, job=job)
+    changes = {str(kind): int(count) for kind, count in report.changes.items() if count}
+    return RepairResult(mesh.vertices, mesh.triangles, report.vertex_map, report.face_map, changes)
+
+
 @dataclass(frozen=True)
 class _Solved:
     """Cells as the library gives them, and how they came about."""
@@ -121,7 +129,7 @@ def _graph(surface: Surface, mesh: Any, k: int, threads: int, progress: Progress
         with progress.stage(0.5, "building the distance graph") as job:
             return native.load().SaddleVertexGraph(mesh, k=k, threads=threads, job=job)
 
-    return cache.get(("graph", surface.key, str(k)), build, lambda graph: int(graph.nbytes))
+    return cache.get(("graph", surface.key, str(k)), build, _graph_bytes)
 
 
 def _solve(
@@ -153,7 +161,7 @@ def _solve(
     faces, barycentric = _faces_and_weights(mesh, points)
     progress.check()
     vertices, triangles = mesh.vertices, mesh.triangles
-    positions = np.einsum("ni,nij->nj", barycentric, vertices[triangles[faces]])
+    positions = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
     normals = normals_at(vertices, triangles, faces, barycentric)
     return _Solved(cells, positions, normals, energy, done, reason)
 
@@ -185,11 +193,11 @@ def _compact_sites(surface: Surface, points: Points, what: str) -> Points:
     """Vertex numbers of the Blender mesh -> numbers of the surface; places in the world stay."""
     if points.ndim == 2:
         return points
-    vertices = surface.compact(points)
+    vertices = surface.compact(np.asarray(points, np.int32))
     loose = np.nonzero(vertices < 0)[0]
     if len(loose):
-        raise BadInput(
-            f"'{surface.name}': the {what} at vertex {points[loose[0]]} belongs to no face; choose vertices of the surface"
+        raise BadInputError(
+            f"'{surface.name}': the {what} at vertex {points[loose[0]]} belongs to no face; choose one of the surface"
         )
     return vertices
 
@@ -217,11 +225,15 @@ def _blender_numbers(surface: Surface, origin: Indices) -> Indices:
     return np.where(origin >= 0, surface.used[np.maximum(origin, 0)], np.int32(-1)).astype(np.int32)
 
 
+def _graph_bytes(graph: Any) -> int:
+    return int(graph.nbytes)
+
+
 def _solved_bytes(solved: _Solved) -> int:
     cells = solved.cells
     arrays = (cells.vertex_cell, cells.vertex_distance, cells.edge_points, cells.edge_offsets, cells.edge_cells)
     # Twice: the library holds its own copy beside the arrays that it hands out.
-    return 2 * sum(array.nbytes for array in arrays) + solved.site_positions.nbytes + solved.site_normals.nbytes
+    return 2 * sum(int(array.nbytes) for array in arrays) + solved.site_positions.nbytes + solved.site_normals.nbytes
 
 
 def _split_bytes(split: Any) -> int:

@@ -10,7 +10,7 @@ import bpy
 from .. import jobs
 from ..bridge.source import Source, usable_source, why_not
 from ..core import native, runs
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 from ..core.progress import Progress
 from ..props import fill_operator
 
@@ -22,8 +22,8 @@ TIMER_STEP = 0.05
 class SurfaceOperator:
     """Mixin for operators on the active object. A subclass names its `settings` group and says how to gather and write.
 
-    `execute` computes before it returns; `invoke` starts a thread and `modal` waits for it, so the window stays usable and
-    ESC stops the run. Nothing in the file changes before the result is there.
+    `execute` computes before it returns; `invoke` starts a thread and `modal` waits for it, so the window stays usable
+    and ESC stops the run. Nothing in the file changes before the result is there.
     """
 
     settings_name: str  # of the group in Object.saddleback
@@ -34,6 +34,7 @@ class SurfaceOperator:
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether the button can be pressed; says why not."""
         problem = why_not(context)
         if not problem and jobs.state.task is not None:
             problem = f"{jobs.state.task.name} is being computed: wait, or press ESC"
@@ -50,6 +51,7 @@ class SurfaceOperator:
         raise NotImplementedError
 
     def execute(self, context: bpy.types.Context) -> set[str]:
+        """Computes and writes before it returns: scripts and the redo panel."""
         try:
             source, call = self._prepare(context)
             result = call(runs.new_progress())
@@ -58,6 +60,7 @@ class SurfaceOperator:
         return self._succeed(context, source, result)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Starts the run in a thread: the panel."""
         try:
             source, call = self._prepare(context)
             self._source = Source.of(context, source, getattr(self, "use_modifiers", False))
@@ -72,6 +75,7 @@ class SurfaceOperator:
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Watches the run: its end, its progress, ESC."""
         task = self._task
         if task is None:
             return {"CANCELLED"}
@@ -107,14 +111,14 @@ class SurfaceOperator:
             raise task.error
         try:
             source = self._source.find(context)
-        except BadInput as error:
+        except BadInputError as error:
             return self._refuse(error, context)
         return self._succeed(context, source, task.result)
 
     def _succeed(self, context: bpy.types.Context, source: bpy.types.Object, result: Any) -> set[str]:
         try:
             line = self.write(context, source, result)
-        except BadInput as error:
+        except BadInputError as error:
             return self._refuse(error, context)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
@@ -123,7 +127,7 @@ class SurfaceOperator:
 
     def _refuse(self, error: Exception, context: bpy.types.Context) -> set[str]:
         """Tells an error that has a sentence; any other is a defect of ours and goes on as it is."""
-        if isinstance(error, (BadInput, native.NativeMissing)):
+        if isinstance(error, (BadInputError, native.NativeMissingError)):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         sb = native.load()

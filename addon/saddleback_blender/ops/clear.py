@@ -7,10 +7,12 @@ import bpy
 from .. import jobs
 from ..bridge.out_collection import clear_outputs
 from ..bridge.source import usable_source, why_not
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 
 
 class SADDLEBACK_OT_clear(bpy.types.Operator):
+    """Removes outputs."""
+
     bl_idname = "saddleback.clear"
     bl_label = "Clear"
     bl_description = "Remove the objects and attributes that Saddleback made for the active object"
@@ -18,15 +20,17 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether the button can be pressed; says why not."""
         problem = why_not(context)
         if problem:
             cls.poll_message_set(problem)
         return not problem
 
     def execute(self, context: bpy.types.Context) -> set[str]:
+        """Computes and writes before it returns: scripts and the redo panel."""
         try:
             source = usable_source(context)
-        except BadInput as error:
+        except BadInputError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         removed = clear_outputs(context, source)

@@ -24,6 +24,8 @@ from .base import SurfaceOperator
 
 
 class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
+    """Measures distances."""
+
     bl_idname = "saddleback.distance"
     bl_label = "Distance"
     bl_description = "Measure along the surface how far each vertex of the active object is from the nearest source"
@@ -34,6 +36,7 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
     property_names = DISTANCE
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], DistanceResult]:
+        """Reads everything from Blender."""
         settings = settings_of(self, DistanceSettings)
         check_attribute_names(
             source, {"distance_attribute": settings.distance_attribute}, {"distance_attribute": "FLOAT"}
@@ -48,6 +51,7 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
         return partial(runs.distance, request)
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: DistanceResult) -> str:
+        """Writes the result into Blender."""
         settings = settings_of(self, DistanceSettings)
         warning = shared_mesh_warning(source)
         surface = output_surface(context, source, settings.use_modifiers)

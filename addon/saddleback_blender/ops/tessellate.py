@@ -20,7 +20,7 @@ from ..bridge.output_surface import check_attribute_names, output_surface
 from ..bridge.sites import read_sites
 from ..bridge.source import shared_mesh_warning
 from ..core import runs
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 from ..core.progress import Progress
 from ..core.requests import TessellateRequest
 from ..core.results import CellsResult
@@ -30,6 +30,8 @@ from .base import SurfaceOperator
 
 
 class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
+    """Makes cells."""
+
     bl_idname = "saddleback.tessellate"
     bl_label = "Tessellate"
     bl_description = "Cover the surface of the active object with cells of even size, small where the density is high"
@@ -40,6 +42,7 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
     property_names = TESSELLATE
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
+        """Reads everything from Blender."""
         settings = settings_of(self, TessellateSettings)
         _check(source, settings)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
@@ -53,6 +56,7 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
         return partial(runs.tessellate, request)
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: CellsResult) -> str:
+        """Writes the result into Blender."""
         settings = settings_of(self, TessellateSettings)
         warning = shared_mesh_warning(source)
         surface = output_surface(context, source, settings.use_modifiers)
@@ -82,7 +86,7 @@ def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:
     if settings.density_source != "UNIFORM":
         names["density_attribute"] = settings.density_attribute
         if settings.density_source in ("ATTRIBUTE", "COLOR") and settings.density_name in names.values():
-            raise BadInput(
+            raise BadInputError(
                 f"'{source.name}': the result would overwrite its density '{settings.density_name}'; "
                 "choose another name for the attributes that are written"
             )
@@ -92,9 +96,11 @@ def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:
     if settings.make_centres and settings.instance_object:
         instance = bpy.data.objects.get(settings.instance_object)
         if instance is None:
-            raise BadInput(f"'{source.name}': there is no object '{settings.instance_object}' to put on the centres")
+            raise BadInputError(
+                f"'{source.name}': there is no object '{settings.instance_object}' to put on the centres"
+            )
         if instance == source:
-            raise BadInput(f"'{source.name}' cannot be put on its own centres; choose another object for them")
+            raise BadInputError(f"'{source.name}' cannot be put on its own centres; choose another object for them")
 
 
 CLASSES = (SADDLEBACK_OT_tessellate,)

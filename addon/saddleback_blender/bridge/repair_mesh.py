@@ -1,0 +1,110 @@
+"""Brings a repaired surface back into the Blender mesh it came from, with as much of the artist's data as can be kept.
+
+BMesh carries every layer there is (groups, UVs, colours, creases, shape keys) through the few changes that a repair
+makes; it costs some seconds a million vertices, which only meshes that need it pay.
+"""
+
+from __future__ import annotations
+
+import bmesh
+import bpy
+import numpy as np
+
+from .. import compat
+from ..core.errors import BadInputError
+from ..core.repair_plan import RepairPlan
+from ..core.results import Indices, Reals
+
+
+def polygon_corners(mesh: bpy.types.Mesh) -> list[Indices]:
+    """Vertices around each polygon."""
+    totals = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", totals)
+    return np.split(compat.read_corner_vertices(mesh), np.cumsum(totals)[:-1]) if len(totals) else []
+
+
+def apply_repair(source: bpy.types.Object, plan: RepairPlan, places: Reals, moved: Indices, triangles: Indices) -> None:
+    """Changes the object's mesh by the plan.
+
+    `places` (n, 3): object-space place of each new vertex, used for copies and those listed in `moved`; `triangles` (F, 3)
+    of new vertices, counter-clockwise in the object's own space. Vertices that lose their last face go; vertices that
+    never had one stay.
+    """
+    mesh = source.data
+    changed = bmesh.new()
+    try:
+        changed.from_mesh(mesh)
+        if len(changed.faces) != len(mesh.polygons) or len(changed.verts) != len(mesh.vertices):
+            raise BadInputError(f"'{source.name}' has damaged data: run Mesh.validate() on its mesh, then repair again")
+        _rebuild(changed, plan, places, moved, triangles)
+        changed.to_mesh(mesh)
+    finally:
+        changed.free()
+    mesh.update()
+
+
+def _rebuild(changed: bmesh.types.BMesh, plan: RepairPlan, places: Reals, moved: Indices, triangles: Indices) -> None:
+    changed.verts.ensure_lookup_table()
+    changed.faces.ensure_lookup_table()
+    old = list(changed.verts)
+    faces = list(changed.faces)
+    # What hangs free from the start is the artist's; what the repair sets free goes.
+    loose = {vertex for vertex in old if not vertex.link_faces}
+    wires = {edge for edge in changed.edges if edge.is_wire}
+    vertices = _new_vertices(changed, plan, places, moved, old)
+    made: set[bmesh.types.BMFace] = set()
+    condemned = {faces[polygon] for polygon in plan.dropped}
+    for polygon, (around, turned) in plan.kept.items():
+        face = faces[polygon]
+        wanted = dict(zip(face.verts, (vertices[vertex] for vertex in around), strict=True))
+        if turned:
+            face.normal_flip()
+        if any(before != after for before, after in wanted.items()):
+            condemned.add(face)
+            made.add(_remake(changed, face, [wanted[vertex] for vertex in face.verts], list(face.loops)))
+    for polygon, parts in plan.replaced.items():
+        face = faces[polygon]
+        condemned.add(face)
+        loops = {loop.vert: loop for loop in face.loops}
+        for part in parts:
+            origins = [old[plan.vertex_origin[vertex]] for vertex in triangles[part]]
+            lenders = [loops.get(vertex, face.loops[0]) for vertex in origins]
+            made.add(_remake(changed, face, [vertices[vertex] for vertex in triangles[part]], lenders))
+    bmesh.ops.delete(changed, geom=list(condemned - made), context="FACES_ONLY")
+    freed = [edge for edge in changed.edges if edge.is_wire and edge not in wires]
+    bmesh.ops.delete(changed, geom=freed, context="EDGES")
+    orphans = [vertex for vertex in changed.verts if not vertex.link_edges and vertex not in loose]
+    bmesh.ops.delete(changed, geom=orphans, context="VERTS")
+    changed.normal_update()
+
+
+def _new_vertices(
+    changed: bmesh.types.BMesh, plan: RepairPlan, places: Reals, moved: Indices, old: list[bmesh.types.BMVert]
+) -> list[bmesh.types.BMVert]:
+    """The BMesh vertex of each new vertex: the old one, or a copy of its origin."""
+    vertices = [old[origin] for origin in plan.vertex_origin]
+    for vertex in np.nonzero(plan.vertex_is_copy)[0]:
+        vertices[vertex] = changed.verts.new(places[vertex], vertices[vertex])
+    for vertex in moved:
+        vertices[vertex].co = places[vertex]
+    return vertices
+
+
+def _remake(
+    changed: bmesh.types.BMesh,
+    face: bmesh.types.BMFace,
+    vertices: list[bmesh.types.BMVert],
+    lenders: list[bmesh.types.BMLoop],
+) -> bmesh.types.BMFace:
+    """A face of these vertices with the data of `face`, of the lending corners, and of the edges that lie between them."""
+    new = changed.faces.get(vertices)
+    if new is None:
+        new = changed.faces.new(vertices, face)
+    between = {frozenset(edge.verts): edge for edge in face.edges}
+    for number, loop in enumerate(new.loops):
+        lender, following = lenders[number], lenders[(number + 1) % len(lenders)]
+        loop.copy_from(lender)
+        edge = between.get(frozenset((lender.vert, following.vert)))
+        if edge is not None and edge != loop.edge and len(loop.edge.link_faces) == 1:
+            loop.edge.copy_from(edge)
+    return new

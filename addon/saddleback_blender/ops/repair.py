@@ -1,0 +1,78 @@
+"""`saddleback.repair`: makes the active object's mesh one that the other operators accept, keeping what is painted on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import bpy
+import numpy as np
+
+from .. import jobs
+from ..bridge.mesh_in import from_world, read_surface, read_triangle_polygons
+from ..bridge.repair_mesh import apply_repair, polygon_corners
+from ..bridge.source import shared_mesh_warning
+from ..core import runs
+from ..core.progress import Progress
+from ..core.repair_plan import plan_repair
+from ..core.results import RepairResult
+from ..core.settings import RepairSettings
+from ..props import REPAIR, keep_settings, settings_of
+from .base import SurfaceOperator
+
+
+class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
+    """Repairs the mesh."""
+
+    bl_idname = "saddleback.repair"
+    bl_label = "Repair"
+    bl_description = (
+        "Weld, split, orient and drop what keeps the active object's mesh from being a surface; groups, UVs, colors and "
+        "materials stay"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = dict(REPAIR)
+
+    settings_name = "repair"
+    property_names = REPAIR
+
+    def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], RepairResult]:
+        """Reads the mesh as it is, bad numbers included."""
+        surface = read_surface(source, source.data, check=False)
+        return partial(runs.repair, surface, settings_of(self, RepairSettings).weld_distance)
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, result: RepairResult) -> str:
+        """Changes the mesh in place, or nothing where nothing is wrong."""
+        keep_settings(settings_of(self, RepairSettings), source.saddleback.repair)
+        jobs.state.needs_repair = ""
+        if not result.changes:
+            return f"'{source.name}': nothing to repair"
+        warning = shared_mesh_warning(source)
+        _apply(source, result)
+        if warning:
+            self.report({"WARNING"}, warning)
+        return f"'{source.name}': {result.text}"
+
+
+def _apply(source: bpy.types.Object, result: RepairResult) -> None:
+    surface = read_surface(source, source.data, check=False)
+    used = np.arange(surface.vertex_count, dtype=np.int32) if surface.used is None else surface.used
+    plan = plan_repair(
+        used[surface.triangles],
+        read_triangle_polygons(source.data),
+        polygon_corners(source.data),
+        result.vertices,
+        result.triangles,
+        surface.spread(result.vertex_map, -1),
+        result.face_map,
+    )
+    # A vertex that the repair left in its place keeps its coordinates to the bit: only the others go through the inverse.
+    before = surface.vertices[surface.compact(plan.vertex_origin)]
+    moved = np.nonzero(~plan.vertex_is_copy & (before != result.vertices).any(axis=1))[0]
+    places = from_world(source, result.vertices)
+    mirrored = source.matrix_world.determinant() < 0
+    triangles = result.triangles[:, ::-1] if mirrored else result.triangles
+    apply_repair(source, plan, places, moved.astype(np.int32), triangles)
+
+
+CLASSES = (SADDLEBACK_OT_repair,)
