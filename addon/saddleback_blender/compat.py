@@ -86,3 +86,65 @@ def draw_progress(layout: bpy.types.UILayout, owner: Any, factor_property: str, 
         layout.progress(factor=getattr(owner, factor_property), text=text)
     else:
         layout.prop(owner, factor_property, text=text, slider=True)
+
+
+def write_corners(mesh: bpy.types.Mesh, triangles: NDArray[np.int32]) -> None:
+    """Gives a mesh that has vertices but no faces yet its (T, 3) triangles; edges come with `mesh.update`."""
+    count = len(triangles)
+    mesh.loops.add(3 * count)
+    mesh.polygons.add(count)
+    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(triangles, np.int32).ravel())
+    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
+    if not mesh.bl_rna.properties["polygons"].fixed_type.properties["loop_total"].is_readonly:
+        mesh.polygons.foreach_set("loop_total", np.full(count, 3, np.int32))
+
+
+def shade_smooth_by_angle(mesh: bpy.types.Mesh, angle: float) -> None:
+    """Smooth faces, creased where they meet at more than `angle` (radians)."""
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
+    if hasattr(mesh, "set_sharp_from_angle"):  # 4.1 on
+        mesh.set_sharp_from_angle(angle=angle)
+    else:
+        mesh.use_auto_smooth = True
+        mesh.auto_smooth_angle = angle
+
+
+def show_color(mesh: bpy.types.Mesh, name: str) -> None:
+    """Makes a colour attribute the one that is shown and rendered."""
+    index = mesh.color_attributes.find(name)
+    mesh.color_attributes.active_color_index = index
+    mesh.color_attributes.render_color_index = index
+
+
+def new_group_socket(group: bpy.types.NodeTree, name: str, in_out: str, socket_type: str) -> Any:
+    """Adds an INPUT or OUTPUT to a node group; returns what its default and limits are set on."""
+    if hasattr(group, "interface"):  # 4.0 on
+        return group.interface.new_socket(name=name, in_out=in_out, socket_type=socket_type)
+    return (group.inputs if in_out == "INPUT" else group.outputs).new(socket_type, name)
+
+
+def group_input_identifiers(group: bpy.types.NodeTree) -> dict[str, str]:
+    """Identifiers of a node group's inputs by name."""
+    if hasattr(group, "interface"):
+        items = [item for item in group.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT"]
+    else:
+        items = list(group.inputs)
+    return {item.name: item.identifier for item in items}
+
+
+def set_modifier_input(modifier: bpy.types.Modifier, name: str, value: Any) -> None:
+    """Sets an input of a Geometry Nodes modifier by its name."""
+    identifier = group_input_identifiers(modifier.node_group)[name]
+    inputs = getattr(getattr(modifier, "properties", None), "inputs", None)
+    if inputs is not None:  # 5.2 on
+        getattr(inputs, identifier).value = value
+    else:
+        modifier[identifier] = value
+    modifier.id_data.update_tag()
+
+
+def modifier_input(modifier: bpy.types.Modifier, name: str) -> Any:
+    """The value of an input of a Geometry Nodes modifier."""
+    identifier = group_input_identifiers(modifier.node_group)[name]
+    inputs = getattr(getattr(modifier, "properties", None), "inputs", None)
+    return getattr(inputs, identifier).value if inputs is not None else modifier[identifier]

@@ -14,13 +14,16 @@ def cell_size(area: Reals) -> Reals:
 
 
 def euler_to_normal(normal: Reals) -> Reals:
-    """Euler angles XYZ (n,3) of the shortest turn that takes the Z axis to each unit normal (n,3), in radians.
+    """Euler angles XYZ (n,3) of the shortest turn that takes the Z axis to each normal (n,3), in radians.
 
     Straight down is half a turn about X. A normal of length zero gives no turn.
     """
-    x, y, z = normal.T
-    down = z < -1.0 + 1e-12  # the shortest turn is not unique there
-    scale = 1.0 / np.where(down, 1.0, 1.0 + z)
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    x, y, z = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0).T
+    across = x * x + y * y
+    down = (across == 0.0) & (z < 0.0)  # the shortest turn is not unique there
+    # 1 / (1 + z), for z near -1 without cancellation.
+    scale = np.where(z < 0.0, (1.0 - z) / np.where(across > 0.0, across, 1.0), 1.0 / (1.0 + np.abs(z)))
     pitch = np.arcsin(np.clip(x, -1.0, 1.0))
     roll = np.arctan2(-y, z)
     yaw = np.arctan2(-x * y * scale, 1.0 - x * x * scale)

@@ -1,0 +1,59 @@
+"""The cells as a mesh object: a cell number and a colour on every face."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+
+from .. import compat, nodes
+from ..core.cell_colors import cell_colors
+from ..core.cell_mesh import CellMesh, CellShape, build_cell_mesh
+from ..core.results import CellsResult
+from ..core.settings import TessellateSettings
+from .out_attributes import set_attribute
+from .out_collection import level_place, replace_object, to_place
+
+CELLS_ROLE = "cells"
+CELL_ATTRIBUTE = "saddleback_cell"
+# On the object: how many cells its gap left nothing of.
+VANISHED = "saddleback_vanished_cells"
+# A plateau's edge is steeper than this, and a mesh fine enough for cells bends less from face to face.
+CREASE_ANGLE = math.radians(30.0)
+
+
+def write_cells(
+    context: bpy.types.Context, source: bpy.types.Object, result: CellsResult, settings: TessellateSettings
+) -> bpy.types.Object:
+    """Makes or replaces the source's cells object; gap, inset and thickness are in world units."""
+    shape = CellShape(settings.gap, settings.inset, settings.thickness)
+    cells = build_cell_mesh(result.split_vertices, result.split_triangles, result.split_cell, shape)
+    colors = cell_colors(len(result.sites_position), result.edge_cells)
+    place = level_place(source)
+    mesh = _mesh(to_place(place, cells.vertices), cells, colors)
+    mesh.materials.append(nodes.cells_material())
+    item = replace_object(context, source, CELLS_ROLE, mesh, place)
+    item[VANISHED] = len(cells.vanished)
+    return item
+
+
+def vanished_cells(item: bpy.types.Object) -> int:
+    """How many cells are missing in a cells object because they are narrower than the gap."""
+    return int(item.get(VANISHED, 0))
+
+
+def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray) -> bpy.types.Mesh:
+    mesh = bpy.data.meshes.new("Saddleback Cells")
+    mesh.vertices.add(len(positions))
+    mesh.vertices.foreach_set("co", positions.astype(np.float32).ravel())
+    compat.write_corners(mesh, cells.triangles)
+    mesh.update(calc_edges=True)
+    set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.triangle_cell)
+    # On the corners, because Blender shows colours of corners and vertices only, and vertices may be shared by cells.
+    color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
+    rgba = np.column_stack([colors, np.ones(len(colors))]).astype(np.float32)
+    color.data.foreach_set("color", rgba[np.repeat(cells.triangle_cell, 3)].ravel())
+    compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
+    compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
+    return mesh

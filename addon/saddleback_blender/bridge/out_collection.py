@@ -1,0 +1,210 @@
+"""Output objects: where they go, how they are found again, and how they all go away.
+
+An output knows its source by a token, a random word kept on both as a custom property, so that both may be renamed,
+saved and reopened; and by being its child, which tells a source from its duplicate (a duplicate has the same token, but
+not the same children). An artist's duplicate of an output is the artist's: the name tells it from ours. No pointer is
+kept, since a pointer in a custom property would keep a deleted object in the file.
+"""
+
+from __future__ import annotations
+
+import uuid
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from .. import nodes
+from .out_attributes import clear_attributes
+
+TOKEN = "saddleback_token"  # on a source
+SOURCE = "saddleback_source"  # on outputs: the token of their source
+ROLE = "saddleback_role"  # on outputs: what it shows
+NAME = "saddleback_name"  # on outputs: the name that we gave it
+PLACE = "saddleback_place"  # on outputs: the matrix that we gave it
+COLLECTION = "saddleback_outputs"  # on our collections
+
+COLLECTION_NAME = "Saddleback"
+
+
+def output_collection(context: bpy.types.Context, source: bpy.types.Object) -> bpy.types.Collection:
+    """The collection `Saddleback` beside the source: found by its mark, whatever its name is by now, or made."""
+    scene = context.scene.collection
+    reachable = [scene, *scene.children_recursive]
+    homes = [home for home in reachable if source.name in home.objects and home.library is None]
+    home = homes[0] if homes else scene
+    if COLLECTION in home:  # the source is an output itself
+        return home
+    for child in home.children:
+        if COLLECTION in child and child.library is None:
+            return child
+    collection = bpy.data.collections.new(COLLECTION_NAME)
+    collection[COLLECTION] = True
+    home.children.link(collection)
+    return collection
+
+
+def replace_object(
+    context: bpy.types.Context, source: bpy.types.Object, role: str, data: bpy.types.ID, place: Matrix | None = None
+) -> bpy.types.Object:
+    """Shows `data` as the source's output of this role: in the object that is there from the last run, or a new one.
+
+    `place` is the world matrix that the data is made for, the source's own by default. What the artist did to the
+    object stays: name, collection, modifiers, materials, and a move away from where we put it.
+    """
+    place = source.matrix_world.copy() if place is None else place
+    item = find_output(source, role)
+    if item is not None and item.type != _object_type(data):
+        remove_object(item)
+        item = None
+    if item is None:
+        item = bpy.data.objects.new(f"{source.name} {role.title()}", data)
+        item[ROLE], item[NAME] = role, item.name
+        moved = Matrix.Identity(4)
+    else:
+        moved = _artists_move(item)
+        _swap_data(item, data)
+    if not item.users_collection:
+        output_collection(context, source).objects.link(item)
+    item[SOURCE] = source_token(source)
+    item.parent, item.parent_type = source, "OBJECT"
+    item.matrix_parent_inverse = source.matrix_world.inverted_safe()
+    item[PLACE] = [value for row in place for value in row]
+    item.matrix_basis = moved @ place
+    data.name = item.name
+    return item
+
+
+def level_place(source: bpy.types.Object) -> Matrix:
+    """The source's place and turn without its scale, so that round tubes and instances stay round."""
+    location, rotation, _ = source.matrix_world.decompose()
+    place: Matrix = Matrix.Translation(location) @ rotation.to_matrix().to_4x4()
+    return place
+
+
+def to_place(place: Matrix, positions: np.ndarray) -> np.ndarray:
+    """World positions (n,3) as seen from an object whose world matrix is `place`."""
+    inverse = np.linalg.inv(np.array(place, np.float64))
+    return positions @ inverse[:3, :3].T + inverse[:3, 3]
+
+
+def directions_to_place(place: Matrix, directions: np.ndarray) -> np.ndarray:
+    """World directions (n,3) as seen from an object whose world matrix is `place`, a turn without scale."""
+    return directions @ np.array(place, np.float64)[:3, :3]
+
+
+def source_token(source: bpy.types.Object) -> str:
+    """The source's token; a new one for a new source, and for a duplicate of a source."""
+    token = str(source.get(TOKEN, ""))
+    if token and _owns(source, token):
+        return token
+    source[TOKEN] = token = uuid.uuid4().hex
+    return token
+
+
+def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
+    """What we made for the source and still exists, one object for each role."""
+    token = str(source.get(TOKEN, ""))
+    if not token or not _owns(source, token):
+        return []
+    by_role: dict[str, list[bpy.types.Object]] = {}
+    for item in bpy.data.objects:
+        is_ours = item.get(SOURCE) == token and item.library is None and item != source
+        if is_ours and (item.parent is None or item.parent == source or item.parent.get(TOKEN) != token):
+            by_role.setdefault(str(item.get(ROLE)), []).append(item)
+    return [_original(candidates) for candidates in by_role.values()]
+
+
+def find_output(source: bpy.types.Object, role: str) -> bpy.types.Object | None:
+    """The source's output of a role, None where there is none."""
+    return next((item for item in outputs_of(source) if item[ROLE] == role), None)
+
+
+def remove_output(source: bpy.types.Object, role: str) -> bool:
+    """Removes the output of one role, when its kind is no longer wanted; says whether there was one."""
+    item = find_output(source, role)
+    if item is None:
+        return False
+    collections = list(item.users_collection)
+    remove_object(item)
+    _remove_empty(collections)
+    return True
+
+
+def clear_outputs(context: bpy.types.Context, source: bpy.types.Object) -> int:
+    """Removes all that we made for the source and nothing else; returns how many objects and attributes went."""
+    items = outputs_of(source)
+    collections = [collection for item in items for collection in item.users_collection]
+    for item in items:
+        remove_object(item)
+    _remove_empty(collections)
+    nodes.remove_unused()
+    if TOKEN in source:
+        del source[TOKEN]
+    context.view_layer.update()
+    return len(items) + clear_attributes(source.data)
+
+
+def remove_object(item: bpy.types.Object) -> None:
+    """Removes an object, and its data and node groups unless something else uses them."""
+    data = item.data
+    groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
+    bpy.data.objects.remove(item)
+    _remove_data(data)
+    for group in groups:
+        if group is not None and nodes.is_ours(group) and group.users == 0:
+            bpy.data.node_groups.remove(group)
+
+
+def _owns(source: bpy.types.Object, token: str) -> bool:
+    """False for a duplicate, whose token's outputs are children of another object that has the token too."""
+    twins = [item for item in bpy.data.objects if item.get(TOKEN) == token and item != source]
+    if not twins:
+        return True
+    parents = [item.parent for item in bpy.data.objects if item.get(SOURCE) == token]
+    return source in parents or not any(twin in parents for twin in twins)
+
+
+def _original(candidates: list[bpy.types.Object]) -> bpy.types.Object:
+    return min(candidates, key=lambda item: (item.name != item.get(NAME), item.name))
+
+
+def _object_type(data: bpy.types.ID) -> str:
+    return "CURVE" if isinstance(data, bpy.types.Curve) else "MESH"
+
+
+def _swap_data(item: bpy.types.Object, data: bpy.types.ID) -> None:
+    """Gives the object new data; the materials that it shows stay."""
+    old = item.data
+    if len(old.materials):
+        data.materials.clear()
+        for material in old.materials:
+            data.materials.append(material)
+    item.data = data
+    _remove_data(old)
+
+
+def _remove_data(data: bpy.types.ID) -> None:
+    if data.users == 0:
+        (bpy.data.curves if isinstance(data, bpy.types.Curve) else bpy.data.meshes).remove(data)
+
+
+def _artists_move(item: bpy.types.Object) -> Matrix:
+    """What the artist did to the place that we gave the object; exactly nothing where that is only rounding."""
+    ours = item.get(PLACE)
+    if ours is None or len(ours) != 16:
+        return Matrix.Identity(4)
+    values = [float(value) for value in ours]
+    before = Matrix([values[4 * row : 4 * row + 4] for row in range(4)])
+    now = item.matrix_basis
+    size = max(1.0, max(abs(value) for row in now for value in row))
+    if all(abs(now[i][j] - before[i][j]) <= 1e-5 * size for i in range(4) for j in range(4)):
+        return Matrix.Identity(4)
+    return now @ before.inverted_safe()
+
+
+def _remove_empty(collections: list[bpy.types.Collection]) -> None:
+    """Removes those of our collections that hold nothing any more."""
+    for collection in set(collections):
+        if COLLECTION in collection and not collection.objects and not collection.children:
+            bpy.data.collections.remove(collection)

@@ -1,0 +1,66 @@
+"""The lines between cells as an object: an edge mesh with tubes, or a curve with a bevel."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from .. import nodes
+from ..core.edge_network import EdgeNetwork, edge_network, long_lines
+from ..core.results import CellsResult
+from ..core.settings import TessellateSettings
+from .out_attributes import set_attribute
+from .out_collection import level_place, replace_object, to_place
+
+EDGES_ROLE = "edges"
+# Attributes of the edges: the cells on both sides.
+FIRST_CELL, SECOND_CELL = "saddleback_cell_a", "saddleback_cell_b"
+CURVE_BEVEL_RESOLUTION = 2
+
+
+def write_edges(
+    context: bpy.types.Context, source: bpy.types.Object, result: CellsResult, settings: TessellateSettings
+) -> bpy.types.Object:
+    """Makes or replaces the source's edges object; the radius is in world units whatever the source's scale."""
+    place = level_place(source)
+    points = to_place(place, result.edge_points)
+    network = edge_network(points, result.edge_offsets, result.edge_cells, result.edge_closed)
+    if settings.edge_kind == "CURVE":
+        data: bpy.types.ID = _curve(network, settings.edge_radius)
+        data.materials.append(nodes.edges_material())
+        return replace_object(context, source, EDGES_ROLE, data, place)
+    data = _edge_mesh(network)
+    material = nodes.edges_material()
+    data.materials.append(material)
+    item = replace_object(context, source, EDGES_ROLE, data, place)
+    nodes.set_tubes(item, settings.edge_radius, material)
+    return item
+
+
+def _edge_mesh(network: EdgeNetwork) -> bpy.types.Mesh:
+    mesh = bpy.data.meshes.new("Saddleback Edges")
+    segments, line = network.segments()
+    mesh.vertices.add(len(network.vertices))
+    mesh.vertices.foreach_set("co", network.vertices.astype(np.float32).ravel())
+    mesh.edges.add(len(segments))
+    mesh.edges.foreach_set("vertices", segments.ravel())
+    for column, name in enumerate((FIRST_CELL, SECOND_CELL)):
+        set_attribute(mesh, name, "EDGE", network.cells[line, column])
+    mesh.update()
+    return mesh
+
+
+def _curve(network: EdgeNetwork, radius: float) -> bpy.types.Curve:
+    """Poly splines, few and long, because Blender's cost is by the spline."""
+    curve = bpy.data.curves.new("Saddleback Edges", "CURVE")
+    curve.dimensions = "3D"
+    curve.bevel_depth = radius
+    curve.bevel_resolution = CURVE_BEVEL_RESOLUTION
+    curve.use_fill_caps = True
+    homogeneous = np.column_stack([network.vertices, np.ones(len(network.vertices))]).astype(np.float32)
+    for vertices, is_closed in long_lines(network):
+        spline = curve.splines.new("POLY")
+        spline.points.add(len(vertices) - 1)
+        spline.points.foreach_set("co", homogeneous[vertices].ravel())
+        spline.use_cyclic_u = is_closed
+    return curve

@@ -1,0 +1,233 @@
+"""Node groups and materials of the output objects; ours carry a mark, so that the artist may rename them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from . import compat
+
+MARK = "saddleback_made"  # custom property: which of the things below a data-block is
+
+TUBES, INSTANCES = "tubes", "instances"
+CELLS, EDGES = "cells", "edges"
+
+SIZE_ATTRIBUTE = "saddleback_size"
+ROTATION_ATTRIBUTE = "saddleback_rotation"
+COLOR_ATTRIBUTE = "saddleback_color"
+
+
+def is_ours(block: bpy.types.ID) -> bool:
+    """Whether we made a node group or material."""
+    return MARK in block
+
+
+def remove_unused() -> None:
+    """Removes the node groups and materials of ours that nothing uses any more."""
+    for blocks in (bpy.data.node_groups, bpy.data.materials):
+        for block in list(blocks):
+            if is_ours(block) and block.users == 0 and block.library is None:
+                blocks.remove(block)
+
+
+def modifier_of(item: bpy.types.Object, kind: str) -> bpy.types.Modifier | None:
+    """The object's Geometry Nodes modifier with our group of this kind, None where there is none."""
+    for modifier in item.modifiers:
+        if modifier.type == "NODES" and modifier.node_group is not None and modifier.node_group.get(MARK) == kind:
+            return modifier
+    return None
+
+
+def set_tubes(item: bpy.types.Object, radius: float, material: bpy.types.Material | None) -> bpy.types.Modifier:
+    """Makes the object's edges into tubes of a radius (object units), which stays live in the modifier."""
+    modifier = modifier_of(item, TUBES)
+    if modifier is None:
+        modifier = _add_first(item, "Saddleback Tubes", _shared_group(TUBES))
+        compat.set_modifier_input(modifier, "Resolution", 8)
+        compat.set_modifier_input(modifier, "Material", material)
+    compat.set_modifier_input(modifier, "Radius", radius)
+    return modifier
+
+
+def set_instances(item: bpy.types.Object, instance: bpy.types.Object | None, scale: float) -> bpy.types.Modifier | None:
+    """Puts an object on each point, sized and turned by the point's attributes; None takes the instances away."""
+    modifier = modifier_of(item, INSTANCES)
+    if instance is None:
+        if modifier is not None:
+            group = modifier.node_group
+            item.modifiers.remove(modifier)
+            if group.users == 0:
+                bpy.data.node_groups.remove(group)
+        return None
+    if modifier is None:
+        # Each output has a group of its own: the object stands on the node, which works alike in all versions.
+        modifier = _add_first(item, "Saddleback Instances", _new_instances_group())
+    info = next(node for node in modifier.node_group.nodes if node.type == "OBJECT_INFO")
+    info.inputs["Object"].default_value = instance
+    compat.set_modifier_input(modifier, "Scale", scale)
+    return modifier
+
+
+def _add_first(item: bpy.types.Object, name: str, group: bpy.types.NodeTree) -> bpy.types.Modifier:
+    """Adds our modifier before those of the artist, which expect its result."""
+    modifier = item.modifiers.new(name, "NODES")
+    modifier.node_group = group
+    while item.modifiers[0] != modifier:
+        position = item.modifiers.find(modifier.name)
+        item.modifiers.move(position, position - 1)
+    return modifier
+
+
+def _shared_group(kind: str) -> bpy.types.NodeTree:
+    for group in bpy.data.node_groups:
+        if group.get(MARK) == kind and group.library is None:
+            return group
+    return _new_tubes_group()
+
+
+def _new_group(name: str, kind: str) -> tuple[bpy.types.NodeTree, Any, Any]:
+    """An empty geometry group with its input and output node."""
+    group = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    group[MARK] = kind
+    if hasattr(group, "is_modifier"):
+        group.is_modifier = True
+    compat.new_group_socket(group, "Geometry", "OUTPUT", "NodeSocketGeometry")
+    compat.new_group_socket(group, "Geometry", "INPUT", "NodeSocketGeometry")
+    source, sink = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    return group, source, sink
+
+
+def _place(*columns: Any) -> None:
+    """Lays nodes out from left to right so that the artist can read the group."""
+    for x, column in enumerate(columns):
+        for y, node in enumerate(column if isinstance(column, tuple) else (column,)):
+            node.location = (220 * x, -220 * y)
+
+
+def _new_tubes_group() -> bpy.types.NodeTree:
+    """Edges to tubes, with a ball at every vertex where a tube ends or several meet, so that joints are closed."""
+    group, source, sink = _new_group("Saddleback Tubes", TUBES)
+    radius = compat.new_group_socket(group, "Radius", "INPUT", "NodeSocketFloat")
+    radius.default_value, radius.min_value = 0.01, 0.0
+    resolution = compat.new_group_socket(group, "Resolution", "INPUT", "NodeSocketInt")
+    resolution.default_value, resolution.min_value, resolution.max_value = 8, 3, 64
+    compat.new_group_socket(group, "Material", "INPUT", "NodeSocketMaterial")
+    nodes, link = group.nodes, group.links.new
+
+    to_curve = nodes.new("GeometryNodeMeshToCurve")
+    circle = nodes.new("GeometryNodeCurvePrimitiveCircle")
+    sweep = nodes.new("GeometryNodeCurveToMesh")
+    neighbours = nodes.new("GeometryNodeInputMeshVertexNeighbors")
+    is_joint = nodes.new("FunctionNodeCompare")
+    is_joint.data_type, is_joint.operation = "INT", "NOT_EQUAL"
+    compared = {socket.identifier: socket for socket in is_joint.inputs}
+    compared["B_INT"].default_value = 2
+    joints = nodes.new("GeometryNodeMeshToPoints")
+    ball = nodes.new("GeometryNodeMeshUVSphere")
+    half = nodes.new("ShaderNodeMath")
+    half.operation = "MULTIPLY"
+    half.inputs[1].default_value = 0.75
+    balls = nodes.new("GeometryNodeInstanceOnPoints")
+    real = nodes.new("GeometryNodeRealizeInstances")
+    joined = nodes.new("GeometryNodeJoinGeometry")
+    smooth = nodes.new("GeometryNodeSetShadeSmooth")
+    painted = nodes.new("GeometryNodeSetMaterial")
+
+    link(source.outputs["Geometry"], to_curve.inputs["Mesh"])
+    link(source.outputs["Resolution"], circle.inputs["Resolution"])
+    link(source.outputs["Radius"], circle.inputs["Radius"])
+    link(to_curve.outputs["Curve"], sweep.inputs["Curve"])
+    link(circle.outputs["Curve"], sweep.inputs["Profile Curve"])
+    link(neighbours.outputs["Vertex Count"], compared["A_INT"])
+    link(source.outputs["Geometry"], joints.inputs["Mesh"])
+    link(is_joint.outputs["Result"], joints.inputs["Selection"])
+    link(source.outputs["Resolution"], ball.inputs["Segments"])
+    link(source.outputs["Resolution"], half.inputs[0])
+    link(half.outputs["Value"], ball.inputs["Rings"])
+    link(source.outputs["Radius"], ball.inputs["Radius"])
+    link(joints.outputs["Points"], balls.inputs["Points"])
+    link(ball.outputs["Mesh"], balls.inputs["Instance"])
+    link(balls.outputs["Instances"], real.inputs["Geometry"])
+    link(real.outputs["Geometry"], joined.inputs["Geometry"])
+    link(sweep.outputs["Mesh"], joined.inputs["Geometry"])
+    link(joined.outputs["Geometry"], smooth.inputs["Geometry"])
+    link(smooth.outputs["Geometry"], painted.inputs["Geometry"])
+    link(source.outputs["Material"], painted.inputs["Material"])
+    link(painted.outputs["Geometry"], sink.inputs["Geometry"])
+    _place(
+        source, (to_curve, circle, neighbours, half), (sweep, is_joint, ball), joints, balls, real, joined, smooth,
+        painted, sink,
+    )  # fmt: skip
+    return group
+
+
+def _new_instances_group() -> bpy.types.NodeTree:
+    group, source, sink = _new_group("Saddleback Instances", INSTANCES)
+    scale = compat.new_group_socket(group, "Scale", "INPUT", "NodeSocketFloat")
+    scale.default_value, scale.min_value = 1.0, 0.0
+    nodes, link = group.nodes, group.links.new
+
+    info = nodes.new("GeometryNodeObjectInfo")
+    info.inputs["As Instance"].default_value = True
+    rotation, size = nodes.new("GeometryNodeInputNamedAttribute"), nodes.new("GeometryNodeInputNamedAttribute")
+    rotation.data_type, size.data_type = "FLOAT_VECTOR", "FLOAT"
+    rotation.inputs["Name"].default_value, size.inputs["Name"].default_value = ROTATION_ATTRIBUTE, SIZE_ATTRIBUTE
+    scaled = nodes.new("ShaderNodeMath")
+    scaled.operation = "MULTIPLY"
+    points = nodes.new("GeometryNodeMeshToPoints")
+    placed = nodes.new("GeometryNodeInstanceOnPoints")
+
+    link(source.outputs["Geometry"], points.inputs["Mesh"])
+    link(points.outputs["Points"], placed.inputs["Points"])
+    link(info.outputs["Geometry"], placed.inputs["Instance"])
+    link(_attribute_output(rotation), placed.inputs["Rotation"])
+    link(_attribute_output(size), scaled.inputs[0])
+    link(source.outputs["Scale"], scaled.inputs[1])
+    link(scaled.outputs["Value"], placed.inputs["Scale"])
+    link(placed.outputs["Instances"], sink.inputs["Geometry"])
+    _place((source, rotation, size), (points, info, scaled), placed, sink)
+    return group
+
+
+def _attribute_output(node: Any) -> Any:
+    """The output in use of a Named Attribute node, which has one for each type in older versions."""
+    return next(socket for socket in node.outputs if socket.name == "Attribute" and socket.enabled)
+
+
+def cells_material() -> bpy.types.Material:
+    """A plain material that shows the colour of each cell."""
+    material = _find_material(CELLS)
+    if material is not None:
+        return material
+    material, shader = _new_material("Saddleback Cells", CELLS)
+    color = material.node_tree.nodes.new("ShaderNodeVertexColor")
+    color.layer_name = COLOR_ATTRIBUTE
+    color.location = (-220, 300)
+    material.node_tree.links.new(color.outputs["Color"], shader.inputs["Base Color"])
+    shader.inputs["Roughness"].default_value = 0.55
+    return material
+
+
+def edges_material() -> bpy.types.Material:
+    """A dark plain material for the lines between cells."""
+    material = _find_material(EDGES)
+    if material is not None:
+        return material
+    material, shader = _new_material("Saddleback Edges", EDGES)
+    dark = (0.03, 0.03, 0.035, 1.0)
+    shader.inputs["Base Color"].default_value = dark
+    shader.inputs["Roughness"].default_value = 0.4
+    material.diffuse_color = dark
+    return material
+
+
+def _find_material(kind: str) -> bpy.types.Material | None:
+    return next((m for m in bpy.data.materials if m.get(MARK) == kind and m.library is None), None)
+
+
+def _new_material(name: str, kind: str) -> tuple[bpy.types.Material, Any]:
+    material = bpy.data.materials.new(name)
+    material[MARK] = kind
+    material.use_nodes = True
+    return material, next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
