@@ -46,40 +46,43 @@ find_python() {
     "$(/usr/bin/python3 --version 2>&1 || true). Name another interpreter with SADDLEBACK_PYTHON_EXE=/path/to/python$python_wanted."
 }
 
-# fill_venv FOLDER WHAT PIP_ARGUMENT...: a virtual environment with these packages; nothing to do when its stamp tells so.
+# fill_venv FOLDER WHAT PYTHON PIP_ARGUMENT...: a virtual environment with these packages; nothing to do when its stamp tells so.
 fill_venv() {
-  local folder=$1 what=$2 wanted; shift 2
-  wanted=$({ printf '%s\n' "$python" "$@"; for argument in "$@"; do [ ! -f "$argument" ] || cat "$argument"; done; } | sha256sum)
+  local folder=$1 what=$2 interpreter=$3 argument wanted; shift 3
+  wanted=$({ printf '%s\n' "$interpreter" "$@"; for argument in "$@"; do [ ! -f "$argument" ] || cat "$argument"; done; } | sha256sum)
   [ "$(cat "$folder/saddleback.stamp" 2>/dev/null)" != "$wanted" ] || return 0
   say "Installing $what into $folder"
-  [ -x "$folder/bin/python" ] || "$python" -m venv "$folder"
+  [ -x "$folder/bin/python" ] || "$interpreter" -m venv "$folder"
   "$folder/bin/python" -m pip install -q --disable-pip-version-check --no-input "$@" ||
     die "pip could not install $what into $folder."
   printf '%s\n' "$wanted" >"$folder/saddleback.stamp"
 }
 
-# build_native PRESET: configures once, then builds what changed.
+# build_native PRESET FOLDER [CMAKE_ARGUMENT...]: configures once, then builds what changed.
 build_native() {
-  local preset=$1 folder launcher=()
-  folder=build; [ "$preset" = release ] || folder=build-$preset
+  local preset=$1 folder=$2 launcher=(); shift 2
   ! command -v ccache >/dev/null || launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  if [ ! -f $folder/build.ninja ] || [ CMakePresets.json -nt $folder/build.ninja ]; then
+  if [ ! -f "$folder/build.ninja" ] || [ CMakePresets.json -nt "$folder/build.ninja" ]; then
     say "Configuring $folder"
-    mkdir -p $folder
-    cmake --preset "$preset" "${launcher[@]}" >$folder/configure.log 2>&1 ||
-      { cat $folder/configure.log >&2; die "CMake could not configure $folder."; }
+    mkdir -p "$folder"
+    cmake --preset "$preset" -B "$folder" "${launcher[@]}" "$@" >"$folder/configure.log" 2>&1 ||
+      { cat "$folder/configure.log" >&2; die "CMake could not configure $folder."; }
   fi
   say "Building $folder"
-  ninja -C $folder -j "$(nproc)" --quiet || die "The build failed."
+  ninja -C "$folder" -j "$(nproc)" --quiet >"$folder/build.log" 2>&1 || { cat "$folder/build.log" >&2; die "The build failed."; }
 }
 
-# set_up: everything for `import saddleback` in .venv/bin/python.
-set_up() {
+# set_up_tools: what the build needs; sets `python`.
+set_up_tools() {
   install_packages "the build" "${build_packages[@]}"
   find_python
-  fill_venv .venv "the build and test tools" -r tests/requirements.txt
-  build_native release
+  fill_venv .venv "the build and test tools" "$python" -r tests/requirements.txt
+}
+
+# set_up_build: after set_up_tools; .venv/bin/python can `import saddleback` afterwards.
+set_up_build() {
   local site
+  build_native release build
   site=$(echo .venv/lib/python*/site-packages)
   printf '%s\n' "$PWD/build/python" >"$site/saddleback.pth"
   .venv/bin/python -c 'import saddleback' || die "The module was built but cannot be imported."
@@ -90,6 +93,20 @@ set_up_debian_blender() { install_packages "Blender" "${blender_packages[@]}"; }
 
 # set_up_bpy VERSION: Blender VERSION as a Python module, in an environment of its own.
 set_up_bpy() {
+  local interpreter=$python extra=()
   install_packages "the bpy wheels" "${bpy_packages[@]}"
-  fill_venv ".cache/bpy-$1" "Blender $1" "bpy==$1.*" "pytest>=8.3,<10" "hypothesis>=6.100,<7"
+  if needs_newer_python "$1"; then
+    interpreter=$(command -v python3.13)
+    extra=("pybind11>=3.0,<4")  # a build of its own, for its own Python
+  fi
+  fill_venv ".cache/bpy-$1" "Blender $1" "$interpreter" "bpy==$1.*" "pytest>=8.3,<10" "hypothesis>=6.100,<7" "${extra[@]}"
+  if needs_newer_python "$1"; then
+    build_native release "build-bpy-$1" -DPython_EXECUTABLE="$PWD/.cache/bpy-$1/bin/python"
+  fi
 }
+
+# needs_newer_python VERSION: Blender went on to Python 3.13 with 5.1.
+needs_newer_python() { case $1 in 5.[1-9]*) ;; *) return 1 ;; esac; }
+
+# has_python313: whether a python3.13 is found and runs.
+has_python313() { python3.13 -c '' 2>/dev/null; }
