@@ -156,6 +156,8 @@ REPAIR: dict[str, Any] = {
     "weld_distance": _length("Weld Distance", "Join vertices closer than this; 0 joins those at the same place", 0.0),
 }
 
+PROPERTIES = {"tessellate": TESSELLATE, "distance": DISTANCE, "repair": REPAIR}
+
 
 def _kept(properties: dict[str, Any]) -> dict[str, Any]:
     """The same properties for an object to keep: named objects and collections become pointers."""
@@ -202,10 +204,16 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
 CLASSES = (SaddlebackTessellateProps, SaddlebackDistanceProps, SaddlebackRepairProps, SaddlebackObjectProps)
 
 
-def fill_operator(operator: bpy.types.Operator, group: bpy.types.PropertyGroup, names: dict[str, Any]) -> None:
-    """Gives each property of the operator that the caller did not set the value that the object keeps."""
-    for name in names:
-        if not operator.properties.is_property_set(name):
+def fill_operator(operator: bpy.types.Operator, source: bpy.types.Object, settings_name: str) -> None:
+    """Gives each property of the operator that the caller did not set the value that the object keeps.
+
+    Asks before it looks: reading a group or a pointer for the first time stores an empty one in the file.
+    """
+    if not source.is_property_set("saddleback") or not source.saddleback.is_property_set(settings_name):
+        return
+    group = getattr(source.saddleback, settings_name)
+    for name in PROPERTIES[settings_name]:
+        if not operator.properties.is_property_set(name) and group.is_property_set(name):
             value = getattr(group, name)
             if name in OBJECT_NAMES + COLLECTION_NAMES:
                 value = value.name if value is not None else ""
@@ -220,6 +228,7 @@ def keep_settings(settings: Settings, group: bpy.types.PropertyGroup) -> None:
             value = bpy.data.objects.get(value)
         elif field.name in COLLECTION_NAMES:
             value = bpy.data.collections.get(value)
+        # Default values stay unset, so that an object carries no more than what was chosen for it.
         if getattr(group, field.name) != value:
             setattr(group, field.name, value)
 

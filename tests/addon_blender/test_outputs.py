@@ -21,7 +21,7 @@ from saddleback_blender.bridge.out_attributes import clear_attributes, write_ver
 from saddleback_blender.bridge.out_cells import vanished_cells, write_cells
 from saddleback_blender.bridge.out_centres import write_centres
 from saddleback_blender.bridge.out_edges import write_edges
-from saddleback_blender.core.errors import BadInput
+from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.settings import TessellateSettings
 from tests import synthetic_cells
 from tests.synthetic_cells import triangle_areas
@@ -83,7 +83,7 @@ def test_doubles_and_strided_arrays_are_taken():
 
 
 def test_a_wrong_length_is_refused_in_words():
-    with pytest.raises(BadInput, match="attribute 'a' has 4 values for 9 elements"):
+    with pytest.raises(BadInputError, match="attribute 'a' has 4 values for 9 elements"):
         write_vertex_attributes(grid(n=2), {"a": np.zeros(4)})
 
 
@@ -341,8 +341,8 @@ def test_another_object_takes_the_place_of_the_first_and_none_leaves_points():
 def test_what_cannot_stand_on_the_centres_is_refused():
     source = sphere_source()
     result = result_of(source)
-    with pytest.raises(BadInput, match="no object 'Nobody'"):
+    with pytest.raises(BadInputError, match="no object 'Nobody'"):
         write_centres(bpy.context, source, result, TessellateSettings(instance_object="Nobody"))
     item = write_centres(bpy.context, source, result, TessellateSettings())
-    with pytest.raises(BadInput, match="holds the centres themselves"):
+    with pytest.raises(BadInputError, match="holds the centres themselves"):
         write_centres(bpy.context, source, result, TessellateSettings(instance_object=item.name))

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 
 # A mesh's own list of the attributes that we wrote, one name a line: clear removes these and no others.
 RECORD = "saddleback_attributes"
@@ -37,11 +37,11 @@ def write_vertex_attributes(item: bpy.types.Object, values: dict[str, NDArray[An
 
 
 def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[Any]) -> bpy.types.Attribute:
-    """Makes or fills one attribute. Raises BadInput where Blender refuses the name or the length does not fit."""
+    """Makes or fills one attribute. Raises BadInputError where Blender refuses the name or the length does not fit."""
     kind, element, dtype = KINDS[values.dtype.kind, values.shape[1:]]
     wanted = len(getattr(mesh, DOMAIN_ELEMENTS[domain]))
     if len(values) != wanted:
-        raise BadInput(f"'{mesh.name}': attribute '{name}' has {len(values)} values for {wanted} elements")
+        raise BadInputError(f"'{mesh.name}': attribute '{name}' has {len(values)} values for {wanted} elements")
     attribute = mesh.attributes.get(name)
     if attribute is not None and (attribute.data_type, attribute.domain) != (kind, domain):
         mesh.attributes.remove(attribute)
@@ -50,7 +50,7 @@ def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[
         attribute = mesh.attributes.new(name=name, type=kind, domain=domain)
         if attribute.name != name:
             mesh.attributes.remove(attribute)
-            raise BadInput(f"'{mesh.name}': the name '{name}' is taken; choose another name for the attribute")
+            raise BadInputError(f"'{mesh.name}': the name '{name}' is taken; choose another name for the attribute")
     attribute.data.foreach_set(element, np.ascontiguousarray(values, dtype).ravel())
     return attribute
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import nodes
 from ..core.centres import cell_size, euler_to_normal
-from ..core.errors import BadInput
+from ..core.errors import BadInputError
 from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
 from .out_attributes import set_attribute
@@ -48,12 +48,12 @@ def write_centres(
 
 
 def _instance(source: bpy.types.Object, name: str) -> bpy.types.Object | None:
-    """The object to put on the centres. Raises BadInput where there is none of that name, or it is the centres'."""
+    """The object to put on the centres. Raises BadInputError where there is none, or it is the centres'."""
     if not name:
         return None
     instance = bpy.data.objects.get(name)
     if instance is None:
-        raise BadInput(f"There is no object '{name}' to put on the centres of '{source.name}'; choose another")
+        raise BadInputError(f"There is no object '{name}' to put on the centres of '{source.name}'; choose another")
     if instance == find_output(source, CENTRES_ROLE):
-        raise BadInput(f"'{name}' holds the centres themselves and cannot be put on them; choose another object")
+        raise BadInputError(f"'{name}' holds the centres themselves and cannot be put on them; choose another object")
     return instance

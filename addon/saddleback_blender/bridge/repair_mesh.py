@@ -26,9 +26,9 @@ def polygon_corners(mesh: bpy.types.Mesh) -> list[Indices]:
 def apply_repair(source: bpy.types.Object, plan: RepairPlan, places: Reals, moved: Indices, triangles: Indices) -> None:
     """Changes the object's mesh by the plan.
 
-    `places` (n, 3): object-space place of each new vertex, used for copies and those listed in `moved`; `triangles` (F, 3)
-    of new vertices, counter-clockwise in the object's own space. Vertices that lose their last face go; vertices that
-    never had one stay.
+    `places` (n, 3): object-space place of each new vertex, used for copies and those listed in `moved`; `triangles`
+    (F, 3) of new vertices, counter-clockwise in the object's own space. Vertices that lose their last face go; vertices
+    that never had one stay.
     """
     mesh = source.data
     changed = bmesh.new()
@@ -96,7 +96,7 @@ def _remake(
     vertices: list[bmesh.types.BMVert],
     lenders: list[bmesh.types.BMLoop],
 ) -> bmesh.types.BMFace:
-    """A face of these vertices with the data of `face`, of the lending corners, and of the edges that lie between them."""
+    """A face of these vertices with the data of `face`, of the lending corners and of the edges between them."""
     new = changed.faces.get(vertices)
     if new is None:
         new = changed.faces.new(vertices, face)

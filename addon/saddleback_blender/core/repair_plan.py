@@ -1,7 +1,7 @@
 """From a repair of triangles to a repair of polygons: which stay, which turn round, which give way to triangles.
 
-The library repairs triangles and says which old vertex and face became which new one. An artist's mesh has polygons with
-layers of data on them, so as much of it as possible is kept: a polygon whose triangles all survive together stays a
+The library repairs triangles and says which old vertex and face became which new one. An artist's mesh has polygons
+with layers of data on them, so as much of it as possible is kept: a polygon whose triangles all survive stays a
 polygon (perhaps of other vertices, perhaps turned round); of any other only the new triangles are taken over.
 """
 
@@ -98,7 +98,7 @@ def _first_claims(face_map: Indices, new_count: int) -> Indices:
 def _match_corners(
     triangles: Indices, new_triangles: Indices, vertex_map: Indices, root: Indices, claimed: Indices
 ) -> tuple[Indices, NDArray[np.bool_], NDArray[np.bool_]]:
-    """For each old triangle the new vertex of each corner, whether it turned round, and whether its corners match at all."""
+    """For each old triangle the new vertex of each corner, whether it turned round, and whether it matches at all."""
     count = len(triangles)
     corner_vertex = np.full((count, 3), -1, np.int32)
     turned, matches = np.zeros(count, bool), np.zeros(count, bool)
@@ -131,7 +131,7 @@ def _corners_of(corners: Indices, members: Indices, new_corners: Indices) -> Ind
 def _give_parts(
     new_triangles: Indices, claimed: Indices, triangle_polygon: Indices, replaced: dict[int, list[int]]
 ) -> None:
-    """Gives each new triangle that no old one claims (a further part of a divided one) to a replaced polygon beside it."""
+    """Gives each new triangle that no old one claims (a further part of a divided one) to the polygon beside it."""
     unclaimed = np.ones(len(new_triangles), bool)
     unclaimed[claimed[claimed >= 0]] = False
     parts = np.nonzero(unclaimed)[0].tolist()

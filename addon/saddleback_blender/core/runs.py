@@ -93,7 +93,7 @@ def distance(request: DistanceRequest, progress: Progress, cache: Cache | None =
 
 
 def repair(surface: Surface, weld_distance: float, progress: Progress) -> RepairResult:
-    """The library's repair of a surface that may be anything but a good mesh. Raises its MeshError if nothing is left."""
+    """The library's repair of any surface. Raises its MeshError if nothing is left."""
     with progress.stage(0.98, "repairing the mesh") as job:
         mesh, report = native.load().repair(surface.vertices, surface.triangles, weld_distance=weld_distance, job=job)
     changes = {str(kind): int(count) for kind, count in report.changes.items() if count}

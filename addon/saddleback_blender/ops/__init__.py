@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+import bpy
+
+from . import clear, distance, repair, tessellate
+
+CLASSES = (*distance.CLASSES, *tessellate.CLASSES, *repair.CLASSES, *clear.CLASSES)
+
 
 def register() -> None:
-    pass
+    """Makes everything of this module known to Blender."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
 
 
 def unregister() -> None:
-    pass
+    """Takes it back, in the opposite order."""
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -27,7 +27,6 @@ class SurfaceOperator:
     """
 
     settings_name: str  # of the group in Object.saddleback
-    property_names: dict[str, Any]
     report: Callable[..., None]
 
     _task: jobs.Task | None = None
@@ -100,7 +99,7 @@ class SurfaceOperator:
 
     def _prepare(self, context: bpy.types.Context) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
         source = usable_source(context)
-        fill_operator(self, getattr(source.saddleback, self.settings_name), self.property_names)
+        fill_operator(self, source, self.settings_name)
         native.load()
         return source, self.gather(context, source)
 

@@ -33,7 +33,6 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
     __annotations__ = dict(DISTANCE)
 
     settings_name = "distance"
-    property_names = DISTANCE
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], DistanceResult]:
         """Reads everything from Blender."""

@@ -1,4 +1,4 @@
-"""`saddleback.repair`: makes the active object's mesh one that the other operators accept, keeping what is painted on it."""
+"""`saddleback.repair`: makes the active object's mesh one that the others accept, keeping what is painted on it."""
 
 from __future__ import annotations
 
@@ -27,14 +27,13 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
     bl_idname = "saddleback.repair"
     bl_label = "Repair"
     bl_description = (
-        "Weld, split, orient and drop what keeps the active object's mesh from being a surface; groups, UVs, colors and "
-        "materials stay"
+        "Weld, split, orient and drop what keeps the active object's mesh from being a surface; groups, UVs, colors "
+        "and materials stay"
     )
     bl_options = {"REGISTER", "UNDO"}
     __annotations__ = dict(REPAIR)
 
     settings_name = "repair"
-    property_names = REPAIR
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], RepairResult]:
         """Reads the mesh as it is, bad numbers included."""
@@ -66,7 +65,7 @@ def _apply(source: bpy.types.Object, result: RepairResult) -> None:
         surface.spread(result.vertex_map, -1),
         result.face_map,
     )
-    # A vertex that the repair left in its place keeps its coordinates to the bit: only the others go through the inverse.
+    # A vertex left in its place keeps its coordinates to the bit: only the others go through the inverse.
     before = surface.vertices[surface.compact(plan.vertex_origin)]
     moved = np.nonzero(~plan.vertex_is_copy & (before != result.vertices).any(axis=1))[0]
     places = from_world(source, result.vertices)

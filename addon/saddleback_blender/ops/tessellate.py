@@ -13,9 +13,10 @@ from .. import prefs
 from ..bridge.density import read_density
 from ..bridge.mesh_in import mesh_of, read_surface
 from ..bridge.out_attributes import write_vertex_attributes
-from ..bridge.out_cells import write_cells
-from ..bridge.out_centres import write_centres
-from ..bridge.out_edges import write_edges
+from ..bridge.out_cells import CELLS_ROLE, write_cells
+from ..bridge.out_centres import CENTRES_ROLE, write_centres
+from ..bridge.out_collection import remove_output
+from ..bridge.out_edges import EDGES_ROLE, write_edges
 from ..bridge.output_surface import check_attribute_names, output_surface
 from ..bridge.sites import read_sites
 from ..bridge.source import shared_mesh_warning
@@ -39,7 +40,6 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
     __annotations__ = dict(TESSELLATE)
 
     settings_name = "tessellate"
-    property_names = TESSELLATE
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
         """Reads everything from Blender."""
@@ -67,12 +67,16 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
         if result.vertex_density is not None:
             values[settings.density_attribute] = result.vertex_density.astype(np.float32)
         write_vertex_attributes(surface, values)
-        if settings.make_edges:
-            write_edges(context, source, result, settings)
-        if settings.make_cells:
-            write_cells(context, source, result, settings)
-        if settings.make_centres:
-            write_centres(context, source, result, settings)
+        outputs = (
+            (settings.make_edges, write_edges, EDGES_ROLE),
+            (settings.make_cells, write_cells, CELLS_ROLE),
+            (settings.make_centres, write_centres, CENTRES_ROLE),
+        )
+        for wanted, write, role in outputs:
+            if wanted:
+                write(context, source, result, settings)
+            else:
+                remove_output(source, role)
         keep_settings(settings, source.saddleback.tessellate)
         if warning:
             self.report({"WARNING"}, warning)

@@ -1,0 +1,241 @@
+"""The panel's way: a thread, a timer, ESC.
+
+Blender without a window never calls `modal`; these tests do what its event loop does.
+"""
+
+import random
+import threading
+import time
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+from scenes import attribute, fingerprint, grid, select, sphere
+
+from saddleback_blender import jobs
+from saddleback_blender.core import cache
+from saddleback_blender.core.settings import DistanceSettings, TessellateSettings
+from saddleback_blender.ops.distance import SADDLEBACK_OT_distance
+from saddleback_blender.ops.tessellate import SADDLEBACK_OT_tessellate
+
+ESC = SimpleNamespace(type="ESC", value="PRESS", ctrl=False, oskey=False)
+TIMER = SimpleNamespace(type="TIMER", value="NOTHING", ctrl=False, oskey=False)
+
+
+class Context:
+    """The real context, with a window manager that counts timers and a status bar that remembers."""
+
+    def __init__(self):
+        self.timers = 0
+        self.status = []
+        self.window = None
+        self.workspace = SimpleNamespace(status_text_set=self.status.append)
+        self.window_manager = SimpleNamespace(
+            windows=[],
+            event_timer_add=self._add,
+            event_timer_remove=self._remove,
+            modal_handler_add=lambda operator: True,
+        )
+
+    def _add(self, _step, window):
+        self.timers += 1
+        return object()
+
+    def _remove(self, _timer):
+        self.timers -= 1
+
+    def __getattr__(self, name):
+        return getattr(bpy.context, name)
+
+
+def press(kind, defaults, **options):
+    """An instance of the operator as Blender would make it for a click, and its context."""
+    bases = tuple(base for base in kind.__mro__ if base.__module__.startswith("saddleback_blender"))
+    plain = type("Pressed", (), {})
+    for base in reversed(bases):
+        for name, value in vars(base).items():
+            if not name.startswith("__") and name not in kind.__annotations__:
+                setattr(plain, name, value)
+    operator = plain()
+    vars(operator).update({**vars(defaults), **options})
+    operator.properties = SimpleNamespace(is_property_set=lambda name: name in options)
+    operator.messages = []
+    operator.report = lambda kinds, text: operator.messages.append((*kinds, text))
+    return operator, Context()
+
+
+def pressed_tessellate(**options):
+    return press(SADDLEBACK_OT_tessellate, TessellateSettings(), **options)
+
+
+def run_to_end(operator, context, seconds=60.0):
+    """Sends timer events until the operator is done."""
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        answer = operator.modal(context, TIMER)
+        if answer & {"FINISHED", "CANCELLED"}:
+            return answer
+        time.sleep(0.01)
+    raise AssertionError("the run did not end")
+
+
+@pytest.fixture
+def item():
+    return grid(n=120)
+
+
+def test_a_run_ends_with_the_same_result_as_a_script(item):
+    operator, context = pressed_tessellate(count=30, iterations=5, k=30)
+    assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    manager = bpy.context.window_manager
+    assert manager.saddleback_running and context.timers == 1
+    assert "saddleback_cell" not in item.data.attributes  # nothing before success
+    assert run_to_end(operator, context) == {"FINISHED"}
+    assert not manager.saddleback_running and context.timers == 0 and context.status[-1] is None
+    assert operator.messages[-1][0] == "INFO"
+    found = attribute(item, "saddleback_cell")
+    assert (item.saddleback.tessellate.count, item.saddleback.tessellate.iterations) == (30, 5)
+    cache.shared.clear()
+    bpy.ops.saddleback.tessellate(count=30, iterations=5, k=30)
+    np.testing.assert_array_equal(attribute(item, "saddleback_cell"), found)
+
+
+def test_progress_rises_and_is_told(item):
+    operator, context = pressed_tessellate(count=60, iterations=40, k=40)
+    operator.invoke(context, None)
+    seen, texts = [], set()
+    manager = bpy.context.window_manager
+    while jobs.state.task is not None and not jobs.state.task.done:
+        seen.append(manager.saddleback_fraction)
+        texts.add(manager.saddleback_text)
+        operator.modal(context, TIMER) if not jobs.state.task.done else None
+        time.sleep(0.002)
+    run_to_end(operator, context) if operator._task is not None else None
+    assert seen == sorted(seen) and seen[0] >= 0 and seen[-1] <= 1
+    assert len(set(seen)) > 5, "progress moved in fewer than five steps"
+    assert any("building the distance graph" in text for text in texts)
+    assert all(text.startswith("Grid") for text in texts)
+
+
+def test_escape_at_fifty_random_moments(item):
+    assert item.saddleback.tessellate.count  # the settings exist from the panel's first look on
+    assert item.saddleback.distance.k
+    operator, context = pressed_tessellate(count=60, iterations=40, k=40)
+    start = time.perf_counter()
+    operator.invoke(context, None)
+    operator._task.join()
+    whole = time.perf_counter() - start
+    operator.cancel(context)
+    before = fingerprint()
+    rng = random.Random(5)
+    waits = []
+    for moment in range(50):
+        cache.shared.clear()
+        operator, context = pressed_tessellate(count=60, iterations=40, k=40)
+        assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+        task = operator._task
+        time.sleep(rng.random() * whole * 0.9)
+        asked = time.perf_counter()
+        was_done = task.done
+        assert operator.modal(context, ESC) == {"CANCELLED"}, moment
+        answered = time.perf_counter() - asked
+        task.join()
+        waits.append(time.perf_counter() - asked)
+        assert answered < 0.1
+        assert was_done or isinstance(task.error, Exception) or task.result is not None
+        assert context.timers == 0 and context.status[-1] is None and not bpy.context.window_manager.saddleback_running
+        assert operator.messages == [("INFO", "Stopped; nothing was changed")]
+        assert fingerprint() == before
+    assert max(waits) < 0.1, f"the thread went on for {max(waits):.3f} s"
+
+
+def test_the_file_is_the_same_to_the_byte_after_escape(tmp_path):
+    grid(n=60)
+
+    def saved(name):
+        path = tmp_path / name
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=False)
+        return path.read_bytes()
+
+    # Blender writes a few numbers of its own differently each time (addresses, the time): these bytes do not count.
+    plain = np.array([np.frombuffer(saved("file.blend"), np.uint8) for _ in range(8)])
+    steady = (plain == plain[0]).all(axis=0)
+    assert steady.mean() > 0.99
+    operator, context = pressed_tessellate(count=60, iterations=40)
+    operator.invoke(context, None)
+    time.sleep(0.05)
+    operator.modal(context, ESC)
+    after = np.frombuffer(saved("file.blend"), np.uint8)
+    assert len(after) == len(steady) and (after[steady] == plain[0][steady]).all()
+
+
+def test_a_timer_event_goes_on_to_others_but_undo_waits(item):
+    operator, context = pressed_tessellate(count=60, iterations=40)
+    operator.invoke(context, None)
+    undo = SimpleNamespace(type="Z", value="PRESS", ctrl=True, oskey=False)
+    turn = SimpleNamespace(type="MIDDLEMOUSE", value="PRESS", ctrl=False, oskey=False)
+    assert operator.modal(context, undo) == {"RUNNING_MODAL"}
+    assert operator.modal(context, turn) == {"PASS_THROUGH"}
+    operator.cancel(context)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda item: bpy.data.objects.remove(item), "was deleted or renamed"),
+        (lambda item: setattr(item, "name", "Else"), "was deleted or renamed"),
+        (lambda item: setattr(item.data.vertices[0].co, "z", 0.5), "was changed during the run"),
+        (lambda item: item.data.clear_geometry(), "was changed during the run"),
+        (lambda item: setattr(item, "scale", (2, 1, 1)), "was changed during the run"),
+        (lambda item: bpy.ops.object.mode_set(mode="EDIT"), "went into Edit Mode"),
+        (lambda item: bpy.context.scene.collection.objects.unlink(item), "left the view layer"),
+    ],
+)
+def test_an_object_that_changed_during_the_run_gets_nothing(item, change, words):
+    operator, context = pressed_tessellate(count=20, iterations=2)
+    operator.invoke(context, None)
+    change(item)
+    bpy.context.view_layer.update()
+    before = fingerprint()
+    assert run_to_end(operator, context) == {"CANCELLED"}
+    ((kind, text),) = operator.messages
+    assert kind == "ERROR" and words in text and "'Grid'" in text
+    assert fingerprint() == before
+
+
+def test_errors_of_the_thread_are_told(item):
+    operator, context = press(SADDLEBACK_OT_distance, DistanceSettings(), k=10)
+    select(item, [0])
+    operator.invoke(context, None)
+    assert run_to_end(operator, context) == {"FINISHED"}
+    select(item, [300])
+    mesh = item.data
+    mesh.polygons[0].vertices = [int(v) for v in mesh.polygons[1].vertices]  # the same face twice
+    operator, context = press(SADDLEBACK_OT_distance, DistanceSettings(), k=10)
+    operator.invoke(context, None)
+    assert run_to_end(operator, context) == {"CANCELLED"}
+    ((kind, text),) = operator.messages
+    assert kind == "ERROR" and text.startswith("'Grid': ") and "press Repair" in text
+    assert bpy.context.window_manager.saddleback_needs_repair == "Grid"
+
+
+def test_disabling_the_addon_stops_the_run(item):
+    operator, context = pressed_tessellate(count=60, iterations=40)
+    operator.invoke(context, None)
+    task = operator._task
+    jobs.stop_all()
+    assert task.done and jobs.state.task is None
+    assert not [thread for thread in threading.enumerate() if thread.name == "saddleback" and thread.is_alive()]
+    operator.cancel(context)
+
+
+def test_a_second_run_uses_what_a_stopped_one_finished():
+    sphere()
+    operator, context = pressed_tessellate(count=20, iterations=2)
+    operator.invoke(context, None)
+    operator._task.join()
+    operator.modal(context, ESC)
+    assert cache.shared.builds["graph"] == 1
+    bpy.ops.saddleback.tessellate(count=20, iterations=2)
+    assert cache.shared.builds == {"mesh": 1, "graph": 1, "cells": 1}
