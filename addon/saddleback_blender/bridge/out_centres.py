@@ -48,7 +48,7 @@ def write_centres(
 
 
 def _instance(source: bpy.types.Object, name: str) -> bpy.types.Object | None:
-    """The object to put on the centres. Raises BadInputError where there is none, or it is the centres'."""
+    """The object to put on the centres. Raises BadInputError where none has that name, or it is the centres'."""
     if not name:
         return None
     instance = bpy.data.objects.get(name)
