@@ -6,6 +6,7 @@ namespace saddleback::bindings {
 
 void bind_job(py::module_& m);
 void bind_mesh(py::module_& m);
+void bind_repair(py::module_& m);
 void bind_surface(py::module_& m);
 
 namespace {
@@ -42,5 +43,6 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_errors(m);
   bind_job(m);
   bind_mesh(m);
+  bind_repair(m);
   bind_surface(m);
 }

@@ -10,9 +10,11 @@ from saddleback._saddleback import (
     Job,
     Mesh,
     MeshError,
+    RepairReport,
     SurfacePoints,
     TracedPath,
     __version__,
+    repair,
     trace,
 )
 
@@ -26,10 +28,12 @@ __all__ = [
     "Job",
     "Mesh",
     "MeshError",
+    "RepairReport",
     "SurfacePoints",
     "TracedPath",
     "__version__",
     "cuda_status",
     "devices",
+    "repair",
     "trace",
 ]
