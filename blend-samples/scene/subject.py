@@ -1,0 +1,204 @@
+"""The mesh that gets the cells: read from a file or found in a .blend, stood upright, fine enough, its paint found."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FINE = 30_000  # triangles below which cell borders show the mesh's own edges
+CURVATURE = "Cell density"
+
+
+@dataclass
+class Paint:
+    """Where the density comes from: the operator's `density_source` and `density_name`."""
+
+    source: str = "UNIFORM"
+    name: str = ""
+
+
+def open_subject(path: Path, up: str) -> bpy.types.Object:
+    """The object to work on, alone in its scene but for its children. Raises SystemExit with a sentence."""
+    if path.suffix.lower() == ".blend":
+        return _from_blend(path)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    _import(path)
+    meshes = [item for item in bpy.context.scene.objects if item.type == "MESH" and len(item.data.polygons)]
+    if not meshes:
+        raise SystemExit(f"{path}: no faces could be read from it.")
+    subject = max(meshes, key=lambda item: len(item.data.polygons))
+    for other in list(bpy.context.scene.objects):
+        if other != subject:
+            bpy.data.objects.remove(other)
+    if up == "y" and path.suffix.lower() != ".obj":  # Blender's obj import turns Y up to Z up by itself
+        subject.rotation_mode = "XYZ"
+        subject.rotation_euler = (math.pi / 2, 0, 0)
+    _activate(subject)
+    return subject
+
+
+def _from_blend(path: Path) -> bpy.types.Object:
+    bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False)
+    scene = bpy.context.scene
+    active = bpy.context.view_layer.objects.active
+    meshes = [item for item in scene.objects if item.type == "MESH" and len(item.data.polygons)]
+    if not meshes:
+        raise SystemExit(f"{path}: it holds no mesh object with faces.")
+    subject = active if active in meshes else meshes[0]
+    if active is not None and active.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    keep = {subject, *subject.children_recursive}
+    for other in list(scene.objects):
+        if other not in keep:
+            bpy.data.objects.remove(other)
+    if subject.data.users > 1:
+        subject.data = subject.data.copy()
+    subject.hide_viewport = subject.hide_render = False
+    _activate(subject)
+    return subject
+
+
+def _activate(subject: bpy.types.Object) -> None:
+    view_layer = bpy.context.view_layer
+    view_layer.update()
+    subject.hide_set(False)
+    for item in bpy.context.scene.objects:
+        item.select_set(item == subject)
+    view_layer.objects.active = subject
+
+
+def _import(path: Path) -> None:
+    kind = path.suffix.lower()
+    name = str(path.resolve())
+    if kind == ".off":
+        vertices, faces = read_off(path)
+        mesh = bpy.data.meshes.new(path.stem)
+        mesh.from_pydata(vertices, [], faces)
+        mesh.update()
+        bpy.context.scene.collection.objects.link(bpy.data.objects.new(path.stem, mesh))
+        return
+    newer, older = {
+        ".obj": ("obj_import", None),
+        ".ply": ("ply_import", "ply"),
+        ".stl": ("stl_import", "stl"),
+    }.get(kind, (None, None))
+    if newer is None:
+        raise SystemExit(f"{path}: only .obj, .ply, .off, .stl and .blend are read.")
+    try:
+        if newer in dir(bpy.ops.wm):
+            options = {} if kind == ".obj" else {"forward_axis": "Y", "up_axis": "Z"}
+            getattr(bpy.ops.wm, newer)(filepath=name, **options)
+        else:
+            getattr(bpy.ops.import_mesh, older)(filepath=name)
+    except (RuntimeError, ValueError) as error:
+        raise SystemExit(f"{path}: Blender could not read it ({error}).") from error
+
+
+def read_off(path: Path) -> tuple[list[list[float]], list[list[int]]]:
+    """Vertices and polygons of an OFF file."""
+    lines = (line.split("#")[0].split() for line in path.read_text(errors="replace").splitlines())
+    words = [word for line in lines for word in line]
+    try:
+        if words[0] != "OFF":
+            raise ValueError("the first word is not OFF")
+        vertex_count, face_count, at = int(words[1]), int(words[2]), 4
+        end = at + 3 * vertex_count
+        vertices = np.array(words[at:end], float).reshape(vertex_count, 3).tolist()
+        faces, at = [], end
+        for _ in range(face_count):
+            size = int(words[at])
+            faces.append([int(word) for word in words[at + 1 : at + 1 + size]])
+            at += 1 + size
+    except (ValueError, IndexError) as error:
+        raise SystemExit(f"{path}: not an OFF file that can be read ({error}).") from error
+    bad = next((face for face in faces if any(not 0 <= corner < vertex_count for corner in face)), None)
+    if bad:
+        raise SystemExit(f"{path}: the face {bad} names a vertex that is not there ({vertex_count} vertices).")
+    return vertices, faces
+
+
+def positions(subject: bpy.types.Object) -> Array:
+    """Vertices (V, 3) in world space."""
+    mesh = subject.data
+    flat = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", flat)
+    place = np.array(subject.matrix_world)
+    return flat.reshape(-1, 3) @ place[:3, :3].T + place[:3, 3]
+
+
+def triangles(subject: bpy.types.Object) -> NDArray[np.int32]:
+    """Corners (F, 3) of the triangulated faces."""
+    mesh = subject.data
+    mesh.calc_loop_triangles()
+    flat = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("vertices", flat)
+    return flat.reshape(-1, 3)
+
+
+def area(subject: bpy.types.Object) -> float:
+    """The surface area in world units."""
+    vertices, corners = positions(subject), triangles(subject)
+    a, b, c = (vertices[corners[:, i]] for i in range(3))
+    return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+
+
+def refine(subject: bpy.types.Object) -> int:
+    """Splits faces in four, without changing the shape, until there are enough; returns how often."""
+    rounds = 0
+    count = len(triangles(subject))
+    while count * 4**rounds < FINE and rounds < 6:
+        rounds += 1
+    if rounds:
+        modifier = subject.modifiers.new("Refine", "SUBSURF")
+        modifier.subdivision_type = "SIMPLE"
+        modifier.levels = modifier.render_levels = rounds
+        while subject.modifiers[0] != modifier:
+            bpy.ops.object.modifier_move_up(modifier=modifier.name)
+        bpy.ops.object.modifier_apply(modifier=modifier.name)
+    return rounds
+
+
+def find_paint(subject: bpy.types.Object) -> Paint:
+    """The density that somebody painted: a layer with "density" in its name, "saddleback_density" before others."""
+    mesh = subject.data
+    layers = [(attribute.name, "COLOR") for attribute in mesh.color_attributes]
+    layers += [(attribute.name, "ATTRIBUTE") for attribute in mesh.attributes if attribute.data_type in ("FLOAT", "INT")]
+    layers += [(group.name, "VERTEX_GROUP") for group in subject.vertex_groups]
+    painted = [layer for layer in layers if "density" in layer[0].lower()]
+    if not painted:
+        return Paint()
+    name, source = min(painted, key=lambda layer: (layer[0] != "saddleback_density", layer[0]))
+    return Paint(source, name)
+
+
+def paint_curvature(subject: bpy.types.Object) -> Paint:
+    """Paints how much the surface bends, smoothed, as a density from 0.12 to 1."""
+    mesh, vertices, corners = subject.data, positions(subject), triangles(subject)
+    count = len(vertices)
+    face = np.cross(vertices[corners[:, 1]] - vertices[corners[:, 0]], vertices[corners[:, 2]] - vertices[corners[:, 0]])
+    normal = np.stack([np.bincount(corners.ravel(), np.repeat(face[:, i], 3), count) for i in range(3)], axis=1)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
+    ends = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    ends = np.concatenate([ends, ends[:, ::-1]])
+    degree = np.maximum(np.bincount(ends[:, 0], minlength=count), 1)
+    reach = 0.04 * float(np.linalg.norm(np.ptp(vertices, axis=0)))
+    length = np.maximum(np.linalg.norm(vertices[ends[:, 0]] - vertices[ends[:, 1]], axis=1), 1e-30)
+    turn = np.linalg.norm(normal[ends[:, 0]] - normal[ends[:, 1]], axis=1) / length
+    bend = np.bincount(ends[:, 0], turn, count) / degree
+    rounds = int(np.clip((reach / np.median(length)) ** 2, 5, 200))
+    for _ in range(rounds):
+        bend = 0.5 * bend + 0.5 * np.bincount(ends[:, 0], bend[ends[:, 1]], count) / degree
+    low, high = np.percentile(bend, [10, 95])
+    if not high > 1.05 * low:  # as good as even: a sphere, a cube's faces
+        return Paint()
+    density = 0.12 + 0.88 * np.clip((bend - low) / (high - low), 0, 1)
+    attribute = mesh.attributes.new(CURVATURE, "FLOAT", "POINT")
+    attribute.data.foreach_set("value", density.astype(np.float32))
+    return Paint("ATTRIBUTE", attribute.name)
