@@ -20,8 +20,7 @@ import bpy
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-for folder in (HERE / "scene", HERE.parent / "addon", HERE.parent / "build" / "python"):
-    sys.path.insert(0, str(folder))
+sys.path[:0] = [str(HERE / "scene"), str(HERE.parent / "addon"), str(HERE.parent / "build" / "python")]
 
 import looks
 import studio
@@ -97,13 +96,14 @@ def dress(subject: bpy.types.Object) -> None:
     for child in subject.children:
         if ROLE not in child:
             looks.dress_child(child)
-    for item, material in ((subject, looks.grout()), (cells, looks.enamel()), (edges, looks.gold())):
-        item.data.materials.clear()
-        item.data.materials.append(material)
+    subject.data.materials.clear()
+    subject.data.materials.append(looks.grout())
+    cells.data.materials[0].user_remap(looks.enamel())
+    edges.data.materials[0].user_remap(bpy.data.materials["Gold"])
     points = models.positions(centres)
     turn = np.array(centres.matrix_world.to_3x3().normalized())
-    normals = looks.read(centres.data, "normal", "POINT", 3) @ turn.T
-    areas = looks.read(centres.data, "area", "POINT", 1)
+    normals = looks.read(centres.data, "saddleback_normal", "POINT", 3) @ turn.T
+    areas = looks.read(centres.data, "saddleback_area", "POINT", 1)
     face_cell = looks.read(cells.data, "saddleback_cell", "FACE", 1)
     looks.color_cells(cells, face_cell, points, normals, areas, models.positions(subject))
 

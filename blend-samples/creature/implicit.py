@@ -121,21 +121,35 @@ def sample_grid(parts: list[Tube], cell: float) -> tuple[Array, Array]:
 
 
 def without_pinches(grid: Array) -> Array:
-    """The grid with the outside filled in wherever surface nets would touch themselves along an edge.
+    """The grid with corners filled in wherever surface nets would touch themselves along an edge or at a vertex.
 
-    That happens at a face of the grid whose inside corners are diagonal neighbours.
+    Along an edge: at a face of the grid whose inside corners are diagonal neighbours. At a vertex: in a cell whose only
+    inside corners, or only outside corners, are the two ends of its long diagonal.
     """
     grid = grid.copy()
+    barely = 1e-3
     for _ in range(20):
         pinched = 0
         for axis in range(3):
             faces = np.moveaxis(grid, axis, 0)  # a view: writing to it changes the grid
-            corners = [faces[:, a : faces.shape[1] - 1 + a, b : faces.shape[2] - 1 + b] for a, b in ((0, 0), (0, 1), (1, 1), (1, 0))]
-            inside = [c < 0 for c in corners]
+            high, wide = faces.shape[1] - 1, faces.shape[2] - 1
+            corners = [faces[:, a : high + a, b : wide + b] for a, b in ((0, 0), (0, 1), (1, 1), (1, 0))]
+            inside = [corner < 0 for corner in corners]
             for first in (0, 1):
                 bad = inside[first] & inside[first + 2] & ~inside[1 - first] & ~inside[3 - first]
-                corners[1 - first][bad] = -1e-3
+                corners[1 - first][bad] = -barely
                 pinched += np.count_nonzero(bad)
+        cells = tuple(n - 1 for n in grid.shape)
+        shifts = [(i >> 2 & 1, i >> 1 & 1, i & 1) for i in range(8)]
+        corners = [grid[tuple(slice(s, s + n) for s, n in zip(shift, cells, strict=True))] for shift in shifts]
+        inside = [corner < 0 for corner in corners]
+        count = np.sum(inside, axis=0)
+        for i in range(4):
+            alone = (count == 2) & inside[i] & inside[7 - i]
+            hole = (count == 6) & ~inside[i] & ~inside[7 - i]
+            corners[i][alone] = barely
+            corners[i][hole] = -barely
+            pinched += np.count_nonzero(alone) + np.count_nonzero(hole)
         if not pinched:
             break
     return grid

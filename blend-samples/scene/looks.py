@@ -7,11 +7,11 @@ import numpy as np
 import palette
 from studio import principled
 
-COLOR = "cell_color"
+COLOR = "saddleback_color"  # the add-on's own colour layer of its cells, written over
 
 
 def enamel() -> bpy.types.Material:
-    """Glazed colour, read from the cells' face attribute."""
+    """Glazed colour, read from the cells."""
     material = principled("Enamel", (0.1, 0.5, 0.4), Roughness=0.32, Clearcoat=0.5, Clearcoat_Roughness=0.12, Specular=0.4)
     tree = material.node_tree
     color = tree.nodes.new("ShaderNodeAttribute")
@@ -91,8 +91,9 @@ def read(mesh: bpy.types.Mesh, name: str, domain: str, width: int) -> np.ndarray
 def color_cells(
     cells: bpy.types.Object, face_cell: np.ndarray, centres: np.ndarray, normals: np.ndarray, areas: np.ndarray, points: np.ndarray
 ) -> None:
-    """Writes every face its cell's colour; centres and normals (n, 3), points (m, 3) of the subject, in world space."""
+    """Gives every face its cell's colour; centres and normals (n, 3), points (m, 3) of the subject, in world space."""
     colors = palette.cell_colors(centres, normals, areas, points.min(axis=0), points.max(axis=0))
-    rgba = np.concatenate([colors, np.ones((len(colors), 1))], axis=1)[face_cell]
-    attribute = cells.data.attributes.new(COLOR, "FLOAT_COLOR", "FACE")
-    attribute.data.foreach_set("color", rgba.astype(np.float32).ravel())
+    rgba = np.concatenate([colors, np.ones((len(colors), 1))], axis=1).astype(np.float32)
+    corners = np.empty(len(cells.data.polygons), np.int32)
+    cells.data.polygons.foreach_get("loop_total", corners)
+    cells.data.color_attributes[COLOR].data.foreach_set("color", rgba[np.repeat(face_cell, corners)].ravel())
