@@ -79,10 +79,11 @@ def repaired(subject: bpy.types.Object) -> None:
 
     try:
         saddleback.Mesh(models.positions(subject), models.triangles(subject))
+        return
     except saddleback.MeshError as error:
         say(f"The mesh needs repair: {error}")
-        bpy.ops.saddleback.repair()
-        say(f"Repaired: {len(models.triangles(subject)):,} triangles are left")
+    bpy.ops.saddleback.repair()
+    say(f"Repaired: {len(models.triangles(subject)):,} triangles are left")
 
 
 def output(subject: bpy.types.Object, role: str) -> bpy.types.Object:

@@ -22,19 +22,25 @@ GRID = 0.0165  # about 125,000 triangles
 PAINT = "Cell density"
 
 
-def closed_and_whole(quads: np.ndarray, vertex_count: int) -> bool:
-    """Whether every edge has two quads, and a walk over edges reaches every vertex."""
-    ends = np.concatenate([quads[:, [i, (i + 1) % 4]] for i in range(4)])
-    key = np.sort(ends, axis=1) @ np.array([vertex_count, 1], np.int64)
-    if np.any(np.unique(key, return_counts=True)[1] != 2):
-        return False
-    label = np.arange(vertex_count)
-    while True:
+def largest_part(vertices: np.ndarray, quads: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The part with the most vertices: without the bubbles that are shut in where a thigh meets the belly."""
+    ends = np.concatenate([quads[:, [i, (i + 1) % 4]] for i in range(4)])  # each edge in both directions
+    label = np.arange(len(vertices))
+    previous = np.empty(0, int)
+    while not np.array_equal(label, previous):
         previous = label.copy()
         np.minimum.at(label, ends[:, 0], label[ends[:, 1]])
         label = label[label]
-        if np.array_equal(label, previous):
-            return bool(np.all(label == 0))
+    keep = label == np.argmax(np.bincount(label))
+    number = np.cumsum(keep) - 1
+    return vertices[keep], number[quads[keep[quads[:, 0]]]].astype(np.int32)
+
+
+def is_closed(quads: np.ndarray, vertex_count: int) -> bool:
+    """Whether every edge has two quads."""
+    ends = np.concatenate([quads[:, [i, (i + 1) % 4]] for i in range(4)])
+    key = np.sort(ends, axis=1) @ np.array([vertex_count, 1], np.int64)
+    return bool(np.all(np.unique(key, return_counts=True)[1] == 2))
 
 
 def new_object(name: str, vertices: np.ndarray, faces: np.ndarray, collection: bpy.types.Collection) -> bpy.types.Object:
@@ -52,11 +58,12 @@ def make_body(collection: bpy.types.Collection) -> bpy.types.Object:
     """The chameleon itself, with the vertex group that an artist would paint."""
     origin, grid = implicit.sample_grid(shape.parts(), GRID)
     vertices, quads = implicit.surface_nets(origin, implicit.without_pinches(grid), GRID)
+    vertices, quads = largest_part(vertices, quads)
     vertices = sculpt.smooth(vertices, quads, 4)
     normals = sculpt.vertex_normals(vertices, quads)
     vertices = vertices + sculpt.detail(vertices, normals)[:, None] * normals
-    if not closed_and_whole(quads, len(vertices)):
-        raise SystemExit("The chameleon came out open or in pieces: change GRID in make_creature.py a little.")
+    if not is_closed(quads, len(vertices)):
+        raise SystemExit("The chameleon came out with edges that do not join two faces: change GRID in make_creature.py.")
     body = new_object("Chameleon", vertices, quads, collection)
     group = body.vertex_groups.new(name=PAINT)
     levels = np.round(sculpt.paint(vertices) * 100).astype(int)

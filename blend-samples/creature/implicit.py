@@ -121,14 +121,14 @@ def sample_grid(parts: list[Tube], cell: float) -> tuple[Array, Array]:
 
 
 def without_pinches(grid: Array) -> Array:
-    """The grid with corners filled in wherever surface nets would touch themselves along an edge or at a vertex.
+    """The grid with corners filled in, and never emptied, so that this ends, wherever surface nets would touch themselves along an edge or at a vertex.
 
     Along an edge: at a face of the grid whose inside corners are diagonal neighbours. At a vertex: in a cell whose only
     inside corners, or only outside corners, are the two ends of its long diagonal.
     """
     grid = grid.copy()
     barely = 1e-3
-    for _ in range(20):
+    for _ in range(50):
         pinched = 0
         for axis in range(3):
             faces = np.moveaxis(grid, axis, 0)  # a view: writing to it changes the grid
@@ -147,7 +147,7 @@ def without_pinches(grid: Array) -> Array:
         for i in range(4):
             alone = (count == 2) & inside[i] & inside[7 - i]
             hole = (count == 6) & ~inside[i] & ~inside[7 - i]
-            corners[i][alone] = barely
+            corners[i ^ 1][alone] = -barely
             corners[i][hole] = -barely
             pinched += np.count_nonzero(alone) + np.count_nonzero(hole)
         if not pinched:
