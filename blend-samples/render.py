@@ -1,7 +1,7 @@
 """Renders a scene that make_cells.py saved: run by Blender, or by Python with the bpy package.
 
-    blender -b --factory-startup --python blend-samples/render.py -- SCENE.blend OUT.png [SAMPLES]
-    python blend-samples/render.py -- SCENE.blend OUT.png [SAMPLES]
+    blender -b --factory-startup --python blend-samples/render.py -- SCENE.blend OUT.png [SAMPLES [PERCENT]]
+    python blend-samples/render.py -- SCENE.blend OUT.png [SAMPLES [PERCENT]]
 """
 
 from __future__ import annotations
@@ -25,6 +25,8 @@ def main() -> None:
     scene = bpy.context.scene
     samples = int(rest[0]) if rest else scene.cycles.samples
     denoises = studio.use_cycles(scene, scene.render.resolution_x, scene.render.resolution_y, samples)
+    if len(rest) > 1:
+        scene.render.resolution_percentage = int(rest[1])
     if not denoises:
         scene.cycles.samples = 3 * samples
     scene.render.filepath = str(Path(target).resolve())

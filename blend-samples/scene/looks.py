@@ -41,15 +41,15 @@ def dress_child(child: bpy.types.Object) -> None:
 
 
 def wood() -> bpy.types.Material:
-    """Dark wood with streaks along the grain."""
+    """Dark wood, a little uneven."""
     material = principled("Wood", (0.13, 0.065, 0.033), Roughness=0.6, Specular=0.3)
     tree = material.node_tree
     place = tree.nodes.new("ShaderNodeTexCoord")
     noise = tree.nodes.new("ShaderNodeTexNoise")
-    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 6.0, 4.0
+    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 14.0, 6.0
     ramp = tree.nodes.new("ShaderNodeValToRGB")
-    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[0].position = (0.075, 0.036, 0.018, 1), 0.35
-    ramp.color_ramp.elements[1].color, ramp.color_ramp.elements[1].position = (0.21, 0.115, 0.06, 1), 0.68
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[0].position = (0.095, 0.046, 0.023, 1), 0.30
+    ramp.color_ramp.elements[1].color, ramp.color_ramp.elements[1].position = (0.175, 0.092, 0.048, 1), 0.72
     tree.links.new(place.outputs["Object"], noise.inputs["Vector"])
     tree.links.new(noise.outputs["Fac"], ramp.inputs["Fac"])
     tree.links.new(ramp.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
