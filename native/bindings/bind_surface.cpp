@@ -1,8 +1,10 @@
-// SurfacePoints, GeodesicPath, trace.
+// SurfacePoints and what makes them: project, sample, trace; GeodesicPath.
 
 #include <cmath>
 
 #include "points.h"
+#include "saddleback/project.h"
+#include "saddleback/sample.h"
 #include "saddleback/trace.h"
 
 namespace saddleback::bindings {
@@ -88,6 +90,27 @@ TracedPath trace_from(const py::object& mesh_object, const py::object& point, co
   });
 }
 
+SurfacePoints project_onto(const py::object& mesh_object, const py::object& xyz, const py::object& threads,
+                           const py::object& job) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  const ArrayIn<double> queries = as_points3(xyz, "xyz");
+  const ProjectOptions options{.threads = as_integer(threads, "threads"), .job = as_job(job)};
+  return without_gil([&] { return project(mesh, queries.values, options); });
+}
+
+SurfacePoints sample_on(const py::object& mesh_object, const py::object& count, const py::object& density,
+                        const py::object& seed, bool one_per_component) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  SampleOptions options{.count = as_integer(count, "count"), .seed = as_seed(seed, "seed"),
+                        .one_per_component = one_per_component};
+  ArrayIn<double> weights;
+  if (!density.is_none()) {
+    weights = as_reals(density, "density", mesh.vertex_count());
+    options.density = weights.values;
+  }
+  return without_gil([&] { return sample(mesh, options); });
+}
+
 void bind_points(py::module_& m) {
   py::class_<SurfacePoints>(m, "SurfacePoints", py::module_local(),
                             "Points anywhere on a mesh: a face index and three barycentric coordinates each.")
@@ -100,6 +123,10 @@ void bind_points(py::module_& m) {
       .def("__repr__", [](const SurfacePoints& points) {
         return message("<SurfacePoints: ", points.size(), points.size() == 1 ? " point>" : " points>");
       });
+  m.def("project", &project_onto, py::arg("mesh"), py::arg("xyz"), py::kw_only(), py::arg("threads") = 0,
+        py::arg("job") = py::none());
+  m.def("sample", &sample_on, py::arg("mesh"), py::arg("count"), py::arg("density") = py::none(), py::arg("seed") = 0,
+        py::kw_only(), py::arg("one_per_component") = false);
 }
 
 void bind_paths(py::module_& m) {

@@ -15,6 +15,8 @@ from saddleback._saddleback import (
     TracedPath,
     __version__,
     repair,
+    project,
+    sample,
     trace,
 )
 
@@ -35,5 +37,7 @@ __all__ = [
     "cuda_status",
     "devices",
     "repair",
+    "project",
+    "sample",
     "trace",
 ]

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "flat_face.h"
 #include "saddleback/error.h"
 
 namespace saddleback {
@@ -78,14 +79,9 @@ Vec3 normalised_barycentric(const Vec3& barycentric) {
 }
 
 FaceChart::FaceChart(const Mesh& mesh, Index face) {
-  // From positions, not from the three lengths: dot and cross products keep a needle's short side accurate.
   const Triangle& t = mesh.triangles()[face];
-  const Vec3 u = mesh.position(t[1]) - mesh.position(t[0]);
-  const Vec3 v = mesh.position(t[2]) - mesh.position(t[0]);
-  const double length = u.norm();
-  corner[0] = Vec2(0, 0);
-  corner[1] = Vec2(length, 0);
-  corner[2] = Vec2(u.dot(v) / length, u.cross(v).norm() / length);
+  const FlatFace flat(mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]));
+  for (int i = 0; i < 3; ++i) corner[i] = flat.corner[i];
 }
 
 Vec2 FaceChart::to_plane(const Vec3& barycentric) const {

@@ -15,18 +15,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "flat_face.h"
 #include "saddleback/error.h"
 
 namespace saddleback {
 namespace {
-
-/// A line nearer to a corner than this share of the face's size meets it, and an end point nearer to an edge or corner is on
-/// it. Positions carry some 1e-16 of rounding for each face crossed, so 1e-13 covers thousands of faces and is
-/// still below the lowest face that Mesh accepts.
-constexpr double k_snap = 1e-13;
 
 /// More faces than any curve of use crosses, and less than a second of work: makes every finite length end. It cannot be
 /// derived from length and mean edge, because a curve may wind round a thin tube any number of times for each of them.
@@ -36,40 +31,6 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 
 /// Components of v in the frame whose x axis is the unit vector `axis`.
 Vec2 rotated_into(const Vec2& axis, const Vec2& v) { return {axis.dot(v), cross(axis, v)}; }
-
-/// The face of a half-edge laid out flat: corner 0 is from(h), corner 1 to(h), corner 2 the apex.
-struct EdgeChart {
-  Vec2 corner[3];
-  double size;  ///< bounds the coordinates; the scale of rounding
-
-  EdgeChart(const Vec3& from, const Vec3& to, const Vec3& apex) {
-    const Vec3 u = to - from, v = apex - from;
-    const double length = u.norm();
-    corner[0] = Vec2(0, 0);
-    corner[1] = Vec2(length, 0);
-    corner[2] = Vec2(u.dot(v) / length, u.cross(v).norm() / length);
-    size = length + std::abs(corner[2].x()) + corner[2].y();
-  }
-};
-
-/// Coordinates of a point of the face, exactly at a corner or on an edge when within k_snap of it.
-Vec3 snapped(const EdgeChart& c, const Vec3& barycentric) {
-  Vec3 b = normalised_barycentric(barycentric);
-  const double reach = k_snap * c.size;
-  const double twice_area = c.corner[1].x() * c.corner[2].y();
-  int nearest = 0;
-  double nearest_distance = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    const Vec2 next = c.corner[(i + 1) % 3] - c.corner[i], last = c.corner[(i + 2) % 3] - c.corner[i];
-    if ((b[(i + 1) % 3] * next + b[(i + 2) % 3] * last).norm() <= reach) return Vec3::Unit(i);
-    const double to_edge = b[i] * twice_area / (last - next).norm();
-    if (to_edge < nearest_distance) nearest = i, nearest_distance = to_edge;
-  }
-  // Only the nearest edge: in a needle a point may be within reach of two edges and yet far from their corner.
-  if (nearest_distance > reach || b[nearest] > 0.5) return b;
-  b[nearest] = 0;
-  return normalised_barycentric(b);
-}
 
 /// What the walk writes down: every point, or nothing.
 struct Polyline {
@@ -118,7 +79,7 @@ class Walk {
 
   TraceEnd from_point(const SurfacePoint& start, double angle) {
     enter(3 * start.face);
-    const EdgeChart chart = this->chart();
+    const FlatFace chart = this->chart();
     const Vec3 b = normalised_barycentric(start.barycentric);
     place_ = b[0] * chart.corner[0] + b[1] * chart.corner[1] + b[2] * chart.corner[2];
     direction_ = Vec2(std::cos(angle), std::sin(angle));
@@ -163,11 +124,11 @@ class Walk {
     to_ = &mesh_.position(mesh_.to(h));
   }
 
-  EdgeChart chart() const { return {*from_, *to_, mesh_.position(mesh_.apex(halfedge_))}; }
+  FlatFace chart() const { return {*from_, *to_, mesh_.position(mesh_.apex(halfedge_))}; }
 
   /// From anywhere in the closed face, in any direction.
   bool leave_inside() {
-    const EdgeChart c = chart();
+    const FlatFace c = chart();
     double side[3], ahead[3];
     int vertex = -1;
     for (int i = 0; i < 3; ++i) {
@@ -184,7 +145,7 @@ class Walk {
     return cross_edge_at_rim(c);
   }
 
-  bool cross_edge_at_rim(const EdgeChart& c) {
+  bool cross_edge_at_rim(const FlatFace& c) {
     int best = 0;
     double best_reach = 0;
     bool found = false;
@@ -202,7 +163,7 @@ class Walk {
 
   /// From a point of the chart's own edge, into the face: only the side of the apex is to be decided.
   bool leave_through() {
-    const EdgeChart c = chart();
+    const FlatFace c = chart();
     const Vec2 to_apex = c.corner[2] - place_;
     const double side = cross(direction_, to_apex);
     if (std::abs(side) <= k_snap * c.size && direction_.dot(to_apex) > 0) return meet_vertex(c, 2);
@@ -214,7 +175,7 @@ class Walk {
   /// From corner 0 into the face.
   bool leave_corner() {
     at_corner_ = false;
-    const EdgeChart c = chart();
+    const FlatFace c = chart();
     const double side_1 = cross(direction_, c.corner[1]), side_2 = cross(direction_, c.corner[2]);
     if (side_1 >= -k_snap * c.size) return meet_vertex(c, 1);
     if (side_2 <= k_snap * c.size) return meet_vertex(c, 2);
@@ -222,7 +183,7 @@ class Walk {
   }
 
   /// Leaves by local edge i, whose ends lie `side_from` (<= 0, right) and `side_to` (>= 0, left) of the line.
-  bool cross_edge(const EdgeChart& c, int i, double side_from, double side_to) {
+  bool cross_edge(const FlatFace& c, int i, double side_from, double side_to) {
     const int j = (i + 1) % 3;
     const double width = side_to - side_from;
     const double weight_from = width > 0 ? side_to / width : 0.0;
@@ -252,7 +213,7 @@ class Walk {
   }
 
   /// Goes straight to local corner i of the face, then on through that vertex.
-  bool meet_vertex(const EdgeChart& c, int i) {
+  bool meet_vertex(const FlatFace& c, int i) {
     const double step = std::max(0.0, (c.corner[i] - place_).norm());
     if (travelled_ + step >= length_) return finish(c);
     travelled_ += step;
@@ -287,12 +248,10 @@ class Walk {
   }
 
   /// The length is used up inside this face.
-  bool finish(const EdgeChart& c) {
+  bool finish(const FlatFace& c) {
     const Vec2 xy = place_ + (length_ - travelled_) * direction_;
     travelled_ = length_;
-    const double b2 = xy.y() / c.corner[2].y();
-    const double b1 = (xy.x() - b2 * c.corner[2].x()) / c.corner[1].x();
-    const Vec3 local = snapped(c, {1 - b1 - b2, b1, b2});
+    const Vec3 local = snapped(c, c.to_barycentric(xy));
     Vec3 b;
     for (int i = 0; i < 3; ++i) b[corner_index(i)] = local[i];
     const SurfacePoint point{Mesh::face_of(halfedge_), b};
@@ -300,7 +259,7 @@ class Walk {
     return stop(point, c, false);
   }
 
-  bool stop(const SurfacePoint& point, const EdgeChart& c, bool hit_boundary) {
+  bool stop(const SurfacePoint& point, const FlatFace& c, bool hit_boundary) {
     hit_boundary = hit_boundary && length_ - travelled_ > k_snap * c.size;
     // From this chart to the face's: edge 0 of the face is an edge of ours, on which the angle is measured.
     const int zero = (3 - halfedge_ % 3) % 3;

@@ -1,0 +1,26 @@
+#pragma once
+// A face laid out flat, and when a point of it counts as being on an edge or at a corner.
+
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+/// A line nearer to a corner than this share of the face's size meets it, and a point nearer to an edge or corner is on it.
+/// Positions carry some 1e-16 of rounding for each face crossed, so 1e-13 covers a walk over thousands of faces and is
+/// still below the lowest face that Mesh accepts.
+inline constexpr double k_snap = 1e-13;
+
+/// Corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it.
+struct FlatFace {
+  Vec2 corner[3];
+  double size;  ///< bounds the coordinates; the scale of rounding
+
+  /// From positions, not from the three lengths: dot and cross products keep a needle's short side accurate.
+  FlatFace(const Vec3& a, const Vec3& b, const Vec3& c);
+  Vec3 to_barycentric(const Vec2& xy) const;
+};
+
+/// Barycentric coordinates with rounding removed, exactly at a corner or on an edge when within k_snap of it.
+Vec3 snapped(const FlatFace& face, const Vec3& barycentric);
+
+}  // namespace saddleback

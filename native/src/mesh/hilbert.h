@@ -1,0 +1,27 @@
+#pragma once
+// Order along a Hilbert curve: neighbours in the order are neighbours in space.
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+/// Place of a point along a Hilbert curve through the box, 20 bits an axis. Points outside count as on the box.
+class HilbertCurve {
+ public:
+  explicit HilbertCurve(std::span<const Vec3> points);
+  std::uint64_t key(const Vec3& point) const;
+
+ private:
+  Vec3 lowest_ = Vec3::Zero();
+  double scale_ = 0;  ///< cells per unit
+};
+
+/// The indices 0 to n-1 in ascending order of key, then of index.
+std::vector<Index> order_of(std::span<const std::uint64_t> keys);
+
+}  // namespace saddleback
