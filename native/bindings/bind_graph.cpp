@@ -1,0 +1,134 @@
+#include <limits>
+
+#include "convert.h"
+#include "points.h"
+#include "saddleback/saddle_vertex_graph.h"
+
+namespace saddleback::bindings {
+namespace {
+
+std::unique_ptr<SaddleVertexGraph> make_graph(const Mesh& mesh, const py::object& k, const py::object& threads,
+                                              const std::string& device, const py::object& job) {
+  const SaddleVertexGraphOptions options{.k = as_integer(k, "k"), .threads = as_integer(threads, "threads")};
+  check_device(device);
+  Job* const token = as_job(job);
+  return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });
+}
+
+QueryOptions query_options(const py::object& limit, const std::string& method) {
+  QueryOptions options{.limit = as_real(limit, "limit")};
+  if (method == "dijkstra") {
+    options.method = QueryMethod::dijkstra;
+  } else if (method != "label_correcting") {
+    throw InputError(message("method: wanted 'label_correcting' or 'dijkstra', got '", method, "'"));
+  }
+  return options;
+}
+
+py::array distances(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
+                    const std::string& method, const py::object& job) {
+  const SurfacePoints points = as_surface_points(sources, graph.mesh(), "sources");
+  const QueryOptions options = query_options(limit, method);
+  Job* const token = as_job(job);
+  return to_array(without_gil([&] { return graph.distances(points, options, token); }));
+}
+
+py::tuple nearest(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
+                  const std::string& method, const py::object& job) {
+  const SurfacePoints points = as_surface_points(sources, graph.mesh(), "sources");
+  const QueryOptions options = query_options(limit, method);
+  Job* const token = as_job(job);
+  NearestField field = without_gil([&] { return graph.nearest(points, options, token); });
+  return py::make_tuple(to_array(std::move(field.distance)), to_array(std::move(field.source)));
+}
+
+constexpr const char* k_graph_doc = R"(Saddle Vertex Graph: geodesic distances as shortest paths in a sparse graph.
+
+Every vertex is linked to the vertices of its geodesic disk that it sees along one straight geodesic, and to its
+neighbours. Arcs are real paths on the surface, so distances are never too short; the graph is symmetric to the bit.
+
+Parameters
+----------
+mesh : Mesh
+k : int
+    Vertices per geodesic disk, not counting the centre; 1 to the mesh's vertex count. More is slower and more accurate:
+    the mean error is about 0.4 % at 50 and 0.1 % at 100.
+threads : int
+    0: all cores. The result does not depend on it.
+device : str
+    "auto" or "cpu".
+job : Job, optional
+    Progress and cancellation.
+
+Raises
+------
+InputError
+    k below 1 or above the vertex count; an unknown device.
+DeviceError
+    device="cuda": this build computes on the CPU.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(V k log k) time, about 12 bytes an arc. X. Ying, X. Wang, Y. He: Saddle Vertex Graph (SVG): A Novel Solution to the
+Discrete Geodesic Problem, ACM Transactions on Graphics 32(6), 2013.)";
+
+constexpr const char* k_distances_doc = R"(Distance of every vertex from the nearest source.
+
+Parameters
+----------
+sources : (n,) int array or SurfacePoints
+    Vertices, or points anywhere on the surface (a window propagation each links them to the graph).
+limit : float
+    Vertices farther than this stay at infinity. Mesh units.
+method : str
+    "label_correcting" (buckets) or "dijkstra" (heap): the same bits, at different speeds.
+job : Job, optional
+
+Returns
+-------
+(V,) float64 array
+    Mesh units; inf where no source reaches.
+
+Raises
+------
+InputError
+    No sources, a source off the mesh, limit negative or not a number, an unknown method.
+Cancelled
+    The job was cancelled.)";
+
+constexpr const char* k_nearest_doc = R"(Distance of every vertex from the nearest source, and which source it is.
+
+Takes what `distances` takes.
+
+Returns
+-------
+distance : (V,) float64 array
+    Mesh units; inf where no source reaches.
+source : (V,) int32 array
+    Index into `sources`, -1 where none reaches; ties go to the smaller index.)";
+
+}  // namespace
+
+void bind_graph(py::module_& m) {
+  const auto infinity = std::numeric_limits<double>::infinity();
+  py::class_<SaddleVertexGraph>(m, "SaddleVertexGraph", py::module_local(), k_graph_doc)
+      .def(py::init(&make_graph), py::arg("mesh"), py::arg("k") = 50, py::kw_only(), py::arg("threads") = 0,
+           py::arg("device") = "auto", py::arg("job") = py::none(), py::keep_alive<1, 2>())
+      .def("distances", &distances, py::arg("sources"), py::arg("limit") = infinity, py::arg("method") = "label_correcting",
+           py::kw_only(), py::arg("job") = py::none(), k_distances_doc)
+      .def("nearest", &nearest, py::arg("sources"), py::arg("limit") = infinity, py::arg("method") = "label_correcting",
+           py::kw_only(), py::arg("job") = py::none(), k_nearest_doc)
+      .def_property_readonly("arc_count", &SaddleVertexGraph::arc_count, "Directed arcs; each has its reverse.")
+      .def_property_readonly("mean_degree", &SaddleVertexGraph::mean_degree, "Arcs per vertex.")
+      .def_property_readonly("nbytes", &SaddleVertexGraph::nbytes, "Memory of the arcs, bytes.")
+      .def_property_readonly("k", &SaddleVertexGraph::k, "Vertices per geodesic disk.")
+      .def_property_readonly("device", [](const SaddleVertexGraph&) { return "cpu"; }, "Which device built the graph.")
+      .def_property_readonly("build_seconds", &SaddleVertexGraph::build_seconds, "Time of the build.")
+      .def("__repr__", [](const SaddleVertexGraph& graph) {
+        return message("<saddleback.SaddleVertexGraph k=", graph.k(), ", ", graph.arc_count(), " arcs>");
+      });
+}
+
+}  // namespace saddleback::bindings

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "saddleback/geodesic_voronoi.h"
+#include "tessellation/cell_complex.h"
+
+namespace saddleback {
+
+/// The public diagram of a cell complex of these sites.
+GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites);
+
+}  // namespace saddleback

@@ -1,0 +1,226 @@
+// The public diagram from the cell complex: areas, boundaries chained into polylines, branch points, the split mesh.
+
+#include "saddleback/geodesic_voronoi.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saddleback/error.h"
+#include "tessellation/diagram.h"
+
+namespace saddleback {
+namespace {
+
+/// Twice the signed area, as a share of the face, of a triangle given in barycentric coordinates.
+double double_area(const Vec3& a, const Vec3& b, const Vec3& c) { return a.dot(b.cross(c)); }
+
+std::vector<double> cell_areas(const CellComplex& complex) {
+  const Mesh& mesh = complex.mesh();
+  std::vector<double> areas(complex.site_count(), 0);
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (complex.face_site(f) != k_none) areas[complex.face_site(f)] += mesh.face_area(f);
+  }
+  for (const CellComplex::Piece& piece : complex.pieces()) {
+    const Vec3* corner = &complex.loop_barycentric()[piece.first];
+    double share = 0;
+    for (Index i = 1; i + 1 < piece.count; ++i) share += double_area(corner[0], corner[i], corner[i + 1]);
+    areas[piece.site] += share * mesh.face_area(piece.face);
+  }
+  return areas;
+}
+
+/// A straight bit of the boundary between two cells inside one face; points count from 0.
+struct Segment {
+  Index from, to;
+  Index left, right;
+};
+
+std::vector<Segment> find_segments(const CellComplex& complex) {
+  struct Side {
+    Index from, to, site;
+  };
+  const Index first_point = complex.mesh().vertex_count();
+  std::vector<Segment> segments;
+  std::vector<Side> sides;
+  const auto& pieces = complex.pieces();
+  for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
+    sides.clear();
+    for (; end < pieces.size() && pieces[end].face == pieces[begin].face; ++end) {
+      const Index* loop = &complex.loop()[pieces[end].first];
+      for (Index i = 0; i < pieces[end].count; ++i) sides.push_back({loop[i], loop[(i + 1) % pieces[end].count], pieces[end].site});
+    }
+    for (const Side& a : sides) {
+      if (a.from > a.to) continue;
+      for (const Side& b : sides) {
+        if (b.from != a.to || b.to != a.from || b.site == a.site) continue;
+        segments.push_back({a.from - first_point, a.to - first_point, a.site, b.site});
+      }
+    }
+  }
+  return segments;
+}
+
+/// Chains segments into polylines that end at branch points or at the mesh's boundary, or are closed.
+class Chains {
+ public:
+  Chains(const std::vector<Segment>& segments, std::size_t point_count, GeodesicVoronoi& out)
+      : segments_(segments), used_(segments.size(), 0), first_(point_count + 1, 0), at_(2 * segments.size()), out_(out) {
+    for (const Segment& s : segments) ++first_[s.from + 1], ++first_[s.to + 1];
+    for (std::size_t i = 0; i < point_count; ++i) first_[i + 1] += first_[i];
+    std::vector<Index> cursor(first_.begin(), first_.end() - 1);
+    for (Index i = 0; i < static_cast<Index>(segments.size()); ++i) {
+      at_[cursor[segments[i].from]++] = i;
+      at_[cursor[segments[i].to]++] = i;
+    }
+    out_.edge_offsets.push_back(0);
+    const auto count = static_cast<Index>(point_count);
+    for (Index point = 0; point < count; ++point) {
+      if (degree(point) > 2) out_.branch_points.push_back(point);
+      if (degree(point) != 2) follow_all(point, false);
+    }
+    for (Index point = 0; point < count; ++point) follow_all(point, true);
+  }
+
+ private:
+  Index degree(Index point) const { return first_[point + 1] - first_[point]; }
+
+  void follow_all(Index point, bool closed) {
+    for (Index i = first_[point]; i < first_[point + 1]; ++i) {
+      if (!used_[at_[i]]) follow(point, at_[i], closed);
+    }
+  }
+
+  void follow(Index start, Index segment, bool closed) {
+    const bool forward = segments_[segment].from == start;
+    out_.edge_cells.push_back(forward ? std::array{segments_[segment].left, segments_[segment].right}
+                                      : std::array{segments_[segment].right, segments_[segment].left});
+    out_.edge_closed.push_back(closed);
+    out_.edge_points.push_back(start);
+    Index point = start;
+    while (segment != k_none) {
+      used_[segment] = 1;
+      point = segments_[segment].from == point ? segments_[segment].to : segments_[segment].from;
+      out_.edge_points.push_back(point);
+      segment = degree(point) == 2 ? unused_at(point) : k_none;
+    }
+    out_.edge_offsets.push_back(static_cast<Index>(out_.edge_points.size()));
+  }
+
+  Index unused_at(Index point) const {
+    for (Index i = first_[point]; i < first_[point + 1]; ++i) {
+      if (!used_[at_[i]]) return at_[i];
+    }
+    return k_none;
+  }
+
+  const std::vector<Segment>& segments_;
+  std::vector<std::uint8_t> used_;
+  std::vector<Index> first_, at_;  ///< segments at each point
+  GeodesicVoronoi& out_;
+};
+
+/// Cuts a convex loop into triangles from the corner that leaves the fattest ones.
+void triangulate(const Index* loop, const Vec3* place, Index count, std::vector<Triangle>& triangles) {
+  Index apex = 0;
+  double best = -1;
+  for (Index a = 0; a < count && count > 3; ++a) {
+    double least = 1;
+    for (Index i = 1; i + 1 < count; ++i) {
+      least = std::min(least, double_area(place[a], place[(a + i) % count], place[(a + i + 1) % count]));
+    }
+    if (least > best) best = least, apex = a;
+  }
+  for (Index i = 1; i + 1 < count; ++i) {
+    triangles.push_back({loop[apex], loop[(apex + i) % count], loop[(apex + i + 1) % count]});
+  }
+}
+
+}  // namespace
+
+GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
+                                 const GeodesicVoronoiOptions& options, Job* job) {
+  const Mesh& mesh = graph.mesh();
+  check_sites(mesh, sites);
+  const JobStage stage(job, "Finding cells");
+  return make_diagram(CellComplex(graph, sites, options.threads, stage.part(0, 0.9)), sites);
+}
+
+GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites) {
+  const Mesh& mesh = complex.mesh();
+  GeodesicVoronoi result;
+  result.sites = sites;
+  result.vertex_cell = complex.vertex_site();
+  result.vertex_distance.resize(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    result.vertex_distance[v] = complex.maps().known_log(v, result.vertex_cell[v]).norm();
+  }
+  result.areas = cell_areas(complex);
+  result.points = complex.added();
+  for (const SurfacePoint& point : result.points) result.positions.push_back(position(mesh, point));
+  const std::vector<Segment> segments = find_segments(complex);
+  Chains(segments, result.points.size(), result);
+  result.face_cell.resize(mesh.face_count());
+  for (Index f = 0; f < mesh.face_count(); ++f) result.face_cell[f] = complex.face_site(f);
+  for (const CellComplex::Piece& piece : complex.pieces()) {
+    result.pieces.push_back({piece.face, piece.site, piece.first, piece.count});
+  }
+  result.piece_vertices = complex.loop();
+  result.piece_barycentric = complex.loop_barycentric();
+  return result;
+}
+
+std::vector<Index> GeodesicVoronoi::corners(Index cell) const {
+  if (cell < 0 || cell >= static_cast<Index>(areas.size())) {
+    throw InputError(message("cell: wanted 0 to ", areas.size() - 1, ", got ", cell));
+  }
+  // The polylines with the cell on their left lead once round each of its boundaries.
+  struct Arc {
+    Index start, end;
+  };
+  std::vector<Arc> arcs;
+  for (std::size_t i = 0; i < edge_cells.size(); ++i) {
+    if (edge_closed[i]) continue;
+    const Index start = edge_points[edge_offsets[i]], end = edge_points[edge_offsets[i + 1] - 1];
+    if (edge_cells[i][0] == cell) arcs.push_back({start, end});
+    if (edge_cells[i][1] == cell) arcs.push_back({end, start});
+  }
+  std::vector<Index> result;
+  while (!arcs.empty()) {
+    // Begin where no other polyline leads, at the mesh's boundary; anywhere when the cell does not touch it.
+    const auto leads_in = [&](const Arc& arc) {
+      return std::any_of(arcs.begin(), arcs.end(), [&](const Arc& other) { return other.end == arc.start; });
+    };
+    auto arc = std::find_if_not(arcs.begin(), arcs.end(), leads_in);
+    if (arc == arcs.end()) arc = arcs.begin();
+    const Index begin = arc->start;
+    Index end = begin;
+    while (arc != arcs.end()) {
+      result.push_back(arc->start);
+      end = arc->end;
+      arcs.erase(arc);
+      arc = std::find_if(arcs.begin(), arcs.end(), [&](const Arc& other) { return other.start == end; });
+    }
+    if (end != begin) result.push_back(end);
+  }
+  return result;
+}
+
+SplitMesh GeodesicVoronoi::split(const Mesh& mesh) const {
+  SplitMesh result;
+  result.vertices.assign(mesh.positions().begin(), mesh.positions().end());
+  result.vertices.insert(result.vertices.end(), positions.begin(), positions.end());
+  result.vertex_origin.assign(result.vertices.size(), k_none);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) result.vertex_origin[v] = v;
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (face_cell[f] == k_none) continue;
+    result.triangles.push_back(mesh.triangles()[f]);
+    result.triangle_cell.push_back(face_cell[f]);
+  }
+  for (const Piece& piece : pieces) {
+    triangulate(&piece_vertices[piece.first], &piece_barycentric[piece.first], piece.count, result.triangles);
+    result.triangle_cell.resize(result.triangles.size(), piece.cell);
+  }
+  return result;
+}
+
+}  // namespace saddleback
