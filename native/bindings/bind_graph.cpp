@@ -7,9 +7,15 @@
 namespace saddleback::bindings {
 namespace {
 
-std::unique_ptr<SaddleVertexGraph> make_graph(const Mesh& mesh, const py::object& k, const py::object& threads,
+void check_device(const std::string& device) {
+  if (device == "cuda") throw DeviceError("device: graphs are built on the CPU only in this version; use device=\"auto\"");
+  if (device != "auto" && device != "cpu") throw InputError(message("device: wanted 'auto', 'cpu' or 'cuda', got '", device, "'"));
+}
+
+std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k, const py::object& threads,
                                               const std::string& device, const py::object& job) {
   const SaddleVertexGraphOptions options{.k = as_integer(k, "k"), .threads = as_integer(threads, "threads")};
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
   check_device(device);
   Job* const token = as_job(job);
   return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });

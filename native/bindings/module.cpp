@@ -8,6 +8,8 @@ void bind_job(py::module_& m);
 void bind_mesh(py::module_& m);
 void bind_repair(py::module_& m);
 void bind_surface(py::module_& m);
+void bind_graph(py::module_& m);
+void bind_tessellation(py::module_& m);
 
 namespace {
 
@@ -45,4 +47,6 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_mesh(m);
   bind_repair(m);
   bind_surface(m);
+  bind_graph(m);
+  bind_tessellation(m);
 }

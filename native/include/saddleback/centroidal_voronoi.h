@@ -24,6 +24,10 @@ struct CentroidalVoronoi {
   std::string stop_reason;
 };
 
+/// A start for `count` cells: sampled by density and seed, at least one site on every component.
+/// \throw InputError for count < 1, more than vertices or fewer than components; for a density that `sample` refuses.
+SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const double> density, std::uint64_t seed);
+
 /// Moves the sites to the centres of their cells until they rest (Lloyd's method on the surface).
 ///
 /// The energy is the integral of density^2 times squared distance to the nearest site: the square makes the number of cells

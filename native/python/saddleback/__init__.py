@@ -3,6 +3,13 @@
 from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
     Cancelled,
+    geodesic_voronoi,
+    centroidal_voronoi,
+    VoronoiEdge,
+    SplitMesh,
+    SaddleVertexGraph,
+    GeodesicVoronoi,
+    CentroidalVoronoi,
     DeviceError,
     Error,
     GeodesicPath,
@@ -22,6 +29,13 @@ from saddleback._saddleback import (
 
 __all__ = [
     "Cancelled",
+    "geodesic_voronoi",
+    "centroidal_voronoi",
+    "VoronoiEdge",
+    "SplitMesh",
+    "SaddleVertexGraph",
+    "GeodesicVoronoi",
+    "CentroidalVoronoi",
     "Device",
     "DeviceError",
     "Error",

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "saddleback/error.h"
+#include "saddleback/sample.h"
 #include "saddleback/trace.h"
 #include "tessellation/cell_moments.h"
 #include "tessellation/diagram.h"
@@ -69,6 +70,19 @@ SurfacePoints moved_sites(const Mesh& mesh, const State& state, double share) {
 }
 
 }  // namespace
+
+SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const double> density, std::uint64_t seed) {
+  if (count < 1) throw InputError(message("count: wanted at least 1 cell, got ", count));
+  if (count > mesh.vertex_count()) {
+    throw InputError(message("count: ", count, " cells are more than the mesh has vertices (", mesh.vertex_count(),
+                             "); subdivide the mesh or ask for fewer"));
+  }
+  if (count < mesh.component_count()) {
+    throw InputError(message("count: ", count, " cells cannot cover the mesh's ", mesh.component_count(),
+                             " separate parts; ask for more cells or join the parts"));
+  }
+  return sample(mesh, {.count = count, .density = density, .seed = seed, .one_per_component = true});
+}
 
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options, Job* job) {

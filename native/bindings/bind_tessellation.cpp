@@ -1,0 +1,254 @@
+// GeodesicVoronoi, SplitMesh, CentroidalVoronoi and the functions that make them.
+
+#include <span>
+
+#include "points.h"
+#include "saddleback/centroidal_voronoi.h"
+
+namespace saddleback::bindings {
+namespace {
+
+/// A diagram together with the graph (a Python object) whose mesh it lies on.
+struct Cells {
+  GeodesicVoronoi diagram;
+  py::object graph;
+  const Mesh& mesh() const { return py::cast<const SaddleVertexGraph&>(graph).mesh(); }
+};
+
+struct VoronoiEdge {
+  std::vector<Vec3> points;
+  SurfacePoints surface;
+  std::array<Index, 2> cells;
+  bool closed;
+};
+
+struct Relaxed {
+  CentroidalVoronoi result;
+  py::object cells;
+};
+
+const GeodesicVoronoi& diagram_of(const py::object& self) { return py::cast<const Cells&>(self).diagram; }
+
+/// Read-only array of a member vector of the diagram.
+template <auto Member>
+py::array array_of(const py::object& self) {
+  const auto& values = diagram_of(self).*Member;
+  return view_of(std::span(values), self);
+}
+
+SurfacePoints points_at(const GeodesicVoronoi& diagram, std::span<const Index> indices) {
+  SurfacePoints points;
+  for (const Index i : indices) points.push_back(diagram.points[i]);
+  return points;
+}
+
+std::vector<Vec3> positions_at(const GeodesicVoronoi& diagram, std::span<const Index> indices) {
+  std::vector<Vec3> positions;
+  for (const Index i : indices) positions.push_back(diagram.positions[i]);
+  return positions;
+}
+
+py::list edges(const Cells& cells) {
+  const GeodesicVoronoi& d = cells.diagram;
+  py::list result;
+  for (std::size_t i = 0; i < d.edge_cells.size(); ++i) {
+    const std::span indices(&d.edge_points[d.edge_offsets[i]], d.edge_offsets[i + 1] - d.edge_offsets[i]);
+    result.append(VoronoiEdge{positions_at(d, indices), points_at(d, indices), d.edge_cells[i], d.edge_closed[i] != 0});
+  }
+  return result;
+}
+
+SurfacePoints corners(const Cells& cells, const py::object& cell) {
+  return points_at(cells.diagram, cells.diagram.corners(as_integer(cell, "cell")));
+}
+
+py::object make_cells(GeodesicVoronoi&& diagram, const py::object& graph) {
+  return py::cast(Cells{std::move(diagram), graph});
+}
+
+py::object find_cells(const py::object& graph, const py::object& sites, const py::object& threads, const py::object& job) {
+  const auto& g = py::cast<const SaddleVertexGraph&>(graph);
+  const SurfacePoints points = as_surface_points(sites, g.mesh(), "sites");
+  const GeodesicVoronoiOptions options{.threads = as_integer(threads, "threads")};
+  Job* const token = as_job(job);
+  return make_cells(without_gil([&] { return geodesic_voronoi(g, points, options, token); }), graph);
+}
+
+Relaxed relax(const py::object& graph, const py::object& sites, const py::object& count, const py::object& density,
+              const std::string& method, const py::object& max_iterations, const py::object& tolerance, const py::object& seed,
+              const py::object& threads, const py::object& job) {
+  const auto& g = py::cast<const SaddleVertexGraph&>(graph);
+  if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
+  if (method != "lloyd") throw InputError(message("method: wanted 'lloyd', got '", method, "'"));
+  ArrayIn<double> weights;
+  if (!density.is_none()) weights = as_reals(density, "density", g.mesh().vertex_count());
+  const CentroidalVoronoiOptions options{.density = weights.values,
+                                         .max_iterations = as_integer(max_iterations, "max_iterations"),
+                                         .tolerance = as_real(tolerance, "tolerance"),
+                                         .threads = as_integer(threads, "threads")};
+  const std::uint64_t number = as_seed(seed, "seed");
+  Job* const token = as_job(job);
+  SurfacePoints start;
+  if (!sites.is_none()) start = as_surface_points(sites, g.mesh(), "sites");
+  const Index wanted = count.is_none() ? 0 : as_integer(count, "count");
+  CentroidalVoronoi result = without_gil([&] {
+    if (!count.is_none()) start = initial_sites(g.mesh(), wanted, weights.values, number);
+    return centroidal_voronoi(g, start, options, token);
+  });
+  py::object cells = make_cells(std::move(result.cells), graph);
+  return {std::move(result), std::move(cells)};
+}
+
+constexpr const char* k_voronoi_doc = R"(Assign every point of the surface to its nearest site.
+
+Bisectors are straight inside a face, exactly right where the geodesics to both sites cross no saddle vertex. Cells
+smaller than a face, and several sites in one face, are found.
+
+Parameters
+----------
+graph : SaddleVertexGraph
+sites : (n,) int array or SurfacePoints
+    Vertices, or points anywhere on the surface. At most as many as the mesh has vertices.
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+GeodesicVoronoi
+
+Raises
+------
+InputError
+    No sites, too many, a site off the mesh, a connected part of the mesh without a site.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(n k log k + arcs). After Y.-J. Liu, Z. Chen, K. Tang: Construction of iso-contours, bisectors, and Voronoi diagrams on
+triangulated surfaces, IEEE TPAMI 33(8), 2011.)";
+
+constexpr const char* k_centroidal_doc = R"(Spread sites so that each lies at the centre of its cell: even cells.
+
+Parameters
+----------
+graph : SaddleVertexGraph
+sites : (n,) int array or SurfacePoints, optional
+    Where to start. Either this or `count`.
+count : int, optional
+    Number of cells; the start is then sampled by density and seed, at least one site on every connected part.
+density : (V,) float array, optional
+    Wanted number of cells per area at each vertex, in proportion; 0 or more. None: the same everywhere.
+method : str
+    "lloyd".
+max_iterations : int
+tolerance : float
+    Stop when the energy falls by less than this share of itself.
+seed : int
+    Of the sampled start.
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+CentroidalVoronoi
+
+Raises
+------
+InputError
+    Neither or both of sites and count; more cells than vertices or fewer than connected parts; a density of the wrong
+    length, with a negative or not finite value, or 0 everywhere; what `geodesic_voronoi` refuses.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(n k log k + arcs) per iteration. The energy is the integral of density^2 times squared distance and never rises.
+Q. Du, V. Faber, M. Gunzburger: Centroidal Voronoi Tessellations, SIAM Review 41(4), 1999.)";
+
+void bind_cells(py::module_& m) {
+  py::class_<VoronoiEdge>(m, "VoronoiEdge", py::module_local(), "The boundary between two cells, or a part of it.")
+      .def_property_readonly("points", [](const py::object& self) {
+        return view_of(std::span<const Vec3>(py::cast<const VoronoiEdge&>(self).points), self);
+      }, "(m, 3) float64: positions along the polyline; a closed one repeats its first point.")
+      .def_property_readonly("surface", [](const VoronoiEdge& e) { return e.surface; }, "The same as SurfacePoints.")
+      .def_property_readonly("cells", [](const VoronoiEdge& e) { return py::make_tuple(e.cells[0], e.cells[1]); },
+                             "The cells on the left and on the right.")
+      .def_readonly("closed", &VoronoiEdge::closed, "True for a loop without branch points.");
+
+  py::class_<SplitMesh>(m, "SplitMesh", py::module_local(), "A mesh in which every triangle lies in exactly one cell.")
+      .def_property_readonly("vertices", [](const py::object& self) {
+        return view_of(std::span<const Vec3>(py::cast<const SplitMesh&>(self).vertices), self);
+      }, "(S, 3) float64: the mesh's vertices, then those on cell boundaries.")
+      .def_property_readonly("triangles", [](const py::object& self) {
+        return view_of(std::span<const Triangle>(py::cast<const SplitMesh&>(self).triangles), self);
+      }, "(T, 3) int32.")
+      .def_property_readonly("triangle_cell", [](const py::object& self) {
+        return view_of(std::span<const Index>(py::cast<const SplitMesh&>(self).triangle_cell), self);
+      }, "(T,) int32.")
+      .def_property_readonly("vertex_origin", [](const py::object& self) {
+        return view_of(std::span<const Index>(py::cast<const SplitMesh&>(self).vertex_origin), self);
+      }, "(S,) int32: vertex of the original mesh, -1 for added ones.");
+
+  py::class_<Cells>(m, "GeodesicVoronoi", py::module_local(), "Geodesic Voronoi cells; made by `geodesic_voronoi`.")
+      .def_property_readonly("sites", [](const Cells& c) { return c.diagram.sites; }, "SurfacePoints (n).")
+      .def_property_readonly("vertex_cell", &array_of<&GeodesicVoronoi::vertex_cell>, "(V,) int32: nearest site; ties: the smaller.")
+      .def_property_readonly("vertex_distance", &array_of<&GeodesicVoronoi::vertex_distance>, "(V,) float64: distance to it, mesh units.")
+      .def_property_readonly("areas", &array_of<&GeodesicVoronoi::areas>, "(n,) float64: they sum to the mesh's area.")
+      .def_property_readonly("edges", &edges, "List of VoronoiEdge: the boundaries between cells.")
+      .def_property_readonly("edge_points", [](const Cells& c) {
+        return to_array(positions_at(c.diagram, c.diagram.edge_points));
+      }, "(m, 3) float64: the points of all edges, one after another.")
+      .def_property_readonly("edge_surface", [](const Cells& c) { return points_at(c.diagram, c.diagram.edge_points); },
+                             "The same as SurfacePoints.")
+      .def_property_readonly("edge_offsets", &array_of<&GeodesicVoronoi::edge_offsets>, "(e + 1,) int32: edge i is [offsets[i], offsets[i + 1]).")
+      .def_property_readonly("edge_cells", [](const py::object& self) {
+        return view_of_rows<Index>(std::span<const std::array<Index, 2>>(diagram_of(self).edge_cells), self);
+      }, "(e, 2) int32: the cells on the left and on the right.")
+      .def_property_readonly("edge_closed", [](const Cells& c) {
+        const auto& closed = c.diagram.edge_closed;
+        py::array_t<bool> result(static_cast<py::ssize_t>(closed.size()));
+        std::copy(closed.begin(), closed.end(), result.mutable_data());
+        return result;
+      }, "(e,) bool: loops without branch points.")
+      .def_property_readonly("branch_points", [](const Cells& c) { return points_at(c.diagram, c.diagram.branch_points); },
+                             "SurfacePoints where three or more cells meet.")
+      .def("corners", &corners, py::arg("cell"),
+           "SurfacePoints around a cell: branch points and ends at the mesh's boundary, the cell on the left.")
+      .def("split", [](const Cells& c) {
+        const Mesh& mesh = c.mesh();
+        return without_gil([&] { return c.diagram.split(mesh); });
+      }, "Cut the mesh along the cell boundaries: a SplitMesh. O(V + F).")
+      .def("__repr__", [](const Cells& c) {
+        return message("<saddleback.GeodesicVoronoi of ", c.diagram.sites.size(), " cells>");
+      });
+  m.def("geodesic_voronoi", &find_cells, py::arg("graph"), py::arg("sites"), py::kw_only(), py::arg("threads") = 0,
+        py::arg("job") = py::none(), k_voronoi_doc);
+}
+
+}  // namespace
+
+void bind_tessellation(py::module_& m) {
+  bind_cells(m);
+  py::class_<Relaxed>(m, "CentroidalVoronoi", py::module_local(), "Even cells; made by `centroidal_voronoi`.")
+      .def_property_readonly("sites", [](const Relaxed& r) { return r.result.sites; }, "SurfacePoints (n).")
+      .def_readonly("cells", &Relaxed::cells, "GeodesicVoronoi of the sites.")
+      .def_property_readonly("energy", [](const py::object& self) {
+        return view_of(std::span<const double>(py::cast<const Relaxed&>(self).result.energy), self);
+      }, "(iterations + 1,) float64: at the start and after each iteration; never rises.")
+      .def_property_readonly("iterations", [](const Relaxed& r) { return r.result.iterations; }, "Iterations done.")
+      .def_property_readonly("converged", [](const Relaxed& r) { return r.result.converged; }, "False when max_iterations ended it.")
+      .def_property_readonly("stop_reason", [](const Relaxed& r) { return r.result.stop_reason; },
+                             "\"tolerance\", \"no step lowers the energy\" or \"max_iterations\".")
+      .def("__repr__", [](const Relaxed& r) {
+        return message("<saddleback.CentroidalVoronoi of ", r.result.sites.size(), " cells, ", r.result.iterations, " iterations>");
+      });
+  m.def("centroidal_voronoi", &relax, py::arg("graph"), py::arg("sites") = py::none(), py::arg("count") = py::none(),
+        py::arg("density") = py::none(), py::arg("method") = "lloyd", py::arg("max_iterations") = 100,
+        py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(),
+        k_centroidal_doc);
+}
+
+}  // namespace saddleback::bindings
