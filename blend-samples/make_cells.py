@@ -15,12 +15,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import addon_utils
 import bpy
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE / "scene"), str(HERE.parent / "addon"), str(HERE.parent / "build" / "python")]
+for folder in ("blend-samples/scene", "addon", "build/python"):
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / folder))
 
 import looks
 import studio
@@ -127,7 +126,7 @@ def main() -> None:
 
     with timed("Model read"):
         subject = models.open_subject(options.model, up)
-    addon_utils.enable("saddleback_blender")
+    bpy.ops.preferences.addon_enable(module="saddleback_blender")
     repaired(subject)
     rounds = models.refine(subject)
     if rounds:

@@ -1,6 +1,6 @@
 """Makes the demo's model, a chameleon on its branch, with its painted density: run by Blender.
 
-    blender -b --factory-startup --python blend-samples/make_creature.py -- OUT.blend
+blender -b --factory-startup --python blend-samples/make_creature.py -- OUT.blend
 """
 
 from __future__ import annotations
@@ -43,7 +43,9 @@ def is_closed(quads: np.ndarray, vertex_count: int) -> bool:
     return bool(np.all(np.unique(key, return_counts=True)[1] == 2))
 
 
-def new_object(name: str, vertices: np.ndarray, faces: np.ndarray, collection: bpy.types.Collection) -> bpy.types.Object:
+def new_object(
+    name: str, vertices: np.ndarray, faces: np.ndarray, collection: bpy.types.Collection
+) -> bpy.types.Object:
     """A smooth-shaded mesh object from arrays of vertices and quads."""
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(vertices.tolist(), [], faces.tolist())
@@ -63,7 +65,9 @@ def make_body(collection: bpy.types.Collection) -> bpy.types.Object:
     normals = sculpt.vertex_normals(vertices, quads)
     vertices = vertices + sculpt.detail(vertices, normals)[:, None] * normals
     if not is_closed(quads, len(vertices)):
-        raise SystemExit("The chameleon came out with edges that do not join two faces: change GRID in make_creature.py.")
+        raise SystemExit(
+            "The chameleon came out with edges that do not join two faces: change GRID in make_creature.py."
+        )
     body = new_object("Chameleon", vertices, quads, collection)
     group = body.vertex_groups.new(name=PAINT)
     levels = np.round(sculpt.paint(vertices) * 100).astype(int)
@@ -77,7 +81,8 @@ def lathe(profile: np.ndarray, segments: int) -> tuple[np.ndarray, np.ndarray]:
     """A surface of revolution about z: `profile` has rows radius, height."""
     angle = np.linspace(0, 2 * np.pi, segments, endpoint=False)
     rings = np.stack(
-        [profile[:, :1] * np.cos(angle), profile[:, :1] * np.sin(angle), np.repeat(profile[:, 1:], segments, 1)], axis=-1
+        [profile[:, :1] * np.cos(angle), profile[:, :1] * np.sin(angle), np.repeat(profile[:, 1:], segments, 1)],
+        axis=-1,
     )
     i, j = np.meshgrid(np.arange(len(profile) - 1), np.arange(segments), indexing="ij")
     k = (j + 1) % segments
@@ -110,7 +115,9 @@ def limb(knots: list[tuple[float, ...]], seed: int) -> tuple[np.ndarray, np.ndar
     along = np.linspace(0, 1.3 * len(knots), len(line))[:, None, None]
     circle = [np.cos(angle) + 0 * along, np.sin(angle) + 0 * along, 0.5 * along + 0 * angle]
     sample = np.concatenate(circle, axis=2).reshape(-1, 3)
-    bark = 0.10 * sculpt.octaves(sample, 1.3, 2, seed) - 0.10 * np.abs(sculpt.octaves(sample * [4, 4, 1], 1.6, 2, seed + 7))
+    bark = 0.10 * sculpt.octaves(sample, 1.3, 2, seed) - 0.10 * np.abs(
+        sculpt.octaves(sample * [4, 4, 1], 1.6, 2, seed + 7)
+    )
     radius = line[:, None, 3:] * (1 + bark.reshape(len(line), segments, 1))
     radius[:2] *= np.array([0.0, 0.93])[:, None, None]
     line[0] = line[1]

@@ -1,7 +1,7 @@
 """Renders a scene that make_cells.py saved: run by Blender, or by Python with the bpy package.
 
-    blender -b --factory-startup --python blend-samples/render.py -- SCENE.blend OUT.png [SAMPLES [PERCENT]]
-    python blend-samples/render.py -- SCENE.blend OUT.png [SAMPLES [PERCENT]]
+blender -b --factory-startup --python blend-samples/render.py -- SCENE.blend OUT.png [SAMPLES [PERCENT]]
+python blend-samples/render.py -- SCENE.blend OUT.png [SAMPLES [PERCENT]]
 """
 
 from __future__ import annotations

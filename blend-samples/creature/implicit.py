@@ -7,6 +7,7 @@ out of a body instead of piercing it.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +48,7 @@ class Tube:
         stations = self.stations
         if len(stations) == 1:
             stations = np.vstack([stations, stations])
-        for a, b in zip(stations[:-1], stations[1:], strict=True):
+        for a, b in pairwise(stations):
             reach = max(a[3:].max(), b[3:].max()) + FAR
             box_low, box_high = np.minimum(a[:3], b[:3]) - reach, np.maximum(a[:3], b[:3]) + reach
             near = np.flatnonzero(np.all((points >= box_low) & (points <= box_high), axis=1))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from implicit import Array
 from numpy.typing import NDArray
@@ -62,7 +64,7 @@ def step(value: Array, low: float, high: float) -> Array:
 def distance_to_line(points: Array, line: Array) -> Array:
     """Distance in the plane from points (n, 2) to a polyline (m, 2)."""
     best = np.full(len(points), np.inf)
-    for a, b in zip(line[:-1], line[1:], strict=True):
+    for a, b in pairwise(line):
         t = np.clip((points - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
         best = np.minimum(best, np.linalg.norm(points - a - t[:, None] * (b - a), axis=1))
     return best
@@ -112,12 +114,12 @@ def detail(vertices: Array, normals: Array) -> Array:
 
 def paint(vertices: Array) -> Array:
     """The painted density in [0, 1]: finer cells on head, feet, tail tip and crest."""
-    x, y, z = vertices.T
+    x, _, z = vertices.T
     from_axis, along_eye = eye_coordinates(vertices)
     paint = 0.10 + 0.38 * step(x, 0.80, 1.15) + 0.10 * step(x, 1.25, 1.6)
     paint += 0.50 * step(from_axis, 0.22, 0.10) * step(along_eye, -0.1, 0.0)
-    paint = np.maximum(paint, 0.95 * step(z, 0.22, 0.06) * step(x, -1.02, -0.9))
-    paint = np.maximum(paint, 0.10 + 0.35 * step(z, 0.45, 0.2) * step(x, -1.02, -0.9))
+    paint = np.maximum(paint, 0.95 * step(z, 0.22, 0.06) * step(x, -1.18, -1.08))
+    paint = np.maximum(paint, 0.10 + 0.35 * step(z, 0.45, 0.2) * step(x, -1.18, -1.08))
     spiral = np.hypot(x - TAIL_CENTRE[0], z - TAIL_CENTRE[2])
     tail = step(x, -0.95, -1.35)
     paint = np.maximum(paint, tail * (0.2 + 0.75 * step(spiral, 0.62, 0.12)))

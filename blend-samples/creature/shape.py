@@ -67,7 +67,12 @@ def head() -> list[Tube]:
         (1.02, 0.105, 1.155, 0.038),
         (0.84, 0.03, 1.29, 0.034),
     ]
-    cheek = [(1.02, 0.14, 1.06, 0.035), (0.99, 0.20, 0.90, 0.045), (1.02, 0.205, 0.76, 0.045), (1.12, 0.195, 0.64, 0.04)]
+    cheek = [
+        (1.02, 0.14, 1.06, 0.035),
+        (0.99, 0.20, 0.90, 0.045),
+        (1.02, 0.205, 0.76, 0.045),
+        (1.12, 0.195, 0.64, 0.04),
+    ]
     socket = EYE_CENTRE - 0.07 * EYE_AXIS
     rim = EYE_CENTRE + 0.068 * EYE_AXIS
     turret = Tube(np.array([[*socket, 0.150, 0.150], [*rim, 0.082, 0.082]]), 0.045)
@@ -129,7 +134,18 @@ def legs() -> list[Tube]:
 def crest() -> list[Tube]:
     """Spikes along the back, the edge of the casque and the throat."""
     parts = []
-    back = np.array([(0.80, 0.98), (0.50, 1.06), (0.12, 1.155), (-0.30, 1.115), (-0.68, 0.945), (-1.0, 0.755), (-1.35, 0.635), (-1.72, 0.57)])
+    back = np.array(
+        [
+            (0.80, 0.98),
+            (0.50, 1.06),
+            (0.12, 1.155),
+            (-0.30, 1.115),
+            (-0.68, 0.945),
+            (-1.0, 0.755),
+            (-1.35, 0.635),
+            (-1.72, 0.57),
+        ]
+    )
     line = catmull_rom(back, 28)
     along = np.gradient(line, axis=0)
     up = np.stack([-along[:, 1], along[:, 0]], axis=1)
@@ -143,7 +159,9 @@ def crest() -> list[Tube]:
     chin = catmull_rom(np.array([(1.60, 0.545), (1.40, 0.475), (1.16, 0.415), (0.92, 0.40), (0.72, 0.40)]), 10)
     for i, point in enumerate(chin):
         height = 0.035 + 0.05 * np.sin(np.pi * (i + 1.5) / 11)
-        parts.append(tube([(point[0], 0, point[1] + 0.03, 0.032), (point[0] - 0.02, 0, point[1] - height, 0.011)], 0.03))
+        parts.append(
+            tube([(point[0], 0, point[1] + 0.03, 0.032), (point[0] - 0.02, 0, point[1] - height, 0.011)], 0.03)
+        )
     return parts
 
 

@@ -12,7 +12,9 @@ COLOR = "saddleback_color"  # the add-on's own colour layer of its cells, writte
 
 def enamel() -> bpy.types.Material:
     """Glazed colour, read from the cells."""
-    material = principled("Enamel", (0.1, 0.5, 0.4), Roughness=0.32, Clearcoat=0.5, Clearcoat_Roughness=0.12, Specular=0.4)
+    material = principled(
+        "Enamel", (0.1, 0.5, 0.4), Roughness=0.32, Clearcoat=0.5, Clearcoat_Roughness=0.12, Specular=0.4
+    )
     tree = material.node_tree
     color = tree.nodes.new("ShaderNodeAttribute")
     color.attribute_name = COLOR
@@ -89,7 +91,12 @@ def read(mesh: bpy.types.Mesh, name: str, domain: str, width: int) -> np.ndarray
 
 
 def color_cells(
-    cells: bpy.types.Object, face_cell: np.ndarray, centres: np.ndarray, normals: np.ndarray, areas: np.ndarray, points: np.ndarray
+    cells: bpy.types.Object,
+    face_cell: np.ndarray,
+    centres: np.ndarray,
+    normals: np.ndarray,
+    areas: np.ndarray,
+    points: np.ndarray,
 ) -> None:
     """Gives every face its cell's colour; centres and normals (n, 3), points (m, 3) of the subject, in world space."""
     colors = palette.cell_colors(centres, normals, areas, points.min(axis=0), points.max(axis=0))

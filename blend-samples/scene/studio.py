@@ -46,7 +46,9 @@ def backdrop(low: Vector, high: Vector, size: float) -> bpy.types.Object:
     return bpy.data.objects.new("Backdrop", mesh)
 
 
-def area_light(name: str, where: Vector, target: Vector, size: float, power: float, color: tuple[float, ...]) -> bpy.types.Object:
+def area_light(
+    name: str, where: Vector, target: Vector, size: float, power: float, color: tuple[float, ...]
+) -> bpy.types.Object:
     """A square area light at `where` that looks at `target`."""
     data = bpy.data.lights.new(name, "AREA")
     data.size, data.energy, data.color = size, power, color
@@ -87,7 +89,9 @@ def add_to(scene: bpy.types.Scene, points: np.ndarray, aspect: float) -> None:
         ("Rim", (0.7, 1.15, 2.0), 1.1, 150, (1.0, 0.97, 0.92)),
     )
     for name, where, width, power, color in lights:
-        stage.objects.link(area_light(name, centre + size * Vector(where), centre, width * size, power * size**2, color))
+        stage.objects.link(
+            area_light(name, centre + size * Vector(where), centre, width * size, power * size**2, color)
+        )
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.lens = 75
     frame(camera, points, aspect, 0.90)

@@ -169,7 +169,9 @@ def find_paint(subject: bpy.types.Object) -> Paint:
     """The density that somebody painted: a layer with "density" in its name, "saddleback_density" before others."""
     mesh = subject.data
     layers = [(attribute.name, "COLOR") for attribute in mesh.color_attributes]
-    layers += [(attribute.name, "ATTRIBUTE") for attribute in mesh.attributes if attribute.data_type in ("FLOAT", "INT")]
+    layers += [
+        (attribute.name, "ATTRIBUTE") for attribute in mesh.attributes if attribute.data_type in ("FLOAT", "INT")
+    ]
     layers += [(group.name, "VERTEX_GROUP") for group in subject.vertex_groups]
     painted = [layer for layer in layers if "density" in layer[0].lower()]
     if not painted:
@@ -182,7 +184,9 @@ def paint_curvature(subject: bpy.types.Object) -> Paint:
     """Paints how much the surface bends, smoothed, as a density from 0.12 to 1."""
     mesh, vertices, corners = subject.data, positions(subject), triangles(subject)
     count = len(vertices)
-    face = np.cross(vertices[corners[:, 1]] - vertices[corners[:, 0]], vertices[corners[:, 2]] - vertices[corners[:, 0]])
+    face = np.cross(
+        vertices[corners[:, 1]] - vertices[corners[:, 0]], vertices[corners[:, 2]] - vertices[corners[:, 0]]
+    )
     normal = np.stack([np.bincount(corners.ravel(), np.repeat(face[:, i], 3), count) for i in range(3)], axis=1)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
     ends = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
