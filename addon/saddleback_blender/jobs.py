@@ -60,11 +60,12 @@ class Task:
 
 
 class State:
-    """What the panel shows: the task that a modal operator watches, and the object that was refused last."""
+    """What the panel shows: the task that is watched, the object that was refused last, what the last run made."""
 
     def __init__(self) -> None:
         self.task: Task | None = None
         self.needs_repair = ""
+        self.line = ""
 
 
 state = State()
@@ -84,6 +85,9 @@ WINDOW_MANAGER_PROPERTIES = {
     ),
     "saddleback_needs_repair": StringProperty(
         name="Needs Repair", description="Object refused by the last run", get=lambda _: state.needs_repair
+    ),
+    "saddleback_line": StringProperty(
+        name="Last Run", description="What the last run made", get=lambda _: state.line
     ),
 }  # fmt: skip
 

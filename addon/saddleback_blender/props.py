@@ -125,8 +125,9 @@ TESSELLATE: dict[str, Any] = {
     "edge_radius": _length("Radius", "Half the thickness of the lines between cells", 0.01),
     "make_cells": _switch("Cells", "Make a mesh of the cells", False),
     "gap": _length("Gap", "Width of the gap between neighbouring cells", 0.0),
-    "inset": _length("Inset", "Width of a border ring inside each cell", 0.0),
-    "thickness": _length("Thickness", "Thickness of the cells", 0.0),
+    "inset": _length("Bevel", "Width of the sloping rim of each cell; it rises by the thickness", 0.0),
+    "thickness": _length("Thickness", "How far the cells stand out of the surface", 0.0),
+    "underside": _switch("Closed Below", "Close each cell from below, as a 3D printer needs it", False),
     "make_centres": _switch("Centres", "Make an object of points at the cells' centres", False),
     "instance_object": _name("Instance", "The object to put on every centre"),
     "instance_scale": FloatProperty(

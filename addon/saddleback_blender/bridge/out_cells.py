@@ -27,7 +27,7 @@ def write_cells(
     context: bpy.types.Context, source: bpy.types.Object, result: CellsResult, settings: TessellateSettings
 ) -> bpy.types.Object:
     """Makes or replaces the source's cells object; gap, inset and thickness are in world units."""
-    shape = CellShape(settings.gap, settings.inset, settings.thickness)
+    shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
     cells = build_cell_mesh(result.split_vertices, result.split_triangles, result.split_cell, shape)
     colors = cell_colors(len(result.sites_position), result.edge_cells)
     place = level_place(source)

@@ -29,6 +29,7 @@ class TessellateSettings:
     gap: float = 0.0
     inset: float = 0.0
     thickness: float = 0.0
+    underside: bool = False
     make_centres: bool = False
     instance_object: str = ""
     instance_scale: float = 1.0

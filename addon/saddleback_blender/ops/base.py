@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from time import perf_counter
 from typing import Any
 
 import bpy
@@ -98,6 +99,7 @@ class SurfaceOperator:
             self._leave(context)
 
     def _prepare(self, context: bpy.types.Context) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
+        self._began = perf_counter()
         source = usable_source(context)
         fill_operator(self, source, self.settings_name)
         native.load()
@@ -121,7 +123,8 @@ class SurfaceOperator:
             return self._refuse(error, context)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
-        self.report({"INFO"}, line)
+        jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
+        self.report({"INFO"}, jobs.state.line)
         return {"FINISHED"}
 
     def _refuse(self, error: Exception, context: bpy.types.Context) -> set[str]:

@@ -36,6 +36,7 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
         removed = clear_outputs(context, source)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
+        jobs.state.line = ""
         self.report({"INFO"}, f"'{source.name}': {removed} outputs removed" if removed else "Nothing to clear")
         return {"FINISHED"} if removed else {"CANCELLED"}
 

@@ -13,9 +13,9 @@ from .. import prefs
 from ..bridge.density import read_density
 from ..bridge.mesh_in import mesh_of, read_surface
 from ..bridge.out_attributes import write_vertex_attributes
-from ..bridge.out_cells import CELLS_ROLE, write_cells
+from ..bridge.out_cells import CELLS_ROLE, vanished_cells, write_cells
 from ..bridge.out_centres import CENTRES_ROLE, write_centres
-from ..bridge.out_collection import remove_output
+from ..bridge.out_collection import find_output, remove_output
 from ..bridge.out_edges import EDGES_ROLE, write_edges
 from ..bridge.output_surface import check_attribute_names, output_surface
 from ..bridge.sites import read_sites
@@ -80,8 +80,21 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
         keep_settings(settings, source.saddleback.tessellate)
         if warning:
             self.report({"WARNING"}, warning)
-        steps = f", {result.iterations} iterations ({result.stop_reason})" if result.iterations else ""
-        return f"'{source.name}': {result.count} cells{steps}"
+        return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(source)}"
+
+
+def _steps(result: CellsResult) -> str:
+    if not result.iterations:
+        return ""
+    energy = f", energy {result.energy[-1]:.4g}" if len(result.energy) else ""
+    return f", {result.iterations} iterations ({result.stop_reason}){energy}"
+
+
+def _lost(source: bpy.types.Object) -> str:
+    """How many cells are too narrow for the gap, where there are any."""
+    cells = find_output(source, CELLS_ROLE)
+    lost = vanished_cells(cells) if cells is not None else 0
+    return f", {lost} narrower than the gap left out" if lost else ""
 
 
 def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:

@@ -1,0 +1,231 @@
+"""The panels of the tab "Saddleback" in the 3D View's sidebar."""
+
+from __future__ import annotations
+
+import functools
+
+import bpy
+
+from .. import compat
+from ..bridge.source import why_not
+from ..core import native
+from . import rows
+from .texts import draw_text
+
+
+class SaddlebackPanel:
+    """Mixin: where all panels of the tab are."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Saddleback"
+
+
+class SaddlebackSubPanel(SaddlebackPanel):
+    """Mixin: a panel within the tab that is there when the operators can run."""
+
+    bl_parent_id = "SADDLEBACK_PT_main"
+    layout: bpy.types.UILayout
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Only where something can be done."""
+        return not why_not(context)
+
+    def split_layout(self, context: bpy.types.Context) -> bpy.types.UILayout:
+        """Names to the left and values to the right; grey while a run goes on."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.enabled = not context.window_manager.saddleback_running
+        return layout
+
+
+class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
+    """What Saddleback works on, what it is doing, what it did."""
+
+    bl_label = "Saddleback"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        problem = _native_problem()
+        if problem:
+            box = layout.box()
+            box.alert = True
+            draw_text(box, context, problem, "ERROR")
+            return
+        problem = why_not(context)
+        if problem:
+            draw_text(layout, context, problem, "INFO")
+            return
+        item = context.view_layer.objects.active
+        column = layout.column(align=True)
+        column.label(text=item.name, icon="OUTLINER_OB_MESH")
+        column.label(text=f"{len(item.data.vertices):,} vertices, {len(item.data.polygons):,} faces", icon="BLANK1")
+        _draw_state(layout, context, item)
+        row = layout.row()
+        row.enabled = not context.window_manager.saddleback_running
+        row.operator("saddleback.clear", text="Clear Results", icon="TRASH")
+
+
+def _draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.types.Object) -> None:
+    """The run that goes on; else the way out of an error, or what the last run made."""
+    manager = context.window_manager
+    if manager.saddleback_running:
+        box = layout.box()
+        draw_text(box, context, manager.saddleback_text, "TIME")
+        compat.draw_progress(box, manager, "saddleback_fraction", f"{100 * manager.saddleback_fraction:.0f}%")
+        box.label(text="Press ESC to stop", icon="EVENT_ESC")
+    elif manager.saddleback_needs_repair == item.name:
+        box = layout.box()
+        box.alert = True
+        draw_text(box, context, "This mesh has faults that keep it from being a surface", "ERROR")
+        row = box.row()
+        row.alert = False
+        row.scale_y = 1.3
+        row.operator("saddleback.repair", text="Repair Mesh", icon="TOOL_SETTINGS")
+    elif manager.saddleback_line:
+        draw_text(layout, context, manager.saddleback_line, "CHECKMARK")
+
+
+class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
+    """Cells: how many, where, and the button."""
+
+    bl_label = "Tessellate"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = context.view_layer.objects.active.saddleback.tessellate
+        layout = self.split_layout(context)
+        row = layout.row()
+        row.scale_y = 1.4
+        row.operator("saddleback.tessellate", icon="MOD_EXPLODE")
+        rows.draw_sites(layout.column(), settings)
+        layout.prop(settings, "k")
+        layout.prop(settings, "use_modifiers")
+
+
+class SADDLEBACK_PT_density(SaddlebackSubPanel, bpy.types.Panel):
+    """Where cells are small."""
+
+    bl_label = "Density"
+    bl_parent_id = "SADDLEBACK_PT_tessellate"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        item = context.view_layer.objects.active
+        rows.draw_density(self.split_layout(context), item.saddleback.tessellate, item)
+
+
+class SaddlebackOutputPanel(SaddlebackSubPanel):
+    """Mixin: a panel whose header switches an output on."""
+
+    bl_parent_id = "SADDLEBACK_PT_tessellate"
+    switch: str
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draws the switch."""
+        self.layout.enabled = not context.window_manager.saddleback_running
+        self.layout.prop(context.view_layer.objects.active.saddleback.tessellate, self.switch, text="")
+
+
+class SADDLEBACK_PT_edges(SaddlebackOutputPanel, bpy.types.Panel):
+    """The lines between cells."""
+
+    bl_label = "Edges"
+    switch = "make_edges"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_edges(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+
+
+class SADDLEBACK_PT_cells(SaddlebackOutputPanel, bpy.types.Panel):
+    """The mesh of the cells."""
+
+    bl_label = "Cells"
+    bl_options = {"DEFAULT_CLOSED"}
+    switch = "make_cells"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_cells(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+
+
+class SADDLEBACK_PT_centres(SaddlebackOutputPanel, bpy.types.Panel):
+    """The centres of the cells."""
+
+    bl_label = "Centres"
+    bl_options = {"DEFAULT_CLOSED"}
+    switch = "make_centres"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_centres(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+
+
+class SADDLEBACK_PT_attributes(SaddlebackSubPanel, bpy.types.Panel):
+    """Names of what is written on the mesh."""
+
+    bl_label = "Attributes"
+    bl_parent_id = "SADDLEBACK_PT_tessellate"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_attributes(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+
+
+class SADDLEBACK_PT_distance(SaddlebackSubPanel, bpy.types.Panel):
+    """Distances along the surface."""
+
+    bl_label = "Distance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        item = context.view_layer.objects.active
+        settings = item.saddleback.distance
+        layout = self.split_layout(context)
+        row = layout.row()
+        row.scale_y = 1.4
+        row.operator("saddleback.distance", icon="DRIVER_DISTANCE")
+        rows.draw_distance_sources(layout.column(), settings, item)
+        layout.prop(settings, "k")
+        layout.prop(settings, "use_modifiers")
+        layout.prop(settings, "distance_attribute")
+
+
+class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
+    """Faults of the mesh."""
+
+    bl_label = "Repair"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        layout = self.split_layout(context)
+        row = layout.row()
+        row.scale_y = 1.4
+        row.operator("saddleback.repair", icon="TOOL_SETTINGS")
+        layout.prop(context.view_layer.objects.active.saddleback.repair, "weld_distance")
+
+
+@functools.cache
+def _native_problem() -> str:
+    """Asked once: an answer that changes needs a restart of Blender anyway."""
+    return native.problem()
+
+
+CLASSES = (
+    SADDLEBACK_PT_main,
+    SADDLEBACK_PT_tessellate,
+    SADDLEBACK_PT_density,
+    SADDLEBACK_PT_edges,
+    SADDLEBACK_PT_cells,
+    SADDLEBACK_PT_centres,
+    SADDLEBACK_PT_attributes,
+    SADDLEBACK_PT_distance,
+    SADDLEBACK_PT_repair,
+)

@@ -1,0 +1,105 @@
+"""Rows of settings, the same in a panel (settings kept on the object) and for an operator (its own properties)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+# Density source -> the list of the mesh or object that its name is chosen from, and the icon.
+DENSITY_LISTS = {
+    "VERTEX_GROUP": ("vertex_groups", "GROUP_VERTEX"),
+    "ATTRIBUTE": ("attributes", "SPREADSHEET"),
+    "COLOR": ("color_attributes", "GROUP_VCOL"),
+}
+
+
+def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
+    """Where the cells' centres come from, and how they are evened out."""
+    layout.prop(settings, "sites_source")
+    if settings.sites_source == "COUNT":
+        layout.prop(settings, "count")
+        layout.prop(settings, "seed")
+    else:
+        if settings.sites_source == "OBJECT":
+            draw_object(layout, settings, "sites_object")
+        layout.prop(settings, "relax_sites")
+    column = layout.column()
+    column.active = settings.sites_source == "COUNT" or settings.relax_sites
+    column.prop(settings, "iterations")
+
+
+def draw_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """What says where cells are small."""
+    layout.prop(settings, "density_source", text="Source")
+    source = settings.density_source
+    if source in DENSITY_LISTS:
+        name, icon = DENSITY_LISTS[source]
+        owner = item if source == "VERTEX_GROUP" else item.data
+        layout.prop_search(settings, "density_name", owner, name, text="Name", icon=icon)
+    if source == "COLOR":
+        layout.prop(settings, "density_channel")
+    if source != "UNIFORM":
+        layout.prop(settings, "density_invert")
+        layout.prop(settings, "density_contrast")
+
+
+def draw_edges(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The object of the lines between cells."""
+    layout.active = settings.make_edges
+    layout.prop(settings, "edge_kind", text="Kind")
+    layout.prop(settings, "edge_radius")
+
+
+def draw_cells(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The mesh of the cells."""
+    layout.active = settings.make_cells
+    layout.prop(settings, "gap")
+    layout.prop(settings, "thickness")
+    column = layout.column()
+    column.active = settings.thickness > 0.0
+    column.prop(settings, "inset")
+    column.prop(settings, "underside")
+
+
+def draw_centres(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The points at the centres, and what stands on them."""
+    layout.active = settings.make_centres
+    draw_object(layout, settings, "instance_object")
+    column = layout.column()
+    column.active = bool(settings.instance_object)
+    column.prop(settings, "instance_scale", text="Scale")
+
+
+def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:
+    """Names of what is written on the mesh itself."""
+    layout.prop(settings, "cell_attribute", text="Cell")
+    layout.prop(settings, "distance_attribute", text="Distance")
+    column = layout.column()
+    column.active = settings.density_source != "UNIFORM"
+    column.prop(settings, "density_attribute", text="Density")
+
+
+def draw_distance_sources(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """Where distances are measured from, and how far."""
+    layout.prop(settings, "sources")
+    if settings.sources == "VERTEX_GROUP":
+        layout.prop_search(settings, "sources_group", item, "vertex_groups", text="Group", icon="GROUP_VERTEX")
+    elif settings.sources == "EMPTIES":
+        if _is_name(settings, "sources_collection"):
+            layout.prop_search(settings, "sources_collection", bpy.data, "collections")
+        else:
+            layout.prop(settings, "sources_collection")
+    layout.prop(settings, "limit")
+
+
+def draw_object(layout: bpy.types.UILayout, settings: Any, name: str) -> None:
+    """A choice among objects: a pointer on the object's settings, a name on an operator."""
+    if _is_name(settings, name):
+        layout.prop_search(settings, name, bpy.data, "objects")
+    else:
+        layout.prop(settings, name)
+
+
+def _is_name(settings: Any, name: str) -> bool:
+    return bool(settings.bl_rna.properties[name].type == "STRING")
