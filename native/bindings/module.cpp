@@ -6,6 +6,7 @@ namespace saddleback::bindings {
 
 void bind_job(py::module_& m);
 void bind_mesh(py::module_& m);
+void bind_read_mesh(py::module_& m);
 void bind_repair(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
@@ -45,6 +46,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_errors(m);
   bind_job(m);
   bind_mesh(m);
+  bind_read_mesh(m);
   bind_repair(m);
   bind_surface(m);
   bind_graph(m);

@@ -65,8 +65,11 @@ std::uint64_t hash_mesh(std::span<const Vec3> positions, std::span<const Triangl
 }  // namespace
 
 Mesh::Mesh(std::span<const double> xyz, std::span<const Index> triangles, Job* job)
+    : Mesh(xyz, triangles, JobStage(job, "Checking the mesh")) {}
+
+Mesh::Mesh(std::span<const double> xyz, std::span<const Index> triangles, const JobStage& stage)
     : positions_(copy_positions(xyz)), triangles_(copy_triangles(triangles)) {
-  const JobStage stage(job, "Checking the mesh");
+  stage.check();
   check_faces(positions_, triangles_);
   stage.update(0.15);
   {

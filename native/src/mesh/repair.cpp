@@ -183,8 +183,7 @@ RepairResult repair(std::span<const double> xyz, std::span<const Index> triangle
   // Copies made by an earlier repair are welded and split again on the way: that is no change.
   if (is_unchanged(xyz, triangles, result)) report.changes.clear();
   stage.update(0.85);
-  RepairResult repaired{Mesh(result.xyz, result.triangles), std::move(report)};
-  stage.update(1.0);
+  RepairResult repaired{Mesh(result.xyz, result.triangles, stage.part(0.85, 1)), std::move(report)};
   return repaired;
 }
 
