@@ -18,8 +18,9 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-for folder in ("blend-samples/scene", "addon", "build/python"):
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / folder))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blend-samples/scene"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "addon"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "build/python"))
 
 import looks
 import studio

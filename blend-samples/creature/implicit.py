@@ -122,10 +122,11 @@ def sample_grid(parts: list[Tube], cell: float) -> tuple[Array, Array]:
 
 
 def without_pinches(grid: Array) -> Array:
-    """The grid with corners filled in, and never emptied, so that this ends, wherever surface nets would touch themselves along an edge or at a vertex.
+    """The grid with corners filled in wherever surface nets would touch themselves along an edge or at a vertex.
 
     Along an edge: at a face of the grid whose inside corners are diagonal neighbours. At a vertex: in a cell whose only
-    inside corners, or only outside corners, are the two ends of its long diagonal.
+    inside corners, or only outside corners, are the two ends of its long diagonal. Corners are only ever filled, never
+    emptied, so this ends.
     """
     grid = grid.copy()
     barely = 1e-3

@@ -13,10 +13,12 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-for folder in ("blend-samples/scene", "addon", "build/python"):
-    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / folder))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blend-samples/scene"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "build/python"))
 
 import looks
+import palette
 import studio
 import subject as models
 
@@ -52,8 +54,6 @@ def ramp_material(
     name: str, attribute: str, stops: list[tuple[float, str]], scale: float, lines: float = 0.0
 ) -> bpy.types.Material:
     """Colour by a vertex attribute divided by `scale`; with `lines`, dark isolines at that spacing."""
-    import palette
-
     material = studio.principled(name, (0.5, 0.5, 0.5), Roughness=0.5, Specular=0.3)
     tree = material.node_tree
     shader = tree.nodes["Principled BSDF"]
