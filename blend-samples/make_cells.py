@@ -26,7 +26,7 @@ import looks
 import studio
 import subject as models
 
-WIDTH, HEIGHT, SAMPLES = 1280, 960, 10
+WIDTH, HEIGHT, SAMPLES = 1280, 960, 8
 ROLE = "saddleback_role"  # on the add-on's output objects: "edges", "cells", "centres"
 
 
@@ -68,7 +68,7 @@ def tessellate(subject: bpy.types.Object, paint: models.Paint, count: int) -> No
         "thickness": 0.11 * radius,
         "make_centres": True,
         "instance_object": looks.make_stud(looks.gold()).name,
-        "instance_scale": 0.13,
+        "instance_scale": 0.2,
     }
     bpy.ops.saddleback.tessellate(**settings)
 
@@ -83,7 +83,6 @@ def repaired(subject: bpy.types.Object) -> None:
     except saddleback.MeshError as error:
         say(f"The mesh needs repair: {error}")
     bpy.ops.saddleback.repair()
-    say(f"Repaired: {len(models.triangles(subject)):,} triangles are left")
 
 
 def output(subject: bpy.types.Object, role: str) -> bpy.types.Object:

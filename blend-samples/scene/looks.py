@@ -62,9 +62,9 @@ def make_stud(material: bpy.types.Material) -> bpy.types.Object:
     """A small dome of radius 1 that stands on z = 0; hidden, since only its instances are to be seen."""
     angle = np.linspace(0, np.pi / 2, 7)
     turn = np.linspace(0, 2 * np.pi, 17)[:-1]
-    radius, height = np.cos(angle[:-1])[:, None], 0.8 * np.sin(angle[:-1])[:, None]
+    radius, height = np.cos(angle[:-1])[:, None], np.sin(angle[:-1])[:, None]
     rings = np.stack([radius * np.cos(turn), radius * np.sin(turn), height + 0 * turn], axis=-1).reshape(-1, 3)
-    vertices = np.vstack([rings, [[0, 0, 0.8]]])
+    vertices = np.vstack([rings, [[0, 0, 1.0]]])
     i, j = np.meshgrid(np.arange(5), np.arange(16), indexing="ij")
     k = (j + 1) % 16
     quads = np.stack([16 * i + j, 16 * i + k, 16 * i + 16 + k, 16 * i + 16 + j], axis=-1).reshape(-1, 4).tolist()
