@@ -1,6 +1,7 @@
 #pragma once
 // The nearest point of a mesh.
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -26,12 +27,20 @@ class NearestSurface {
     Index first;  ///< leaf: its first place in faces_; inner node: its second child (the first one follows it)
     Index count;  ///< faces of a leaf, 0 for an inner node
   };
-  Index build(Index begin, Index end, const JobStage& stage);
+  struct Item {  ///< of the build: a face by its centre
+    std::array<float, 3> centre;
+    Index face;
+  };
+  Index build(std::span<Item> items, Index begin, Index end, const JobStage& stage);
+  void make_leaf(Node& node, std::span<const Item> items, Index begin, Index end);
+  static Index halve(std::span<Item> items);
+  Vec3 to_box_units(const Vec3& point) const;
   double squared_distance(const Node& node, const Vec3& local) const;
 
   const Mesh& mesh_;
-  Vec3 centre_ = Vec3::Zero();  ///< boxes are relative to it, so that float32 resolves them
-  double slack_ = 0;            ///< boxes are wider by this, more than all rounding
+  Vec3 centre_ = Vec3::Zero();  ///< boxes are relative to it and in units of the mesh's extent, as float32 wants them
+  double unit_ = 1;
+  double slack_ = 0;  ///< boxes are wider by this, more than all rounding
   std::vector<Index> faces_;
   std::vector<Node> nodes_;
 };

@@ -33,8 +33,8 @@ struct TraceEnd {
 /// goes on with half the total angle on either side (Polthier and Schmies 1998); at the boundary, edge or vertex, it stops.
 /// The polyline has one point for each edge or vertex crossed. An angle that leaves the surface at once (boundary) gives
 /// the start with hit_boundary; length 0 gives the start.
-/// \throw InputError for a point off the mesh, a negative or non-finite length, a non-finite angle, a curve of more than
-/// ten million faces. O(faces crossed).
+/// \throw InputError for a point off the mesh, a negative or non-finite length, a non-finite angle, a curve over more than
+/// a million faces. O(faces crossed).
 TraceResult trace(const Mesh& mesh, const SurfacePoint& start, double angle, double length);
 
 /// As above, the direction given as a vector in space, projected onto the surface at the start: onto the face's plane or,

@@ -1,8 +1,8 @@
 // Nearest points on a mesh.
 //
-// The hierarchy halves the faces along a Hilbert curve, so it is built by one sort and one sweep; its boxes are float32,
-// relative to the mesh's centre and widened beyond every rounding, so that no box is ever passed over that holds a nearest
-// point. Queries go through it in Hilbert order too, each starting from the face that the one before it found.
+// The hierarchy halves the faces at the median of their centres along the longest side; its boxes are float32, relative to
+// the mesh's centre and widened beyond every rounding, so that no box is ever passed over that holds a nearest point.
+// Queries go through it in the order of a Hilbert curve, each starting from the face that the one before it found.
 //
 // Of equally near points the one in the smallest face wins. Since a point on an edge or vertex is computed with different
 // rounding in each of its faces, such a point is first moved exactly onto the edge or vertex, then to its smallest face.
@@ -36,39 +36,35 @@ struct Nearest {
   Vec3 barycentric = Vec3::Zero();
 };
 
-/// Nearest point of the segment from a to a + ab to the origin, as a share of ab.
-double nearest_on_segment(const Vec3& a, const Vec3& ab) { return std::clamp(-a.dot(ab) / ab.squaredNorm(), 0.0, 1.0); }
-
 /// Lowers `best` to the nearest point of the face when that is nearer, or as near in a smaller face.
 void consider(const Mesh& mesh, Index face, const Vec3& query, Nearest& best) {
   const Triangle& t = mesh.triangles()[face];
-  const std::array<Vec3, 3> p{mesh.position(t[0]) - query, mesh.position(t[1]) - query, mesh.position(t[2]) - query};
-  const auto offer = [&](const Vec3& b, const Vec3& at) {
-    const double squared = at.squaredNorm();
+  const std::array<Vec3, 3> corner{mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
+  // Edges before the query comes in: it may be so far away that all corners would look the same.
+  const std::array<Vec3, 3> edge{corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
+  const Vec3 from_query = corner[0] - query;
+  const auto offer = [&](const Vec3& b) {
+    const double squared = (from_query + b[1] * edge[0] - b[2] * edge[2]).squaredNorm();
     if (squared < best.squared_distance || (squared == best.squared_distance && face < best.face))
       best = {squared, face, b};
   };
-  // Twice the signed areas of the three triangles that the query's foot makes with the edges, times that of the face.
-  const Vec3 ab = p[1] - p[0], ac = p[2] - p[0], normal = ab.cross(ac);
+  // Barycentric coordinates of the query's foot, times the square of twice the face's area.
+  const Vec3 normal = edge[2].cross(edge[0]);
   const double whole = normal.squaredNorm();
-  const double second = normal.dot(p[0].cross(ac)) * -1, third = normal.dot(ab.cross(p[0])) * -1;
+  const double second = normal.dot(edge[2].cross(from_query)) * -1, third = normal.dot(edge[0].cross(from_query)) * -1;
   const Vec3 share(whole - second - third, second, third);
   // A point outside is nearest to one of the edges that it sees. Signs within rounding count as seen: then both the inside
   // and the edge are tried, and the nearer wins.
   const double rounding = 1e-9 * whole;
-  if (share.minCoeff() > -rounding) {
-    const Vec3 b = normalised_barycentric(share);
-    offer(b, b[0] * p[0] + b[1] * p[1] + b[2] * p[2]);
-  }
+  if (share.minCoeff() > -rounding) offer(normalised_barycentric(share));
   for (int i = 0; i < 3; ++i) {
     if (share[i] > rounding) continue;
     const int from = (i + 1) % 3, to = (i + 2) % 3;
-    const Vec3 edge = p[to] - p[from];
-    const double s = nearest_on_segment(p[from], edge);
+    const double along = (query - corner[from]).dot(edge[from]) / edge[from].squaredNorm();
     Vec3 b = Vec3::Zero();
-    b[from] = 1 - s;
-    b[to] = s;
-    offer(b, s == 1 ? p[to] : Vec3(p[from] + s * edge));
+    b[to] = std::clamp(along, 0.0, 1.0);
+    b[from] = 1 - b[to];
+    offer(b);
   }
 }
 
@@ -105,6 +101,8 @@ Vec3 pulled_in(const Vec3& query) {
 
 }  // namespace
 
+Vec3 NearestSurface::to_box_units(const Vec3& point) const { return (point - centre_) / unit_; }
+
 NearestSurface::NearestSurface(const Mesh& mesh, const JobStage& stage) : mesh_(mesh) {
   Vec3 low = mesh.position(0), high = low;
   for (const Vec3& p : mesh.positions()) {
@@ -112,66 +110,93 @@ NearestSurface::NearestSurface(const Mesh& mesh, const JobStage& stage) : mesh_(
     high = high.cwiseMax(p);
   }
   centre_ = 0.5 * (low + high);
-  // Float32 rounds to 6e-8 of a coordinate, double to 1e-16 of the largest one: four times both.
+  unit_ = (high - low).maxCoeff();
+  // Float32 rounds to 6e-8 of a coordinate, double to 1e-16 of the largest one: four times both and more.
   const double largest = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
-  slack_ = 2.5e-7 * (high - low).maxCoeff() + 1e-15 * largest;
+  slack_ = 2.5e-7 + 1e-15 * largest / unit_;
 
-  const HilbertCurve curve(mesh.positions());
-  std::vector<std::uint64_t> keys(static_cast<std::size_t>(mesh.face_count()));
-  for (Index f = 0; f < mesh.face_count(); ++f) keys[f] = curve.key(position(mesh, {f, Vec3::Constant(1.0 / 3)}));
+  std::vector<Item> items(static_cast<std::size_t>(mesh.face_count()));
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const Vec3 centre = to_box_units(position(mesh, {f, Vec3::Constant(1.0 / 3)}));
+    items[f] = {{static_cast<float>(centre.x()), static_cast<float>(centre.y()), static_cast<float>(centre.z())}, f};
+  }
   stage.check();
-  faces_ = order_of(keys);
-  nodes_.reserve(faces_.size());
-  build(0, mesh.face_count(), stage);
+  faces_.resize(items.size());
+  nodes_.reserve(items.size());
+  build(items, 0, mesh.face_count(), stage);
 }
 
-Index NearestSurface::build(Index begin, Index end, const JobStage& stage) {
+Index NearestSurface::build(std::span<Item> items, Index begin, Index end, const JobStage& stage) {
   const Index index = static_cast<Index>(nodes_.size());
   nodes_.emplace_back();
-  if (end - begin > k_leaf_size) {
-    if (end - begin > 10000) stage.check();
-    const Index middle = begin + (end - begin) / 2;
-    build(begin, middle, stage);
-    const Index second = build(middle, end, stage);
-    Node& node = nodes_[index];
-    const Node &a = nodes_[index + 1], &b = nodes_[second];
-    for (int i = 0; i < 3; ++i) {
-      node.low[i] = std::min(a.low[i], b.low[i]);
-      node.high[i] = std::max(a.high[i], b.high[i]);
-    }
-    node.first = second;
-    node.count = 0;
+  if (end - begin <= k_leaf_size) {
+    make_leaf(nodes_[index], items, begin, end);
     return index;
   }
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (Index i = begin; i < end; ++i)
-    for (const Index v : mesh_.triangles()[faces_[i]]) {
-      low = low.cwiseMin(mesh_.position(v) - centre_);
-      high = high.cwiseMax(mesh_.position(v) - centre_);
-    }
+  if (end - begin > 10000) stage.check();
+  const Index middle = halve(items.subspan(begin, end - begin)) + begin;
+  build(items, begin, middle, stage);
+  const Index second = build(items, middle, end, stage);
   Node& node = nodes_[index];
+  const Node &a = nodes_[index + 1], &b = nodes_[second];
+  for (int i = 0; i < 3; ++i) {
+    node.low[i] = std::min(a.low[i], b.low[i]);
+    node.high[i] = std::max(a.high[i], b.high[i]);
+  }
+  node.first = second;
+  node.count = 0;
+  return index;
+}
+
+/// Puts the half that lies lower along the longest side of the centres' box first.
+Index NearestSurface::halve(std::span<Item> items) {
+  std::array<float, 3> low = items[0].centre, high = low;
+  for (const Item& item : items)
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], item.centre[i]);
+      high[i] = std::max(high[i], item.centre[i]);
+    }
+  int axis = 0;
+  for (int i = 1; i < 3; ++i)
+    if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
+  const auto middle = items.begin() + items.size() / 2;
+  std::nth_element(items.begin(), middle, items.end(), [axis](const Item& a, const Item& b) {
+    return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.face < b.face;
+  });
+  return static_cast<Index>(items.size() / 2);
+}
+
+void NearestSurface::make_leaf(Node& node, std::span<const Item> items, Index begin, Index end) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (Index i = begin; i < end; ++i) {
+    faces_[i] = items[i].face;
+    for (const Index v : mesh_.triangles()[faces_[i]]) {
+      const Vec3 local = to_box_units(mesh_.position(v));
+      low = low.cwiseMin(local);
+      high = high.cwiseMax(local);
+    }
+  }
   for (int i = 0; i < 3; ++i) {
     node.low[i] = static_cast<float>(low[i] - slack_);
     node.high[i] = static_cast<float>(high[i] + slack_);
   }
   node.first = begin;
   node.count = end - begin;
-  return index;
 }
 
-/// From a point (relative to the centre) to the box, never too large.
+/// From a point (in box units) to the box, in mesh units, never too large.
 double NearestSurface::squared_distance(const Node& node, const Vec3& local) const {
   double sum = 0;
   for (int i = 0; i < 3; ++i) {
-    const double outside = std::max({node.low[i] - local[i], 0.0, local[i] - node.high[i]});
+    const double outside = std::max(0.0, std::max(node.low[i] - local[i], local[i] - node.high[i]));
     sum += outside * outside;
   }
   constexpr double k_rounding = 1e-14;  // of the few operations here
-  return sum * (1 - k_rounding);
+  return sum * (1 - k_rounding) * (unit_ * unit_);
 }
 
 SurfacePoint NearestSurface::nearest(const Vec3& wanted, Index hint) const {
-  const Vec3 query = pulled_in(wanted), local = query - centre_;
+  const Vec3 query = pulled_in(wanted), local = to_box_units(query);
   Nearest best;
   if (hint != k_none) consider(mesh_, hint, query, best);
   struct Pending {

@@ -23,9 +23,9 @@
 namespace saddleback {
 namespace {
 
-/// More faces than any curve of use crosses, and less than a second of work: makes every finite length end. It cannot be
+/// More faces than any curve of use crosses, and about a quarter of a second of work: makes every finite length end. It cannot be
 /// derived from length and mean edge, because a curve may wind round a thin tube any number of times for each of them.
-constexpr std::int64_t k_max_faces = 10'000'000;
+constexpr std::int64_t k_max_faces = 1'000'000;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -260,7 +260,10 @@ class Walk {
   }
 
   bool stop(const SurfacePoint& point, const FlatFace& c, bool hit_boundary) {
-    hit_boundary = hit_boundary && length_ - travelled_ > k_snap * c.size;
+    if (hit_boundary && length_ - travelled_ <= k_snap * c.size) {  // what is left is rounding
+      hit_boundary = false;
+      travelled_ = length_;
+    }
     // From this chart to the face's: edge 0 of the face is an edge of ours, on which the angle is measured.
     const int zero = (3 - halfedge_ % 3) % 3;
     const Vec2 axis = (c.corner[(zero + 1) % 3] - c.corner[zero]).normalized();
