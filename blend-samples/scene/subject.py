@@ -29,19 +29,36 @@ def open_subject(path: Path, up: str) -> bpy.types.Object:
     if path.suffix.lower() == ".blend":
         return _from_blend(path)
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-    _import(path)
-    meshes = [item for item in bpy.context.scene.objects if item.type == "MESH" and len(item.data.polygons)]
-    if not meshes:
-        raise SystemExit(f"{path}: no faces could be read from it.")
-    subject = max(meshes, key=lambda item: len(item.data.polygons))
-    for other in list(bpy.context.scene.objects):
-        if other != subject:
-            bpy.data.objects.remove(other)
-    if up == "y" and path.suffix.lower() != ".obj":  # Blender's obj import turns Y up to Z up by itself
-        subject.rotation_mode = "XYZ"
+    vertices, triangles = _read_arrays(path)
+    mesh = bpy.data.meshes.new(path.stem)
+    mesh.from_pydata(vertices.tolist(), [], triangles.tolist())
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(triangles), bool))
+    mesh.update()
+    subject = bpy.data.objects.new(path.stem, mesh)
+    bpy.context.scene.collection.objects.link(subject)
+    if up == "y":
         subject.rotation_euler = (math.pi / 2, 0, 0)
     _activate(subject)
     return subject
+
+
+def _read_arrays(path: Path) -> tuple[Array, NDArray[np.int32]]:
+    """Vertices and triangles of a mesh file, repaired where the library would refuse them."""
+    import saddleback as sb
+
+    try:
+        vertices, triangles = sb.read_arrays(path)
+    except sb.Error as error:
+        raise SystemExit(f"{error}.") from error
+    try:
+        sb.Mesh(vertices, triangles)
+        return vertices, triangles
+    except sb.MeshError as error:
+        print(f"   The mesh needs repair: {error}", flush=True)
+    mesh, report = sb.repair(vertices, triangles)
+    changes = ", ".join(f"{kind.replace('_', ' ')} {number:,}" for kind, number in report.changes.items() if number)
+    print(f"   Repaired: {changes}; {len(mesh.triangles):,} triangles are left", flush=True)
+    return mesh.vertices, mesh.triangles
 
 
 def _from_blend(path: Path) -> bpy.types.Object:
@@ -72,56 +89,6 @@ def _activate(subject: bpy.types.Object) -> None:
     for item in bpy.context.scene.objects:
         item.select_set(item == subject)
     view_layer.objects.active = subject
-
-
-def _import(path: Path) -> None:
-    kind = path.suffix.lower()
-    name = str(path.resolve())
-    if kind == ".off":
-        vertices, faces = read_off(path)
-        mesh = bpy.data.meshes.new(path.stem)
-        mesh.from_pydata(vertices, [], faces)
-        mesh.update()
-        bpy.context.scene.collection.objects.link(bpy.data.objects.new(path.stem, mesh))
-        return
-    newer, older = {
-        ".obj": ("obj_import", None),
-        ".ply": ("ply_import", "ply"),
-        ".stl": ("stl_import", "stl"),
-    }.get(kind, (None, None))
-    if newer is None:
-        raise SystemExit(f"{path}: only .obj, .ply, .off, .stl and .blend are read.")
-    try:
-        if newer in dir(bpy.ops.wm):
-            options = {} if kind == ".obj" else {"forward_axis": "Y", "up_axis": "Z"}
-            getattr(bpy.ops.wm, newer)(filepath=name, **options)
-        else:
-            getattr(bpy.ops.import_mesh, older)(filepath=name)
-    except (RuntimeError, ValueError) as error:
-        raise SystemExit(f"{path}: Blender could not read it ({error}).") from error
-
-
-def read_off(path: Path) -> tuple[list[list[float]], list[list[int]]]:
-    """Vertices and polygons of an OFF file."""
-    lines = (line.split("#")[0].split() for line in path.read_text(errors="replace").splitlines())
-    words = [word for line in lines for word in line]
-    try:
-        if words[0] != "OFF":
-            raise ValueError("the first word is not OFF")
-        vertex_count, face_count, at = int(words[1]), int(words[2]), 4
-        end = at + 3 * vertex_count
-        vertices = np.array(words[at:end], float).reshape(vertex_count, 3).tolist()
-        faces, at = [], end
-        for _ in range(face_count):
-            size = int(words[at])
-            faces.append([int(word) for word in words[at + 1 : at + 1 + size]])
-            at += 1 + size
-    except (ValueError, IndexError) as error:
-        raise SystemExit(f"{path}: not an OFF file that can be read ({error}).") from error
-    bad = next((face for face in faces if any(not 0 <= corner < vertex_count for corner in face)), None)
-    if bad:
-        raise SystemExit(f"{path}: the face {bad} names a vertex that is not there ({vertex_count} vertices).")
-    return vertices, faces
 
 
 def positions(subject: bpy.types.Object) -> Array:
