@@ -7,18 +7,13 @@ namespace {
 
 double slope(const EdgeLine& line) { return line.at_end - line.at_start; }
 
-/// Least just after the start: lower there, or as low and falling faster, or the same line of a smaller site.
-bool starts_below(const EdgeLine& a, const EdgeLine& b) {
-  if (a.at_start != b.at_start) return a.at_start < b.at_start;
-  if (slope(a) != slope(b)) return slope(a) < slope(b);
-  return a.site < b.site;
-}
-
 }  // namespace
 
 void lower_envelope(const std::vector<EdgeLine>& lines, std::vector<EdgePiece>& pieces) {
   pieces.clear();
-  const EdgeLine* current = &*std::min_element(lines.begin(), lines.end(), starts_below);
+  const EdgeLine* current = &*std::min_element(lines.begin(), lines.end(), [](const EdgeLine& a, const EdgeLine& b) {
+    return a.at_start != b.at_start ? a.at_start < b.at_start : a.site < b.site;
+  });
   pieces.push_back({current->site, 0});
   while (true) {
     // The first line to cross below the current one: the crossing's place depends on these two lines alone.
@@ -37,6 +32,11 @@ void lower_envelope(const std::vector<EdgeLine>& lines, std::vector<EdgePiece>& 
     pieces.push_back({next->site, at});
     current = next;
   }
+  // At the end, too, a tie belongs to the smaller site: all edges at a mesh vertex name the same site there.
+  const EdgeLine& at_end = *std::min_element(lines.begin(), lines.end(), [](const EdgeLine& a, const EdgeLine& b) {
+    return a.at_end != b.at_end ? a.at_end < b.at_end : a.site < b.site;
+  });
+  if (at_end.site != current->site) pieces.push_back({at_end.site, 1});
   const auto last = static_cast<Index>(pieces.size()) - 1;
   for (Index i = 1; i <= last; ++i) {
     pieces[i].begin = std::clamp(pieces[i].begin, pieces[i - 1].begin + k_least_gap, 1 - (last + 1 - i) * k_least_gap);

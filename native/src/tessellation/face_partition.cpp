@@ -167,7 +167,24 @@ bool FacePartition::read_side(int side, std::vector<Index>& sites, std::vector<I
   return true;
 }
 
+/// The mean of the inner vertices, else of those on sides, else the centroid.
+Vec3 FacePartition::middle() const {
+  std::vector<std::uint8_t> used(vertices_.size(), 0);
+  for (const Piece& piece : pieces_) {
+    for (const Index v : piece.loop) used[v] = 1;
+  }
+  Vec3 inner = Vec3::Zero(), outer = Vec3::Zero();
+  for (std::size_t v = 3; v < vertices_.size(); ++v) {
+    if (used[v]) (vertices_[v].side == k_inside ? inner : outer) += vertices_[v].barycentric;
+  }
+  const Vec3 sum = inner.sum() > 0 ? inner : outer.sum() > 0 ? outer : Vec3::Ones();
+  // Strictly inside, so that no piece of the star is without area.
+  const Vec3 mean = (sum / sum.sum()).cwiseMax(k_least_gap);
+  return mean / mean.sum();
+}
+
 void FacePartition::build_star(const std::array<Side, 3>& sides) {
+  const Vec3 centre_place = middle();
   vertices_.clear();
   pieces_.clear();
   for (int corner = 0; corner < 3; ++corner) vertices_.push_back({Vec3::Unit(corner), 0, k_corner});
@@ -189,7 +206,7 @@ void FacePartition::build_star(const std::array<Side, 3>& sides) {
     return;
   }
   const auto centre = static_cast<Index>(vertices_.size());
-  vertices_.push_back({Vec3::Constant(1.0 / 3), 0, k_inside});
+  vertices_.push_back({centre_place, 0, k_inside});
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const std::size_t at_ring = (first + i) % ring.size();
     if (changes_at(at_ring)) {

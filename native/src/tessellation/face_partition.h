@@ -40,8 +40,8 @@ class FacePartition {
   /// False when a vertex on the side lies between pieces of one site (possible only by rounding).
   bool read_side(int side, std::vector<Index>& sites, std::vector<Index>& breaks) const;
 
-  /// Replaces the pieces by a star: each run of the boundary is joined to one inner vertex. Used where the subdivision's
-  /// sides do not agree with what the edges say (rounding at a tie); `runs[i]` lists side i's breaks and sites in order.
+  /// Replaces the pieces by a star: each run of the boundary is joined to one inner vertex, in the middle of where pieces
+  /// met before. Used where the subdivision's sides do not agree with what the edges say (rounding at a tie).
   struct Side {
     std::vector<double> breaks;  ///< from corner i, 0 to 1
     std::vector<Index> sites;    ///< one more than breaks
@@ -52,6 +52,7 @@ class FacePartition {
   void insert(const FacePlane& plane);
   void cut(const Piece& piece, const FacePlane& plane, std::vector<Piece>& kept, std::vector<Piece>& taken);
   Index crossing(Index a, Index b);
+  Vec3 middle() const;
   void merge(std::vector<Piece>& taken);
   void drop_idle_side_vertices();
 

@@ -1,0 +1,177 @@
+"""Relaxation: the energy never rises, cells follow the paint, nothing depends on threads or scale."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import meshes
+import saddleback as sb
+
+CONNECTED = [c for c in meshes.good() if len(c.vertices) >= 100]
+
+
+@pytest.mark.parametrize("case", CONNECTED, ids=str)
+def test_the_energy_never_rises(case: meshes.Case) -> None:
+    graph = sb.SaddleVertexGraph(case.mesh, k=min(40, len(case.vertices)))
+    relaxed = sb.centroidal_voronoi(graph, count=20, max_iterations=15, seed=3)
+    assert len(relaxed.energy) == relaxed.iterations + 1
+    assert (np.diff(relaxed.energy) <= 0).all()
+    assert relaxed.energy[-1] < relaxed.energy[0]
+    assert len(relaxed.sites) == 20
+    assert relaxed.cells.areas.sum() == pytest.approx(case.mesh.area, rel=1e-9)
+    assert (relaxed.cells.areas > 0).all()
+
+
+def test_the_plane_comes_near_the_honeycomb() -> None:
+    """Scale-free energy E n / (2 G A^2), G = 5 / (36 sqrt 3): 1 for regular hexagons without a border."""
+    mesh = sb.Mesh(*meshes.grid(40, 40))
+    relaxed = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh, k=60), count=100, max_iterations=80)
+    assert relaxed.energy[-1] * 100 / (2 * 5 / (36 * np.sqrt(3))) < 1.05
+    areas = relaxed.cells.areas
+    assert areas.std() / areas.mean() < 0.15
+
+
+def test_the_energy_is_the_integral_of_the_squared_distance() -> None:
+    """One site in the middle of the unit square: 1/6. With density 1 + x: the integral of (1 + x)^2 r^2."""
+    mesh = sb.Mesh(*meshes.grid(9, 9))
+    graph = sb.SaddleVertexGraph(mesh, k=81)
+    centre = sb.project(mesh, [[0.5, 0.5, 0.0]])
+    plain = sb.centroidal_voronoi(graph, sites=centre, max_iterations=0)
+    assert plain.energy.tolist() == pytest.approx([1 / 6], rel=1e-6)
+    assert plain.iterations == 0
+    weighted = sb.centroidal_voronoi(graph, sites=centre, density=1 + mesh.vertices[:, 0], max_iterations=0)
+    # u = x - 1/2: integral of (3/2 + u)^2 (u^2 + v^2) over the square
+    expected = 9 / 4 / 6 + (1 / 80 + 1 / 144)
+    assert weighted.energy[0] == pytest.approx(expected, rel=1e-6)
+
+
+def test_one_site_goes_to_the_weighted_middle() -> None:
+    mesh = sb.Mesh(*meshes.grid(21, 21))
+    graph = sb.SaddleVertexGraph(mesh, k=441)
+    density = 1 + mesh.vertices[:, 0]
+    relaxed = sb.centroidal_voronoi(graph, sites=[25], density=density, max_iterations=50, tolerance=0)
+    x = np.linspace(0, 1, 200001)
+    middle = ((1 + x) ** 2 * x).sum() / ((1 + x) ** 2).sum()
+    np.testing.assert_allclose(relaxed.sites.positions(mesh)[0], [middle, 0.5, 0], atol=1e-5)
+
+
+def test_painted_density_is_the_number_of_cells_per_area() -> None:
+    """Paint from 1 to 8 across a plane, 2,000 cells: cells per area in 40 strips against the paint."""
+    mesh = sb.Mesh(*meshes.grid(130, 130, 0.2))
+    paint = 1 + 7 * mesh.vertices[:, 0]
+    relaxed = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh, k=40), count=2000, density=paint, max_iterations=25)
+    x = relaxed.sites.positions(mesh)[:, 0]
+    counts, edges = np.histogram(x, bins=40, range=(0, 1))
+    wanted = 1 + 7 * (edges[:-1] + edges[1:]) / 2
+    assert np.corrcoef(counts, wanted)[0, 1] >= 0.97
+    per_cell = np.corrcoef(1 / relaxed.cells.areas, 1 + 7 * x)[0, 1]
+    assert per_cell >= 0.95
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1e3])
+def test_scale_changes_nothing_else(scale: float) -> None:
+    vertices, triangles = meshes.torus(40, 16)
+    results = []
+    for factor in (1.0, scale):
+        mesh = sb.Mesh(vertices * factor, triangles)
+        graph = sb.SaddleVertexGraph(mesh, k=40)
+        relaxed = sb.centroidal_voronoi(graph, count=30, max_iterations=5)
+        results.append((relaxed.sites.positions(mesh) / factor, relaxed.energy / factor**4))
+    np.testing.assert_allclose(results[0][0], results[1][0], atol=1e-4)
+    np.testing.assert_allclose(results[0][1], results[1][1], rtol=1e-5)
+
+
+def test_the_seed_decides_and_threads_do_not() -> None:
+    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.torus(40, 16)), k=30)
+
+    def places(seed: int, threads: int) -> bytes:
+        relaxed = sb.centroidal_voronoi(graph, count=25, max_iterations=6, seed=seed, threads=threads)
+        return relaxed.sites.barycentric.tobytes() + relaxed.energy.tobytes() + relaxed.cells.areas.tobytes()
+
+    assert places(1, 1) == places(1, 2) == places(1, 8)
+    assert places(1, 1) != places(2, 1)
+
+
+def test_tolerance_ends_it() -> None:
+    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.grid(20, 20)), k=60)
+    relaxed = sb.centroidal_voronoi(graph, count=6, max_iterations=500, tolerance=1e-3)
+    assert relaxed.converged
+    assert relaxed.iterations < 500
+    assert relaxed.stop_reason in ("tolerance", "no step lowers the energy")
+    stopped = sb.centroidal_voronoi(graph, count=6, max_iterations=1, tolerance=0)
+    assert not stopped.converged
+    assert stopped.stop_reason == "max_iterations"
+
+
+def test_every_part_gets_a_cell() -> None:
+    mesh = sb.Mesh(*meshes.two_components())
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    relaxed = sb.centroidal_voronoi(graph, count=2, max_iterations=3)
+    assert np.isfinite(relaxed.cells.vertex_distance).all()
+    with pytest.raises(sb.InputError, match="2 separate parts"):
+        sb.centroidal_voronoi(graph, count=1)
+
+
+def test_unpainted_regions_keep_their_cells() -> None:
+    """Density 0 over half of the surface: those sites have no reason to move, and nothing becomes NaN."""
+    mesh = sb.Mesh(*meshes.grid(20, 20))
+    paint = np.where(mesh.vertices[:, 0] > 0.5, 1.0, 0.0)
+    relaxed = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh, k=40), sites=np.arange(0, 400, 23), density=paint, max_iterations=10)
+    assert np.isfinite(relaxed.sites.positions(mesh)).all()
+    assert (np.diff(relaxed.energy) <= 0).all()
+
+
+def test_progress_rises_and_cancel_is_quick() -> None:
+    mesh = sb.Mesh(*meshes.grid(150, 150))
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    job, seen, ended = sb.Job(), [], []
+
+    def run() -> None:
+        try:
+            sb.centroidal_voronoi(graph, count=300, max_iterations=1000, job=job)
+        except sb.Cancelled:
+            ended.append(time.perf_counter())
+
+    worker = threading.Thread(target=run)
+    worker.start()
+    while job.fraction < 0.005 and worker.is_alive():
+        seen.append(job.fraction)
+        time.sleep(0.01)
+    asked = time.perf_counter()
+    job.cancel()
+    worker.join()
+    assert seen == sorted(seen)
+    assert ended
+    assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({}, "sites, count"),
+        ({"count": 3, "sites": [0]}, "sites, count"),
+        ({"count": 0}, "count"),
+        ({"count": -5}, "count"),
+        ({"count": 9}, "more than the mesh has vertices"),
+        ({"count": 2.0}, "count"),
+        ({"count": 2, "density": [1.0] * 7}, "density"),
+        ({"count": 2, "density": [1.0] * 7 + [-1.0]}, "-1"),
+        ({"count": 2, "density": [1.0] * 7 + [np.nan]}, "nan"),
+        ({"count": 2, "density": [1.0] * 7 + [np.inf]}, "inf"),
+        ({"count": 2, "density": [0.0] * 8}, "density"),
+        ({"sites": [0], "density": [0.0] * 8}, "density"),
+        ({"count": 2, "method": "newton"}, "newton"),
+        ({"count": 2, "max_iterations": -1}, "max_iterations"),
+        ({"count": 2, "tolerance": -1.0}, "tolerance"),
+        ({"count": 2, "tolerance": np.nan}, "tolerance"),
+        ({"count": 2, "seed": -1}, "seed"),
+    ],
+)
+def test_bad_arguments(arguments: dict[str, object], words: str) -> None:
+    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()))
+    with pytest.raises(sb.InputError, match=words):
+        sb.centroidal_voronoi(graph, **arguments)

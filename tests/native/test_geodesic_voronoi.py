@@ -1,0 +1,245 @@
+"""Cells: they partition the surface, their boundaries are equidistant, nothing is lost in degenerate cases."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from exact import exact_distances, random_points
+from hypothesis import given
+from hypothesis import strategies as st
+
+import meshes
+import saddleback as sb
+
+
+def graph_of(case: meshes.Case, k: int = 40) -> sb.SaddleVertexGraph:
+    return sb.SaddleVertexGraph(case.mesh, k=min(k, len(case.vertices)))
+
+
+def triangle_areas(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def check(mesh: sb.Mesh, cells: sb.GeodesicVoronoi) -> None:
+    """Everything that holds for any sites on any mesh."""
+    count = len(cells.sites)
+    assert cells.areas.shape == (count,)
+    assert cells.areas.min() >= 0
+    assert cells.areas.sum() == pytest.approx(mesh.area, rel=1e-9)
+    assert ((cells.vertex_cell >= 0) & (cells.vertex_cell < count)).all()
+    assert np.isfinite(cells.vertex_distance).all()
+    check_edges(mesh, cells)
+    check_split(mesh, cells)
+
+
+def check_edges(mesh: sb.Mesh, cells: sb.GeodesicVoronoi) -> None:
+    np.testing.assert_allclose(cells.edge_surface.positions(mesh), cells.edge_points, rtol=0, atol=1e-9)
+    weights = cells.edge_surface.barycentric
+    assert (weights >= 0).all()
+    np.testing.assert_allclose(weights.sum(axis=1), 1, rtol=0, atol=1e-12)
+    assert (np.diff(cells.edge_offsets) >= 2).all()
+    assert (cells.edge_cells[:, 0] != cells.edge_cells[:, 1]).all()
+    starts, ends = cells.edge_points[cells.edge_offsets[:-1]], cells.edge_points[cells.edge_offsets[1:] - 1]
+    assert np.array_equal((starts == ends).all(axis=1) & cells.edge_closed, cells.edge_closed)
+
+
+def check_split(mesh: sb.Mesh, cells: sb.GeodesicVoronoi) -> None:
+    split = cells.split()
+    areas = triangle_areas(split.vertices, split.triangles)
+    per_cell = np.bincount(split.triangle_cell, areas, minlength=len(cells.sites))
+    np.testing.assert_allclose(per_cell, cells.areas, rtol=1e-7, atol=1e-12 * mesh.area)
+    old = split.vertex_origin >= 0
+    assert np.array_equal(split.vertices[old], mesh.vertices[split.vertex_origin[old]])
+    assert np.array_equal(np.flatnonzero(old), np.arange(len(mesh.vertices)))
+    # No crack, no overlap: the same surface again.
+    edges = np.sort(split.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    unique, uses = np.unique(edges, axis=0, return_counts=True)
+    assert uses.max() <= 2
+    characteristic = len(split.vertices) - len(unique) + len(split.triangles)
+    assert characteristic == len(mesh.vertices) - mesh.edge_count + len(mesh.triangles)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 17])
+@pytest.mark.parametrize("case", [c for c in meshes.good() if c.components == 1], ids=str)
+def test_cells_partition_the_surface(case: meshes.Case, count: int) -> None:
+    graph = graph_of(case)
+    if count > len(case.vertices):
+        count = len(case.vertices)
+    check(case.mesh, sb.geodesic_voronoi(graph, random_points(case.mesh, count, seed=count)))
+    vertices = np.random.default_rng(count).choice(len(case.vertices), count, replace=False)
+    check(case.mesh, sb.geodesic_voronoi(graph, vertices))
+
+
+@pytest.mark.parametrize("case", [c for c in meshes.good() if len(c.vertices) <= 200 and c.components == 1], ids=str)
+def test_every_vertex_a_site(case: meshes.Case) -> None:
+    cells = sb.geodesic_voronoi(graph_of(case), np.arange(len(case.vertices)))
+    check(case.mesh, cells)
+    assert np.array_equal(cells.vertex_cell, np.arange(len(case.vertices)))
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.3])
+def test_the_plane_has_euclidean_cells(jitter: float) -> None:
+    """Sites anywhere, disks that see everything: bisectors of the plane to the rounding of single-precision arcs."""
+    mesh = sb.Mesh(*meshes.grid(15, 15, jitter))
+    sites = random_points(mesh, 30, seed=5)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=225), sites)
+    check(mesh, cells)
+    centres = sites.positions(mesh)
+
+    def distances(points: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(points[:, None] - centres[None], axis=2)
+
+    from_vertices = distances(mesh.vertices)
+    assert np.array_equal(cells.vertex_cell, from_vertices.argmin(axis=1))
+    np.testing.assert_allclose(cells.vertex_distance, from_vertices.min(axis=1), atol=1e-6)
+    for edge in cells.edges:
+        table = distances(edge.points)
+        np.testing.assert_allclose(table[:, edge.cells[0]], table.min(axis=1), atol=1e-5)
+        np.testing.assert_allclose(table[:, edge.cells[1]], table.min(axis=1), atol=1e-5)
+    nearest_three = np.sort(distances(cells.branch_points.positions(mesh)), axis=1)[:, :3]
+    np.testing.assert_allclose(nearest_three[:, 0], nearest_three[:, 2], atol=1e-5)
+
+
+def test_the_left_cell_lies_on_the_left() -> None:
+    mesh = sb.Mesh(*meshes.grid(15, 15))
+    sites = random_points(mesh, 12, seed=2)
+    centres = sites.positions(mesh)
+    for edge in sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=225), sites).edges:
+        along = edge.points[-1] - edge.points[0]
+        to_left = centres[edge.cells[0]] - centres[edge.cells[1]]
+        assert along[0] * to_left[1] - along[1] * to_left[0] > 0
+
+
+@pytest.mark.parametrize("case", [c for c in meshes.closed() if 100 < len(c.vertices) <= 1200 and c.components == 1], ids=str)
+def test_labels_against_exact_distances(case: meshes.Case) -> None:
+    """Where the two nearest sites differ by more than 1 %, the label is the exact one."""
+    sites = np.random.default_rng(4).choice(len(case.vertices), 8, replace=False)
+    table = np.array([exact_distances(case.mesh, int(s)) for s in sites])
+    cells = sb.geodesic_voronoi(graph_of(case, 80), sites)
+    ordered = np.sort(table, axis=0)
+    clear = ordered[1] > 1.01 * ordered[0] + 1e-12
+    assert np.array_equal(cells.vertex_cell[clear], table.argmin(axis=0)[clear])
+    np.testing.assert_allclose(cells.vertex_distance, ordered[0], rtol=0.02, atol=1e-9)
+
+
+def test_symmetric_sites_tie_at_mesh_vertices() -> None:
+    """Two and four mirrored sites on a regular grid: bisectors run through vertices and along edges."""
+    mesh = sb.Mesh(*meshes.grid(9, 9))
+    graph = sb.SaddleVertexGraph(mesh, k=81)
+    two = sb.geodesic_voronoi(graph, [4 * 9, 4 * 9 + 8])
+    check(mesh, two)
+    np.testing.assert_allclose(two.areas, 0.5, rtol=1e-6)
+    four = sb.geodesic_voronoi(graph, [0, 8, 72, 80])
+    check(mesh, four)
+    np.testing.assert_allclose(four.areas, 0.25, rtol=1e-6)
+    assert four.vertex_cell[4 * 9 + 4] == 0  # ties go to the smaller site
+
+
+def test_two_circles_round_a_tube() -> None:
+    vertices, triangles = meshes.torus(60, 16)
+    mesh = sb.Mesh(vertices, triangles)
+    opposite = [int(np.argmax(vertices[:, 0])), int(np.argmin(vertices[:, 0]))]
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=60), opposite)
+    check(mesh, cells)
+    assert cells.edge_closed.tolist() == [True, True]
+    assert len(cells.branch_points) == 0
+    np.testing.assert_allclose(cells.areas, mesh.area / 2, rtol=0.01)
+
+
+def test_many_sites_in_one_face_and_cells_without_vertices() -> None:
+    mesh = sb.Mesh(*meshes.grid(6, 6))
+    weights = np.random.default_rng(1).dirichlet([1, 1, 1], 12)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=36), sb.SurfacePoints(np.full(12, 25), weights))
+    check(mesh, cells)
+    assert (cells.areas > 0).all()
+    assert len(np.unique(cells.vertex_cell)) < 12
+
+
+def test_of_two_sites_in_one_place_the_smaller_has_the_cell() -> None:
+    mesh = sb.Mesh(*meshes.torus())
+    graph = sb.SaddleVertexGraph(mesh, k=30)
+    cells = sb.geodesic_voronoi(graph, [7, 200, 7, 200])
+    check(mesh, cells)
+    assert cells.areas[2] == 0
+    assert cells.areas[3] == 0
+
+
+def test_corners_go_round_the_cell() -> None:
+    mesh = sb.Mesh(*meshes.grid(15, 15))
+    sites = random_points(mesh, 30, seed=5)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=225), sites)
+    border = {cell for edge in cells.edges for cell in edge.cells if np.isclose(edge.points[[0, -1]][:, :2] % 1, 0).any()}
+    inner = set(range(30)) - border
+    assert inner
+    for cell in inner:
+        x, y, _ = cells.corners(cell).positions(mesh).T
+        shoelace = (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2
+        assert shoelace == pytest.approx(cells.areas[cell], rel=1e-4)
+
+
+def test_each_component_needs_a_site() -> None:
+    mesh = sb.Mesh(*meshes.two_components())
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    with pytest.raises(sb.InputError, match="separate parts has no site"):
+        sb.geodesic_voronoi(graph, [0])
+    other = int(np.flatnonzero(np.isinf(graph.distances([0])))[0])
+    check(mesh, sb.geodesic_voronoi(graph, [0, other]))
+
+
+def test_the_same_for_any_number_of_threads() -> None:
+    mesh = sb.Mesh(*meshes.torus(60, 24))
+    graph = sb.SaddleVertexGraph(mesh, k=30)
+    sites = random_points(mesh, 60)
+    found = [sb.geodesic_voronoi(graph, sites, threads=threads) for threads in (1, 2, 8)]
+    for other in found[1:]:
+        assert found[0].edge_points.tobytes() == other.edge_points.tobytes()
+        assert found[0].areas.tobytes() == other.areas.tobytes()
+        assert found[0].split().triangles.tobytes() == other.split().triangles.tobytes()
+
+
+GOOD = [c for c in meshes.good() if len(c.vertices) <= 400 and c.components == 1]
+GRAPHS = {case.name: graph_of(case) for case in GOOD}
+WEIGHT = st.sampled_from([0.0, 1e-12, 1e-3, 0.25, 1 / 3, 0.5, 1.0])
+
+
+@given(st.data())
+def test_any_sites_partition_any_mesh(data: st.DataObject) -> None:
+    """Points on vertices, on edges, next to them, in one place: whatever comes."""
+    case = data.draw(st.sampled_from(GOOD), label="mesh")
+    point = st.tuples(st.integers(0, len(case.triangles) - 1), WEIGHT, WEIGHT, WEIGHT).filter(lambda p: sum(p[1:]) > 0)
+    points = data.draw(st.lists(point, min_size=1, max_size=min(20, len(case.vertices))), label="sites")
+    weights = np.array([p[1:] for p in points])
+    sites = sb.SurfacePoints([p[0] for p in points], weights / weights.sum(axis=1, keepdims=True))
+    check(case.mesh, sb.geodesic_voronoi(GRAPHS[case.name], sites))
+
+
+@pytest.mark.parametrize(
+    ("sites", "words"),
+    [
+        ([], "at least one"),
+        ([0, 99], "99"),
+        ([0] * 9, "more than the mesh has vertices"),
+        ([[0, 1]], "sites"),
+        ([0.5], "sites"),
+        (None, "sites"),
+    ],
+)
+def test_bad_sites(sites: object, words: str) -> None:
+    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()))
+    with pytest.raises(sb.InputError, match=words):
+        sb.geodesic_voronoi(graph, sites)
+
+
+@pytest.mark.parametrize("cell", [-1, 2])
+def test_corners_of_no_cell(cell: int) -> None:
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(sb.Mesh(*meshes.cube())), [0, 6])
+    with pytest.raises(sb.InputError, match=str(cell)):
+        cells.corners(cell)
+
+
+def test_cancelled() -> None:
+    job = sb.Job()
+    job.cancel()
+    with pytest.raises(sb.Cancelled):
+        sb.geodesic_voronoi(sb.SaddleVertexGraph(sb.Mesh(*meshes.cube())), [0], job=job)

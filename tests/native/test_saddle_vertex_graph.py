@@ -1,0 +1,233 @@
+"""The graph's distances: closed forms, an exact library, the axioms of a metric."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+import pytest
+from exact import exact_distances, random_points, with_vertex_at
+
+import meshes
+import saddleback as sb
+
+# Arc lengths are kept in single precision: distances may fall short of the exact ones by its rounding and no more.
+SINGLE = 2e-7
+SMALL = [case for case in meshes.good() if len(case.vertices) <= 1200 and case.components == 1]
+
+
+@pytest.mark.parametrize("case", SMALL, ids=str)
+def test_a_graph_of_whole_disks_is_exact(case: meshes.Case) -> None:
+    """Every shortest path is a chain of straight geodesics that bends at saddle vertices: with unlimited disks, exact."""
+    graph = sb.SaddleVertexGraph(case.mesh, k=len(case.vertices))
+    for source in (0, len(case.vertices) // 2):
+        np.testing.assert_allclose(graph.distances([source]), exact_distances(case.mesh, source), rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.parametrize("case", SMALL, ids=str)
+def test_distances_are_never_too_short_and_little_too_long(case: meshes.Case) -> None:
+    exact = exact_distances(case.mesh, 1)
+    found = sb.SaddleVertexGraph(case.mesh, k=min(50, len(case.vertices))).distances([1])
+    assert np.array_equal(np.isinf(found), np.isinf(exact))
+    far = np.isfinite(exact) & (exact > 0)
+    error = found[far] / exact[far] - 1
+    assert error.min() >= -SINGLE
+    # On needles 50 vertices are a thin strip: k says nothing of accuracy there, and only a larger one helps.
+    assert error.mean() <= (0.006 if case.name != "needles" else 0.1)
+
+
+def mean_error(vertices: np.ndarray, triangles: np.ndarray, expected: np.ndarray, source: int) -> float:
+    found = sb.SaddleVertexGraph(sb.Mesh(vertices, triangles), k=50).distances([source])
+    away = expected > 0
+    return float(np.abs(found[away] / expected[away] - 1).mean())
+
+
+@pytest.mark.parametrize("source", [0, 37, 60 * 30 + 30])
+def test_plane(source: int) -> None:
+    vertices, triangles = meshes.grid(60, 60)
+    assert mean_error(vertices, triangles, np.linalg.norm(vertices - vertices[source], axis=1), source) <= 0.006
+
+
+def test_sphere() -> None:
+    vertices, triangles = meshes.icosphere(5)
+    angle = np.arccos(np.clip(vertices @ vertices[0], -1, 1))
+    assert mean_error(vertices, triangles, angle, 0) <= 0.006
+
+
+def test_cylinder() -> None:
+    """Unrolled, a prism of many sides is a strip: the shorter way round counts."""
+    around, radius = 96, 1.0
+    vertices, triangles = meshes.cylinder(around, 60, radius, 4.0)
+    side = 2 * radius * np.sin(np.pi / around) * around
+    turn = np.arctan2(vertices[:, 1], vertices[:, 0])
+    source = len(vertices) // 2
+    gap = np.abs((turn - turn[source] + np.pi) % (2 * np.pi) - np.pi) / (2 * np.pi) * side
+    assert mean_error(vertices, triangles, np.hypot(gap, vertices[:, 2] - vertices[source, 2]), source) <= 0.006
+
+
+@pytest.mark.parametrize("case", meshes.good(), ids=str)
+def test_it_is_a_metric(case: meshes.Case) -> None:
+    graph = sb.SaddleVertexGraph(case.mesh, k=min(20, len(case.vertices)))
+    rng = np.random.default_rng(1)
+    chosen = rng.choice(len(case.vertices), min(40, len(case.vertices)), replace=False)
+    table = np.array([graph.distances([v])[chosen] for v in chosen])
+    assert np.array_equal(table, table.T)  # to the bit
+    assert np.array_equal(table == 0, np.eye(len(chosen), dtype=bool))
+    detour = (table[:, :, None] + table[None, :, :]).min(axis=1)
+    finite = np.isfinite(table)
+    assert (table[finite] <= detour[finite] * (1 + 1e-12)).all()
+
+
+@pytest.mark.parametrize("case", meshes.good(), ids=str)
+def test_both_methods_return_the_same_bits(case: meshes.Case) -> None:
+    graph = sb.SaddleVertexGraph(case.mesh, k=min(30, len(case.vertices)))
+    sources = random_points(case.mesh, 5)
+    buckets = graph.nearest(sources, method="label_correcting")
+    heap = graph.nearest(sources, method="dijkstra")
+    assert np.array_equal(buckets[0], heap[0])
+    assert np.array_equal(buckets[1], heap[1])
+
+
+def test_another_component_is_infinitely_far() -> None:
+    mesh = sb.Mesh(*meshes.two_components())
+    distances, source = sb.SaddleVertexGraph(mesh, k=20).nearest([0])
+    reached = np.isfinite(distances)
+    assert 0 < reached.sum() < len(reached)
+    assert (source[reached] == 0).all()
+    assert (source[~reached] == -1).all()
+
+
+def test_nearest_is_the_least_of_the_fields_and_ties_go_to_the_smaller() -> None:
+    mesh = sb.Mesh(*meshes.torus())
+    graph = sb.SaddleVertexGraph(mesh, k=30)
+    sources = np.array([5, 100, 100, 300])  # one twice
+    fields = np.array([graph.distances([s]) for s in sources])
+    distance, nearest = graph.nearest(sources)
+    assert np.array_equal(distance, fields.min(axis=0))
+    assert np.array_equal(nearest, fields.argmin(axis=0))
+    assert 2 not in nearest
+
+
+def test_limit_leaves_what_is_farther() -> None:
+    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.torus()), k=30)
+    whole, part = graph.distances([7]), graph.distances([7], limit=0.8)
+    assert np.array_equal(part, np.where(whole <= 0.8, whole, np.inf))
+
+
+@pytest.mark.parametrize("case", SMALL, ids=str)
+def test_sources_inside_faces(case: meshes.Case) -> None:
+    point = random_points(case.mesh, 1, seed=3)
+    exact = exact_distances(with_vertex_at(case.mesh, point), len(case.vertices))[:-1]
+    found = sb.SaddleVertexGraph(case.mesh, k=len(case.vertices)).distances(point)
+    np.testing.assert_allclose(found, exact, rtol=1e-6, atol=1e-9)
+
+
+def test_sources_on_edges_and_vertices() -> None:
+    mesh = sb.Mesh(*meshes.grid(9, 9))
+    graph = sb.SaddleVertexGraph(mesh, k=81)
+    points = sb.SurfacePoints([3, 3, 40, 40], [[0.5, 0.5, 0], [0, 0.25, 0.75], [0, 1, 0], [0.3, 0, 0.7]])
+    for i in range(len(points)):
+        expected = np.linalg.norm(mesh.vertices - points[i : i + 1].positions(mesh), axis=1)
+        np.testing.assert_allclose(graph.distances(points[i : i + 1]), expected, rtol=1e-6, atol=1e-9)
+
+
+def test_larger_disks_are_more_accurate() -> None:
+    mesh = sb.Mesh(*meshes.torus(60, 24))
+    exact = exact_distances(mesh, 0)[1:]
+    errors = [(sb.SaddleVertexGraph(mesh, k=k).distances([0])[1:] / exact - 1).mean() for k in (5, 20, 80, 320)]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] < errors[0] / 10
+
+
+@pytest.mark.parametrize("scale", [1e-40, 1e-9, 1e9, 1e40])
+def test_scale_changes_nothing_else(scale: float) -> None:
+    vertices, triangles = meshes.torus()
+    small = sb.SaddleVertexGraph(sb.Mesh(vertices, triangles), k=20).distances([0])
+    large = sb.SaddleVertexGraph(sb.Mesh(vertices * scale, triangles), k=20).distances([0])
+    np.testing.assert_allclose(large / scale, small, rtol=1e-6)
+
+
+def test_the_same_for_any_number_of_threads() -> None:
+    mesh = sb.Mesh(*meshes.torus(60, 24))
+    fields = [sb.SaddleVertexGraph(mesh, k=30, threads=threads).distances([11]) for threads in (1, 2, 8)]
+    assert fields[0].tobytes() == fields[1].tobytes() == fields[2].tobytes()
+
+
+def test_progress_rises_and_cancel_is_quick() -> None:
+    mesh = sb.Mesh(*meshes.icosphere(6))
+    job, seen, ended = sb.Job(), [], []
+
+    def build() -> None:
+        try:
+            sb.SaddleVertexGraph(mesh, k=200, job=job)
+        except sb.Cancelled:
+            ended.append(time.perf_counter())
+
+    worker = threading.Thread(target=build)
+    worker.start()
+    while job.fraction < 0.02 and worker.is_alive():
+        seen.append(job.fraction)
+        time.sleep(0.01)
+    asked = time.perf_counter()
+    job.cancel()
+    worker.join()
+    assert seen == sorted(seen)
+    assert ended
+    assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"k": 0}, "k: wanted at least 1"),
+        ({"k": 1000}, "1000 vertices per geodesic disk are more than the mesh has"),
+        ({"k": 2.5}, "k"),
+        ({"threads": -1}, "threads"),
+        ({"device": "abacus"}, "abacus"),
+    ],
+)
+def test_bad_options(arguments: dict[str, object], words: str) -> None:
+    with pytest.raises(sb.InputError, match=words):
+        sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()), **arguments)
+
+
+def test_the_default_suits_meshes_smaller_than_a_disk() -> None:
+    assert sb.SaddleVertexGraph(sb.Mesh(*meshes.cube())).k == 8
+    assert sb.SaddleVertexGraph(sb.Mesh(*meshes.torus())).k == 50
+
+
+def test_no_graph_on_the_gpu_yet() -> None:
+    with pytest.raises(sb.DeviceError, match="CPU"):
+        sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()), k=4, device="cuda")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (([],), "sources"),
+        (([99],), "99"),
+        (([-1],), "-1"),
+        (([0.5],), "sources"),
+        (([0], -1.0), "limit"),
+        (([0], float("nan")), "limit"),
+        (([0], 1.0, "guess"), "guess"),
+        ((sb.SurfacePoints([500], [[1, 0, 0]]),), "500"),
+    ],
+)
+def test_bad_queries(arguments: tuple[object, ...], words: str) -> None:
+    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()), k=8)
+    with pytest.raises(sb.InputError, match=words):
+        graph.distances(*arguments)
+    with pytest.raises(sb.InputError, match=words):
+        graph.nearest(*arguments)
+
+
+def test_the_graph_keeps_its_mesh_alive() -> None:
+    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.torus()), k=10)
+    assert np.isfinite(graph.distances([0])).all()
+    assert graph.arc_count == round(graph.mean_degree * 36 * 14)
+    assert graph.nbytes >= 12 * graph.arc_count
+    assert graph.k == 10
+    assert graph.device == "cpu"
+    assert graph.build_seconds > 0
