@@ -10,10 +10,11 @@ from __future__ import annotations
 import shutil
 import sys
 import sysconfig
-import tomllib
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
+
+import tomllib
 
 ROOT = Path(__file__).resolve().parents[1]
 ADDON = ROOT / "addon/saddleback_blender"
@@ -24,6 +25,7 @@ EXTENSION_PLATFORMS = {"linux-x86_64": "linux-x64", "linux-aarch64": "linux-arm6
 
 
 def main(wheels: list[Path]) -> None:
+    """Replace what dist/ holds by packages with these wheels."""
     manifest = (ADDON / MANIFEST).read_text(encoding="utf-8")
     version = tomllib.loads(manifest)["version"]
     platform = sysconfig.get_platform()
@@ -32,7 +34,9 @@ def main(wheels: list[Path]) -> None:
     for stale in [*DIST.glob("saddleback-*.zip"), *DIST.glob("saddleback-*.whl")]:
         stale.unlink()
     legacy = legacy_zip(DIST / f"saddleback-{version}-legacy-{name}.zip", wheels)
-    extension = extension_zip(DIST / f"saddleback-{version}-{name}.zip", wheels, manifest, EXTENSION_PLATFORMS[platform])
+    extension = extension_zip(
+        DIST / f"saddleback-{version}-{name}.zip", wheels, manifest, EXTENSION_PLATFORMS[platform]
+    )
     copies = [Path(shutil.copy2(wheel, DIST)) for wheel in wheels]
     for path in (legacy, extension, *copies):
         print(f"-- {path.relative_to(ROOT)} ({path.stat().st_size / 1024:.0f} KiB)")
@@ -62,7 +66,12 @@ def completed_manifest(manifest: str, wheels: list[str], platform: str) -> str:
     """Add the keys that depend on the build, in front of the first table (behind one they would belong to it)."""
     lines = manifest.splitlines()
     table = next((i for i, line in enumerate(lines) if line.startswith("[")), len(lines))
-    lines[table:table] = [f'platforms = ["{platform}"]', "wheels = [", *(f'  "./wheels/{name}",' for name in wheels), "]"]
+    lines[table:table] = [
+        f'platforms = ["{platform}"]',
+        "wheels = [",
+        *(f'  "./wheels/{name}",' for name in wheels),
+        "]",
+    ]
     return "\n".join(lines) + "\n"
 
 

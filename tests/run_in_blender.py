@@ -29,9 +29,7 @@ def main() -> int:
     arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
     # The cache folder instead of `-p no:cacheprovider`, which other plugins do not survive. Blender's own modules warn.
     folder = tempfile.mkdtemp(prefix="saddleback-pytest-")
-    return int(
-        pytest.main([*arguments, "-o", f"cache_dir={folder}", "-W", "default"], plugins=[StreamPlugin()])
-    )
+    return int(pytest.main([*arguments, "-o", f"cache_dir={folder}", "-W", "default"], plugins=[StreamPlugin()]))
 
 
 if __name__ == "__main__":

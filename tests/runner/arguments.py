@@ -1,7 +1,7 @@
 """Sorts the arguments of tests/run: what the outer pytest gets, and what the one inside each Blender gets.
 
-Run as a script, prints which kind of tests the arguments ask for: "plain", "blender" or both. Standard library only, for
-it runs before anything is installed.
+Run as a script, prints which kind of tests the arguments ask for: "plain", "blender" or both. Standard library only,
+for it runs before anything is installed.
 """
 
 from __future__ import annotations

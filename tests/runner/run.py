@@ -15,8 +15,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from tests.runner.arguments import INSIDE, split  # noqa: E402
-from tests.runner.sessions import Blender, SessionsPlugin  # noqa: E402
+from tests.runner.arguments import INSIDE, split
+from tests.runner.sessions import Blender, SessionsPlugin
 
 SCRIPT = "tests/run_in_blender.py"
 

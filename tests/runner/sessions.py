@@ -1,7 +1,7 @@
 """The outer pytest's view of the tests that run inside a Blender: each Blender is one item that brings many reports.
 
-The process runs its own pytest (tests/run_in_blender.py) over tests/addon_blender; its reports arrive one by one and are
-shown, counted and summed up as if they were this session's own, with the Blender's name before the test's.
+The process runs its own pytest (tests/run_in_blender.py) over tests/addon_blender; its reports arrive one by one and
+are shown, counted and summed up as if they were this session's own, with the Blender's name before the test's.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import selectors
 import subprocess
 import tempfile
 import time
@@ -42,8 +43,9 @@ class SessionsPlugin:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, session: pytest.Session, items: list[pytest.Item]) -> None:
-        for blender in self.blenders:
-            items.append(BlenderSession.from_parent(session, blender=blender, arguments=self.arguments))
+        items += [
+            BlenderSession.from_parent(session, blender=blender, arguments=self.arguments) for blender in self.blenders
+        ]
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> bool | None:
@@ -173,8 +175,6 @@ class BlenderSession(pytest.Item):
 
 def _lines(stream: Any, limit: float) -> Iterator[str]:
     """Yield the lines until the other end closes; raise TimeoutExpired when none comes for `limit` seconds."""
-    import selectors
-
     with selectors.DefaultSelector() as selector:
         selector.register(stream, selectors.EVENT_READ)
         buffer = b""

@@ -35,8 +35,8 @@ class Device:
 def devices() -> list[Device]:
     """List what can compute here: the processor first, then every usable CUDA device.
 
-    Never raises: a build without the CUDA module, a machine without a driver and a driver without a device all mean that
-    only the processor is listed; `cuda_status` tells which of them it is.
+    Never raises: a build without the CUDA module, a machine without a driver and a driver without a device all mean
+    that only the processor is listed; `cuda_status` tells which of them it is.
     """
     return [_processor(), *_cuda()[0]]
 

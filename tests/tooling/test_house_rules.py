@@ -1,0 +1,152 @@
+"""The arrows between the rooms point one way, and the versions agree."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import tomllib
+
+import saddleback
+
+ROOT = Path(__file__).resolve().parents[2]
+ADDON = ROOT / "addon/saddleback_blender"
+
+
+def modules(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.rglob("*.py") if "lib" not in path.relative_to(folder).parts)
+
+
+def imported(tree: ast.AST) -> Iterator[str]:
+    """Yield the dotted names that a module imports, relative ones with their leading dots."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            name = "." * node.level + (node.module or "")
+            yield name
+            yield from (f"{name}{'' if name.endswith('.') else '.'}{alias.name}" for alias in node.names)
+
+
+def offenders(paths: list[Path], wrong) -> list[str]:
+    found = []
+    for path in paths:
+        names = imported(ast.parse(path.read_text(encoding="utf-8")))
+        found += [f"{path.relative_to(ROOT)} imports {name}" for name in names if wrong(name)]
+    return found
+
+
+BLENDER = {"bpy", "bpy_extras", "bmesh", "mathutils", "gpu", "blf", "addon_utils"}
+
+
+def is_blender(name: str) -> bool:
+    return name.split(".")[0] in BLENDER
+
+
+def leads_to(*rooms: str):
+    """Tell whether a relative import goes out of its room into one of these."""
+    pattern = re.compile(rf"^\.\.+({'|'.join(rooms)})(\.|$)")
+    return lambda name: bool(pattern.match(name))
+
+
+@pytest.mark.parametrize("room", ["core", "bridge", "ops", "ui"])
+def test_the_rooms_exist(room):
+    assert modules(ADDON / room), f"no module in {room}: the rules below would hold for nothing"
+
+
+def test_core_never_imports_blender():
+    assert not offenders(modules(ADDON / "core"), is_blender)
+
+
+def test_core_knows_neither_bridge_nor_operators_nor_panels():
+    assert not offenders(modules(ADDON / "core"), leads_to("bridge", "ops", "ui"))
+
+
+def test_bridge_knows_neither_operators_nor_panels():
+    assert not offenders(modules(ADDON / "bridge"), leads_to("ops", "ui"))
+
+
+def test_panels_do_not_reach_the_bridge():
+    assert not offenders(modules(ADDON / "ui"), leads_to("bridge"))
+
+
+WRITING_CALLS = {"new", "remove", "foreach_set", "link", "unlink", "update_tag", "tag_redraw", "from_pydata"}
+
+
+def writes(tree: ast.AST) -> Iterator[str]:
+    """Yield what changes Blender's data inside a draw or poll function: assignments, writing calls, operators."""
+    for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
+        if not (function.name == "poll" or function.name.startswith("draw")):
+            continue
+        for node in ast.walk(function):
+            if isinstance(node, ast.Assign | ast.AugAssign):
+                for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                    text = ast.unparse(target)
+                    if re.match(r"(context|bpy|obj|item|mesh|scene|settings)\b.*[.\[]", text):
+                        yield f"line {node.lineno}: {text} = ..."
+            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+                text = ast.unparse(node.func)
+                if node.func.attr in WRITING_CALLS or text.startswith("bpy.ops."):
+                    yield f"line {node.lineno}: {text}()"
+
+
+def test_panels_only_draw():
+    found = [
+        f"{path.relative_to(ROOT)}, {what}"
+        for path in modules(ADDON / "ui")
+        for what in writes(ast.parse(path.read_text(encoding="utf-8")))
+    ]
+    assert not found
+
+
+def test_the_rule_of_panels_finds_what_it_forbids():
+    code = """
+def draw(self, context):
+    context.object.name = "x"
+    context.object.data.attributes.new("a")
+    bpy.ops.mesh.primitive_cube_add()
+"""
+    assert len(list(writes(ast.parse(code)))) == 3
+
+
+@pytest.mark.parametrize("text", ["bpy.app.version", "hasattr(bpy"])
+def test_blender_versions_are_told_apart_in_one_place(text):
+    found = [
+        str(path.relative_to(ROOT))
+        for path in modules(ADDON)
+        if path != ADDON / "compat.py" and text in path.read_text(encoding="utf-8")
+    ]
+    assert not found, f"{text} belongs into compat.py"
+
+
+def test_no_absolute_import_of_the_addon_inside_it():
+    """As an extension it is called bl_ext.user_default.saddleback."""
+    assert not offenders(modules(ADDON), lambda name: name.split(".")[0] == "saddleback_blender")
+
+
+def test_native_headers_know_neither_python_nor_openmesh():
+    for header in (ROOT / "native/include").rglob("*.h"):
+        text = header.read_text(encoding="utf-8")
+        assert not re.search(r"#include\s*[<\"](Python\.h|pybind11|OpenMesh)", text), header
+    for source in (ROOT / "native/src").rglob("*.*"):
+        text = source.read_text(encoding="utf-8")
+        assert not re.search(r"#include\s*[<\"](Python\.h|pybind11)", text), source
+        if source.parent.name != "mesh":
+            assert not re.search(r"#include\s*[<\"]OpenMesh", text), f"{source}: OpenMesh stays in mesh/"
+
+
+def test_every_version_is_the_same():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    manifest = tomllib.loads((ADDON / "blender_manifest.toml").read_text())["version"]
+    cmake = re.search(r"project\(saddleback VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())
+    bl_info = re.search(r'"version": \((\d+), (\d+), (\d+)\)', (ADDON / "__init__.py").read_text())
+    assert cmake is not None and bl_info is not None
+    assert {project, manifest, cmake[1], ".".join(bl_info.groups()), saddleback.__version__} == {project}
+
+
+def test_the_public_names_are_sorted_and_there():
+    assert sorted(saddleback.__all__) == list(saddleback.__all__)
+    assert all(hasattr(saddleback, name) for name in saddleback.__all__)

@@ -1,0 +1,86 @@
+"""What the tools say of the whole tree: formatting, lint, types, names."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+BIN = Path(sys.executable).parent
+CACHE = ROOT / ".cache/clang-tidy"
+
+
+def run(*command: str | Path) -> str:
+    """Run a tool in the root and return all it says; fail with that when it is not content."""
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    said = done.stdout + done.stderr
+    if done.returncode:
+        pytest.fail(said, pytrace=False)
+    return said
+
+
+def sources(*suffixes: str) -> list[Path]:
+    """List our C++ (and CUDA) files."""
+    return sorted(path for path in (ROOT / "native").rglob("*") if path.suffix in suffixes)
+
+
+def test_ruff_check():
+    run(BIN / "ruff", "check", "--quiet", ".")
+
+
+def test_ruff_format():
+    run(BIN / "ruff", "format", "--check", "--quiet", ".")
+
+
+@pytest.mark.parametrize("package", ["saddleback", "saddleback_blender"])
+def test_mypy_strict(package):
+    run(BIN / "mypy", "--strict", "-p", package)
+
+
+def test_clang_format():
+    run(BIN / "clang-format", "--dry-run", "--Werror", *sources(".h", ".cpp", ".cu"))
+
+
+def include_digest(text: bytes) -> str:
+    """Digest what every verdict depends on besides the file itself: the rules, the tool, and all our headers."""
+    digest = hashlib.sha256((ROOT / ".clang-tidy").read_bytes() + (ROOT / "tests/requirements.txt").read_bytes())
+    for header in sources(".h"):
+        digest.update(header.read_bytes())
+    digest.update(text)
+    return digest.hexdigest()
+
+
+def tidy(file: str) -> str:
+    """Return what clang-tidy says of one file, "" when it is content; files that have passed are not read again."""
+    verdict = CACHE / include_digest(Path(file).read_bytes())
+    if verdict.exists():
+        return ""
+    command = [BIN / "clang-tidy", "-p", ROOT / "build", "--quiet", f"--extra-arg=-isystem{CACHE / 'include'}", file]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode:
+        return done.stdout + done.stderr
+    verdict.touch()
+    return ""
+
+
+def test_clang_tidy():
+    include = CACHE / "include"  # GCC's omp.h and nothing else of GCC's, for clang's package brings none
+    include.mkdir(parents=True, exist_ok=True)
+    if not (include / "omp.h").exists():
+        place = subprocess.check_output(["g++", "-print-file-name=include/omp.h"], text=True).strip()
+        (include / "omp.h").unlink(missing_ok=True)
+        (include / "omp.h").symlink_to(place)
+    commands = json.loads((ROOT / "build/compile_commands.json").read_text())
+    ours = sorted({entry["file"] for entry in commands if Path(entry["file"]).is_relative_to(ROOT / "native")})
+    assert ours, "the compilation database names none of our files"
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        complaints = [said for said in pool.map(tidy, ours) if said]
+    if complaints:
+        pytest.fail("\n".join(complaints), pytrace=False)
