@@ -69,10 +69,6 @@ def test_bridge_knows_neither_operators_nor_panels():
     assert not offenders(modules(ADDON / "bridge"), leads_to("ops", "ui"))
 
 
-def test_panels_do_not_reach_the_bridge():
-    assert not offenders(modules(ADDON / "ui"), leads_to("bridge"))
-
-
 WRITING_CALLS = {"new", "remove", "foreach_set", "link", "unlink", "update_tag", "tag_redraw", "from_pydata"}
 
 
