@@ -1,20 +1,24 @@
 #include <algorithm>
 #include <limits>
 
+#include "saddleback/saddle_vertex_graph.h"
+
 #include "convert.h"
 #include "points.h"
-#include "saddleback/saddle_vertex_graph.h"
 
 namespace saddleback::bindings {
 namespace {
 
 void check_device(const std::string& device) {
-  if (device == "cuda") throw DeviceError("device: graphs are built on the CPU only in this version; use device=\"auto\"");
-  if (device != "auto" && device != "cpu") throw InputError(message("device: wanted 'auto', 'cpu' or 'cuda', got '", device, "'"));
+  if (device == "cuda")
+    throw DeviceError("device: graphs are built on the CPU only in this version; use device=\"auto\"");
+  if (device != "auto" && device != "cpu")
+    throw InputError(message("device: wanted 'auto', 'cpu' or 'cuda', got '", device, "'"));
 }
 
-std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k, const py::object& threads,
-                                              const std::string& device, const py::object& job) {
+std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k,
+                                              const py::object& threads, const std::string& device,
+                                              const py::object& job) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   SaddleVertexGraphOptions options{.threads = as_integer(threads, "threads")};
   options.k = k.is_none() ? std::min(options.k, mesh.vertex_count()) : as_integer(k, "k");
@@ -124,15 +128,16 @@ void bind_graph(py::module_& m) {
   py::class_<SaddleVertexGraph>(m, "SaddleVertexGraph", py::module_local(), k_graph_doc)
       .def(py::init(&make_graph), py::arg("mesh"), py::arg("k") = py::none(), py::kw_only(), py::arg("threads") = 0,
            py::arg("device") = "auto", py::arg("job") = py::none(), py::keep_alive<1, 2>())
-      .def("distances", &distances, py::arg("sources"), py::arg("limit") = infinity, py::arg("method") = "label_correcting",
-           py::kw_only(), py::arg("job") = py::none(), k_distances_doc)
+      .def("distances", &distances, py::arg("sources"), py::arg("limit") = infinity,
+           py::arg("method") = "label_correcting", py::kw_only(), py::arg("job") = py::none(), k_distances_doc)
       .def("nearest", &nearest, py::arg("sources"), py::arg("limit") = infinity, py::arg("method") = "label_correcting",
            py::kw_only(), py::arg("job") = py::none(), k_nearest_doc)
       .def_property_readonly("arc_count", &SaddleVertexGraph::arc_count, "Directed arcs; each has its reverse.")
       .def_property_readonly("mean_degree", &SaddleVertexGraph::mean_degree, "Arcs per vertex.")
       .def_property_readonly("nbytes", &SaddleVertexGraph::nbytes, "Memory of the arcs, bytes.")
       .def_property_readonly("k", &SaddleVertexGraph::k, "Vertices per geodesic disk.")
-      .def_property_readonly("device", [](const SaddleVertexGraph&) { return "cpu"; }, "Which device built the graph.")
+      .def_property_readonly(
+          "device", [](const SaddleVertexGraph&) { return "cpu"; }, "Which device built the graph.")
       .def_property_readonly("build_seconds", &SaddleVertexGraph::build_seconds, "Time of the build.")
       .def("__repr__", [](const SaddleVertexGraph& graph) {
         return message("<saddleback.SaddleVertexGraph k=", graph.k(), ", ", graph.arc_count(), " arcs>");

@@ -2,8 +2,9 @@
 
 #include <span>
 
-#include "points.h"
 #include "saddleback/centroidal_voronoi.h"
+
+#include "points.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -66,7 +67,8 @@ py::object make_cells(GeodesicVoronoi&& diagram, const py::object& graph) {
   return py::cast(Cells{std::move(diagram), graph});
 }
 
-py::object find_cells(const py::object& graph, const py::object& sites, const py::object& threads, const py::object& job) {
+py::object find_cells(const py::object& graph, const py::object& sites, const py::object& threads,
+                      const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   const SurfacePoints points = as_surface_points(sites, g.mesh(), "sites");
   const GeodesicVoronoiOptions options{.threads = as_integer(threads, "threads")};
@@ -75,8 +77,8 @@ py::object find_cells(const py::object& graph, const py::object& sites, const py
 }
 
 Relaxed relax(const py::object& graph, const py::object& sites, const py::object& count, const py::object& density,
-              const std::string& method, const py::object& max_iterations, const py::object& tolerance, const py::object& seed,
-              const py::object& threads, const py::object& job) {
+              const std::string& method, const py::object& max_iterations, const py::object& tolerance,
+              const py::object& seed, const py::object& threads, const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   if (method != "lloyd") throw InputError(message("method: wanted 'lloyd', got '", method, "'"));
@@ -170,57 +172,89 @@ Q. Du, V. Faber, M. Gunzburger: Centroidal Voronoi Tessellations, SIAM Review 41
 
 void bind_cells(py::module_& m) {
   py::class_<VoronoiEdge>(m, "VoronoiEdge", py::module_local(), "The boundary between two cells, or a part of it.")
-      .def_property_readonly("points", [](const py::object& self) {
-        return view_of(std::span<const Vec3>(py::cast<const VoronoiEdge&>(self).points), self);
-      }, "(m, 3) float64: positions along the polyline; a closed one repeats its first point.")
-      .def_property_readonly("surface", [](const VoronoiEdge& e) { return e.surface; }, "The same as SurfacePoints.")
-      .def_property_readonly("cells", [](const VoronoiEdge& e) { return py::make_tuple(e.cells[0], e.cells[1]); },
-                             "The cells on the left and on the right.")
+      .def_property_readonly(
+          "points",
+          [](const py::object& self) {
+            return view_of(std::span<const Vec3>(py::cast<const VoronoiEdge&>(self).points), self);
+          },
+          "(m, 3) float64: positions along the polyline; a closed one repeats its first point.")
+      .def_property_readonly(
+          "surface", [](const VoronoiEdge& e) { return e.surface; }, "The same as SurfacePoints.")
+      .def_property_readonly(
+          "cells", [](const VoronoiEdge& e) { return py::make_tuple(e.cells[0], e.cells[1]); },
+          "The cells on the left and on the right.")
       .def_readonly("closed", &VoronoiEdge::closed, "True for a loop without branch points.");
 
   py::class_<SplitMesh>(m, "SplitMesh", py::module_local(), "A mesh in which every triangle lies in exactly one cell.")
-      .def_property_readonly("vertices", [](const py::object& self) {
-        return view_of(std::span<const Vec3>(py::cast<const SplitMesh&>(self).vertices), self);
-      }, "(S, 3) float64: the mesh's vertices, then those on cell boundaries.")
-      .def_property_readonly("triangles", [](const py::object& self) {
-        return view_of(std::span<const Triangle>(py::cast<const SplitMesh&>(self).triangles), self);
-      }, "(T, 3) int32.")
-      .def_property_readonly("triangle_cell", [](const py::object& self) {
-        return view_of(std::span<const Index>(py::cast<const SplitMesh&>(self).triangle_cell), self);
-      }, "(T,) int32.")
-      .def_property_readonly("vertex_origin", [](const py::object& self) {
-        return view_of(std::span<const Index>(py::cast<const SplitMesh&>(self).vertex_origin), self);
-      }, "(S,) int32: vertex of the original mesh, -1 for added ones.");
+      .def_property_readonly(
+          "vertices",
+          [](const py::object& self) {
+            return view_of(std::span<const Vec3>(py::cast<const SplitMesh&>(self).vertices), self);
+          },
+          "(S, 3) float64: the mesh's vertices, then those on cell boundaries.")
+      .def_property_readonly(
+          "triangles",
+          [](const py::object& self) {
+            return view_of(std::span<const Triangle>(py::cast<const SplitMesh&>(self).triangles), self);
+          },
+          "(T, 3) int32.")
+      .def_property_readonly(
+          "triangle_cell",
+          [](const py::object& self) {
+            return view_of(std::span<const Index>(py::cast<const SplitMesh&>(self).triangle_cell), self);
+          },
+          "(T,) int32.")
+      .def_property_readonly(
+          "vertex_origin",
+          [](const py::object& self) {
+            return view_of(std::span<const Index>(py::cast<const SplitMesh&>(self).vertex_origin), self);
+          },
+          "(S,) int32: vertex of the original mesh, -1 for added ones.");
 
   py::class_<Cells>(m, "GeodesicVoronoi", py::module_local(), "Geodesic Voronoi cells; made by `geodesic_voronoi`.")
-      .def_property_readonly("sites", [](const Cells& c) { return c.diagram.sites; }, "SurfacePoints (n).")
-      .def_property_readonly("vertex_cell", &array_of<&GeodesicVoronoi::vertex_cell>, "(V,) int32: nearest site; ties: the smaller.")
-      .def_property_readonly("vertex_distance", &array_of<&GeodesicVoronoi::vertex_distance>, "(V,) float64: distance to it, mesh units.")
+      .def_property_readonly(
+          "sites", [](const Cells& c) { return c.diagram.sites; }, "SurfacePoints (n).")
+      .def_property_readonly("vertex_cell", &array_of<&GeodesicVoronoi::vertex_cell>,
+                             "(V,) int32: nearest site; ties: the smaller.")
+      .def_property_readonly("vertex_distance", &array_of<&GeodesicVoronoi::vertex_distance>,
+                             "(V,) float64: distance to it, mesh units.")
       .def_property_readonly("areas", &array_of<&GeodesicVoronoi::areas>, "(n,) float64: they sum to the mesh's area.")
       .def_property_readonly("edges", &edges, "List of VoronoiEdge: the boundaries between cells.")
-      .def_property_readonly("edge_points", [](const Cells& c) {
-        return to_array(positions_at(c.diagram, c.diagram.edge_points));
-      }, "(m, 3) float64: the points of all edges, one after another.")
-      .def_property_readonly("edge_surface", [](const Cells& c) { return points_at(c.diagram, c.diagram.edge_points); },
-                             "The same as SurfacePoints.")
-      .def_property_readonly("edge_offsets", &array_of<&GeodesicVoronoi::edge_offsets>, "(e + 1,) int32: edge i is [offsets[i], offsets[i + 1]).")
-      .def_property_readonly("edge_cells", [](const py::object& self) {
-        return view_of_rows<Index>(std::span<const std::array<Index, 2>>(diagram_of(self).edge_cells), self);
-      }, "(e, 2) int32: the cells on the left and on the right.")
-      .def_property_readonly("edge_closed", [](const Cells& c) {
-        const auto& closed = c.diagram.edge_closed;
-        py::array_t<bool> result(static_cast<py::ssize_t>(closed.size()));
-        std::copy(closed.begin(), closed.end(), result.mutable_data());
-        return result;
-      }, "(e,) bool: loops without branch points.")
-      .def_property_readonly("branch_points", [](const Cells& c) { return points_at(c.diagram, c.diagram.branch_points); },
-                             "SurfacePoints where three or more cells meet.")
+      .def_property_readonly(
+          "edge_points", [](const Cells& c) { return to_array(positions_at(c.diagram, c.diagram.edge_points)); },
+          "(m, 3) float64: the points of all edges, one after another.")
+      .def_property_readonly(
+          "edge_surface", [](const Cells& c) { return points_at(c.diagram, c.diagram.edge_points); },
+          "The same as SurfacePoints.")
+      .def_property_readonly("edge_offsets", &array_of<&GeodesicVoronoi::edge_offsets>,
+                             "(e + 1,) int32: edge i is [offsets[i], offsets[i + 1]).")
+      .def_property_readonly(
+          "edge_cells",
+          [](const py::object& self) {
+            return view_of_rows<Index>(std::span<const std::array<Index, 2>>(diagram_of(self).edge_cells), self);
+          },
+          "(e, 2) int32: the cells on the left and on the right.")
+      .def_property_readonly(
+          "edge_closed",
+          [](const Cells& c) {
+            const auto& closed = c.diagram.edge_closed;
+            py::array_t<bool> result(static_cast<py::ssize_t>(closed.size()));
+            std::copy(closed.begin(), closed.end(), result.mutable_data());
+            return result;
+          },
+          "(e,) bool: loops without branch points.")
+      .def_property_readonly(
+          "branch_points", [](const Cells& c) { return points_at(c.diagram, c.diagram.branch_points); },
+          "SurfacePoints where three or more cells meet.")
       .def("corners", &corners, py::arg("cell"),
            "SurfacePoints around a cell: branch points and ends at the mesh's boundary, the cell on the left.")
-      .def("split", [](const Cells& c) {
-        const Mesh& mesh = c.mesh();
-        return without_gil([&] { return c.diagram.split(mesh); });
-      }, "Cut the mesh along the cell boundaries: a SplitMesh. O(V + F).")
+      .def(
+          "split",
+          [](const Cells& c) {
+            const Mesh& mesh = c.mesh();
+            return without_gil([&] { return c.diagram.split(mesh); });
+          },
+          "Cut the mesh along the cell boundaries: a SplitMesh. O(V + F).")
       .def("__repr__", [](const Cells& c) {
         return message("<saddleback.GeodesicVoronoi of ", c.diagram.sites.size(), " cells>");
       });
@@ -233,22 +267,30 @@ void bind_cells(py::module_& m) {
 void bind_tessellation(py::module_& m) {
   bind_cells(m);
   py::class_<Relaxed>(m, "CentroidalVoronoi", py::module_local(), "Even cells; made by `centroidal_voronoi`.")
-      .def_property_readonly("sites", [](const Relaxed& r) { return r.result.sites; }, "SurfacePoints (n).")
+      .def_property_readonly(
+          "sites", [](const Relaxed& r) { return r.result.sites; }, "SurfacePoints (n).")
       .def_readonly("cells", &Relaxed::cells, "GeodesicVoronoi of the sites.")
-      .def_property_readonly("energy", [](const py::object& self) {
-        return view_of(std::span<const double>(py::cast<const Relaxed&>(self).result.energy), self);
-      }, "(iterations + 1,) float64: at the start and after each iteration; never rises.")
-      .def_property_readonly("iterations", [](const Relaxed& r) { return r.result.iterations; }, "Iterations done.")
-      .def_property_readonly("converged", [](const Relaxed& r) { return r.result.converged; }, "False when max_iterations ended it.")
-      .def_property_readonly("stop_reason", [](const Relaxed& r) { return r.result.stop_reason; },
-                             "\"tolerance\", \"no step lowers the energy\" or \"max_iterations\".")
+      .def_property_readonly(
+          "energy",
+          [](const py::object& self) {
+            return view_of(std::span<const double>(py::cast<const Relaxed&>(self).result.energy), self);
+          },
+          "(iterations + 1,) float64: at the start and after each iteration; never rises.")
+      .def_property_readonly(
+          "iterations", [](const Relaxed& r) { return r.result.iterations; }, "Iterations done.")
+      .def_property_readonly(
+          "converged", [](const Relaxed& r) { return r.result.converged; }, "False when max_iterations ended it.")
+      .def_property_readonly(
+          "stop_reason", [](const Relaxed& r) { return r.result.stop_reason; },
+          "\"tolerance\", \"no step lowers the energy\" or \"max_iterations\".")
       .def("__repr__", [](const Relaxed& r) {
-        return message("<saddleback.CentroidalVoronoi of ", r.result.sites.size(), " cells, ", r.result.iterations, " iterations>");
+        return message("<saddleback.CentroidalVoronoi of ", r.result.sites.size(), " cells, ", r.result.iterations,
+                       " iterations>");
       });
   m.def("centroidal_voronoi", &relax, py::arg("graph"), py::arg("sites") = py::none(), py::arg("count") = py::none(),
         py::arg("density") = py::none(), py::arg("method") = "lloyd", py::arg("max_iterations") = 100,
-        py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(),
-        k_centroidal_doc);
+        py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("threads") = 0,
+        py::arg("job") = py::none(), k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

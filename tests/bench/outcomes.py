@@ -1,7 +1,7 @@
 """What becomes of each mesh of a folder: `python -m tests.bench outcomes FOLDER`.
 
-Per file, in a process of its own: Mesh or the sentence that refuses it, repair, graph with k = 30, 200 relaxed cells, and
-whether the result is valid. A crash, a run over the time limit or an invalid result is a failure.
+Per file, in a process of its own: Mesh or the sentence that refuses it, repair, graph with k = 30, 200 relaxed cells,
+and whether the result is valid. A crash, a run over the time limit or an invalid result is a failure.
 """
 
 from __future__ import annotations
@@ -72,7 +72,12 @@ def main(arguments: list[str]) -> int:
         print(outcome(Path(arguments[1])))
         return 0
     failures = 0
-    files = sorted(p for folder in arguments for p in Path(folder).iterdir() if p.suffix.lower() in (".ply", ".obj", ".off", ".stl"))
+    files = sorted(
+        p
+        for folder in arguments
+        for p in Path(folder).iterdir()
+        if p.suffix.lower() in (".ply", ".obj", ".off", ".stl")
+    )
     for path in files:
         start = time.perf_counter()
         try:

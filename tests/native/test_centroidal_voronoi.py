@@ -5,10 +5,10 @@ from __future__ import annotations
 import threading
 import time
 
+import meshes
 import numpy as np
 import pytest
 
-import meshes
 import saddleback as sb
 
 CONNECTED = [c for c in meshes.good() if len(c.vertices) >= 100]
@@ -120,7 +120,9 @@ def test_unpainted_regions_keep_their_cells() -> None:
     """Density 0 over half of the surface: those sites have no reason to move, and nothing becomes NaN."""
     mesh = sb.Mesh(*meshes.grid(20, 20))
     paint = np.where(mesh.vertices[:, 0] > 0.5, 1.0, 0.0)
-    relaxed = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh, k=40), sites=np.arange(0, 400, 23), density=paint, max_iterations=10)
+    relaxed = sb.centroidal_voronoi(
+        sb.SaddleVertexGraph(mesh, k=40), sites=np.arange(0, 400, 23), density=paint, max_iterations=10
+    )
     assert np.isfinite(relaxed.sites.positions(mesh)).all()
     assert (np.diff(relaxed.energy) <= 0).all()
 

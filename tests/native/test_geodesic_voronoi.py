@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import meshes
 import numpy as np
 import pytest
 from exact import exact_distances, random_points
 from hypothesis import given
 from hypothesis import strategies as st
 
-import meshes
 import saddleback as sb
 
 
@@ -111,7 +111,9 @@ def test_the_left_cell_lies_on_the_left() -> None:
         assert along[0] * to_left[1] - along[1] * to_left[0] > 0
 
 
-@pytest.mark.parametrize("case", [c for c in meshes.closed() if 100 < len(c.vertices) <= 1200 and c.components == 1], ids=str)
+@pytest.mark.parametrize(
+    "case", [c for c in meshes.closed() if 100 < len(c.vertices) <= 1200 and c.components == 1], ids=str
+)
 def test_labels_against_exact_distances(case: meshes.Case) -> None:
     """Where the two nearest sites differ by more than 1 %, the label is the exact one."""
     sites = np.random.default_rng(4).choice(len(case.vertices), 8, replace=False)
@@ -169,7 +171,9 @@ def test_corners_go_round_the_cell() -> None:
     mesh = sb.Mesh(*meshes.grid(15, 15))
     sites = random_points(mesh, 30, seed=5)
     cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=225), sites)
-    border = {cell for edge in cells.edges for cell in edge.cells if np.isclose(edge.points[[0, -1]][:, :2] % 1, 0).any()}
+    border = {
+        cell for edge in cells.edges for cell in edge.cells if np.isclose(edge.points[[0, -1]][:, :2] % 1, 0).any()
+    }
     inner = set(range(30)) - border
     assert inner
     for cell in inner:

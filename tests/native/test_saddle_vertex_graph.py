@@ -5,11 +5,11 @@ from __future__ import annotations
 import threading
 import time
 
+import meshes
 import numpy as np
 import pytest
 from exact import exact_distances, random_points, with_vertex_at
 
-import meshes
 import saddleback as sb
 
 # Arc lengths are kept in single precision: distances may fall short of the exact ones by its rounding and no more.
@@ -19,7 +19,7 @@ SMALL = [case for case in meshes.good() if len(case.vertices) <= 1200 and case.c
 
 @pytest.mark.parametrize("case", SMALL, ids=str)
 def test_a_graph_of_whole_disks_is_exact(case: meshes.Case) -> None:
-    """Every shortest path is a chain of straight geodesics that bends at saddle vertices: with unlimited disks, exact."""
+    """A shortest path is a chain of straight geodesics that bends at saddle vertices: with unlimited disks, exact."""
     graph = sb.SaddleVertexGraph(case.mesh, k=len(case.vertices))
     for source in (0, len(case.vertices) // 2):
         np.testing.assert_allclose(graph.distances([source]), exact_distances(case.mesh, source), rtol=1e-6, atol=1e-9)

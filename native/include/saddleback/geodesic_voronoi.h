@@ -14,10 +14,10 @@ struct GeodesicVoronoiOptions {
 
 /// A mesh in which every triangle lies in exactly one cell.
 struct SplitMesh {
-  std::vector<Vec3> vertices;          ///< the mesh's, then those on cell boundaries
+  std::vector<Vec3> vertices;  ///< the mesh's, then those on cell boundaries
   std::vector<Triangle> triangles;
   std::vector<Index> triangle_cell;
-  std::vector<Index> vertex_origin;    ///< vertex of the original mesh, k_none for added ones
+  std::vector<Index> vertex_origin;  ///< vertex of the original mesh, k_none for added ones
 };
 
 /// Cells of the sites, their boundaries and areas.
@@ -33,32 +33,33 @@ struct GeodesicVoronoi {
   std::vector<double> vertex_distance;  ///< (V,) from it
   std::vector<double> areas;            ///< (n,) they sum to the mesh's area
 
-  SurfacePoints points;                 ///< where cell boundaries cross mesh edges or meet
-  std::vector<Vec3> positions;          ///< of the points
-  /// Boundaries between two cells as polylines of points; polyline i is [edge_offsets[i], edge_offsets[i+1]) of edge_points.
-  /// Consecutive points share a face. A closed one repeats its first point.
+  SurfacePoints points;         ///< where cell boundaries cross mesh edges or meet
+  std::vector<Vec3> positions;  ///< of the points
+  /// Boundaries between two cells as polylines of points; polyline i is [edge_offsets[i], edge_offsets[i+1]) of
+  /// edge_points. Consecutive points share a face. A closed one repeats its first point.
   std::vector<Index> edge_points, edge_offsets;
   std::vector<std::array<Index, 2>> edge_cells;  ///< on the left and on the right of the polyline
   std::vector<std::uint8_t> edge_closed;
-  std::vector<Index> branch_points;              ///< points where three or more cells meet
+  std::vector<Index> branch_points;  ///< points where three or more cells meet
 
-  std::vector<Index> face_cell;  ///< (F,) the cell that owns a face whole, k_none where several share it
-  std::vector<Piece> pieces;     ///< of the shared faces
-  std::vector<Index> piece_vertices;   ///< corners of the pieces: mesh vertices, or V + i for points[i]
+  std::vector<Index> face_cell;         ///< (F,) the cell that owns a face whole, k_none where several share it
+  std::vector<Piece> pieces;            ///< of the shared faces
+  std::vector<Index> piece_vertices;    ///< corners of the pieces: mesh vertices, or V + i for points[i]
   std::vector<Vec3> piece_barycentric;  ///< the same in their faces
 
   /// Cuts the mesh along the boundaries. O(V + F).
   SplitMesh split(const Mesh& mesh) const;
-  /// The points where boundaries meet around a cell (branch points, ends at the mesh's boundary), in order with the cell on
-  /// the left; indices into `points`. \throw InputError for a cell out of range.
+  /// The points where boundaries meet around a cell (branch points, ends at the mesh's boundary), in order with the
+  /// cell on the left; indices into `points`. \throw InputError for a cell out of range.
   std::vector<Index> corners(Index cell) const;
 };
 
-/// Assigns every point of the surface to its nearest site. Bisectors are straight inside a face, exactly right where the
-/// geodesics to both sites cross no saddle vertex; cells smaller than a face and several sites in one face are found.
-/// \throw InputError for no sites, more sites than vertices, a site off the mesh, a component without a site; Cancelled.
-/// O(sites k log k + arcs + pieces). After Y.-J. Liu, Z. Chen, K. Tang: Construction of iso-contours, bisectors, and Voronoi
-/// diagrams on triangulated surfaces (TPAMI 2011), with candidates spread over edges instead of vertex labels alone.
+/// Assigns every point of the surface to its nearest site. Bisectors are straight inside a face, exactly right where
+/// the geodesics to both sites cross no saddle vertex; cells smaller than a face and several sites in one face are
+/// found. \throw InputError for no sites, more sites than vertices, a site off the mesh, a component without a site;
+/// Cancelled. O(sites k log k + arcs + pieces). After Y.-J. Liu, Z. Chen, K. Tang: Construction of iso-contours,
+/// bisectors, and Voronoi diagrams on triangulated surfaces (TPAMI 2011), with candidates spread over edges instead of
+/// vertex labels alone.
 GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                  const GeodesicVoronoiOptions& options = {}, Job* job = nullptr);
 

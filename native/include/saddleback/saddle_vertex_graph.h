@@ -27,8 +27,8 @@ class LengthQuantum {
 };
 
 struct SaddleVertexGraphOptions {
-  Index k = 50;      ///< vertices per geodesic disk, not counting the centre
-  int threads = 0;   ///< 0: all cores; the result does not depend on it
+  Index k = 50;     ///< vertices per geodesic disk, not counting the centre
+  int threads = 0;  ///< 0: all cores; the result does not depend on it
 };
 
 enum class QueryMethod { label_correcting, dijkstra };
@@ -41,16 +41,16 @@ struct QueryOptions {
 /// Distances from the nearest of several sources.
 struct NearestField {
   std::vector<double> distance;  ///< (V,), infinity where no source reaches
-  std::vector<Index> source;     ///< (V,) index into the sources, k_none where no source reaches; ties: the smaller index
+  std::vector<Index> source;  ///< (V,) index into the sources, k_none where no source reaches; ties: the smaller index
 };
 
-/// Every vertex is linked to the vertices of its geodesic disk that it sees along one straight geodesic; a shortest path on
-/// a mesh is a chain of such links that bends only at saddle vertices. Arcs are real paths on the surface, so that
-/// distances are never too short, and the graph is symmetric to the bit, so that they form a metric.
+/// Every vertex is linked to the vertices of its geodesic disk that it sees along one straight geodesic; a shortest
+/// path on a mesh is a chain of such links that bends only at saddle vertices. Arcs are real paths on the surface, so
+/// that distances are never too short, and the graph is symmetric to the bit, so that they form a metric.
 ///
-/// Departures from the paper: found arcs are united with their reverses (the paper's graph is not symmetric), mesh edges are
-/// always arcs (the graph is as connected as the mesh), and windows behind saddles are not propagated (they would only
-/// confirm what two arcs say). Immutable once built: any number of threads may query it.
+/// Departures from the paper: found arcs are united with their reverses (the paper's graph is not symmetric), mesh
+/// edges are always arcs (the graph is as connected as the mesh), and windows behind saddles are not propagated (they
+/// would only confirm what two arcs say). Immutable once built: any number of threads may query it.
 class SaddleVertexGraph {
  public:
   /// Builds the graph by window propagation from every vertex. The mesh must outlive the graph.
@@ -79,10 +79,11 @@ class SaddleVertexGraph {
   /// The arc from one vertex to another, -1 when they are not linked. O(log degree).
   std::int64_t find_arc(Index from, Index to) const;
 
-  /// Distance of every vertex from the nearest source: (V,), infinity where none reaches. Sources that are not vertices are
-  /// linked by a window propagation of their own. Both methods return the same bits.
-  /// \throw InputError for no sources, a source off the mesh, limit < 0 or not a number; Cancelled. O(arcs log V).
-  std::vector<double> distances(const SurfacePoints& sources, const QueryOptions& options = {}, Job* job = nullptr) const;
+  /// Distance of every vertex from the nearest source: (V,), infinity where none reaches. Sources that are not vertices
+  /// are linked by a window propagation of their own. Both methods return the same bits. \throw InputError for no
+  /// sources, a source off the mesh, limit < 0 or not a number; Cancelled. O(arcs log V).
+  std::vector<double> distances(const SurfacePoints& sources, const QueryOptions& options = {},
+                                Job* job = nullptr) const;
 
   /// As `distances`, and which source it is.
   NearestField nearest(const SurfacePoints& sources, const QueryOptions& options = {}, Job* job = nullptr) const;

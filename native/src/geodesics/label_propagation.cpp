@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geodesics/window_propagation.h"
 #include "saddleback/error.h"
+
+#include "geodesics/window_propagation.h"
 
 namespace saddleback {
 namespace {
@@ -37,8 +38,8 @@ class Heap {
   std::vector<Entry> entries_;
 };
 
-/// A ring of buckets of equal width, last in first out inside each: nearly in order, with no comparison. The ring is long
-/// enough for the span between the nearest entry and the farthest that it can push.
+/// A ring of buckets of equal width, last in first out inside each: nearly in order, with no comparison. The ring is
+/// long enough for the span between the nearest entry and the farthest that it can push.
 class Buckets {
  public:
   Buckets(double width, double span) {
@@ -109,7 +110,8 @@ void propagate(const SaddleVertexGraph& graph, const std::vector<Seed>& seeds, d
   }
 }
 
-std::vector<Seed> checked_seeds(const SaddleVertexGraph& graph, const SurfacePoints& sources, const QueryOptions& options) {
+std::vector<Seed> checked_seeds(const SaddleVertexGraph& graph, const SurfacePoints& sources,
+                                const QueryOptions& options) {
   if (sources.empty()) throw InputError("sources: wanted at least one source, got none");
   check_surface_points(graph.mesh(), sources, "sources");
   if (std::isnan(options.limit) || options.limit < 0) {
@@ -151,7 +153,8 @@ LabelField propagate_labels(const SaddleVertexGraph& graph, const std::vector<Se
   return field;
 }
 
-std::vector<double> SaddleVertexGraph::distances(const SurfacePoints& sources, const QueryOptions& options, Job* job) const {
+std::vector<double> SaddleVertexGraph::distances(const SurfacePoints& sources, const QueryOptions& options,
+                                                 Job* job) const {
   const JobStage stage(job, "Measuring distances");
   return propagate_labels(*this, checked_seeds(*this, sources, options), options, false, stage).distance;
 }

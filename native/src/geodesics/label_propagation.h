@@ -15,9 +15,10 @@ struct Seed {
 };
 
 struct LabelField {
-  std::vector<double> distance;    ///< infinity where nothing reaches
-  std::vector<Index> source;       ///< k_none where nothing reaches; ties: the smaller source
-  std::vector<Index> predecessor;  ///< vertex before on the path; k_none: straight from the source. Empty unless asked for
+  std::vector<double> distance;  ///< infinity where nothing reaches
+  std::vector<Index> source;     ///< k_none where nothing reaches; ties: the smaller source
+  std::vector<Index>
+      predecessor;  ///< vertex before on the path; k_none: straight from the source. Empty unless asked for
 };
 
 /// Seeds of sources that are vertices (distance 0) or lie elsewhere (a window propagation each, k vertices wide).

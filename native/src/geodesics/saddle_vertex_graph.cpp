@@ -6,8 +6,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "geodesics/window_propagation.h"
 #include "saddleback/error.h"
+
+#include "geodesics/window_propagation.h"
 #include "support/parallel.h"
 
 namespace saddleback {
@@ -18,7 +19,9 @@ struct ArcEnd {
   Index target;
   float length, angle;
   bool operator<(const ArcEnd& other) const {
-    return target != other.target ? target < other.target : length != other.length ? length < other.length : angle < other.angle;
+    return target != other.target   ? target < other.target
+           : length != other.length ? length < other.length
+                                    : angle < other.angle;
   }
 };
 
@@ -30,7 +33,8 @@ struct FoundArc {
 void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
   if (options.k < 1) throw InputError(message("k: wanted at least 1 vertex per geodesic disk, got ", options.k));
   if (options.k > mesh.vertex_count()) {
-    throw InputError(message("k: ", options.k, " vertices per geodesic disk are more than the mesh has (", mesh.vertex_count(), ")"));
+    throw InputError(message("k: ", options.k, " vertices per geodesic disk are more than the mesh has (",
+                             mesh.vertex_count(), ")"));
   }
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
 }

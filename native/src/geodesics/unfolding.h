@@ -7,8 +7,8 @@
 
 namespace saddleback {
 
-/// For each half-edge h = (v0 -> v1) of face f: where f's third corner lies in the frame with v0 at the origin and v1 on the
-/// positive x axis, and in which direction h leaves v0.
+/// For each half-edge h = (v0 -> v1) of face f: where f's third corner lies in the frame with v0 at the origin and v1
+/// on the positive x axis, and in which direction h leaves v0.
 class Unfolding {
  public:
   explicit Unfolding(const Mesh& mesh);

@@ -1,6 +1,6 @@
-// Method: see window_propagation.h. All geometry is planar, in the frame of the half-edge that a window lies on: its origin
-// at the half-edge's start, x along it, the face to be entered above, the unfolded source below. A child's source is rotated
-// from its parent's, so nothing but the two coordinates is carried.
+// Method: see window_propagation.h. All geometry is planar, in the frame of the half-edge that a window lies on: its
+// origin at the half-edge's start, x along it, the face to be entered above, the unfolded source below. A child's
+// source is rotated from its parent's, so nothing but the two coordinates is carried.
 
 #include "geodesics/window_propagation.h"
 
@@ -16,8 +16,8 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr double k_shorter = 1 - 1e-12;
 // Relative to the edge: a ray this close to a window's end meets the end, and narrower windows serve no further vertex.
 constexpr double k_edge_tolerance = 1e-10;
-// Windows per settled vertex are 7 to 15 on any sane mesh; needles by the thousand round one vertex may exceed that without
-// end, and stopping only costs arcs, never correctness.
+// Windows per settled vertex are 7 to 15 on any sane mesh; needles by the thousand round one vertex may exceed that
+// without end, and stopping only costs arcs, never correctness.
 constexpr Index k_windows_per_vertex = 256;
 constexpr Index k_windows_at_least = 4096;
 
@@ -112,8 +112,11 @@ void WindowPropagator::from_vertex(Index source, Index k, std::vector<DirectArc>
     if (const Index entered = mesh_.twin(opposite); entered != k_none) {
       // In the frame of `opposite` the source is the apex; its twin's frame is that one turned by half a circle.
       const Vec2 apex = unfolding_.apex(opposite);
-      push_window({{mesh_.length(opposite) - apex.x(), -apex.y()}, 0, mesh_.length(opposite),
-                   unfolding_.polar(h) - mesh_.corner_angle(opposite), entered});
+      push_window({{mesh_.length(opposite) - apex.x(), -apex.y()},
+                   0,
+                   mesh_.length(opposite),
+                   unfolding_.polar(h) - mesh_.corner_angle(opposite),
+                   entered});
     }
     if (mesh_.twin(last) == k_none) {
       add_neighbour(mesh_.from(last), mesh_.length(last), mesh_.total_angle(source), unfolding_.polar(last));
@@ -138,8 +141,11 @@ void WindowPropagator::from_point(const SurfacePoint& source, Index k, std::vect
                   unfolding_.polar(h) + std::clamp(back, 0.0, mesh_.corner_angle(h)));
     if (const Index entered = mesh_.twin(h); entered != k_none) {
       const Vec2 from_end = centre - end;
-      push_window({{-from_end.dot(along), std::min(0.0, -cross(along, from_end))}, 0, mesh_.length(h),
-                   std::atan2(along.y(), along.x()) - M_PI, entered});
+      push_window({{-from_end.dot(along), std::min(0.0, -cross(along, from_end))},
+                   0,
+                   mesh_.length(h),
+                   std::atan2(along.y(), along.x()) - M_PI,
+                   entered});
     }
   }
   run(k);
@@ -168,7 +174,8 @@ void WindowPropagator::settle(Index vertex) {
   ++settled_;
   if (v.is_direct()) {
     --direct_pending_;
-    if (!mesh_.is_saddle(vertex)) return;  // nothing bends here: its neighbours are seen directly or round another vertex
+    if (!mesh_.is_saddle(vertex))
+      return;  // nothing bends here: its neighbours are seen directly or round another vertex
   }
   const double reached = v.distance;
   const Index first = mesh_.first_halfedge(vertex);
@@ -216,7 +223,12 @@ WindowPropagator::Side WindowPropagator::side_of(const Window& window, bool left
     return {true, mesh_.from(h), mesh_.to(h), Mesh::prev(h), length, apex / length, window.source};
   }
   const double base = mesh_.length(h), length = mesh_.length(Mesh::next(h));
-  return {false,  mesh_.to(h), mesh_.from(h), Mesh::next(h), length, Vec2(base - apex.x(), apex.y()) / length,
+  return {false,
+          mesh_.to(h),
+          mesh_.from(h),
+          Mesh::next(h),
+          length,
+          Vec2(base - apex.x(), apex.y()) / length,
           Vec2(base - window.source.x(), window.source.y())};
 }
 
@@ -239,12 +251,14 @@ void WindowPropagator::add_child(const Window& parent, const Side& side, double 
     push_window({source, q0, q1, parent.rotation + mesh_.corner_angle(parent.halfedge), entered});
   } else {
     const double turn = mesh_.corner_angle(Mesh::next(parent.halfedge));
-    push_window({{side.length - source.x(), source.y()}, side.length - q1, side.length - q0, parent.rotation - turn, entered});
+    push_window(
+        {{side.length - source.x(), source.y()}, side.length - q1, side.length - q0, parent.rotation - turn, entered});
   }
 }
 
 /// The three filters of Xin and Wang: some corner of the face offers every point of the child a shorter way.
-bool WindowPropagator::is_useless(const Side& side, const Vec2& source, double q0, double q1, Index apex, double base) const {
+bool WindowPropagator::is_useless(const Side& side, const Vec2& source, double q0, double q1, Index apex,
+                                  double base) const {
   const double to_q0 = (source - Vec2(q0, 0)).norm(), to_q1 = (source - Vec2(q1, 0)).norm();
   if (distance(side.near) + q1 < to_q1 * k_shorter) return true;
   if (distance(apex) + (side.length - q0) < to_q0 * k_shorter) return true;

@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "geodesics/unfolding.h"
 #include "saddleback/surface_points.h"
+
+#include "geodesics/unfolding.h"
 
 namespace saddleback {
 
@@ -17,12 +18,13 @@ struct DirectArc {
   double end_angle;    ///< direction back to the source, at the vertex from first_halfedge
 };
 
-/// Window propagation after Chen and Han with the filters of Xin and Wang (2009), kept to the windows of the source itself:
-/// vertices behind a saddle vertex get an upper bound by edges, which is enough to kill windows that serve nothing.
-/// Windows and vertices leave one queue in order of distance, until k vertices are settled.
+/// Window propagation after Chen and Han with the filters of Xin and Wang (2009), kept to the windows of the source
+/// itself: vertices behind a saddle vertex get an upper bound by edges, which is enough to kill windows that serve
+/// nothing. Windows and vertices leave one queue in order of distance, until k vertices are settled.
 ///
-/// Two rules make it right on regular grids, where rays run through lattice points: a window updates an apex on its very
-/// border (closed interval), and ties never remove a window. Holds scratch memory of O(V + F) to be reused; one a thread.
+/// Two rules make it right on regular grids, where rays run through lattice points: a window updates an apex on its
+/// very border (closed interval), and ties never remove a window. Holds scratch memory of O(V + F) to be reused; one a
+/// thread.
 class WindowPropagator {
  public:
   explicit WindowPropagator(const Unfolding& unfolding);
@@ -41,12 +43,12 @@ class WindowPropagator {
     Index halfedge;
   };
   struct VertexState {
-    double distance;     ///< upper bound of the geodesic distance
-    double direct;       ///< length of the shortest straight geodesic found
-    double start_angle;  ///< of that geodesic; when it came by a window, the rotation of `offset`'s frame
-    double end_angle;    ///< of that geodesic; unused when it came by a window
+    double distance;             ///< upper bound of the geodesic distance
+    double direct;               ///< length of the shortest straight geodesic found
+    double start_angle;          ///< of that geodesic; when it came by a window, the rotation of `offset`'s frame
+    double end_angle;            ///< of that geodesic; unused when it came by a window
     Vec2 offset = Vec2::Zero();  ///< source to vertex in the frame of `halfedge`
-    Index halfedge;      ///< whose window reached the vertex as its apex, k_none for a mesh edge
+    Index halfedge;              ///< whose window reached the vertex as its apex, k_none for a mesh edge
     std::uint32_t epoch;
     bool settled, neighbour;
     bool is_direct() const { return direct <= distance; }

@@ -1,6 +1,6 @@
-#include "saddleback/cuda_devices.h"
-
 #include <cuda_runtime.h>
+
+#include "saddleback/cuda_devices.h"
 
 namespace saddleback {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "saddleback/error.h"
+
 #include "support/parallel.h"
 
 namespace saddleback {
@@ -26,8 +27,8 @@ void check_components(const Mesh& mesh, const SurfacePoints& sites) {
 void check_sites(const Mesh& mesh, const SurfacePoints& sites) {
   if (sites.empty()) throw InputError("sites: wanted at least one site, got none");
   if (static_cast<Index>(sites.size()) > mesh.vertex_count()) {
-    throw InputError(message("sites: ", sites.size(), " sites are more than the mesh has vertices (", mesh.vertex_count(),
-                             "); subdivide the mesh or ask for fewer"));
+    throw InputError(message("sites: ", sites.size(), " sites are more than the mesh has vertices (",
+                             mesh.vertex_count(), "); subdivide the mesh or ask for fewer"));
   }
   check_surface_points(mesh, sites, "sites");
   check_components(mesh, sites);
@@ -157,7 +158,8 @@ void CellComplex::divide(const Shared& shared, FacePartition& partition) const {
   const Triangle& t = mesh_.triangles()[shared.face];
   std::vector<FacePlane> planes;
   for (const Index site : shared.candidates) {
-    planes.push_back({site, {squared_distance(t[0], site), squared_distance(t[1], site), squared_distance(t[2], site)}});
+    planes.push_back(
+        {site, {squared_distance(t[0], site), squared_distance(t[1], site), squared_distance(t[2], site)}});
   }
   partition.build(planes);
   if (agrees_with_edges(shared.face, partition)) return;
@@ -170,7 +172,8 @@ FacePartition::Side CellComplex::side_of(Index face, int side) const {
   const auto& pieces = edges_[edge_index_[along]].pieces;
   FacePartition::Side result;
   for (const EdgePiece& piece : pieces) result.sites.push_back(piece.site);
-  for (std::size_t i = 1; i < pieces.size(); ++i) result.breaks.push_back(h == along ? pieces[i].begin : 1 - pieces[i].begin);
+  for (std::size_t i = 1; i < pieces.size(); ++i)
+    result.breaks.push_back(h == along ? pieces[i].begin : 1 - pieces[i].begin);
   if (h != along) {
     std::reverse(result.sites.begin(), result.sites.end());
     std::reverse(result.breaks.begin(), result.breaks.end());

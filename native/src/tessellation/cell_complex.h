@@ -9,12 +9,12 @@
 
 namespace saddleback {
 
-/// \throw InputError naming the first offender: no sites, more sites than vertices, a site off the mesh, a component without
-/// a site.
+/// \throw InputError naming the first offender: no sites, more sites than vertices, a site off the mesh, a component
+/// without a site.
 void check_sites(const Mesh& mesh, const SurfacePoints& sites);
 
-/// Every face that several cells share is divided into convex pieces; the others belong to one cell. Breaks on mesh edges
-/// are computed once an edge, so that the pieces of neighbouring faces fit to the bit.
+/// Every face that several cells share is divided into convex pieces; the others belong to one cell. Breaks on mesh
+/// edges are computed once an edge, so that the pieces of neighbouring faces fit to the bit.
 ///
 /// Candidates for a face start with the labels of its corners and the sites that lie in it; a site that wins part of an
 /// edge becomes a candidate of the face beyond, until nothing changes. Thus cells smaller than a face, or without any

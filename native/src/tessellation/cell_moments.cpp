@@ -50,7 +50,8 @@ void add_triangle(const FaceData& data, const Vec3& a, const Vec3& b, const Vec3
     const double density = data.density.dot(x);
     const double weight = area * q.weight * density * density;
     // The squared distance to a point of the plane, from its values at the corners.
-    const double bulge = x[1] * x[2] * data.squared_edges[0] + x[2] * x[0] * data.squared_edges[1] + x[0] * x[1] * data.squared_edges[2];
+    const double bulge =
+        x[1] * x[2] * data.squared_edges[0] + x[2] * x[0] * data.squared_edges[1] + x[0] * x[1] * data.squared_edges[2];
     sum.mass += weight;
     sum.moment += weight * (x[0] * data.log[0] + x[1] * data.log[1] + x[2] * data.log[2]);
     sum.energy += weight * (data.squared_distance.dot(x) - bulge);
@@ -72,7 +73,8 @@ std::vector<CellMoments> cell_moments(const CellComplex& complex, std::span<cons
     const CellComplex::Piece& piece = complex.pieces()[i];
     const FaceData data = face_data(complex, piece.face, piece.site, density);
     const Vec3* corner = &complex.loop_barycentric()[piece.first];
-    for (Index j = 1; j + 1 < piece.count; ++j) add_triangle(data, corner[0], corner[j], corner[j + 1], parts[faces + i]);
+    for (Index j = 1; j + 1 < piece.count; ++j)
+      add_triangle(data, corner[0], corner[j], corner[j + 1], parts[faces + i]);
   });
   std::vector<CellMoments> cells(complex.site_count());
   const auto add = [&](Index site, const CellMoments& part) {

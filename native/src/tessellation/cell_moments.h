@@ -15,8 +15,9 @@ struct CellMoments {
   double energy = 0;           ///< of the squared distance to the site
 };
 
-/// Per cell. Polynomials of degree four on triangles are integrated exactly, which covers density^2 times squared distance
-/// (both quadratic in a flat face). `density` (V,) or empty for 1. Sums run in face order: the same for any thread count.
+/// Per cell. Polynomials of degree four on triangles are integrated exactly, which covers density^2 times squared
+/// distance (both quadratic in a flat face). `density` (V,) or empty for 1. Sums run in face order: the same for any
+/// thread count.
 std::vector<CellMoments> cell_moments(const CellComplex& complex, std::span<const double> density, int threads);
 
 }  // namespace saddleback

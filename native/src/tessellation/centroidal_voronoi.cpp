@@ -7,6 +7,7 @@
 #include "saddleback/error.h"
 #include "saddleback/sample.h"
 #include "saddleback/trace.h"
+
 #include "tessellation/cell_moments.h"
 #include "tessellation/diagram.h"
 
@@ -17,16 +18,19 @@ namespace {
 constexpr int k_most_halvings = 6;
 
 void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
-  if (options.max_iterations < 0) throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
+  if (options.max_iterations < 0)
+    throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
   if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
   if (options.density.empty()) return;
   const auto& density = options.density;
   if (static_cast<Index>(density.size()) != mesh.vertex_count()) {
-    throw InputError(message("density: wanted one value for each of the ", mesh.vertex_count(), " vertices, got ", density.size()));
+    throw InputError(
+        message("density: wanted one value for each of the ", mesh.vertex_count(), " vertices, got ", density.size()));
   }
   const auto bad = std::find_if(density.begin(), density.end(), [](double d) { return !(d >= 0) || std::isinf(d); });
   if (bad != density.end()) {
-    throw InputError(message("density: wanted finite values of 0 or more, got ", *bad, " at vertex ", bad - density.begin()));
+    throw InputError(
+        message("density: wanted finite values of 0 or more, got ", *bad, " at vertex ", bad - density.begin()));
   }
   if (std::all_of(density.begin(), density.end(), [](double d) { return d == 0; })) {
     throw InputError("density: it is 0 at every vertex; paint where cells are wanted");
@@ -41,7 +45,8 @@ struct State {
   double energy = 0;
 };
 
-State evaluate(const SaddleVertexGraph& graph, SurfacePoints sites, const CentroidalVoronoiOptions& options, const JobStage& stage) {
+State evaluate(const SaddleVertexGraph& graph, SurfacePoints sites, const CentroidalVoronoiOptions& options,
+               const JobStage& stage) {
   State state;
   state.sites = std::move(sites);
   state.complex = std::make_unique<CellComplex>(graph, state.sites, options.threads, stage);
@@ -50,7 +55,8 @@ State evaluate(const SaddleVertexGraph& graph, SurfacePoints sites, const Centro
   return state;
 }
 
-/// The site moved by `share` of the way to its cell's centre. A cell without mass (no density, or empty) keeps its site.
+/// The site moved by `share` of the way to its cell's centre. A cell without mass (no density, or empty) keeps its
+/// site.
 SurfacePoint moved(const Mesh& mesh, const SurfacePoint& site, const CellMoments& cell, double share) {
   if (!(cell.mass > 0)) return site;
   const Vec2 step = share * cell.moment / cell.mass;
@@ -58,7 +64,8 @@ SurfacePoint moved(const Mesh& mesh, const SurfacePoint& site, const CellMoments
   if (!(length > 0) || !std::isfinite(length)) return site;
   double angle = std::atan2(step.y(), step.x());
   if (const Index vertex = vertex_at(mesh, site); vertex != k_none && !mesh.is_boundary(vertex)) {
-    angle = (angle < 0 ? angle + 2 * M_PI : angle) * mesh.total_angle(vertex) / (2 * M_PI);  // the tangent plane is scaled
+    angle =
+        (angle < 0 ? angle + 2 * M_PI : angle) * mesh.total_angle(vertex) / (2 * M_PI);  // the tangent plane is scaled
   }
   return trace_end(mesh, site, angle, length).point;
 }
@@ -96,8 +103,9 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
   State state = evaluate(graph, sites, options, stage.part(0, part));
   result.energy.push_back(state.energy);
   while (result.iterations < options.max_iterations) {
-    const JobStage step = stage.part((result.iterations + 1) * part, (result.iterations + 2) * part,
-                                     message("Relaxing cells, step ", result.iterations + 1, " of ", options.max_iterations));
+    const JobStage step =
+        stage.part((result.iterations + 1) * part, (result.iterations + 2) * part,
+                   message("Relaxing cells, step ", result.iterations + 1, " of ", options.max_iterations));
     double share = 1;
     State next = evaluate(graph, moved_sites(mesh, state, share), options, step);
     for (int halving = 0; next.energy > state.energy && halving < k_most_halvings; ++halving) {

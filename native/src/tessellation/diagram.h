@@ -1,6 +1,7 @@
 #pragma once
 
 #include "saddleback/geodesic_voronoi.h"
+
 #include "tessellation/cell_complex.h"
 
 namespace saddleback {

@@ -24,8 +24,9 @@ void lower_envelope(const std::vector<EdgeLine>& lines, std::vector<EdgePiece>& 
       if (end_above >= 0 || slope(line) >= slope(*current)) continue;
       const double crossing = above <= 0 ? 0 : above / (above - end_above);
       if (crossing >= 1) continue;
-      const bool sooner = !next || crossing < at ||
-                          (crossing == at && (slope(line) < slope(*next) || (slope(line) == slope(*next) && line.site < next->site)));
+      const bool sooner =
+          !next || crossing < at ||
+          (crossing == at && (slope(line) < slope(*next) || (slope(line) == slope(*next) && line.site < next->site)));
       if (sooner) next = &line, at = crossing;
     }
     if (!next) break;

@@ -7,7 +7,8 @@
 
 namespace saddleback {
 
-/// A site's squared distances at the two ends of an edge; in between they differ from another site's by an affine function.
+/// A site's squared distances at the two ends of an edge; in between they differ from another site's by an affine
+/// function.
 struct EdgeLine {
   Index site;
   double at_start, at_end;
@@ -19,13 +20,14 @@ struct EdgePiece {
   double begin;
 };
 
-/// Breaks keep this far, relative to the edge or to the part of it between two others, from each other and from the ends:
-/// no vertex of the diagram coincides with another, ties at mesh vertices included. Far below any length that matters, far
-/// above rounding.
+/// Breaks keep this far, relative to the edge or to the part of it between two others, from each other and from the
+/// ends: no vertex of the diagram coincides with another, ties at mesh vertices included. Far below any length that
+/// matters, far above rounding.
 inline constexpr double k_least_gap = 1e-9;
 
-/// Lower envelope of the lines, in order along the edge. Ties go to the smaller site; lines that are nowhere least change
-/// nothing, so that two faces that share an edge agree to the bit. O(m^2) for m lines, m being 2 or 3 nearly always.
+/// Lower envelope of the lines, in order along the edge. Ties go to the smaller site; lines that are nowhere least
+/// change nothing, so that two faces that share an edge agree to the bit. O(m^2) for m lines, m being 2 or 3 nearly
+/// always.
 void lower_envelope(const std::vector<EdgeLine>& lines, std::vector<EdgePiece>& pieces);
 
 }  // namespace saddleback

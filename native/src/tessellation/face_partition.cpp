@@ -8,7 +8,8 @@ namespace saddleback {
 namespace {
 
 double at(const FacePlane& plane, const Vec3& barycentric) {
-  return plane.at_corner[0] * barycentric[0] + plane.at_corner[1] * barycentric[1] + plane.at_corner[2] * barycentric[2];
+  return plane.at_corner[0] * barycentric[0] + plane.at_corner[1] * barycentric[1] +
+         plane.at_corner[2] * barycentric[2];
 }
 
 /// The side that both vertices lie on, k_inside when there is none.
@@ -44,7 +45,8 @@ void FacePartition::insert(const FacePlane& plane) {
   std::vector<Piece> kept, taken;
   for (const Piece& piece : pieces_) cut(piece, plane, kept, taken);
   for (const Piece& piece : taken) {
-    for (const Index v : piece.loop) vertices_[v].value = std::min(vertices_[v].value, at(plane, vertices_[v].barycentric));
+    for (const Index v : piece.loop)
+      vertices_[v].value = std::min(vertices_[v].value, at(plane, vertices_[v].barycentric));
   }
   merge(taken);
   pieces_ = std::move(kept);
@@ -53,7 +55,8 @@ void FacePartition::insert(const FacePlane& plane) {
 }
 
 /// Divides a piece into what stays with its site and what the plane's site takes.
-void FacePartition::cut(const Piece& piece, const FacePlane& plane, std::vector<Piece>& kept, std::vector<Piece>& taken) {
+void FacePartition::cut(const Piece& piece, const FacePlane& plane, std::vector<Piece>& kept,
+                        std::vector<Piece>& taken) {
   const auto size = piece.loop.size();
   std::size_t changes = 0;
   for (std::size_t i = 0; i < size; ++i) {
@@ -111,7 +114,8 @@ void FacePartition::merge(std::vector<Piece>& taken) {
   if (taken.size() < 2) return;
   std::vector<std::pair<Index, Index>> edges, outer;
   for (const Piece& piece : taken) {
-    for (std::size_t i = 0; i < piece.loop.size(); ++i) edges.emplace_back(piece.loop[i], piece.loop[(i + 1) % piece.loop.size()]);
+    for (std::size_t i = 0; i < piece.loop.size(); ++i)
+      edges.emplace_back(piece.loop[i], piece.loop[(i + 1) % piece.loop.size()]);
   }
   for (const auto& edge : edges) {
     if (std::find(edges.begin(), edges.end(), std::pair(edge.second, edge.first)) == edges.end()) outer.push_back(edge);
@@ -198,9 +202,12 @@ void FacePartition::build_star(const std::array<Side, 3>& sides) {
       vertices_.push_back({(1 - t) * Vec3::Unit(side) + t * Vec3::Unit((side + 1) % 3), 0, side});
     }
   }
-  const auto changes_at = [&](std::size_t i) { return ring[i].second != ring[(i + ring.size() - 1) % ring.size()].second; };
+  const auto changes_at = [&](std::size_t i) {
+    return ring[i].second != ring[(i + ring.size() - 1) % ring.size()].second;
+  };
   const auto first = static_cast<std::size_t>(
-      std::find_if(ring.begin(), ring.end(), [&](const auto& entry) { return changes_at(&entry - ring.data()); }) - ring.begin());
+      std::find_if(ring.begin(), ring.end(), [&](const auto& entry) { return changes_at(&entry - ring.data()); }) -
+      ring.begin());
   if (first == ring.size()) {
     pieces_.push_back({ring.front().second, {0, 1, 2}});
     return;

@@ -14,9 +14,9 @@ struct FacePlane {
   std::array<double, 3> at_corner;
 };
 
-/// Lower envelope of affine functions over a triangle, as a planar subdivision: pieces with one site each, that share their
-/// vertices. The topology is valid whatever the rounding: sites are inserted one after another, each vertex is decided
-/// once, and pieces are cut by the signs at their vertices.
+/// Lower envelope of affine functions over a triangle, as a planar subdivision: pieces with one site each, that share
+/// their vertices. The topology is valid whatever the rounding: sites are inserted one after another, each vertex is
+/// decided once, and pieces are cut by the signs at their vertices.
 class FacePartition {
  public:
   struct Vertex {
@@ -40,8 +40,8 @@ class FacePartition {
   /// False when a vertex on the side lies between pieces of one site (possible only by rounding).
   bool read_side(int side, std::vector<Index>& sites, std::vector<Index>& breaks) const;
 
-  /// Replaces the pieces by a star: each run of the boundary is joined to one inner vertex, in the middle of where pieces
-  /// met before. Used where the subdivision's sides do not agree with what the edges say (rounding at a tie).
+  /// Replaces the pieces by a star: each run of the boundary is joined to one inner vertex, in the middle of where
+  /// pieces met before. Used where the subdivision's sides do not agree with what the edges say (rounding at a tie).
   struct Side {
     std::vector<double> breaks;  ///< from corner i, 0 to 1
     std::vector<Index> sites;    ///< one more than breaks

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "saddleback/error.h"
+
 #include "tessellation/diagram.h"
 
 namespace saddleback {
@@ -47,7 +48,8 @@ std::vector<Segment> find_segments(const CellComplex& complex) {
     sides.clear();
     for (; end < pieces.size() && pieces[end].face == pieces[begin].face; ++end) {
       const Index* loop = &complex.loop()[pieces[end].first];
-      for (Index i = 0; i < pieces[end].count; ++i) sides.push_back({loop[i], loop[(i + 1) % pieces[end].count], pieces[end].site});
+      for (Index i = 0; i < pieces[end].count; ++i)
+        sides.push_back({loop[i], loop[(i + 1) % pieces[end].count], pieces[end].site});
     }
     for (const Side& a : sides) {
       if (a.from > a.to) continue;
@@ -64,7 +66,11 @@ std::vector<Segment> find_segments(const CellComplex& complex) {
 class Chains {
  public:
   Chains(const std::vector<Segment>& segments, std::size_t point_count, GeodesicVoronoi& out)
-      : segments_(segments), used_(segments.size(), 0), first_(point_count + 1, 0), at_(2 * segments.size()), out_(out) {
+      : segments_(segments),
+        used_(segments.size(), 0),
+        first_(point_count + 1, 0),
+        at_(2 * segments.size()),
+        out_(out) {
     for (const Segment& s : segments) ++first_[s.from + 1], ++first_[s.to + 1];
     for (std::size_t i = 0; i < point_count; ++i) first_[i + 1] += first_[i];
     std::vector<Index> cursor(first_.begin(), first_.end() - 1);

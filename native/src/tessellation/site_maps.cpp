@@ -1,6 +1,6 @@
 // Method: labels by shortest paths in the graph; then each vertex is placed in the plane of its site, after the vertex
-// before it on its path. A vertex next to another site's cell is placed there through a neighbour in the graph which that
-// site owns: the last bit of the path leaves the cell, all before lies inside (cells are star-shaped).
+// before it on its path. A vertex next to another site's cell is placed there through a neighbour in the graph which
+// that site owns: the last bit of the path leaves the cell, all before lies inside (cells are star-shaped).
 
 #include "tessellation/site_maps.h"
 
@@ -18,7 +18,8 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
 
-/// By how much a path that comes from direction `back` and goes on in direction `out` turns (left positive) when developed.
+/// By how much a path that comes from direction `back` and goes on in direction `out` turns (left positive) when
+/// developed.
 double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
   if (mesh.is_boundary(vertex)) {  // only one side of the path is surface
     return out >= back ? std::min(out - back - M_PI, 0.0) : std::max(M_PI - (back - out), 0.0);
@@ -59,7 +60,8 @@ void SiteMaps::make_fan(Index site, const SurfacePoint& point, WindowPropagator&
   if (fan.centre != k_none) return make_fan_at_vertex(fan);
   propagator.from_point(point, graph_.k(), fan.arcs);
   for (DirectArc& arc : fan.arcs) arc.length = graph_.quantum().round(arc.length);
-  std::sort(fan.arcs.begin(), fan.arcs.end(), [](const DirectArc& a, const DirectArc& b) { return a.vertex < b.vertex; });
+  std::sort(fan.arcs.begin(), fan.arcs.end(),
+            [](const DirectArc& a, const DirectArc& b) { return a.vertex < b.vertex; });
 }
 
 void SiteMaps::make_fan_at_vertex(Fan& fan) {
@@ -158,7 +160,8 @@ bool SiteMaps::pull(Index vertex, Index site, Vec2& log) const {
     through = neighbour;
   }
   if (best == k_infinity) return false;
-  log = through == k_none || through == fans_[site].centre ? place_direct(*direct).log : place_after(vertex, through).log;
+  log =
+      through == k_none || through == fans_[site].centre ? place_direct(*direct).log : place_after(vertex, through).log;
   return true;
 }
 

@@ -3,20 +3,21 @@
 
 #include <vector>
 
-#include "geodesics/window_propagation.h"
 #include "saddleback/saddle_vertex_graph.h"
+
+#include "geodesics/window_propagation.h"
 
 namespace saddleback {
 
 /// Labels every vertex with its nearest site by the graph and develops the path to it into the site's tangent plane.
 ///
-/// A path in the graph may bend at a vertex where a shortest path would not (an angle below pi on one side). Developed with
-/// its bends, its end lies at the straight distance and in the true direction, exactly so on flat parts; where the bend is
-/// legal (a saddle vertex, a reflex boundary) the path goes straight on and the distance is the path's length. Squared
-/// distances so obtained differ by affine functions inside a flat face, which makes bisectors straight there.
+/// A path in the graph may bend at a vertex where a shortest path would not (an angle below pi on one side). Developed
+/// with its bends, its end lies at the straight distance and in the true direction, exactly so on flat parts; where the
+/// bend is legal (a saddle vertex, a reflex boundary) the path goes straight on and the distance is the path's length.
+/// Squared distances so obtained differ by affine functions inside a flat face, which makes bisectors straight there.
 ///
-/// The plane's axes are those of the site's FaceChart or, for a site that is a vertex, of its first half-edge, with angles
-/// scaled to 2 pi when it is not on the boundary.
+/// The plane's axes are those of the site's FaceChart or, for a site that is a vertex, of its first half-edge, with
+/// angles scaled to 2 pi when it is not on the boundary.
 class SiteMaps {
  public:
   /// \throw Cancelled. O(sites k log k + arcs).
@@ -25,9 +26,9 @@ class SiteMaps {
   /// Nearest site by the graph, k_none where none reaches.
   Index label(Index vertex) const { return label_[vertex]; }
 
-  /// The vertex in the tangent plane of the site, which need not be its own. Near the site's cell that is a developed path;
-  /// farther away the face of `halfedge` (whose third corner the vertex is) is laid beside the edge, whose ends must be
-  /// known. What was answered once is kept.
+  /// The vertex in the tangent plane of the site, which need not be its own. Near the site's cell that is a developed
+  /// path; farther away the face of `halfedge` (whose third corner the vertex is) is laid beside the edge, whose ends
+  /// must be known. What was answered once is kept.
   Vec2 log(Index vertex, Index site, Index halfedge);
 
   /// The same, of the vertex's own label or asked for before.
