@@ -1,7 +1,7 @@
 """Random and damaged meshes through the whole native library: `python tests/fuzz.py [CASES] [SEED]`.
 
 Every case ends in a result that passes its checks or in one of our errors. Run it on the sanitizer build
-(tests/sanitize) to see what only a sanitizer sees. A failing case names its seed: `python tests/fuzz.py 1 SEED` repeats it.
+(tests/sanitize) to see what only a sanitizer sees. A failing case tells its seed: `python tests/fuzz.py 1 SEED`.
 """
 
 from __future__ import annotations
