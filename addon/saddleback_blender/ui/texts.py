@@ -7,7 +7,7 @@ import textwrap
 import bpy
 
 # Width of a letter of the interface font at scale 1, in pixels, on the wide side; and what icon and margins take.
-LETTER_WIDTH = 6.7
+LETTER_WIDTH = 7.0
 MARGIN = 58.0
 FEWEST_LETTERS = 16
 

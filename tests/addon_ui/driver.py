@@ -1,0 +1,61 @@
+"""Runs inside a Blender with a window: plays scenarios as a person would, and writes what it saw.
+
+    blender --factory-startup --enable-event-simulate --python-exit-code 9 --python driver.py
+
+A scenario is a generator that yields the seconds until Blender calls it again; between two calls Blender handles events
+and draws. It returns what the test outside looks at. SADDLEBACK_UI_FOLDER gets report.json and the screenshots.
+"""
+
+import json
+import os
+import sys
+import traceback
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+REPOSITORY = HERE.parents[1]
+FOLDER = Path(os.environ["SADDLEBACK_UI_FOLDER"])
+sys.path[:0] = [str(REPOSITORY), str(REPOSITORY / "addon"), str(HERE), str(HERE.parent / "addon_blender")]
+sys.path += [path for path in os.environ.get("SADDLEBACK_PYTHONPATH", "").split(os.pathsep) if path]
+
+import bpy  # noqa: E402
+import scenarios  # noqa: E402
+from hands import Screen  # noqa: E402
+
+
+def play(plays):
+    """Plays all scenarios in order from a timer, writes the report and ends Blender."""
+    report = {}
+
+    def story():
+        for name, scenario in plays.items():
+            try:
+                report[name] = {"seen": (yield from scenario())}
+            except Exception:  # noqa: PERF203 - the next scenario must be played all the same
+                report[name] = {"error": traceback.format_exc()}
+        (FOLDER / "report.json").write_text(json.dumps(report, indent=1))
+
+    steps = story()
+
+    def tick():
+        try:
+            return next(steps)
+        except StopIteration:
+            pass
+        except BaseException:
+            traceback.print_exc()
+        sys.stdout.flush()
+        os._exit(0)  # quitting in order may ask to save, and nothing of this Blender is to be kept
+
+    bpy.app.timers.register(tick, first_interval=1.0)
+
+
+def main():
+    """Enables the add-on and starts the scenarios."""
+    bpy.context.preferences.system.viewport_aa = "OFF"  # a quarter of the time for each redraw in software
+    bpy.context.preferences.view.show_splash = False
+    scenarios.prepare()
+    play(scenarios.in_order(Screen()))
+
+
+main()

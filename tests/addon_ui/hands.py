@@ -1,0 +1,101 @@
+"""A person at Blender: a screen to look at, a mouse, keys, and patience."""
+
+import os
+import time
+from pathlib import Path
+
+import bpy
+
+FOLDER = Path(os.environ["SADDLEBACK_UI_FOLDER"])
+FRAME = 0.05  # seconds in which Blender handles the events that were sent and draws
+PATIENCE = 60.0
+
+
+class Screen:
+    """The window, the 3D View and its sidebar, and a person's hands."""
+
+    def __init__(self):
+        self.window = bpy.context.window_manager.windows[0]
+        self.area = next(area for area in self.window.screen.areas if area.type == "VIEW_3D")
+        self.area.spaces.active.show_region_ui = True
+        self.sidebar = next(region for region in self.area.regions if region.type == "UI")
+        self.view = next(region for region in self.area.regions if region.type == "WINDOW")
+        self.mouse = (400, 400)
+
+    def override(self, region=None):
+        """The context of the 3D View, or of one of its regions."""
+        return bpy.context.temp_override(window=self.window, area=self.area, region=region or self.view)
+
+    def move(self, x, y):
+        """Moves the mouse in two steps, so that what is under it notices."""
+        for place in ((x + 1, y + 1), (x, y)):
+            self.window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=int(place[0]), y=int(place[1]))
+        self.mouse = (int(x), int(y))
+
+    def click(self, x, y):
+        """Clicks the left button."""
+        self.move(x, y)
+        yield FRAME
+        for value in ("PRESS", "RELEASE"):
+            self.window.event_simulate(type="LEFTMOUSE", value=value, x=int(x), y=int(y))
+        yield 2 * FRAME
+
+    def press(self, key, **modifiers):
+        """Presses and releases a key where the mouse is."""
+        x, y = self.mouse
+        for value in ("PRESS", "RELEASE"):
+            self.window.event_simulate(type=key, value=value, x=x, y=y, **modifiers)
+
+    def shoot(self, name):
+        """Takes a picture of the whole window."""
+        self.redraw()
+        yield FRAME
+        with self.override():
+            bpy.ops.screen.screenshot(filepath=str(FOLDER / f"{name}.png"))
+        yield FRAME
+
+    def redraw(self):
+        """Asks for a redraw of the sidebar."""
+        self.sidebar.tag_redraw()
+
+    def find_button(self, command):
+        """Where in the sidebar the button of an operator is: the first place where Blender would copy its command."""
+        clipboard = bpy.context.window_manager
+        left, bottom = self.sidebar.x, self.sidebar.y
+        x = left + self.sidebar.width // 2 - 20
+        for y in range(bottom + self.sidebar.height - 8, bottom + 8, -9):
+            self.move(x, y)
+            yield FRAME
+            clipboard.clipboard = ""
+            with self.override(self.sidebar):
+                if bpy.ops.ui.copy_python_command_button.poll():
+                    bpy.ops.ui.copy_python_command_button()
+            if clipboard.clipboard.startswith(command):
+                return x, y
+        raise AssertionError(f"no button for {command} in the sidebar")
+
+    def press_button(self, command):
+        """Finds the button of an operator and clicks it."""
+        place = yield from self.find_button(command)
+        yield from self.click(*place)
+
+    def open_tab(self, is_open):
+        """Clicks the tabs at the sidebar's edge one after another until the wanted one is open."""
+        self.redraw()
+        yield 4 * FRAME
+        right, top = self.sidebar.x + self.sidebar.width - 10, self.sidebar.y + self.sidebar.height
+        for y in range(top - 30, self.sidebar.y + 20, -40):
+            yield from self.click(right, y)
+            yield 4 * FRAME
+            if is_open():
+                return
+        raise AssertionError("no tab of the sidebar opens the panels")
+
+
+def wait_until(condition, what, patience=PATIENCE):
+    """Waits as a person does, without holding Blender up."""
+    end = time.perf_counter() + patience
+    while not condition():
+        if time.perf_counter() > end:
+            raise AssertionError(f"waited {patience:g} s for {what}")
+        yield FRAME

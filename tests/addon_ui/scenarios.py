@@ -1,0 +1,195 @@
+"""What a person does in the tab, and what is seen; played by driver.py inside Blender."""
+
+import time
+
+import bpy
+import numpy as np
+from hands import FRAME, wait_until
+from scenes import add_object, fingerprint
+
+from tests import synthetic_cells
+
+CELL = "saddleback_cell"
+# How often the panels were drawn, and what was being done then.
+drawn = {"main": 0, "running": 0, "fractions": []}
+
+
+def prepare():
+    """The add-on enabled, and a mesh large enough for a run to be watched."""
+    bpy.ops.preferences.addon_enable(module="saddleback_blender")
+    from saddleback_blender.ui import panels
+
+    panels.SADDLEBACK_PT_main.append(_count_draw)
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    ball = add_object("Ball", *synthetic_cells.sphere(6))
+    ball.saddleback.tessellate.count = 150
+    ball.saddleback.tessellate.iterations = 5
+    bpy.ops.ed.undo_push(message="Ready")
+
+
+def _count_draw(_panel, context):
+    manager = context.window_manager
+    drawn["main"] += 1
+    if manager.saddleback_running:
+        drawn["running"] += 1
+        drawn["fractions"].append(round(manager.saddleback_fraction, 4))
+
+
+def in_order(screen):
+    """The scenarios; later ones go on where earlier ones ended."""
+    plays = (opened, escaped, tessellated, adjusted, undone, repaired, refused)
+    return {play.__name__: (lambda play=play: play(screen)) for play in plays}
+
+
+def manager():
+    return bpy.context.window_manager
+
+
+def ball():
+    return bpy.data.objects["Ball"]  # fetched anew each time: undo ends the life of every reference
+
+
+def outputs():
+    return sorted(item.name for item in bpy.data.objects if item.parent is not None)
+
+
+def opened(screen):
+    """The tab is there and its panels draw."""
+    for x in (300, 500):  # the first drag after the start gets lost
+        yield from screen.click(x, 500)
+    ball().select_set(True)
+    bpy.context.view_layer.objects.active = ball()
+    yield from screen.open_tab(lambda: drawn["main"] > 0)
+    yield from screen.shoot("tab")
+    return {"drawn": drawn["main"]}
+
+
+def escaped(screen):
+    """A run is stopped by ESC, early and late, and nothing has changed."""
+    place = yield from screen.find_button("bpy.ops.saddleback.tessellate")
+    before = fingerprint()
+    seconds = []
+    for wait in (0.0, 0.3, 1.0):
+        yield from screen.click(*place)
+        yield from wait_until(lambda: manager().saddleback_running, "the run to start", 10)
+        yield wait
+        if not manager().saddleback_running:
+            break
+        began = time.perf_counter()
+        screen.press("ESC")
+        while manager().saddleback_running:
+            yield 0.001
+        seconds.append(time.perf_counter() - began)
+        yield 4 * FRAME
+    return {"seconds": seconds, "same": fingerprint() == before, "outputs": outputs()}
+
+
+def tessellated(screen):
+    """The button starts a run that is seen to go on, and makes what was asked for."""
+    drawn.update(running=0, fractions=[])
+    yield from screen.press_button("bpy.ops.saddleback.tessellate")
+    yield from wait_until(lambda: manager().saddleback_running, "the run to start", 10)
+    yield from wait_until(lambda: drawn["running"] > 2, "the progress to be drawn", 20)
+    yield from screen.shoot("running")
+    yield from wait_until(lambda: not manager().saddleback_running, "the run to end")
+    yield 4 * FRAME
+    yield from screen.shoot("done")
+    values = np.empty(len(ball().data.vertices), np.int32)
+    if CELL in ball().data.attributes:
+        ball().data.attributes[CELL].data.foreach_get("value", values)
+    return {
+        "running": drawn["running"],
+        "fractions": drawn["fractions"],
+        "cells": len(np.unique(values)),
+        "outputs": outputs(),
+        "line": manager().saddleback_line,
+    }
+
+
+def adjusted(screen):
+    """Adjust Last Operation changes the outputs without computing the graph again."""
+    from saddleback_blender.core import cache
+
+    def tube_vertices():
+        item = bpy.data.objects["Ball Edges"]
+        mesh = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+        co = np.empty(3 * len(mesh.vertices), np.float32)
+        mesh.vertices.foreach_get("co", co)
+        return float(np.linalg.norm(co.reshape(-1, 3), axis=1).max())
+
+    builds, radius = dict(cache.shared.builds), tube_vertices()
+    operator = manager().operators[-1]
+    operator.properties.edge_radius = 0.05
+    operator.properties.make_cells = True
+    began = time.perf_counter()
+    with screen.override():
+        bpy.ops.ed.undo_redo()
+    seconds = time.perf_counter() - began
+    yield 4 * FRAME
+    yield from screen.shoot("adjusted")
+    return {
+        "operator": operator.bl_idname,
+        "wider": tube_vertices() - radius,
+        "outputs": outputs(),
+        "builds": [builds, dict(cache.shared.builds)],
+        "seconds": seconds,
+    }
+
+
+def undone(screen):
+    """One step of undo takes everything back, and redo brings it again."""
+    screen.move(screen.view.x + 200, screen.view.y + 300)
+    yield FRAME
+    screen.press("Z", ctrl=True)
+    yield 6 * FRAME
+    after_undo = [outputs(), CELL in ball().data.attributes]
+    screen.press("Z", ctrl=True, shift=True)
+    yield 6 * FRAME
+    return {"undo": after_undo, "redo": [outputs(), CELL in ball().data.attributes]}
+
+
+def repaired(screen):
+    """A mesh with faults is refused; the panel offers the repair; one click, and it is accepted."""
+    vertices, triangles = synthetic_cells.sphere(3)
+    fin = np.concatenate([triangles, [[0, 1, len(vertices)]]])  # a face on a third vertex of its own ...
+    faces = np.concatenate([fin, np.roll(triangles[:1], 1, axis=1)])  # ... and one face twice
+    add_object("Faulty", np.concatenate([vertices, [[0.0, 0.0, 3.0]]]), faces)
+    with screen.override():
+        bpy.ops.ed.undo_push(message="Faulty")
+    screen.redraw()
+    yield 4 * FRAME
+    yield from screen.press_button("bpy.ops.saddleback.tessellate")
+    yield from wait_until(lambda: manager().saddleback_needs_repair == "Faulty", "the refusal", 20)
+    yield from leave_popup(screen)
+    yield from screen.shoot("refused")
+    yield from screen.press_button("bpy.ops.saddleback.repair")
+    yield from wait_until(lambda: not manager().saddleback_running, "the repair to end", 20)
+    yield from wait_until(lambda: not manager().saddleback_needs_repair, "the hint to go", 20)
+    yield from screen.shoot("repaired")
+    yield from screen.press_button("bpy.ops.saddleback.tessellate")
+    yield from wait_until(lambda: CELL in bpy.data.objects["Faulty"].data.attributes, "the cells", 30)
+    return {"line": manager().saddleback_line}
+
+
+def refused(screen):
+    """Without a mesh object the tab says what to do."""
+    bpy.context.view_layer.objects.active = None
+    screen.redraw()
+    yield 4 * FRAME
+    yield from screen.shoot("nothing")
+    empty = bpy.data.objects.new("Nothing", None)
+    bpy.context.scene.collection.objects.link(empty)
+    bpy.context.view_layer.objects.active = empty
+    count = drawn["main"]
+    screen.redraw()
+    yield 4 * FRAME
+    yield from screen.shoot("empty")
+    return {"drawn": drawn["main"] - count}
+
+
+def leave_popup(screen):
+    """An error pops up under the mouse and goes when the mouse leaves it."""
+    for x, y in ((700, 400), (300, 200), (40, 300)):
+        screen.move(x, y)
+        yield 2 * FRAME

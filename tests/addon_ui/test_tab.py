@@ -1,0 +1,122 @@
+"""The tab in a Blender with a window: one Blender plays all scenarios (scenarios.py), each test looks at one."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parent
+REPOSITORY = HERE.parents[1]
+BLENDER = os.environ.get("SADDLEBACK_BLENDER", "blender")
+PATIENCE = 420  # seconds for everything, on a slow machine that draws in software
+
+
+@pytest.fixture(scope="module")
+def display():
+    """A screen that nobody sees."""
+    assert shutil.which("Xvfb"), "these tests need Xvfb; tests/run installs it"
+    read, write = os.pipe()
+    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "+extension", "GLX", "-nolisten", "tcp"]
+    server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
+    os.close(write)
+    with os.fdopen(read) as stream:
+        number = stream.readline().strip()
+    assert number, "Xvfb did not start"
+    yield f":{number}"
+    server.terminate()
+    server.wait(20)
+
+
+@pytest.fixture(scope="module")
+def report(display):
+    """What the scenarios saw, by name."""
+    folder = Path(os.environ.get("SADDLEBACK_UI_FOLDER") or tempfile.mkdtemp(prefix="saddleback-ui-"))
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "report.json").unlink(missing_ok=True)
+    profile = tempfile.mkdtemp(prefix="saddleback-profile-")
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    environment |= {
+        "DISPLAY": display,
+        "LIBGL_ALWAYS_SOFTWARE": "1",
+        "BLENDER_USER_RESOURCES": profile,
+        "SADDLEBACK_UI_FOLDER": str(folder),
+    }
+    environment.setdefault("SADDLEBACK_PYTHONPATH", str(REPOSITORY / "build/python"))
+    command = [BLENDER, "--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0", "1280", "800"]
+    log = folder / "blender.log"
+    with log.open("w") as stream:
+        blender = subprocess.Popen(
+            [*command, "--python-exit-code", "9", "--python", str(HERE / "driver.py")],
+            env=environment, stdout=stream, stderr=subprocess.STDOUT, start_new_session=True,
+        )  # fmt: skip
+        try:
+            blender.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            os.killpg(blender.pid, signal.SIGKILL)
+            blender.wait()
+    shutil.rmtree(profile, ignore_errors=True)
+    result = folder / "report.json"
+    assert result.exists(), f"Blender ended without a report ({blender.returncode}):\n{log.read_text()[-4000:]}"
+    # Errors in draw functions reach only the log.
+    text = log.read_text()
+    assert "Traceback" not in text, text[-4000:]
+    print(f"screenshots: {folder}", file=sys.stderr)
+    return json.loads(result.read_text())
+
+
+def seen(report, name):
+    assert "error" not in report[name], report[name]["error"]
+    return report[name]["seen"]
+
+
+def test_the_tab_opens_and_its_panels_draw(report):
+    assert seen(report, "opened")["drawn"] > 0
+
+
+def test_esc_stops_within_a_tenth_of_a_second_and_changes_nothing(report):
+    result = seen(report, "escaped")
+    assert result["seconds"]
+    assert max(result["seconds"]) <= 0.1
+    assert result["same"]
+    assert result["outputs"] == []
+
+
+def test_the_button_starts_a_run_whose_progress_is_drawn(report):
+    result = seen(report, "tessellated")
+    assert result["running"] > 2
+    assert result["fractions"] == sorted(result["fractions"])
+    assert len(set(result["fractions"])) > 1
+    assert result["cells"] == 150
+    assert result["outputs"] == ["Ball Edges"]
+    for words in ("'Ball'", "150 cells", "5 iterations", "energy", " s"):
+        assert words in result["line"]
+
+
+def test_adjust_last_operation_computes_only_what_changed(report):
+    result = seen(report, "adjusted")
+    assert result["operator"] == "SADDLEBACK_OT_tessellate"
+    assert result["wider"] == pytest.approx(0.04, abs=0.005)
+    assert result["outputs"] == ["Ball Cells", "Ball Edges"]
+    before, after = result["builds"]
+    assert before == after
+    assert before
+
+
+def test_one_undo_takes_everything_back_and_redo_brings_it_again(report):
+    result = seen(report, "undone")
+    assert result["undo"] == [[], False]
+    assert result["redo"] == [["Ball Cells", "Ball Edges"], True]
+
+
+def test_a_faulty_mesh_is_repaired_by_one_click(report):
+    assert "'Faulty'" in seen(report, "repaired")["line"]
+
+
+def test_the_tab_says_what_to_do_without_a_mesh(report):
+    assert seen(report, "refused")["drawn"] > 0
