@@ -1,11 +1,14 @@
 // The module's doorway: errors, then one bind_* per public header.
 
+#include <string_view>
+
 #include "convert.h"
 
 namespace saddleback::bindings {
 
 void bind_job(py::module_& m);
 void bind_mesh(py::module_& m);
+void bind_predicates(py::module_& m);
 void bind_read_mesh(py::module_& m);
 void bind_repair(py::module_& m);
 void bind_surface(py::module_& m);
@@ -14,26 +17,57 @@ void bind_tessellation(py::module_& m);
 
 namespace {
 
-// Registered for this module alone, so that a second copy of it in one process (an installed add-on beside a build
-// folder) raises its own. The last registered is tried first: roots come before what derives from them.
-template <class CppError>
-py::object bind_error(py::module_& m, const char* name, const py::object& bases, const char* doc) {
-  py::register_local_exception<CppError>(m, name, bases);
-  py::object type = m.attr(name);
-  type.attr("__module__") = "saddleback";
-  type.attr("__doc__") = doc;
+// The error types, kept for the life of the process: errors may be thrown until its end.
+struct ErrorTypes {
+  PyObject *root, *mesh, *input, *cancelled, *device;
+};
+ErrorTypes error_types;
+
+// A message may hold the bytes of a file name, which need not be UTF-8.
+void raise(PyObject* type, const std::exception& error) {
+  const std::string_view text = error.what();
+  PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace");
+  if (!decoded) return;
+  PyErr_SetObject(type, decoded);
+  Py_DECREF(decoded);
+}
+
+void translate(std::exception_ptr error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const MeshError& e) {
+    raise(error_types.mesh, e);
+  } catch (const InputError& e) {
+    raise(error_types.input, e);
+  } catch (const Cancelled& e) {
+    raise(error_types.cancelled, e);
+  } catch (const DeviceError& e) {
+    raise(error_types.device, e);
+  } catch (const Error& e) {
+    raise(error_types.root, e);
+  }
+}
+
+PyObject* bind_error(py::module_& m, const char* name, const py::object& bases, const char* doc) {
+  PyObject* const type =
+      PyErr_NewExceptionWithDoc((std::string("saddleback.") + name).c_str(), doc, bases.ptr(), nullptr);
+  if (!type) throw py::error_already_set();
+  m.attr(name) = py::handle(type);
   return type;
 }
 
+// Translated for this module alone, so that a second copy of it in one process (an installed add-on beside a build
+// folder) raises its own.
 void bind_errors(py::module_& m) {
-  const auto exception = py::reinterpret_borrow<py::object>(PyExc_Exception);
-  const auto value_error = py::reinterpret_borrow<py::object>(PyExc_ValueError);
-  const py::object error = bind_error<Error>(m, "Error", exception, "Root of all errors of this library.");
-  const py::tuple bad_value = py::make_tuple(error, value_error);
-  bind_error<MeshError>(m, "MeshError", bad_value, "The mesh cannot be used as it is; `repair` may help.");
-  bind_error<InputError>(m, "InputError", bad_value, "An argument is wrong; the message names it.");
-  bind_error<Cancelled>(m, "Cancelled", error, "The job was cancelled.");
-  bind_error<DeviceError>(m, "DeviceError", error, "The wanted device cannot be used.");
+  const auto borrowed = [](PyObject* object) { return py::reinterpret_borrow<py::object>(object); };
+  error_types.root = bind_error(m, "Error", borrowed(PyExc_Exception), "Root of all errors of this library.");
+  const py::object root = borrowed(error_types.root);
+  const py::tuple bad_value = py::make_tuple(root, borrowed(PyExc_ValueError));
+  error_types.mesh = bind_error(m, "MeshError", bad_value, "The mesh cannot be used as it is; `repair` may help.");
+  error_types.input = bind_error(m, "InputError", bad_value, "An argument is wrong; the message names it.");
+  error_types.cancelled = bind_error(m, "Cancelled", root, "The job was cancelled.");
+  error_types.device = bind_error(m, "DeviceError", root, "The wanted device cannot be used.");
+  py::register_local_exception_translator(&translate);
 }
 
 }  // namespace
@@ -46,6 +80,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_errors(m);
   bind_job(m);
   bind_mesh(m);
+  bind_predicates(m);
   bind_read_mesh(m);
   bind_repair(m);
   bind_surface(m);

@@ -28,6 +28,7 @@ from saddleback._saddleback import (
     sample,
     trace,
 )
+from saddleback.progress import progress_bar
 
 __all__ = [
     "Cancelled",
@@ -52,6 +53,7 @@ __all__ = [
     "cuda_status",
     "devices",
     "geodesic_voronoi",
+    "progress_bar",
     "project",
     "read_arrays",
     "read_mesh",

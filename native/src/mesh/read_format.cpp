@@ -10,14 +10,14 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
+}  // namespace
+
 std::string quoted(std::string_view word) {
   constexpr std::size_t k_shown = 20;
   std::string text;
   for (const char c : word.substr(0, k_shown)) text += c >= ' ' && c <= '~' ? c : '?';
   return "\"" + text + (word.size() > k_shown ? "...\"" : "\"");
 }
-
-}  // namespace
 
 void PolygonSoup::add_vertex(double x, double y, double z) {
   stage_.check();

@@ -62,6 +62,9 @@ class Scanner {
   char comment_;
 };
 
+/// The beginning of a word for a message, what is not ASCII shown as a question mark.
+std::string quoted(std::string_view word);
+
 /// A file's index as ours; what does not fit 32 bits becomes k_none, which no mesh accepts.
 Index to_index(std::int64_t value);
 

@@ -49,7 +49,7 @@ struct Header {
 Type wanted_type(Scanner& scanner) {
   const std::string_view name = scanner.word_in_line();
   const std::optional<Type> type = type_named(name);
-  if (!type) scanner.fail(message("\"", name.substr(0, 20), "\" is no PLY type"));
+  if (!type) scanner.fail(message(quoted(name), " is no PLY type"));
   return *type;
 }
 
@@ -62,7 +62,7 @@ Property read_property(Scanner& scanner) {
   } else if (const std::optional<Type> type = type_named(first)) {
     property.type = *type;
   } else {
-    scanner.fail(message("\"", first.substr(0, 20), "\" is no PLY type"));
+    scanner.fail(message(quoted(first), " is no PLY type"));
   }
   property.name = scanner.word_in_line();
   return property;
@@ -73,7 +73,7 @@ Encoding read_encoding(Scanner& scanner) {
   if (name == "ascii") return Encoding::text;
   if (name == "binary_little_endian") return Encoding::little;
   if (name == "binary_big_endian") return Encoding::big;
-  scanner.fail(message("unknown PLY format \"", name.substr(0, 20), "\""));
+  scanner.fail(message("unknown PLY format ", quoted(name)));
 }
 
 Header read_header(std::string_view text) {
@@ -165,7 +165,7 @@ class BinaryValues {
   bool big_;
 };
 
-// One element after the other; `on_scalar(property, value)` and `on_list(property, values)` get what there is.
+// One element after the other.
 template <class Values>
 class ElementReader {
  public:

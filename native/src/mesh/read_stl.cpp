@@ -35,6 +35,7 @@ void read_text(std::string_view text, PolygonSoup& soup) {
   Scanner scanner(text, 0);
   scanner.skip_line();  // solid and its name
   std::vector<Index> loop;
+  bool complete = false;
   for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word()) {
     if (word == "vertex") {
       loop.push_back(soup.vertex_count());
@@ -45,10 +46,11 @@ void read_text(std::string_view text, PolygonSoup& soup) {
       soup.add_polygon(loop);
       loop.clear();
     } else if (word == "solid" || word == "endsolid") {
+      complete = word == "endsolid";
       scanner.skip_line();
     }
   }
-  if (!loop.empty()) scanner.fail("the file ends in the middle of a face");
+  if (!complete) scanner.fail("the file ends before endsolid");
 }
 
 }  // namespace

@@ -1,0 +1,93 @@
+"""Jobs: progress, cancelling from another thread, the progress bar."""
+
+import io
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests import meshes
+
+
+def test_a_job_tells_how_far_it_is():
+    job = sb.Job()
+    assert (job.fraction, job.text, job.cancelled) == (0.0, "", False)
+    sb.Mesh(*meshes.torus(), job=job)
+    assert (job.fraction, job.text) == (1.0, "Checking the mesh")
+    sb.repair(*meshes.torus(), job=job)
+    assert (job.fraction, job.text) == (1.0, "Repairing the mesh")
+    assert repr(job) == "<saddleback.Job 100 %>"
+
+
+def test_a_cancelled_job_stays_cancelled():
+    job = sb.Job()
+    job.cancel()
+    assert job.cancelled
+    for _ in range(2):
+        with pytest.raises(sb.Cancelled):
+            sb.Mesh(*meshes.torus(), job=job)
+
+
+def test_cancelling_from_another_thread():
+    vertices, triangles = meshes.grid(700, 700, jitter=0.3)
+    job, outcome = sb.Job(), []
+
+    def work():
+        try:
+            for _ in range(1000):
+                sb.repair(vertices, triangles, job=job)
+        except sb.Cancelled:
+            outcome.append(time.monotonic())
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    while not job.text:
+        time.sleep(0.001)
+    job.cancel()
+    thread.join(timeout=60)
+    assert outcome
+
+
+def test_other_things_are_no_jobs():
+    with pytest.raises(sb.InputError, match=r"job: wanted a saddleback.Job or None, got a int"):
+        sb.Mesh(*meshes.cube(), job=3)
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_progress_bar_draws_on_a_terminal_only():
+    for stream, draws in ((Terminal(), True), (io.StringIO(), False)):
+        with sb.progress_bar(stream) as job:
+            sb.Mesh(*meshes.torus(), job=job)
+            time.sleep(0.3 if draws else 0)
+        assert ("Checking the mesh" in stream.getvalue()) == draws
+
+
+def test_progress_bar_turns_an_interrupt_into_a_cancelled_job():
+    before = signal.getsignal(signal.SIGINT)
+    vertices, triangles = meshes.grid(300, 300, jitter=0.3)
+    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt), sb.progress_bar(io.StringIO()) as job:
+        while True:
+            sb.Mesh(vertices, triangles, job=job)
+    assert job.cancelled
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_results_do_not_depend_on_threads():
+    vertices, triangles = meshes.grid(100, 100, jitter=0.3)
+    with_all = sb.Mesh(vertices, triangles)
+    arrays = [with_all.total_angles, with_all.corner_angles, with_all.face_areas]
+    for _ in range(3):
+        again = sb.Mesh(vertices, triangles)
+        assert again.area == with_all.area
+        for a, b in zip(arrays, [again.total_angles, again.corner_angles, again.face_areas], strict=True):
+            assert np.array_equal(a, b)

@@ -1,0 +1,205 @@
+"""repair: whatever goes in, a valid mesh comes out, changed no more than needed."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+import saddleback as sb
+from tests import meshes
+
+
+def volume(mesh):
+    a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+def check_maps(mesh, report, vertices, triangles):
+    """Maps have the right lengths, hit the new mesh, and send unmoved vertices to their own place."""
+    assert report.vertex_map.shape == (len(vertices),)
+    assert report.face_map.shape == (len(triangles),)
+    assert report.vertex_map.max(initial=-1) < mesh.vertex_count
+    assert report.face_map.max(initial=-1) < mesh.face_count
+    kept = report.face_map[report.face_map >= 0]
+    assert len(np.unique(kept)) == len(kept)
+
+
+@pytest.mark.parametrize("case", meshes.good(), ids=str)
+def test_a_good_mesh_is_left_alone(case):
+    mesh, report = sb.repair(case.vertices, case.triangles)
+    assert report.changes == {}
+    assert str(report) == "nothing to mend"
+    assert np.array_equal(mesh.vertices, case.vertices)
+    assert np.array_equal(mesh.triangles, case.triangles)
+    assert report.vertex_map.tolist() == list(range(len(case.vertices)))
+    assert report.face_map.tolist() == list(range(len(case.triangles)))
+
+
+@pytest.mark.parametrize("case", meshes.broken(), ids=str)
+def test_broken_meshes_are_mended_for_good(case):
+    mesh, report = sb.repair(case.vertices, case.triangles)
+    assert report.changes
+    check_maps(mesh, report, case.vertices, case.triangles)
+    again, second = sb.repair(mesh.vertices, mesh.triangles)
+    assert second.changes == {}
+    assert again.fingerprint == mesh.fingerprint
+
+
+def test_soup_is_welded():
+    mesh, report = sb.repair(*meshes.soup())
+    assert (mesh.vertex_count, mesh.genus, mesh.is_closed) == (240, 1, True)
+    assert report.changes == {"vertices_welded": 1200}
+    assert np.array_equal(mesh.vertices[report.vertex_map], meshes.soup()[0])
+
+
+def test_moebius_strip_gets_a_seam():
+    mesh, report = sb.repair(*meshes.moebius())
+    assert report.changes == {"edges_cut": 4, "vertices_split": 5}
+    assert (mesh.component_count, len(mesh.boundary_loops), mesh.genus) == (1, 1, 0)
+
+
+def test_bow_tie_becomes_two():
+    mesh, report = sb.repair(*meshes.bow_tie())
+    assert (mesh.component_count, mesh.vertex_count, mesh.is_closed) == (2, 8, True)
+    assert report.changes["vertices_split"] == 1
+
+
+def test_zero_edge_collapses_and_the_surface_stays_closed():
+    mesh, report = sb.repair(*meshes.collapsed_edge())
+    assert mesh.is_closed
+    assert (mesh.vertex_count, mesh.face_count) == (161, 318)
+    assert report.changes == {"faces_without_area": 2, "vertices_welded": 1}
+
+
+def test_cap_is_flipped_without_a_crack():
+    vertices, triangles = meshes.with_cap()
+    mesh, report = sb.repair(vertices, triangles)
+    assert mesh.is_closed
+    assert np.array_equal(mesh.vertices, vertices)
+    assert mesh.area == pytest.approx(sb.Mesh(*meshes.tetrahedron()).area, rel=1e-14)
+    assert report.changes == {"faces_without_area": 1}
+
+
+def test_needle_next_to_zero_collapses():
+    vertices, triangles = meshes.icosphere(2)
+    a, b = triangles[30, :2]
+    vertices[a] = vertices[b] * (1 + 1e-15)
+    mesh, report = sb.repair(vertices, triangles)
+    assert mesh.is_closed
+    assert (mesh.vertex_count, mesh.face_count) == (161, 318)
+    assert report.vertex_map[a] == report.vertex_map[b]
+
+
+@pytest.mark.parametrize("case", meshes.closed(), ids=str)
+def test_closed_components_face_outward(case):
+    rng = np.random.default_rng(5)
+    mixed = case.triangles.copy()
+    turned = rng.random(len(mixed)) < 0.5
+    mixed[turned] = mixed[turned, ::-1]
+    for triangles in (case.triangles[:, ::-1], mixed):
+        mesh, report = sb.repair(case.vertices, triangles)
+        assert volume(mesh) == pytest.approx(volume(case.mesh), rel=1e-12)
+        assert set(report.changes) == {"faces_flipped"}
+
+
+def test_wall_of_a_cavity_keeps_facing_inward():
+    outer, inner = meshes.icosphere(2), meshes.icosphere(1, radius=0.5)
+    hollow = meshes.merge(outer, (inner[0], inner[1][:, ::-1]))
+    mesh, report = sb.repair(*hollow)
+    assert report.changes == {}
+    assert volume(mesh) == pytest.approx(volume(sb.Mesh(*outer)) - volume(sb.Mesh(*inner)), rel=1e-12)
+
+
+def test_cubes_that_touch_along_an_edge_come_apart():
+    touching = np.zeros((2, 2, 1), dtype=bool)
+    touching[0, 0] = touching[1, 1] = True
+    mesh, report = sb.repair(*meshes.voxels(touching))
+    assert (mesh.component_count, mesh.is_closed, mesh.area) == (2, True, pytest.approx(12))
+    assert report.changes == {"edges_non_manifold": 1, "vertices_split": 2}
+
+
+def test_wall_on_a_floor_leaves_the_floor_whole():
+    floor = meshes.grid(3, 3)
+    wall = (np.array([[0.5, 0, 0], [0.5, 0.5, 0], [0.5, 0.25, 1]]), np.array([[0, 1, 2]], dtype=np.int32))
+    mesh, _ = sb.repair(*meshes.merge(floor, wall))
+    assert mesh.component_count == 2
+    assert np.bincount(mesh.components).tolist() == [9, 3]
+
+
+def test_weld_distance():
+    vertices, triangles = meshes.soup()
+    moved = vertices + np.random.default_rng(0).uniform(-1e-6, 1e-6, vertices.shape)
+    mesh, _ = sb.repair(moved, triangles, 1e-5)
+    assert (mesh.vertex_count, mesh.is_closed) == (240, True)
+    mesh, _ = sb.repair(moved, triangles, weld_distance=1e-9)
+    assert mesh.vertex_count == 1440
+    with pytest.raises(sb.MeshError, match="no face of the mesh can be used"):
+        sb.repair(moved, triangles, 100.0)
+
+
+def test_unusable_parts_are_dropped_and_reported():
+    vertices, triangles = meshes.icosphere(2)
+    vertices = np.vstack([vertices, [(np.inf, 0, 0), (1e300, 0, 0), (0, 0, 5)]])
+    triangles = np.vstack([triangles, [(0, 1, 162), (0, 1, 163), (0, 1, 999), (2, 2, 3)]])
+    mesh, report = sb.repair(vertices, triangles)
+    assert mesh.fingerprint == sb.Mesh(*meshes.icosphere(2)).fingerprint
+    assert report.changes == {
+        "vertices_not_finite": 2,
+        "vertices_unreferenced": 1,
+        "faces_with_bad_index": 1,
+        "faces_repeating_a_vertex": 1,
+    }
+    assert report.vertex_map[-3:].tolist() == [-1, -1, -1]
+    assert report.face_map[-4:].tolist() == [-1] * 4
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "says"),
+    [
+        (([], []), sb.MeshError, "no face of the mesh can be used"),
+        ((np.zeros((3, 3)), [(0, 1, 2)]), sb.MeshError, "no face of the mesh can be used"),
+        ((*meshes.cube(), -1), sb.InputError, "weld_distance: wanted a finite number >= 0, got -1"),
+        ((*meshes.cube(), np.nan), sb.InputError, "weld_distance"),
+        ((*meshes.cube(), "far"), sb.InputError, "weld_distance: wanted a real number, got a str"),
+        ((np.zeros((3, 2)), [(0, 1, 2)]), sb.InputError, "vertices: wanted shape"),
+    ],
+)
+def test_bad_arguments(arguments, error, says):
+    with pytest.raises(error, match=says):
+        sb.repair(*arguments)
+
+
+def test_cancelled_job_stops_it():
+    job = sb.Job()
+    job.cancel()
+    with pytest.raises(sb.Cancelled):
+        sb.repair(*meshes.torus(), job=job)
+
+
+def test_crowd_on_one_edge_ends_quickly():
+    n = 20_000
+    angle = np.linspace(0, 6, n)
+    vertices = np.vstack([[(0, 0, 0), (0, 0, 1)], np.column_stack([np.cos(angle), np.sin(angle), angle])])
+    triangles = np.column_stack([np.zeros(n, int), np.ones(n, int), np.arange(2, n + 2)])
+    mesh, _ = sb.repair(vertices, triangles)
+    assert mesh.face_count >= n
+
+
+awkward = st.one_of(
+    st.integers(0, 2).map(float), st.floats(-1, 1), st.sampled_from([np.nan, np.inf, 1e300, 1e-300, 1 + 1e-15, 1e-13])
+)
+
+
+@given(
+    hnp.arrays(np.float64, st.tuples(st.integers(0, 9), st.just(3)), elements=awkward),
+    hnp.arrays(np.int32, st.tuples(st.integers(0, 16), st.just(3)), elements=st.integers(-1, 9)),
+    st.sampled_from([0.0, 1e-13, 0.1, 1.0]),
+)
+def test_any_arrays_are_repaired_or_refused(vertices, triangles, weld_distance):
+    try:
+        mesh, report = sb.repair(vertices, triangles, weld_distance)
+    except sb.MeshError as error:
+        assert "no face of the mesh can be used" in str(error)  # and never a fault that repair left in
+    else:
+        check_maps(mesh, report, vertices, triangles)
