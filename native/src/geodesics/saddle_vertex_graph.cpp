@@ -62,6 +62,17 @@ std::vector<std::vector<FoundArc>> find_arcs(const Unfolding& unfolding, const L
   return found;
 }
 
+template <class Use>
+void for_each_arc(const std::vector<std::vector<FoundArc>>& found, const JobStage& stage, Use&& use) {
+  constexpr std::size_t k_block = 1 << 16;
+  for (const auto& list : found) {
+    for (std::size_t begin = 0; begin < list.size(); begin += k_block) {
+      stage.check();
+      for (std::size_t i = begin; i < std::min(begin + k_block, list.size()); ++i) use(list[i]);
+    }
+  }
+}
+
 }  // namespace
 
 LengthQuantum::LengthQuantum(double mean_edge) : step_(std::ldexp(1.0, std::ilogb(mean_edge) - 32)) {}
@@ -76,26 +87,23 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   check_options(mesh, options);
   const auto started = std::chrono::steady_clock::now();
   const JobStage stage(job, "Building the saddle vertex graph");
-  unfolding_ = std::make_unique<Unfolding>(mesh);
+  unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
   const auto found = find_arcs(*unfolding_, quantum_, unit_, options, stage.part(0, 0.9));
 
   // Every found arc goes into the rows of both its ends; the shortest of each pair stays.
   std::vector<std::int64_t> begin(mesh.vertex_count() + 1, 0);
-  for (const auto& list : found) {
-    for (const FoundArc& arc : list) ++begin[arc.source + 1], ++begin[arc.target + 1];
-  }
+  for_each_arc(found, stage, [&](const FoundArc& arc) { ++begin[arc.source + 1], ++begin[arc.target + 1]; });
   for (Index v = 0; v < mesh.vertex_count(); ++v) begin[v + 1] += begin[v];
   std::vector<ArcEnd> ends(begin.back());
   std::vector<std::int64_t> cursor(begin.begin(), begin.end() - 1);
-  for (const auto& list : found) {
-    for (const FoundArc& arc : list) {
-      ends[cursor[arc.source]++] = {arc.target, arc.length, arc.start_angle};
-      ends[cursor[arc.target]++] = {arc.source, arc.length, arc.end_angle};
-    }
-  }
+  for_each_arc(found, stage, [&](const FoundArc& arc) {
+    ends[cursor[arc.source]++] = {arc.target, arc.length, arc.start_angle};
+    ends[cursor[arc.target]++] = {arc.source, arc.length, arc.end_angle};
+  });
   stage.update(0.93);
   std::vector<Index> degree(mesh.vertex_count());
   parallel_for(mesh.vertex_count(), options.threads, 1024, [&](Index v, int) {
+    stage.check();
     const auto row = ends.begin() + begin[v], row_end = ends.begin() + begin[v + 1];
     std::sort(row, row_end);
     degree[v] = static_cast<Index>(
@@ -109,6 +117,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   lengths_.resize(offsets_.back());
   angles_.resize(offsets_.back());
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    stage.check();
     for (Index i = 0; i < degree[v]; ++i) {
       const ArcEnd& end = ends[begin[v] + i];
       targets_[offsets_[v] + i] = end.target;

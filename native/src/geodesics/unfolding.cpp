@@ -1,15 +1,20 @@
 #include "geodesics/unfolding.h"
 
+#include "support/parallel.h"
+
 namespace saddleback {
 
-Unfolding::Unfolding(const Mesh& mesh) : mesh_(&mesh), apexes_(mesh.halfedge_count()), polars_(mesh.halfedge_count()) {
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+Unfolding::Unfolding(const Mesh& mesh, int threads, const JobStage& stage)
+    : mesh_(&mesh), apexes_(mesh.halfedge_count()), polars_(mesh.halfedge_count()) {
+  parallel_for(mesh.halfedge_count(), threads, 4096, [&](Index h, int) {
+    stage.check();
     const double base = mesh.length(h), left = mesh.length(Mesh::prev(h)), right = mesh.length(Mesh::next(h));
     // x from the lengths, factored against cancellation on needles; y from the area, which the mesh computes stably.
     const double x = (base + (left - right) * ((left + right) / base)) / 2;
     apexes_[h] = {x, 2 * mesh.face_area(Mesh::face_of(h)) / base};
-  }
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+  });
+  parallel_for(mesh.vertex_count(), threads, 1024, [&](Index v, int) {
+    stage.check();
     const Index first = mesh.first_halfedge(v);
     double angle = 0;
     Index h = first;
@@ -18,7 +23,7 @@ Unfolding::Unfolding(const Mesh& mesh) : mesh_(&mesh), apexes_(mesh.halfedge_cou
       angle += mesh.corner_angle(h);
       h = mesh.rotate(h);
     } while (h != k_none && h != first);
-  }
+  });
 }
 
 }  // namespace saddleback

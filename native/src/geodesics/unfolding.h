@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/mesh.h"
 
 namespace saddleback {
@@ -11,7 +12,8 @@ namespace saddleback {
 /// on the positive x axis, and in which direction h leaves v0.
 class Unfolding {
  public:
-  explicit Unfolding(const Mesh& mesh);
+  /// \throw Cancelled.
+  Unfolding(const Mesh& mesh, int threads, const JobStage& stage);
   const Mesh& mesh() const { return *mesh_; }
   const Vec2& apex(Index h) const { return apexes_[h]; }
   /// Surface angle of h at its origin: counter-clockwise from first_halfedge, 0 to total_angle, radians.

@@ -60,16 +60,19 @@ void add_triangle(const FaceData& data, const Vec3& a, const Vec3& b, const Vec3
 
 }  // namespace
 
-std::vector<CellMoments> cell_moments(const CellComplex& complex, std::span<const double> density, int threads) {
+std::vector<CellMoments> cell_moments(const CellComplex& complex, std::span<const double> density, int threads,
+                                      const JobStage& stage) {
   const Index faces = complex.mesh().face_count();
   const auto pieces = static_cast<Index>(complex.pieces().size());
   std::vector<CellMoments> parts(faces + pieces);
   parallel_for(faces, threads, 1024, [&](Index face, int) {
+    stage.check();
     const Index site = complex.face_site(face);
     if (site == k_none) return;
     add_triangle(face_data(complex, face, site, density), Vec3::Unit(0), Vec3::Unit(1), Vec3::Unit(2), parts[face]);
   });
   parallel_for(pieces, threads, 256, [&](Index i, int) {
+    stage.check();
     const CellComplex::Piece& piece = complex.pieces()[i];
     const FaceData data = face_data(complex, piece.face, piece.site, density);
     const Vec3* corner = &complex.loop_barycentric()[piece.first];

@@ -18,6 +18,8 @@ struct CellMoments {
 /// Per cell. Polynomials of degree four on triangles are integrated exactly, which covers density^2 times squared
 /// distance (both quadratic in a flat face). `density` (V,) or empty for 1. Sums run in face order: the same for any
 /// thread count.
-std::vector<CellMoments> cell_moments(const CellComplex& complex, std::span<const double> density, int threads);
+/// \throw Cancelled.
+std::vector<CellMoments> cell_moments(const CellComplex& complex, std::span<const double> density, int threads,
+                                      const JobStage& stage);
 
 }  // namespace saddleback

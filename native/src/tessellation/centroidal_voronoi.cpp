@@ -50,7 +50,7 @@ State evaluate(const SaddleVertexGraph& graph, SurfacePoints sites, const Centro
   State state;
   state.sites = std::move(sites);
   state.complex = std::make_unique<CellComplex>(graph, state.sites, options.threads, stage);
-  state.moments = cell_moments(*state.complex, options.density, options.threads);
+  state.moments = cell_moments(*state.complex, options.density, options.threads, stage);
   for (const CellMoments& cell : state.moments) state.energy += cell.energy;
   return state;
 }
@@ -128,7 +128,7 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
     }
   }
   result.sites = state.sites;
-  result.cells = make_diagram(*state.complex, state.sites);
+  result.cells = make_diagram(*state.complex, state.sites, stage);
   stage.update(1);
   return result;
 }

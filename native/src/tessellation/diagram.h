@@ -6,7 +6,7 @@
 
 namespace saddleback {
 
-/// The public diagram of a cell complex of these sites.
-GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites);
+/// The public diagram of a cell complex of these sites. \throw Cancelled.
+GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
 
 }  // namespace saddleback

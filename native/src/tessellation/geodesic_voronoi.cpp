@@ -148,10 +148,10 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
   const Mesh& mesh = graph.mesh();
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells");
-  return make_diagram(CellComplex(graph, sites, options.threads, stage.part(0, 0.9)), sites);
+  return make_diagram(CellComplex(graph, sites, options.threads, stage.part(0, 0.9)), sites, stage);
 }
 
-GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites) {
+GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {
   const Mesh& mesh = complex.mesh();
   GeodesicVoronoi result;
   result.sites = sites;
@@ -160,11 +160,15 @@ GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& si
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     result.vertex_distance[v] = complex.maps().known_log(v, result.vertex_cell[v]).norm();
   }
+  stage.check();
   result.areas = cell_areas(complex);
   result.points = complex.added();
   for (const SurfacePoint& point : result.points) result.positions.push_back(position(mesh, point));
+  stage.check();
   const std::vector<Segment> segments = find_segments(complex);
+  stage.check();
   Chains(segments, result.points.size(), result);
+  stage.check();
   result.face_cell.resize(mesh.face_count());
   for (Index f = 0; f < mesh.face_count(); ++f) result.face_cell[f] = complex.face_site(f);
   for (const CellComplex::Piece& piece : complex.pieces()) {

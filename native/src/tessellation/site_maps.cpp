@@ -50,7 +50,7 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, i
   std::vector<Index> predecessor;
   label_vertices(stage, predecessor);
   stage.update(0.8);
-  develop(predecessor);
+  develop(predecessor, stage);
   stage.update(1);
 }
 
@@ -86,10 +86,11 @@ void SiteMaps::label_vertices(const JobStage& stage, std::vector<Index>& predece
   predecessor = std::move(field.predecessor);
 }
 
-void SiteMaps::develop(const std::vector<Index>& predecessor) {
+void SiteMaps::develop(const std::vector<Index>& predecessor, const JobStage& stage) {
   std::vector<std::uint8_t> placed(label_.size(), 0);
   std::vector<Index> chain;
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (v % 1024 == 0) stage.check();
     if (label_[v] == k_none) continue;
     for (Index u = v; u != k_none && !placed[u]; u = predecessor[u]) chain.push_back(u);
     for (; !chain.empty(); chain.pop_back()) {

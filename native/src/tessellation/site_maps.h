@@ -52,7 +52,7 @@ class SiteMaps {
   void make_fan(Index site, const SurfacePoint& point, WindowPropagator& propagator);
   void make_fan_at_vertex(Fan& fan);
   void label_vertices(const JobStage& stage, std::vector<Index>& predecessor);
-  void develop(const std::vector<Index>& predecessor);
+  void develop(const std::vector<Index>& predecessor, const JobStage& stage);
   const DirectArc* fan_arc(Index site, Index vertex) const;
   Place place_direct(const DirectArc& arc) const;
   Place place_after(Index vertex, Index previous) const;
