@@ -138,7 +138,7 @@ class SaddleVertexGraph:
     def __init__(
         self,
         mesh: Mesh,
-        k: SupportsIndex = 50,
+        k: SupportsIndex | None = None,
         *,
         threads: SupportsIndex = 0,
         device: _Device = "auto",
