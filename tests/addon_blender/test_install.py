@@ -21,7 +21,7 @@ def package():
 
 @pytest.fixture
 def step(tmp_path):
-    """Runs one of installed_steps.py in this Blender's program with the same empty profile, and returns what it printed."""
+    """Runs one of installed_steps.py in this Blender's program, each time in the same profile; returns its words."""
     script = str(Path(__file__).with_name("installed_steps.py"))
     if bpy.app.binary_path:
         command = [bpy.app.binary_path, "-b", "--python-exit-code", "9", "--python", script, "--"]

@@ -1,6 +1,6 @@
 """Sorts the arguments of tests/run: what the outer pytest gets, and what the one inside each Blender gets.
 
-Run as a script, prints which kind of tests the arguments ask for: "plain", "blender" or both. Standard library only,
+Run as a script, prints what the arguments need to be set up: "blender", "bpy", both or nothing. Standard library only,
 for it runs before anything is installed.
 """
 
@@ -12,6 +12,8 @@ from pathlib import Path
 
 INSIDE = Path("tests/addon_blender")
 """The folder of the tests that import bpy."""
+STARTS_BLENDER = Path("tests/addon_ui")
+"""The folder of the tests that start a Blender with a window and look at it from outside."""
 
 
 @dataclass
@@ -21,14 +23,20 @@ class Arguments:
     plain: list[str] = field(default_factory=list)
     inside: list[str] = field(default_factory=list)
     options: list[str] = field(default_factory=list)
+    starts_blender: bool = False
 
     @property
     def wants_plain(self) -> bool:
         return bool(self.plain) or not self.inside
 
     @property
-    def wants_blender(self) -> bool:
+    def wants_inside(self) -> bool:
         return bool(self.inside) or not self.plain
+
+    @property
+    def needs(self) -> list[str]:
+        """What has to be installed: Debian's Blender, the bpy wheels."""
+        return ["blender"] * (self.wants_inside or self.starts_blender) + ["bpy"] * self.wants_inside
 
 
 def split(arguments: list[str], root: Path) -> Arguments:
@@ -46,9 +54,9 @@ def split(arguments: list[str], root: Path) -> Arguments:
             continue
         else:
             result.plain.append(argument)
+            result.starts_blender |= relative == STARTS_BLENDER or STARTS_BLENDER in relative.parents
     return result
 
 
 if __name__ == "__main__":
-    sorted_arguments = split(sys.argv[1:], Path.cwd())
-    print(*(["plain"] * sorted_arguments.wants_plain + ["blender"] * sorted_arguments.wants_blender))
+    print(*split(sys.argv[1:], Path.cwd()).needs)

@@ -48,7 +48,7 @@ def main() -> int:
     known = parser.parse_args()
     arguments = split(known.arguments, ROOT)
     blenders = []
-    if arguments.wants_blender:
+    if arguments.wants_inside:
         blenders = [debian_blender(), *(bpy_wheel(version) for version in known.bpy.split())]
     inside = [*arguments.options, "--rootdir", str(ROOT), *(arguments.inside or [str(INSIDE)])]
     # With nothing to test here, a folder without tests: no path at all would mean all of them.

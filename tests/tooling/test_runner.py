@@ -31,9 +31,23 @@ def test_arguments_are_sorted(given, plain, inside, options):
 
 
 def test_what_the_arguments_ask_for():
-    assert split([], ROOT).wants_plain and split([], ROOT).wants_blender
-    assert not split(["tests/tooling"], ROOT).wants_blender
+    assert split([], ROOT).wants_plain and split([], ROOT).wants_inside
+    assert not split(["tests/tooling"], ROOT).wants_inside
     assert not split(["tests/addon_blender"], ROOT).wants_plain
+
+
+@pytest.mark.parametrize(
+    ("given", "needs"),
+    [
+        ([], ["blender", "bpy"]),
+        (["-k", "repair"], ["blender", "bpy"]),
+        (["tests/native"], []),
+        (["tests/addon_ui"], ["blender"]),
+        (["tests/addon_blender/conftest.py"], ["blender", "bpy"]),
+    ],
+)
+def test_only_what_is_needed_is_installed(given, needs):
+    assert split(given, ROOT).needs == needs
 
 
 def outer(tmp_path: Path, inner_test: str, *arguments: str, ending: str = "") -> subprocess.CompletedProcess[str]:
