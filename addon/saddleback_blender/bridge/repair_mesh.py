@@ -100,11 +100,21 @@ def _remake(
     new = changed.faces.get(vertices)
     if new is None:
         new = changed.faces.new(vertices, face)
+    elif not _same_way_round(new, vertices):  # an old face that was to go, and is now this one
+        new.normal_flip()
     between = {frozenset(edge.verts): edge for edge in face.edges}
-    for number, loop in enumerate(new.loops):
-        lender, following = lenders[number], lenders[(number + 1) % len(lenders)]
+    lender_of = dict(zip(vertices, lenders, strict=True))
+    for loop in new.loops:
+        lender, following = lender_of[loop.vert], lender_of[loop.link_loop_next.vert]
         loop.copy_from(lender)
         edge = between.get(frozenset((lender.vert, following.vert)))
         if edge is not None and edge != loop.edge and len(loop.edge.link_faces) == 1:
-            loop.edge.copy_from(edge)
+            loop.edge.copy_from(edge)  # its layers, not its flags
+            loop.edge.seam, loop.edge.smooth = edge.seam, edge.smooth
     return new
+
+
+def _same_way_round(face: bmesh.types.BMFace, vertices: list[bmesh.types.BMVert]) -> bool:
+    return any(
+        loop.vert == vertices[0] and loop.link_loop_next.vert == vertices[1] for loop in face.loops
+    )

@@ -31,7 +31,7 @@ def average_to_vertices(
     """
     times = np.bincount(vertices, minlength=vertex_count)
     times[times == 0] = 1
-    columns = values.reshape(len(values), -1)
+    columns = values if values.ndim == 2 else values[:, None]
     means = np.empty((vertex_count, columns.shape[1]))
     for column in range(columns.shape[1]):
         means[:, column] = np.bincount(vertices, weights=columns[:, column], minlength=vertex_count) / times

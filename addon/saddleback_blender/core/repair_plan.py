@@ -27,6 +27,7 @@ class RepairPlan:
     kept: dict[int, tuple[Indices, bool]]  # polygon -> new vertex of each corner, and whether it turns round
     replaced: dict[int, list[int]]  # polygon -> new triangles in its place
     dropped: list[int]  # polygons of which nothing is left
+    changes_nothing: bool  # the new triangles are the old ones, perhaps of vertices numbered otherwise
 
 
 def plan_repair(
@@ -65,7 +66,18 @@ def plan_repair(
         else:
             replaced[polygon] = [int(face) for face in survivors if face >= 0]
     _give_parts(new_triangles, claimed, triangle_polygon, replaced)
-    return RepairPlan(_fill_origins(origin, root, new_triangles), origin < 0, kept, replaced, dropped)
+    nothing = bool(matches.all() and not turned.any()) and _is_renumbering(triangles, corner_vertex, len(new_vertices))
+    return RepairPlan(_fill_origins(origin, root, new_triangles), origin < 0, kept, replaced, dropped, nothing)
+
+
+def _is_renumbering(triangles: Indices, corner_vertex: Indices, new_count: int) -> bool:
+    """Whether corners with one old vertex have one new vertex and the other way round.
+
+    So it is where vertices at one place are joined and then split again as they were.
+    """
+    pairs = np.unique(np.stack([triangles.ravel(), corner_vertex.ravel()]), axis=1)
+    old, new = (len(np.unique(side)) for side in pairs)
+    return pairs.shape[1] == old == new == new_count
 
 
 def _origins(new_vertices: Reals, vertex_map: Indices) -> tuple[Indices, Indices]:

@@ -70,11 +70,7 @@ class RepairResult:
     vertex_map: Indices  # (old n,) new vertex, the first copy if it was split, -1 = gone
     face_map: Indices  # (old F,) new triangle, the first part if it was divided, -1 = gone
     changes: dict[str, int]  # by kind; empty when there was nothing to repair
-
-    @property
-    def text(self) -> str:
-        """The changes for a person to read."""
-        return ", ".join(f"{count} {kind.replace('_', ' ')}" for kind, count in sorted(self.changes.items()))
+    text: str  # the changes for a person to read
 
 
 def _nbytes(result: object) -> int:

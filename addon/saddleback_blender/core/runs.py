@@ -97,7 +97,7 @@ def repair(surface: Surface, weld_distance: float, progress: Progress) -> Repair
     with progress.stage(0.98, "repairing the mesh") as job:
         mesh, report = native.load().repair(surface.vertices, surface.triangles, weld_distance=weld_distance, job=job)
     changes = {str(kind): int(count) for kind, count in report.changes.items() if count}
-    return RepairResult(mesh.vertices, mesh.triangles, report.vertex_map, report.face_map, changes)
+    return RepairResult(mesh.vertices, mesh.triangles, report.vertex_map, report.face_map, changes, str(report))
 
 
 @dataclass(frozen=True)

@@ -44,16 +44,16 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
         """Changes the mesh in place, or nothing where nothing is wrong."""
         keep_settings(settings_of(self, RepairSettings), source.saddleback.repair)
         jobs.state.needs_repair = ""
-        if not result.changes:
-            return f"'{source.name}': nothing to repair"
         warning = shared_mesh_warning(source)
-        _apply(source, result)
+        if not result.changes or not _apply(source, result):
+            return f"'{source.name}': nothing to repair"
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {result.text}"
 
 
-def _apply(source: bpy.types.Object, result: RepairResult) -> None:
+def _apply(source: bpy.types.Object, result: RepairResult) -> bool:
+    """Changes the mesh; False where there was nothing to change."""
     surface = read_surface(source, source.data, check=False)
     used = np.arange(surface.vertex_count, dtype=np.int32) if surface.used is None else surface.used
     plan = plan_repair(
@@ -65,6 +65,8 @@ def _apply(source: bpy.types.Object, result: RepairResult) -> None:
         surface.spread(result.vertex_map, -1),
         result.face_map,
     )
+    if plan.changes_nothing:
+        return False
     # A vertex left in its place keeps its coordinates to the bit: only the others go through the inverse.
     before = surface.vertices[surface.compact(plan.vertex_origin)]
     moved = np.nonzero(~plan.vertex_is_copy & (before != result.vertices).any(axis=1))[0]
@@ -72,6 +74,7 @@ def _apply(source: bpy.types.Object, result: RepairResult) -> None:
     mirrored = source.matrix_world.determinant() < 0
     triangles = result.triangles[:, ::-1] if mirrored else result.triangles
     apply_repair(source, plan, places, moved.astype(np.int32), triangles)
+    return True
 
 
 CLASSES = (SADDLEBACK_OT_repair,)

@@ -1,0 +1,28 @@
+"""Normals at surface points."""
+
+import numpy as np
+from saddleback_blender.core.normals import normals_at
+
+OCTAHEDRON = (
+    np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float),
+    np.array(
+        [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]],
+        np.int32,
+    ),
+)
+
+
+def test_vertex_and_face_normals_of_an_octahedron():
+    vertices, triangles = OCTAHEDRON
+    faces = np.arange(8, dtype=np.int32)
+    centres = normals_at(vertices, triangles, faces, np.full((8, 3), 1 / 3))
+    np.testing.assert_allclose(centres, vertices[triangles].sum(axis=1) / np.sqrt(3), atol=1e-12)
+    corners = normals_at(vertices, triangles, faces, np.tile([0.0, 1.0, 0.0], (8, 1)))
+    np.testing.assert_allclose(corners, vertices[triangles[:, 1]], atol=1e-12)
+
+
+def test_where_normals_cancel_the_face_decides():
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
+    both_sides = np.array([[0, 1, 2], [0, 2, 1]], np.int32)
+    normals = normals_at(vertices, both_sides, np.array([0, 1], np.int32), np.full((2, 3), 1 / 3))
+    np.testing.assert_allclose(normals, [[0, 0, 1], [0, 0, -1]])

@@ -1,0 +1,57 @@
+"""Several native calls are told as one rising fraction and stopped by one cancel."""
+
+import pytest
+from saddleback_blender.core.progress import Progress
+
+
+class Stopped(Exception):
+    pass
+
+
+class Job:
+    def __init__(self):
+        self.fraction = 0.0
+        self.stopped = False
+
+    def cancel(self):
+        self.stopped = True
+
+
+def test_stages_map_onto_parts_and_never_fall():
+    progress = Progress(Job, Stopped)
+    assert progress.fraction == 0
+    with progress.stage(0.4, "first") as job:
+        assert progress.text == "first" and progress.fraction == 0
+        job.fraction = 0.5
+        assert progress.fraction == pytest.approx(0.2)
+        job.fraction = 1.0
+    assert progress.fraction == pytest.approx(0.4)
+    with progress.stage(0.9, "second") as job:
+        assert progress.fraction == pytest.approx(0.4)
+        job.fraction = 0.5
+        assert progress.fraction == pytest.approx(0.65)
+    assert progress.fraction == pytest.approx(0.9)
+
+
+def test_a_stage_that_is_left_out_costs_nothing():
+    progress = Progress(Job, Stopped)
+    with progress.stage(0.9, "only") as job:
+        job.fraction = 1.0
+    assert progress.fraction == pytest.approx(0.9)
+
+
+def test_cancel_reaches_the_call_that_runs():
+    progress = Progress(Job, Stopped)
+    with pytest.raises(Stopped), progress.stage(0.5, "running") as job:
+        progress.cancel()
+        assert job.stopped
+    assert progress.cancelled
+
+
+def test_after_a_cancel_no_stage_begins():
+    progress = Progress(Job, Stopped)
+    progress.cancel()
+    with pytest.raises(Stopped), progress.stage(0.5, "never"):
+        raise AssertionError("the stage began")
+    with pytest.raises(Stopped):
+        progress.check()
