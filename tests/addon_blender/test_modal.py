@@ -14,6 +14,7 @@ import pytest
 from scenes import attribute, fingerprint, grid, select, sphere
 
 from saddleback_blender import jobs
+from saddleback_blender.bridge.mesh_in import read_surface
 from saddleback_blender.core import cache
 from saddleback_blender.core.settings import DistanceSettings, TessellateSettings
 from saddleback_blender.ops.distance import SADDLEBACK_OT_distance
@@ -82,7 +83,7 @@ def run_to_end(operator, context, seconds=60.0):
 
 @pytest.fixture
 def item():
-    return grid(n=120)
+    return grid(n=50)
 
 
 def test_a_run_ends_with_the_same_result_as_a_script(item):
@@ -151,16 +152,18 @@ def test_escape_at_fifty_random_moments(item):
 
 
 def test_the_file_is_the_same_to_the_byte_after_escape(tmp_path):
-    grid(n=60)
+    item = grid(n=60)
 
     def saved(name):
+        read_surface(item, item.data)  # looking alone moves Blender's arrays to other addresses, which the file holds
         path = tmp_path / name
         bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=False)
         return path.read_bytes()
 
-    # Blender writes a few numbers of its own differently each time (addresses, the time): these bytes do not count.
+    # What differs between two savings of the same file is an address of 8 bytes, or the time: that does not count.
     plain = np.array([np.frombuffer(saved("file.blend"), np.uint8) for _ in range(8)])
-    steady = (plain == plain[0]).all(axis=0)
+    differs = (plain != plain[0]).any(axis=0)
+    steady = np.convolve(differs, np.ones(15), mode="same") < 0.5
     assert steady.mean() > 0.99
     operator, context = pressed_tessellate(count=60, iterations=40)
     operator.invoke(context, None)

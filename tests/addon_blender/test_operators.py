@@ -191,10 +191,10 @@ def test_modifiers_make_a_new_object_with_the_result():
 
 
 def test_modifiers_that_keep_the_vertices_write_to_the_mesh_itself():
-    item = grid(n=6)
+    item = grid(n=20)
     item.modifiers.new("Cast", "CAST").factor = 0.5
     bpy.ops.saddleback.tessellate(**QUICK, use_modifiers=True, make_edges=False)
-    assert len(bpy.data.objects) == 1 and set(cells(item)) == set(range(12))
+    assert len(bpy.data.objects) == 1 and len(np.unique(cells(item))) > 6
 
 
 def test_clear_removes_what_was_made_and_nothing_else():

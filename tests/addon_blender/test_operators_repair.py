@@ -125,9 +125,7 @@ def test_a_third_face_on_an_edge_is_cut_loose():
 
 def test_two_parts_that_touch_at_a_vertex_are_separated():
     vertices, faces = grid_arrays(1)
-    item = add_object(
-        "Bow", np.concatenate([vertices, [[2, 1, 0], [2, 2, 0], [1, 2, 0]]]), [*faces, [3, 4, 5, 6]]
-    )
+    item = add_object("Bow", np.concatenate([vertices, [[2, 1, 0], [2, 2, 0], [1, 2, 0]]]), [*faces, [3, 4, 5, 6]])
     paint(item)
     bpy.ops.saddleback.repair()
     assert is_good(item) and len(item.data.polygons) == 2 and len(item.data.vertices) == 8
@@ -162,7 +160,9 @@ def test_a_triangle_without_area_is_mended_without_a_crack():
 
 def test_weld_distance_is_in_world_units():
     vertices, faces = grid_arrays(4)
-    item = add_object("Near", np.concatenate([vertices[:15], vertices[10:] + (0.001, 0, 0)]), [*faces[:8], *(faces[8:] + 5)])
+    item = add_object(
+        "Near", np.concatenate([vertices[:15], vertices[10:] + (0.001, 0, 0)]), [*faces[:8], *(faces[8:] + 5)]
+    )
     item.scale = (10, 10, 10)
     bpy.context.view_layer.update()
     bpy.ops.saddleback.repair(weld_distance=0.005)  # the gap is 0.01 in the world

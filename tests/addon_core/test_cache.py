@@ -2,6 +2,8 @@
 
 import threading
 
+import pytest
+
 from saddleback_blender.core.cache import Cache
 
 
@@ -48,10 +50,8 @@ def test_a_failing_build_leaves_nothing():
     def fail():
         raise ValueError("no")
 
-    try:
+    with pytest.raises(ValueError, match="no"):
         cache.get(("graph", "a"), fail, size)
-    except ValueError:
-        pass
     assert ("graph", "a") not in cache and not cache.builds
 
 

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+
 from saddleback_blender.core.density import DensityError, average_to_vertices, channel, shape
 
 

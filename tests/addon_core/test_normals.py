@@ -1,6 +1,7 @@
 """Normals at surface points."""
 
 import numpy as np
+
 from saddleback_blender.core.normals import normals_at
 
 OCTAHEDRON = (

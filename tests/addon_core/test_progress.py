@@ -1,10 +1,11 @@
 """Several native calls are told as one rising fraction and stopped by one cancel."""
 
 import pytest
+
 from saddleback_blender.core.progress import Progress
 
 
-class Stopped(Exception):
+class StoppedError(Exception):
     pass
 
 
@@ -18,7 +19,7 @@ class Job:
 
 
 def test_stages_map_onto_parts_and_never_fall():
-    progress = Progress(Job, Stopped)
+    progress = Progress(Job, StoppedError)
     assert progress.fraction == 0
     with progress.stage(0.4, "first") as job:
         assert progress.text == "first" and progress.fraction == 0
@@ -34,24 +35,24 @@ def test_stages_map_onto_parts_and_never_fall():
 
 
 def test_a_stage_that_is_left_out_costs_nothing():
-    progress = Progress(Job, Stopped)
+    progress = Progress(Job, StoppedError)
     with progress.stage(0.9, "only") as job:
         job.fraction = 1.0
     assert progress.fraction == pytest.approx(0.9)
 
 
 def test_cancel_reaches_the_call_that_runs():
-    progress = Progress(Job, Stopped)
-    with pytest.raises(Stopped), progress.stage(0.5, "running") as job:
+    progress = Progress(Job, StoppedError)
+    with pytest.raises(StoppedError), progress.stage(0.5, "running") as job:
         progress.cancel()
         assert job.stopped
     assert progress.cancelled
 
 
 def test_after_a_cancel_no_stage_begins():
-    progress = Progress(Job, Stopped)
+    progress = Progress(Job, StoppedError)
     progress.cancel()
-    with pytest.raises(Stopped), progress.stage(0.5, "never"):
+    with pytest.raises(StoppedError), progress.stage(0.5, "never"):
         raise AssertionError("the stage began")
-    with pytest.raises(Stopped):
+    with pytest.raises(StoppedError):
         progress.check()

@@ -3,6 +3,7 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+
 from saddleback_blender.core.requests import Surface, digest
 
 
@@ -29,6 +30,15 @@ def test_keys_tell_content_and_nothing_else():
 
 
 def test_digests_keep_types_and_borders_apart():
-    parts = [(1, 2), (12,), ("1", "2"), (np.array([1, 2]),), (np.array([1.0, 2.0]),), (np.array([[1, 2]]),), (None,), ()]
+    parts = [
+        (1, 2),
+        (12,),
+        ("1", "2"),
+        (np.array([1, 2]),),
+        (np.array([1.0, 2.0]),),
+        (np.array([[1, 2]]),),
+        (None,),
+        (),
+    ]
     assert len({digest(*part) for part in parts}) == len(parts)
     assert digest(np.arange(3), "a") == digest(np.arange(3), "a")

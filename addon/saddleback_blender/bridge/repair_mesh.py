@@ -105,16 +105,14 @@ def _remake(
     between = {frozenset(edge.verts): edge for edge in face.edges}
     lender_of = dict(zip(vertices, lenders, strict=True))
     for loop in new.loops:
-        lender, following = lender_of[loop.vert], lender_of[loop.link_loop_next.vert]
-        loop.copy_from(lender)
-        edge = between.get(frozenset((lender.vert, following.vert)))
+        edge = between.get(frozenset((lender_of[loop.vert].vert, lender_of[loop.link_loop_next.vert].vert)))
         if edge is not None and edge != loop.edge and len(loop.edge.link_faces) == 1:
-            loop.edge.copy_from(edge)  # its layers, not its flags
-            loop.edge.seam, loop.edge.smooth = edge.seam, edge.smooth
+            loop.edge.seam, loop.edge.smooth = edge.seam, edge.smooth  # flags, which copy_from leaves out
+            loop.edge.copy_from(edge)
+    for loop in list(new.loops):
+        loop.copy_from(lender_of[loop.vert])  # last: from Blender 4 on it makes `loop` unusable
     return new
 
 
 def _same_way_round(face: bmesh.types.BMFace, vertices: list[bmesh.types.BMVert]) -> bool:
-    return any(
-        loop.vert == vertices[0] and loop.link_loop_next.vert == vertices[1] for loop in face.loops
-    )
+    return any(loop.vert == vertices[0] and loop.link_loop_next.vert == vertices[1] for loop in face.loops)

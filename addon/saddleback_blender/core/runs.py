@@ -144,22 +144,20 @@ def _solve(
     sb, settings = native.load(), request.settings
     points = None if sites is None else _surface_points(mesh, sites)
     energy, done, reason = np.empty(0), 0, "sites kept"
-    if iterations:
+    if points is None or iterations:
         choice = {"count": settings.count} if points is None else {"sites": points}
         with progress.stage(0.9, "evening out the cells") as job:
             cvt = sb.centroidal_voronoi(
                 graph, density=density, max_iterations=iterations, seed=settings.seed, threads=request.threads, job=job,
                 **choice,
             )  # fmt: skip
-        cells, points = cvt.cells, cvt.sites
+        cells = cvt.cells
         energy, done, reason = np.asarray(cvt.energy, np.float64), int(cvt.iterations), str(cvt.stop_reason)
     else:
-        if points is None:
-            points = sb.sample(mesh, settings.count, density=density, seed=settings.seed)
         with progress.stage(0.9, "finding the cells") as job:
             cells = sb.geodesic_voronoi(graph, points, threads=request.threads, job=job)
-    faces, barycentric = _faces_and_weights(mesh, points)
     progress.check()
+    faces, barycentric = cells.sites.faces, cells.sites.barycentric
     vertices, triangles = mesh.vertices, mesh.triangles
     positions = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
     normals = normals_at(vertices, triangles, faces, barycentric)
@@ -205,17 +203,6 @@ def _compact_sites(surface: Surface, points: Points, what: str) -> Points:
 def _surface_points(mesh: Any, points: Points) -> Any:
     """Vertex numbers as they are; places in the world -> the nearest points of the surface."""
     return points if points.ndim == 1 else native.load().project(mesh, points)
-
-
-def _faces_and_weights(mesh: Any, points: Any) -> tuple[Indices, Reals]:
-    """Faces (n,) and barycentric coordinates (n, 3) of vertices or surface points."""
-    if not isinstance(points, np.ndarray):
-        return points.faces, points.barycentric
-    corners = mesh.triangles.ravel()
-    first = np.empty(len(mesh.vertices), np.int64)
-    first[corners[::-1]] = np.arange(len(corners))[::-1]  # the last writer stays: each vertex's first corner
-    faces, corner = np.divmod(first[points], 3)
-    return faces.astype(np.int32), np.eye(3)[corner]
 
 
 def _blender_numbers(surface: Surface, origin: Indices) -> Indices:
