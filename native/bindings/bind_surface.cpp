@@ -2,13 +2,70 @@
 
 #include <cmath>
 
-#include "points.h"
 #include "saddleback/project.h"
 #include "saddleback/sample.h"
 #include "saddleback/trace.h"
 
+#include "points.h"
+
 namespace saddleback::bindings {
 namespace {
+
+constexpr const char* k_points_doc =
+    R"(Points anywhere on a mesh: a face index and three barycentric coordinates each. Immutable.
+
+Args:
+    faces: (n,) face indices, integers >= 0.
+    barycentric: (n, 3) coordinates in the order of the face's corners, >= 0 and summing to 1; rounding (up to 1e-6,
+        as float32 brings) is removed.
+
+Raises:
+    InputError: wrong shape or type, a negative face, coordinates not finite, negative or of another sum.
+)";
+
+constexpr const char* k_project_doc = R"(The nearest surface point for each position.
+
+Of equally near points the one in the smallest face is given; on an edge or vertex its coordinates are exactly 0 or 1.
+A bounding volume hierarchy is built for each call: O((F + n) log F).
+
+Args:
+    xyz: (n, 3) positions, mesh units.
+    threads: 0 for all cores; never changes the result.
+
+Raises:
+    InputError: wrong shape, a coordinate that is not finite.
+    Cancelled: the job was.
+)";
+
+constexpr const char* k_sample_doc =
+    R"(Points whose number per area follows the density, spread evenly: systematic sampling along a Hilbert curve.
+
+The same seed gives the same points on every platform. O(F log F + count).
+
+Args:
+    count: number of points, at least 1.
+    density: (V,) wanted points per area, >= 0; only ratios matter; linear over each face. None: the same everywhere.
+    one_per_component: every connected component gets a point, by area where its density is zero.
+
+Raises:
+    InputError: count too small, density of the wrong length, not finite, negative or zero everywhere.
+)";
+
+constexpr const char* k_trace_doc = R"(Walks straight on over the surface: the exponential map.
+
+Through a vertex the curve goes on with half of the total angle on either side (Polthier and Schmies, Straightest
+geodesics on polyhedral surfaces, 1998); at the boundary it stops. O(faces crossed).
+
+Args:
+    point: one surface point, or a vertex index.
+    direction: an angle in radians, or a (3,) vector, which is projected onto the surface. Angles are measured
+        counter-clockwise in the chart of the point's face (corner 0 to corner 1 is 0) or, at a vertex, on the surface
+        about it from its first edge.
+    length: mesh units, >= 0.
+
+Raises:
+    InputError: bad point, direction or length; a vector across the surface; a curve over more than a million faces.
+)";
 
 /// A traced curve: a GeodesicPath that also knows how it ended.
 struct TracedPath : GeodesicPath {
@@ -101,8 +158,8 @@ SurfacePoints project_onto(const py::object& mesh_object, const py::object& xyz,
 SurfacePoints sample_on(const py::object& mesh_object, const py::object& count, const py::object& density,
                         const py::object& seed, bool one_per_component) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
-  SampleOptions options{.count = as_integer(count, "count"), .seed = as_seed(seed, "seed"),
-                        .one_per_component = one_per_component};
+  SampleOptions options{
+      .count = as_integer(count, "count"), .seed = as_seed(seed, "seed"), .one_per_component = one_per_component};
   ArrayIn<double> weights;
   if (!density.is_none()) {
     weights = as_reals(density, "density", mesh.vertex_count());
@@ -112,41 +169,49 @@ SurfacePoints sample_on(const py::object& mesh_object, const py::object& count, 
 }
 
 void bind_points(py::module_& m) {
-  py::class_<SurfacePoints>(m, "SurfacePoints", py::module_local(),
-                            "Points anywhere on a mesh: a face index and three barycentric coordinates each.")
+  py::class_<SurfacePoints>(m, "SurfacePoints", py::module_local(), k_points_doc)
       .def(py::init(&make_points), py::arg("faces"), py::arg("barycentric"))
-      .def_property_readonly("faces", &faces_of)
-      .def_property_readonly("barycentric", &barycentric_of)
-      .def("positions", &positions_of, py::arg("mesh"))
+      .def_property_readonly("faces", &faces_of, "(n,) int32: face indices; read-only view.")
+      .def_property_readonly("barycentric", &barycentric_of, "(n, 3) float64: coordinates; read-only view.")
+      .def("positions", &positions_of, py::arg("mesh"), "(n, 3) float64: positions in space on that mesh.")
       .def("__len__", [](const SurfacePoints& points) { return points.size(); })
       .def("__getitem__", &item)
       .def("__repr__", [](const SurfacePoints& points) {
         return message("<SurfacePoints: ", points.size(), points.size() == 1 ? " point>" : " points>");
       });
   m.def("project", &project_onto, py::arg("mesh"), py::arg("xyz"), py::kw_only(), py::arg("threads") = 0,
-        py::arg("job") = py::none());
+        py::arg("job") = py::none(), k_project_doc);
   m.def("sample", &sample_on, py::arg("mesh"), py::arg("count"), py::arg("density") = py::none(), py::arg("seed") = 0,
-        py::kw_only(), py::arg("one_per_component") = false);
+        py::kw_only(), py::arg("one_per_component") = false, k_sample_doc);
 }
 
 void bind_paths(py::module_& m) {
-  py::class_<GeodesicPath>(m, "GeodesicPath", py::module_local(), "A curve on the surface.")
-      .def_property_readonly("points",
-                             [](const py::object& self) {
-                               return view_of(std::span<const Vec3>(py::cast<const GeodesicPath&>(self).points), self);
-                             })
-      .def_property_readonly("surface", [](const GeodesicPath& path) { return path.surface; })
-      .def_readonly("length", &GeodesicPath::length)
+  py::class_<GeodesicPath>(m, "GeodesicPath", py::module_local(),
+                           "A curve on the surface; consecutive points share a face.")
+      .def_property_readonly(
+          "points",
+          [](const py::object& self) {
+            return view_of(std::span<const Vec3>(py::cast<const GeodesicPath&>(self).points), self);
+          },
+          "(n, 3) float64: points in space.")
+      .def_property_readonly(
+          "surface", [](const GeodesicPath& path) { return path.surface; }, "The same points as a SurfacePoints.")
+      .def_readonly("length", &GeodesicPath::length, "Length of the curve, mesh units.")
       .def("__repr__", [](const GeodesicPath& path) {
         return message("<GeodesicPath: ", path.points.size(), " points, length ", path.length, ">");
       });
   py::class_<TracedPath, GeodesicPath>(m, "TracedPath", py::module_local(), "A traced curve and how it ended.")
-      .def_readonly("end_angle", &TracedPath::end_angle)
-      .def_property_readonly("end_direction",
-                             [](const TracedPath& path) { return to_array(std::vector<double>{
-                                 path.end_direction.x(), path.end_direction.y(), path.end_direction.z()}); })
-      .def_readonly("hit_boundary", &TracedPath::hit_boundary);
-  m.def("trace", &trace_from, py::arg("mesh"), py::arg("point"), py::arg("direction"), py::arg("length"));
+      .def_readonly("end_angle", &TracedPath::end_angle,
+                    "Direction of arrival, radians, in the chart of the last point's face (corner 0 to 1 is 0).")
+      .def_property_readonly(
+          "end_direction",
+          [](const TracedPath& path) {
+            return to_array(
+                std::vector<double>{path.end_direction.x(), path.end_direction.y(), path.end_direction.z()});
+          },
+          "(3,) float64: direction of arrival, a unit vector.")
+      .def_readonly("hit_boundary", &TracedPath::hit_boundary, "True when the boundary stopped the curve early.");
+  m.def("trace", &trace_from, py::arg("mesh"), py::arg("point"), py::arg("direction"), py::arg("length"), k_trace_doc);
 }
 
 }  // namespace

@@ -3,8 +3,9 @@
 
 #include <vector>
 
-#include "convert.h"
 #include "saddleback/surface_points.h"
+
+#include "convert.h"
 
 // SurfacePoints crosses the border as a class of its own, never as a Python list.
 PYBIND11_MAKE_OPAQUE(saddleback::SurfacePoints)

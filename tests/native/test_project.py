@@ -60,7 +60,7 @@ def test_vertices_and_edges_are_hit_exactly_in_their_smallest_face(case: meshes.
     np.minimum.at(smallest, mesh.triangles.ravel(), np.repeat(np.arange(len(mesh.triangles)), 3))
     assert (at_vertices.faces == smallest).all()
 
-    edges = {}
+    edges: dict[frozenset[int], int] = {}
     for face, (a, b, c) in enumerate(mesh.triangles.tolist()):
         for pair in ((a, b), (b, c), (c, a)):
             edges.setdefault(frozenset(pair), face)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 import saddleback as sb
 from tests import meshes
@@ -17,7 +17,7 @@ from tests import meshes
 Floats = NDArray[np.float64]
 
 
-def in_face(face: int, weights: object) -> sb.SurfacePoints:
+def in_face(face: int, weights: ArrayLike) -> sb.SurfacePoints:
     return sb.SurfacePoints([face], [weights])
 
 

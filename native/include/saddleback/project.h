@@ -10,8 +10,8 @@
 
 namespace saddleback {
 
-/// Finds nearest surface points: a bounding volume hierarchy over the faces, built once (O(F log F) time, 12 bytes a face)
-/// and then read by any number of threads. Keeps a reference to the mesh.
+/// Finds nearest surface points: a bounding volume hierarchy over the faces, built once (O(F log F) time, 12 bytes a
+/// face) and then read by any number of threads. Keeps a reference to the mesh.
 class NearestSurface {
  public:
   explicit NearestSurface(const Mesh& mesh, const JobStage& stage = {});

@@ -10,7 +10,8 @@ namespace saddleback {
 
 struct SampleOptions {
   Index count = 1;
-  /// (V,) wanted points per area, in proportion (only ratios matter), linear over each face; empty: the same everywhere.
+  /// (V,) wanted points per area, in proportion (only ratios matter), linear over each face; empty: the same
+  /// everywhere.
   std::span<const double> density = {};
   std::uint64_t seed = 0;
   /// Every connected component gets at least one point (by area where its density is zero).

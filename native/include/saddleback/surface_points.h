@@ -45,8 +45,8 @@ void check_surface_point(const Mesh& mesh, const SurfacePoint& point, const char
 /// vertex's (1, 0, 0) only becomes exactly that when its other two coordinates are not positive.
 Vec3 normalised_barycentric(const Vec3& barycentric);
 
-/// A face's own plane: corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it. Angles of directions at
-/// a point in the face are measured in this chart, from the x axis counter-clockwise.
+/// A face's own plane: corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it. Angles of directions
+/// at a point in the face are measured in this chart, from the x axis counter-clockwise.
 struct FaceChart {
   Vec2 corner[3];
   FaceChart(const Mesh& mesh, Index face);

@@ -28,18 +28,17 @@ struct TraceEnd {
   bool hit_boundary = false;
 };
 
-/// Walks straight on from `start` for `length`. The angle is measured in the FaceChart of start.face or, when the point is
-/// exactly a vertex, from first_halfedge(vertex) counter-clockwise on the surface (0 to total_angle). Through a vertex it
-/// goes on with half the total angle on either side (Polthier and Schmies 1998); at the boundary, edge or vertex, it stops.
-/// The polyline has one point for each edge or vertex crossed. An angle that leaves the surface at once (boundary) gives
-/// the start with hit_boundary; length 0 gives the start.
-/// \throw InputError for a point off the mesh, a negative or non-finite length, a non-finite angle, a curve over more than
-/// a million faces. O(faces crossed).
+/// Walks straight on from `start` for `length`. The angle is measured in the FaceChart of start.face or, when the point
+/// is exactly a vertex, from first_halfedge(vertex) counter-clockwise on the surface (0 to total_angle). Through a
+/// vertex it goes on with half the total angle on either side (Polthier and Schmies 1998); at the boundary, edge or
+/// vertex, it stops. The polyline has one point for each edge or vertex crossed. An angle that leaves the surface at
+/// once (boundary) gives the start with hit_boundary; length 0 gives the start. \throw InputError for a point off the
+/// mesh, a negative or non-finite length, a non-finite angle, a curve over more than a million faces. O(faces crossed).
 TraceResult trace(const Mesh& mesh, const SurfacePoint& start, double angle, double length);
 
-/// As above, the direction given as a vector in space, projected onto the surface at the start: onto the face's plane or,
-/// at a vertex, to the nearest direction among those of the faces around it.
-/// \throw InputError as well for a vector that is not finite or has no part along the surface.
+/// As above, the direction given as a vector in space, projected onto the surface at the start: onto the face's plane
+/// or, at a vertex, to the nearest direction among those of the faces around it. \throw InputError as well for a vector
+/// that is not finite or has no part along the surface.
 TraceResult trace(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction, double length);
 
 /// The end of the same curve, to the bit, without its polyline: no allocation.

@@ -5,9 +5,9 @@
 
 namespace saddleback {
 
-/// A line nearer to a corner than this share of the face's size meets it, and a point nearer to an edge or corner is on it.
-/// Positions carry some 1e-16 of rounding for each face crossed, so 1e-13 covers a walk over thousands of faces and is
-/// still below the lowest face that Mesh accepts.
+/// A line nearer to a corner than this share of the face's size meets it, and a point nearer to an edge or corner is on
+/// it. Positions carry some 1e-16 of rounding for each face crossed, so 1e-13 covers a walk over thousands of faces and
+/// is still below the lowest face that Mesh accepts.
 inline constexpr double k_snap = 1e-13;
 
 /// Corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it.

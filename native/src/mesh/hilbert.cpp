@@ -1,5 +1,5 @@
-// Hilbert keys after Skilling, "Programming the Hilbert curve" (2004): the axes' bits are transposed in place. The keys are
-// sorted by their bytes, last byte first.
+// Hilbert keys after Skilling, "Programming the Hilbert curve" (2004): the axes' bits are transposed in place. The keys
+// are sorted by their bytes, last byte first.
 
 #include "hilbert.h"
 

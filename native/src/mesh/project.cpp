@@ -1,11 +1,13 @@
 // Nearest points on a mesh.
 //
-// The hierarchy halves the faces at the median of their centres along the longest side; its boxes are float32, relative to
-// the mesh's centre and widened beyond every rounding, so that no box is ever passed over that holds a nearest point.
-// Queries go through it in the order of a Hilbert curve, each starting from the face that the one before it found.
+// The hierarchy halves the faces at the median of their centres along the longest side; its boxes are float32, relative
+// to the mesh's centre and widened beyond every rounding, so that no box is ever passed over that holds a nearest
+// point. Queries go through it in the order of a Hilbert curve, each starting from the face that the one before it
+// found.
 //
-// Of equally near points the one in the smallest face wins. Since a point on an edge or vertex is computed with different
-// rounding in each of its faces, such a point is first moved exactly onto the edge or vertex, then to its smallest face.
+// Of equally near points the one in the smallest face wins. Since a point on an edge or vertex is computed with
+// different rounding in each of its faces, such a point is first moved exactly onto the edge or vertex, then to its
+// smallest face.
 
 #include "saddleback/project.h"
 
@@ -15,10 +17,11 @@
 #include <cmath>
 #include <limits>
 
+#include "saddleback/error.h"
+
 #include "../support/parallel.h"
 #include "flat_face.h"
 #include "hilbert.h"
-#include "saddleback/error.h"
 
 namespace saddleback {
 namespace {
@@ -53,8 +56,8 @@ void consider(const Mesh& mesh, Index face, const Vec3& query, Nearest& best) {
   const double whole = normal.squaredNorm();
   const double second = normal.dot(edge[2].cross(from_query)) * -1, third = normal.dot(edge[0].cross(from_query)) * -1;
   const Vec3 share(whole - second - third, second, third);
-  // A point outside is nearest to one of the edges that it sees. Signs within rounding count as seen: then both the inside
-  // and the edge are tried, and the nearer wins.
+  // A point outside is nearest to one of the edges that it sees. Signs within rounding count as seen: then both the
+  // inside and the edge are tried, and the nearer wins.
   const double rounding = 1e-9 * whole;
   if (share.minCoeff() > -rounding) offer(normalised_barycentric(share));
   for (int i = 0; i < 3; ++i) {

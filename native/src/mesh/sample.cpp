@@ -1,11 +1,11 @@
 // Systematic sampling of a surface.
 //
-// The faces are laid end to end along a Hilbert curve, each as long as its mass (the integral of the density over it), and
-// the count points are put at equal steps along that line from one random offset. A run of faces between two points is a
-// compact patch that holds exactly one point's worth of mass, so the points are stratified over the surface whatever the
-// size of the faces. Within a face that holds several points they follow a Fibonacci lattice, carried from the unit square
-// onto the triangle by the inverse of the density's distribution function, so that large faces are covered evenly as well.
-// Only + - * / sqrt and integers are used: the same seed gives the same bits everywhere.
+// The faces are laid end to end along a Hilbert curve, each as long as its mass (the integral of the density over it),
+// and the count points are put at equal steps along that line from one random offset. A run of faces between two points
+// is a compact patch that holds exactly one point's worth of mass, so the points are stratified over the surface
+// whatever the size of the faces. Within a face that holds several points they follow a Fibonacci lattice, carried from
+// the unit square onto the triangle by the inverse of the density's distribution function, so that large faces are
+// covered evenly as well. Only + - * / sqrt and integers are used: the same seed gives the same bits everywhere.
 
 #include "saddleback/sample.h"
 
@@ -13,8 +13,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "hilbert.h"
 #include "saddleback/error.h"
+
+#include "hilbert.h"
 
 namespace saddleback {
 namespace {
@@ -127,7 +128,8 @@ void check(const Mesh& mesh, const SampleOptions& options) {
   const std::span<const double> density = options.density;
   if (!density.empty()) {
     if (density.size() != static_cast<std::size_t>(mesh.vertex_count()))
-      throw InputError(message("density has ", density.size(), " values, but the mesh has ", mesh.vertex_count(), " vertices"));
+      throw InputError(
+          message("density has ", density.size(), " values, but the mesh has ", mesh.vertex_count(), " vertices"));
     double largest = 0;
     for (std::size_t i = 0; i < density.size(); ++i) {
       if (!std::isfinite(density[i]))
@@ -191,8 +193,7 @@ SurfacePoints sample_components(const Mesh& mesh, const SampleOptions& options, 
   const std::vector<Index> counts = shares(masses, options.count);
   SurfacePoints points;
   points.reserve(static_cast<std::size_t>(options.count));
-  for (std::size_t c = 0; c < parts.size(); ++c)
-    (masses[c] > 0 ? painted : plain).add(parts[c], counts[c], points);
+  for (std::size_t c = 0; c < parts.size(); ++c) (masses[c] > 0 ? painted : plain).add(parts[c], counts[c], points);
   return points;
 }
 

@@ -7,8 +7,9 @@
 #include <limits>
 #include <string>
 
-#include "flat_face.h"
 #include "saddleback/error.h"
+
+#include "flat_face.h"
 
 namespace saddleback {
 namespace {

@@ -1,14 +1,14 @@
 // Straightest geodesics by unfolding one face at a time (Polthier and Schmies, Straightest geodesics on polyhedral
 // surfaces, 1998).
 //
-// The state is a half-edge h of the face being crossed, and the position and direction in the chart of h: from(h) at the
-// origin, to(h) on the positive x axis, the apex above it. Which edge the line leaves by is decided by the side of a corner
-// on which it passes (orient_2d); where it crosses is then an interpolation between the two ends of that edge, so that
-// points lie exactly on their edges and no error of position can change the order of the faces.
+// The state is a half-edge h of the face being crossed, and the position and direction in the chart of h: from(h) at
+// the origin, to(h) on the positive x axis, the apex above it. Which edge the line leaves by is decided by the side of
+// a corner on which it passes (orient_2d); where it crosses is then an interpolation between the two ends of that edge,
+// so that points lie exactly on their edges and no error of position can change the order of the faces.
 //
-// A line that passes a corner nearer than rounding can tell (k_snap) goes through that vertex and leaves it with half of
-// the total angle on either side. So lines along edges and diagonals of regular grids meet their vertices exactly, and
-// every line that is left to cross an edge does so at an angle that is certainly not zero: the walk always gets on.
+// A line that passes a corner nearer than rounding can tell (k_snap) goes through that vertex and leaves it with half
+// of the total angle on either side. So lines along edges and diagonals of regular grids meet their vertices exactly,
+// and every line that is left to cross an edge does so at an angle that is certainly not zero: the walk always gets on.
 
 #include "saddleback/trace.h"
 
@@ -17,14 +17,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "flat_face.h"
 #include "saddleback/error.h"
+
+#include "flat_face.h"
 
 namespace saddleback {
 namespace {
 
-/// More faces than any curve of use crosses, and about a quarter of a second of work: makes every finite length end. It cannot be
-/// derived from length and mean edge, because a curve may wind round a thin tube any number of times for each of them.
+/// More faces than any curve of use crosses, and about a quarter of a second of work: makes every finite length end. It
+/// cannot be derived from length and mean edge, because a curve may wind round a thin tube any number of times for each
+/// of them.
 constexpr std::int64_t k_max_faces = 1'000'000;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -110,8 +112,8 @@ class Walk {
     bool going = (this->*first)();
     for (std::int64_t faces = 1; going; ++faces) {
       if (faces > k_max_faces)
-        throw InputError(message("length ", length_, " is too long to follow: after ", faces - 1, " faces the curve is ",
-                                 travelled_, " long"));
+        throw InputError(message("length ", length_, " is too long to follow: after ", faces - 1,
+                                 " faces the curve is ", travelled_, " long"));
       going = at_corner_ ? leave_corner() : leave_through();
     }
     return end_;
@@ -140,8 +142,8 @@ class Walk {
     if (vertex >= 0) return meet_vertex(c, vertex);
     for (int i = 0; i < 3; ++i)
       if (side[i] < 0 && side[(i + 1) % 3] >= 0) return cross_edge(c, i, side[i], side[(i + 1) % 3]);
-    // The point is on the rim up to rounding and the line passes outside: it leaves where it stands, by the edge that it
-    // reaches first.
+    // The point is on the rim up to rounding and the line passes outside: it leaves where it stands, by the edge that
+    // it reaches first.
     return cross_edge_at_rim(c);
   }
 
