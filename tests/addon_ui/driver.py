@@ -18,9 +18,9 @@ FOLDER = Path(os.environ["SADDLEBACK_UI_FOLDER"])
 sys.path[:0] = [str(REPOSITORY), str(REPOSITORY / "addon"), str(HERE), str(HERE.parent / "addon_blender")]
 sys.path += [path for path in os.environ.get("SADDLEBACK_PYTHONPATH", "").split(os.pathsep) if path]
 
-import bpy  # noqa: E402
-import scenarios  # noqa: E402
-from hands import Screen  # noqa: E402
+import bpy
+import scenarios
+from hands import Screen
 
 
 def play(plays):

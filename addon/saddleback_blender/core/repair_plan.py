@@ -77,7 +77,7 @@ def _is_renumbering(triangles: Indices, corner_vertex: Indices, new_count: int) 
     """
     pairs = np.unique(np.stack([triangles.ravel(), corner_vertex.ravel()]), axis=1)
     old, new = (len(np.unique(side)) for side in pairs)
-    return pairs.shape[1] == old == new == new_count
+    return bool(pairs.shape[1] == old == new == new_count)
 
 
 def _origins(new_vertices: Reals, vertex_map: Indices) -> tuple[Indices, Indices]:

@@ -21,8 +21,8 @@ struct CudaDevices {
   std::string reason;              ///< one sentence: why none is usable; empty when one is
 };
 
-/// Asks the driver, if there is one. A machine without a driver or without a device is an answer and not an error: never
-/// throws on account of the machine. Creates no context and touches no device memory.
+/// Asks the driver, if there is one. A machine without a driver or without a device is an answer and not an error:
+/// never throws on account of the machine. Creates no context and touches no device memory.
 CudaDevices cuda_devices();
 
 }  // namespace saddleback
