@@ -18,7 +18,9 @@ def test_the_python_example_runs_and_says_what_it_promises(tmp_path):
     (example,) = (code for code in examples() if "import saddleback" in code)
     done = subprocess.run([sys.executable, "-c", example], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    area, whole, count = re.match(r"([\d.]+) = ([\d.]+) in (\d+) cells", done.stdout).groups()
+    said = re.match(r"([\d.]+) = ([\d.]+) in (\d+) cells", done.stdout)
+    assert said is not None, done.stdout
+    area, whole, count = said.groups()
     assert abs(float(area) / float(whole) - 1) < 1e-9
     assert int(count) == 60
 
