@@ -80,12 +80,12 @@ def identity(data: bpy.types.ID) -> int:
     return int(getattr(data, "session_uid", 0))
 
 
-def draw_progress(layout: bpy.types.UILayout, owner: Any, factor_property: str, text: str) -> None:
-    """A progress bar: `layout.progress` from 4.0 on, a slider of `owner`'s property before."""
+def draw_progress(layout: bpy.types.UILayout, manager: bpy.types.WindowManager) -> None:
+    """A progress bar of the run: `layout.progress` from 4.0 on, a slider in percent before."""
     if hasattr(layout, "progress"):
-        layout.progress(factor=getattr(owner, factor_property), text=text)
+        layout.progress(factor=manager.saddleback_fraction, text=f"{100 * manager.saddleback_fraction:.0f} %")
     else:
-        layout.prop(owner, factor_property, text=text, slider=True)
+        layout.prop(manager, "saddleback_percent", slider=True)
 
 
 def write_corners(mesh: bpy.types.Mesh, triangles: NDArray[np.int32]) -> None:

@@ -80,6 +80,10 @@ WINDOW_MANAGER_PROPERTIES = {
         name="Progress", description="Share of the run done", min=0.0, max=1.0, subtype="FACTOR",
         get=lambda _: state.task.progress.fraction if state.task is not None else 0.0,
     ),
+    "saddleback_percent": FloatProperty(
+        name="Progress", description="Share of the run done", min=0.0, max=100.0, precision=0, subtype="PERCENTAGE",
+        get=lambda _: 100.0 * state.task.progress.fraction if state.task is not None else 0.0,
+    ),
     "saddleback_text": StringProperty(
         name="Doing", description="What is being done", get=lambda _: state.task.text if state.task is not None else ""
     ),

@@ -74,10 +74,16 @@ class Screen:
                 return x, y
         raise AssertionError(f"no button for {command} in the sidebar")
 
-    def press_button(self, command):
-        """Finds the button of an operator and clicks it."""
-        place = yield from self.find_button(command)
-        yield from self.click(*place)
+    def click_until(self, place, is_done):
+        """Clicks a button until something happens: the first click on a region may only wake it."""
+        for _ in range(4):
+            yield from self.click(*place)
+            end = time.perf_counter() + 5.0
+            while time.perf_counter() < end:
+                if is_done():
+                    return
+                yield FRAME
+        raise AssertionError("four clicks on the button did nothing")
 
     def open_tab(self, is_open):
         """Clicks the tabs at the sidebar's edge one after another until the wanted one is open."""

@@ -38,7 +38,7 @@ def _count_draw(_panel, context):
 
 def in_order(screen):
     """The scenarios; later ones go on where earlier ones ended."""
-    plays = (opened, escaped, tessellated, adjusted, undone, repaired, refused)
+    plays = (opened, escaped, tessellated, undone, adjusted, repaired, refused)
     return {play.__name__: (lambda play=play: play(screen)) for play in plays}
 
 
@@ -71,8 +71,7 @@ def escaped(screen):
     before = fingerprint()
     seconds = []
     for wait in (0.0, 0.3, 1.0):
-        yield from screen.click(*place)
-        yield from wait_until(lambda: manager().saddleback_running, "the run to start", 10)
+        yield from screen.click_until(place, lambda: manager().saddleback_running)
         yield wait
         if not manager().saddleback_running:
             break
@@ -88,8 +87,8 @@ def escaped(screen):
 def tessellated(screen):
     """The button starts a run that is seen to go on, and makes what was asked for."""
     drawn.update(running=0, fractions=[])
-    yield from screen.press_button("bpy.ops.saddleback.tessellate")
-    yield from wait_until(lambda: manager().saddleback_running, "the run to start", 10)
+    place = yield from screen.find_button("bpy.ops.saddleback.tessellate")
+    yield from screen.click_until(place, lambda: manager().saddleback_running)
     yield from wait_until(lambda: drawn["running"] > 2, "the progress to be drawn", 20)
     yield from screen.shoot("running")
     yield from wait_until(lambda: not manager().saddleback_running, "the run to end")
@@ -100,7 +99,7 @@ def tessellated(screen):
         ball().data.attributes[CELL].data.foreach_get("value", values)
     return {
         "running": drawn["running"],
-        "fractions": drawn["fractions"],
+        "fractions": list(drawn["fractions"]),
         "cells": len(np.unique(values)),
         "outputs": outputs(),
         "line": manager().saddleback_line,
@@ -124,7 +123,7 @@ def adjusted(screen):
     operator.properties.make_cells = True
     began = time.perf_counter()
     with screen.override():
-        bpy.ops.ed.undo_redo()
+        bpy.ops.ed.undo_redo()  # what the panel Adjust Last Operation calls when a value in it changes
     seconds = time.perf_counter() - began
     yield 4 * FRAME
     yield from screen.shoot("adjusted")
@@ -159,16 +158,16 @@ def repaired(screen):
         bpy.ops.ed.undo_push(message="Faulty")
     screen.redraw()
     yield 4 * FRAME
-    yield from screen.press_button("bpy.ops.saddleback.tessellate")
-    yield from wait_until(lambda: manager().saddleback_needs_repair == "Faulty", "the refusal", 20)
+    place = yield from screen.find_button("bpy.ops.saddleback.tessellate")
+    yield from screen.click_until(place, lambda: manager().saddleback_needs_repair == "Faulty")
     yield from leave_popup(screen)
     yield from screen.shoot("refused")
-    yield from screen.press_button("bpy.ops.saddleback.repair")
-    yield from wait_until(lambda: not manager().saddleback_running, "the repair to end", 20)
-    yield from wait_until(lambda: not manager().saddleback_needs_repair, "the hint to go", 20)
+    place = yield from screen.find_button("bpy.ops.saddleback.repair")
+    yield from screen.click_until(place, lambda: not manager().saddleback_needs_repair)
+    yield from wait_until(lambda: not manager().saddleback_running, "the repair to end")
     yield from screen.shoot("repaired")
-    yield from screen.press_button("bpy.ops.saddleback.tessellate")
-    yield from wait_until(lambda: CELL in bpy.data.objects["Faulty"].data.attributes, "the cells", 30)
+    place = yield from screen.find_button("bpy.ops.saddleback.tessellate")
+    yield from screen.click_until(place, lambda: CELL in bpy.data.objects["Faulty"].data.attributes)
     return {"line": manager().saddleback_line}
 
 

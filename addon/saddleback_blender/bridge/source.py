@@ -22,7 +22,8 @@ def why_not(context: bpy.types.Context) -> str:
     if active is None:
         return "Choose a mesh object first: there is no active object"
     if active.type != "MESH":
-        return f"'{active.name}' is a {active.type.lower()} object: choose a mesh object"
+        kind = active.bl_rna.properties["type"].enum_items[active.type].name
+        return f"'{active.name}' is no mesh but of the type {kind}: choose a mesh object"
     if active.mode == "EDIT":
         return f"'{active.name}' is in Edit Mode: leave it first (Tab)"
     return ""

@@ -29,6 +29,9 @@ from ..core.settings import TessellateSettings
 from ..props import TESSELLATE, keep_settings, settings_of
 from .base import SurfaceOperator
 
+# What the library's reasons to stop mean to a person; that all steps were done needs no word.
+ENDS = {"tolerance": " until nothing changed", "no step lowers the energy": " until nothing got better"}
+
 
 class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
     """Makes cells."""
@@ -87,7 +90,8 @@ def _steps(result: CellsResult) -> str:
     if not result.iterations:
         return ""
     energy = f", energy {result.energy[-1]:.4g}" if len(result.energy) else ""
-    return f", {result.iterations} iterations ({result.stop_reason}){energy}"
+    steps = "iteration" if result.iterations == 1 else "iterations"
+    return f", {result.iterations} {steps}{ENDS.get(result.stop_reason, '')}{energy}"
 
 
 def _lost(source: bpy.types.Object) -> str:

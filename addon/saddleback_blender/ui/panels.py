@@ -62,7 +62,7 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
         item = context.view_layer.objects.active
         column = layout.column(align=True)
         column.label(text=item.name, icon="OUTLINER_OB_MESH")
-        column.label(text=f"{len(item.data.vertices):,} vertices, {len(item.data.polygons):,} faces", icon="BLANK1")
+        draw_text(column, context, f"{len(item.data.vertices):,} vertices, {len(item.data.polygons):,} faces", "BLANK1")
         _draw_state(layout, context, item)
         row = layout.row()
         row.enabled = not context.window_manager.saddleback_running
@@ -75,7 +75,7 @@ def _draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, item: bp
     if manager.saddleback_running:
         box = layout.box()
         draw_text(box, context, manager.saddleback_text, "TIME")
-        compat.draw_progress(box, manager, "saddleback_fraction", f"{100 * manager.saddleback_fraction:.0f}%")
+        compat.draw_progress(box, manager)
         box.label(text="Press ESC to stop", icon="EVENT_ESC")
     elif manager.saddleback_needs_repair == item.name:
         box = layout.box()
