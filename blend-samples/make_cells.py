@@ -128,9 +128,10 @@ def main() -> None:
         subject = models.open_subject(options.model, up)
     bpy.ops.preferences.addon_enable(module="saddleback_blender")
     repaired(subject)
-    rounds = models.refine(subject)
-    if rounds:
-        say(f"Coarse: every face split {4**rounds} times (the shape stays), for smooth lines between the cells")
+    coarse = len(models.triangles(subject))
+    fine = models.refine(subject)
+    if fine > coarse:
+        say(f"{coarse:,} triangles are few: split into {fine:,} of the same shape, for smooth lines between the cells")
     paint = models.find_paint(subject)
     if paint.source == "UNIFORM":
         paint = models.paint_curvature(subject)

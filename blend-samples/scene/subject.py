@@ -117,11 +117,13 @@ def area(subject: bpy.types.Object) -> float:
 
 
 def refine(subject: bpy.types.Object) -> int:
-    """Splits faces in four, without changing the shape, until there are enough; returns how often."""
-    rounds = 0
-    count = len(triangles(subject))
-    while count * 4**rounds < FINE and rounds < 6:
-        rounds += 1
+    """Splits faces, without changing the shape, until there are enough; returns the number of triangles.
+
+    The first round makes a quad of each corner of a face, every other round four quads of a quad.
+    """
+    rounds, count, quads = 0, len(triangles(subject)), len(subject.data.loops)
+    while count < FINE and rounds < 7:
+        rounds, count, quads = rounds + 1, 2 * quads, 4 * quads
     if rounds:
         modifier = subject.modifiers.new("Refine", "SUBSURF")
         modifier.subdivision_type = "SIMPLE"
@@ -129,7 +131,7 @@ def refine(subject: bpy.types.Object) -> int:
         while subject.modifiers[0] != modifier:
             bpy.ops.object.modifier_move_up(modifier=modifier.name)
         bpy.ops.object.modifier_apply(modifier=modifier.name)
-    return rounds
+    return count
 
 
 def find_paint(subject: bpy.types.Object) -> Paint:

@@ -25,7 +25,7 @@ import subject as models
 ROOT = Path(__file__).resolve().parents[2]
 ROLE = "saddleback_role"
 PAINT = "Cell density"
-WIDTH, HEIGHT, SAMPLES = 720, 480, 12
+WIDTH, HEIGHT, SAMPLES = 660, 440, 6
 
 
 def start() -> bpy.types.Object:
