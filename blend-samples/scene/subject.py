@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 FINE = 30_000  # triangles below which cell borders show the mesh's own edges
+NEWER = 34  # exit status that tells blend-samples/run to try a newer Blender
 CURVATURE = "Cell density"
 
 
@@ -62,7 +63,16 @@ def _read_arrays(path: Path) -> tuple[Array, NDArray[np.int32]]:
 
 
 def _from_blend(path: Path) -> bpy.types.Object:
-    bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False)
+    # An older Blender may crash on a newer file, so the version is read first: "BLENDER", two letters, 405 for 4.5.
+    version = path.open("rb").read(12)[9:]
+    if version.isdigit() and divmod(int(version), 100) > bpy.app.version[:2]:
+        print(f"   {path}: saved by Blender {int(version) // 100}.{int(version) % 100}.", flush=True)
+        raise SystemExit(NEWER)
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False)
+    except RuntimeError as error:  # not a .blend, or of a Blender so new that this one cannot tell
+        print(f"   {path}: Blender {bpy.app.version_string} cannot open it ({str(error).strip()}).", flush=True)
+        raise SystemExit(NEWER) from error
     scene = bpy.context.scene
     active = bpy.context.view_layer.objects.active
     meshes = [item for item in scene.objects if item.type == "MESH" and len(item.data.polygons)]
