@@ -160,9 +160,8 @@ def test_a_triangle_without_area_is_mended_without_a_crack():
 
 def test_weld_distance_is_in_world_units():
     vertices, faces = grid_arrays(4)
-    item = add_object(
-        "Near", np.concatenate([vertices[:15], vertices[10:] + (0.001, 0, 0)]), [*faces[:8], *(faces[8:] + 5)]
-    )
+    moved = vertices[10:] + np.array([0.001, 0.0, 0.0])
+    item = add_object("Near", np.concatenate([vertices[:15], moved]), [*faces[:8], *(faces[8:] + 5)])
     item.scale = (10, 10, 10)
     bpy.context.view_layer.update()
     bpy.ops.saddleback.repair(weld_distance=0.005)  # the gap is 0.01 in the world

@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
-ADDON = str(Path(__file__).resolve().parents[2] / "addon")
-if ADDON not in sys.path:
-    sys.path.insert(0, ADDON)
+HERE = Path(__file__).resolve().parent
+for folder in (HERE.parents[1] / "addon", HERE):
+    if str(folder) not in sys.path:
+        sys.path.insert(0, str(folder))

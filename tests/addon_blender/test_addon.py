@@ -1,0 +1,105 @@
+"""The add-on as a whole: enabled and disabled, its preferences, a missing library, quitting while it computes."""
+
+import os
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from scenes import attribute, sphere
+
+from saddleback_blender import prefs
+from saddleback_blender.core import cache, native
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+
+
+def preferences():
+    return bpy.context.preferences.addons["saddleback_blender"].preferences
+
+
+def test_disabling_takes_everything_away_and_enabling_brings_it_back():
+    item = sphere()
+    bpy.ops.preferences.addon_disable(module="saddleback_blender")
+    try:
+        assert not hasattr(bpy.types.Object, "saddleback")
+        assert not hasattr(bpy.types.WindowManager, "saddleback_running")
+        with pytest.raises(AttributeError):
+            bpy.ops.saddleback.tessellate()
+        assert not [name for name in dir(bpy.types) if name.startswith("SADDLEBACK_")]
+    finally:
+        bpy.ops.preferences.addon_enable(module="saddleback_blender")
+    assert bpy.ops.saddleback.tessellate(count=5, iterations=1) == {"FINISHED"}
+    assert item.saddleback.tessellate.count == 5
+
+
+def test_threads_of_the_preferences_change_nothing_but_the_time():
+    item = sphere()
+    results = []
+    for threads in (1, 2, 0):
+        preferences().threads = threads
+        assert prefs.threads(bpy.context) == threads
+        cache.shared.clear()
+        bpy.ops.saddleback.tessellate(count=20, iterations=3)
+        results.append(attribute(item, "saddleback_distance").tobytes())
+    assert len(set(results)) == 1
+
+
+def test_the_cache_keeps_to_the_size_of_the_preferences():
+    sphere()
+    bpy.ops.saddleback.tessellate(count=20, iterations=1)
+    assert cache.shared.nbytes > 0
+    preferences().cache_megabytes = 0
+    assert cache.shared.nbytes == 0
+    bpy.ops.saddleback.tessellate(count=20, iterations=1)
+    assert cache.shared.nbytes == 0
+    preferences().cache_megabytes = 2048
+
+
+def test_preferences_show_the_library_or_why_there_is_none(monkeypatch):
+    assert native.problem() == "" and native.load().__version__ in native.description()
+    monkeypatch.setitem(sys.modules, "saddleback", SimpleNamespace(__version__="99.0", __file__="/old/saddleback.py"))
+    assert "99.0 is loaded from /old/saddleback.py" in native.problem() and "restart Blender" in native.problem()
+    monkeypatch.setitem(sys.modules, "saddleback", None)  # an import of it fails
+    assert "does not load" in native.description() and "restart Blender" in native.problem()
+    sphere()
+    with pytest.raises(RuntimeError, match="does not load"):
+        bpy.ops.saddleback.tessellate(count=5)
+
+
+QUIT = """
+    import sys, time
+    sys.path += {folders}
+    import bpy
+    bpy.ops.preferences.addon_enable(module="saddleback_blender")
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    from scenes import grid
+    from test_modal import pressed_tessellate
+    grid(n=150)
+    operator, context = pressed_tessellate(count=200, iterations=200, k=80)
+    assert operator.invoke(context, None) == {{"RUNNING_MODAL"}}
+    time.sleep({moment})
+    assert not operator._task.done
+    print("still computing", flush=True)
+"""
+
+
+@pytest.mark.parametrize("moment", [0.05, 1.0])
+def test_quitting_during_a_run_is_clean_and_quick(tmp_path, moment):
+    script = tmp_path / "quit.py"
+    packages = [Path(module.__file__).parents[1] for module in (native.load(), pytest)]
+    folders = [str(folder) for folder in (Path(__file__).parent, REPOSITORY / "addon", *packages)]
+    script.write_text(textwrap.dedent(QUIT.format(folders=folders, moment=moment)))
+    binary = bpy.app.binary_path
+    command = [binary, "-b", "--factory-startup", "--python-exit-code", "9", "--python"] if binary else [sys.executable]
+    start = time.monotonic()
+    done = subprocess.run(
+        [*command, str(script)], capture_output=True, text=True, timeout=120, env={**os.environ}, check=False
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert "still computing" in done.stdout
+    assert time.monotonic() - start < 60  # the run itself would take minutes
