@@ -176,6 +176,8 @@ void bind_points(py::module_& m) {
       .def("positions", &positions_of, py::arg("mesh"), "(n, 3) float64: positions in space on that mesh.")
       .def("__len__", [](const SurfacePoints& points) { return points.size(); })
       .def("__getitem__", &item)
+      .def("__iter__",
+           [](const py::object& self) { return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr())); })
       .def("__repr__", [](const SurfacePoints& points) {
         return message("<SurfacePoints: ", points.size(), points.size() == 1 ? " point>" : " points>");
       });

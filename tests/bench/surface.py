@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -36,12 +37,12 @@ def bench_project(mesh: sb.Mesh, count: int) -> None:
     row("project 1 query (the hierarchy)", f"{cpu_seconds(lambda: sb.project(mesh, on[:1])):.2f} s")
     off = on + rng.normal(0, mesh.mean_edge_length, on.shape)
     for name, queries in (("on the surface", on), ("one edge off it", off)):
-        seconds = cpu_seconds(lambda queries=queries: sb.project(mesh, queries, threads=1))
+        seconds = cpu_seconds(partial(sb.project, mesh, queries, threads=1))
         row(f"project {count} queries {name}", f"{seconds:.2f} s")
     if importlib.util.find_spec("scipy") is None:
         row("scipy cKDTree", "not installed")
     else:
-        from scipy.spatial import cKDTree
+        from scipy.spatial import cKDTree  # type: ignore[import-untyped]
 
         seconds = cpu_seconds(lambda: cKDTree(mesh.vertices).query(on))
         row("  scipy cKDTree (nearest vertex only), build and query", f"{seconds:.2f} s")
@@ -52,7 +53,7 @@ def bench_meshlib(mesh: sb.Mesh, queries: np.ndarray) -> None:
     if importlib.util.find_spec("meshlib") is None:
         row("  meshlib", "not installed")
         return
-    from meshlib import mrmeshnumpy, mrmeshpy
+    from meshlib import mrmeshnumpy, mrmeshpy  # type: ignore[import-not-found]
 
     other = mrmeshnumpy.meshFromFacesVerts(mesh.triangles, mesh.vertices)
     some = [mrmeshpy.Vector3f(*map(float, query)) for query in queries[:10_000]]
@@ -81,7 +82,7 @@ def bench_trace() -> None:
     if importlib.util.find_spec("potpourri3d") is None:
         row("  potpourri3d", "not installed")
         return
-    import potpourri3d
+    import potpourri3d  # type: ignore[import-not-found]
 
     tracer = potpourri3d.GeodesicTracer(np.array(mesh.vertices), np.array(mesh.triangles))
     points = 0

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from scipy import stats
-from scipy.spatial import cKDTree
+from scipy import stats  # type: ignore[import-untyped]
+from scipy.spatial import cKDTree  # type: ignore[import-untyped]
 
 import saddleback as sb
 from tests import meshes
@@ -19,8 +19,10 @@ Floats = NDArray[np.float64]
 def masses(mesh: sb.Mesh, density: Floats | None = None) -> Floats:
     """Integral of the linear density over each face."""
     a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-    return areas if density is None else areas * density[mesh.triangles].mean(axis=1)
+    areas: Floats = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    if density is not None:
+        areas *= density[mesh.triangles].mean(axis=1)
+    return areas
 
 
 @pytest.mark.parametrize("case", meshes.good(), ids=str)

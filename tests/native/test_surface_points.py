@@ -47,7 +47,7 @@ def test_it_is_indexed_sliced_and_iterated_like_a_sequence() -> None:
 
 
 def test_its_arrays_are_read_only_views_that_outlive_it() -> None:
-    points = sb.SurfacePoints([1, 2], [[1, 0, 0], [0, 0.5, 0.5]])
+    points = sb.SurfacePoints([1, 2], np.array([[1, 0, 0], [0, 0.5, 0.5]]))
     faces, weights = points.faces, points.barycentric
     with pytest.raises(ValueError, match="read-only"):
         faces[0] = 3

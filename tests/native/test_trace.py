@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 
 def in_face(face: int, weights: ArrayLike) -> sb.SurfacePoints:
-    return sb.SurfacePoints([face], [weights])
+    return sb.SurfacePoints([face], np.array([weights]))
 
 
 def chart_angle(mesh: sb.Mesh, face: int, direction: Floats) -> float:

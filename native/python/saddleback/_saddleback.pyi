@@ -1,6 +1,7 @@
 """Types of the compiled part; its docstrings tell shapes, units, errors and sources."""
 
 import os
+from collections.abc import Iterator
 from typing import Literal, SupportsFloat, SupportsIndex, TypeAlias, final
 
 import numpy as np
@@ -100,6 +101,7 @@ class SurfacePoints:
     def positions(self, mesh: Mesh) -> _Floats: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: SupportsIndex | slice) -> SurfacePoints: ...
+    def __iter__(self) -> Iterator[SurfacePoints]: ...
 
 _Points: TypeAlias = ArrayLike | SurfacePoints
 
