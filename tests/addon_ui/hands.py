@@ -28,17 +28,17 @@ class Screen:
 
     def move(self, x, y):
         """Moves the mouse in two steps, so that what is under it notices."""
-        for place in ((x + 1, y + 1), (x, y)):
+        for place in ((x + 4, y), (x, y)):
             self.window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=int(place[0]), y=int(place[1]))
         self.mouse = (int(x), int(y))
 
     def click(self, x, y):
         """Clicks the left button."""
         self.move(x, y)
-        yield FRAME
+        yield 4 * FRAME  # until what is under the mouse is lit up; before that a press is lost
         for value in ("PRESS", "RELEASE"):
             self.window.event_simulate(type="LEFTMOUSE", value=value, x=int(x), y=int(y))
-        yield 2 * FRAME
+            yield 2 * FRAME
 
     def press(self, key, **modifiers):
         """Presses and releases a key where the mouse is."""
@@ -59,7 +59,7 @@ class Screen:
         self.sidebar.tag_redraw()
 
     def find_button(self, command):
-        """Where in the sidebar the button of an operator is: the first place where Blender would copy its command."""
+        """Where in the sidebar an operator's button is: just below the first place where its command can be copied."""
         clipboard = bpy.context.window_manager
         left, bottom = self.sidebar.x, self.sidebar.y
         x = left + self.sidebar.width // 2 - 20
@@ -71,12 +71,14 @@ class Screen:
                 if bpy.ops.ui.copy_python_command_button.poll():
                     bpy.ops.ui.copy_python_command_button()
             if clipboard.clipboard.startswith(command):
-                return x, y
+                return x, y - 7  # into the middle: a press on the very edge may miss
         raise AssertionError(f"no button for {command} in the sidebar")
 
     def click_until(self, place, is_done):
         """Clicks a button until something happens: the first click on a region may only wake it."""
         for _ in range(4):
+            self.move(self.view.x + 200, self.view.y + 300)
+            yield 4 * FRAME
             yield from self.click(*place)
             end = time.perf_counter() + 5.0
             while time.perf_counter() < end:
