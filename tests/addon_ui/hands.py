@@ -85,7 +85,8 @@ class Screen:
                 if is_done():
                     return
                 yield FRAME
-        raise AssertionError("four clicks on the button did nothing")
+        yield from self.shoot("nothing_happened")
+        raise AssertionError("four clicks on the button did nothing: see nothing_happened.png")
 
     def open_tab(self, is_open):
         """Clicks the tabs at the sidebar's edge one after another until the wanted one is open."""

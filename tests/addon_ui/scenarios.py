@@ -17,8 +17,10 @@ drawn = {"main": 0, "running": 0, "fractions": []}
 def prepare():
     """The add-on enabled, and a mesh large enough for a run to be watched."""
     bpy.ops.preferences.addon_enable(module="saddleback_blender")
+    from saddleback_blender.core import native
     from saddleback_blender.ui import panels
 
+    native.load()  # without it every scenario would only find that it is missing
     panels.SADDLEBACK_PT_main.append(_count_draw)
     for item in list(bpy.data.objects):
         bpy.data.objects.remove(item)
