@@ -119,10 +119,11 @@ def test_progress_rises_and_is_told(item):
     assert all(text.startswith("Grid") for text in texts)
 
 
-def test_escape_at_fifty_random_moments(item):
+def test_escape_at_fifty_random_moments():
+    item = grid(n=35)
     assert item.saddleback.tessellate.count  # the settings exist from the panel's first look on
     assert item.saddleback.distance.k
-    operator, context = pressed_tessellate(count=60, iterations=40, k=40)
+    operator, context = pressed_tessellate(count=40, iterations=12, k=30)
     start = time.perf_counter()
     operator.invoke(context, None)
     operator._task.join()
@@ -133,7 +134,7 @@ def test_escape_at_fifty_random_moments(item):
     waits = []
     for moment in range(50):
         cache.shared.clear()
-        operator, context = pressed_tessellate(count=60, iterations=40, k=40)
+        operator, context = pressed_tessellate(count=40, iterations=12, k=30)
         assert operator.invoke(context, None) == {"RUNNING_MODAL"}
         task = operator._task
         time.sleep(rng.random() * whole * 0.9)
@@ -144,7 +145,7 @@ def test_escape_at_fifty_random_moments(item):
         task.join()
         waits.append(time.perf_counter() - asked)
         assert answered < 0.1
-        assert was_done or isinstance(task.error, Exception) or task.result is not None
+        assert was_done or task.error is not None or task.result is not None
         assert context.timers == 0 and context.status[-1] is None and not bpy.context.window_manager.saddleback_running
         assert operator.messages == [("INFO", "Stopped; nothing was changed")]
         assert fingerprint() == before
