@@ -78,7 +78,7 @@ class Screen:
         """Clicks a button until something happens: the first click on a region may only wake it."""
         for _ in range(4):
             self.move(self.view.x + 200, self.view.y + 300)
-            yield 4 * FRAME
+            yield 12 * FRAME
             yield from self.click(*place)
             end = time.perf_counter() + 5.0
             while time.perf_counter() < end:
