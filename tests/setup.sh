@@ -8,7 +8,7 @@ die() { printf '%s\n' "$*" >&2; exit 1; }
 python_wanted=3.11  # Blender's, from 4.1 to 5.0 and in Debian 12
 build_packages=(g++ cmake ninja-build libeigen3-dev python3-dev python3-venv)
 # Blender and what its interface needs on a machine without a screen.
-blender_packages=(blender xvfb xauth libgl1-mesa-dri)
+blender_packages=(blender python3-numpy xvfb xauth libgl1-mesa-dri)
 # What the bpy wheels expect to find.
 bpy_packages=(libxrender1 libxxf86vm1 libxfixes3 libxi6 libxkbcommon0 libsm6 libice6 libgl1 libegl1)
 
