@@ -1,6 +1,7 @@
 // The module's doorway: errors, then one bind_* per public header.
 
 #include <string_view>
+#include <utility>
 
 #include "convert.h"
 
@@ -34,7 +35,7 @@ void raise(PyObject* type, const std::exception& error) {
 
 void translate(std::exception_ptr error) {
   try {
-    std::rethrow_exception(error);
+    std::rethrow_exception(std::move(error));
   } catch (const MeshError& e) {
     raise(error_types.mesh, e);
   } catch (const InputError& e) {

@@ -9,7 +9,7 @@ import bpy
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-IS_EXTENSION = hasattr(bpy.ops.extensions, "bl_rna") or "extensions" in dir(bpy.ops)
+IS_EXTENSION = bpy.app.version >= (4, 2)
 
 
 def package():

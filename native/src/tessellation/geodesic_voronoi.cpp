@@ -167,7 +167,7 @@ GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& si
   stage.check();
   const std::vector<Segment> segments = find_segments(complex);
   stage.check();
-  Chains(segments, result.points.size(), result);
+  const Chains chains(segments, result.points.size(), result);
   stage.check();
   result.face_cell.resize(mesh.face_count());
   for (Index f = 0; f < mesh.face_count(); ++f) result.face_cell[f] = complex.face_site(f);
