@@ -104,7 +104,7 @@ def test_adjust_last_operation_computes_only_what_changed(report):
     assert result["outputs"] == ["Ball Cells", "Ball Edges"]
     before, after = result["builds"]
     for heavy in ("mesh", "graph", "cells"):
-        assert before[heavy] == after[heavy] == 1
+        assert before[heavy] == after[heavy] > 0
 
 
 def test_one_undo_takes_everything_back_and_redo_brings_it_again(report):

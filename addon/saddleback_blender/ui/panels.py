@@ -89,6 +89,19 @@ def _draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, item: bp
         draw_text(layout, context, manager.saddleback_line, "CHECKMARK")
 
 
+def _draw_button(layout: bpy.types.UILayout, context: bpy.types.Context, operator: str, icon: str) -> None:
+    """The button that starts a run. While one goes on a label stands in its place.
+
+    A button that is grey under the mouse stays dead in Blender after it could be pressed again; a new one does not.
+    """
+    row = layout.row()
+    row.scale_y = 1.4
+    if context.window_manager.saddleback_running:
+        row.label(text="Running", icon="TIME")
+    else:
+        row.operator(operator, icon=icon)
+
+
 class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
     """Cells: how many, where, and the button."""
 
@@ -98,9 +111,7 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
         """Draws the panel."""
         settings = context.view_layer.objects.active.saddleback.tessellate
         layout = self.split_layout(context)
-        row = layout.row()
-        row.scale_y = 1.4
-        row.operator("saddleback.tessellate", icon="MOD_EXPLODE")
+        _draw_button(layout, context, "saddleback.tessellate", "MOD_EXPLODE")
         rows.draw_sites(layout.column(), settings)
         layout.prop(settings, "k")
         layout.prop(settings, "use_modifiers")
@@ -188,9 +199,7 @@ class SADDLEBACK_PT_distance(SaddlebackSubPanel, bpy.types.Panel):
         item = context.view_layer.objects.active
         settings = item.saddleback.distance
         layout = self.split_layout(context)
-        row = layout.row()
-        row.scale_y = 1.4
-        row.operator("saddleback.distance", icon="DRIVER_DISTANCE")
+        _draw_button(layout, context, "saddleback.distance", "DRIVER_DISTANCE")
         rows.draw_distance_sources(layout.column(), settings, item)
         layout.prop(settings, "k")
         layout.prop(settings, "use_modifiers")
@@ -206,9 +215,7 @@ class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         layout = self.split_layout(context)
-        row = layout.row()
-        row.scale_y = 1.4
-        row.operator("saddleback.repair", icon="TOOL_SETTINGS")
+        _draw_button(layout, context, "saddleback.repair", "TOOL_SETTINGS")
         layout.prop(context.view_layer.objects.active.saddleback.repair, "weld_distance")
 
 
