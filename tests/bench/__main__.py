@@ -18,8 +18,7 @@ def main(arguments: list[str]) -> int:
     if arguments[0] not in names():
         print(f"No benchmark {arguments[0]!r}; there are: {', '.join(names())}", file=sys.stderr)
         return 2
-    importlib.import_module(f"tests.bench.{arguments[0]}").main(arguments[1:])
-    return 0
+    return int(importlib.import_module(f"tests.bench.{arguments[0]}").main(arguments[1:]) or 0)
 
 
 if __name__ == "__main__":
