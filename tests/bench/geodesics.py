@@ -1,7 +1,7 @@
 """The graph and its cells on meshes of a folder: `python -m tests.bench geodesics MESH...`.
 
-Build per vertex, one distance field, the nearest of 1,500 sources and their cells, beside the exact algorithm of pygeodesic
-in the same run, whose distances also give the errors.
+Build per vertex, one distance field, the nearest of 1,500 sources and their cells, beside pygeodesic's exact
+algorithm in the same run, whose distances also give the errors.
 """
 
 from __future__ import annotations
