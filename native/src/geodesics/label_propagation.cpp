@@ -9,6 +9,7 @@
 #include "saddleback/error.h"
 
 #include "geodesics/window_propagation.h"
+#include "support/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -110,33 +111,36 @@ void propagate(const SaddleVertexGraph& graph, const std::vector<Seed>& seeds, d
   }
 }
 
+/// Seeds of sources that are vertices (distance 0) or lie elsewhere (a window propagation each, k vertices wide).
+std::vector<Seed> make_seeds(const SaddleVertexGraph& graph, const SurfacePoints& sources, const JobStage& stage) {
+  const auto count = static_cast<Index>(sources.size());
+  std::vector<std::vector<DirectArc>> fans(count);
+  std::vector<std::unique_ptr<WindowPropagator>> propagators(thread_count(0));
+  parallel_for(count, 0, 16, [&](Index i, int thread) {
+    if (vertex_at(graph.mesh(), sources[i]) != k_none) return;
+    stage.check();
+    if (!propagators[thread]) propagators[thread] = std::make_unique<WindowPropagator>(graph.unfolding());
+    propagators[thread]->from_point(sources[i], graph.k(), fans[i]);
+  });
+  std::vector<Seed> seeds;
+  for (Index i = 0; i < count; ++i) {
+    if (const Index vertex = vertex_at(graph.mesh(), sources[i]); vertex != k_none) seeds.push_back({vertex, i, 0});
+    for (const DirectArc& arc : fans[i]) seeds.push_back({arc.vertex, i, graph.quantum().round(arc.length)});
+  }
+  return seeds;
+}
+
 std::vector<Seed> checked_seeds(const SaddleVertexGraph& graph, const SurfacePoints& sources,
-                                const QueryOptions& options) {
+                                const QueryOptions& options, const JobStage& stage) {
   if (sources.empty()) throw InputError("sources: wanted at least one source, got none");
   check_surface_points(graph.mesh(), sources, "sources");
   if (std::isnan(options.limit) || options.limit < 0) {
     throw InputError(message("limit: wanted a distance of 0 or more, got ", options.limit));
   }
-  return make_seeds(graph, sources);
+  return make_seeds(graph, sources, stage);
 }
 
 }  // namespace
-
-std::vector<Seed> make_seeds(const SaddleVertexGraph& graph, const SurfacePoints& sources) {
-  std::vector<Seed> seeds;
-  std::unique_ptr<WindowPropagator> propagator;
-  std::vector<DirectArc> arcs;
-  for (Index i = 0; i < static_cast<Index>(sources.size()); ++i) {
-    if (const Index vertex = vertex_at(graph.mesh(), sources[i]); vertex != k_none) {
-      seeds.push_back({vertex, i, 0});
-      continue;
-    }
-    if (!propagator) propagator = std::make_unique<WindowPropagator>(graph.unfolding());
-    propagator->from_point(sources[i], graph.k(), arcs);
-    for (const DirectArc& arc : arcs) seeds.push_back({arc.vertex, i, graph.quantum().round(arc.length)});
-  }
-  return seeds;
-}
 
 LabelField propagate_labels(const SaddleVertexGraph& graph, const std::vector<Seed>& seeds, const QueryOptions& options,
                             bool with_predecessors, const JobStage& stage) {
@@ -156,12 +160,12 @@ LabelField propagate_labels(const SaddleVertexGraph& graph, const std::vector<Se
 std::vector<double> SaddleVertexGraph::distances(const SurfacePoints& sources, const QueryOptions& options,
                                                  Job* job) const {
   const JobStage stage(job, "Measuring distances");
-  return propagate_labels(*this, checked_seeds(*this, sources, options), options, false, stage).distance;
+  return propagate_labels(*this, checked_seeds(*this, sources, options, stage), options, false, stage).distance;
 }
 
 NearestField SaddleVertexGraph::nearest(const SurfacePoints& sources, const QueryOptions& options, Job* job) const {
   const JobStage stage(job, "Finding nearest sources");
-  LabelField field = propagate_labels(*this, checked_seeds(*this, sources, options), options, false, stage);
+  LabelField field = propagate_labels(*this, checked_seeds(*this, sources, options, stage), options, false, stage);
   return {std::move(field.distance), std::move(field.source)};
 }
 

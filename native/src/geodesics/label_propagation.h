@@ -21,9 +21,6 @@ struct LabelField {
       predecessor;  ///< vertex before on the path; k_none: straight from the source. Empty unless asked for
 };
 
-/// Seeds of sources that are vertices (distance 0) or lie elsewhere (a window propagation each, k vertices wide).
-std::vector<Seed> make_seeds(const SaddleVertexGraph& graph, const SurfacePoints& sources);
-
 /// Least distance and, among equals, least source for every vertex: label-correcting with buckets, or Dijkstra's heap.
 LabelField propagate_labels(const SaddleVertexGraph& graph, const std::vector<Seed>& seeds, const QueryOptions& options,
                             bool with_predecessors, const JobStage& stage);
