@@ -68,8 +68,11 @@ def use(mesh: sb.Mesh, rng: np.random.Generator) -> None:
     sites = sb.sample(mesh, int(rng.integers(1, 9)), seed=int(rng.integers(99)))
     assert np.isfinite(sites.positions(mesh)).all()
     sb.project(mesh, rng.normal(size=(3, 3)))
-    path = sb.trace(mesh, sites[:1], float(rng.uniform(-7, 7)), float(mesh.mean_edge_length * rng.uniform(0, 20)))
-    assert np.isfinite(path.points).all()
+    try:
+        path = sb.trace(mesh, sites[:1], float(rng.uniform(-7, 7)), float(mesh.mean_edge_length * rng.uniform(0, 20)))
+        assert np.isfinite(path.points).all()
+    except sb.InputError as error:  # round a spike thinner than rounding a curve turns without end
+        assert "too long to follow" in str(error)
     try:
         cells = sb.centroidal_voronoi(graph, count=int(rng.integers(1, 9)), max_iterations=2, threads=1).cells
     except sb.InputError:  # fewer cells than parts

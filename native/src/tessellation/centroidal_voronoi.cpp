@@ -67,7 +67,11 @@ SurfacePoint moved(const Mesh& mesh, const SurfacePoint& site, const CellMoments
     angle =
         (angle < 0 ? angle + 2 * M_PI : angle) * mesh.total_angle(vertex) / (2 * M_PI);  // the tangent plane is scaled
   }
-  return trace_end(mesh, site, angle, length).point;
+  try {
+    return trace_end(mesh, site, angle, length).point;
+  } catch (const InputError&) {  // round a spike thinner than rounding a curve turns without end: the site stays
+    return site;
+  }
 }
 
 SurfacePoints moved_sites(const Mesh& mesh, const State& state, double share) {
