@@ -5,11 +5,11 @@ from __future__ import annotations
 import threading
 import time
 
-import meshes
 import numpy as np
 import pytest
 
 import saddleback as sb
+from tests import meshes
 
 CONNECTED = [c for c in meshes.good() if len(c.vertices) >= 100]
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import meshes
 import numpy as np
 import pytest
-from exact import exact_distances, random_points
 from hypothesis import given
 from hypothesis import strategies as st
 
 import saddleback as sb
+from tests import meshes
+from tests.native.exact import exact_distances, random_points
 
 
 def graph_of(case: meshes.Case, k: int = 40) -> sb.SaddleVertexGraph:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import threading
 import time
 
-import meshes
 import numpy as np
 import pytest
-from exact import exact_distances, random_points, with_vertex_at
 
 import saddleback as sb
+from tests import meshes
+from tests.native.exact import exact_distances, random_points, with_vertex_at
 
 # Arc lengths are kept in single precision: distances may fall short of the exact ones by its rounding and no more.
 SINGLE = 2e-7
