@@ -1,8 +1,9 @@
 """Covers a model with geodesic cells through the add-on's operators, lights it and saves the scene: run by Blender.
 
-    blender -b --factory-startup --python blend-samples/make_cells.py -- MODEL OUT.blend [--count N] [--up y|z]
+    blender -b --factory-startup --python blend-samples/make_cells.py -- MODEL OUT.blend [OPTION ...]
 
 MODEL is a .blend (its active mesh object, with a painted density if it has one) or a mesh: .obj .ply .off .stl.
+Options: --count N, --up y|z, --turn DEGREES.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blend-samples/scene"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "addon"))
@@ -121,11 +123,16 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--count", type=int, default=0)
     parser.add_argument("--up", choices=("y", "z"), default="")
+    parser.add_argument("--turn", type=float, default=0.0)
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
     up = options.up or ("z" if options.model.suffix.lower() == ".stl" else "y")
 
     with timed("Model read"):
         subject = models.open_subject(options.model, up)
+        subject.matrix_world = Matrix.Rotation(math.radians(options.turn), 4, "Z") @ subject.matrix_world
+        bpy.context.view_layer.update()
+    if options.model.suffix.lower() != ".blend":
+        say(f"Up is {up}, seen from the front: --up and --turn change that")
     bpy.ops.preferences.addon_enable(module="saddleback_blender")
     repaired(subject)
     coarse = len(models.triangles(subject))
