@@ -108,6 +108,9 @@ def use_cycles(scene: bpy.types.Scene, width: int, height: int, samples: int) ->
     """Render settings for a CPU; returns whether this build of Blender can denoise."""
     scene.render.engine = "CYCLES"
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
+    for name in dir(scene.render):  # no names of folders, files and hosts in the picture
+        if name.startswith("use_stamp"):
+            setattr(scene.render, name, False)
     scene.view_settings.view_transform = "Filmic"
     scene.view_settings.look = "High Contrast"
     cycles = scene.cycles
