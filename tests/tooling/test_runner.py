@@ -105,7 +105,7 @@ def test_inner_results_are_counted_one_by_one(tmp_path):
     done = outer(tmp_path, TESTS)
     assert done.returncode == 1
     assert "1 failed, 1 passed, 1 skipped" in summary(done)
-    assert "the culprit" in done.stdout and "/test_inner.py::test_bad" in done.stdout
+    assert "the culprit" in done.stdout and "test_inner.py::test_bad" in done.stdout
 
 
 def test_a_choice_is_made_inside(tmp_path):
