@@ -121,8 +121,8 @@ def _new_tubes_group() -> bpy.types.NodeTree:
     neighbours = nodes.new("GeometryNodeInputMeshVertexNeighbors")
     is_joint = nodes.new("FunctionNodeCompare")
     is_joint.data_type, is_joint.operation = "INT", "NOT_EQUAL"
-    compared = {socket.identifier: socket for socket in is_joint.inputs}
-    compared["B_INT"].default_value = 2
+    compared = {socket.name: socket for socket in is_joint.inputs if socket.enabled}  # those of whole numbers
+    compared["B"].default_value = 2
     joints = nodes.new("GeometryNodeMeshToPoints")
     ball = nodes.new("GeometryNodeMeshUVSphere")
     half = nodes.new("ShaderNodeMath")
@@ -139,7 +139,7 @@ def _new_tubes_group() -> bpy.types.NodeTree:
     link(source.outputs["Radius"], circle.inputs["Radius"])
     link(to_curve.outputs["Curve"], sweep.inputs["Curve"])
     link(circle.outputs["Curve"], sweep.inputs["Profile Curve"])
-    link(neighbours.outputs["Vertex Count"], compared["A_INT"])
+    link(neighbours.outputs["Vertex Count"], compared["A"])
     link(source.outputs["Geometry"], joints.inputs["Mesh"])
     link(is_joint.outputs["Result"], joints.inputs["Selection"])
     link(source.outputs["Resolution"], ball.inputs["Segments"])
