@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/arc_rows.h"
 #include "saddleback/job.h"
 #include "saddleback/mesh.h"
 #include "saddleback/surface_points.h"
@@ -13,18 +14,10 @@
 namespace saddleback {
 
 class Unfolding;
-
-/// Rounds lengths to multiples of one power of two, 2^-32 of the mean edge, so that sums of arcs are exact in double
-/// precision: a path has the same length from both ends and by every method, to the bit.
-class LengthQuantum {
- public:
-  explicit LengthQuantum(double mean_edge);
-  /// At least one quantum: no arc is free.
-  double round(double length) const;
-
- private:
-  double step_;
-};
+class WindowPropagator;
+struct ArcHint;
+struct DirectArc;
+struct FoundArcs;
 
 struct SaddleVertexGraphOptions {
   Index k = 50;     ///< vertices per geodesic disk, not counting the centre
@@ -54,7 +47,7 @@ struct NearestField {
 class SaddleVertexGraph {
  public:
   /// Builds the graph by window propagation from every vertex. The mesh must outlive the graph.
-  /// \throw InputError for k < 1 or k > V; Cancelled. O(V k log k) time, about 12 bytes an arc.
+  /// \throw InputError for k < 1 or k > V; Cancelled. O(V k log k) time, 8 bytes an arc.
   explicit SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options = {}, Job* job = nullptr);
   ~SaddleVertexGraph();
   SaddleVertexGraph(SaddleVertexGraph&&) noexcept;
@@ -62,22 +55,23 @@ class SaddleVertexGraph {
   const Mesh& mesh() const { return *mesh_; }
   const Unfolding& unfolding() const { return *unfolding_; }
   Index k() const { return k_; }
-  std::int64_t arc_count() const { return static_cast<std::int64_t>(targets_.size()); }
+  std::int64_t arc_count() const { return arcs_.count(); }
   double mean_degree() const { return static_cast<double>(arc_count()) / mesh_->vertex_count(); }
-  std::size_t nbytes() const;  ///< memory of the arcs
+  std::size_t nbytes() const;  ///< memory of the arcs and the order of the nodes
   double build_seconds() const { return build_seconds_; }
 
-  // Arcs of a vertex, sorted by target: flat arrays, [first_arc(v), first_arc(v + 1)).
-  std::int64_t first_arc(Index vertex) const { return offsets_[vertex]; }
-  std::span<const Index> targets() const { return targets_; }
-  /// Equal to the bit for an arc and its reverse.
-  double length(std::int64_t arc) const { return unit_ * static_cast<double>(lengths_[arc]); }
-  /// Direction in which the arc leaves its vertex: surface angle from first_halfedge, 0 to total_angle.
-  double angle(std::int64_t arc) const { return static_cast<double>(angles_[arc]); }
-  double longest_arc() const { return longest_arc_; }
-  const LengthQuantum& quantum() const { return quantum_; }
-  /// The arc from one vertex to another, -1 when they are not linked. O(log degree).
-  std::int64_t find_arc(Index from, Index to) const;
+  /// The graph's own numbering of the vertices, along a curve that fills space: neighbours lie close in memory.
+  Index node_of(Index vertex) const { return nodes_[vertex]; }
+  Index vertex_of(Index node) const { return vertices_[node]; }
+  std::span<const Index> nodes() const { return nodes_; }        ///< of the vertices
+  std::span<const Index> vertices() const { return vertices_; }  ///< of the nodes
+  /// Rows and targets are nodes.
+  const ArcRows& arcs() const { return arcs_; }
+  /// What unfold_arc needs to find the faces of an arc of `node`.
+  ArcHint hint(Index node, std::int64_t arc) const;
+  /// The arcs that a point of the surface has, to vertices; lengths as they are, not yet rounded as arcs are. Takes a
+  /// propagator of the caller's thread.
+  void fan(const SurfacePoint& point, WindowPropagator& propagator, std::vector<DirectArc>& arcs) const;
 
   /// Distance of every vertex from the nearest source: (V,), infinity where none reaches. Sources that are not vertices
   /// are linked by a window propagation of their own. Both methods return the same bits. \throw InputError for no
@@ -89,15 +83,14 @@ class SaddleVertexGraph {
   NearestField nearest(const SurfacePoints& sources, const QueryOptions& options = {}, Job* job = nullptr) const;
 
  private:
+  void order_nodes();
+  std::vector<FoundArcs> find_arcs(const ArcCodec& codec, int threads, const JobStage& stage) const;
+
   const Mesh* mesh_;
   std::unique_ptr<Unfolding> unfolding_;
   Index k_ = 0;
-  std::vector<std::int64_t> offsets_;
-  std::vector<Index> targets_;
-  std::vector<float> lengths_, angles_;
-  double unit_ = 1;  ///< of lengths_, a power of two near the mean edge: floats neither overflow nor vanish
-  LengthQuantum quantum_;
-  double longest_arc_ = 0;
+  std::vector<Index> nodes_, vertices_;
+  ArcRows arcs_;
   double build_seconds_ = 0;
 };
 

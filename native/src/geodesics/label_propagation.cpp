@@ -1,4 +1,4 @@
-// One relaxation, two queues. Sums of arcs are exact (see LengthQuantum), so that both queues end in
+// One relaxation, two queues. Sums of arcs are exact (see ArcCodec), so that both queues end in
 // the same bits: the least (distance, source) of each vertex does not depend on the order of the work.
 
 #include "geodesics/label_propagation.h"
@@ -82,10 +82,10 @@ class Buckets {
 template <class Queue>
 void propagate(const SaddleVertexGraph& graph, const std::vector<Seed>& seeds, double limit, LabelField& field,
                const JobStage& stage) {
-  double span = graph.longest_arc();
+  double span = graph.arcs().longest();
   for (const Seed& seed : seeds) span = std::max(span, seed.distance);
   Queue queue(graph.mesh().mean_edge_length(), span);
-  const auto targets = graph.targets();
+  const ArcRows& arcs = graph.arcs();
   const bool with_predecessors = !field.predecessor.empty();
   const auto relax = [&](Index vertex, double distance, Index source, Index predecessor) {
     if (distance > field.distance[vertex] || distance > limit) return;
@@ -104,9 +104,10 @@ void propagate(const SaddleVertexGraph& graph, const std::vector<Seed>& seeds, d
     }
     if (entry.distance > field.distance[entry.vertex]) continue;
     const Index source = field.source[entry.vertex];
-    const std::int64_t end = graph.first_arc(entry.vertex + 1);
-    for (std::int64_t arc = graph.first_arc(entry.vertex); arc < end; ++arc) {
-      relax(targets[arc], entry.distance + graph.length(arc), source, entry.vertex);
+    const Index node = graph.node_of(entry.vertex);
+    const std::int64_t end = arcs.first(node + 1);
+    for (std::int64_t arc = arcs.first(node); arc < end; ++arc) {
+      relax(graph.vertex_of(arcs.target(arc)), entry.distance + arcs.length(arc), source, entry.vertex);
     }
   }
 }
@@ -120,12 +121,12 @@ std::vector<Seed> make_seeds(const SaddleVertexGraph& graph, const SurfacePoints
     if (vertex_at(graph.mesh(), sources[i]) != k_none) return;
     stage.check();
     if (!propagators[thread]) propagators[thread] = std::make_unique<WindowPropagator>(graph.unfolding());
-    propagators[thread]->from_point(sources[i], graph.k(), fans[i]);
+    graph.fan(sources[i], *propagators[thread], fans[i]);
   });
   std::vector<Seed> seeds;
   for (Index i = 0; i < count; ++i) {
     if (const Index vertex = vertex_at(graph.mesh(), sources[i]); vertex != k_none) seeds.push_back({vertex, i, 0});
-    for (const DirectArc& arc : fans[i]) seeds.push_back({arc.vertex, i, graph.quantum().round(arc.length)});
+    for (const DirectArc& arc : fans[i]) seeds.push_back({arc.vertex, i, graph.arcs().codec().round(arc.length)});
   }
   return seeds;
 }

@@ -32,11 +32,16 @@ double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
   return 0;
 }
 
+void sort_by_vertex(std::vector<DirectArc>& arcs) {
+  std::sort(arcs.begin(), arcs.end(), [](const DirectArc& a, const DirectArc& b) { return a.vertex < b.vertex; });
+}
+
 }  // namespace
 
 SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, const JobStage& stage)
     : graph_(graph),
       mesh_(graph.mesh()),
+      unfolder_(graph.unfolding()),
       fans_(sites.size()),
       places_(graph.mesh().vertex_count()),
       first_known_(graph.mesh().vertex_count(), k_none) {
@@ -58,19 +63,23 @@ void SiteMaps::make_fan(Index site, const SurfacePoint& point, WindowPropagator&
   Fan& fan = fans_[site];
   fan.centre = vertex_at(mesh_, point);
   if (fan.centre != k_none) return make_fan_at_vertex(fan);
-  propagator.from_point(point, graph_.k(), fan.arcs);
-  for (DirectArc& arc : fan.arcs) arc.length = graph_.quantum().round(arc.length);
-  std::sort(fan.arcs.begin(), fan.arcs.end(),
-            [](const DirectArc& a, const DirectArc& b) { return a.vertex < b.vertex; });
+  graph_.fan(point, propagator, fan.arcs);
+  for (DirectArc& arc : fan.arcs) arc.length = graph_.arcs().codec().round(arc.length);
+  sort_by_vertex(fan.arcs);
 }
 
 void SiteMaps::make_fan_at_vertex(Fan& fan) {
   const double scale = mesh_.is_boundary(fan.centre) ? 1 : 2 * M_PI / mesh_.total_angle(fan.centre);
-  for (std::int64_t arc = graph_.first_arc(fan.centre); arc < graph_.first_arc(fan.centre + 1); ++arc) {
-    const Index target = graph_.targets()[arc];
-    const double end_angle = graph_.angle(graph_.find_arc(target, fan.centre));
-    fan.arcs.push_back({target, graph_.length(arc), scale * graph_.angle(arc), end_angle});
+  const Index node = graph_.node_of(fan.centre);
+  const ArcRows& arcs = graph_.arcs();
+  ArcUnfolder unfolder(graph_.unfolding());
+  UnfoldedArc unfolded;
+  for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
+    unfolder.unfold(graph_.hint(node, arc), unfolded);
+    const Index target = graph_.vertex_of(arcs.target(arc));
+    fan.arcs.push_back({target, arcs.length(arc), scale * unfolded.start_angle, unfolded.end_angle});
   }
+  sort_by_vertex(fan.arcs);
 }
 
 void SiteMaps::label_vertices(const JobStage& stage, std::vector<Index>& predecessor) {
@@ -116,11 +125,13 @@ SiteMaps::Place SiteMaps::place_direct(const DirectArc& arc) const {
   return {polar(arc.length, arc.start_angle), arc.start_angle, arc.end_angle};
 }
 
-SiteMaps::Place SiteMaps::place_after(Index vertex, Index previous) const {
+SiteMaps::Place SiteMaps::place_after(Index vertex, Index previous) {
   const Place& before = places_[previous];
-  const std::int64_t out = graph_.find_arc(previous, vertex), back = graph_.find_arc(vertex, previous);
-  const double heading = before.heading + turn_at(mesh_, previous, before.back, graph_.angle(out));
-  return {before.log + polar(graph_.length(out), heading), heading, graph_.angle(back)};
+  const Index node = graph_.node_of(previous);
+  const std::int64_t arc = graph_.arcs().find(node, graph_.node_of(vertex));
+  unfolder_.unfold(graph_.hint(node, arc), unfolded_);
+  const double heading = before.heading + turn_at(mesh_, previous, before.back, unfolded_.start_angle);
+  return {before.log + polar(graph_.arcs().length(arc), heading), heading, unfolded_.end_angle};
 }
 
 Vec2 SiteMaps::log(Index vertex, Index site, Index halfedge) {
@@ -145,7 +156,7 @@ const SiteMaps::Known* SiteMaps::find_known(Index vertex, Index site) const {
 }
 
 /// Places the vertex by the site's own fan or by the nearest way over a graph neighbour that the site owns.
-bool SiteMaps::pull(Index vertex, Index site, Vec2& log) const {
+bool SiteMaps::pull(Index vertex, Index site, Vec2& log) {
   if (vertex == fans_[site].centre) {  // two sites on one vertex
     log = Vec2::Zero();
     return true;
@@ -154,10 +165,12 @@ bool SiteMaps::pull(Index vertex, Index site, Vec2& log) const {
   Index through = k_none;
   const DirectArc* direct = fan_arc(site, vertex);
   if (direct) best = direct->length;
-  for (std::int64_t arc = graph_.first_arc(vertex); arc < graph_.first_arc(vertex + 1); ++arc) {
-    const Index neighbour = graph_.targets()[arc];
-    if (label_[neighbour] != site || distance_[neighbour] + graph_.length(arc) >= best) continue;
-    best = distance_[neighbour] + graph_.length(arc);
+  const ArcRows& arcs = graph_.arcs();
+  const Index node = graph_.node_of(vertex);
+  for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
+    const Index neighbour = graph_.vertex_of(arcs.target(arc));
+    if (label_[neighbour] != site || distance_[neighbour] + arcs.length(arc) >= best) continue;
+    best = distance_[neighbour] + arcs.length(arc);
     through = neighbour;
   }
   if (best == k_infinity) return false;

@@ -5,6 +5,7 @@
 
 #include "saddleback/saddle_vertex_graph.h"
 
+#include "geodesics/arc_unfolding.h"
 #include "geodesics/window_propagation.h"
 
 namespace saddleback {
@@ -55,13 +56,15 @@ class SiteMaps {
   void develop(const std::vector<Index>& predecessor, const JobStage& stage);
   const DirectArc* fan_arc(Index site, Index vertex) const;
   Place place_direct(const DirectArc& arc) const;
-  Place place_after(Index vertex, Index previous) const;
-  bool pull(Index vertex, Index site, Vec2& log) const;
+  Place place_after(Index vertex, Index previous);
+  bool pull(Index vertex, Index site, Vec2& log);
   Vec2 lay_beside(Index halfedge, Index site) const;
   const Known* find_known(Index vertex, Index site) const;
 
   const SaddleVertexGraph& graph_;
   const Mesh& mesh_;
+  ArcUnfolder unfolder_;
+  UnfoldedArc unfolded_;
   std::vector<Fan> fans_;
   std::vector<Index> label_;
   std::vector<double> distance_;

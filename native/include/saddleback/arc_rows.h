@@ -1,0 +1,85 @@
+#pragma once
+// The arcs of a graph in flat arrays: one 64-bit word an arc.
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+/// Packs an arc into 64 bits, from the low end: target, direction and length.
+///
+/// The direction is the 256th part of the full angle about the vertex in which the arc leaves: enough to find the
+/// arc's faces again, see unfold_arc. The length takes the bits that the target leaves, as a floating-point number with
+/// its own exponent: a relative error of at most 1e-9 for two million vertices, 1.2e-10 for 200,000 and fewer.
+///
+/// Lengths are rounded to multiples of a quantum so small a part of the longest path that sums of arcs are exact in
+/// double precision: a path is equally long from both ends and by every method, to the bit.
+class ArcCodec {
+ public:
+  static constexpr int k_sectors = 256;
+  static constexpr Index k_most_vertices = 1 << 28;
+
+  ArcCodec() = default;
+  /// `longest_path` bounds every distance in the graph from above.
+  ArcCodec(Index vertex_count, double mean_edge, double longest_path);
+
+  /// As `length` will return it, or as an exact multiple of the quantum that is no arc; never zero.
+  double round(double length) const;
+  std::uint64_t pack(Index target, int sector, double length) const;
+
+  Index target(std::uint64_t word) const { return static_cast<Index>(word & target_mask_); }
+  int sector(std::uint64_t word) const { return static_cast<int>(word >> target_bits_ & 0xFF); }
+  /// The length's bits are an exponent and a mantissa: put in their places they are a double.
+  double length(std::uint64_t word) const {
+    return std::bit_cast<double>(((word & length_mask_) >> k_length_shift) + bias_);
+  }
+  std::uint64_t length_bits(std::uint64_t word) const { return word & length_mask_; }  ///< order as the lengths do
+  std::uint64_t target_mask() const { return target_mask_; }
+
+  double quantum() const { return quantum_; }
+  int target_bits() const { return target_bits_; }
+  std::int32_t least_exponent() const { return least_exponent_; }
+
+ private:
+  // 6 bits of exponent at the top of the word, where a double has a sign and 11.
+  static constexpr int k_exponent_bits = 6;
+  static constexpr int k_length_shift = 12 - k_exponent_bits;
+  std::uint64_t target_mask_ = 0, length_mask_ = 0, bias_ = 0;
+  int target_bits_ = 1, length_shift_ = 9;
+  std::int32_t least_exponent_ = 0;
+  double quantum_ = 1;
+};
+
+/// Rows of arcs, a row a node, in compressed sparse rows.
+class ArcRows {
+ public:
+  ArcRows() = default;
+  ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, std::vector<std::uint64_t> words);
+
+  Index node_count() const { return static_cast<Index>(offsets_.size()) - 1; }
+  std::int64_t count() const { return static_cast<std::int64_t>(words_.size()); }
+  std::int64_t first(Index node) const { return offsets_[node]; }  ///< row of a node: [first(node), first(node + 1))
+  Index target(std::int64_t arc) const { return codec_.target(words_[arc]); }
+  /// Equal to the bit for an arc and its reverse.
+  double length(std::int64_t arc) const { return codec_.length(words_[arc]); }
+  int sector(std::int64_t arc) const { return codec_.sector(words_[arc]); }
+  /// The arc from one node to another, -1 when they are not linked. O(degree).
+  std::int64_t find(Index from, Index to) const;
+  double longest() const { return longest_; }
+  const ArcCodec& codec() const { return codec_; }
+  std::span<const std::uint64_t> words() const { return words_; }
+  std::span<const std::int64_t> offsets() const { return offsets_; }
+  std::size_t nbytes() const;
+
+ private:
+  ArcCodec codec_;
+  std::vector<std::int64_t> offsets_{0};
+  std::vector<std::uint64_t> words_;
+  double longest_ = 0;
+};
+
+}  // namespace saddleback

@@ -1,0 +1,57 @@
+#include "saddleback/arc_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saddleback {
+namespace {
+
+constexpr int k_double_exponent_bias = 1023, k_double_mantissa_bits = 52;
+// More bits would only tell apart what is equally long but for rounding, and spoil ties on regular meshes.
+constexpr int k_most_mantissa_bits = 32;
+// Lengths from 2^-40 to 2^24 mean edges: shorter arcs count as the shortest, longer ones do not occur.
+constexpr int k_octaves_below_mean = 40;
+
+}  // namespace
+
+ArcCodec::ArcCodec(Index vertex_count, double mean_edge, double longest_path)
+    : target_bits_(std::max(1, static_cast<int>(std::bit_width(static_cast<std::uint32_t>(vertex_count - 1))))),
+      least_exponent_(std::ilogb(mean_edge) - k_octaves_below_mean),
+      quantum_(std::ldexp(1.0, std::ilogb(longest_path) + 1 - k_double_mantissa_bits)) {
+  target_mask_ = (std::uint64_t{1} << target_bits_) - 1;
+  length_shift_ = std::max(target_bits_ + 8, 64 - k_exponent_bits - k_most_mantissa_bits);
+  length_mask_ = ~((std::uint64_t{1} << length_shift_) - 1);
+  bias_ = static_cast<std::uint64_t>(least_exponent_ + k_double_exponent_bias) << k_double_mantissa_bits;
+}
+
+double ArcCodec::round(double length) const {
+  const double least = std::ldexp(1.0, least_exponent_);
+  return std::max({std::round(length / quantum_) * quantum_, quantum_, least});
+}
+
+std::uint64_t ArcCodec::pack(Index target, int sector, double length) const {
+  // Half a unit in the last place that is kept; a carry into the exponent is what rounding up means.
+  const std::uint64_t bits = (std::bit_cast<std::uint64_t>(round(length)) - bias_) << k_length_shift;
+  const std::uint64_t half = std::uint64_t{1} << (length_shift_ - 1);
+  return ((bits + half) & length_mask_) | static_cast<std::uint64_t>(sector) << target_bits_ |
+         static_cast<std::uint64_t>(target);
+}
+
+ArcRows::ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, std::vector<std::uint64_t> words)
+    : codec_(codec), offsets_(std::move(offsets)), words_(std::move(words)) {
+  std::uint64_t longest = 0;
+  for (const std::uint64_t word : words_) longest = std::max(longest, codec_.length_bits(word));
+  if (!words_.empty()) longest_ = codec_.length(longest);
+}
+
+std::int64_t ArcRows::find(Index from, Index to) const {
+  const auto row = words_.begin() + offsets_[from], end = words_.begin() + offsets_[from + 1];
+  const auto found = std::find_if(row, end, [&](std::uint64_t word) { return codec_.target(word) == to; });
+  return found != end ? found - words_.begin() : -1;
+}
+
+std::size_t ArcRows::nbytes() const {
+  return offsets_.size() * sizeof(std::int64_t) + words_.size() * sizeof(std::uint64_t);
+}
+
+}  // namespace saddleback

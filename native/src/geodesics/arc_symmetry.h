@@ -1,0 +1,24 @@
+#pragma once
+// One direction at a time is found; both are kept.
+
+#include <vector>
+
+#include "saddleback/arc_rows.h"
+#include "saddleback/job.h"
+
+namespace saddleback {
+
+/// Arcs out of consecutive nodes, as the windows found them.
+struct FoundArcs {
+  Index first_node = 0;
+  std::vector<std::int32_t> counts;        ///< per node
+  std::vector<std::uint64_t> words;        ///< row after row
+  std::vector<std::uint8_t> back_sectors;  ///< per word: direction back, at the target
+};
+
+/// The union of the found arcs and their reverses, the shorter of each pair. `found` holds the nodes in order, in blocks
+/// of `block_size`, and is emptied on the way. The same bytes for any number of threads. O(arcs). \throw Cancelled.
+ArcRows unite_with_reverses(const ArcCodec& codec, std::vector<FoundArcs>& found, Index block_size, int threads,
+                            const JobStage& stage);
+
+}  // namespace saddleback

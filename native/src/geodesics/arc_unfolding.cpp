@@ -1,0 +1,127 @@
+#include "geodesics/arc_unfolding.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saddleback {
+namespace {
+
+// Two geodesics to one vertex inside one window differ in length by more than a hint's rounding (1e-9), or not at all.
+constexpr double k_same_length = 1e-7;
+// A geodesic may run through vertices: they lie on the border of their windows, up to rounding.
+constexpr double k_on_border = 1e-9;
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+bool same_length(double found, double wanted) { return std::abs(found - wanted) <= k_same_length * wanted; }
+
+double distance_to_segment(const Vec2& from, const Vec2& to) {
+  const Vec2 along = to - from;
+  const double t = std::clamp(-from.dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (from + t * along).norm();
+}
+
+}  // namespace
+
+bool ArcUnfolder::unfold(const ArcHint& hint, UnfoldedArc& arc) {
+  arc.entered.clear();
+  arc.crossings.clear();
+  if (along_an_edge(hint, arc)) return true;
+  const Index first = mesh_.first_halfedge(hint.from);
+  Index h = first;
+  do {
+    const double begin = unfolding_.polar(h);
+    if (begin <= hint.end_angle && begin + mesh_.corner_angle(h) >= hint.begin_angle && start(hint, h, arc))
+      return true;
+    h = mesh_.rotate(h);
+  } while (h != k_none && h != first);
+  return false;
+}
+
+bool ArcUnfolder::along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const {
+  const Index first = mesh_.first_halfedge(hint.from);
+  Index h = first;
+  do {
+    if (mesh_.to(h) == hint.to && same_length(mesh_.length(h), hint.length)) {
+      arc.length = mesh_.length(h);
+      arc.start_angle = unfolding_.polar(h);
+      arc.end_angle = unfolding_.polar_of_reverse(h);
+      return true;
+    }
+    const Index last = Mesh::prev(h);
+    if (mesh_.twin(last) == k_none && mesh_.from(last) == hint.to && same_length(mesh_.length(last), hint.length)) {
+      arc.length = mesh_.length(last);
+      arc.start_angle = mesh_.total_angle(hint.from);
+      arc.end_angle = unfolding_.polar(last);
+      return true;
+    }
+    h = mesh_.rotate(h);
+  } while (h != k_none && h != first);
+  return false;
+}
+
+/// Through the face of a half-edge that leaves the source, in the frame of that half-edge.
+bool ArcUnfolder::start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) {
+  const double base = unfolding_.polar(halfedge);
+  const double right = std::max(hint.begin_angle - base, 0.0);
+  const double left = std::min(hint.end_angle - base, mesh_.corner_angle(halfedge));
+  stack_.clear();
+  trail_.clear();
+  push(Mesh::next(halfedge), 0, unfolding_.apex(halfedge), Vec2(mesh_.length(halfedge), 0),
+       Vec2(std::cos(right), std::sin(right)), Vec2(std::cos(left), std::sin(left)));
+  return search(hint, base, arc);
+}
+
+void ArcUnfolder::push(Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right, const Vec2& left) {
+  if (const Index entered = mesh_.twin(edge); entered != k_none)
+    stack_.push_back({entered, depth, from, to, right, left});
+}
+
+bool ArcUnfolder::search(const ArcHint& hint, double base_angle, UnfoldedArc& arc) {
+  while (!stack_.empty()) {
+    const Window window = stack_.back();
+    stack_.pop_back();
+    if (distance_to_segment(window.from, window.to) > hint.length * (1 + k_same_length)) continue;
+    trail_.resize(window.depth);
+    trail_.push_back(window);
+    const Index h = window.entered;
+    const Vec2 along = (window.to - window.from) / mesh_.length(h);
+    const Vec2 offset = unfolding_.apex(h);
+    const Vec2 apex = window.from + offset.x() * along + offset.y() * Vec2(-along.y(), along.x());
+    const double reach = apex.norm();
+    const double from_right = cross(window.right, apex), to_left = cross(apex, window.left);
+    const double tolerance = k_on_border * reach;
+    if (mesh_.apex(h) == hint.to && from_right >= -tolerance && to_left >= -tolerance &&
+        same_length(reach, hint.length)) {
+      return finish(window, apex, base_angle, arc);
+    }
+    const Vec2 ray = apex / reach;
+    if (to_left > -tolerance) {
+      const Vec2& right = from_right > 0 ? ray : window.right;
+      push(Mesh::prev(h), window.depth + 1, window.from, apex, right, window.left);
+    }
+    if (from_right > -tolerance) {
+      const Vec2& left = to_left > 0 ? ray : window.left;
+      push(Mesh::next(h), window.depth + 1, apex, window.to, window.right, left);
+    }
+  }
+  return false;
+}
+
+bool ArcUnfolder::finish(const Window& last, const Vec2& target, double base_angle, UnfoldedArc& arc) {
+  for (const Window& window : trail_) {
+    const double to = cross(window.to, target), from = cross(target, window.from);
+    arc.entered.push_back(window.entered);
+    // The areas of the triangles on either side of the ray divide the half-edge as the ray does.
+    arc.crossings.push_back(to + from > 0 ? std::clamp(from / (to + from), 0.0, 1.0) : 0.5);
+  }
+  arc.length = target.norm();
+  arc.start_angle = base_angle + std::atan2(target.y(), target.x());
+  const Index leaving = Mesh::prev(last.entered);
+  const Vec2 side = last.from - target;
+  const double back = std::atan2(cross(side, -target), side.dot(-target));
+  arc.end_angle = unfolding_.polar(leaving) + std::clamp(back, 0.0, mesh_.corner_angle(leaving));
+  return true;
+}
+
+}  // namespace saddleback

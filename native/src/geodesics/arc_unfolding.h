@@ -1,0 +1,54 @@
+#pragma once
+// From an arc of the graph back to the faces that it runs over.
+
+#include <vector>
+
+#include "geodesics/unfolding.h"
+
+namespace saddleback {
+
+/// What a graph keeps of an arc: enough to find the geodesic again.
+struct ArcHint {
+  Index from, to;  ///< vertices
+  double length;   ///< up to rounding
+  double begin_angle, end_angle;  ///< surface angles at `from` between which the arc leaves
+};
+
+/// A straight geodesic between two vertices.
+struct UnfoldedArc {
+  double length = 0;
+  double start_angle = 0;  ///< at the first vertex, surface angle from first_halfedge
+  double end_angle = 0;    ///< direction back, at the last vertex
+  std::vector<Index> entered;     ///< half-edges crossed, each of the face that is entered; empty along a mesh edge
+  std::vector<double> crossings;  ///< where, as a fraction of the half-edge from its start
+};
+
+/// Follows the window between the hint's angles, splitting it at every vertex inside, until it meets the vertex wanted
+/// at the length wanted. Exact to rounding: distances are measured from the source in one plane. Holds its scratch
+/// memory; one a thread.
+class ArcUnfolder {
+ public:
+  explicit ArcUnfolder(const Unfolding& unfolding) : unfolding_(unfolding), mesh_(unfolding.mesh()) {}
+  /// \return false when no such geodesic exists (the hint belongs to another mesh). O(faces crossed).
+  bool unfold(const ArcHint& hint, UnfoldedArc& arc);
+
+ private:
+  /// Half-edge about to be entered, its ends in the plane of the source at the origin, and the part of it in sight.
+  struct Window {
+    Index entered;
+    Index depth;
+    Vec2 from, to;
+    Vec2 right, left;  ///< unit vectors; left is counter-clockwise of right
+  };
+  bool along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const;
+  bool start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc);
+  bool search(const ArcHint& hint, double base_angle, UnfoldedArc& arc);
+  void push(Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right, const Vec2& left);
+  bool finish(const Window& last, const Vec2& target, double base_angle, UnfoldedArc& arc);
+
+  const Unfolding& unfolding_;
+  const Mesh& mesh_;
+  std::vector<Window> stack_, trail_;
+};
+
+}  // namespace saddleback
