@@ -9,6 +9,7 @@ namespace saddleback::bindings {
 
 void bind_job(py::module_& m);
 void bind_mesh(py::module_& m);
+void bind_paths(py::module_& m);
 void bind_predicates(py::module_& m);
 void bind_read_mesh(py::module_& m);
 void bind_repair(py::module_& m);
@@ -85,6 +86,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_read_mesh(m);
   bind_repair(m);
   bind_surface(m);
+  bind_paths(m);
   bind_graph(m);
   bind_tessellation(m);
 }

@@ -1,0 +1,93 @@
+#include "saddleback/surface_curve.h"
+
+#include <algorithm>
+
+#include "saddleback/error.h"
+
+namespace saddleback {
+namespace {
+
+int corner_of(const Mesh& mesh, Index face, Index vertex) {
+  const Triangle& t = mesh.triangles()[face];
+  return vertex == t[0] ? 0 : vertex == t[1] ? 1 : vertex == t[2] ? 2 : -1;
+}
+
+/// Calls `visit` for every face that the point lies on until it returns true.
+template <class Visit>
+bool any_face_of(const Mesh& mesh, const SurfacePoint& point, double tolerance, Visit&& visit) {
+  if (visit(point.face)) return true;
+  for (int i = 0; i < 3; ++i) {
+    const Index h = 3 * point.face + i;
+    const bool on_edge = point.barycentric[(i + 2) % 3] <= tolerance;
+    if (on_edge && mesh.twin(h) != k_none && visit(Mesh::face_of(mesh.twin(h)))) return true;
+    if (point.barycentric[i] < 1 - 2 * tolerance) continue;
+    const Index first = mesh.first_halfedge(mesh.from(h));
+    for (Index g = first; g != k_none;) {
+      if (visit(Mesh::face_of(g))) return true;
+      g = mesh.rotate(g);
+      if (g == first) break;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<Vec3> barycentric_in(const Mesh& mesh, const SurfacePoint& point, Index face, double tolerance) {
+  if (face == point.face) return point.barycentric;
+  Vec3 result = Vec3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (point.barycentric[i] <= tolerance) continue;
+    const int corner = corner_of(mesh, face, mesh.triangles()[point.face][i]);
+    if (corner < 0) return std::nullopt;
+    result[corner] = point.barycentric[i];
+  }
+  // Two faces share at most an edge: a point inside its own face has no coordinates in another.
+  if (result.minCoeff() > 0) return std::nullopt;
+  return result / result.sum();
+}
+
+Index shared_face(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b, double tolerance) {
+  if (barycentric_in(mesh, b, a.face, tolerance)) return a.face;
+  if (barycentric_in(mesh, a, b.face, tolerance)) return b.face;
+  Index found = k_none;
+  any_face_of(mesh, a, tolerance, [&](Index face) {
+    if (!barycentric_in(mesh, b, face, tolerance)) return false;
+    found = face;
+    return true;
+  });
+  return found;
+}
+
+SurfaceCurve::SurfaceCurve(const Mesh& mesh, SurfacePoints points, bool closed)
+    : mesh_(&mesh), points_(std::move(points)), closed_(closed) {
+  check_surface_points(mesh, points_, "points");
+  if (points_.size() < 2) throw InputError(message("points: wanted at least two points, got ", points_.size()));
+  for (SurfacePoint& point : points_) point.barycentric = normalised_barycentric(point.barycentric);
+  segments_.reserve(points_.size());
+  for (std::size_t i = 0; i + 1 < points_.size(); ++i) add_segment(i, i + 1);
+  if (closed_) add_segment(points_.size() - 1, 0);
+  if (segments_.empty()) throw InputError("points: all are the same point, so that the curve has no length");
+}
+
+void SurfaceCurve::add_segment(std::size_t from, std::size_t to) {
+  const SurfacePoint &a = points_[from], &b = points_[to];
+  double tolerance = 0;
+  Index face = shared_face(*mesh_, a, b, tolerance);
+  if (face == k_none) {
+    tolerance = k_barycentric_tolerance;
+    face = shared_face(*mesh_, a, b, tolerance);
+  }
+  if (face == k_none) {
+    throw InputError(message("points: points ", from, " (face ", a.face, ") and ", to, " (face ", b.face,
+                             ") share no face; a curve crosses an edge or vertex at a point of its own"));
+  }
+  CurveSegment segment{face, *barycentric_in(*mesh_, a, face, tolerance), *barycentric_in(*mesh_, b, face, tolerance),
+                       length_, 0};
+  segment.length = (position(*mesh_, {face, segment.begin}) - position(*mesh_, {face, segment.end})).norm();
+  if (segment.length <= 0) return;
+  length_ += segment.length;
+  segments_.push_back(segment);
+}
+
+}  // namespace saddleback
