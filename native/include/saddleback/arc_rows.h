@@ -40,14 +40,17 @@ class ArcCodec {
   std::uint64_t length_bits(std::uint64_t word) const { return word & length_mask_; }  ///< order as the lengths do
   std::uint64_t target_mask() const { return target_mask_; }
 
+  /// For loops over whole rows: a double's bits are ((word & length_mask) >> k_length_shift) + length_bias.
+  static constexpr int k_exponent_bits = 6;  ///< at the top of the word, where a double has a sign and 11
+  static constexpr int k_length_shift = 12 - k_exponent_bits;
+  std::uint64_t length_mask() const { return length_mask_; }
+  std::uint64_t length_bias() const { return bias_; }
+
   double quantum() const { return quantum_; }
   int target_bits() const { return target_bits_; }
   std::int32_t least_exponent() const { return least_exponent_; }
 
  private:
-  // 6 bits of exponent at the top of the word, where a double has a sign and 11.
-  static constexpr int k_exponent_bits = 6;
-  static constexpr int k_length_shift = 12 - k_exponent_bits;
   std::uint64_t target_mask_ = 0, length_mask_ = 0, bias_ = 0;
   int target_bits_ = 1, length_shift_ = 9;
   std::int32_t least_exponent_ = 0;

@@ -13,6 +13,7 @@
 
 namespace saddleback {
 
+class QueryCache;
 class Unfolding;
 class WindowPropagator;
 struct ArcHint;
@@ -30,6 +31,9 @@ struct QueryOptions {
   double limit = std::numeric_limits<double>::infinity();  ///< vertices farther than this stay at infinity
   QueryMethod method = QueryMethod::label_correcting;
 };
+
+/// Defined beside the queries.
+std::shared_ptr<QueryCache> make_query_cache();
 
 /// Distances from the nearest of several sources.
 struct NearestField {
@@ -82,6 +86,9 @@ class SaddleVertexGraph {
   /// As `distances`, and which source it is.
   NearestField nearest(const SurfacePoints& sources, const QueryOptions& options = {}, Job* job = nullptr) const;
 
+  /// Memory that queries leave to the next.
+  QueryCache& query_cache() const { return *queries_; }
+
  private:
   void order_nodes();
   std::vector<FoundArcs> find_arcs(const ArcCodec& codec, int threads, const JobStage& stage) const;
@@ -92,6 +99,7 @@ class SaddleVertexGraph {
   std::vector<Index> nodes_, vertices_;
   ArcRows arcs_;
   double build_seconds_ = 0;
+  std::shared_ptr<QueryCache> queries_ = make_query_cache();
 };
 
 }  // namespace saddleback

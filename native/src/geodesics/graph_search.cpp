@@ -1,0 +1,143 @@
+// Label-correcting search: rows are relaxed by relax_row, nodes whose distance fell go to the queue. Nodes wait in
+// buckets half a mean edge wide; that few are expanded twice (0.5 %) and none is compared with another. The rows of
+// the next nodes in the bucket are fetched from memory while this one is relaxed: without, waiting is half the time.
+
+#include "geodesics/graph_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace saddleback {
+namespace {
+
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+// Of the mean edge. Measured: flat between 1/4 and 1.
+constexpr double k_bucket_width = 0.5;
+// How many entries ahead a row's place, and then the row itself, is fetched.
+constexpr int k_fetch_offset = 4, k_fetch_row = 2;
+constexpr std::int64_t k_most_fetched = 128;
+constexpr int k_words_a_line = 8;
+// Nodes between two looks at the job: a millisecond.
+constexpr Index k_nodes_a_check = 4096;
+
+/// Dijkstra's queue, with the same face as the buckets.
+class Heap {
+ public:
+  struct Entry {
+    Index node;
+    double key;
+    bool operator<(const Entry& other) const { return key > other.key; }
+  };
+  void push(Index node, double key) {
+    entries_.push_back({node, key});
+    std::push_heap(entries_.begin(), entries_.end());
+  }
+  bool pop(Entry& entry) {
+    if (entries_.empty()) return false;
+    entry = entries_.front();
+    std::pop_heap(entries_.begin(), entries_.end());
+    entries_.pop_back();
+    return true;
+  }
+  static bool is_current(const Entry& entry, double key) { return entry.key == key; }
+  static const Entry* ahead(int) { return nullptr; }
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+}  // namespace
+
+void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
+                      SearchLabels labels, const JobStage& stage) {
+  const auto count = static_cast<std::size_t>(graph.arcs().node_count());
+  bound_ = std::nextafter(options.limit, k_infinity);
+  distances_.assign(count, bound_);
+  sources_.assign(labels == SearchLabels::none ? 0 : count, k_none);
+  predecessors_.assign(labels == SearchLabels::sources_and_predecessors ? count : 0, k_none);
+  if (options.method == QueryMethod::dijkstra) {
+    Heap heap;
+    propagate(heap, graph, seeds, stage);
+  } else {
+    double span = graph.arcs().longest();
+    for (const Seed& seed : seeds) span = std::max(span, seed.distance);
+    buckets_.reset(k_bucket_width * graph.mesh().mean_edge_length(), span);
+    propagate(buckets_, graph, seeds, stage);
+  }
+  stage.update(1);
+}
+
+template <class Queue>
+void GraphSearch::propagate(Queue& queue, const SaddleVertexGraph& graph, std::span<const Seed> seeds,
+                            const JobStage& stage) {
+  const ArcCodec& codec = graph.arcs().codec();
+  const std::uint64_t* const words = graph.arcs().words().data();
+  const std::int64_t* const offsets = graph.arcs().offsets().data();
+  const RelaxRow relax = relax_row();
+  const bool with_sources = !sources_.empty(), with_predecessors = !predecessors_.empty();
+
+  for (const Seed& seed : seeds) {
+    const Index node = graph.node_of(seed.vertex);
+    if (seed.distance > distances_[node] || seed.distance >= bound_) continue;
+    if (seed.distance == distances_[node] && (!with_sources || seed.source >= sources_[node])) continue;
+    distances_[node] = seed.distance;
+    if (with_sources) sources_[node] = seed.source;
+    queue.push(node, seed.distance);
+  }
+
+  LoweredNodes lowered;
+  RowOffer offer{0, distances_.data(), with_sources ? sources_.data() : nullptr, k_none};
+  Index expanded = 0;
+  for (typename Queue::Entry entry{}; queue.pop(entry);) {
+    if (const auto* next = queue.ahead(k_fetch_offset)) {
+      __builtin_prefetch(offsets + next->node);
+      __builtin_prefetch(distances_.data() + next->node);
+    }
+    if (const auto* next = queue.ahead(k_fetch_row)) {
+      const std::int64_t begin = offsets[next->node], end = std::min(offsets[next->node + 1], begin + k_most_fetched);
+      for (std::int64_t word = begin; word < end; word += k_words_a_line) __builtin_prefetch(words + word);
+    }
+    offer.distance = distances_[entry.node];
+    if (!queue.is_current(entry, offer.distance)) continue;
+    if (++expanded % k_nodes_a_check == 0)
+      stage.update(static_cast<double>(expanded) / static_cast<double>(distances_.size()));
+    if (with_sources) offer.label = sources_[entry.node];
+    const std::int64_t end = offsets[entry.node + 1];
+    for (std::int64_t first = offsets[entry.node]; first < end; first += LoweredNodes::k_most) {
+      const auto arcs = static_cast<int>(std::min<std::int64_t>(end - first, LoweredNodes::k_most));
+      relax(codec, words + first, arcs, offer, lowered);
+      for (int i = 0; i < lowered.count; ++i) {
+        queue.push(lowered.nodes[i], lowered.distances[i]);
+        if (with_sources) sources_[lowered.nodes[i]] = offer.label;
+        if (with_predecessors) predecessors_[lowered.nodes[i]] = entry.node;
+      }
+    }
+  }
+}
+
+void GraphSearch::write_distances(const SaddleVertexGraph& graph, std::span<double> vertices) const {
+  for (std::size_t node = 0; node < distances_.size(); ++node) {
+    const double distance = distances_[node];
+    vertices[graph.vertex_of(static_cast<Index>(node))] = distance == bound_ ? k_infinity : distance;
+  }
+}
+
+void GraphSearch::write_sources(const SaddleVertexGraph& graph, std::span<Index> vertices) const {
+  for (std::size_t node = 0; node < sources_.size(); ++node)
+    vertices[graph.vertex_of(static_cast<Index>(node))] = sources_[node];
+}
+
+void GraphSearch::write_predecessors(const SaddleVertexGraph& graph, std::span<Index> vertices) const {
+  for (std::size_t node = 0; node < predecessors_.size(); ++node) {
+    const Index before = predecessors_[node];
+    vertices[graph.vertex_of(static_cast<Index>(node))] = before == k_none ? k_none : graph.vertex_of(before);
+  }
+}
+
+double GraphSearch::distance(const SaddleVertexGraph& graph, Index vertex) const {
+  const double distance = distances_[graph.node_of(vertex)];
+  return distance == bound_ ? k_infinity : distance;
+}
+
+}  // namespace saddleback

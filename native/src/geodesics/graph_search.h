@@ -1,0 +1,52 @@
+#pragma once
+// Shortest paths in the graph from many seeds at once, in the order of its nodes.
+
+#include <span>
+#include <vector>
+
+#include "saddleback/saddle_vertex_graph.h"
+
+#include "geodesics/bucket_queue.h"
+#include "geodesics/relax_row.h"
+
+namespace saddleback {
+
+/// A vertex that a source reaches by an arc of its own.
+struct Seed {
+  Index vertex;
+  Index source;
+  double distance;
+};
+
+/// What a search keeps beside the distances.
+enum class SearchLabels { none, sources, sources_and_predecessors };
+
+/// Least distance and, if asked for, among equals the least source of every node. Sums of arcs are exact (see
+/// ArcCodec), so that neither the queue nor the order of the work shows in the result. Holds its memory for the next
+/// run; one a thread.
+class GraphSearch {
+ public:
+  /// \throw Cancelled. O(arcs) with buckets, O(arcs + V log V) with Dijkstra's heap.
+  void run(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
+           SearchLabels labels, const JobStage& stage);
+
+  // Of the last run. Distances are in the order of the vertices, infinity where nothing reached within the limit.
+  void write_distances(const SaddleVertexGraph& graph, std::span<double> vertices) const;
+  /// Sources, k_none where nothing reached.
+  void write_sources(const SaddleVertexGraph& graph, std::span<Index> vertices) const;
+  /// Vertices before, k_none straight from a source. Where several would do, which one it is may depend on the method.
+  void write_predecessors(const SaddleVertexGraph& graph, std::span<Index> vertices) const;
+  /// Of a vertex.
+  double distance(const SaddleVertexGraph& graph, Index vertex) const;
+
+ private:
+  template <class Queue>
+  void propagate(Queue& queue, const SaddleVertexGraph& graph, std::span<const Seed> seeds, const JobStage& stage);
+
+  double bound_ = 0;  ///< what unreached nodes hold: the first number that is beyond the limit
+  std::vector<double> distances_;
+  std::vector<Index> sources_, predecessors_;
+  BucketQueue buckets_;
+};
+
+}  // namespace saddleback
