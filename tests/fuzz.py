@@ -1,7 +1,9 @@
-"""Random and damaged meshes through the whole native library: `python tests/fuzz.py [CASES] [SEED]`.
+"""Random and damaged meshes through the whole native library, or damaged graph files through its loader.
+
+    python tests/fuzz.py [meshes|graph-files] [CASES] [SEED]
 
 Every case ends in a result that passes its checks or in one of our errors. Run it on the sanitizer build
-(tests/sanitize) to see what only a sanitizer sees. A failing case tells its seed: `python tests/fuzz.py 1 SEED`.
+(tests/sanitize) to see what only a sanitizer sees. A failing case tells its seed: `python tests/fuzz.py WHAT 1 SEED`.
 """
 
 from __future__ import annotations
@@ -9,7 +11,9 @@ from __future__ import annotations
 import sys
 import traceback
 from collections import Counter
+from collections.abc import Callable
 
+import fuzz_graph_files
 import meshes
 import numpy as np
 from numpy.typing import NDArray
@@ -102,10 +106,13 @@ def case(seed: int) -> str:
     return outcome
 
 
-def attempt(seed: int) -> str:
-    """As `case`, a failure told and counted."""
+TARGETS: dict[str, Callable[[int], str]] = {"meshes": case, "graph-files": fuzz_graph_files.case}
+
+
+def attempt(target: Callable[[int], str], seed: int) -> str:
+    """What became of a case, a failure told and counted."""
     try:
-        return case(seed)
+        return target(seed)
     except Exception:
         print(f"seed {seed}:", file=sys.stderr)
         traceback.print_exc()
@@ -113,10 +120,11 @@ def attempt(seed: int) -> str:
 
 
 def main(arguments: list[str]) -> int:
+    what = arguments.pop(0) if arguments and arguments[0] in TARGETS else "meshes"
     cases = int(arguments[0]) if arguments else 1000
     first = int(arguments[1]) if len(arguments) > 1 else 0
-    outcomes = Counter(attempt(seed) for seed in range(first, first + cases))
-    print(f"{cases} cases: " + ", ".join(f"{count} {word}" for word, count in sorted(outcomes.items())))
+    outcomes = Counter(attempt(TARGETS[what], seed) for seed in range(first, first + cases))
+    print(f"{cases} cases of {what}: " + ", ".join(f"{count} {word}" for word, count in sorted(outcomes.items())))
     return outcomes["finding"] != 0
 
 

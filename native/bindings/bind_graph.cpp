@@ -54,6 +54,20 @@ py::tuple nearest(const SaddleVertexGraph& graph, const py::object& sources, con
   return py::make_tuple(to_array(std::move(field.distance)), to_array(std::move(field.source)));
 }
 
+void save(const SaddleVertexGraph& graph, const py::object& path, const py::object& job) {
+  const std::string file = as_path(path, "path");
+  Job* const token = as_job(job);
+  without_gil([&] { graph.save(file, token); });
+}
+
+std::unique_ptr<SaddleVertexGraph> load(const py::object& path, const py::object& mesh_object, const py::object& job) {
+  const std::string file = as_path(path, "path");
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  Job* const token = as_job(job);
+  return without_gil(
+      [&] { return std::make_unique<SaddleVertexGraph>(SaddleVertexGraph::load(file, mesh, token)); });
+}
+
 constexpr const char* k_graph_doc = R"(Saddle Vertex Graph: geodesic distances as shortest paths in a sparse graph.
 
 Every vertex is linked to the vertices of its geodesic disk that it sees along one straight geodesic, and to its
@@ -121,6 +135,52 @@ distance : (V,) float64 array
 source : (V,) int32 array
     Index into `sources`, -1 where none reaches; ties go to the smaller index.)";
 
+constexpr const char* k_save_doc = R"(Write the graph to a file, without its mesh.
+
+The file is written beside its place and moved there when it is whole: until then an old one stays as it was.
+
+Parameters
+----------
+path : str or os.PathLike
+job : Job, optional
+
+Raises
+------
+InputError
+    The file cannot be written: no such folder, no permission, no space.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(arcs), 8 bytes an arc.)";
+
+constexpr const char* k_load_doc = R"(Read a graph that `save` wrote for this very mesh.
+
+Nothing in the file is taken on trust: a damaged one is refused, never loaded as something else.
+
+Parameters
+----------
+path : str or os.PathLike
+mesh : Mesh
+    With the positions and triangles of the one that the graph was built for.
+job : Job, optional
+
+Returns
+-------
+SaddleVertexGraph
+
+Raises
+------
+InputError
+    The file cannot be read, is no graph, is of a newer version, of another mesh, cut off or damaged.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(arcs), far less than building takes.)";
+
 }  // namespace
 
 void bind_graph(py::module_& m) {
@@ -132,6 +192,9 @@ void bind_graph(py::module_& m) {
            py::arg("method") = "label_correcting", py::kw_only(), py::arg("job") = py::none(), k_distances_doc)
       .def("nearest", &nearest, py::arg("sources"), py::arg("limit") = infinity, py::arg("method") = "label_correcting",
            py::kw_only(), py::arg("job") = py::none(), k_nearest_doc)
+      .def("save", &save, py::arg("path"), py::kw_only(), py::arg("job") = py::none(), k_save_doc)
+      .def_static("load", &load, py::arg("path"), py::arg("mesh"), py::kw_only(), py::arg("job") = py::none(),
+                  py::keep_alive<0, 2>(), k_load_doc)
       .def_property_readonly("arc_count", &SaddleVertexGraph::arc_count, "Directed arcs; each has its reverse.")
       .def_property_readonly("mean_degree", &SaddleVertexGraph::mean_degree, "Arcs per vertex.")
       .def_property_readonly("nbytes", &SaddleVertexGraph::nbytes, "Memory of the arcs, bytes.")

@@ -5,19 +5,8 @@
 namespace saddleback::bindings {
 namespace {
 
-// Any str, bytes or os.PathLike, in the bytes that the operating system knows the file by.
-std::string as_path(const py::object& value) {
-  try {
-    return py::cast<std::string>(py::module_::import("os").attr("fsencode")(value));
-  } catch (py::error_already_set& error) {
-    if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
-    throw InputError("path: wanted a str or os.PathLike, got a " +
-                     py::cast<std::string>(py::type::of(value).attr("__name__")));
-  }
-}
-
 py::tuple arrays_of(const py::object& path, const py::object& job) {
-  const std::string file = as_path(path);
+  const std::string file = as_path(path, "path");
   Job* const watched = as_job(job);
   MeshArrays arrays = without_gil([&] { return read_arrays(file, watched); });
   return py::make_tuple(to_array(std::move(arrays.xyz)).attr("reshape")(-1, 3),
@@ -25,7 +14,7 @@ py::tuple arrays_of(const py::object& path, const py::object& job) {
 }
 
 std::shared_ptr<Mesh> mesh_of(const py::object& path, const py::object& job) {
-  const std::string file = as_path(path);
+  const std::string file = as_path(path, "path");
   Job* const watched = as_job(job);
   return without_gil([&] { return std::make_shared<Mesh>(read_mesh(file, watched)); });
 }

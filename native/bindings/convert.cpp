@@ -167,6 +167,17 @@ std::uint64_t as_seed(const py::object& value, const char* name) {
   return wide;
 }
 
+std::string as_path(const py::object& value, const char* name) {
+  try {
+    std::string path = py::cast<std::string>(py::module_::import("os").attr("fsencode")(value));
+    if (path.find('\0') != path.npos) refuse(name, "a file's name", "one with a zero in it");
+    return path;
+  } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
+    refuse(name, "a str or os.PathLike", "a " + type_of(value));
+  }
+}
+
 Job* as_job(const py::object& value) {
   if (value.is_none()) return nullptr;
   if (!py::isinstance<Job>(value)) refuse("job", "a saddleback.Job or None", "a " + type_of(value));

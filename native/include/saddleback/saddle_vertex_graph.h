@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "saddleback/arc_rows.h"
@@ -56,6 +57,14 @@ class SaddleVertexGraph {
   ~SaddleVertexGraph();
   SaddleVertexGraph(SaddleVertexGraph&&) noexcept;
 
+  /// Writes the graph to a file, without its mesh. An old file stays until the new one is whole. O(arcs).
+  /// \throw InputError when the file cannot be written (no space, no such folder); Cancelled.
+  void save(const std::string& path, Job* job = nullptr) const;
+  /// Reads a graph that `save` wrote for this mesh; the mesh must outlive it. Nothing in the file is taken on trust.
+  /// \throw InputError when the file cannot be read, is none of ours, of a newer version, of another mesh, cut off or
+  /// damaged; Cancelled. O(arcs), far less than building takes.
+  static SaddleVertexGraph load(const std::string& path, const Mesh& mesh, Job* job = nullptr);
+
   const Mesh& mesh() const { return *mesh_; }
   const Unfolding& unfolding() const { return *unfolding_; }
   Index k() const { return k_; }
@@ -90,10 +99,11 @@ class SaddleVertexGraph {
   QueryCache& query_cache() const { return *queries_; }
 
  private:
+  SaddleVertexGraph();  ///< empty, for `load`
   void order_nodes();
   std::vector<FoundArcs> find_arcs(const ArcCodec& codec, int threads, const JobStage& stage) const;
 
-  const Mesh* mesh_;
+  const Mesh* mesh_ = nullptr;
   std::unique_ptr<Unfolding> unfolding_;
   Index k_ = 0;
   std::vector<Index> nodes_, vertices_;

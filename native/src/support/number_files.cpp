@@ -1,0 +1,117 @@
+#include "support/number_files.h"
+
+#include <cerrno>
+#include <filesystem>
+#include <random>
+#ifdef _WIN32
+#include <io.h>
+#else
+#include <unistd.h>
+#endif
+
+#include "saddleback/error.h"
+
+#include "support/crc32.h"
+
+namespace saddleback {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool bring_to_disk(std::FILE* file) {
+  if (std::fflush(file) != 0) return false;
+#ifdef _WIN32
+  return _commit(_fileno(file)) == 0;
+#else
+  return fsync(fileno(file)) == 0;
+#endif
+}
+
+/// A name that nothing has, in the same folder and so on the same disk; short, however long the other name is.
+std::string name_beside(const fs::path& target) {
+  std::random_device random;
+  const std::uint64_t number = static_cast<std::uint64_t>(random()) << 32 | random();
+  char name[48];
+  std::snprintf(name, sizeof name, ".saddleback-%016llx.partial", static_cast<unsigned long long>(number));
+  return (target.parent_path() / name).string();
+}
+
+/// Where a link leads, so that the file is replaced and not the link; it may lead to nothing yet.
+fs::path followed(fs::path path) {
+  constexpr int k_most_links = 40;  // as Linux: more are a circle
+  std::error_code error;
+  for (int links = 0; links < k_most_links && fs::is_symlink(path, error); ++links)
+    path = path.parent_path() / fs::read_symlink(path, error);
+  return path;
+}
+
+}  // namespace
+
+NumberFileWriter::NumberFileWriter(const std::string& path) : path_(path), target_(followed(path).string()) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target_, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw InputError(message("path: ", path, " is ", fs::is_directory(status) ? "a folder" : "no regular file",
+                             "; give the name of a file to write"));
+  }
+  if (path.empty() || fs::path(path).filename().empty()) {
+    throw InputError(message("path: '", path, "' names no file; give the name of a file to write"));
+  }
+  partial_ = name_beside(target_);
+  file_.reset(std::fopen(partial_.c_str(), "wbx"));
+  if (!file_) {
+    partial_.clear();
+    fail();
+  }
+}
+
+NumberFileWriter::~NumberFileWriter() {
+  file_.reset();
+  if (!partial_.empty()) std::remove(partial_.c_str());
+}
+
+void NumberFileWriter::fail() const {
+  const int reason = errno;
+  throw InputError(message("path: ", path_, " cannot be written: ", std::strerror(reason),
+                           "; make room or choose another place (what was there before has not changed)"));
+}
+
+void NumberFileWriter::write_bytes(std::span<const std::byte> bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
+  crc_ = crc32(bytes, crc_);
+}
+
+void NumberFileWriter::commit() {
+  if (!bring_to_disk(file_.get()) || std::fclose(file_.release()) != 0) fail();
+  std::error_code error;
+  fs::rename(partial_, target_, error);
+  if (error) {
+    errno = error.value();
+    fail();
+  }
+  partial_.clear();
+}
+
+NumberFileReader::NumberFileReader(const std::string& path) : path_(path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw InputError(
+        message("path: ", path, " is ", fs::is_directory(status) ? "a folder" : "no regular file", "; give a file"));
+  }
+  file_.reset(std::fopen(path.c_str(), "rb"));
+  if (!file_) throw InputError(message("path: ", path, " cannot be opened: ", std::strerror(errno)));
+  size_ = fs::file_size(path, error);
+  if (error) throw InputError(message("path: ", path, " cannot be measured: ", error.message()));
+}
+
+void NumberFileReader::read_bytes(std::span<std::byte> bytes) {
+  if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) {
+    if (std::ferror(file_.get()))
+      throw InputError(message("path: ", path_, " cannot be read: ", std::strerror(errno)));
+    throw InputError(message("path: ", path_, " ended while it was read; save it again"));
+  }
+  crc_ = crc32(bytes, crc_);
+}
+
+}  // namespace saddleback
