@@ -10,6 +10,7 @@
 #include "saddleback/arc_rows.h"
 #include "saddleback/job.h"
 #include "saddleback/mesh.h"
+#include "saddleback/surface_curve.h"
 #include "saddleback/surface_points.h"
 
 namespace saddleback {
@@ -31,6 +32,26 @@ enum class QueryMethod { label_correcting, dijkstra };
 struct QueryOptions {
   double limit = std::numeric_limits<double>::infinity();  ///< vertices farther than this stay at infinity
   QueryMethod method = QueryMethod::label_correcting;
+};
+
+/// Where distances are measured from. Sources are counted points first, then curves.
+struct QuerySources {
+  SurfacePoints points;
+  std::vector<const SurfaceCurve*> curves;  ///< on the graph's mesh: the distance is to the curve, not to its points
+  QuerySources(SurfacePoints the_points) : points(std::move(the_points)) {}
+  QuerySources(std::vector<const SurfaceCurve*> the_curves) : curves(std::move(the_curves)) {}
+  std::size_t size() const { return points.size() + curves.size(); }
+};
+
+/// Fields of many sources.
+struct DistanceFields {
+  std::size_t count = 0, vertex_count = 0;
+  std::unique_ptr<double[]> values;  ///< (count, vertex_count), row after row
+};
+
+struct PointDistance {
+  double distance;
+  Index settled;  ///< vertices that the search expanded
 };
 
 /// Defined beside the queries.
@@ -86,14 +107,29 @@ class SaddleVertexGraph {
   /// propagator of the caller's thread.
   void fan(const SurfacePoint& point, WindowPropagator& propagator, std::vector<DirectArc>& arcs) const;
 
-  /// Distance of every vertex from the nearest source: (V,), infinity where none reaches. Sources that are not vertices
+  /// Distance of every vertex from the nearest source: (V,), infinity where none reaches. Points that are not vertices
   /// are linked by a window propagation of their own. Both methods return the same bits. \throw InputError for no
-  /// sources, a source off the mesh, limit < 0 or not a number; Cancelled. O(arcs log V).
-  std::vector<double> distances(const SurfacePoints& sources, const QueryOptions& options = {},
+  /// sources, a source off the mesh, limit < 0 or not a number; Cancelled. O(arcs).
+  std::vector<double> distances(const QuerySources& sources, const QueryOptions& options = {},
                                 Job* job = nullptr) const;
 
   /// As `distances`, and which source it is.
-  NearestField nearest(const SurfacePoints& sources, const QueryOptions& options = {}, Job* job = nullptr) const;
+  NearestField nearest(const QuerySources& sources, const QueryOptions& options = {}, Job* job = nullptr) const;
+
+  /// A field as `distances` gives for every source alone, over threads (0: all cores). \throw InputError also when there
+  /// is not the memory for it.
+  DistanceFields fields(const QuerySources& sources, const QueryOptions& options = {}, int threads = 0,
+                        Job* job = nullptr) const;
+
+  /// Distance between two points by A*: the same bits as distances({a}) at b and as distance(b, a). Infinity from one
+  /// component to another. The first call makes landmarks (17 fields, 64 bytes a vertex). \throw InputError for a point
+  /// off the mesh; Cancelled. O(arcs near the path).
+  PointDistance distance(const SurfacePoint& a, const SurfacePoint& b, Job* job = nullptr) const;
+
+  /// Distance of each target from the nearest source, points that see each other included. Between two points the same
+  /// bits in both directions. \throw InputError as `distances`; Cancelled. O(arcs).
+  std::vector<double> distances_to(const QuerySources& sources, const SurfacePoints& targets,
+                                   Job* job = nullptr) const;
 
   /// Memory that queries leave to the next.
   QueryCache& query_cache() const { return *queries_; }

@@ -6,7 +6,7 @@ namespace saddleback {
 
 LabelField propagate_labels(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
                             bool with_predecessors, const JobStage& stage) {
-  const auto search = graph.query_cache().lease();
+  const auto search = graph.query_cache().field_searches.lease();
   const SearchLabels labels = with_predecessors ? SearchLabels::sources_and_predecessors : SearchLabels::sources;
   search->run(graph, seeds, options, labels, stage);
   const Index count = graph.mesh().vertex_count();

@@ -1,28 +1,18 @@
 #include "geodesics/query_cache.h"
 
+#include <chrono>
+
 namespace saddleback {
-namespace {
 
-// More threads than this at once are rare; what they used is freed again.
-constexpr std::size_t k_most_idle = 64;
-
-}  // namespace
-
-QueryCache::Lease QueryCache::lease() {
-  {
-    const std::lock_guard lock(mutex_);
-    if (!idle_.empty()) {
-      std::unique_ptr<GraphSearch> search = std::move(idle_.back());
-      idle_.pop_back();
-      return {*this, std::move(search)};
-    }
+const Landmarks& QueryCache::landmarks(const SaddleVertexGraph& graph, const JobStage& stage) {
+  using namespace std::chrono_literals;
+  while (!landmarks_mutex_.try_lock_for(20ms)) stage.check();  // who waits may be cancelled, too
+  const std::lock_guard lock(landmarks_mutex_, std::adopt_lock);
+  if (!landmarks_) {
+    const auto search = field_searches.lease();
+    landmarks_ = std::make_unique<Landmarks>(graph, *search, stage);
   }
-  return {*this, std::make_unique<GraphSearch>()};
-}
-
-void QueryCache::give_back(std::unique_ptr<GraphSearch> search) {
-  const std::lock_guard lock(mutex_);
-  if (idle_.size() < k_most_idle) idle_.push_back(std::move(search));
+  return *landmarks_;
 }
 
 std::shared_ptr<QueryCache> make_query_cache() { return std::make_shared<QueryCache>(); }

@@ -3,37 +3,27 @@
 
 #include <memory>
 #include <mutex>
-#include <vector>
 
 #include "geodesics/graph_search.h"
+#include "geodesics/landmarks.h"
+#include "geodesics/point_fans.h"
+#include "geodesics/point_search.h"
+#include "support/scratch_pool.h"
 
 namespace saddleback {
 
-/// Searches that are not at work: their memory is reused. Safe to use from any number of threads.
-class QueryCache {
- public:
-  /// A search that goes back to the cache when it is done with.
-  class Lease {
-   public:
-    Lease(QueryCache& cache, std::unique_ptr<GraphSearch> search) : cache_(&cache), search_(std::move(search)) {}
-    Lease(Lease&&) noexcept = default;
-    ~Lease() {
-      if (search_) cache_->give_back(std::move(search_));
-    }
-    GraphSearch* operator->() const { return search_.get(); }
-    GraphSearch& operator*() const { return *search_; }
+/// Safe to use from any number of threads.
+struct QueryCache {
+  ScratchPool<GraphSearch> field_searches;
+  ScratchPool<PointSearch> point_searches;
+  ScratchPool<FanFinder> fan_finders;
 
-   private:
-    QueryCache* cache_;
-    std::unique_ptr<GraphSearch> search_;
-  };
-
-  Lease lease();
+  /// Found by the first who asks; others wait. \throw Cancelled.
+  const Landmarks& landmarks(const SaddleVertexGraph& graph, const JobStage& stage);
 
  private:
-  void give_back(std::unique_ptr<GraphSearch> search);
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<GraphSearch>> idle_;
+  std::timed_mutex landmarks_mutex_;
+  std::unique_ptr<Landmarks> landmarks_;
 };
 
 }  // namespace saddleback
