@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <limits>
 
 #include "saddleback/saddle_vertex_graph.h"
 
+#include "bind_queries.h"
 #include "convert.h"
 #include "points.h"
 
@@ -27,33 +27,6 @@ std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, con
   return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });
 }
 
-QueryOptions query_options(const py::object& limit, const std::string& method) {
-  QueryOptions options{.limit = as_real(limit, "limit")};
-  if (method == "dijkstra") {
-    options.method = QueryMethod::dijkstra;
-  } else if (method != "label_correcting") {
-    throw InputError(message("method: wanted 'label_correcting' or 'dijkstra', got '", method, "'"));
-  }
-  return options;
-}
-
-py::array distances(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
-                    const std::string& method, const py::object& job) {
-  const SurfacePoints points = as_surface_points(sources, graph.mesh(), "sources");
-  const QueryOptions options = query_options(limit, method);
-  Job* const token = as_job(job);
-  return to_array(without_gil([&] { return graph.distances(points, options, token); }));
-}
-
-py::tuple nearest(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
-                  const std::string& method, const py::object& job) {
-  const SurfacePoints points = as_surface_points(sources, graph.mesh(), "sources");
-  const QueryOptions options = query_options(limit, method);
-  Job* const token = as_job(job);
-  NearestField field = without_gil([&] { return graph.nearest(points, options, token); });
-  return py::make_tuple(to_array(std::move(field.distance)), to_array(std::move(field.source)));
-}
-
 void save(const SaddleVertexGraph& graph, const py::object& path, const py::object& job) {
   const std::string file = as_path(path, "path");
   Job* const token = as_job(job);
@@ -64,8 +37,7 @@ std::unique_ptr<SaddleVertexGraph> load(const py::object& path, const py::object
   const std::string file = as_path(path, "path");
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   Job* const token = as_job(job);
-  return without_gil(
-      [&] { return std::make_unique<SaddleVertexGraph>(SaddleVertexGraph::load(file, mesh, token)); });
+  return without_gil([&] { return std::make_unique<SaddleVertexGraph>(SaddleVertexGraph::load(file, mesh, token)); });
 }
 
 constexpr const char* k_graph_doc = R"(Saddle Vertex Graph: geodesic distances as shortest paths in a sparse graph.
@@ -99,41 +71,6 @@ Notes
 -----
 O(V k log k) time, about 12 bytes an arc. X. Ying, X. Wang, Y. He: Saddle Vertex Graph (SVG): A Novel Solution to the
 Discrete Geodesic Problem, ACM Transactions on Graphics 32(6), 2013.)";
-
-constexpr const char* k_distances_doc = R"(Distance of every vertex from the nearest source.
-
-Parameters
-----------
-sources : (n,) int array or SurfacePoints
-    Vertices, or points anywhere on the surface (a window propagation each links them to the graph).
-limit : float
-    Vertices farther than this stay at infinity. Mesh units.
-method : str
-    "label_correcting" (buckets) or "dijkstra" (heap): the same bits, at different speeds.
-job : Job, optional
-
-Returns
--------
-(V,) float64 array
-    Mesh units; inf where no source reaches.
-
-Raises
-------
-InputError
-    No sources, a source off the mesh, limit negative or not a number, an unknown method.
-Cancelled
-    The job was cancelled.)";
-
-constexpr const char* k_nearest_doc = R"(Distance of every vertex from the nearest source, and which source it is.
-
-Takes what `distances` takes.
-
-Returns
--------
-distance : (V,) float64 array
-    Mesh units; inf where no source reaches.
-source : (V,) int32 array
-    Index into `sources`, -1 where none reaches; ties go to the smaller index.)";
 
 constexpr const char* k_save_doc = R"(Write the graph to a file, without its mesh.
 
@@ -184,14 +121,9 @@ O(arcs), far less than building takes.)";
 }  // namespace
 
 void bind_graph(py::module_& m) {
-  const auto infinity = std::numeric_limits<double>::infinity();
-  py::class_<SaddleVertexGraph>(m, "SaddleVertexGraph", py::module_local(), k_graph_doc)
-      .def(py::init(&make_graph), py::arg("mesh"), py::arg("k") = py::none(), py::kw_only(), py::arg("threads") = 0,
+  py::class_<SaddleVertexGraph> type(m, "SaddleVertexGraph", py::module_local(), k_graph_doc);
+  type.def(py::init(&make_graph), py::arg("mesh"), py::arg("k") = py::none(), py::kw_only(), py::arg("threads") = 0,
            py::arg("device") = "auto", py::arg("job") = py::none(), py::keep_alive<1, 2>())
-      .def("distances", &distances, py::arg("sources"), py::arg("limit") = infinity,
-           py::arg("method") = "label_correcting", py::kw_only(), py::arg("job") = py::none(), k_distances_doc)
-      .def("nearest", &nearest, py::arg("sources"), py::arg("limit") = infinity, py::arg("method") = "label_correcting",
-           py::kw_only(), py::arg("job") = py::none(), k_nearest_doc)
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("job") = py::none(), k_save_doc)
       .def_static("load", &load, py::arg("path"), py::arg("mesh"), py::kw_only(), py::arg("job") = py::none(),
                   py::keep_alive<0, 2>(), k_load_doc)
@@ -205,6 +137,7 @@ void bind_graph(py::module_& m) {
       .def("__repr__", [](const SaddleVertexGraph& graph) {
         return message("<saddleback.SaddleVertexGraph k=", graph.k(), ", ", graph.arc_count(), " arcs>");
       });
+  bind_queries(type);
 }
 
 }  // namespace saddleback::bindings

@@ -116,8 +116,8 @@ class SaddleVertexGraph {
   /// As `distances`, and which source it is.
   NearestField nearest(const QuerySources& sources, const QueryOptions& options = {}, Job* job = nullptr) const;
 
-  /// A field as `distances` gives for every source alone, over threads (0: all cores). \throw InputError also when there
-  /// is not the memory for it.
+  /// A field as `distances` gives for every source alone, over threads (0: all cores). \throw InputError also when
+  /// there is not the memory for it.
   DistanceFields fields(const QuerySources& sources, const QueryOptions& options = {}, int threads = 0,
                         Job* job = nullptr) const;
 
@@ -128,8 +128,7 @@ class SaddleVertexGraph {
 
   /// Distance of each target from the nearest source, points that see each other included. Between two points the same
   /// bits in both directions. \throw InputError as `distances`; Cancelled. O(arcs).
-  std::vector<double> distances_to(const QuerySources& sources, const SurfacePoints& targets,
-                                   Job* job = nullptr) const;
+  std::vector<double> distances_to(const QuerySources& sources, const SurfacePoints& targets, Job* job = nullptr) const;
 
   /// Memory that queries leave to the next.
   QueryCache& query_cache() const { return *queries_; }

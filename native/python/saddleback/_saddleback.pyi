@@ -1,7 +1,7 @@
 """Types of the compiled part; its docstrings tell shapes, units, errors and sources."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Literal, SupportsFloat, SupportsIndex, TypeAlias, final
 
 import numpy as np
@@ -126,6 +126,8 @@ class SurfaceCurve:
     def length(self) -> float: ...
     def __len__(self) -> int: ...
 
+_Sources: TypeAlias = _Points | SurfaceCurve | Sequence[SurfaceCurve]
+
 class GeodesicPath:
     @property
     def points(self) -> _Floats: ...
@@ -159,7 +161,7 @@ class SaddleVertexGraph:
     ) -> None: ...
     def distances(
         self,
-        sources: _Points,
+        sources: _Sources,
         limit: SupportsFloat = ...,
         method: _Method = "label_correcting",
         *,
@@ -167,12 +169,22 @@ class SaddleVertexGraph:
     ) -> _Floats: ...
     def nearest(
         self,
-        sources: _Points,
+        sources: _Sources,
         limit: SupportsFloat = ...,
         method: _Method = "label_correcting",
         *,
         job: Job | None = None,
     ) -> tuple[_Floats, _Indices]: ...
+    def fields(
+        self, sources: _Sources, limit: SupportsFloat = ..., *, threads: SupportsIndex = 0, job: Job | None = None
+    ) -> _Floats: ...
+    def distance(
+        self, a: SupportsIndex | SurfacePoints, b: SupportsIndex | SurfacePoints, *, job: Job | None = None
+    ) -> float: ...
+    def _distance_and_settled(
+        self, a: SupportsIndex | SurfacePoints, b: SupportsIndex | SurfacePoints
+    ) -> tuple[float, int]: ...
+    def distances_to(self, sources: _Sources, targets: _Points, *, job: Job | None = None) -> _Floats: ...
     def save(self, path: _Path, *, job: Job | None = None) -> None: ...
     @staticmethod
     def load(path: _Path, mesh: Mesh, *, job: Job | None = None) -> SaddleVertexGraph: ...

@@ -39,8 +39,8 @@ Landmarks::Landmarks(const SaddleVertexGraph& graph, GraphSearch& search, const 
     for (std::size_t v = 0; v < count; ++v) {
       const double units = distance[v] / unit_;
       longest = std::max(longest, units);
-      table_[static_cast<std::size_t>(graph.node_of(static_cast<Index>(v))) * k_count + static_cast<std::size_t>(pass)] =
-          static_cast<float>(units);
+      table_[static_cast<std::size_t>(graph.node_of(static_cast<Index>(v))) * k_count +
+             static_cast<std::size_t>(pass)] = static_cast<float>(units);
     }
   }
   // Two rounded distances and their rounded difference, half a unit in the last place each, and as much again. Targets

@@ -30,7 +30,8 @@ double LineOfSight::length(const Unfolding& unfolding, const SurfacePoint& a, co
   const SurfacePoint& target = in_order ? b : a;
   if (const Index face = shared_face(mesh, source, target); face != k_none) {
     const FaceChart chart(mesh, face);
-    const Vec2 gap = chart.to_plane(*barycentric_in(mesh, source, face)) - chart.to_plane(*barycentric_in(mesh, target, face));
+    const Vec2 gap =
+        chart.to_plane(*barycentric_in(mesh, source, face)) - chart.to_plane(*barycentric_in(mesh, target, face));
     return std::min(upper, gap.norm());
   }
   const Vec3 goal = position(mesh, target);
@@ -47,7 +48,8 @@ double LineOfSight::length(const Unfolding& unfolding, const SurfacePoint& a, co
     const Vec2 apex = window.from + offset.x() * along + offset.y() * Vec2(-along.y(), along.x());
     if (Mesh::face_of(h) == target.face) {
       const Vec3& weights = target.barycentric;
-      const Vec2 place = weights[h % 3] * window.from + weights[Mesh::next(h) % 3] * window.to + weights[Mesh::prev(h) % 3] * apex;
+      const Vec2 place =
+          weights[h % 3] * window.from + weights[Mesh::next(h) % 3] * window.to + weights[Mesh::prev(h) % 3] * apex;
       const double tolerance = k_on_border * place.norm();
       if (cross(window.right, place) >= -tolerance && cross(place, window.left) >= -tolerance)
         upper = std::min(upper, place.norm());

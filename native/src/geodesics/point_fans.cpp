@@ -36,8 +36,7 @@ std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoi
   }
   if (inside.empty()) return fans;
   std::vector<ScratchPool<FanFinder>::Lease> finders;
-  for (int thread = 0; thread < thread_count(0); ++thread)
-    finders.push_back(graph.query_cache().fan_finders.lease());
+  for (int thread = 0; thread < thread_count(0); ++thread) finders.push_back(graph.query_cache().fan_finders.lease());
   parallel_for(static_cast<Index>(inside.size()), 0, 8, [&](Index i, int thread) {
     stage.check();
     fans[inside[i]] = finders[thread]->find(graph, points[inside[i]]);

@@ -10,7 +10,8 @@
 
 namespace saddleback {
 
-/// The arcs between a point and vertices, rounded as the graph's arcs are; a point that is a vertex has one of length 0.
+/// The arcs between a point and vertices, rounded as the graph's arcs are; a point that is a vertex has one of length
+/// 0.
 struct PointFan {
   struct Arc {
     Index vertex;

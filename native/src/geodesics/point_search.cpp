@@ -23,9 +23,7 @@ class PointSearch::Run {
       double upper)
       : memory_(memory), graph_(graph), landmarks_(landmarks), target_(target), best_(upper) {}
 
-  void set_target(Index node, double distance) {
-    meet(node).to_target = distance;
-  }
+  void set_target(Index node, double distance) { meet(node).to_target = distance; }
 
   void offer(Index node, double distance) {
     const Met& met = meet(node);

@@ -24,7 +24,7 @@ class PointSearch {
  private:
   /// What the search keeps of a node that it has met.
   struct Met {
-    double bound = -1;  ///< of the distance that is left; negative: not met
+    double bound = -1;                                           ///< of the distance that is left; negative: not met
     double to_target = std::numeric_limits<double>::infinity();  ///< by an arc of the target's fan
   };
   class Run;

@@ -22,8 +22,8 @@ bool share_a_vertex(const PointFan& a, const PointFan& b) {
 
 }  // namespace
 
-double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, const PointFan& a_fan, const SurfacePoint& b,
-                     const PointFan& b_fan) {
+double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, const PointFan& a_fan,
+                     const SurfacePoint& b, const PointFan& b_fan) {
   if (a_fan.is_vertex || b_fan.is_vertex || !share_a_vertex(a_fan, b_fan)) return k_infinity;
   thread_local LineOfSight sight;
   const double reach = a_fan.reach + b_fan.reach, length = sight.length(graph.unfolding(), a, b, reach);
