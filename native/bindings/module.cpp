@@ -86,7 +86,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_read_mesh(m);
   bind_repair(m);
   bind_surface(m);
-  bind_paths(m);
   bind_graph(m);
+  bind_paths(m);
   bind_tessellation(m);
 }

@@ -6,14 +6,14 @@
 namespace saddleback {
 namespace {
 
-// Two geodesics to one vertex inside one window differ in length by more than a hint's rounding (1e-9), or not at all.
-constexpr double k_same_length = 1e-7;
 // A geodesic may run through vertices: they lie on the border of their windows, up to rounding.
 constexpr double k_on_border = 1e-9;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-bool same_length(double found, double wanted) { return std::abs(found - wanted) <= k_same_length * wanted; }
+bool same_length(double found, const ArcHint& hint) {
+  return std::abs(found - hint.length) <= hint.tolerance * hint.length;
+}
 
 double distance_to_segment(const Vec2& from, const Vec2& to) {
   const Vec2 along = to - from;
@@ -23,10 +23,11 @@ double distance_to_segment(const Vec2& from, const Vec2& to) {
 
 }  // namespace
 
-bool ArcUnfolder::unfold(const ArcHint& hint, UnfoldedArc& arc) {
+bool ArcUnfolder::unfold(const ArcHint& hint, const SurfacePoint* target, UnfoldedArc& arc) {
   arc.entered.clear();
   arc.crossings.clear();
-  if (along_an_edge(hint, arc)) return true;
+  target_ = target;
+  if (!target && along_an_edge(hint, arc)) return true;
   const Index first = mesh_.first_halfedge(hint.from);
   Index h = first;
   do {
@@ -42,14 +43,14 @@ bool ArcUnfolder::along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const {
   const Index first = mesh_.first_halfedge(hint.from);
   Index h = first;
   do {
-    if (mesh_.to(h) == hint.to && same_length(mesh_.length(h), hint.length)) {
+    if (mesh_.to(h) == hint.to && same_length(mesh_.length(h), hint)) {
       arc.length = mesh_.length(h);
       arc.start_angle = unfolding_.polar(h);
       arc.end_angle = unfolding_.polar_of_reverse(h);
       return true;
     }
     const Index last = Mesh::prev(h);
-    if (mesh_.twin(last) == k_none && mesh_.from(last) == hint.to && same_length(mesh_.length(last), hint.length)) {
+    if (mesh_.twin(last) == k_none && mesh_.from(last) == hint.to && same_length(mesh_.length(last), hint)) {
       arc.length = mesh_.length(last);
       arc.start_angle = mesh_.total_angle(hint.from);
       arc.end_angle = unfolding_.polar(last);
@@ -62,6 +63,7 @@ bool ArcUnfolder::along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const {
 
 /// Through the face of a half-edge that leaves the source, in the frame of that half-edge.
 bool ArcUnfolder::start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) {
+  if (target_ && target_->face == Mesh::face_of(halfedge)) return inside_first_face(hint, halfedge, arc);
   const double base = unfolding_.polar(halfedge);
   const double right = std::max(hint.begin_angle - base, 0.0);
   const double left = std::min(hint.end_angle - base, mesh_.corner_angle(halfedge));
@@ -70,6 +72,29 @@ bool ArcUnfolder::start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) {
   push(Mesh::next(halfedge), 0, unfolding_.apex(halfedge), Vec2(mesh_.length(halfedge), 0),
        Vec2(std::cos(right), std::sin(right)), Vec2(std::cos(left), std::sin(left)));
   return search(hint, base, arc);
+}
+
+bool ArcUnfolder::inside_first_face(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) const {
+  const Vec3& b = target_->barycentric;
+  const Vec2 place(b[(halfedge + 1) % 3] * mesh_.length(halfedge) + b[(halfedge + 2) % 3] * unfolding_.apex(halfedge).x(),
+                   b[(halfedge + 2) % 3] * unfolding_.apex(halfedge).y());
+  arc.length = place.norm();
+  arc.start_angle = unfolding_.polar(halfedge) + std::atan2(place.y(), place.x());
+  return same_length(arc.length, hint);
+}
+
+bool ArcUnfolder::find_target(const ArcHint& hint, const Window& window, const Vec2& apex, Vec2& place) const {
+  const Index h = window.entered;
+  if (target_) {
+    if (target_->face != Mesh::face_of(h)) return false;
+    const Vec3& b = target_->barycentric;
+    place = b[h % 3] * window.from + b[(h + 1) % 3] * window.to + b[(h + 2) % 3] * apex;
+  } else {
+    if (mesh_.apex(h) != hint.to) return false;
+    place = apex;
+  }
+  const double reach = place.norm(), tolerance = k_on_border * reach;
+  return same_length(reach, hint) && cross(window.right, place) >= -tolerance && cross(place, window.left) >= -tolerance;
 }
 
 void ArcUnfolder::push(Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right, const Vec2& left) {
@@ -81,7 +106,7 @@ bool ArcUnfolder::search(const ArcHint& hint, double base_angle, UnfoldedArc& ar
   while (!stack_.empty()) {
     const Window window = stack_.back();
     stack_.pop_back();
-    if (distance_to_segment(window.from, window.to) > hint.length * (1 + k_same_length)) continue;
+    if (distance_to_segment(window.from, window.to) > hint.length * (1 + hint.tolerance)) continue;
     trail_.resize(window.depth);
     trail_.push_back(window);
     const Index h = window.entered;
@@ -91,10 +116,7 @@ bool ArcUnfolder::search(const ArcHint& hint, double base_angle, UnfoldedArc& ar
     const double reach = apex.norm();
     const double from_right = cross(window.right, apex), to_left = cross(apex, window.left);
     const double tolerance = k_on_border * reach;
-    if (mesh_.apex(h) == hint.to && from_right >= -tolerance && to_left >= -tolerance &&
-        same_length(reach, hint.length)) {
-      return finish(window, apex, base_angle, arc);
-    }
+    if (Vec2 place; find_target(hint, window, apex, place)) return finish(window, place, base_angle, arc);
     const Vec2 ray = apex / reach;
     if (to_left > -tolerance) {
       const Vec2& right = from_right > 0 ? ray : window.right;

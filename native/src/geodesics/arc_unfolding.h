@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "saddleback/surface_points.h"
+
 #include "geodesics/unfolding.h"
 
 namespace saddleback {
@@ -12,13 +14,15 @@ struct ArcHint {
   Index from, to;  ///< vertices
   double length;   ///< up to rounding
   double begin_angle, end_angle;  ///< surface angles at `from` between which the arc leaves
+  /// Relative: how near its length an arc must be. Two geodesics to one vertex inside one window usually differ by more.
+  double tolerance = 1e-7;
 };
 
-/// A straight geodesic between two vertices.
+/// A straight geodesic from a vertex to a vertex or point.
 struct UnfoldedArc {
   double length = 0;
   double start_angle = 0;  ///< at the first vertex, surface angle from first_halfedge
-  double end_angle = 0;    ///< direction back, at the last vertex
+  double end_angle = 0;    ///< direction back, at the last vertex; unused where the last is a point
   std::vector<Index> entered;     ///< half-edges crossed, each of the face that is entered; empty along a mesh edge
   std::vector<double> crossings;  ///< where, as a fraction of the half-edge from its start
 };
@@ -30,7 +34,9 @@ class ArcUnfolder {
  public:
   explicit ArcUnfolder(const Unfolding& unfolding) : unfolding_(unfolding), mesh_(unfolding.mesh()) {}
   /// \return false when no such geodesic exists (the hint belongs to another mesh). O(faces crossed).
-  bool unfold(const ArcHint& hint, UnfoldedArc& arc);
+  bool unfold(const ArcHint& hint, UnfoldedArc& arc) { return unfold(hint, nullptr, arc); }
+  /// The same to a point that is no vertex; hint.to is not looked at.
+  bool unfold(const ArcHint& hint, const SurfacePoint& target, UnfoldedArc& arc) { return unfold(hint, &target, arc); }
 
  private:
   /// Half-edge about to be entered, its ends in the plane of the source at the origin, and the part of it in sight.
@@ -40,7 +46,11 @@ class ArcUnfolder {
     Vec2 from, to;
     Vec2 right, left;  ///< unit vectors; left is counter-clockwise of right
   };
+  bool unfold(const ArcHint& hint, const SurfacePoint* target, UnfoldedArc& arc);
   bool along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const;
+  bool inside_first_face(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) const;
+  /// Where the target lies when it lies in the face of `window`, whose third corner is at `apex`.
+  bool find_target(const ArcHint& hint, const Window& window, const Vec2& apex, Vec2& place) const;
   bool start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc);
   bool search(const ArcHint& hint, double base_angle, UnfoldedArc& arc);
   void push(Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right, const Vec2& left);
@@ -48,6 +58,7 @@ class ArcUnfolder {
 
   const Unfolding& unfolding_;
   const Mesh& mesh_;
+  const SurfacePoint* target_ = nullptr;  ///< null: the vertex hint.to
   std::vector<Window> stack_, trail_;
 };
 

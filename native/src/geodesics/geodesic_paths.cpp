@@ -1,0 +1,287 @@
+// A path is a chain of arcs from a distance field's predecessors; each arc is unfolded from the vertex where it leaves.
+
+#include "saddleback/geodesic_paths.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "saddleback/error.h"
+#include "saddleback/surface_curve.h"
+
+#include "geodesics/label_propagation.h"
+#include "geodesics/path_shortening.h"
+#include "geodesics/window_propagation.h"
+#include "support/parallel.h"
+
+namespace saddleback {
+namespace {
+
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+// An arc's stored length is rounded to this; a looser search follows for graphs that round more.
+constexpr double k_rounding = 2e-9;
+// Direction and length of an end's own arc are known to rounding.
+constexpr double k_angle_margin = 1e-7;
+// A crossing this near to an end of its edge is at the vertex.
+constexpr double k_at_vertex = 1e-12;
+
+/// The arcs of points that are no vertices; empty for those that are.
+using Fans = std::vector<std::vector<DirectArc>>;
+
+class Propagators {
+ public:
+  Propagators(const SaddleVertexGraph& graph, int threads) : graph_(graph), own_(thread_count(threads)) {}
+  void fan(const SurfacePoint& point, int thread, std::vector<DirectArc>& arcs) {
+    if (vertex_at(graph_.mesh(), point) != k_none) return arcs.clear();
+    if (!own_[thread]) own_[thread] = std::make_unique<WindowPropagator>(graph_.unfolding());
+    graph_.fan(point, *own_[thread], arcs);
+  }
+
+ private:
+  const SaddleVertexGraph& graph_;
+  std::vector<std::unique_ptr<WindowPropagator>> own_;
+};
+
+/// Distances from the sources and how they came about.
+struct PathField {
+  const SurfacePoints& sources;
+  Fans fans;  ///< of the sources
+  LabelField labels;
+};
+
+PathField make_field(const SaddleVertexGraph& graph, const SurfacePoints& sources, int threads, const JobStage& stage) {
+  PathField field{sources, Fans(sources.size()), {}};
+  Propagators propagators(graph, threads);
+  const auto count = static_cast<Index>(sources.size());
+  parallel_for(count, threads, 16, [&](Index i, int thread) {
+    stage.check();
+    propagators.fan(sources[i], thread, field.fans[i]);
+  });
+  std::vector<Seed> seeds;
+  for (Index i = 0; i < count; ++i) {
+    if (const Index vertex = vertex_at(graph.mesh(), sources[i]); vertex != k_none) seeds.push_back({vertex, i, 0});
+    for (const DirectArc& arc : field.fans[i]) seeds.push_back({arc.vertex, i, graph.arcs().codec().round(arc.length)});
+  }
+  field.labels = propagate_labels(graph, seeds, {}, true, stage);
+  return field;
+}
+
+/// Where a path to a target ends: after the last vertex, none when it comes straight from the source.
+struct Arrival {
+  double distance = k_infinity;
+  Index source = k_none;
+  const DirectArc* arc = nullptr;  ///< of the target's fan
+  Index vertex = k_none;
+};
+
+class PathMaker {
+ public:
+  PathMaker(const SaddleVertexGraph& graph, const PathField& field, bool shorten)
+      : graph_(graph),
+        mesh_(graph.mesh()),
+        field_(field),
+        shorten_(shorten),
+        unfolder_(graph.unfolding()),
+        shortener_(graph.unfolding()) {}
+
+  /// Appends the path to the target, without any points when nothing reaches it.
+  void append(const SurfacePoint& target, const std::vector<DirectArc>& fan, GeodesicPaths& paths) {
+    const Arrival arrival = arrive(target, fan);
+    double length = k_infinity;
+    if (arrival.source != k_none) {
+      make_chain(target, arrival);
+      if (shorten_) shortener_.shorten(chain_);
+      length = chain_.length();
+      write(paths);
+    }
+    paths.offsets.push_back(static_cast<std::int64_t>(paths.points.size()));
+    paths.lengths.push_back(length);
+    paths.sources.push_back(arrival.source);
+  }
+
+ private:
+  Arrival arrive(const SurfacePoint& target, const std::vector<DirectArc>& fan) const {
+    Arrival best;
+    if (const Index vertex = vertex_at(mesh_, target); vertex != k_none) {
+      return {field_.labels.distance[vertex], field_.labels.source[vertex], nullptr, vertex};
+    }
+    for (const DirectArc& arc : fan) {
+      const double distance = field_.labels.distance[arc.vertex] + graph_.arcs().codec().round(arc.length);
+      if (distance < best.distance) best = {distance, field_.labels.source[arc.vertex], &arc, arc.vertex};
+    }
+    for (std::size_t i = 0; i < field_.sources.size(); ++i) {  // a source in the same face is seen straight
+      const SurfacePoint& source = field_.sources[i];
+      const auto seen = barycentric_in(mesh_, source, target.face);
+      if (!seen) continue;
+      const double distance = (position(mesh_, source) - position(mesh_, target)).norm();
+      if (distance <= best.distance) best = {distance, static_cast<Index>(i), nullptr, k_none};
+    }
+    return best;
+  }
+
+  void make_chain(const SurfacePoint& target, const Arrival& arrival) {
+    chain_.clear();
+    const SurfacePoint& source = field_.sources[arrival.source];
+    vertices_.clear();
+    for (Index v = arrival.vertex; v != k_none; v = field_.labels.predecessor[v]) vertices_.push_back(v);
+    std::reverse(vertices_.begin(), vertices_.end());
+    if (vertices_.empty()) {  // in one face
+      chain_.ends = {leg_end(mesh_, source), leg_end(mesh_, target)};
+      lay_out(graph_.unfolding(), chain_.ends[0], chain_.ends[1], {}, chain_.add_leg());
+      return;
+    }
+    if (vertex_at(mesh_, source) == k_none) add_source_leg(arrival.source, source);
+    chain_.ends.push_back(leg_end(mesh_, vertices_[0]));
+    for (std::size_t i = 1; i < vertices_.size(); ++i) {
+      add_arc(vertices_[i - 1], vertices_[i]);
+      chain_.ends.push_back(leg_end(mesh_, vertices_[i]));
+    }
+    if (arrival.arc) {
+      unfold_to(*arrival.arc, target, chain_.add_leg());
+      chain_.ends.push_back(leg_end(mesh_, target));
+    }
+  }
+
+  void add_source_leg(Index index, const SurfacePoint& source) {
+    const auto& fan = field_.fans[index];
+    const auto arc = std::ranges::find_if(fan, [&](const DirectArc& a) { return a.vertex == vertices_[0]; });
+    chain_.ends.push_back(leg_end(mesh_, source));
+    UnfoldedArc& leg = chain_.add_leg();
+    unfold_to(*arc, source, leg);
+    reverse(mesh_, leg);
+  }
+
+  void add_arc(Index from, Index to) {
+    const Index node = graph_.node_of(from);
+    const std::int64_t arc = graph_.arcs().find(node, graph_.node_of(to));
+    ArcHint hint = graph_.hint(node, arc);
+    UnfoldedArc& leg = chain_.add_leg();
+    const double loose = hint.tolerance;
+    hint.tolerance = k_rounding;
+    if (unfolder_.unfold(hint, leg)) return;
+    hint.tolerance = loose;
+    if (!unfolder_.unfold(hint, leg)) {
+      throw Error(message("the arc from vertex ", from, " to vertex ", to, " is not one of this mesh"));
+    }
+  }
+
+  /// From the vertex of an arc back to the point that it leaves.
+  void unfold_to(const DirectArc& arc, const SurfacePoint& point, UnfoldedArc& leg) {
+    ArcHint hint{arc.vertex, k_none, arc.length, arc.end_angle - k_angle_margin, arc.end_angle + k_angle_margin,
+                 k_rounding};
+    if (unfolder_.unfold(hint, point, leg)) return;
+    // Directions about 0 are also those about the total angle.
+    const double total = mesh_.total_angle(arc.vertex), turn = arc.end_angle > total / 2 ? -total : total;
+    hint.begin_angle += turn;
+    hint.end_angle += turn;
+    if (unfolder_.unfold(hint, point, leg)) return;
+    hint = {arc.vertex, k_none, arc.length, 0, total};
+    if (!unfolder_.unfold(hint, point, leg)) {
+      throw Error(message("the way from vertex ", arc.vertex, " to a point of face ", point.face, " was not found"));
+    }
+  }
+
+  void write(GeodesicPaths& paths) {
+    add_end(paths, chain_.ends[0]);
+    for (std::size_t i = 0; i < chain_.leg_count; ++i) {
+      const UnfoldedArc& leg = chain_.legs[i];
+      for (std::size_t k = 0; k < leg.entered.size(); ++k) add_crossing(paths, leg.entered[k], leg.crossings[k]);
+      add_end(paths, chain_.ends[i + 1]);
+    }
+  }
+
+  void add_end(GeodesicPaths& paths, const LegEnd& end) { add(paths, end.point, position(mesh_, end.point)); }
+
+  void add_crossing(GeodesicPaths& paths, Index h, double t) {
+    const double b = t < k_at_vertex ? 0 : t > 1 - k_at_vertex ? 1 : t, a = 1 - b;
+    SurfacePoint point{Mesh::face_of(h), Vec3::Zero()};
+    point.barycentric[h % 3] = a;
+    point.barycentric[(h + 1) % 3] = b;
+    add(paths, point, a * mesh_.position(mesh_.from(h)) + b * mesh_.position(mesh_.to(h)));
+  }
+
+  /// Edges that meet at a vertex of the path are crossed there, in one point.
+  void add(GeodesicPaths& paths, const SurfacePoint& point, const Vec3& place) {
+    const bool is_first = static_cast<std::int64_t>(paths.points.size()) == paths.offsets.back();
+    if (!is_first && paths.points.back() == place) {
+      paths.surface.back() = point;
+      return;
+    }
+    paths.points.push_back(place);
+    paths.surface.push_back(point);
+  }
+
+  const SaddleVertexGraph& graph_;
+  const Mesh& mesh_;
+  const PathField& field_;
+  const bool shorten_;
+  ArcUnfolder unfolder_;
+  PathShortener shortener_;
+  std::vector<Index> vertices_;
+  LegChain chain_;
+};
+
+void append(GeodesicPaths& paths, GeodesicPaths&& part) {
+  const std::int64_t start = paths.offsets.back();
+  paths.points.insert(paths.points.end(), part.points.begin(), part.points.end());
+  paths.surface.insert(paths.surface.end(), part.surface.begin(), part.surface.end());
+  paths.lengths.insert(paths.lengths.end(), part.lengths.begin(), part.lengths.end());
+  paths.sources.insert(paths.sources.end(), part.sources.begin(), part.sources.end());
+  for (std::size_t i = 1; i < part.offsets.size(); ++i) paths.offsets.push_back(start + part.offsets[i]);
+  part = {};
+}
+
+}  // namespace
+
+GeodesicPath GeodesicPaths::path(std::size_t i) const {
+  const auto from = static_cast<std::ptrdiff_t>(offsets[i]), to = static_cast<std::ptrdiff_t>(offsets[i + 1]);
+  return {{points.begin() + from, points.begin() + to}, {surface.begin() + from, surface.begin() + to}, lengths[i]};
+}
+
+GeodesicPath shortest_path(const SaddleVertexGraph& graph, const SurfacePoint& a, const SurfacePoint& b,
+                           const PathOptions& options, Job* job) {
+  const Mesh& mesh = graph.mesh();
+  check_surface_point(mesh, a, "a");
+  check_surface_point(mesh, b, "b");
+  const auto component = [&](const SurfacePoint& p) { return mesh.component_of(mesh.triangles()[p.face][0]); };
+  if (component(a) != component(b)) {
+    throw InputError(message("b: no path leads there, a is on component ", component(a), " and b on component ",
+                             component(b), " of the mesh"));
+  }
+  return shortest_paths(graph, {a}, {b}, options, job).path(0);
+}
+
+GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints& sources, const SurfacePoints& targets,
+                             const PathOptions& options, Job* job) {
+  if (sources.empty()) throw InputError("sources: wanted at least one source, got none");
+  check_surface_points(graph.mesh(), sources, "sources");
+  check_surface_points(graph.mesh(), targets, "targets");
+  if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
+  const JobStage stage(job, "Finding paths");
+  const PathField field = make_field(graph, sources, options.threads, stage.part(0, 0.5));
+  constexpr Index k_block = 32;
+  const auto count = static_cast<Index>(targets.size());
+  const Index blocks = (count + k_block - 1) / k_block;
+  std::vector<GeodesicPaths> parts(blocks);
+  std::vector<std::unique_ptr<PathMaker>> makers(thread_count(options.threads));
+  std::vector<std::vector<DirectArc>> fans(makers.size());
+  Propagators propagators(graph, options.threads);
+  std::atomic<Index> done{0};
+  const JobStage writing = stage.part(0.5, 1);
+  parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
+    if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, options.shorten);
+    for (Index i = block * k_block; i < std::min((block + 1) * k_block, count); ++i) {
+      stage.check();
+      propagators.fan(targets[i], thread, fans[thread]);
+      makers[thread]->append(targets[i], fans[thread], parts[block]);
+    }
+    writing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
+  });
+  if (blocks == 1) return std::move(parts[0]);
+  GeodesicPaths paths;
+  for (GeodesicPaths& part : parts) append(paths, std::move(part));
+  return paths;
+}
+
+}  // namespace saddleback
