@@ -23,8 +23,9 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr double k_rounding = 2e-9;
 // Direction and length of an end's own arc are known to rounding.
 constexpr double k_angle_margin = 1e-7;
-// A crossing this near to an end of its edge is at the vertex.
-constexpr double k_at_vertex = 1e-12;
+// A crossing this near to an end of its edge is at the vertex: as a share of the edge or, where that is less than the
+// mean edge, of the mean edge, so that long and short edges of a vertex agree; but never more than a small share.
+constexpr double k_at_vertex = 1e-12, k_at_most = 1e-6;
 
 /// The arcs of points that are no vertices; empty for those that are.
 using Fans = std::vector<std::vector<DirectArc>>;
@@ -194,7 +195,8 @@ class PathMaker {
   void add_end(GeodesicPaths& paths, const LegEnd& end) { add(paths, end.point, position(mesh_, end.point)); }
 
   void add_crossing(GeodesicPaths& paths, Index h, double t) {
-    const double b = t < k_at_vertex ? 0 : t > 1 - k_at_vertex ? 1 : t, a = 1 - b;
+    const double near = std::min(k_at_most, k_at_vertex * std::max(1.0, mesh_.mean_edge_length() / mesh_.length(h)));
+    const double b = t < near ? 0 : t > 1 - near ? 1 : t, a = 1 - b;
     SurfacePoint point{Mesh::face_of(h), Vec3::Zero()};
     point.barycentric[h % 3] = a;
     point.barycentric[(h + 1) % 3] = b;
