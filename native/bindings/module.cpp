@@ -7,6 +7,7 @@
 
 namespace saddleback::bindings {
 
+void bind_exact(py::module_& m);
 void bind_job(py::module_& m);
 void bind_mesh(py::module_& m);
 void bind_paths(py::module_& m);
@@ -86,6 +87,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_read_mesh(m);
   bind_repair(m);
   bind_surface(m);
+  bind_exact(m);
   bind_graph(m);
   bind_paths(m);
   bind_tessellation(m);

@@ -44,6 +44,8 @@ class JobStage {
     if (job_ && job_->cancelled()) throw_cancelled();
   }
   bool cancelled() const { return job_ && job_->cancelled(); }
+  /// Whether there is a job: progress that costs something to know is only for those who watch.
+  bool is_watched() const { return job_ != nullptr; }
 
  private:
   [[noreturn]] static void throw_cancelled();

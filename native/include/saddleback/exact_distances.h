@@ -1,0 +1,62 @@
+#pragma once
+// Exact geodesic distances and shortest paths, by window propagation: no graph, nothing precomputed.
+
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/mesh.h"
+#include "saddleback/saddle_vertex_graph.h"
+#include "saddleback/surface_points.h"
+#include "saddleback/trace.h"
+
+namespace saddleback {
+
+/// Distance of every vertex from the nearest source, exact up to rounding: (V,), mesh units, infinity where no source
+/// reaches or only beyond `limit`. Sources lie anywhere on the surface. Right on flat and regular meshes, needles,
+/// boundaries and several components. \throw InputError for no sources, a source off the mesh, limit < 0 or not a
+/// number; Cancelled. About O(V^1.5) time, some 600 bytes a vertex while it runs. Chen and Han (1990); Xin and Wang
+/// (2009).
+std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& sources,
+                                    double limit = std::numeric_limits<double>::infinity(), Job* job = nullptr);
+
+/// As exact_distances, and which source is nearest. Of sources at the same distance, up to a relative 1e-12, the one of
+/// the smaller index.
+NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& sources,
+                           double limit = std::numeric_limits<double>::infinity(), Job* job = nullptr);
+
+/// The exact distance of every point of the surface, not of the vertices alone, and the shortest paths. Keeps the
+/// windows, some 40 bytes each and 20 to 150 of them a vertex. Immutable: any number of threads may ask it.
+class ExactField {
+ public:
+  /// The mesh must outlive the field. Errors as exact_distances.
+  ExactField(const Mesh& mesh, const SurfacePoints& sources, Job* job = nullptr);
+  ~ExactField();
+  ExactField(ExactField&&) noexcept;
+
+  const Mesh& mesh() const;
+  std::span<const double> distances() const;  ///< (V,), mesh units, infinity where no source reaches
+  std::span<const Index> nearest() const;     ///< (V,) index into the sources, k_none where none reaches
+
+  /// Distance of each point, infinity where no source reaches. O(windows about its face) each. \throw InputError for a
+  /// point off the mesh; Cancelled.
+  std::vector<double> distance_to(const SurfacePoints& points, Job* job = nullptr) const;
+
+  /// The shortest path from the nearest source to a point: straight in faces, bent only at saddle and boundary
+  /// vertices, as long as the distance. O(faces crossed). \throw InputError for a point off the mesh or that no source
+  /// reaches.
+  GeodesicPath path(const SurfacePoint& target) const;
+  /// The same for several points. \throw InputError naming the first that is wrong; Cancelled.
+  std::vector<GeodesicPath> paths(const SurfacePoints& targets, Job* job = nullptr) const;
+
+  std::int64_t window_count() const;  ///< windows propagated: the work done
+  std::size_t nbytes() const;         ///< memory of the field
+
+ private:
+  struct Parts;
+  std::unique_ptr<const Parts> parts_;
+};
+
+}  // namespace saddleback

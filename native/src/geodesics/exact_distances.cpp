@@ -1,0 +1,124 @@
+#include "saddleback/exact_distances.h"
+
+#include <cmath>
+
+#include "saddleback/error.h"
+
+#include "geodesics/exact_path.h"
+
+namespace saddleback {
+namespace {
+
+void check(const Mesh& mesh, const SurfacePoints& sources, double limit) {
+  if (sources.empty()) throw InputError("sources: wanted at least one source, got none");
+  check_surface_points(mesh, sources, "sources");
+  if (std::isnan(limit) || limit < 0) throw InputError(message("limit: wanted a distance of 0 or more, got ", limit));
+}
+
+std::vector<double> distances_of(const ExactSurface& surface, const ExactPropagation& propagation) {
+  std::vector<double> result(surface.vertex_count());
+  for (Index v = 0; v < surface.vertex_count(); ++v) result[v] = propagation.distance(surface.vertex_of(v));
+  return result;
+}
+
+std::vector<Index> owners_of(const ExactSurface& surface, const ExactPropagation& propagation) {
+  std::vector<Index> result(surface.vertex_count(), k_none);
+  for (Index v = 0; v < surface.vertex_count(); ++v) {
+    const Index vertex = surface.vertex_of(v);
+    if (std::isfinite(propagation.distance(vertex))) result[v] = propagation.owner(vertex);
+  }
+  return result;
+}
+
+constexpr const char* k_text = "Measuring exact distances";
+
+}  // namespace
+
+std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& sources, double limit, Job* job) {
+  check(mesh, sources, limit);
+  const JobStage stage(job, k_text);
+  const ExactSurface surface(mesh, sources);
+  ExactPropagation propagation(surface, sources, {.limit = limit});
+  propagation.run(stage);
+  return distances_of(surface, propagation);
+}
+
+NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& sources, double limit, Job* job) {
+  check(mesh, sources, limit);
+  const JobStage stage(job, k_text);
+  const ExactSurface surface(mesh, sources);
+  ExactPropagation propagation(surface, sources, {.limit = limit, .break_ties = sources.size() > 1});
+  propagation.run(stage);
+  return {distances_of(surface, propagation), owners_of(surface, propagation)};
+}
+
+struct ExactField::Parts {
+  Parts(const Mesh& mesh, const SurfacePoints& given, const JobStage& stage)
+      : sources(given),
+        surface(mesh, sources),
+        propagation(surface, sources, {.break_ties = sources.size() > 1, .keep_windows = true}),
+        windows((propagation.run(stage), KeptWindows(surface, propagation))),
+        tracer(surface, sources, propagation, windows),
+        distances(distances_of(surface, propagation)),
+        nearest(owners_of(surface, propagation)) {
+    propagation.release();
+  }
+
+  const SurfacePoints sources;
+  const ExactSurface surface;
+  ExactPropagation propagation;
+  const KeptWindows windows;
+  const ExactTracer tracer;
+  const std::vector<double> distances;
+  const std::vector<Index> nearest;
+};
+
+ExactField::ExactField(const Mesh& mesh, const SurfacePoints& sources, Job* job) {
+  check(mesh, sources, std::numeric_limits<double>::infinity());
+  parts_ = std::make_unique<Parts>(mesh, sources, JobStage(job, k_text));
+}
+
+ExactField::~ExactField() = default;
+ExactField::ExactField(ExactField&&) noexcept = default;
+
+const Mesh& ExactField::mesh() const { return parts_->surface.mesh(); }
+std::span<const double> ExactField::distances() const { return parts_->distances; }
+std::span<const Index> ExactField::nearest() const { return parts_->nearest; }
+std::int64_t ExactField::window_count() const { return parts_->propagation.window_count(); }
+
+std::size_t ExactField::nbytes() const {
+  const std::size_t vertices = parts_->distances.size();
+  return parts_->windows.nbytes() + parts_->surface.nbytes() + parts_->propagation.nbytes() +
+         vertices * (sizeof(double) + sizeof(Index));
+}
+
+std::vector<double> ExactField::distance_to(const SurfacePoints& points, Job* job) const {
+  check_surface_points(mesh(), points, "points");
+  const JobStage stage(job, "Measuring distances of points");
+  std::vector<double> result;
+  result.reserve(points.size());
+  for (const SurfacePoint& point : points) {
+    stage.update(static_cast<double>(result.size()) / static_cast<double>(points.size()));
+    result.push_back(parts_->tracer.approach(point).distance);
+  }
+  return result;
+}
+
+GeodesicPath ExactField::path(const SurfacePoint& target) const { return std::move(paths({target}).front()); }
+
+std::vector<GeodesicPath> ExactField::paths(const SurfacePoints& targets, Job* job) const {
+  check_surface_points(mesh(), targets, "targets");
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    if (const Index corner = mesh().triangles()[targets[i].face][0]; !std::isfinite(parts_->distances[corner]))
+      throw InputError(message("targets: point ", i, " lies in face ", targets[i].face, ", which no source reaches"));
+  const JobStage stage(job, "Following shortest paths");
+  std::vector<GeodesicPath> result;
+  result.reserve(targets.size());
+  for (const SurfacePoint& target : targets) {
+    stage.update(static_cast<double>(result.size()) / static_cast<double>(targets.size()));
+    result.push_back(parts_->tracer.path(target));
+  }
+  return result;
+}
+
+}  // namespace saddleback

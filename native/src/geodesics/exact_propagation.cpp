@@ -1,0 +1,332 @@
+// Window propagation after Chen and Han (1990) with the filters of Xin and Wang, "Improving Chen and Han's algorithm on
+// the discrete geodesic problem" (2009).
+//
+// A window is a part of a half-edge that one root sees along straight lines; it is passed on through the face beyond,
+// to one or both of the other edges. A root is a source or a vertex at which a shortest path bends: a saddle vertex or
+// one on the boundary. What keeps the windows few: of all windows that cover the angle opposite a half-edge only the
+// nearest is split in two ("one angle, one split"), and a child that some corner of the face offers a shorter way to is
+// not made.
+//
+// Departures. (1) Distances of vertices are upper bounds that only fall, a vertex whose distance falls bends anew, and
+// the order of windows changes the work alone: buckets replace the heap. (2) Rays through a vertex belong to the
+// windows on both its sides, and nothing is dropped that does not lose by more than rounding: that makes regular grids
+// right. (3) A ray to the apex that just misses its window still counts, with the detour round the window's end, which
+// is a real path: so the gaps that dropped slivers leave do no harm.
+
+#include "geodesics/exact_propagation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geodesics/exact_progress.h"
+
+namespace saddleback {
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+// What a filter must win by, relative to the distance: rounding over thousands of faces stays below it.
+constexpr double k_slack = 1e-11;
+// Two sources this close, relative to the distance, are equally near.
+constexpr double k_tie = 1e-12;
+// Relative to the edge. Narrower windows are not made: the rays of two windows through one lattice point of a grid lie
+// this far apart at most, by rounding. What is lost is a gap, of which the far end may be 1000 times as wide.
+constexpr double k_sliver = 1e-10, k_gap = 1e-7;
+constexpr double k_narrow_fan = 1e-12;  ///< radians; rounding of the sum of a vertex's angles
+constexpr double k_buckets_per_edge = 4;
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
+
+}  // namespace
+
+ExactPropagation::ExactPropagation(const ExactSurface& surface, const SurfacePoints& sources,
+                                   const ExactPropagationOptions& options)
+    : surface_(surface),
+      sources_(sources),
+      options_(options),
+      queue_(std::make_unique<WindowQueue>(surface.mesh().mean_edge_length() / k_buckets_per_edge)),
+      distances_(surface.vertex_count(), k_far),
+      bent_at_(surface.vertex_count(), k_far),
+      arrivals_(surface.vertex_count(), {0, 0, Arrival::k_unreached, k_none}),
+      occupants_(surface.halfedge_count(), {k_far, 0}) {}
+
+void ExactPropagation::run(const JobStage& stage) {
+  ExactProgress progress(surface_, sources_, options_.limit, stage);
+  start();
+  while (queue_->advance() && queue_->reached() <= options_.limit) {
+    progress.reached(queue_->reached());
+    while (WindowBlock* const block = queue_->take()) drain(block);
+    // Last in the bucket: by now their distances are final, nearly always.
+    for (const Index vertex : due_) bend(vertex);
+    due_.clear();
+  }
+}
+
+void ExactPropagation::release() {
+  queue_.reset();
+  kept_ = {};
+  bent_at_ = {};
+  occupants_ = {};
+  due_ = {};
+}
+
+std::size_t ExactPropagation::nbytes() const {
+  return distances_.size() * sizeof(double) + arrivals_.size() * sizeof(Arrival) + bent_at_.size() * sizeof(double) +
+         occupants_.size() * sizeof(Occupant);
+}
+
+/// Propagates a chain of blocks.
+void ExactPropagation::drain(WindowBlock* block) {
+  while (block) {
+    for (Index i = 0; i < block->size; ++i) {
+      const Window& window = block->windows[i];
+      if (window.halfedge >= 0) {
+        if (surface_.frame(window.halfedge).holds_sources) [[unlikely]] {
+          propagate_past_sources(window);
+        } else {
+          propagate(window);
+        }
+        ++window_count_;
+      } else if (distances_[~window.halfedge] == window.sigma) {
+        due_.push_back(~window.halfedge);
+      }
+    }
+    WindowBlock* const next = block->next;
+    if (options_.keep_windows) {
+      queue_->keep(block);
+      kept_.push_back(block);
+    } else {
+      queue_->give_back(block);
+    }
+    block = next;
+  }
+}
+
+void ExactPropagation::start() {
+  for (Index i = 0; i < static_cast<Index>(sources_.size()); ++i) {
+    const Index vertex = vertex_at(surface_.mesh(), sources_[i]);
+    if (vertex != k_none) offer(surface_.vertex_of(vertex), 0, {0, 0, Arrival::k_at_source, i});
+  }
+  const SourceInFace* last = nullptr;
+  for (const SourceInFace& place : surface_.sources_in_faces()) {
+    const bool is_repeated = last && last->face == place.face && last->barycentric == place.barycentric;
+    if (!is_repeated) start_in_face(place);
+    last = &place;
+  }
+}
+
+/// Lights the three edges of a face.
+void ExactPropagation::start_in_face(const SourceInFace& place) {
+  const Index root = surface_.vertex_count() + place.source;
+  for (Index h = 3 * place.face; h < 3 * place.face + 3; ++h) {
+    const EdgeFrame& frame = surface_.frame(h);
+    const Vec2 centre = surface_.in_frame(h, place.barycentric), to_apex = Vec2(frame.apex_x, frame.apex_y) - centre;
+    offer(frame.apex, to_apex.norm(), {to_apex.x(), to_apex.y(), h, root});
+    const Index entered = surface_.twin(h);
+    if (entered == k_none || centre.y() == 0) continue;
+    light({frame.length - centre.x(), -centre.y(), 0, frame.length, 0, entered, root});
+  }
+}
+
+void ExactPropagation::light(const Window& w) {
+  queue_->push(w, w.sigma + length_of(std::clamp(w.sx, w.b0, w.b1) - w.sx, w.sy));
+}
+
+/// A vertex can be reached this way: remembers the shortest.
+void ExactPropagation::offer(Index vertex, double distance, const Arrival& arrival) {
+  const double known = distances_[vertex];
+  if (distance >= known) {
+    if (options_.break_ties && distance <= known * (1 + k_tie) && owns_before(arrival, arrivals_[vertex]))
+      arrivals_[vertex] = arrival;  // no bend is due again: what bends here is right for either path
+    return;
+  }
+  const bool keeps_owner =
+      options_.break_ties && distance >= known * (1 - k_tie) && owns_before(arrivals_[vertex], arrival);
+  distances_[vertex] = distance;
+  if (!keeps_owner) arrivals_[vertex] = arrival;
+  if (surface_.may_bend(vertex) || arrival.halfedge == Arrival::k_at_source)
+    queue_->push({0, 0, 0, 0, distance, ~vertex, k_none}, distance);
+}
+
+/// Whether the first of two arrivals as long as each other belongs to the smaller source.
+bool ExactPropagation::owns_before(const Arrival& a, const Arrival& b) const {
+  if (a.halfedge == Arrival::k_at_source || b.halfedge == Arrival::k_at_source)
+    return a.halfedge == b.halfedge && a.root < b.root;
+  return owner(a.root) < owner(b.root);
+}
+
+Index ExactPropagation::owner(Index root) const {
+  while (root < surface_.vertex_count()) {
+    const Arrival& arrival = arrivals_[root];
+    if (arrival.halfedge == Arrival::k_at_source) return arrival.root;
+    root = arrival.root;
+  }
+  return root - surface_.vertex_count();
+}
+
+/// The rays on the two sides of a source are two windows from here on, as they would be if it were a vertex: "one
+/// angle, one split" holds for windows only that have no root inside them.
+void ExactPropagation::propagate_past_sources(Window window) {
+  const double sliver = k_sliver * surface_.frame(window.halfedge).length;
+  std::vector<double> cuts;
+  for (const SourceInFace& place : surface_.sources_in(window.halfedge / 3)) {
+    const Vec2 there = surface_.in_frame(window.halfedge, place.barycentric);
+    const double dy = there.y() - window.sy;
+    const double cut = dy > 0 ? window.sx - (there.x() - window.sx) * (window.sy / dy) : there.x();
+    if (cut > window.b0 + sliver && cut < window.b1 - sliver) cuts.push_back(cut);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  const double end = window.b1;
+  for (const double cut : cuts) {
+    window.b1 = cut;
+    propagate(window);
+    window.b0 = cut;
+  }
+  window.b1 = end;
+  propagate(window);
+}
+
+void ExactPropagation::propagate(const Window& window) {
+  const EdgeFrame& frame = surface_.frame(window.halfedge);
+  const auto [sx, sy, b0, b1, sigma, halfedge, root] = window;
+  const double length = frame.length, ax = frame.apex_x, ay = frame.apex_y;
+  const double ox = ax - sx, oy = ay - sy;
+  const double reach = length_of(ox, oy);
+  const double split = sx - ox * (sy / oy);  // where the ray to the apex crosses the half-edge
+  if (split >= b0 && split <= b1) {
+    offer(frame.apex, sigma + reach, {ox, oy, halfedge, root});
+  } else if (split >= b0 - k_gap * length && split <= b1 + k_gap * length) {
+    const double b = split < b0 ? b0 : b1;
+    offer(frame.apex, sigma + length_of(b - sx, sy) + length_of(ax - b, ay), {ox, oy, halfedge, root});
+  }
+  const bool has_left = split > b0 + k_sliver * length, has_right = split < b1 - k_sliver * length;
+  bool go_left = has_left && frame.left != k_none, go_right = has_right && frame.right != k_none;
+  if (has_left && has_right) {
+    Occupant& occupant = occupants_[halfedge];
+    if (sigma + reach < occupant.distance) {
+      occupant = {sigma + reach, split};
+    } else if (split < occupant.split) {  // a nearer window split this angle: beyond its ray all is nearer by that one
+      go_right = false;
+    } else {
+      go_left = false;
+    }
+  }
+  // Distances of the corners, from the root's on.
+  const double at_from = distances_[frame.from] * (1 + k_slack) - sigma;
+  const double at_to = distances_[frame.to] * (1 + k_slack) - sigma;
+  const double at_apex = distances_[frame.apex] * (1 + k_slack) - sigma;
+  // Makes a child on the edge from a corner `near` of the half-edge to the apex. Coordinates start at that corner: the
+  // half-edge on the x axis, the edge of length `l` in direction (ux, uy), the parent between `begin` and `end`.
+  const auto child = [&](double l, double ux, double uy, double x, double begin, double end, bool to_apex,
+                         double at_near, double at_far, auto&& make) {
+    const auto hit = [&](double b) {  // where the ray through (b, 0) meets the edge
+      const double divisor = uy * (x - b) - sy * ux;
+      return divisor > 0 ? std::min(-sy * b / divisor, l) : l;
+    };
+    const double q0 = hit(begin), q1 = to_apex ? l : hit(end);
+    if (!(q1 - q0 > k_sliver * l)) return;
+    const double cx = ux * x + uy * sy, cy = std::min(0.0, ux * sy - uy * x);
+    const double r0 = length_of(cx - q0, cy), r1 = length_of(cx - q1, cy);
+    const double across = length_of(length - q0 * ux, q0 * uy);
+    if (at_near + q1 < r1 || at_apex + (l - q0) < r0 || at_far + across < r0) return;
+    make(cx, cy, q0, q1, sigma + (cx < q0 ? r0 : cx > q1 ? r1 : -cy));
+  };
+  if (go_left) {
+    const double l = frame.left_length;
+    child(l, ax / l, ay / l, sx, b0, b1, has_right, at_from, at_to,
+          [&](double cx, double cy, double q0, double q1, double key) {
+            queue_->push({cx, cy, q0, q1, sigma, frame.left, root}, key);
+          });
+  }
+  if (go_right) {  // the mirror image
+    const double l = frame.right_length;
+    child(l, (length - ax) / l, ay / l, length - sx, length - b1, length - b0, has_left, at_to, at_from,
+          [&](double cx, double cy, double q0, double q1, double key) {
+            queue_->push({l - cx, cy, l - q1, l - q0, sigma, frame.right, root}, key);
+          });
+  }
+}
+
+/// Direction in which the path comes to a vertex, as an angle about it from first_halfedge.
+double ExactPropagation::arrival_angle(Index vertex) const {
+  const Mesh& mesh = surface_.mesh();
+  const Arrival& arrival = arrivals_[vertex];
+  const bool along_edge = arrival.halfedge == Arrival::k_along_edge;
+  const Index neighbour = along_edge ? surface_.mesh_vertex(arrival.root) : k_none;
+  const Index through = along_edge ? k_none : Mesh::prev(surface_.mesh_halfedge(arrival.halfedge));
+  const Index first = mesh.first_halfedge(surface_.mesh_vertex(vertex));
+  Index h = first;
+  double angle = 0;
+  do {
+    if (along_edge && mesh.to(h) == neighbour) return angle;
+    if (h == through) {
+      const EdgeFrame& frame = surface_.frame(arrival.halfedge);
+      const Vec2 apex(frame.apex_x, frame.apex_y), offset(arrival.x, arrival.y);
+      return angle + std::clamp(std::atan2(cross(apex, offset), apex.dot(offset)), 0.0, mesh.corner_angle(h));
+    }
+    angle += mesh.corner_angle(h);
+    h = mesh.rotate(h);
+  } while (h != k_none && h != first);
+  return angle;  // along the last edge of a boundary vertex
+}
+
+/// Makes a vertex a root: it lights the directions that are at least pi from where the path comes, on both sides.
+void ExactPropagation::bend(Index vertex) {
+  const double distance = distances_[vertex];
+  if (bent_at_[vertex] <= distance) return;
+  bent_at_[vertex] = distance;
+  const Mesh& mesh = surface_.mesh();
+  const Index original = surface_.mesh_vertex(vertex);
+  const double total = mesh.total_angle(original);
+  double lit[2][2] = {{0, total}, {0, 0}};
+  if (arrivals_[vertex].halfedge != Arrival::k_at_source) {
+    const double angle = arrival_angle(vertex);
+    if (mesh.is_boundary(original)) {  // round the outside any angle will do
+      lit[0][1] = angle - k_pi;
+      lit[1][0] = angle + k_pi;
+      lit[1][1] = total;
+    } else {
+      lit[0][0] = angle + k_pi;
+      lit[0][1] = angle + total - k_pi;
+      lit[1][0] = lit[0][0] - total;
+      lit[1][1] = lit[0][1] - total;
+    }
+  }
+  const Index first = mesh.first_halfedge(original);
+  Index h = first;
+  double angle = 0;
+  do {
+    const double corner = mesh.corner_angle(h);
+    const Index out = surface_.halfedge_of(h);
+    const EdgeFrame& frame = surface_.frame(out);
+    offer(frame.to, distance + frame.length, {0, 0, Arrival::k_along_edge, vertex});
+    for (const auto& range : lit) {
+      const double begin = std::max(0.0, range[0] - angle), end = std::min(corner, range[1] - angle);
+      if (end - begin > k_narrow_fan) light_opposite(vertex, out, begin, end);
+    }
+    if (mesh.twin(Mesh::prev(h)) == k_none)
+      offer(frame.apex, distance + frame.left_length, {0, 0, Arrival::k_along_edge, vertex});
+    angle += corner;
+    h = mesh.rotate(h);
+  } while (h != k_none && h != first);
+}
+
+/// Lights the edge opposite `vertex` in the face of half-edge `out`, between two angles from `out`.
+void ExactPropagation::light_opposite(Index vertex, Index out, double begin, double end) {
+  const EdgeFrame& frame = surface_.frame(out);
+  const Index entered = frame.right;
+  if (entered == k_none) return;
+  const double corner = surface_.mesh().corner_angle(surface_.mesh_halfedge(out));
+  const double length = frame.right_length;
+  const auto place = [&](double angle) {  // from the apex on, as the entered half-edge runs
+    if (angle <= 0) return length;
+    if (angle >= corner) return 0.0;
+    const double a = frame.length * std::sin(angle), c = frame.left_length * std::sin(corner - angle);
+    return length * (c / (a + c));
+  };
+  const EdgeFrame& opposite = surface_.frame(Mesh::next(out));
+  light({length - opposite.apex_x, -opposite.apex_y, place(end), place(begin), distances_[vertex], entered, vertex});
+}
+
+}  // namespace saddleback

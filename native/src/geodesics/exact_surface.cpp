@@ -1,0 +1,122 @@
+#include "geodesics/exact_surface.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "mesh/hilbert.h"
+
+namespace saddleback {
+namespace {
+
+// Corner angles add up to a flat vertex's 2 pi within some 1e-15 a corner; a sharper saddle must be a bend, because the
+// gap that it leaves between the windows on its two sides grows with distance.
+constexpr double k_flat_tolerance = 1e-12;
+
+/// A point that is no vertex as a point of each face that it lies in.
+SurfacePoints in_each_face(const Mesh& mesh, const SurfacePoint& point) {
+  const Vec3 b = normalised_barycentric(point.barycentric);
+  SurfacePoints result{{point.face, b}};
+  for (int i = 0; i < 3; ++i) {
+    if (b[i] != 0) continue;
+    const Index h = 3 * point.face + (i + 1) % 3, twin = mesh.twin(h);  // the edge opposite corner i
+    if (twin == k_none) continue;
+    Vec3 there = Vec3::Zero();
+    there[twin % 3] = b[Mesh::next(h) % 3];
+    there[Mesh::next(twin) % 3] = b[h % 3];
+    result.push_back({Mesh::face_of(twin), there});
+  }
+  return result;
+}
+
+}  // namespace
+
+ExactSurface::ExactSurface(const Mesh& mesh, const SurfacePoints& sources) : mesh_(&mesh) {
+  renumber();
+  lay_out();
+  place_sources(sources);
+}
+
+std::size_t ExactSurface::nbytes() const {
+  return frames_.size() * sizeof(EdgeFrame) + may_bend_.size() +
+         (vertex_of_.size() + face_of_.size() + mesh_vertex_.size() + mesh_face_.size()) * sizeof(Index);
+}
+
+void ExactSurface::renumber() {
+  const Index vertices = mesh_->vertex_count(), faces = mesh_->face_count();
+  const HilbertCurve curve(mesh_->positions());
+  std::vector<std::uint64_t> keys(vertices);
+  for (Index v = 0; v < vertices; ++v) keys[v] = curve.key(mesh_->position(v));
+  mesh_vertex_ = order_of(keys);
+  vertex_of_.resize(vertices);
+  for (Index v = 0; v < vertices; ++v) vertex_of_[mesh_vertex_[v]] = v;
+  // A face comes with the first of its vertices: a counting sort, stable in the mesh's order.
+  const auto first_corner = [&](Index face) {
+    const Triangle& t = mesh_->triangles()[face];
+    return std::min({vertex_of_[t[0]], vertex_of_[t[1]], vertex_of_[t[2]]});
+  };
+  std::vector<Index> begins(vertices + 1, 0);
+  for (Index f = 0; f < faces; ++f) ++begins[first_corner(f) + 1];
+  for (Index v = 0; v < vertices; ++v) begins[v + 1] += begins[v];
+  face_of_.resize(faces);
+  mesh_face_.resize(faces);
+  for (Index f = 0; f < faces; ++f) {
+    face_of_[f] = begins[first_corner(f)]++;
+    mesh_face_[face_of_[f]] = f;
+  }
+}
+
+void ExactSurface::lay_out() {
+  const Mesh& mesh = *mesh_;
+  frames_.resize(mesh.halfedge_count());
+  const auto beyond = [&](Index h) { return mesh.twin(h) == k_none ? k_none : halfedge_of(mesh.twin(h)); };
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    EdgeFrame& frame = frames_[h];
+    const Index g = mesh_halfedge(h), next = Mesh::next(g), prev = Mesh::prev(g);
+    frame.length = mesh.length(g);
+    frame.left_length = mesh.length(prev);
+    frame.right_length = mesh.length(next);
+    // x from the lengths, factored against cancellation on needles; y from the area, which the mesh computes stably.
+    const double base = frame.length, left = frame.left_length, right = frame.right_length;
+    frame.apex_x = (base + (left - right) * ((left + right) / base)) / 2;
+    frame.apex_y = 2 * mesh.face_area(g / 3) / base;
+    frame.left = beyond(prev);
+    frame.right = beyond(next);
+    frame.from = vertex_of_[mesh.from(g)];
+    frame.to = vertex_of_[mesh.to(g)];
+    frame.apex = vertex_of_[mesh.apex(g)];
+    frame.holds_sources = false;
+  }
+  may_bend_.resize(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    const Index original = mesh_vertex_[v];
+    may_bend_[v] = mesh.is_boundary(original) || mesh.total_angle(original) > 2 * std::numbers::pi + k_flat_tolerance;
+  }
+}
+
+void ExactSurface::place_sources(const SurfacePoints& sources) {
+  for (Index i = 0; i < static_cast<Index>(sources.size()); ++i) {
+    if (vertex_at(*mesh_, sources[i]) != k_none) continue;
+    for (const SurfacePoint& place : in_each_face(*mesh_, sources[i]))
+      in_faces_.push_back({face_of_[place.face], i, place.barycentric});
+  }
+  std::stable_sort(in_faces_.begin(), in_faces_.end(),
+                   [](const SourceInFace& a, const SourceInFace& b) { return a.face < b.face; });
+  for (const SourceInFace& place : in_faces_)
+    for (Index h = 3 * place.face; h < 3 * place.face + 3; ++h) frames_[h].holds_sources = true;
+}
+
+std::span<const SourceInFace> ExactSurface::sources_in(Index face) const {
+  if (!frames_[3 * face].holds_sources) return {};
+  const auto [begin, end] =
+      std::equal_range(in_faces_.begin(), in_faces_.end(), SourceInFace{face, 0, {}},
+                       [](const SourceInFace& a, const SourceInFace& b) { return a.face < b.face; });
+  return {begin, end};
+}
+
+Vec2 ExactSurface::in_frame(Index h, const Vec3& barycentric) const {
+  const EdgeFrame& frame = frames_[h];
+  const double at_to = barycentric[Mesh::next(h) % 3], at_apex = barycentric[Mesh::prev(h) % 3];
+  return {at_to * frame.length + at_apex * frame.apex_x, at_apex * frame.apex_y};
+}
+
+}  // namespace saddleback

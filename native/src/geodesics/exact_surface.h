@@ -1,0 +1,71 @@
+#pragma once
+// The mesh as window propagation wants it: neighbours in space are neighbours in memory, one cache line a half-edge.
+
+#include <span>
+#include <vector>
+
+#include "saddleback/mesh.h"
+#include "saddleback/surface_points.h"
+
+namespace saddleback {
+
+/// A half-edge h = (from -> to) with its face laid out in the frame of h: `from` at the origin, `to` on the positive x
+/// axis, the apex above it. A window on h is about to enter this face.
+struct alignas(64) EdgeFrame {
+  double length;
+  double apex_x, apex_y;
+  double left_length, right_length;  ///< of the face's edges from-apex and apex-to
+  Index left, right;                 ///< half-edges on the far side of those two edges, k_none on the boundary
+  Index from, to, apex;
+  bool holds_sources;  ///< the face does
+};
+
+/// A source that is no vertex, in a face that it lies in. One on an edge lies in both faces.
+struct SourceInFace {
+  Index face;
+  Index source;
+  Vec3 barycentric;
+};
+
+/// A mesh renumbered along a Hilbert curve, and where the sources are in it. Half-edge 3f+i belongs to corner i of the
+/// renumbered face f, as in Mesh.
+class ExactSurface {
+ public:
+  ExactSurface(const Mesh& mesh, const SurfacePoints& sources);
+
+  const Mesh& mesh() const { return *mesh_; }
+  Index vertex_count() const { return mesh_->vertex_count(); }
+  Index halfedge_count() const { return mesh_->halfedge_count(); }
+  const EdgeFrame& frame(Index h) const { return frames_[h]; }
+
+  /// k_none on the boundary.
+  Index twin(Index h) const { return frames_[Mesh::prev(h)].right; }
+  std::span<const SourceInFace> sources_in(Index face) const;
+  std::span<const SourceInFace> sources_in_faces() const { return in_faces_; }  ///< all, by face
+  /// Where the point of the half-edge's face is, in the frame of the half-edge.
+  Vec2 in_frame(Index h, const Vec3& barycentric) const;
+  /// Where a shortest path may bend: on the boundary, or the total angle exceeds 2 pi by more than rounding.
+  bool may_bend(Index vertex) const { return may_bend_[vertex] != 0; }
+
+  // Between the mesh's numbers and those here.
+  Index vertex_of(Index mesh_vertex) const { return vertex_of_[mesh_vertex]; }
+  Index face_of(Index mesh_face) const { return face_of_[mesh_face]; }
+  Index halfedge_of(Index mesh_halfedge) const { return 3 * face_of_[mesh_halfedge / 3] + mesh_halfedge % 3; }
+  Index mesh_vertex(Index vertex) const { return mesh_vertex_[vertex]; }
+  Index mesh_face(Index face) const { return mesh_face_[face]; }
+  Index mesh_halfedge(Index h) const { return 3 * mesh_face_[h / 3] + h % 3; }
+  std::size_t nbytes() const;
+
+ private:
+  void renumber();
+  void lay_out();
+  void place_sources(const SurfacePoints& sources);
+
+  const Mesh* mesh_;
+  std::vector<Index> vertex_of_, face_of_, mesh_vertex_, mesh_face_;
+  std::vector<EdgeFrame> frames_;
+  std::vector<std::uint8_t> may_bend_;
+  std::vector<SourceInFace> in_faces_;
+};
+
+}  // namespace saddleback

@@ -1,0 +1,73 @@
+#include "geodesics/exact_windows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saddleback {
+namespace {
+
+constexpr double k_slack = 1e-11;  // as in the propagation
+
+}  // namespace
+
+KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation)
+    : surface_(surface), propagation_(propagation), begins_(surface.halfedge_count() + 1, 0) {
+  for (WindowBlock* const block : propagation.kept()) {
+    Index count = 0;
+    for (Index i = 0; i < block->size; ++i) {
+      const Window& window = block->windows[i];
+      if (window.halfedge < 0 || is_needless(window)) continue;
+      ++begins_[window.halfedge + 1];
+      block->windows[count++] = window;
+    }
+    block->size = count;
+  }
+  for (Index h = 0; h < surface.halfedge_count(); ++h) begins_[h + 1] += begins_[h];
+  windows_.resize(begins_.back());
+  roots_.resize(begins_.back());
+  std::vector<std::int64_t> next(begins_.begin(), begins_.end() - 1);
+  for (const WindowBlock* const block : propagation.kept()) {
+    for (Index i = 0; i < block->size; ++i) {
+      const Window& window = block->windows[i];
+      const std::int64_t place = next[window.halfedge]++;
+      windows_[place] = {window.sx, window.sy, window.b0, window.b1};
+      roots_[place] = window.root;
+    }
+  }
+}
+
+double KeptWindows::root_distance(Index root) const {
+  return root < surface_.vertex_count() ? propagation_.distance(root) : 0.0;
+}
+
+bool KeptWindows::is_needless(const Window& w) const {
+  if (w.sigma > root_distance(w.root)) return true;  // the root was found nearer later on, and lit the same again
+  const EdgeFrame& frame = surface_.frame(w.halfedge);
+  const double at_from = propagation_.distance(frame.from) * (1 + k_slack) - w.sigma;
+  const double at_to = propagation_.distance(frame.to) * (1 + k_slack) - w.sigma;
+  return at_from + w.b1 < std::hypot(w.sx - w.b1, w.sy) ||
+         at_to + (frame.length - w.b0) < std::hypot(w.sx - w.b0, w.sy);
+}
+
+void KeptWindows::improve(Index halfedge, const Vec2& point, SightLine& best) const {
+  for (std::int64_t i = begins_[halfedge]; i < begins_[halfedge + 1]; ++i) {
+    const KeptWindow& w = windows_[i];
+    const Vec2 image(w.sx, w.sy), line = point - image;
+    const double straight = line.y() > 0 ? w.sx - line.x() * (w.sy / line.y()) : std::clamp(point.x(), w.b0, w.b1);
+    const double crossing = std::clamp(straight, w.b0, w.b1);
+    double distance = root_distance(roots_[i]);
+    if (crossing == straight) {
+      distance += line.norm();
+    } else {  // round the window's end
+      const Vec2 end(crossing, 0);
+      distance += (end - image).norm() + (point - end).norm();
+    }
+    if (distance < best.distance) best = {distance, crossing, halfedge, roots_[i], image};
+  }
+}
+
+std::size_t KeptWindows::nbytes() const {
+  return windows_.size() * sizeof(KeptWindow) + roots_.size() * sizeof(Index) + begins_.size() * sizeof(std::int64_t);
+}
+
+}  // namespace saddleback

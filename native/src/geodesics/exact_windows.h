@@ -1,0 +1,45 @@
+#pragma once
+// The windows of a finished propagation by half-edge: what is asked about points that are no vertices.
+
+#include <span>
+#include <vector>
+
+#include "geodesics/exact_propagation.h"
+
+namespace saddleback {
+
+/// A window without what its place in the table and its root tell.
+struct KeptWindow {
+  double sx, sy, b0, b1;
+};
+
+/// A straight line from a root through a half-edge to a point of the face beyond it.
+struct SightLine {
+  double distance = std::numeric_limits<double>::infinity();  ///< of the point, the root's included
+  double crossing = 0;                                        ///< of the half-edge, from its start
+  Index halfedge = k_none;
+  Index root = k_none;
+  Vec2 image = Vec2::Zero();  ///< of the root, in the frame of the half-edge
+};
+
+/// Windows that some corner of their edge does not make needless, sorted by half-edge. 36 bytes each.
+class KeptWindows {
+ public:
+  KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation);
+
+  /// Shortens `best` if a window of the half-edge leads to the point (in the half-edge's frame) on a shorter way.
+  void improve(Index halfedge, const Vec2& point, SightLine& best) const;
+  std::size_t nbytes() const;
+
+ private:
+  bool is_needless(const Window& window) const;
+  double root_distance(Index root) const;
+
+  const ExactSurface& surface_;
+  const ExactPropagation& propagation_;
+  std::vector<std::int64_t> begins_;
+  std::vector<KeptWindow> windows_;
+  std::vector<Index> roots_;
+};
+
+}  // namespace saddleback
