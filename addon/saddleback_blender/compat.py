@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import bmesh
 import bpy
 import numpy as np
 from numpy.typing import NDArray
@@ -116,6 +117,15 @@ def show_color(mesh: bpy.types.Mesh, name: str) -> None:
     mesh.color_attributes.render_color_index = index
 
 
+def remove_material_slots(mesh: bpy.types.Mesh) -> None:
+    """Removes all materials; faces keep their numbers. `materials.pop` would leave the objects' slots behind."""
+    numbers = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("material_index", numbers)
+    mesh.materials.clear()
+    if numbers.any():
+        mesh.polygons.foreach_set("material_index", numbers)
+
+
 def new_group_socket(group: bpy.types.NodeTree, name: str, in_out: str, socket_type: str) -> Any:
     """Adds an INPUT or OUTPUT to a node group; returns what its default and limits are set on."""
     if hasattr(group, "interface"):  # 4.0 on
@@ -148,3 +158,27 @@ def modifier_input(modifier: bpy.types.Modifier, name: str) -> Any:
     identifier = group_input_identifiers(modifier.node_group)[name]
     inputs = getattr(getattr(modifier, "properties", None), "inputs", None)
     return getattr(inputs, identifier).value if inputs is not None else modifier[identifier]
+
+
+def user_folder() -> str:
+    """Where this add-on may keep files of its own; an extension has a place of its own from 4.2 on."""
+    is_extension = __package__.startswith("bl_ext.")
+    if is_extension and hasattr(bpy.utils, "extension_path_user"):
+        return str(bpy.utils.extension_path_user(__package__, path="graphs"))
+    return str(bpy.utils.user_resource("DATAFILES", path="saddleback_graphs"))
+
+
+def in_order_of_selection(mesh: bpy.types.Mesh, vertices: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The same vertices in the order in which they were selected; as they are where Blender does not know it of all.
+
+    Blender keeps the order with the mesh, but shows it to scripts through bmesh only, which costs seconds for a million
+    vertices.
+    """
+    loaded = bmesh.new()
+    try:
+        loaded.from_mesh(mesh)
+        history = [item.index for item in loaded.select_history if isinstance(item, bmesh.types.BMVert)]
+    finally:
+        loaded.free()
+    is_known = len(history) == len(vertices) and set(history) == set(vertices.tolist())
+    return np.array(history, np.int32) if is_known else vertices

@@ -11,7 +11,7 @@ from . import compat
 MARK = "saddleback_made"  # custom property: which of the things below a data-block is
 
 TUBES, INSTANCES = "tubes", "instances"
-CELLS, EDGES = "cells", "edges"
+CELLS, EDGES, PATHS = "cells", "edges", "paths"
 
 SIZE_ATTRIBUTE = "saddleback_size"
 ROTATION_ATTRIBUTE = "saddleback_rotation"
@@ -200,7 +200,7 @@ def cells_material() -> bpy.types.Material:
     material = _find_material(CELLS)
     if material is not None:
         return material
-    material, shader = _new_material("Saddleback Cells", CELLS)
+    material, shader = new_material("Saddleback Cells", CELLS)
     color = material.node_tree.nodes.new("ShaderNodeVertexColor")
     color.layer_name = COLOR_ATTRIBUTE
     color.location = (-220, 300)
@@ -214,7 +214,7 @@ def edges_material() -> bpy.types.Material:
     material = _find_material(EDGES)
     if material is not None:
         return material
-    material, shader = _new_material("Saddleback Edges", EDGES)
+    material, shader = new_material("Saddleback Edges", EDGES)
     dark = (0.03, 0.03, 0.035, 1.0)
     shader.inputs["Base Color"].default_value = dark
     shader.inputs["Roughness"].default_value = 0.4
@@ -222,11 +222,25 @@ def edges_material() -> bpy.types.Material:
     return material
 
 
+def paths_material() -> bpy.types.Material:
+    """A bright plain material for shortest paths."""
+    material = _find_material(PATHS)
+    if material is not None:
+        return material
+    material, shader = new_material("Saddleback Paths", PATHS)
+    bright = (0.9, 0.16, 0.03, 1.0)
+    shader.inputs["Base Color"].default_value = bright
+    shader.inputs["Roughness"].default_value = 0.4
+    material.diffuse_color = bright
+    return material
+
+
 def _find_material(kind: str) -> bpy.types.Material | None:
     return next((m for m in bpy.data.materials if m.get(MARK) == kind and m.library is None), None)
 
 
-def _new_material(name: str, kind: str) -> tuple[bpy.types.Material, Any]:
+def new_material(name: str, kind: str) -> tuple[bpy.types.Material, Any]:
+    """A material of ours and its surface shader."""
     material = bpy.data.materials.new(name)
     material[MARK] = kind
     material.use_nodes = True

@@ -1,11 +1,17 @@
-"""Preferences: threads, the cache's size, and what the native library is and sees."""
+"""Preferences: threads, what is kept in memory and on disk, and what the native library is and sees."""
 
 from __future__ import annotations
 
-import bpy
-from bpy.props import IntProperty
+from pathlib import Path
 
+import bpy
+from bpy.props import BoolProperty, IntProperty, StringProperty
+
+from . import compat
 from .core import cache, native
+from .core.disk_cache import DiskCache
+
+DEFAULT_DISK_MEGABYTES = 4096
 
 
 def _resize_cache(preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
@@ -29,6 +35,23 @@ class SaddlebackPreferences(bpy.types.AddonPreferences):
             soft_max=65536,
             update=_resize_cache,
         ),
+        "cache_on_disk": BoolProperty(
+            name="Keep Graphs on Disk",
+            description="Keep every mesh's distance graph for the next session, not only where an object asks for it",
+            default=False,
+        ),
+        "cache_folder": StringProperty(
+            name="Folder",
+            description="Where distance graphs are kept; empty means a folder of Blender's own for this user",
+            subtype="DIR_PATH",
+        ),
+        "disk_megabytes": IntProperty(
+            name="Disk Space",
+            description="Space (MB) for distance graphs on disk; those not used for longest go first",
+            default=DEFAULT_DISK_MEGABYTES,
+            min=0,
+            soft_max=65536,
+        ),
     }
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -37,6 +60,9 @@ class SaddlebackPreferences(bpy.types.AddonPreferences):
         layout.use_property_split = True
         layout.prop(self, "threads")
         layout.prop(self, "cache_megabytes")
+        layout.prop(self, "cache_on_disk")
+        layout.prop(self, "cache_folder")
+        layout.prop(self, "disk_megabytes")
         problem = native.problem()
         row = layout.row()
         row.alert = bool(problem)
@@ -47,6 +73,17 @@ def threads(context: bpy.types.Context) -> int:
     """The number of threads to compute with, 0 = all."""
     addon = context.preferences.addons.get(__package__)
     return int(addon.preferences.threads) if addon is not None and addon.preferences is not None else 0
+
+
+def disk_cache(context: bpy.types.Context, wanted: bool) -> DiskCache | None:
+    """The folder of distance graphs, where an object or the preferences want it."""
+    addon = context.preferences.addons.get(__package__)
+    own = addon.preferences if addon is not None else None
+    if not wanted and (own is None or not own.cache_on_disk):
+        return None
+    folder = bpy.path.abspath(own.cache_folder) if own is not None and own.cache_folder else compat.user_folder()
+    megabytes = own.disk_megabytes if own is not None else DEFAULT_DISK_MEGABYTES
+    return DiskCache(Path(folder), megabytes * 2**20)
 
 
 def register() -> None:

@@ -8,14 +8,14 @@ from typing import Any, TypeVar
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
-from .core.settings import DistanceSettings, RepairSettings, TessellateSettings
+from .core.settings import DistanceSettings, PathSettings, RepairSettings, TessellateSettings
 
-Settings = TypeVar("Settings", TessellateSettings, DistanceSettings, RepairSettings)
+Settings = TypeVar("Settings", TessellateSettings, DistanceSettings, PathSettings, RepairSettings)
 
 # An operator names objects by strings, so that scripts and presets can; the object itself keeps pointers, which survive
 # renaming. These names are pointers on the object and strings on the operator.
-OBJECT_NAMES = ("sites_object", "instance_object")
-COLLECTION_NAMES = ("sources_collection",)
+OBJECT_NAMES = ("sites_object", "instance_object", "sources_object")
+COLLECTION_NAMES = ("sources_collection", "points_collection")
 
 SITES_SOURCES = (
     ("COUNT", "Count", "Place this many sites, by the density"),
@@ -44,20 +44,49 @@ DISTANCE_SOURCES = (
     ("SELECTED", "Selected Vertices", "Vertices selected in Edit Mode"),
     ("VERTEX_GROUP", "Vertex Group", "Vertices whose weight in the group is above one half"),
     ("EMPTIES", "Empties", "Empties of a collection, or those parented to the object, brought to the nearest point"),
+    (
+        "CURVES",
+        "Curves",
+        "A curve, those of a collection or those parented to the object, brought to the surface",
+    ),
+    ("CURSOR", "3D Cursor", "The point of the surface nearest to the 3D cursor"),
 )
+PATH_POINTS = DISTANCE_SOURCES[:3]
+PATH_CONNECTIONS = (
+    ("CHAIN", "Chain", "From each point to the next: in the order of selection where it is known, empties by name"),
+    ("LOOP", "Closed Chain", "From each point to the next, and from the last back to the first"),
+    ("PAIRS", "All Pairs", "From every point to every other"),
+)
+ISOLINES_BY = (
+    ("COUNT", "Count", "So many lines between the sources and the farthest point"),
+    ("SPACING", "Spacing", "A line at every multiple of a distance"),
+)
+QUALITIES = (
+    ("FAST", "Fast", "Distances at most 2 % too long"),
+    ("NORMAL", "Normal", "Distances at most 0.5 % too long"),
+    ("FINE", "Fine", "Distances at most 0.2 % too long"),
+)
+EXACT_QUALITY = ("EXACT", "Exact", "Exact distances, with nothing kept for the next run")
+
+
+def _quality(items: tuple[tuple[str, str, str], ...] = QUALITIES) -> Any:
+    return _choice("Quality", "How exact distances are, and how long the first run on a mesh takes", items, "NORMAL")
 
 
 def _detail() -> Any:
     return IntProperty(
-        name="Detail",
-        description="Vertices in each vertex's neighbourhood of the distance graph: more is more exact and slower",
-        default=50,
-        min=1,
+        name="Neighborhood",
+        description="Vertices in each neighborhood of the distance graph, instead of a quality; 0 means by quality",
+        default=0,
+        min=0,
         max=10000,
-        soft_min=10,
         soft_max=500,
         options={"SKIP_SAVE"},
     )
+
+
+def _on_disk() -> Any:
+    return _switch("Keep on Disk", "Keep the distance graph of this mesh in the folder of the preferences", False)
 
 
 def _use_modifiers() -> Any:
@@ -73,9 +102,9 @@ def _name(label: str, description: str, default: str = "") -> Any:
     return StringProperty(name=label, description=description, default=default, options={"SKIP_SAVE"})
 
 
-def _length(label: str, description: str, default: float) -> Any:
+def _length(label: str, description: str, default: float, least: float = 0.0) -> Any:
     return FloatProperty(
-        name=label, description=description, default=default, min=0.0, soft_max=10.0, precision=4, step=1,
+        name=label, description=description, default=default, min=least, soft_max=10.0, precision=4, step=1,
         subtype="DISTANCE", options={"SKIP_SAVE"},
     )  # fmt: skip
 
@@ -118,7 +147,9 @@ TESSELLATE: dict[str, Any] = {
         max=8.0,
         options={"SKIP_SAVE"},
     ),
+    "quality": _quality(),
     "k": _detail(),
+    "cache_on_disk": _on_disk(),
     "use_modifiers": _use_modifiers(),
     "make_edges": _switch("Edges", "Make an object of the lines between cells", True),
     "edge_kind": _choice("Edge Object", "What the lines between cells become", EDGE_KINDS, "MESH"),
@@ -146,18 +177,53 @@ TESSELLATE: dict[str, Any] = {
 DISTANCE: dict[str, Any] = {
     "sources": _choice("From", "Where distances are measured from", DISTANCE_SOURCES, "SELECTED"),
     "sources_group": _name("Vertex Group", "The group whose vertices are sources; empty means the active one"),
-    "sources_collection": _name("Collection", "Its empties are sources; empty means those parented to the object"),
+    "sources_collection": _name(
+        "Collection", "Its empties or curves are sources; empty means those parented to the object"
+    ),
+    "sources_object": _name("Curve", "The curve object to measure from; empty means those of the collection"),
     "limit": _length("Limit", "Measure no farther than this; 0 means everywhere", 0.0),
+    "quality": _quality((*QUALITIES, EXACT_QUALITY)),
     "k": _detail(),
+    "cache_on_disk": _on_disk(),
     "use_modifiers": _use_modifiers(),
+    "make_isolines": _switch("Isolines", "Make a curve object of the lines of equal distance", False),
+    "isolines_by": _choice("By", "What says how many isolines there are", ISOLINES_BY, "COUNT"),
+    "isoline_count": IntProperty(
+        name="Count",
+        description="Number of isolines",
+        default=10,
+        min=1,
+        max=1000,
+        soft_max=100,
+        options={"SKIP_SAVE"},
+    ),
+    "isoline_spacing": _length("Spacing", "Distance from one isoline to the next", 0.1, least=1e-6),
+    "isoline_radius": _length("Radius", "Half the thickness of the isolines", 0.005),
+    "make_preview": _switch("Preview", "Show the distances in colors; the object's own materials are kept", False),
+    "preview_lines": _switch("Lines", "Show lines of equal distance in the preview, too", True),
     "distance_attribute": _name("Attribute", "Where distances are written", "saddleback_distance"),
+}
+
+PATH: dict[str, Any] = {
+    "points": _choice("Through", "What the paths connect", PATH_POINTS, "SELECTED"),
+    "points_group": _name("Vertex Group", "The group whose vertices are connected; empty means the active one"),
+    "points_collection": _name("Collection", "Its empties are connected; empty means those parented to the object"),
+    "from_cursor": _switch("From 3D Cursor", "Begin at the point of the surface nearest to the 3D cursor", False),
+    "connect": _choice("Connect", "Which points a path joins", PATH_CONNECTIONS, "CHAIN"),
+    "shorten": _switch("Shorten", "Pull each path straight where the distance graph bends it a little", True),
+    "quality": _quality(),
+    "k": _detail(),
+    "cache_on_disk": _on_disk(),
+    "use_modifiers": _use_modifiers(),
+    "path_radius": _length("Radius", "Half the thickness of the paths", 0.01),
+    "lift": _length("Lift", "How far the paths run above the surface", 0.0),
 }
 
 REPAIR: dict[str, Any] = {
     "weld_distance": _length("Weld Distance", "Join vertices closer than this; 0 joins those at the same place", 0.0),
 }
 
-PROPERTIES = {"tessellate": TESSELLATE, "distance": DISTANCE, "repair": REPAIR}
+PROPERTIES = {"tessellate": TESSELLATE, "distance": DISTANCE, "path": PATH, "repair": REPAIR}
 
 
 def _kept(properties: dict[str, Any]) -> dict[str, Any]:
@@ -186,6 +252,12 @@ class SaddlebackDistanceProps(bpy.types.PropertyGroup):
     __annotations__ = _kept(DISTANCE)
 
 
+class SaddlebackPathProps(bpy.types.PropertyGroup):
+    """Settings of `saddleback.path`."""
+
+    __annotations__ = _kept(PATH)
+
+
 class SaddlebackRepairProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.repair`."""
 
@@ -198,11 +270,18 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
     __annotations__ = {
         "tessellate": PointerProperty(type=SaddlebackTessellateProps),
         "distance": PointerProperty(type=SaddlebackDistanceProps),
+        "path": PointerProperty(type=SaddlebackPathProps),
         "repair": PointerProperty(type=SaddlebackRepairProps),
     }
 
 
-CLASSES = (SaddlebackTessellateProps, SaddlebackDistanceProps, SaddlebackRepairProps, SaddlebackObjectProps)
+CLASSES = (
+    SaddlebackTessellateProps,
+    SaddlebackDistanceProps,
+    SaddlebackPathProps,
+    SaddlebackRepairProps,
+    SaddlebackObjectProps,
+)
 
 
 def fill_operator(operator: bpy.types.Operator, source: bpy.types.Object, settings_name: str) -> None:

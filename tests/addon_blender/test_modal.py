@@ -122,7 +122,7 @@ def test_progress_rises_and_is_told(item):
 def test_escape_at_fifty_random_moments():
     item = grid(n=35)
     assert item.saddleback.tessellate.count  # the settings exist from the panel's first look on
-    assert item.saddleback.distance.k
+    assert item.saddleback.distance.quality
     operator, context = pressed_tessellate(count=40, iterations=12, k=30)
     start = time.perf_counter()
     operator.invoke(context, None)

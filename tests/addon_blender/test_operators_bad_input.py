@@ -11,7 +11,7 @@ from saddleback_blender import jobs
 def refuse(*sentences, operator="tessellate", **options):
     """Calls the operator, which must refuse with all these words and leave the file as it is."""
     for item in bpy.data.objects:  # the settings exist from the first look on
-        assert item.saddleback.tessellate.count and item.saddleback.distance.k
+        assert item.saddleback.tessellate.count and item.saddleback.distance.quality and item.saddleback.path.connect
     before = fingerprint()
     with pytest.raises(RuntimeError) as caught:
         getattr(bpy.ops.saddleback, operator)(**options)
@@ -20,7 +20,7 @@ def refuse(*sentences, operator="tessellate", **options):
     assert fingerprint() == before
 
 
-OPERATORS = ["distance", "tessellate", "repair", "clear"]
+OPERATORS = ["distance", "path", "tessellate", "repair", "clear"]
 
 
 @pytest.mark.parametrize("operator", OPERATORS)
@@ -49,7 +49,7 @@ def test_hidden(operator):
     refuse("'Sphere' is hidden", "show it", operator=operator)
 
 
-@pytest.mark.parametrize("operator", ["distance", "tessellate", "repair"])
+@pytest.mark.parametrize("operator", ["distance", "path", "tessellate", "repair"])
 def test_zero_scale(operator):
     item = sphere()
     item.scale.z = 0
@@ -64,7 +64,7 @@ def test_a_very_flat_but_not_zero_scale_is_fine():
     assert bpy.ops.saddleback.tessellate(count=5, iterations=1) == {"FINISHED"}
 
 
-@pytest.mark.parametrize("operator", ["distance", "tessellate", "repair"])
+@pytest.mark.parametrize("operator", ["distance", "path", "tessellate", "repair"])
 def test_linked_data(operator, tmp_path):
     sphere()
     path = str(tmp_path / "library.blend")

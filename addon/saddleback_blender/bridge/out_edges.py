@@ -11,11 +11,11 @@ from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
+from .out_curves import new_curve
 
 EDGES_ROLE = "edges"
 # Attributes of the edges: the cells on both sides.
 FIRST_CELL, SECOND_CELL = "saddleback_cell_a", "saddleback_cell_b"
-CURVE_BEVEL_RESOLUTION = 2
 
 
 def write_edges(
@@ -26,7 +26,9 @@ def write_edges(
     points = to_place(place, result.edge_points)
     network = edge_network(points, result.edge_offsets, result.edge_cells, result.edge_closed)
     if settings.edge_kind == "CURVE":
-        data: bpy.types.ID = _curve(network, settings.edge_radius)
+        # Few and long splines, because Blender's cost is by the spline.
+        lines = ((network.vertices[vertices], is_closed) for vertices, is_closed in long_lines(network))
+        data: bpy.types.ID = new_curve("Saddleback Edges", lines, settings.edge_radius)
         data.materials.append(nodes.edges_material())
         return replace_object(context, source, EDGES_ROLE, data, place)
     data = _edge_mesh(network)
@@ -48,19 +50,3 @@ def _edge_mesh(network: EdgeNetwork) -> bpy.types.Mesh:
         set_attribute(mesh, name, "EDGE", network.cells[line, column])
     mesh.update()
     return mesh
-
-
-def _curve(network: EdgeNetwork, radius: float) -> bpy.types.Curve:
-    """Poly splines, few and long, because Blender's cost is by the spline."""
-    curve = bpy.data.curves.new("Saddleback Edges", "CURVE")
-    curve.dimensions = "3D"
-    curve.bevel_depth = radius
-    curve.bevel_resolution = CURVE_BEVEL_RESOLUTION
-    curve.use_fill_caps = True
-    homogeneous = np.column_stack([network.vertices, np.ones(len(network.vertices))]).astype(np.float32)
-    for vertices, is_closed in long_lines(network):
-        spline = curve.splines.new("POLY")
-        spline.points.add(len(vertices) - 1)
-        spline.points.foreach_set("co", homogeneous[vertices].ravel())
-        spline.use_cyclic_u = is_closed
-    return curve

@@ -1,4 +1,4 @@
-"""Where cells are centred and distances begin: selected vertices, vertex groups, other objects, empties."""
+"""Where cells are centred, and distances and paths begin: vertices chosen or painted, objects, curves, the cursor."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 from .. import compat
 from ..core.errors import BadInputError
-from ..core.requests import Points
+from ..core.requests import Points, Polyline
 from ..core.results import Reals
-from ..core.settings import DistanceSettings, TessellateSettings
+from ..core.settings import DistanceSettings, PathSettings, TessellateSettings
+from .curves_in import read_curves
 from .density import read_vertex_group
 from .mesh_in import mesh_of, to_world
 
@@ -28,19 +29,51 @@ def read_sites(
 
 def read_sources(
     context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DistanceSettings
-) -> Points:
+) -> Points | tuple[Polyline, ...]:
     """Where distances are measured from."""
     if settings.sources == "VERTEX_GROUP":
-        weights, label = read_vertex_group(source, mesh, settings.sources_group)
-        vertices = np.nonzero(weights > 0.5)[0].astype(np.int32)
-        if not len(vertices):
-            raise BadInputError(
-                f"'{source.name}': no vertex has a weight above 0.5 in {label}; paint it, or choose another source"
-            )
-        return vertices
+        return group_vertices(source, mesh, settings.sources_group, "choose another source")
     if settings.sources == "EMPTIES":
         return empty_points(context, source, settings.sources_collection)
+    if settings.sources == "CURVES":
+        return read_curves(source, settings.sources_object, settings.sources_collection)
+    if settings.sources == "CURSOR":
+        return cursor_point(context)
     return selected_vertices(source, mesh)
+
+
+def read_path_points(
+    context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, settings: PathSettings
+) -> Points:
+    """What paths run through, in order."""
+    points: Points
+    if settings.points == "VERTEX_GROUP":
+        points = group_vertices(source, mesh, settings.points_group, "choose other points")
+    elif settings.points == "EMPTIES":
+        points = empty_points(context, source, settings.points_collection)
+    else:
+        points = selected_vertices(source, mesh)
+        if len(points) > 2 and settings.connect != "PAIRS" and not settings.use_modifiers:
+            points = compat.in_order_of_selection(mesh, points)
+    if not settings.from_cursor:
+        return points
+    if points.ndim == 1:
+        points = to_world(source, compat.read_positions(mesh)[points])
+    return np.concatenate([cursor_point(context), points])
+
+
+def group_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, otherwise: str) -> NDArray[np.int32]:
+    """(n,) vertices whose weight in a group is above one half."""
+    weights, label = read_vertex_group(source, mesh, name)
+    vertices = np.nonzero(weights > 0.5)[0].astype(np.int32)
+    if not len(vertices):
+        raise BadInputError(f"'{source.name}': no vertex has a weight above 0.5 in {label}; paint it, or {otherwise}")
+    return vertices
+
+
+def cursor_point(context: bpy.types.Context) -> Reals:
+    """(1, 3) place of the 3D cursor."""
+    return np.array([context.scene.cursor.location[:]], np.float64)
 
 
 def selected_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh) -> NDArray[np.int32]:

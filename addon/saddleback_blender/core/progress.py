@@ -20,6 +20,7 @@ class Progress:
         self._begin, self._end, self._reached = 0.0, 0.0, 0.0
         self._cancelled = False
         self.text = ""  # what is being done, for a person to read
+        self.notes: list[str] = []  # what a person should know when the run is over
 
     @property
     def fraction(self) -> float:
@@ -38,6 +39,10 @@ class Progress:
         # The flag first: a stage that begins between the two lines sees it, one that had begun has its job stopped.
         self._cancelled = True
         self._job.cancel()
+
+    def note(self, text: str) -> None:
+        """Adds a sentence to be told when the run is over."""
+        self.notes.append(text)
 
     def check(self) -> None:
         """Raises the library's Cancelled when asked to stop; for the steps between native calls."""

@@ -10,8 +10,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from .disk_cache import DiskCache
 from .results import Indices, Reals
-from .settings import DistanceSettings, TessellateSettings
+from .settings import DistanceSettings, PathSettings, TessellateSettings
 
 Number = TypeVar("Number", bound=np.generic)
 
@@ -82,6 +83,14 @@ Points = NDArray[np.int32] | Reals  # vertices of the Blender mesh (n,), or plac
 
 
 @dataclass(frozen=True)
+class Polyline:
+    """A curve through places in the world (n, 3), back to the first where closed."""
+
+    points: Reals
+    closed: bool
+
+
+@dataclass(frozen=True)
 class TessellateRequest:
     """One tessellation. `density` (V,) and `sites` speak of the Blender mesh's vertices."""
 
@@ -90,13 +99,26 @@ class TessellateRequest:
     density: Reals | None = None
     sites: Points | None = None  # None: place `settings.count`
     threads: int = 0
+    disk: DiskCache | None = None  # None: graphs are kept in memory only
 
 
 @dataclass(frozen=True)
 class DistanceRequest:
-    """One distance field, from the nearest of `sources`."""
+    """One distance field, from the nearest of `sources`: points, or curves that are brought to the surface."""
 
     surface: Surface
     settings: DistanceSettings
-    sources: Points
+    sources: Points | tuple[Polyline, ...]
     threads: int = 0
+    disk: DiskCache | None = None
+
+
+@dataclass(frozen=True)
+class PathRequest:
+    """Shortest paths between points in their order, or between all pairs of them."""
+
+    surface: Surface
+    settings: PathSettings
+    points: Points
+    threads: int = 0
+    disk: DiskCache | None = None

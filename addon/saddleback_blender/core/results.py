@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .level_lines import LevelLines
+
 Reals = NDArray[np.float64]
 Indices = NDArray[np.int32]
 
@@ -54,6 +56,26 @@ class DistanceResult:
     """Geodesic distances of a mesh of V vertices to the nearest source: world units, inf = unreached."""
 
     vertex_distance: Reals  # (V,)
+    isolines: LevelLines | None = None  # where they were wanted
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays."""
+        return _nbytes(self)
+
+
+@dataclass(frozen=True)
+class PathsResult:
+    """m lines along the surface: line i runs through points[offsets[i]:offsets[i + 1]], back to its first where closed.
+
+    A chain or a loop is one line through all its points, a pair one line each.
+    """
+
+    points: Reals  # (n, 3)
+    normals: Reals  # (n, 3) unit length
+    offsets: Indices  # (m + 1,)
+    closed: NDArray[np.bool_]  # (m,)
+    lengths: Reals  # (m,)
 
     @property
     def nbytes(self) -> int:

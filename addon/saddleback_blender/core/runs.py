@@ -10,14 +10,16 @@ import numpy as np
 from . import cache as cache_module
 from . import native
 from .cache import Cache
+from .curve_points import points_on_surface
 from .errors import BadInputError
+from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
+from .level_lines import LevelLines, isoline_levels, level_lines
 from .normals import normals_at
 from .progress import Progress
-from .requests import DistanceRequest, Points, Surface, TessellateRequest, digest
+from .requests import DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
 from .results import CellsResult, DistanceResult, Indices, Reals, RepairResult
-
-# Bytes that the native mesh holds beside its input: half-edge twins, lengths, angles, areas, flags.
-MESH_BYTES_PER_VERTEX, MESH_BYTES_PER_FACE = 48, 84
+from .settings import DistanceSettings
+from .surface_places import compact_points, surface_points
 
 
 def new_progress() -> Progress:
@@ -38,10 +40,11 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
             f"'{surface.name}': {settings.count} cells do not fit on {len(surface.vertices)} vertices; "
             "ask for fewer, or subdivide the mesh"
         )
-    sites = None if request.sites is None else _compact_sites(surface, request.sites, "site")
+    sites = None if request.sites is None else compact_points(surface, request.sites, "site")
     density = None if request.density is None else surface.gather(request.density)
-    mesh = _mesh(surface, progress, cache)
-    graph = _graph(surface, mesh, settings.k, request.threads, progress, cache)
+    mesh = mesh_of_surface(surface, progress, cache)
+    choice = GraphChoice(settings.quality, settings.k)
+    graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
     moves = sites is None or settings.relax_sites
     iterations = settings.iterations if moves else 0
     what = digest(
@@ -50,7 +53,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         iterations,
         density if sites is None or iterations else None,
     )
-    key = (surface.key, str(min(settings.k, len(surface.vertices))), what)
+    key = (choice.name(surface), what)
 
     def solve() -> _Solved:
         return _solve(request, mesh, graph, sites, density, iterations, progress)
@@ -72,24 +75,56 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
 
 
 def distance(request: DistanceRequest, progress: Progress, cache: Cache | None = None) -> DistanceResult:
-    """Distance of every vertex to the nearest source. Raises as `tessellate` does."""
+    """Distance of every vertex to the nearest source, and its isolines. Raises as `tessellate` does."""
     cache = cache or cache_module.shared
     settings, surface = request.settings, request.surface
-    sources = _compact_sites(surface, request.sources, "source")
-    mesh = _mesh(surface, progress, cache)
-    graph = _graph(surface, mesh, settings.k, request.threads, progress, cache)
+    sources = request.sources
+    if not isinstance(sources, tuple):
+        sources = compact_points(surface, sources, "source")
+    mesh = mesh_of_surface(surface, progress, cache)
+    choice = GraphChoice(settings.quality, settings.k)
+    graph = None
+    if not choice.is_exact:
+        graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
     limit = settings.limit if settings.limit > 0 else np.inf
 
     def solve() -> Reals:
-        points = _surface_points(mesh, sources)
-        with progress.stage(0.98, "measuring distances"):
-            values: Reals = graph.distances(points, limit=limit)
+        if graph is None:
+            points = points_on_surface(mesh, sources) if isinstance(sources, tuple) else surface_points(mesh, sources)
+            with progress.stage(0.9, "measuring distances") as job:
+                exact: Reals = native.load().exact_distances(mesh, points, limit=limit, job=job)
+            return exact
+        lone: Any | None
+        if isinstance(sources, tuple):
+            with progress.stage(0.6, "following the curves"):
+                chosen, lone = None, points_on_surface(mesh, sources)
+        else:
+            chosen, lone = surface_points(mesh, sources), None
+        values = np.full(len(surface.vertices), np.inf)
+        for number, part in enumerate((chosen, lone)):
+            if part is not None and len(part):
+                with progress.stage(0.8 + 0.1 * number, "measuring distances") as job:
+                    values = np.minimum(values, graph.distances(part, limit=limit, job=job))
         return values
 
-    key = ("distance", surface.key, str(min(settings.k, len(surface.vertices))), digest(sources, limit))
+    key = ("distance", choice.name(surface), _digest_of(sources, limit))
     values = cache.get(key, solve, lambda array: array.nbytes)
     progress.check()
-    return DistanceResult(surface.spread(values, np.inf))
+    isolines = _isolines(surface, values, settings, progress) if settings.make_isolines else None
+    return DistanceResult(surface.spread(values, np.inf), isolines)
+
+
+def _digest_of(sources: Points | tuple[Polyline, ...], limit: float) -> str:
+    if not isinstance(sources, tuple):
+        return digest(sources, limit)
+    return digest(limit, *(part for curve in sources for part in (curve.points, curve.closed)))
+
+
+def _isolines(surface: Surface, values: Reals, settings: DistanceSettings, progress: Progress) -> LevelLines:
+    farthest = float(values[np.isfinite(values)].max(initial=0.0))
+    levels = isoline_levels(settings, farthest, surface.name)
+    with progress.stage(0.98, "following the isolines"):
+        return level_lines(surface.vertices, surface.triangles, values, levels)
 
 
 def repair(surface: Surface, weld_distance: float, progress: Progress) -> RepairResult:
@@ -112,26 +147,6 @@ class _Solved:
     stop_reason: str
 
 
-def _mesh(surface: Surface, progress: Progress, cache: Cache) -> Any:
-    def build() -> Any:
-        with progress.stage(0.05, "checking the mesh"):
-            return native.load().Mesh(surface.vertices, surface.triangles)
-
-    size = surface.vertices.nbytes + surface.triangles.nbytes
-    size += MESH_BYTES_PER_VERTEX * len(surface.vertices) + MESH_BYTES_PER_FACE * len(surface.triangles)
-    return cache.get(("mesh", surface.key), build, lambda _: size)
-
-
-def _graph(surface: Surface, mesh: Any, k: int, threads: int, progress: Progress, cache: Cache) -> Any:
-    k = min(k, len(surface.vertices))  # a neighbourhood cannot hold more than the whole surface
-
-    def build() -> Any:
-        with progress.stage(0.5, "building the distance graph") as job:
-            return native.load().SaddleVertexGraph(mesh, k=k, threads=threads, job=job)
-
-    return cache.get(("graph", surface.key, str(k)), build, _graph_bytes)
-
-
 def _solve(
     request: TessellateRequest,
     mesh: Any,
@@ -142,7 +157,7 @@ def _solve(
     progress: Progress,
 ) -> _Solved:
     sb, settings = native.load(), request.settings
-    points = None if sites is None else _surface_points(mesh, sites)
+    points = None if sites is None else surface_points(mesh, sites)
     energy, done, reason = np.empty(0), 0, "sites kept"
     if points is None or iterations:
         choice = {"count": settings.count} if points is None else {"sites": points}
@@ -187,33 +202,11 @@ def _result(request: TessellateRequest, solved: _Solved) -> CellsResult:
     )
 
 
-def _compact_sites(surface: Surface, points: Points, what: str) -> Points:
-    """Vertex numbers of the Blender mesh -> numbers of the surface; places in the world stay."""
-    if points.ndim == 2:
-        return points
-    vertices = surface.compact(np.asarray(points, np.int32))
-    loose = np.nonzero(vertices < 0)[0]
-    if len(loose):
-        raise BadInputError(
-            f"'{surface.name}': the {what} at vertex {points[loose[0]]} belongs to no face; choose one of the surface"
-        )
-    return vertices
-
-
-def _surface_points(mesh: Any, points: Points) -> Any:
-    """Vertex numbers as they are; places in the world -> the nearest points of the surface."""
-    return points if points.ndim == 1 else native.load().project(mesh, points)
-
-
 def _blender_numbers(surface: Surface, origin: Indices) -> Indices:
     """Numbers of the surface's vertices (-1 = none) -> of the Blender mesh's."""
     if surface.used is None:
         return origin
     return np.where(origin >= 0, surface.used[np.maximum(origin, 0)], np.int32(-1)).astype(np.int32)
-
-
-def _graph_bytes(graph: Any) -> int:
-    return int(graph.nbytes)
 
 
 def _solved_bytes(solved: _Solved) -> int:

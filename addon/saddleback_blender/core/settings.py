@@ -20,7 +20,9 @@ class TessellateSettings:
     density_channel: str = "LUMINANCE"  # LUMINANCE, R, G, B, A
     density_invert: bool = False
     density_contrast: float = 1.0
-    k: int = 50
+    quality: str = "NORMAL"  # FAST, NORMAL, FINE
+    k: int = 0  # vertices in a neighbourhood of the graph; 0 = by quality
+    cache_on_disk: bool = False
     use_modifiers: bool = False
     make_edges: bool = True
     edge_kind: str = "MESH"  # MESH, CURVE
@@ -40,15 +42,43 @@ class TessellateSettings:
 
 @dataclass(frozen=True)
 class DistanceSettings:
-    """All properties of `saddleback.distance`; lengths are world units."""
+    """All properties of `saddleback.distance`; lengths are world units, objects are given by name ("" = none)."""
 
-    sources: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES
+    sources: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES, CURVES, CURSOR
     sources_group: str = ""
     sources_collection: str = ""
+    sources_object: str = ""  # the curve object of CURVES
     limit: float = 0.0  # no distance beyond it; 0 = none
-    k: int = 50
+    quality: str = "NORMAL"  # FAST, NORMAL, FINE, EXACT
+    k: int = 0  # vertices in a neighbourhood of the graph; 0 = by quality
+    cache_on_disk: bool = False
     use_modifiers: bool = False
+    make_isolines: bool = False
+    isolines_by: str = "COUNT"  # COUNT, SPACING
+    isoline_count: int = 10
+    isoline_spacing: float = 0.1
+    isoline_radius: float = 0.005
+    make_preview: bool = False
+    preview_lines: bool = True
     distance_attribute: str = "saddleback_distance"
+
+
+@dataclass(frozen=True)
+class PathSettings:
+    """All properties of `saddleback.path`; lengths are world units."""
+
+    points: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES
+    points_group: str = ""
+    points_collection: str = ""
+    from_cursor: bool = False  # the 3D cursor is a point, too: the first
+    connect: str = "CHAIN"  # CHAIN, LOOP, PAIRS
+    shorten: bool = True
+    quality: str = "NORMAL"  # FAST, NORMAL, FINE
+    k: int = 0  # vertices in a neighbourhood of the graph; 0 = by quality
+    cache_on_disk: bool = False
+    use_modifiers: bool = False
+    path_radius: float = 0.01
+    lift: float = 0.0  # how far above the surface
 
 
 @dataclass(frozen=True)

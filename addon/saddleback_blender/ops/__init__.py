@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import bpy
 
-from . import clear, distance, repair, tessellate
+from . import clear, distance, path, repair, tessellate
 
-CLASSES = (*distance.CLASSES, *tessellate.CLASSES, *repair.CLASSES, *clear.CLASSES)
+CLASSES = (*distance.CLASSES, *path.CLASSES, *tessellate.CLASSES, *repair.CLASSES, *clear.CLASSES)
 
 
 def register() -> None:

@@ -54,10 +54,11 @@ class SurfaceOperator:
         """Computes and writes before it returns: scripts and the redo panel."""
         try:
             source, call = self._prepare(context)
-            result = call(runs.new_progress())
+            progress = runs.new_progress()
+            result = call(progress)
         except Exception as error:
             return self._refuse(error, context)
-        return self._succeed(context, source, result)
+        return self._succeed(context, source, result, progress)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Starts the run in a thread: the panel."""
@@ -114,9 +115,11 @@ class SurfaceOperator:
             source = self._source.find(context)
         except BadInputError as error:
             return self._refuse(error, context)
-        return self._succeed(context, source, task.result)
+        return self._succeed(context, source, task.result, task.progress)
 
-    def _succeed(self, context: bpy.types.Context, source: bpy.types.Object, result: Any) -> set[str]:
+    def _succeed(
+        self, context: bpy.types.Context, source: bpy.types.Object, result: Any, progress: Progress
+    ) -> set[str]:
         try:
             line = self.write(context, source, result)
         except BadInputError as error:
@@ -124,6 +127,8 @@ class SurfaceOperator:
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
+        for note in progress.notes:
+            self.report({"WARNING"}, note)
         self.report({"INFO"}, jobs.state.line)
         return {"FINISHED"}
 

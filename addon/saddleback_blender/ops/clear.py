@@ -6,6 +6,7 @@ import bpy
 
 from .. import jobs
 from ..bridge.out_collection import clear_outputs
+from ..bridge.preview import hide_preview
 from ..bridge.source import usable_source, why_not
 from ..core.errors import BadInputError
 
@@ -33,7 +34,7 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
         except BadInputError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        removed = clear_outputs(context, source)
+        removed = hide_preview(source) + clear_outputs(context, source)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = ""

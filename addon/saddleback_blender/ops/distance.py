@@ -11,10 +11,14 @@ import numpy as np
 from .. import prefs
 from ..bridge.mesh_in import mesh_of, read_surface
 from ..bridge.out_attributes import write_vertex_attributes
+from ..bridge.out_collection import remove_output
+from ..bridge.out_curves import ISOLINES_ROLE, write_isolines
 from ..bridge.output_surface import check_attribute_names, output_surface
+from ..bridge.preview import hide_preview, show_preview
 from ..bridge.sites import read_sources
 from ..bridge.source import shared_mesh_warning
 from ..core import runs
+from ..core.level_lines import isoline_spacing
 from ..core.progress import Progress
 from ..core.requests import DistanceRequest
 from ..core.results import DistanceResult
@@ -46,6 +50,7 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
                 settings=settings,
                 sources=read_sources(context, source, mesh, settings),
                 threads=prefs.threads(context),
+                disk=prefs.disk_cache(context, settings.cache_on_disk),
             )
         return partial(runs.distance, request)
 
@@ -56,12 +61,26 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
         surface = output_surface(context, source, settings.use_modifiers)
         distances = result.vertex_distance
         write_vertex_attributes(surface, {settings.distance_attribute: distances.astype(np.float32)})
+        reached = np.isfinite(distances)
+        farthest = float(distances[reached].max(initial=0.0))
+        if result.isolines is not None:
+            write_isolines(context, source, result.isolines, settings.isoline_radius)
+        else:
+            remove_output(source, ISOLINES_ROLE)
+        if settings.make_preview:
+            spacing = isoline_spacing(settings, farthest) if settings.preview_lines else 0.0
+            show_preview(surface, settings.distance_attribute, farthest, spacing)
+        else:
+            hide_preview(surface)
         keep_settings(settings, source.saddleback.distance)
         if warning:
             self.report({"WARNING"}, warning)
-        reached = np.isfinite(distances)
-        farthest = distances[reached].max(initial=0.0)
-        return f"'{source.name}': {int(reached.sum())} vertices reached, the farthest at {farthest:.4g}"
+        lines = "" if result.isolines is None else f", {_count(len(set(result.isolines.level)), 'isoline')}"
+        return f"'{source.name}': {int(reached.sum())} vertices reached, the farthest at {farthest:.4g}{lines}"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
 CLASSES = (SADDLEBACK_OT_distance,)

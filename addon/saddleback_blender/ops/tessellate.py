@@ -55,6 +55,7 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
                 density=read_density(source, mesh, settings),
                 sites=read_sites(context, source, mesh, settings),
                 threads=prefs.threads(context),
+                disk=prefs.disk_cache(context, settings.cache_on_disk),
             )
         return partial(runs.tessellate, request)
 

@@ -113,7 +113,7 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.tessellate", "MOD_EXPLODE")
         rows.draw_sites(layout.column(), settings)
-        layout.prop(settings, "k")
+        rows.draw_quality(layout, settings)
         layout.prop(settings, "use_modifiers")
 
 
@@ -201,9 +201,64 @@ class SADDLEBACK_PT_distance(SaddlebackSubPanel, bpy.types.Panel):
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.distance", "DRIVER_DISTANCE")
         rows.draw_distance_sources(layout.column(), settings, item)
-        layout.prop(settings, "k")
+        rows.draw_quality(layout, settings)
         layout.prop(settings, "use_modifiers")
         layout.prop(settings, "distance_attribute")
+
+
+class SADDLEBACK_PT_isolines(SaddlebackSubPanel, bpy.types.Panel):
+    """Lines of equal distance."""
+
+    bl_label = "Isolines"
+    bl_parent_id = "SADDLEBACK_PT_distance"
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draws the switch."""
+        self.layout.enabled = not context.window_manager.saddleback_running
+        self.layout.prop(context.view_layer.objects.active.saddleback.distance, "make_isolines", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_isolines(self.split_layout(context), context.view_layer.objects.active.saddleback.distance)
+
+
+class SADDLEBACK_PT_preview(SaddlebackSubPanel, bpy.types.Panel):
+    """The distances in colours."""
+
+    bl_label = "Preview Material"
+    bl_parent_id = "SADDLEBACK_PT_distance"
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draws the switch."""
+        self.layout.enabled = not context.window_manager.saddleback_running
+        self.layout.prop(context.view_layer.objects.active.saddleback.distance, "make_preview", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = context.view_layer.objects.active.saddleback.distance
+        layout = self.split_layout(context)
+        layout.active = settings.make_preview
+        layout.prop(settings, "preview_lines")
+
+
+class SADDLEBACK_PT_path(SaddlebackSubPanel, bpy.types.Panel):
+    """Shortest ways along the surface."""
+
+    bl_label = "Path"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        item = context.view_layer.objects.active
+        settings = item.saddleback.path
+        layout = self.split_layout(context)
+        _draw_button(layout, context, "saddleback.path", "CURVE_PATH")
+        rows.draw_path_points(layout.column(), settings, item)
+        layout.prop(settings, "path_radius")
+        layout.prop(settings, "lift")
+        layout.prop(settings, "shorten")
+        rows.draw_quality(layout, settings)
+        layout.prop(settings, "use_modifiers")
 
 
 class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
@@ -234,5 +289,8 @@ CLASSES = (
     SADDLEBACK_PT_centres,
     SADDLEBACK_PT_attributes,
     SADDLEBACK_PT_distance,
+    SADDLEBACK_PT_isolines,
+    SADDLEBACK_PT_preview,
+    SADDLEBACK_PT_path,
     SADDLEBACK_PT_repair,
 )

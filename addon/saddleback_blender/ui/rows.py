@@ -80,17 +80,59 @@ def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:
     column.prop(settings, "density_attribute", text="Density")
 
 
+def draw_quality(layout: bpy.types.UILayout, settings: Any) -> None:
+    """How exact distances are; a neighbourhood, where one is set, stands for the quality."""
+    column = layout.column()
+    row = column.row()
+    row.active = settings.k == 0
+    row.prop(settings, "quality")
+    column.prop(settings, "k")
+    row = column.row()
+    row.active = settings.k > 0 or settings.quality != "EXACT"
+    row.prop(settings, "cache_on_disk")
+
+
 def draw_distance_sources(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
     """Where distances are measured from, and how far."""
     layout.prop(settings, "sources")
     if settings.sources == "VERTEX_GROUP":
         layout.prop_search(settings, "sources_group", item, "vertex_groups", text="Group", icon="GROUP_VERTEX")
     elif settings.sources == "EMPTIES":
-        if _is_name(settings, "sources_collection"):
-            layout.prop_search(settings, "sources_collection", bpy.data, "collections")
-        else:
-            layout.prop(settings, "sources_collection")
+        draw_collection(layout, settings, "sources_collection")
+    elif settings.sources == "CURVES":
+        draw_object(layout, settings, "sources_object")
+        if not settings.sources_object:
+            draw_collection(layout, settings, "sources_collection")
     layout.prop(settings, "limit")
+
+
+def draw_isolines(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The curves of equal distance, and the preview's, which has the same."""
+    layout.active = settings.make_isolines or settings.make_preview
+    layout.prop(settings, "isolines_by")
+    layout.prop(settings, "isoline_count" if settings.isolines_by == "COUNT" else "isoline_spacing")
+    column = layout.column()
+    column.active = settings.make_isolines
+    column.prop(settings, "isoline_radius")
+
+
+def draw_path_points(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """What paths connect, and how."""
+    layout.prop(settings, "points")
+    if settings.points == "VERTEX_GROUP":
+        layout.prop_search(settings, "points_group", item, "vertex_groups", text="Group", icon="GROUP_VERTEX")
+    elif settings.points == "EMPTIES":
+        draw_collection(layout, settings, "points_collection")
+    layout.prop(settings, "from_cursor")
+    layout.prop(settings, "connect")
+
+
+def draw_collection(layout: bpy.types.UILayout, settings: Any, name: str) -> None:
+    """A choice among collections: a pointer on the object's settings, a name on an operator."""
+    if _is_name(settings, name):
+        layout.prop_search(settings, name, bpy.data, "collections")
+    else:
+        layout.prop(settings, name)
 
 
 def draw_object(layout: bpy.types.UILayout, settings: Any, name: str) -> None:

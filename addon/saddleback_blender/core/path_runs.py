@@ -1,0 +1,152 @@
+"""Shortest paths between chosen points: a chain, a loop, or all pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import cache as cache_module
+from . import native
+from .cache import Cache
+from .errors import BadInputError
+from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
+from .normals import normals_at
+from .progress import Progress
+from .requests import PathRequest, Surface, digest
+from .results import Indices, PathsResult, Reals
+from .surface_places import compact_points, surface_points
+
+MOST_PAIRS = 20_000  # more lines than that hide what they should show
+
+
+def paths(request: PathRequest, progress: Progress, cache: Cache | None = None) -> PathsResult:
+    """Paths along a surface.
+
+    Raises BadInputError, the library's MeshError and InputError with sentences, and its Cancelled.
+    """
+    cache = cache or cache_module.shared
+    settings, surface = request.settings, request.surface
+    chosen = compact_points(surface, request.points, "point")
+    mesh = mesh_of_surface(surface, progress, cache)
+    points = surface_points(mesh, chosen)
+    order = _different(mesh, points, settings.connect == "LOOP")
+    _check(surface, mesh, points, order, settings.connect)
+    choice = GraphChoice(settings.quality, settings.k)
+    graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
+
+    def solve() -> PathsResult:
+        legs = list(_legs(graph, points, order, settings.connect, settings.shorten, progress))
+        if settings.connect == "PAIRS":
+            return _result(mesh, legs, False)
+        closed = settings.connect == "LOOP" and len(order) > 2
+        return _result(mesh, [_joined(legs, closed)], closed)
+
+    key = ("paths", choice.name(surface), digest(chosen, settings.connect, settings.shorten))
+    result = cache.get(key, solve, lambda result: result.nbytes)
+    progress.check()
+    return result
+
+
+class _Line:
+    """A polyline on the surface as plain arrays."""
+
+    def __init__(self, points: Reals, faces: Indices, barycentric: Reals, length: float) -> None:
+        self.points, self.faces, self.barycentric, self.length = points, faces, barycentric, length
+
+    @classmethod
+    def of(cls, path: Any) -> _Line:
+        """The library's path."""
+        return cls(path.points, path.surface.faces, path.surface.barycentric, float(path.length))
+
+
+def _legs(
+    graph: Any, points: Any, order: NDArray[np.int64], connect: str, shorten: bool, progress: Progress
+) -> Iterator[_Line]:
+    """The paths one by one; each is a step of the progress."""
+    count = len(order)
+    begin = progress.fraction
+    if connect == "PAIRS":
+        for i in range(count - 1):
+            with progress.stage(_share(begin, i + 1, count - 1), "following the shortest paths") as job:
+                here, others = _take(points, order[i : i + 1]), _take(points, order[i + 1 :])
+                found = graph.paths(here, others, shorten=shorten, job=job)
+            yield from (_Line.of(path) for path in found)
+        return
+    is_loop = connect == "LOOP" and count > 2
+    ends = list(zip(order, np.roll(order, -1), strict=True))[: count if is_loop else count - 1]
+    for number, (a, b) in enumerate(ends):
+        with progress.stage(_share(begin, number + 1, len(ends)), "following the shortest paths") as job:
+            path = graph.path(points[int(a)], points[int(b)], shorten=shorten, job=job)
+        yield _Line.of(path)
+
+
+def _take(points: Any, chosen: NDArray[np.int64]) -> Any:
+    """Some of the points: vertices or anything on the surface."""
+    if isinstance(points, np.ndarray):
+        return points[chosen]
+    return native.load().SurfacePoints(points.faces[chosen], points.barycentric[chosen])
+
+
+def _share(begin: float, done: int, count: int) -> float:
+    return begin + (0.98 - begin) * done / count
+
+
+def _joined(legs: list[_Line], closed: bool) -> _Line:
+    """One line; where legs meet their common point stands once."""
+    last = None if not closed else -1
+    ends = [-1] * (len(legs) - 1) + [last]
+    return _Line(
+        np.concatenate([leg.points[:end] for leg, end in zip(legs, ends, strict=True)]),
+        np.concatenate([leg.faces[:end] for leg, end in zip(legs, ends, strict=True)]),
+        np.concatenate([leg.barycentric[:end] for leg, end in zip(legs, ends, strict=True)]),
+        sum(leg.length for leg in legs),
+    )
+
+
+def _result(mesh: Any, lines: list[_Line], closed: bool) -> PathsResult:
+    faces = np.concatenate([line.faces for line in lines])
+    barycentric = np.concatenate([line.barycentric for line in lines])
+    return PathsResult(
+        points=np.concatenate([line.points for line in lines]),
+        normals=normals_at(mesh.vertices, mesh.triangles, faces, barycentric),
+        offsets=np.cumsum([0, *(len(line.points) for line in lines)]).astype(np.int32),
+        closed=np.full(len(lines), closed),
+        lengths=np.array([line.length for line in lines]),
+    )
+
+
+def _different(mesh: Any, points: Any, is_loop: bool) -> NDArray[np.int64]:
+    """The points that are not at the place of the one before them."""
+    places = mesh.vertices[points] if isinstance(points, np.ndarray) else points.positions(mesh)
+    kept = np.ones(len(places), bool)
+    kept[1:] = (places[1:] != places[:-1]).any(axis=1)
+    order = np.flatnonzero(kept)
+    if is_loop and len(order) > 1 and (places[order[0]] == places[order[-1]]).all():
+        order = order[:-1]
+    return order
+
+
+def _check(surface: Surface, mesh: Any, points: Any, order: NDArray[np.int64], connect: str) -> None:
+    count = len(order)
+    if count < 2:
+        raise BadInputError(
+            f"'{surface.name}': a path needs two points at different places, and there is "
+            f"{'only one' if len(points) == 1 else 'one place only'}; choose another one, too"
+        )
+    pairs = count * (count - 1) // 2
+    if connect == "PAIRS" and pairs > MOST_PAIRS:
+        raise BadInputError(
+            f"'{surface.name}': all pairs of {count} points are {pairs:,} paths, more than the {MOST_PAIRS:,} that are "
+            "allowed; choose fewer points, or connect them as a chain"
+        )
+    vertices = points if isinstance(points, np.ndarray) else mesh.triangles[points.faces, 0]
+    parts = mesh.components[vertices[order]]
+    strange = np.flatnonzero(parts != parts[0])
+    if len(strange):
+        raise BadInputError(
+            f"'{surface.name}': points {order[0] + 1} and {order[strange[0]] + 1} lie on parts of the surface that do "
+            "not hang together, so no path joins them; choose points of one part"
+        )
