@@ -1,6 +1,7 @@
 // Curves on the surface, paths in the graph, log map and polar coordinates.
 
 #include "saddleback/geodesic_paths.h"
+#include "saddleback/polar_coordinates.h"
 #include "saddleback/surface_curve.h"
 
 #include "points.h"
@@ -66,6 +67,68 @@ Raises:
     Cancelled: the job was.
 )";
 
+constexpr const char* k_log_map_doc = R"(Length and direction of the shortest path to every vertex about a point.
+
+Exact (window propagation, no graph involved). Shortest paths that bend at a saddle vertex all leave in the direction of
+the path to it: such vertices are marked in `shadowed`. Every vertex has the coordinates of its shortest path; where there
+are several (the cut locus: the far side of a sphere, the seam behind a bump) those of one of them, so that neighbours on
+either side of it may lie far apart in the map.
+
+`uv` is `distance` times the unit vector of the angle. Angles are measured as `trace` does: in the chart of the point's face
+(corner 0 to corner 1 is 0) or, at a vertex, on the surface about it from its first edge. About an interior vertex they
+are scaled in `uv` so that its total angle becomes 2 pi; `angle` holds them unscaled, as `trace` takes them.
+
+Args:
+    centre: a vertex or one surface point.
+    radius: mesh units; inf for the whole component.
+    job: progress and cancellation.
+
+Raises:
+    InputError: a point off the mesh, a radius that is negative or not a number.
+    Cancelled: the job was.
+
+Notes:
+    O(n sqrt(n) log n) for n vertices within the radius.
+)";
+
+constexpr const char* k_exp_map_doc = R"(Where straightest geodesics from a point end: the inverse of `log_map`.
+
+Args:
+    centre: a vertex or one surface point.
+    uv: (n, 2) vectors as in `LogMap.uv`: length and (about a vertex scaled) direction of departure.
+    threads: 0 for all cores; never changes the result.
+    job: progress and cancellation.
+
+Returns:
+    SurfacePoints, n of them. A curve that meets the boundary ends there; through vertices it goes on with half of the
+    total angle on either side.
+
+Raises:
+    InputError: a point off the mesh, a vector that is not finite, a curve over more than a million faces.
+    Cancelled: the job was.
+)";
+
+constexpr const char* k_polar_doc = R"(Coordinates along a curve for every vertex about it.
+
+Exact: rays leave the curve at right angles to its segments and as fans from its bends. Where the nearest point of the
+curve is not unique one of them is taken. Beyond the ends of an open curve the foot is its end, and left and right are told
+by the curve run straight on.
+
+Args:
+    graph: the graph of the mesh.
+    curve: a SurfaceCurve, a GeodesicPath, or its points as a SurfacePoints or vertices (taken as an open curve).
+    radius: mesh units; inf for everything that the curve reaches.
+    job: progress and cancellation.
+
+Raises:
+    InputError: no curve, a curve of another mesh, a radius that is negative or not a number.
+    Cancelled: the job was.
+
+Notes:
+    O(n sqrt(n) log n) for n vertices within the radius. After X. Ying, Parallel geodesic computing, section 6.1, with
+    exact rays instead of arc lengths along offset curves.
+)";
+
 /// A method for a class that another file binds.
 template <class Function, class... Extra>
 void add_method(py::module_& m, const char* type, const char* name, Function&& function, const Extra&... extra) {
@@ -97,22 +160,30 @@ GeodesicPath path_of(const GeodesicPaths& paths, const py::object& key) {
   return paths.path(static_cast<std::size_t>(i < 0 ? i + count : i));
 }
 
-template <class T>
-auto viewed(const std::vector<T> GeodesicPaths::*member) {
+template <class Owner, class T>
+auto view_of_member(const std::vector<T> Owner::*member) {
   return [member](const py::object& self) {
-    return view_of(std::span<const T>(py::cast<const GeodesicPaths&>(self).*member), self);
+    return view_of(std::span<const T>(py::cast<const Owner&>(self).*member), self);
+  };
+}
+
+/// (n,) bool over bytes that are 0 or 1.
+template <class Owner>
+auto view_of_flags(const std::vector<std::uint8_t> Owner::*member) {
+  return [member](const py::object& self) {
+    return view_of(std::span<const std::uint8_t>(py::cast<const Owner&>(self).*member), self).attr("view")("bool");
   };
 }
 
 void bind_geodesic_paths(py::module_& m) {
   py::class_<GeodesicPaths>(m, "GeodesicPaths", py::module_local(), k_paths_doc)
-      .def_property_readonly("points", viewed(&GeodesicPaths::points), "(n, 3) float64: points of all paths in space.")
+      .def_property_readonly("points", view_of_member(&GeodesicPaths::points), "(n, 3) float64: points of all paths in space.")
       .def_property_readonly(
           "surface", [](const GeodesicPaths& paths) { return paths.surface; }, "The same points as a SurfacePoints.")
-      .def_property_readonly("offsets", viewed(&GeodesicPaths::offsets), "(paths + 1,) int64.")
-      .def_property_readonly("lengths", viewed(&GeodesicPaths::lengths),
+      .def_property_readonly("offsets", view_of_member(&GeodesicPaths::offsets), "(paths + 1,) int64.")
+      .def_property_readonly("lengths", view_of_member(&GeodesicPaths::lengths),
                              "(paths,) float64: mesh units; inf where no source reaches.")
-      .def_property_readonly("sources", viewed(&GeodesicPaths::sources),
+      .def_property_readonly("sources", view_of_member(&GeodesicPaths::sources),
                              "(paths,) int32: index of the source each begins at; -1 where none reaches.")
       .def("__len__", &GeodesicPaths::count)
       .def("__getitem__", &path_of)
@@ -126,6 +197,75 @@ void bind_geodesic_paths(py::module_& m) {
   add_method(m, "SaddleVertexGraph", "paths", &paths_between, py::arg("sources"), py::arg("targets"),
              py::arg("shorten") = false, py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(),
              k_many_paths_doc);
+}
+
+LogMap log_map_of(const SaddleVertexGraph& graph, const py::object& centre, const py::object& radius,
+                  const py::object& job) {
+  const SurfacePoint point = as_surface_point(centre, graph.mesh(), "centre");
+  const double wanted = as_real(radius, "radius");
+  Job* const token = as_job(job);
+  return without_gil([&] { return log_map(graph, point, wanted, token); });
+}
+
+SurfacePoints exp_map_of(const py::object& mesh_object, const py::object& centre, const py::object& uv,
+                         const py::object& threads, const py::object& job) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  const SurfacePoint point = as_surface_point(centre, mesh, "centre");
+  const ArrayIn<double> vectors = as_points2(uv, "uv");
+  const int wanted_threads = as_integer(threads, "threads");
+  Job* const token = as_job(job);
+  std::vector<Vec2> rows(vectors.count);
+  for (Index i = 0; i < vectors.count; ++i) rows[i] = {vectors.values[2 * i], vectors.values[2 * i + 1]};
+  return without_gil([&] { return exp_map(mesh, point, rows, wanted_threads, token); });
+}
+
+PolarCoordinates polar_of(const py::object& graph_object, const py::object& curve, const py::object& radius,
+                          const py::object& job) {
+  if (!py::isinstance<SaddleVertexGraph>(graph_object)) throw InputError("graph: wanted a SaddleVertexGraph");
+  const auto& graph = py::cast<const SaddleVertexGraph&>(graph_object);
+  const double wanted = as_real(radius, "radius");
+  Job* const token = as_job(job);
+  if (py::isinstance<SurfaceCurve>(curve)) {
+    const auto& given = py::cast<const SurfaceCurve&>(curve);
+    return without_gil([&] { return polar_coordinates(graph, given, wanted, token); });
+  }
+  SurfacePoints points = py::isinstance<GeodesicPath>(curve) ? py::cast<const GeodesicPath&>(curve).surface
+                                                             : as_surface_points(curve, graph.mesh(), "curve");
+  return without_gil([&] {
+    return polar_coordinates(graph, SurfaceCurve(graph.mesh(), std::move(points)), wanted, token);
+  });
+}
+
+void bind_maps(py::module_& m) {
+  py::class_<LogMap>(m, "LogMap", py::module_local(), "Vertices about a point and the shortest ways to them.")
+      .def_property_readonly("vertices", view_of_member(&LogMap::vertices), "(m,) int32: vertices, ascending.")
+      .def_property_readonly(
+          "uv",
+          [](const py::object& self) {
+            return view_of_rows<double>(std::span<const Vec2>(py::cast<const LogMap&>(self).uv), self);
+          },
+          "(m, 2) float64: distance times the unit vector of the scaled angle.")
+      .def_property_readonly("distance", view_of_member(&LogMap::distance), "(m,) float64: mesh units.")
+      .def_property_readonly("angle", view_of_member(&LogMap::angle),
+                             "(m,) float64: direction of departure as `trace` takes it, radians; 0 at the centre.")
+      .def_property_readonly("shadowed", view_of_flags(&LogMap::shadowed),
+                             "(m,) bool: the shortest path bends at a saddle vertex.")
+      .def("__len__", [](const LogMap& map) { return map.vertices.size(); });
+  py::class_<PolarCoordinates>(m, "PolarCoordinates", py::module_local(), "Vertices about a curve.")
+      .def_property_readonly("vertices", view_of_member(&PolarCoordinates::vertices), "(m,) int32: vertices, ascending.")
+      .def_property_readonly("distance", view_of_member(&PolarCoordinates::distance),
+                             "(m,) float64: mesh units; positive on the left of the curve, negative on its right.")
+      .def_property_readonly("along", view_of_member(&PolarCoordinates::along),
+                             "(m,) float64: arc length of the nearest point of the curve, 0 to its length.")
+      .def_property_readonly("shadowed", view_of_flags(&PolarCoordinates::shadowed),
+                             "(m,) bool: the shortest path bends at a saddle vertex.")
+      .def("__len__", [](const PolarCoordinates& polar) { return polar.vertices.size(); });
+  add_method(m, "SaddleVertexGraph", "log_map", &log_map_of, py::arg("centre"), py::arg("radius"), py::kw_only(),
+             py::arg("job") = py::none(), k_log_map_doc);
+  m.def("exp_map", &exp_map_of, py::arg("mesh"), py::arg("centre"), py::arg("uv"), py::kw_only(),
+        py::arg("threads") = 0, py::arg("job") = py::none(), k_exp_map_doc);
+  m.def("polar_coordinates", &polar_of, py::arg("graph"), py::arg("curve"), py::arg("radius"), py::kw_only(),
+        py::arg("job") = py::none(), k_polar_doc);
 }
 
 std::unique_ptr<SurfaceCurve> make_curve(const py::object& mesh_object, const py::object& points, bool closed) {
@@ -155,6 +295,7 @@ void bind_curve(py::module_& m) {
 void bind_paths(py::module_& m) {
   bind_curve(m);
   bind_geodesic_paths(m);
+  bind_maps(m);
 }
 
 }  // namespace saddleback::bindings

@@ -240,6 +240,9 @@ class SaddleVertexGraph:
         threads: SupportsIndex = 0,
         job: Job | None = None,
     ) -> GeodesicPaths: ...
+    def log_map(
+        self, centre: SupportsIndex | SurfacePoints, radius: SupportsFloat, *, job: Job | None = None
+    ) -> LogMap: ...
     @property
     def arc_count(self) -> int: ...
     @property
@@ -252,6 +255,49 @@ class SaddleVertexGraph:
     def device(self) -> str: ...
     @property
     def build_seconds(self) -> float: ...
+
+@final
+class LogMap:
+    @property
+    def vertices(self) -> _Indices: ...
+    @property
+    def uv(self) -> _Floats: ...
+    @property
+    def distance(self) -> _Floats: ...
+    @property
+    def angle(self) -> _Floats: ...
+    @property
+    def shadowed(self) -> NDArray[np.bool_]: ...
+    def __len__(self) -> int: ...
+
+def exp_map(
+    mesh: Mesh,
+    centre: SupportsIndex | SurfacePoints,
+    uv: ArrayLike,
+    *,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
+) -> SurfacePoints: ...
+
+@final
+class PolarCoordinates:
+    @property
+    def vertices(self) -> _Indices: ...
+    @property
+    def distance(self) -> _Floats: ...
+    @property
+    def along(self) -> _Floats: ...
+    @property
+    def shadowed(self) -> NDArray[np.bool_]: ...
+    def __len__(self) -> int: ...
+
+def polar_coordinates(
+    graph: SaddleVertexGraph,
+    curve: SurfaceCurve | GeodesicPath | _Points,
+    radius: SupportsFloat,
+    *,
+    job: Job | None = None,
+) -> PolarCoordinates: ...
 
 @final
 class VoronoiEdge:

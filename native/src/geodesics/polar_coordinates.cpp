@@ -1,0 +1,107 @@
+#include "saddleback/polar_coordinates.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "saddleback/error.h"
+#include "saddleback/trace.h"
+
+#include "geodesics/curve_windows.h"
+#include "geodesics/point_star.h"
+#include "support/parallel.h"
+
+namespace saddleback {
+namespace {
+
+void check_radius(double radius) {
+  if (std::isnan(radius) || radius < 0)
+    throw InputError(message("radius: wanted a distance of 0 or more, got ", radius));
+}
+
+}  // namespace
+
+PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const SurfaceCurve& curve, double radius, Job* job) {
+  if (&curve.mesh() != &graph.mesh() && curve.mesh().fingerprint() != graph.mesh().fingerprint())
+    throw InputError("curve: it lies on another mesh than the graph's");
+  check_radius(radius);
+  const JobStage stage(job, "Measuring from the curve");
+  CurveWindows windows(graph.unfolding());
+  std::vector<CurveFoot> feet;
+  windows.from_curve(curve, {.radius = radius}, feet, stage);
+  std::ranges::sort(feet, {}, &CurveFoot::vertex);
+  PolarCoordinates result;
+  for (const CurveFoot& foot : feet) {
+    result.vertices.push_back(foot.vertex);
+    result.distance.push_back(foot.side < 0 ? -foot.distance : foot.distance);
+    result.along.push_back(foot.along);
+    result.shadowed.push_back(foot.shadowed);
+  }
+  return result;
+}
+
+double angle_scale(const Mesh& mesh, const SurfacePoint& point) {
+  const Index vertex = vertex_at(mesh, point);
+  if (vertex == k_none || mesh.is_boundary(vertex)) return 1;
+  return mesh.total_angle(vertex) / (2 * std::numbers::pi);
+}
+
+LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, double radius, Job* job) {
+  const Mesh& mesh = graph.mesh();
+  check_surface_point(mesh, centre, "centre");
+  check_radius(radius);
+  const JobStage stage(job, "Measuring about the point");
+  const SurfacePoint point{centre.face, normalised_barycentric(centre.barycentric)};
+  RayField field(graph.unfolding());
+  field.begin();
+  const PointStar star(graph.unfolding(), point);
+  if (star.vertex() != k_none) field.add_source(star.vertex(), {0, 0, 0, false});
+  const RayWindow window{Vec2::Zero(), 0, 0, 0, 0, k_none, Rays::from_point, 0, false};
+  star.shine(field, window, star.begin(), star.begin() + star.total_angle());
+  field.run({.radius = radius}, stage);
+  LogMap result;
+  result.vertices = field.settled();
+  std::ranges::sort(result.vertices);
+  const double scale = angle_scale(mesh, point);
+  for (const Index vertex : result.vertices) {
+    const RayLabel& label = field.label(vertex);
+    double angle = label.value;
+    if (star.is_round()) {
+      const double turns = std::floor((angle - star.begin()) / star.total_angle());
+      angle -= turns * star.total_angle();
+    } else if (star.vertex() == k_none) {
+      angle = star.begin() + std::remainder(angle - star.begin(), 2 * std::numbers::pi);
+    }
+    result.distance.push_back(label.distance);
+    result.angle.push_back(angle);
+    result.uv.emplace_back(label.distance * std::cos(angle / scale), label.distance * std::sin(angle / scale));
+    result.shadowed.push_back(label.shadowed);
+  }
+  return result;
+}
+
+SurfacePoints exp_map(const Mesh& mesh, const SurfacePoint& centre, std::span<const Vec2> uv, int threads, Job* job) {
+  check_surface_point(mesh, centre, "centre");
+  if (threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", threads));
+  const auto count = static_cast<Index>(uv.size());
+  for (Index i = 0; i < count; ++i) {
+    if (!uv[i].allFinite())
+      throw InputError(message("uv: vector ", i, " is (", uv[i].x(), ", ", uv[i].y(), "), which is not finite"));
+  }
+  const JobStage stage(job, "Tracing");
+  const double scale = angle_scale(mesh, centre);
+  SurfacePoints result(uv.size());
+  std::atomic<Index> done{0};
+  parallel_for(count, threads, 64, [&](Index i, int) {
+    const double angle = std::atan2(uv[i].y(), uv[i].x());
+    const double turned = angle < 0 && vertex_at(mesh, centre) != k_none ? angle + 2 * std::numbers::pi : angle;
+    result[i] = trace_end(mesh, centre, turned * scale, uv[i].norm()).point;
+    if (const Index n = done.fetch_add(1, std::memory_order_relaxed) + 1; n % 64 == 0)
+      stage.update(static_cast<double>(n) / count);
+  });
+  stage.update(1);
+  return result;
+}
+
+}  // namespace saddleback

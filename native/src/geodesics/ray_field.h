@@ -1,0 +1,123 @@
+#pragma once
+// Exact distances from a wave front of rays: from a point, or at right angles from a curve.
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "geodesics/unfolding.h"
+
+namespace saddleback {
+
+/// How the rays of a window run, and what they tell of a place beside its distance.
+enum class Rays : std::uint8_t {
+  from_point,     ///< out of one point; they tell the angle in which they left it
+  from_foot,      ///< out of one point; all tell the same value
+  perpendicular,  ///< parallel, at right angles to a straight piece of curve; they tell the arc length of their foot
+};
+
+/// Part [b0, b1] of half-edge h, about to enter h's face, in the frame of h: from(h) at the origin, to(h) on the
+/// positive x axis, the face above.
+struct RayWindow {
+  Vec2 source;    ///< unfolded point of departure (y <= 0); of perpendicular rays their unit direction (y > 0)
+  double b0, b1;
+  double offset;  ///< distance at the point of departure; of perpendicular rays at the frame's origin
+  double value;   ///< from_point: angle, at the point, of the x axis; from_foot: the value; else that at the origin
+  Index halfedge;
+  Rays rays;
+  std::int8_t side;  ///< of the curve: 1 left, -1 right, 0 neither
+  bool shadowed;     ///< the rays set out anew at a saddle vertex
+};
+
+/// What is known of a vertex.
+struct RayLabel {
+  double distance = std::numeric_limits<double>::infinity();
+  double value = 0;  ///< angle of departure or arc length of the foot; behind a saddle vertex that vertex's
+  std::int8_t side = 0;
+  bool shadowed = false;  ///< the shortest way bends at a saddle vertex
+};
+
+struct RayLimits {
+  double radius = std::numeric_limits<double>::infinity();
+  Index k = std::numeric_limits<Index>::max();  ///< stop after so many vertices
+};
+
+/// Window propagation (Chen and Han 1990, filters of Xin and Wang 2009) of windows of any front, with saddle vertices
+/// sending out windows of their own: every label is that of a shortest path. A vertex on the very border of a window is
+/// updated by it (closed intervals), so that rays through the vertices of regular grids reach what lies behind them.
+/// Holds scratch memory of O(V + F) to be reused; one a thread.
+class RayField {
+ public:
+  explicit RayField(const Unfolding& unfolding);
+
+  /// Forgets everything, for new sources.
+  void begin();
+  /// A vertex that the front reaches at once. `back` is the surface angle, at the vertex, of the way back.
+  void offer(Index vertex, const RayLabel& label, double back);
+  /// A vertex of the source itself, whose rays the caller sends out.
+  void add_source(Index vertex, const RayLabel& label);
+  void add_window(const RayWindow& window);
+  /// \throw Cancelled.
+  void run(const RayLimits& limits, const JobStage& stage);
+
+  /// Vertices with their final labels, in order of distance; those that were reached within the limits.
+  const std::vector<Index>& settled() const { return settled_; }
+  const RayLabel& label(Index vertex) const { return vertices_[vertex].label; }
+
+ private:
+  struct VertexState {
+    RayLabel label;
+    Vec2 ray = Vec2::Zero();  ///< in the frame of `halfedge`, where it came by a window; else x is the angle back
+    Index halfedge;  ///< k_none: `ray` holds the angle
+    std::uint32_t epoch;
+    bool settled;
+  };
+  struct Occupant {  // the best window that covered the angle opposite a half-edge: "one angle, one split"
+    double distance, split;
+    std::uint32_t epoch;
+  };
+  struct Event {
+    double key;
+    Index id;  ///< window >= 0, vertex ~id
+    bool operator<(const Event& other) const { return key != other.key ? key > other.key : id > other.id; }
+  };
+  /// A child's side of its parent's face, in coordinates that start at the base vertex they share.
+  struct Side {
+    bool left;
+    Index near, far;  ///< base vertices: shared with the child's edge, and the other one
+    Index edge;       ///< half-edge of the parent's face
+    double length;    ///< of the child's edge
+    Vec2 direction;   ///< of the child's edge
+    Vec2 source;
+  };
+
+  VertexState& state(Index vertex);
+  double distance(Index vertex) const;
+  bool improve(Index vertex, const RayLabel& label, const Vec2& ray, Index halfedge);
+  void push(const Event& event);
+  void settle(Index vertex);
+  double angle_back(Index vertex) const;
+  void shine_from(Index vertex, double begin, double end);
+  void propagate(const RayWindow& window);
+  Side side_of(const RayWindow& window, bool left) const;
+  void add_child(const RayWindow& parent, const Side& side, double begin, double end, bool to_apex);
+  bool is_useless(const Side& side, const RayWindow& child, double q0, double q1, Index apex, double base) const;
+
+  const Unfolding& unfolding_;
+  const Mesh& mesh_;
+  std::vector<VertexState> vertices_;
+  std::vector<Occupant> occupants_;
+  std::vector<RayWindow> windows_;
+  std::vector<Index> free_windows_;
+  std::vector<Event> queue_;
+  std::vector<Index> settled_;
+  RayLimits limits_;
+  std::uint32_t epoch_ = 0;
+};
+
+/// The window that a vertex throws on the edge opposite the corner at half-edge h, of which h's vertex is the point of
+/// departure: directions `begin` to `end`, measured from h, 0 to the corner's angle. \return false when there is nothing
+/// behind that edge.
+bool window_of_corner(const Unfolding& unfolding, Index h, double begin, double end, RayWindow& window);
+
+}  // namespace saddleback
