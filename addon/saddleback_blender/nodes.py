@@ -228,7 +228,7 @@ def paths_material() -> bpy.types.Material:
     if material is not None:
         return material
     material, shader = new_material("Saddleback Paths", PATHS)
-    bright = (0.9, 0.16, 0.03, 1.0)
+    bright = (0.0, 0.36, 0.55, 1.0)  # stands out on every color of the distance preview
     shader.inputs["Base Color"].default_value = bright
     shader.inputs["Roughness"].default_value = 0.4
     material.diffuse_color = bright

@@ -75,8 +75,8 @@ def _quality(items: tuple[tuple[str, str, str], ...] = QUALITIES) -> Any:
 
 def _detail() -> Any:
     return IntProperty(
-        name="Neighborhood",
-        description="Vertices in each neighborhood of the distance graph, instead of a quality; 0 means by quality",
+        name="Detail",
+        description="Vertices in each neighborhood of the distance graph; 0 means as the quality needs",
         default=0,
         min=0,
         max=10000,
@@ -208,7 +208,7 @@ PATH: dict[str, Any] = {
     "points": _choice("Through", "What the paths connect", PATH_POINTS, "SELECTED"),
     "points_group": _name("Vertex Group", "The group whose vertices are connected; empty means the active one"),
     "points_collection": _name("Collection", "Its empties are connected; empty means those parented to the object"),
-    "from_cursor": _switch("From 3D Cursor", "Begin at the point of the surface nearest to the 3D cursor", False),
+    "from_cursor": _switch("From Cursor", "Begin at the point of the surface nearest to the 3D cursor", False),
     "connect": _choice("Connect", "Which points a path joins", PATH_CONNECTIONS, "CHAIN"),
     "shorten": _switch("Shorten", "Pull each path straight where the distance graph bends it a little", True),
     "quality": _quality(),

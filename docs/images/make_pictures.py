@@ -153,13 +153,36 @@ def distance(body: bpy.types.Object) -> None:
     body.data.materials.append(ramp_material("Distance", "saddleback_distance", stops, float(values.max()), 0.2))
 
 
+def paths(body: bpy.types.Object) -> None:
+    """Picture: isolines from the nose, and the shortest paths from tip to tip."""
+    places = models.positions(body)
+    nose = int(np.argmax(places[:, 0]))
+    chosen = np.zeros(len(places), bool)
+    chosen[nose] = True
+    body.data.vertices.foreach_set("select", chosen)
+    bpy.ops.saddleback.distance(
+        make_isolines=True, isolines_by="SPACING", isoline_spacing=0.15, isoline_radius=0.003, make_preview=True,
+        preview_lines=False,
+    )  # fmt: skip
+    distances = looks.read(body.data, "saddleback_distance", "POINT", 1)
+    tail = int(np.argmax(np.where(np.isfinite(distances), distances, -1)))
+    crest = int(np.argmax(places[:, 2]))
+    along = (places[:, 0] - places[:, 0].min()) / np.ptp(places[:, 0])
+    feet = []
+    for begin, end in ((0.28, 0.45), (0.58, 0.75)):  # hind and fore, on the side of the camera
+        side = np.flatnonzero((along > begin) & (along < end) & (places[:, 1] < 0))
+        feet.append(int(side[np.argmin(places[side, 2])]))
+    body.vertex_groups.new(name="Tips").add([nose, tail, crest, *feet], 1.0, "REPLACE")
+    bpy.ops.saddleback.path(points="VERTEX_GROUP", points_group="Tips", connect="PAIRS", path_radius=0.011, lift=0.004)
+
+
 def main() -> None:
     """Makes the pictures that are named, or all."""
     everything = {k: f for k, f in globals().items() if callable(f) and (f.__doc__ or "").startswith("Picture")}
     for name in sys.argv[1:] or everything:
         body = start()
         everything[name](body)
-        shoot(body, "distance" if name == "distance" else f"tessellation-{name}")
+        shoot(body, name if name in ("distance", "paths") else f"tessellation-{name}")
 
 
 main()
