@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geodesics/planar.h"
 #include "geodesics/point_star.h"
 
 namespace saddleback {
@@ -13,7 +14,6 @@ constexpr double k_right_angle = std::numbers::pi / 2;
 // A vertex nearer to a segment than this share of its face is on it, one this little beyond its ends beside it.
 constexpr double k_on_curve = 1e-13;
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 Vec2 left_of(const Vec2& v) { return {-v.y(), v.x()}; }
 
 /// The segment's end as a point, exactly at a vertex or on an edge where it is but for rounding.
@@ -40,9 +40,9 @@ RayWindow rays_from_foot(double along, int side) {
 }  // namespace
 
 void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits, std::vector<CurveFoot>& feet,
-                              const JobStage& stage) {
+                              const JobStage& stage, const WatchedPlaces* places) {
   feet.clear();
-  field_.begin();
+  field_.begin(places);
   const auto segments = curve.segments();
   for (std::size_t i = 0; i < segments.size(); ++i) {
     stage.check();
@@ -54,6 +54,7 @@ void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits
   }
   for (std::size_t i = 0; i < segments.size(); ++i) {
     stage.check();
+    if (places) reach_places(segments[i]);
     shine_from_segment(segments[i], 1);
     shine_from_segment(segments[i], -1);
     if (i > 0) shine_from_bend(segments[i - 1], segments[i], segments[i].start);
@@ -71,6 +72,29 @@ void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits
     const int side = distance > 0 ? label.side : 0;
     feet.push_back({vertex, distance, std::clamp(label.value, 0.0, curve.length()), static_cast<std::int8_t>(side),
                     label.shadowed});
+  }
+}
+
+/// Places in the segment's own face; where an end lies on an edge, in the face behind it as well.
+void CurveWindows::reach_places(const CurveSegment& segment) {
+  PlaceDistances& places = field_.places();
+  const FaceChart chart(mesh_, segment.face);
+  const Vec2 begin = chart.to_plane(segment.begin), end = chart.to_plane(segment.end);
+  places.places().in_face(segment.face, [&](Index index, const Vec3& weights) {
+    places.offer(index, distance_to_segment(chart.to_plane(weights), begin, end));
+  });
+  for (const bool at_begin : {true, false}) {
+    const SurfacePoint point = end_point(segment, at_begin);
+    for (int i = 0; i < 3; ++i) {
+      const Index twin = mesh_.twin(3 * segment.face + (i + 1) % 3);
+      if (point.barycentric[i] > 0 || twin == k_none) continue;
+      const Index behind = Mesh::face_of(twin);
+      const FaceChart other(mesh_, behind);
+      const Vec2 place = other.to_plane(*barycentric_in(mesh_, point, behind));
+      places.places().in_face(behind, [&](Index index, const Vec3& weights) {
+        places.offer(index, (other.to_plane(weights) - place).norm());
+      });
+    }
   }
 }
 
@@ -112,8 +136,8 @@ void CurveWindows::shine_from_segment(const CurveSegment& segment, int side) {
     keep(-s, -slope, -segment.length);
     keep(h, ray.x(), 0);
     if (b1 <= b0) continue;
-    field_.add_window({ray, b0, b1, h, segment.start + s, entered, Rays::perpendicular, static_cast<std::int8_t>(side),
-                       false});
+    field_.add_window(
+        {ray, b0, b1, h, segment.start + s, entered, Rays::perpendicular, static_cast<std::int8_t>(side), false});
   }
 }
 

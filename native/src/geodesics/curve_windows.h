@@ -12,8 +12,8 @@ namespace saddleback {
 /// A vertex and the nearest point of the curve.
 struct CurveFoot {
   Index vertex;
-  double distance;  ///< >= 0
-  double along;     ///< arc length of the foot, 0 to the curve's length
+  double distance;   ///< >= 0
+  double along;      ///< arc length of the foot, 0 to the curve's length
   std::int8_t side;  ///< 1 left of the curve, -1 right, 0 on it; beyond an open end, of the curve run straight on
   bool shadowed;     ///< the shortest way bends at a saddle vertex
 };
@@ -22,14 +22,19 @@ struct CurveFoot {
 /// scratch memory of O(V + F); one a thread.
 class CurveWindows {
  public:
-  explicit CurveWindows(const Unfolding& unfolding) : unfolding_(unfolding), mesh_(unfolding.mesh()), field_(unfolding) {}
+  explicit CurveWindows(const Unfolding& unfolding)
+      : unfolding_(unfolding), mesh_(unfolding.mesh()), field_(unfolding) {}
 
   /// The vertices within limits.radius, or the limits.k nearest if those are fewer, in order of distance. Exact: each
-  /// has its shortest distance. \throw Cancelled.
+  /// has its shortest distance, unless limits.edges says otherwise. \throw Cancelled.
   void from_curve(const SurfaceCurve& curve, const RayLimits& limits, std::vector<CurveFoot>& feet,
-                  const JobStage& stage = {});
+                  const JobStage& stage = {}, const WatchedPlaces* places = nullptr);
+  /// Distances of the last call's places: of those that see the curve, or a saddle vertex with one that does, within
+  /// the limits; else infinity or the length of a longer way.
+  std::span<const double> place_distances() const { return field_.places().values(); }
 
  private:
+  void reach_places(const CurveSegment& segment);
   void shine_from_segment(const CurveSegment& segment, int side);
   void shine_from_bend(const CurveSegment& in, const CurveSegment& out, double along);
   void shine_from_end(const CurveSegment& segment, bool is_start, double along);

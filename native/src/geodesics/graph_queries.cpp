@@ -44,6 +44,12 @@ DistanceFields allocate_fields(std::size_t count, std::size_t vertex_count) {
   }
 }
 
+/// Of the time that a query takes, when so many fields follow.
+double share_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources, double field_count) {
+  const double cost = cost_of_fans(graph, sources);
+  return cost / (cost + field_count * graph.mesh().vertex_count());
+}
+
 double through_fan(const GraphSearch& search, const SaddleVertexGraph& graph, const PointFan& fan) {
   double best = k_infinity;
   for (const PointFan::Arc& arc : fan.arcs) best = std::min(best, search.distance(graph, arc.vertex) + arc.length);
@@ -56,9 +62,10 @@ std::vector<double> SaddleVertexGraph::distances(const QuerySources& sources, co
                                                  Job* job) const {
   const JobStage stage(job, "Measuring distances");
   check(*this, sources, options);
-  const std::vector<PointFan> fans = find_fans(*this, sources.points, stage);
+  const double share = share_of_fans(*this, sources, 1);
+  const SourceFans from = find_fans(*this, sources, stage.part(0, share), {.limit = options.limit});
   const auto search = queries_->field_searches.lease();
-  search->run(*this, seeds_of(fans), options, SearchLabels::none, stage);
+  search->run(*this, seeds_of(from.fans), options, SearchLabels::none, stage.part(share, 1));
   std::vector<double> result(mesh_->vertex_count());
   search->write_distances(*this, result);
   return result;
@@ -67,8 +74,9 @@ std::vector<double> SaddleVertexGraph::distances(const QuerySources& sources, co
 NearestField SaddleVertexGraph::nearest(const QuerySources& sources, const QueryOptions& options, Job* job) const {
   const JobStage stage(job, "Finding nearest sources");
   check(*this, sources, options);
-  const std::vector<PointFan> fans = find_fans(*this, sources.points, stage);
-  LabelField field = propagate_labels(*this, seeds_of(fans), options, false, stage);
+  const double share = share_of_fans(*this, sources, 1);
+  const SourceFans from = find_fans(*this, sources, stage.part(0, share), {.limit = options.limit});
+  LabelField field = propagate_labels(*this, seeds_of(from.fans), options, false, stage.part(share, 1));
   return {std::move(field.distance), std::move(field.source)};
 }
 
@@ -79,17 +87,20 @@ DistanceFields SaddleVertexGraph::fields(const QuerySources& sources, const Quer
   if (threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", threads));
   const auto vertex_count = static_cast<std::size_t>(mesh_->vertex_count());
   DistanceFields result = allocate_fields(sources.size(), vertex_count);
-  const std::vector<PointFan> fans = find_fans(*this, sources.points, stage);
+  const double share = share_of_fans(*this, sources, static_cast<double>(sources.size()));
+  const std::vector<PointFan> fans =
+      find_fans(*this, sources, stage.part(0, share), {.limit = options.limit, .threads = threads}).fans;
   std::vector<ScratchPool<GraphSearch>::Lease> searches;
   const auto count = static_cast<Index>(fans.size());
   for (int thread = 0; thread < std::min(thread_count(threads), count); ++thread)
     searches.push_back(queries_->field_searches.lease());
+  const JobStage rest = stage.part(share, 1);
   std::atomic<Index> done{0};
   parallel_for(count, threads, 1, [&](Index i, int thread) {
     GraphSearch& search = *searches[thread];
-    search.run(*this, seeds_of({&fans[i], 1}), options, SearchLabels::none, stage.part(0, 0));
+    search.run(*this, seeds_of({&fans[i], 1}), options, SearchLabels::none, rest.part(0, 0));
     search.write_distances(*this, {result.values.get() + static_cast<std::size_t>(i) * vertex_count, vertex_count});
-    stage.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
+    rest.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
   });
   return result;
 }
@@ -117,18 +128,21 @@ std::vector<double> SaddleVertexGraph::distances_to(const QuerySources& sources,
   const JobStage stage(job, "Measuring distances to points");
   check(*this, sources);
   check_surface_points(*mesh_, targets, "targets");
-  const std::vector<PointFan> from = find_fans(*this, sources.points, stage), to = find_fans(*this, targets, stage);
+  const double source_cost = cost_of_fans(*this, sources), target_cost = cost_of_fans(*this, targets);
+  const double all = source_cost + 2 * target_cost + mesh_->vertex_count();
+  const double half = source_cost / all, most = (source_cost + target_cost) / all;
+  const WatchedPlaces places(targets);
+  const SourceFans from = find_fans(*this, sources, stage.part(0, half), {.places = &places});
+  const std::vector<PointFan> to = find_fans(*this, targets, stage.part(half, most));
   const auto search = queries_->field_searches.lease();
-  search->run(*this, seeds_of(from), {}, SearchLabels::none, stage.part(0, 0.9));
-  const NearbySources nearby(from);
-  std::vector<double> result(targets.size());
-  std::vector<Index> seen;
+  const JobStage searching = stage.part(most, most + mesh_->vertex_count() / all);
+  search->run(*this, seeds_of(from.fans), {}, SearchLabels::none, searching);
+  const NearbySources nearby(*this, sources.points, from.fans);
+  std::vector<double> result = from.at_places;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     stage.check();
-    result[i] = through_fan(*search, *this, to[i]);
-    nearby.find(to[i], seen);
-    for (const Index s : seen)
-      result[i] = std::min(result[i], direct_length(*this, sources.points[s], from[s], targets[i], to[i]));
+    result[i] = std::min(result[i], through_fan(*search, *this, to[i]));
+    result[i] = nearby.least_length(targets[i], to[i], result[i], stage);
   }
   stage.update(1);
   return result;

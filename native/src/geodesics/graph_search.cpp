@@ -57,24 +57,24 @@ void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const Seed> seed
   sources_.assign(labels == SearchLabels::none ? 0 : count, k_none);
   predecessors_.assign(labels == SearchLabels::sources_and_predecessors ? count : 0, k_none);
   if (options.method == QueryMethod::dijkstra) {
+    // With the plain loop over a row: together the slow and simple search that the fast one is checked against.
     Heap heap;
-    propagate(heap, graph, seeds, stage);
+    propagate(heap, relax_row_plain(), graph, seeds, stage);
   } else {
     double span = graph.arcs().longest();
     for (const Seed& seed : seeds) span = std::max(span, seed.distance);
     buckets_.reset(k_bucket_width * graph.mesh().mean_edge_length(), span);
-    propagate(buckets_, graph, seeds, stage);
+    propagate(buckets_, relax_row(), graph, seeds, stage);
   }
   stage.update(1);
 }
 
 template <class Queue>
-void GraphSearch::propagate(Queue& queue, const SaddleVertexGraph& graph, std::span<const Seed> seeds,
+void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGraph& graph, std::span<const Seed> seeds,
                             const JobStage& stage) {
   const ArcCodec& codec = graph.arcs().codec();
   const std::uint64_t* const words = graph.arcs().words().data();
   const std::int64_t* const offsets = graph.arcs().offsets().data();
-  const RelaxRow relax = relax_row();
   const bool with_sources = !sources_.empty(), with_predecessors = !predecessors_.empty();
 
   for (const Seed& seed : seeds) {

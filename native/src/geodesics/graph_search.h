@@ -41,7 +41,8 @@ class GraphSearch {
 
  private:
   template <class Queue>
-  void propagate(Queue& queue, const SaddleVertexGraph& graph, std::span<const Seed> seeds, const JobStage& stage);
+  void propagate(Queue& queue, RelaxRow relax, const SaddleVertexGraph& graph, std::span<const Seed> seeds,
+                 const JobStage& stage);
 
   double bound_ = 0;  ///< what unreached nodes hold: the first number that is beyond the limit
   std::vector<double> distances_;

@@ -37,6 +37,8 @@ class Landmarks {
     }
     return static_cast<double>(most - slack_) * unit_;
   }
+  /// A bound may be less than one without rounding by this much.
+  double slack() const { return 2 * static_cast<double>(slack_) * unit_; }
 
  private:
   const SaddleVertexGraph* graph_;

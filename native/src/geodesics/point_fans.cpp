@@ -1,11 +1,54 @@
 #include "geodesics/point_fans.h"
 
 #include <algorithm>
+#include <atomic>
+#include <mutex>
 
+#include "geodesics/planar.h"
 #include "geodesics/query_cache.h"
 #include "support/parallel.h"
 
 namespace saddleback {
+namespace {
+
+// Width of the strip along a curve, in edges, for each arc that a vertex has on average. What lies behind the strip is
+// seen from the vertex in it whose ray passes nearest, by a detour the smaller the more vertices there are: twice the
+// strip leaves the mean error as it is.
+constexpr double k_edges_an_arc = 0.15;
+// Nodes that a search expands while a fan is found.
+constexpr double k_cost_of_point = 300, k_cost_of_strip_vertex = 15;
+
+double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
+
+/// The corners of the faces that a curve passes, by the straight line inside the face.
+void add_corners(const SurfaceCurve& curve, std::vector<PointFan::Arc>& arcs) {
+  const Mesh& mesh = curve.mesh();
+  for (const CurveSegment& segment : curve.segments()) {
+    const FaceChart chart(mesh, segment.face);
+    const Vec2 begin = chart.to_plane(segment.begin), end = chart.to_plane(segment.end);
+    for (int i = 0; i < 3; ++i)
+      arcs.push_back({mesh.triangles()[segment.face][i], distance_to_segment(chart.corner[i], begin, end)});
+  }
+}
+
+/// By vertex, of several arcs to one vertex the shortest.
+void sort_arcs(std::vector<PointFan::Arc>& arcs) {
+  std::ranges::sort(arcs, [](const PointFan::Arc& a, const PointFan::Arc& b) {
+    return a.vertex != b.vertex ? a.vertex < b.vertex : a.length < b.length;
+  });
+  const auto rest = std::ranges::unique(arcs, {}, &PointFan::Arc::vertex);
+  arcs.erase(rest.begin(), rest.end());
+}
+
+std::vector<ScratchPool<FanFinder>::Lease> lease_finders(const SaddleVertexGraph& graph, int threads,
+                                                         std::size_t count) {
+  std::vector<ScratchPool<FanFinder>::Lease> finders;
+  const auto team = std::min(static_cast<std::size_t>(thread_count(threads)), count);
+  for (std::size_t thread = 0; thread < team; ++thread) finders.push_back(graph.query_cache().fan_finders.lease());
+  return finders;
+}
+
+}  // namespace
 
 PointFan FanFinder::find(const SaddleVertexGraph& graph, const SurfacePoint& point) {
   if (const Index vertex = vertex_at(graph.mesh(), point); vertex != k_none) return {{{vertex, 0}}, 0, true};
@@ -17,12 +60,28 @@ PointFan FanFinder::find(const SaddleVertexGraph& graph, const SurfacePoint& poi
     fan.arcs.push_back({arc.vertex, graph.arcs().codec().round(arc.length)});
     fan.reach = std::max(fan.reach, arc.length);
   }
-  std::sort(fan.arcs.begin(), fan.arcs.end(),
-            [](const PointFan::Arc& a, const PointFan::Arc& b) { return a.vertex < b.vertex; });
+  sort_arcs(fan.arcs);
   return fan;
 }
 
-std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, const JobStage& stage) {
+PointFan FanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve& curve, const FanOptions& options,
+                         const JobStage& stage) {
+  if (!curve_windows_) curve_windows_ = std::make_unique<CurveWindows>(graph.unfolding());
+  const RayLimits limits{.radius = options.limit, .edges = strip_width(graph)};
+  curve_windows_->from_curve(curve, limits, feet_, stage.part(0, 0), options.places);
+  PointFan fan;
+  add_corners(curve, fan.arcs);
+  for (const CurveFoot& foot : feet_) fan.arcs.push_back({foot.vertex, foot.distance});
+  sort_arcs(fan.arcs);
+  for (PointFan::Arc& arc : fan.arcs) {
+    if (arc.length > 0) arc.length = graph.arcs().codec().round(arc.length);
+    fan.reach = std::max(fan.reach, arc.length);
+  }
+  return fan;
+}
+
+std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, const JobStage& stage,
+                                const FanOptions& options) {
   const auto count = static_cast<Index>(points.size());
   std::vector<PointFan> fans(count);
   std::vector<Index> inside;  // of faces and edges: the others cost nothing
@@ -34,14 +93,55 @@ std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoi
       fans[i] = of_vertices.find(graph, points[i]);
     }
   }
-  if (inside.empty()) return fans;
-  std::vector<ScratchPool<FanFinder>::Lease> finders;
-  for (int thread = 0; thread < thread_count(0); ++thread) finders.push_back(graph.query_cache().fan_finders.lease());
-  parallel_for(static_cast<Index>(inside.size()), 0, 8, [&](Index i, int thread) {
-    stage.check();
+  const auto finders = lease_finders(graph, options.threads, inside.size());
+  std::atomic<std::size_t> done{0};
+  parallel_for(static_cast<Index>(inside.size()), options.threads, 8, [&](Index i, int thread) {
     fans[inside[i]] = finders[thread]->find(graph, points[inside[i]]);
+    stage.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) /
+                 static_cast<double>(inside.size()));
   });
   return fans;
+}
+
+SourceFans find_fans(const SaddleVertexGraph& graph, const QuerySources& sources, const JobStage& stage,
+                     const FanOptions& options) {
+  const double all = cost_of_fans(graph, sources), of_points = cost_of_fans(graph, sources.points);
+  const double share = all > 0 ? of_points / all : 1;
+  SourceFans result{find_fans(graph, sources.points, stage.part(0, share), options), {}};
+  result.fans.resize(sources.size());
+  if (options.places) result.at_places.assign(options.places->size(), std::numeric_limits<double>::infinity());
+  const JobStage rest = stage.part(share, 1);
+  const auto finders = lease_finders(graph, options.threads, sources.curves.size());
+  std::atomic<std::size_t> done{0};
+  std::mutex mutex;
+  parallel_for(static_cast<Index>(sources.curves.size()), options.threads, 1, [&](Index i, int thread) {
+    FanFinder& finder = *finders[thread];
+    result.fans[sources.points.size() + static_cast<std::size_t>(i)] =
+        finder.find(graph, *sources.curves[i], options, rest);
+    if (options.places) {
+      const std::span<const double> found = finder.place_distances();
+      const std::lock_guard lock(mutex);
+      std::ranges::transform(result.at_places, found, result.at_places.begin(), std::ranges::min);
+    }
+    rest.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) /
+                static_cast<double>(sources.curves.size()));
+  });
+  return result;
+}
+
+double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points) {
+  const auto inside = std::ranges::count_if(
+      points, [&](const SurfacePoint& point) { return vertex_at(graph.mesh(), point) == k_none; });
+  return k_cost_of_point * static_cast<double>(inside);
+}
+
+double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources) {
+  double cost = cost_of_fans(graph, sources.points);
+  for (const SurfaceCurve* const curve : sources.curves) {
+    const double strip = 2 * strip_width(graph) * curve->length() / graph.mesh().mean_edge_length();
+    cost += k_cost_of_strip_vertex * std::min(strip, static_cast<double>(graph.mesh().vertex_count()));
+  }
+  return cost;
 }
 
 std::vector<Seed> seeds_of(std::span<const PointFan> fans) {

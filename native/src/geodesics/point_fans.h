@@ -1,17 +1,19 @@
 #pragma once
-// From points of the surface to vertices of the graph.
+// From points and curves of the surface to vertices of the graph.
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "geodesics/curve_windows.h"
 #include "geodesics/graph_search.h"
 #include "geodesics/window_propagation.h"
 
 namespace saddleback {
 
-/// The arcs between a point and vertices, rounded as the graph's arcs are; a point that is a vertex has one of length
-/// 0.
+/// The arcs between a source and vertices, rounded as the graph's arcs are. A point that is a vertex has one of length
+/// 0; a curve has one to every vertex of a strip along it, as long as that vertex is far from the curve.
 struct PointFan {
   struct Arc {
     Index vertex;
@@ -22,18 +24,43 @@ struct PointFan {
   bool is_vertex = false;
 };
 
+struct FanOptions {
+  double limit = std::numeric_limits<double>::infinity();  ///< curves need no longer arcs
+  int threads = 0;                                         ///< 0: all cores
+  const WatchedPlaces* places = nullptr;  ///< points whose straight distances from curves are wanted, too
+};
+
 /// Finds fans one after the other; one a thread, made when first needed.
 class FanFinder {
  public:
   PointFan find(const SaddleVertexGraph& graph, const SurfacePoint& point);
+  /// \throw Cancelled.
+  PointFan find(const SaddleVertexGraph& graph, const SurfaceCurve& curve, const FanOptions& options,
+                const JobStage& stage);
+  /// Of options.places, for the last curve: infinity where none is straight or near.
+  std::span<const double> place_distances() const { return curve_windows_->place_distances(); }
 
  private:
   std::unique_ptr<WindowPropagator> propagator_;
+  std::unique_ptr<CurveWindows> curve_windows_;
   std::vector<DirectArc> arcs_;
+  std::vector<CurveFoot> feet_;
 };
 
 /// The fans of many points, by all cores. \throw Cancelled.
-std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, const JobStage& stage);
+std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, const JobStage& stage,
+                                const FanOptions& options = {});
+
+struct SourceFans {
+  std::vector<PointFan> fans;     ///< of the points, then of the curves
+  std::vector<double> at_places;  ///< of options.places: the least distance from a curve, as FanFinder tells it
+};
+SourceFans find_fans(const SaddleVertexGraph& graph, const QuerySources& sources, const JobStage& stage,
+                     const FanOptions& options);
+
+/// What the fans of these sources cost, as a number of nodes that a search expands in the time.
+double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources);
+double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points);
 
 /// Each fan's arcs as seeds of its own source.
 std::vector<Seed> seeds_of(std::span<const PointFan> fans);

@@ -10,8 +10,9 @@ namespace {
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // Of the mean edge: narrower than for fields, as nodes beyond the target's own key are expanded for nothing.
 constexpr double k_bucket_width = 1.0 / 16;
-// Arcs were rounded to their codec's 32 bits: a path may fall short of the straight line by this part of it.
-constexpr double k_straight_line = 1 - 1e-8;
+// Arcs are rounded to 22 bits or more, as the number of vertices leaves: a path may fall short of the straight line by
+// this part of it.
+constexpr double k_straight_line = 1 - 2e-7;
 constexpr double k_rounding = 1 - 1e-12;
 constexpr Index k_nodes_a_check = 4096;
 
@@ -38,7 +39,9 @@ class PointSearch::Run {
     const RelaxRow relax = relax_row();
     RowOffer row{0, memory_.distances_.data(), nullptr, k_none};
     Index settled = 0;
-    for (BucketQueue::Entry entry{}; queue.pop(entry) && queue.least_key() * k_rounding < best_;) {
+    // Along a path keys rise but for the rounding of bounds, so that a bucket may hold keys a little below its own.
+    const double slack = landmarks_.slack();
+    for (BucketQueue::Entry entry{}; queue.pop(entry) && queue.least_key() * k_rounding - slack < best_;) {
       row.distance = memory_.distances_[entry.node];
       const double key = row.distance + memory_.met_[entry.node].bound;
       if (!queue.is_current(entry, key) || key >= best_) continue;

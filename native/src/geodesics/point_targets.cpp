@@ -9,6 +9,8 @@ namespace saddleback {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
+// Room for rounding: no geodesic is shorter than the straight line.
+constexpr double k_bird = 1 - 1e-12;
 
 bool share_a_vertex(const PointFan& a, const PointFan& b) {
   auto i = a.arcs.begin();
@@ -30,26 +32,39 @@ double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, cons
   return length < reach ? length : k_infinity;
 }
 
-NearbySources::NearbySources(std::span<const PointFan> sources) {
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    if (sources[i].is_vertex) continue;  // seen by arcs of the target's fan
-    for (const PointFan::Arc& arc : sources[i].arcs) entries_.push_back({arc.vertex, static_cast<Index>(i)});
+NearbySources::NearbySources(const SaddleVertexGraph& graph, const SurfacePoints& points,
+                             std::span<const PointFan> fans)
+    : graph_(graph), points_(points), fans_(fans) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    positions_.push_back(position(graph.mesh(), points[i]));
+    if (fans[i].is_vertex) continue;  // seen by arcs of the target's fan
+    for (const PointFan::Arc& arc : fans[i].arcs) entries_.push_back({arc.vertex, static_cast<Index>(i)});
   }
-  std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-    return a.vertex != b.vertex ? a.vertex < b.vertex : a.source < b.source;
-  });
+  std::ranges::sort(entries_);
 }
 
-void NearbySources::find(const PointFan& target, std::vector<Index>& sources) const {
-  sources.clear();
-  if (target.is_vertex) return;
-  for (const PointFan::Arc& arc : target.arcs) {
-    auto entry = std::lower_bound(entries_.begin(), entries_.end(), arc.vertex,
-                                  [](const Entry& known, Index vertex) { return known.vertex < vertex; });
-    for (; entry != entries_.end() && entry->vertex == arc.vertex; ++entry) sources.push_back(entry->source);
+double NearbySources::least_length(const SurfacePoint& target, const PointFan& fan, double upper,
+                                   const JobStage& stage) const {
+  if (fan.is_vertex) return upper;
+  std::vector<Index> near;
+  for (const PointFan::Arc& arc : fan.arcs) {
+    auto entry = std::ranges::lower_bound(entries_, Entry{arc.vertex, 0});
+    for (; entry != entries_.end() && entry->vertex == arc.vertex; ++entry) near.push_back(entry->source);
   }
-  std::sort(sources.begin(), sources.end());
-  sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
+  std::ranges::sort(near);
+  const auto repeated = std::ranges::unique(near);
+  near.erase(repeated.begin(), repeated.end());
+  // Nearest first as the bird flies: when that is farther than the way known, so are all that follow.
+  const Vec3 place = position(graph_.mesh(), target);
+  std::vector<std::pair<double, Index>> in_order;
+  for (const Index s : near) in_order.emplace_back((positions_[s] - place).norm() * k_bird, s);
+  std::ranges::sort(in_order);
+  for (const auto& [bird, s] : in_order) {
+    if (bird >= upper) break;
+    stage.check();
+    upper = std::min(upper, direct_length(graph_, points_[s], fans_[s], target, fan));
+  }
+  return upper;
 }
 
 }  // namespace saddleback

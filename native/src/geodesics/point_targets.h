@@ -16,14 +16,21 @@ double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, cons
 /// For each of many targets the sources near enough to be seen.
 class NearbySources {
  public:
-  explicit NearbySources(std::span<const PointFan> sources);
-  /// Sources, each once, whose fans share a vertex with the target's.
-  void find(const PointFan& target, std::vector<Index>& sources) const;
+  /// `fans` begin with those of `points`.
+  NearbySources(const SaddleVertexGraph& graph, const SurfacePoints& points, std::span<const PointFan> fans);
+  /// The least direct_length between the target and any of the points if it is less than `upper`, else `upper`.
+  /// \throw Cancelled.
+  double least_length(const SurfacePoint& target, const PointFan& fan, double upper, const JobStage& stage) const;
 
  private:
   struct Entry {
     Index vertex, source;
+    auto operator<=>(const Entry&) const = default;
   };
+  const SaddleVertexGraph& graph_;
+  const SurfacePoints& points_;
+  std::span<const PointFan> fans_;
+  std::vector<Vec3> positions_;
   std::vector<Entry> entries_;  ///< by vertex
 };
 

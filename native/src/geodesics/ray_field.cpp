@@ -61,8 +61,9 @@ RayField::RayField(const Unfolding& unfolding)
       vertices_(mesh_.vertex_count(), VertexState{}),
       occupants_(mesh_.halfedge_count(), Occupant{}) {}
 
-void RayField::begin() {
+void RayField::begin(const WatchedPlaces* places) {
   ++epoch_;
+  places_.reset(places);
   windows_.clear();
   free_windows_.clear();
   queue_.clear();
@@ -119,7 +120,7 @@ void RayField::add_window(const RayWindow& window) {
   } else {
     key = distance_at(window, std::clamp(window.source.x(), window.b0, window.b1));
   }
-  if (key > limits_.radius) return;
+  if (is_too_far(window, key)) return;
   Index id = static_cast<Index>(windows_.size());
   if (free_windows_.empty()) {
     windows_.push_back(window);
@@ -129,6 +130,14 @@ void RayField::add_window(const RayWindow& window) {
     windows_[id] = window;
   }
   push({key, id});
+}
+
+bool RayField::is_too_far(const RayWindow& window, double key) const {
+  if (key > limits_.radius) return true;
+  if (!std::isfinite(limits_.edges)) return false;
+  const Index h = window.halfedge;
+  const double edge = std::max({mesh_.length(h), mesh_.length(Mesh::next(h)), mesh_.length(Mesh::prev(h))});
+  return key > limits_.edges * edge;
 }
 
 void RayField::run(const RayLimits& limits, const JobStage& stage) {
@@ -210,6 +219,7 @@ void RayField::propagate(const RayWindow& window) {
   const bool is_parallel = window.rays == Rays::perpendicular;
   const Vec2 ray = is_parallel ? window.source : Vec2(apex - window.source);
   if (ray.y() <= 0) return;  // grazes the edge: only rounding brings it here
+  if (!places_.empty()) reach_places(window);
   const double reach = is_parallel ? window.offset + window.source.dot(apex) : window.offset + ray.norm();
   const double tolerance = k_edge_tolerance * mesh_.length(h);
   // Where the ray to the apex crosses the half-edge.
@@ -238,6 +248,21 @@ void RayField::propagate(const RayWindow& window) {
   }
 }
 
+/// Of the places in the face that the window enters those that its rays meet.
+void RayField::reach_places(const RayWindow& window) {
+  const Index h = window.halfedge;
+  const double base = mesh_.length(h), tolerance = k_edge_tolerance * base;
+  places_.places().in_face(Mesh::face_of(h), [&](Index index, const Vec3& weights) {
+    const Vec2 place = weights[Mesh::next(h) % 3] * Vec2(base, 0) + weights[Mesh::prev(h) % 3] * unfolding_.apex(h);
+    const bool is_parallel = window.rays == Rays::perpendicular;
+    const Vec2 ray = is_parallel ? window.source : Vec2(place - window.source);
+    if (ray.y() <= 0) return;
+    const double crossing = place.x() - ray.x() * (place.y() / ray.y());
+    if (crossing < window.b0 - tolerance || crossing > window.b1 + tolerance) return;
+    places_.offer(index, window.offset + (is_parallel ? window.source.dot(place) : ray.norm()));
+  });
+}
+
 RayField::Side RayField::side_of(const RayWindow& window, bool left) const {
   const Index h = window.halfedge;
   const Vec2& apex = unfolding_.apex(h);
@@ -248,7 +273,7 @@ RayField::Side RayField::side_of(const RayWindow& window, bool left) const {
   }
   const double base = mesh_.length(h), length = mesh_.length(Mesh::next(h));
   const double x = window.rays == Rays::perpendicular ? -s.x() : base - s.x();
-  return {false,  mesh_.to(h), mesh_.from(h), Mesh::next(h), length, Vec2(base - apex.x(), apex.y()) / length,
+  return {false,     mesh_.to(h), mesh_.from(h), Mesh::next(h), length, Vec2(base - apex.x(), apex.y()) / length,
           {x, s.y()}};
 }
 

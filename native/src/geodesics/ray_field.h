@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geodesics/unfolding.h"
+#include "geodesics/watched_places.h"
 
 namespace saddleback {
 
@@ -19,7 +20,7 @@ enum class Rays : std::uint8_t {
 /// Part [b0, b1] of half-edge h, about to enter h's face, in the frame of h: from(h) at the origin, to(h) on the
 /// positive x axis, the face above.
 struct RayWindow {
-  Vec2 source;    ///< unfolded point of departure (y <= 0); of perpendicular rays their unit direction (y > 0)
+  Vec2 source;  ///< unfolded point of departure (y <= 0); of perpendicular rays their unit direction (y > 0)
   double b0, b1;
   double offset;  ///< distance at the point of departure; of perpendicular rays at the frame's origin
   double value;   ///< from_point: angle, at the point, of the x axis; from_foot: the value; else that at the origin
@@ -40,6 +41,9 @@ struct RayLabel {
 struct RayLimits {
   double radius = std::numeric_limits<double>::infinity();
   Index k = std::numeric_limits<Index>::max();  ///< stop after so many vertices
+  /// Rays stop so many edges away from where they set out, measured in edges of the face that they enter: near enough
+  /// for what looks at a front from vertices behind it. Labels beyond are of longer ways.
+  double edges = std::numeric_limits<double>::infinity();
 };
 
 /// Window propagation (Chen and Han 1990, filters of Xin and Wang 2009) of windows of any front, with saddle vertices
@@ -50,8 +54,9 @@ class RayField {
  public:
   explicit RayField(const Unfolding& unfolding);
 
-  /// Forgets everything, for new sources.
-  void begin();
+  /// Forgets everything, for new sources. Distances of `places`, if any, are found as well: of those in sight of the
+  /// source or of a saddle vertex, when another face lies between.
+  void begin(const WatchedPlaces* places = nullptr);
   /// A vertex that the front reaches at once. `back` is the surface angle, at the vertex, of the way back.
   void offer(Index vertex, const RayLabel& label, double back);
   /// A vertex of the source itself, whose rays the caller sends out.
@@ -63,12 +68,14 @@ class RayField {
   /// Vertices with their final labels, in order of distance; those that were reached within the limits.
   const std::vector<Index>& settled() const { return settled_; }
   const RayLabel& label(Index vertex) const { return vertices_[vertex].label; }
+  PlaceDistances& places() { return places_; }
+  const PlaceDistances& places() const { return places_; }
 
  private:
   struct VertexState {
     RayLabel label;
     Vec2 ray = Vec2::Zero();  ///< in the frame of `halfedge`, where it came by a window; else x is the angle back
-    Index halfedge;  ///< k_none: `ray` holds the angle
+    Index halfedge;           ///< k_none: `ray` holds the angle
     std::uint32_t epoch;
     bool settled;
   };
@@ -99,6 +106,8 @@ class RayField {
   double angle_back(Index vertex) const;
   void shine_from(Index vertex, double begin, double end);
   void propagate(const RayWindow& window);
+  void reach_places(const RayWindow& window);
+  bool is_too_far(const RayWindow& window, double key) const;
   Side side_of(const RayWindow& window, bool left) const;
   void add_child(const RayWindow& parent, const Side& side, double begin, double end, bool to_apex);
   bool is_useless(const Side& side, const RayWindow& child, double q0, double q1, Index apex, double base) const;
@@ -111,13 +120,14 @@ class RayField {
   std::vector<Index> free_windows_;
   std::vector<Event> queue_;
   std::vector<Index> settled_;
+  PlaceDistances places_;
   RayLimits limits_;
   std::uint32_t epoch_ = 0;
 };
 
 /// The window that a vertex throws on the edge opposite the corner at half-edge h, of which h's vertex is the point of
-/// departure: directions `begin` to `end`, measured from h, 0 to the corner's angle. \return false when there is nothing
-/// behind that edge.
+/// departure: directions `begin` to `end`, measured from h, 0 to the corner's angle. \return false when there is
+/// nothing behind that edge.
 bool window_of_corner(const Unfolding& unfolding, Index h, double begin, double end, RayWindow& window);
 
 }  // namespace saddleback
