@@ -49,7 +49,7 @@ def test_what_is_no_curve_is_refused() -> None:
         sb.SurfaceCurve(mesh, [3, 3, 3])
     with pytest.raises(sb.InputError, match=r"points 1 \(face \d+\) and 2 \(face \d+\) share no face"):
         sb.SurfaceCurve(mesh, [0, 1, 30])
-    with pytest.raises(sb.InputError, match="points 2 .* and 0 .* share no face"):
+    with pytest.raises(sb.InputError, match=r"points 2 .* and 0 .* share no face"):
         sb.SurfaceCurve(mesh, [0, 1, 2], closed=True)
     with pytest.raises(sb.InputError, match="points: vertex 36 at"):
         sb.SurfaceCurve(mesh, [0, 36])
