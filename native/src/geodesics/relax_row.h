@@ -10,10 +10,9 @@ namespace saddleback {
 /// Nodes whose distance a row has lowered, at most k_most a call.
 struct LoweredNodes {
   static constexpr int k_most = 256;
-  static constexpr int k_slack = 8;  ///< vectors are stored whole
   int count = 0;
-  alignas(64) Index nodes[k_most + k_slack];
-  alignas(64) double distances[k_most + k_slack];
+  Index nodes[k_most];
+  double distances[k_most];
 };
 
 /// What is offered along a row, and where it is written.
