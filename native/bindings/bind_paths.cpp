@@ -84,7 +84,7 @@ Args:
     job: progress and cancellation.
 
 Raises:
-    InputError: a point off the mesh, a radius that is negative or not a number.
+    InputError: a point off the mesh, a radius that is not above 0.
     Cancelled: the job was.
 
 Notes:
@@ -121,7 +121,7 @@ Args:
     job: progress and cancellation.
 
 Raises:
-    InputError: no curve, a curve of another mesh, a radius that is negative or not a number.
+    InputError: no curve, a curve of another mesh, a radius that is not above 0.
     Cancelled: the job was.
 
 Notes:
@@ -177,7 +177,8 @@ auto view_of_flags(const std::vector<std::uint8_t> Owner::*member) {
 
 void bind_geodesic_paths(py::module_& m) {
   py::class_<GeodesicPaths>(m, "GeodesicPaths", py::module_local(), k_paths_doc)
-      .def_property_readonly("points", view_of_member(&GeodesicPaths::points), "(n, 3) float64: points of all paths in space.")
+      .def_property_readonly("points", view_of_member(&GeodesicPaths::points),
+                             "(n, 3) float64: points of all paths in space.")
       .def_property_readonly(
           "surface", [](const GeodesicPaths& paths) { return paths.surface; }, "The same points as a SurfacePoints.")
       .def_property_readonly("offsets", view_of_member(&GeodesicPaths::offsets), "(paths + 1,) int64.")
@@ -232,7 +233,7 @@ PolarCoordinates polar_of(const py::object& graph_object, const py::object& curv
   SurfacePoints points = py::isinstance<GeodesicPath>(curve) ? py::cast<const GeodesicPath&>(curve).surface
                                                              : as_surface_points(curve, graph.mesh(), "curve");
   return without_gil([&] {
-    return polar_coordinates(graph, SurfaceCurve(graph.mesh(), std::move(points)), wanted, token);
+    return polar_coordinates(graph, SurfaceCurve(graph.mesh(), std::move(points), false, "curve"), wanted, token);
   });
 }
 
@@ -252,7 +253,8 @@ void bind_maps(py::module_& m) {
                              "(m,) bool: the shortest path bends at a saddle vertex.")
       .def("__len__", [](const LogMap& map) { return map.vertices.size(); });
   py::class_<PolarCoordinates>(m, "PolarCoordinates", py::module_local(), "Vertices about a curve.")
-      .def_property_readonly("vertices", view_of_member(&PolarCoordinates::vertices), "(m,) int32: vertices, ascending.")
+      .def_property_readonly("vertices", view_of_member(&PolarCoordinates::vertices),
+                             "(m,) int32: vertices, ascending.")
       .def_property_readonly("distance", view_of_member(&PolarCoordinates::distance),
                              "(m,) float64: mesh units; positive on the left of the curve, negative on its right.")
       .def_property_readonly("along", view_of_member(&PolarCoordinates::along),
@@ -276,8 +278,7 @@ std::unique_ptr<SurfaceCurve> make_curve(const py::object& mesh_object, const py
 
 void bind_curve(py::module_& m) {
   py::class_<SurfaceCurve>(m, "SurfaceCurve", py::module_local(), k_curve_doc)
-      .def(py::init(&make_curve), py::arg("mesh"), py::arg("points"), py::arg("closed") = false,
-           py::keep_alive<1, 2>())
+      .def(py::init(&make_curve), py::arg("mesh"), py::arg("points"), py::arg("closed") = false, py::keep_alive<1, 2>())
       .def_property_readonly(
           "points", [](const SurfaceCurve& curve) { return curve.points(); }, "The points as a SurfacePoints.")
       .def_property_readonly("closed", &SurfaceCurve::closed, "Whether the curve runs on to its first point.")

@@ -20,7 +20,7 @@ struct PolarCoordinates {
 /// rays at right angles to the segments, fans at bends. Where the nearest point of the curve is not unique (the cut
 /// locus) one of them is taken; behind a saddle vertex (`shadowed`) the coordinate is that of the way by it. Beyond the
 /// ends of an open curve the foot is its end, and the side that of the curve run straight on.
-/// \throw InputError for a curve of another mesh, a radius that is negative or not a number; Cancelled.
+/// \throw InputError for a curve of another mesh, a radius that is not above 0; Cancelled.
 /// O(n sqrt(n) log n) for n vertices within the radius.
 PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const SurfaceCurve& curve, double radius,
                                    Job* job = nullptr);
@@ -29,14 +29,15 @@ PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const Surface
 struct LogMap {
   std::vector<Index> vertices;
   std::vector<double> distance;
-  std::vector<double> angle;           ///< as `trace` takes it: trace(centre, angle, distance) ends at the vertex
-  std::vector<Vec2> uv;                ///< distance times the unit vector of the scaled angle
-  std::vector<std::uint8_t> shadowed;  ///< the shortest way bends at a saddle vertex, the angle is that of the way there
+  std::vector<double> angle;  ///< as `trace` takes it: trace(centre, angle, distance) ends at the vertex
+  std::vector<Vec2> uv;       ///< distance times the unit vector of the scaled angle
+  std::vector<std::uint8_t>
+      shadowed;  ///< the shortest way bends at a saddle vertex, the angle is that of the way there
 };
 
 /// The logarithmic map: length and direction of departure of the shortest path to every vertex within `radius`, exact.
 /// At an interior vertex angles are scaled so that its total angle becomes 2 pi. \throw InputError for a point off the
-/// mesh, a radius that is negative or not a number; Cancelled. O(n sqrt(n) log n) for n vertices within the radius.
+/// mesh, a radius that is not above 0; Cancelled. O(n sqrt(n) log n) for n vertices within the radius.
 LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, double radius, Job* job = nullptr);
 
 /// The exponential map: where straightest geodesics from `centre` end, each of the length and direction of a (scaled,

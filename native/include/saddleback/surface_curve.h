@@ -22,9 +22,10 @@ struct CurveSegment {
 class SurfaceCurve {
  public:
   /// A closed curve runs on from the last point to the first. A point within k_barycentric_tolerance of an edge or a
-  /// vertex counts as on it where the next point needs that. \throw InputError for fewer than two points, a point off
-  /// the mesh, two consecutive points that share no face (naming their indices), a curve without length. O(n).
-  SurfaceCurve(const Mesh& mesh, SurfacePoints points, bool closed = false);
+  /// vertex counts as on it where the next point needs that. \throw InputError, naming `argument`, for fewer than two
+  /// points, a point off the mesh, two consecutive points that share no face (naming their indices), a curve without
+  /// length. O(n).
+  SurfaceCurve(const Mesh& mesh, SurfacePoints points, bool closed = false, const char* argument = "points");
 
   const Mesh& mesh() const { return *mesh_; }
   const SurfacePoints& points() const { return points_; }
@@ -34,7 +35,7 @@ class SurfaceCurve {
   std::span<const CurveSegment> segments() const { return segments_; }
 
  private:
-  void add_segment(std::size_t from, std::size_t to);
+  void add_segment(std::size_t from, std::size_t to, const char* argument);
 
   const Mesh* mesh_;
   SurfacePoints points_;

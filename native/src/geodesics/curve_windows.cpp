@@ -44,6 +44,7 @@ void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits
   feet.clear();
   field_.begin(places);
   const auto segments = curve.segments();
+  for (const CurveSegment& s : segments) field_.barriers().add(s.face, s.begin, s.end);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     stage.check();
     for (const bool at_begin : {true, false}) {

@@ -32,11 +32,25 @@ constexpr double k_tie = 1e-12;
 // Relative to the edge. Narrower windows are not made: the rays of two windows through one lattice point of a grid lie
 // this far apart at most, by rounding. What is lost is a gap, of which the far end may be 1000 times as wide.
 constexpr double k_sliver = 1e-10, k_gap = 1e-7;
+// Relative to the length of a ray: rounding of where it crosses an edge, which on graded meshes exceeds the share
+// above.
+constexpr double k_ray_gap = 1e-13;
 constexpr double k_narrow_fan = 1e-12;  ///< radians; rounding of the sum of a vertex's angles
 constexpr double k_buckets_per_edge = 4;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
+
+/// About the median, which a few huge faces do not change as they do the mean.
+double common_length(const Mesh& mesh) {
+  constexpr Index k_sample = 1000;
+  std::vector<double> lengths;
+  for (Index h = 0; h < mesh.halfedge_count(); h += 1 + mesh.halfedge_count() / k_sample)
+    lengths.push_back(mesh.length(h));
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
 
 }  // namespace
 
@@ -45,7 +59,7 @@ ExactPropagation::ExactPropagation(const ExactSurface& surface, const SurfacePoi
     : surface_(surface),
       sources_(sources),
       options_(options),
-      queue_(std::make_unique<WindowQueue>(surface.mesh().mean_edge_length() / k_buckets_per_edge)),
+      queue_(std::make_unique<WindowQueue>(common_length(surface.mesh()) / k_buckets_per_edge)),
       distances_(surface.vertex_count(), k_far),
       bent_at_(surface.vertex_count(), k_far),
       arrivals_(surface.vertex_count(), {0, 0, Arrival::k_unreached, k_none}),
@@ -56,7 +70,7 @@ void ExactPropagation::run(const JobStage& stage) {
   start();
   while (queue_->advance() && queue_->reached() <= options_.limit) {
     progress.reached(queue_->reached());
-    while (WindowBlock* const block = queue_->take()) drain(block);
+    while (WindowBlock* const block = queue_->take()) drain(block, stage);
     // Last in the bucket: by now their distances are final, nearly always.
     for (const Index vertex : due_) bend(vertex);
     due_.clear();
@@ -77,13 +91,14 @@ std::size_t ExactPropagation::nbytes() const {
 }
 
 /// Propagates a chain of blocks.
-void ExactPropagation::drain(WindowBlock* block) {
+void ExactPropagation::drain(WindowBlock* block, const JobStage& stage) {
   while (block) {
+    stage.check();
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->windows[i];
       if (window.halfedge >= 0) {
         if (surface_.frame(window.halfedge).holds_sources) [[unlikely]] {
-          propagate_past_sources(window);
+          cut_at_sources(window, false, [this](const Window& part) { propagate(part); });
         } else {
           propagate(window);
         }
@@ -116,7 +131,7 @@ void ExactPropagation::start() {
   }
 }
 
-/// Lights the three edges of a face.
+/// Lights of the three edges of a face what no other source in it is nearer to.
 void ExactPropagation::start_in_face(const SourceInFace& place) {
   const Index root = surface_.vertex_count() + place.source;
   for (Index h = 3 * place.face; h < 3 * place.face + 3; ++h) {
@@ -125,7 +140,17 @@ void ExactPropagation::start_in_face(const SourceInFace& place) {
     offer(frame.apex, to_apex.norm(), {to_apex.x(), to_apex.y(), h, root});
     const Index entered = surface_.twin(h);
     if (entered == k_none || centre.y() == 0) continue;
-    light({frame.length - centre.x(), -centre.y(), 0, frame.length, 0, entered, root});
+    double begin = 0, end = frame.length;
+    for (const SourceInFace& other : surface_.sources_in(place.face)) {
+      const Vec2 there = surface_.in_frame(h, other.barycentric);
+      const double dx = there.x() - centre.x();
+      const double middle = (there.squaredNorm() - centre.squaredNorm()) / (2 * dx);  // as far from either
+      if (dx > 0) end = std::min(end, middle);
+      if (dx < 0) begin = std::max(begin, middle);
+      if (dx == 0 && there.y() < centre.y()) end = begin;
+    }
+    if (begin < end)
+      light({frame.length - centre.x(), -centre.y(), frame.length - end, frame.length - begin, 0, entered, root});
   }
 }
 
@@ -165,13 +190,17 @@ Index ExactPropagation::owner(Index root) const {
   return root - surface_.vertex_count();
 }
 
-/// The rays on the two sides of a source are two windows from here on, as they would be if it were a vertex: "one
-/// angle, one split" holds for windows only that have no root inside them.
-void ExactPropagation::propagate_past_sources(Window window) {
-  const double sliver = k_sliver * surface_.frame(window.halfedge).length;
+/// The rays on the two sides of a source are two windows from there on, as they would be if it were a vertex: "one
+/// angle, one split" holds for windows only that have no root inside them. The sources are those of the face that the
+/// window enters or, when its root is the vertex opposite, of the face that it comes out of.
+template <class Use>
+void ExactPropagation::cut_at_sources(Window window, bool comes_out, Use&& use) const {
+  const double length = surface_.frame(window.halfedge).length, sliver = k_sliver * length;
+  const Index side = comes_out ? surface_.twin(window.halfedge) : window.halfedge;
   std::vector<double> cuts;
-  for (const SourceInFace& place : surface_.sources_in(window.halfedge / 3)) {
-    const Vec2 there = surface_.in_frame(window.halfedge, place.barycentric);
+  for (const SourceInFace& place : surface_.sources_in(side / 3)) {
+    Vec2 there = surface_.in_frame(side, place.barycentric);
+    if (comes_out) there = {length - there.x(), -there.y()};
     const double dy = there.y() - window.sy;
     const double cut = dy > 0 ? window.sx - (there.x() - window.sx) * (window.sy / dy) : there.x();
     if (cut > window.b0 + sliver && cut < window.b1 - sliver) cuts.push_back(cut);
@@ -180,11 +209,11 @@ void ExactPropagation::propagate_past_sources(Window window) {
   const double end = window.b1;
   for (const double cut : cuts) {
     window.b1 = cut;
-    propagate(window);
+    use(window);
     window.b0 = cut;
   }
   window.b1 = end;
-  propagate(window);
+  use(window);
 }
 
 void ExactPropagation::propagate(const Window& window) {
@@ -194,9 +223,10 @@ void ExactPropagation::propagate(const Window& window) {
   const double ox = ax - sx, oy = ay - sy;
   const double reach = length_of(ox, oy);
   const double split = sx - ox * (sy / oy);  // where the ray to the apex crosses the half-edge
+  const double gap = k_gap * length + k_ray_gap * reach;
   if (split >= b0 && split <= b1) {
     offer(frame.apex, sigma + reach, {ox, oy, halfedge, root});
-  } else if (split >= b0 - k_gap * length && split <= b1 + k_gap * length) {
+  } else if (split >= b0 - gap && split <= b1 + gap) {
     const double b = split < b0 ? b0 : b1;
     offer(frame.apex, sigma + length_of(b - sx, sy) + length_of(ax - b, ay), {ox, oy, halfedge, root});
   }
@@ -326,7 +356,9 @@ void ExactPropagation::light_opposite(Index vertex, Index out, double begin, dou
     return length * (c / (a + c));
   };
   const EdgeFrame& opposite = surface_.frame(Mesh::next(out));
-  light({length - opposite.apex_x, -opposite.apex_y, place(end), place(begin), distances_[vertex], entered, vertex});
+  const Window window{length - opposite.apex_x, -opposite.apex_y, place(end), place(begin),
+                      distances_[vertex],       entered,          vertex};
+  cut_at_sources(window, true, [this](const Window& part) { light(part); });
 }
 
 }  // namespace saddleback

@@ -59,11 +59,12 @@ class ExactPropagation {
 
   void start();
   void start_in_face(const SourceInFace& place);
-  void drain(WindowBlock* block);
+  void drain(WindowBlock* block, const JobStage& stage);
   void offer(Index vertex, double distance, const Arrival& arrival);
   bool owns_before(const Arrival& a, const Arrival& b) const;
   void light(const Window& window);
-  void propagate_past_sources(Window window);
+  template <class Use>
+  void cut_at_sources(Window window, bool comes_out, Use&& use) const;
   void propagate(const Window& window);
   void bend(Index vertex);
   void light_opposite(Index vertex, Index out, double begin, double end);

@@ -16,8 +16,7 @@ namespace saddleback {
 namespace {
 
 void check_radius(double radius) {
-  if (std::isnan(radius) || radius < 0)
-    throw InputError(message("radius: wanted a distance of 0 or more, got ", radius));
+  if (!(radius > 0)) throw InputError(message("radius: wanted a distance above 0, got ", radius));
 }
 
 }  // namespace

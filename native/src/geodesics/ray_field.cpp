@@ -16,8 +16,12 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr double k_shorter = 1 - 1e-12;
 // Of ways that are equally long but for rounding the one without a bend is kept.
 constexpr double k_as_short = 1 + 1e-12;
-// Relative to the edge: a ray this close to a window's end meets the end, and narrower windows serve no further vertex.
-constexpr double k_edge_tolerance = 1e-10;
+// What a filter must win by, relative to the distance: rounding over thousands of faces stays below it.
+constexpr double k_slack = 1 - 1e-11;
+// Relative to the edge: narrower windows are not made, see exact_propagation.cpp. A ray to an apex that misses its
+// window by no more than the gap that they leave, or by rounding relative to the ray, counts with the detour round the
+// window's end.
+constexpr double k_sliver = 1e-10, k_gap = 1e-7, k_ray_gap = 1e-13;
 // A total angle above 2 pi by no more than this is flat: what lies behind is seen past the vertex.
 constexpr double k_flat = 1e-9;
 
@@ -27,15 +31,15 @@ Vec2 turned(const Vec2& v, double angle) {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-double distance_at(const RayWindow& window, double x) {
-  if (window.rays == Rays::perpendicular) return window.offset + window.source.x() * x;
-  return window.offset + std::hypot(x - window.source.x(), window.source.y());
-}
-
 /// Direction of increasing arc length.
 Vec2 tangent(const RayWindow& window) { return window.side * Vec2(window.source.y(), -window.source.x()); }
 
 }  // namespace
+
+double distance_at(const RayWindow& window, double x) {
+  if (window.rays == Rays::perpendicular) return window.offset + window.source.x() * x;
+  return window.offset + std::hypot(x - window.source.x(), window.source.y());
+}
 
 bool window_of_corner(const Unfolding& unfolding, Index h, double begin, double end, RayWindow& window) {
   const Mesh& mesh = unfolding.mesh();
@@ -52,14 +56,15 @@ bool window_of_corner(const Unfolding& unfolding, Index h, double begin, double 
   window.b0 = end >= corner ? 0 : met(end);
   window.b1 = begin <= 0 ? base : met(begin);
   window.halfedge = entered;
-  return window.b1 - window.b0 > k_edge_tolerance * base;
+  return window.b1 - window.b0 > k_sliver * base;
 }
 
 RayField::RayField(const Unfolding& unfolding)
     : unfolding_(unfolding),
       mesh_(unfolding.mesh()),
       vertices_(mesh_.vertex_count(), VertexState{}),
-      occupants_(mesh_.halfedge_count(), Occupant{}) {}
+      occupants_(mesh_.halfedge_count(), Occupant{}),
+      barriers_(unfolding) {}
 
 void RayField::begin(const WatchedPlaces* places) {
   ++epoch_;
@@ -68,6 +73,7 @@ void RayField::begin(const WatchedPlaces* places) {
   free_windows_.clear();
   queue_.clear();
   settled_.clear();
+  barriers_.clear();
   limits_ = {};
 }
 
@@ -108,12 +114,17 @@ void RayField::offer(Index vertex, const RayLabel& label, double back) { improve
 
 void RayField::add_source(Index vertex, const RayLabel& label) {
   VertexState& v = state(vertex);
-  if (!v.settled) settled_.push_back(vertex);
+  if (v.settled) return;
+  settled_.push_back(vertex);
   v.settled = true;
   v.label = label;
 }
 
 void RayField::add_window(const RayWindow& window) {
+  barriers_.for_each_free_part(window, RayBarriers::Side::left, [this](const RayWindow& part) { push(part); });
+}
+
+void RayField::push(const RayWindow& window) {
   double key = 0;
   if (window.rays == Rays::perpendicular) {
     key = std::max(0.0, std::min(distance_at(window, window.b0), distance_at(window, window.b1)));
@@ -149,14 +160,16 @@ void RayField::run(const RayLimits& limits, const JobStage& stage) {
     std::pop_heap(queue_.begin(), queue_.end());
     queue_.pop_back();
     if (--countdown <= 0) {
-      countdown = 1024;
+      countdown = 256;
       const double of_count = static_cast<double>(settled_.size()) / std::min(limits_.k, mesh_.vertex_count());
-      stage.update(std::max(of_count, std::isfinite(limits_.radius) ? event.key / limits_.radius : 0.0));
+      const double of_radius = event.key / limits_.radius;
+      stage.update(std::max(of_count, of_radius * of_radius));  // the work grows with the area
     }
     if (event.id >= 0) {
       const RayWindow window = windows_[event.id];
       free_windows_.push_back(event.id);
-      propagate(window);
+      barriers_.for_each_free_part(window, RayBarriers::Side::entered,
+                                   [this](const RayWindow& part) { propagate(part); });
     } else if (VertexState& v = vertices_[~event.id]; !v.settled && event.key <= v.label.distance) {
       v.settled = true;
       settled_.push_back(~event.id);
@@ -221,22 +234,26 @@ void RayField::propagate(const RayWindow& window) {
   if (ray.y() <= 0) return;  // grazes the edge: only rounding brings it here
   if (!places_.empty()) reach_places(window);
   const double reach = is_parallel ? window.offset + window.source.dot(apex) : window.offset + ray.norm();
-  const double tolerance = k_edge_tolerance * mesh_.length(h);
+  const double sliver = k_sliver * mesh_.length(h), gap = k_gap * mesh_.length(h) + k_ray_gap * (reach - window.offset);
   // Where the ray to the apex crosses the half-edge.
   const double split = apex.x() - ray.x() * (apex.y() / ray.y());
-  if (split >= window.b0 - tolerance && split <= window.b1 + tolerance) {
+  if (split >= window.b0 - gap && split <= window.b1 + gap) {
     RayLabel label{reach, window.value, window.side, window.shadowed};
+    if (const double b = std::clamp(split, window.b0, window.b1); b != split)
+      label.distance = distance_at(window, b) + std::hypot(apex.x() - b, apex.y());
     if (window.rays == Rays::from_point) label.value += std::atan2(ray.y(), ray.x());
     if (is_parallel) label.value += tangent(window).dot(apex);
     improve(mesh_.apex(h), label, ray, h);
   }
-  const bool has_left = split > window.b0 + tolerance, has_right = split < window.b1 - tolerance;
+  const bool has_left = split > window.b0 + sliver, has_right = split < window.b1 - sliver;
   bool go_left = has_left, go_right = has_right;
   if (has_left && has_right) {
     Occupant& occupant = occupants_[h];
     if (occupant.epoch != epoch_ || reach < occupant.distance * k_shorter) {
       occupant = {reach, split, epoch_};
-    } else {  // a nearer window has split this angle: behind its ray everything is nearer by the other one
+    } else if (std::abs(split - occupant.split) > sliver || reach > occupant.distance * k_as_short) {
+      // A nearer window has split this angle: behind its ray everything is nearer by the other one. (The same ray, of
+      // pieces of a curve that lie on each other, hides nothing.)
       go_left = split < occupant.split;
       go_right = !go_left;
     }
@@ -251,7 +268,7 @@ void RayField::propagate(const RayWindow& window) {
 /// Of the places in the face that the window enters those that its rays meet.
 void RayField::reach_places(const RayWindow& window) {
   const Index h = window.halfedge;
-  const double base = mesh_.length(h), tolerance = k_edge_tolerance * base;
+  const double base = mesh_.length(h), tolerance = k_sliver * base;
   places_.places().in_face(Mesh::face_of(h), [&](Index index, const Vec3& weights) {
     const Vec2 place = weights[Mesh::next(h) % 3] * Vec2(base, 0) + weights[Mesh::prev(h) % 3] * unfolding_.apex(h);
     const bool is_parallel = window.rays == Rays::perpendicular;
@@ -289,7 +306,7 @@ void RayField::add_child(const RayWindow& parent, const Side& side, double begin
     return divisor > 0 ? std::min(b * ray.y() / divisor, side.length) : side.length;
   };
   const double q0 = hit(std::max(begin, 0.0)), q1 = to_apex ? side.length : hit(end);
-  if (!(q1 - q0 > k_edge_tolerance * side.length)) return;
+  if (!(q1 - q0 > k_sliver * side.length)) return;
   RayWindow child = parent;
   child.halfedge = entered;
   child.b0 = q0;
@@ -317,7 +334,7 @@ void RayField::add_child(const RayWindow& parent, const Side& side, double begin
     }
   }
   if (is_parallel && child.source.y() <= 0) return;
-  add_window(child);
+  push(child);
 }
 
 /// The three filters of Xin and Wang: some corner of the face offers every point of the child a shorter way. They hold
@@ -325,10 +342,10 @@ void RayField::add_child(const RayWindow& parent, const Side& side, double begin
 bool RayField::is_useless(const Side& side, const RayWindow& child, double q0, double q1, Index apex,
                           double base) const {
   const double to_q0 = distance_at(child, q0), to_q1 = distance_at(child, q1);
-  if (distance(side.near) + q1 < to_q1 * k_shorter) return true;
-  if (distance(apex) + (side.length - q0) < to_q0 * k_shorter) return true;
+  if (distance(side.near) + q1 < to_q1 * k_slack) return true;
+  if (distance(apex) + (side.length - q0) < to_q0 * k_slack) return true;
   const double across = std::hypot(base - q0 * side.direction.x(), q0 * side.direction.y());
-  return distance(side.far) + across < to_q0 * k_shorter;
+  return distance(side.far) + across < to_q0 * k_slack;
 }
 
 }  // namespace saddleback

@@ -1,34 +1,15 @@
 #pragma once
 // Exact distances from a wave front of rays: from a point, or at right angles from a curve.
 
-#include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "geodesics/ray_barriers.h"
+#include "geodesics/ray_window.h"
 #include "geodesics/unfolding.h"
 #include "geodesics/watched_places.h"
 
 namespace saddleback {
-
-/// How the rays of a window run, and what they tell of a place beside its distance.
-enum class Rays : std::uint8_t {
-  from_point,     ///< out of one point; they tell the angle in which they left it
-  from_foot,      ///< out of one point; all tell the same value
-  perpendicular,  ///< parallel, at right angles to a straight piece of curve; they tell the arc length of their foot
-};
-
-/// Part [b0, b1] of half-edge h, about to enter h's face, in the frame of h: from(h) at the origin, to(h) on the
-/// positive x axis, the face above.
-struct RayWindow {
-  Vec2 source;  ///< unfolded point of departure (y <= 0); of perpendicular rays their unit direction (y > 0)
-  double b0, b1;
-  double offset;  ///< distance at the point of departure; of perpendicular rays at the frame's origin
-  double value;   ///< from_point: angle, at the point, of the x axis; from_foot: the value; else that at the origin
-  Index halfedge;
-  Rays rays;
-  std::int8_t side;  ///< of the curve: 1 left, -1 right, 0 neither
-  bool shadowed;     ///< the rays set out anew at a saddle vertex
-};
 
 /// What is known of a vertex.
 struct RayLabel {
@@ -59,9 +40,12 @@ class RayField {
   void begin(const WatchedPlaces* places = nullptr);
   /// A vertex that the front reaches at once. `back` is the surface angle, at the vertex, of the way back.
   void offer(Index vertex, const RayLabel& label, double back);
-  /// A vertex of the source itself, whose rays the caller sends out.
+  /// A vertex of the source itself, whose rays the caller sends out; the first label stays.
   void add_source(Index vertex, const RayLabel& label);
+  /// Rays whose roots are in the face before the window.
   void add_window(const RayWindow& window);
+  /// What ends rays, to be filled after `begin` and before anything else; none at first.
+  RayBarriers& barriers() { return barriers_; }
   /// \throw Cancelled.
   void run(const RayLimits& limits, const JobStage& stage);
 
@@ -102,6 +86,7 @@ class RayField {
   double distance(Index vertex) const;
   bool improve(Index vertex, const RayLabel& label, const Vec2& ray, Index halfedge);
   void push(const Event& event);
+  void push(const RayWindow& window);
   void settle(Index vertex);
   double angle_back(Index vertex) const;
   void shine_from(Index vertex, double begin, double end);
@@ -116,6 +101,7 @@ class RayField {
   const Mesh& mesh_;
   std::vector<VertexState> vertices_;
   std::vector<Occupant> occupants_;
+  RayBarriers barriers_;
   std::vector<RayWindow> windows_;
   std::vector<Index> free_windows_;
   std::vector<Event> queue_;

@@ -7,6 +7,9 @@
 namespace saddleback {
 namespace {
 
+// Relative to the face's edges: a shorter step between two points is rounding and has no direction.
+constexpr double k_no_length = 1e-14;
+
 int corner_of(const Mesh& mesh, Index face, Index vertex) {
   const Triangle& t = mesh.triangles()[face];
   return vertex == t[0] ? 0 : vertex == t[1] ? 1 : vertex == t[2] ? 2 : -1;
@@ -59,18 +62,19 @@ Index shared_face(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b
   return found;
 }
 
-SurfaceCurve::SurfaceCurve(const Mesh& mesh, SurfacePoints points, bool closed)
+SurfaceCurve::SurfaceCurve(const Mesh& mesh, SurfacePoints points, bool closed, const char* argument)
     : mesh_(&mesh), points_(std::move(points)), closed_(closed) {
-  check_surface_points(mesh, points_, "points");
-  if (points_.size() < 2) throw InputError(message("points: wanted at least two points, got ", points_.size()));
+  check_surface_points(mesh, points_, argument);
+  if (points_.size() < 2) throw InputError(message(argument, ": wanted at least two points, got ", points_.size()));
   for (SurfacePoint& point : points_) point.barycentric = normalised_barycentric(point.barycentric);
   segments_.reserve(points_.size());
-  for (std::size_t i = 0; i + 1 < points_.size(); ++i) add_segment(i, i + 1);
-  if (closed_) add_segment(points_.size() - 1, 0);
-  if (segments_.empty()) throw InputError("points: all are the same point, so that the curve has no length");
+  for (std::size_t i = 0; i + 1 < points_.size(); ++i) add_segment(i, i + 1, argument);
+  if (closed_) add_segment(points_.size() - 1, 0, argument);
+  if (segments_.empty())
+    throw InputError(message(argument, ": all are the same point, so that the curve has no length"));
 }
 
-void SurfaceCurve::add_segment(std::size_t from, std::size_t to) {
+void SurfaceCurve::add_segment(std::size_t from, std::size_t to, const char* argument) {
   const SurfacePoint &a = points_[from], &b = points_[to];
   double tolerance = 0;
   Index face = shared_face(*mesh_, a, b, tolerance);
@@ -79,13 +83,15 @@ void SurfaceCurve::add_segment(std::size_t from, std::size_t to) {
     face = shared_face(*mesh_, a, b, tolerance);
   }
   if (face == k_none) {
-    throw InputError(message("points: points ", from, " (face ", a.face, ") and ", to, " (face ", b.face,
+    throw InputError(message(argument, ": points ", from, " (face ", a.face, ") and ", to, " (face ", b.face,
                              ") share no face; a curve crosses an edge or vertex at a point of its own"));
   }
   CurveSegment segment{face, *barycentric_in(*mesh_, a, face, tolerance), *barycentric_in(*mesh_, b, face, tolerance),
                        length_, 0};
   segment.length = (position(*mesh_, {face, segment.begin}) - position(*mesh_, {face, segment.end})).norm();
-  if (segment.length <= 0) return;
+  const Index h = 3 * face;
+  const double longest = std::max({mesh_->length(h), mesh_->length(h + 1), mesh_->length(h + 2)});
+  if (segment.length <= k_no_length * longest) return;
   length_ += segment.length;
   segments_.push_back(segment);
 }
