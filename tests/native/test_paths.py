@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -36,7 +38,7 @@ def side_angles(mesh: sb.Mesh, vertex: int, before: Floats, after: Floats) -> tu
     while order[-1] in following and (len(order) == 1 or order[-1] != order[0]):
         order.append(following[order[-1]])
     angle = 0.0
-    for first, second in zip(order[:-1], order[1:], strict=True):
+    for first, second in itertools.pairwise(order):
         a, b = (mesh.vertices[v] - mesh.vertices[vertex] for v in (first, second))
         corner = between(a, b)
         for name, point in (("before", before), ("after", after)):
