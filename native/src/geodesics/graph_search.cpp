@@ -57,9 +57,9 @@ void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const Seed> seed
   sources_.assign(labels == SearchLabels::none ? 0 : count, k_none);
   predecessors_.assign(labels == SearchLabels::sources_and_predecessors ? count : 0, k_none);
   if (options.method == QueryMethod::dijkstra) {
-    // With the plain loop over a row: together the slow and simple search that the fast one is checked against.
+    // With the portable loop over a row: together the search that the fast one is checked against.
     Heap heap;
-    propagate(heap, relax_row_plain(), graph, seeds, stage);
+    propagate(heap, relax_row_portable(), graph, seeds, stage);
   } else {
     double span = graph.arcs().longest();
     for (const Seed& seed : seeds) span = std::max(span, seed.distance);

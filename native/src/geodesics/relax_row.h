@@ -29,9 +29,9 @@ struct RowOffer {
 using RelaxRow = void (*)(const ArcCodec& codec, const std::uint64_t* words, int count, const RowOffer& offer,
                           LoweredNodes& lowered);
 
-/// The fastest that this machine runs: AVX-512, AVX2 or plain C++. Sums of arcs are exact: all give the same bits.
+/// The fastest that this machine runs: AVX2 or plain C++. Sums of arcs are exact: both give the same bits.
 RelaxRow relax_row();
-/// The one in plain C++, which the others are tested against.
-RelaxRow relax_row_plain();
+/// The one in plain C++, which the other is tested against.
+RelaxRow relax_row_portable();
 
 }  // namespace saddleback
