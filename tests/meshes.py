@@ -118,6 +118,18 @@ def needles(columns: int = 4, rows: int = 200) -> Arrays:
     return vertices * (15.0, 1.0, 1.0), triangles
 
 
+def graded_disk(finest: float = 1e-6, rings: int = 80, around: int = 20) -> Arrays:
+    """A flat disk about vertex 0; the rings' radii fall from 1 to `finest` by a constant factor."""
+    angle = 2 * np.pi * np.arange(around) / around
+    radii = np.geomspace(finest, 1, rings)[:, None]
+    x, y = (radii * np.cos(angle)).ravel(), (radii * np.sin(angle)).ravel()
+    vertices = np.vstack([np.zeros((1, 3)), np.column_stack([x, y, np.zeros(len(x))])])
+    centre = [(0, 1 + i, 1 + (i + 1) % around) for i in range(around)]
+    return vertices, np.concatenate([np.array(centre, dtype=np.int32), _wrap(around, rings)[:, ::-1] + 1]).astype(
+        np.int32
+    )
+
+
 def holes(size: int = 13) -> Arrays:
     """A flat grid with two square holes."""
     vertices, triangles = grid(size, size)

@@ -59,6 +59,24 @@ def test_plane_from_faces_and_edges(weights: tuple[float, float, float]) -> None
         assert_exact(sb.ExactField(mesh, source).distance_to(targets), straight)
 
 
+@pytest.mark.parametrize("finest", [1e-3, 1e-6, 1e-12])
+def test_a_disk_whose_rings_shrink(finest: float) -> None:
+    """Seen from the rim the finest ring is less than the rounding of where rays cross the coarse ones."""
+    vertices, triangles = meshes.graded_disk(finest)
+    mesh = sb.Mesh(vertices, triangles)
+    for source in (0, 1, len(vertices) // 2, len(vertices) - 7, len(vertices) - 1):
+        for found in fields(mesh, [source]):
+            assert_exact(found, np.linalg.norm(vertices - vertices[source], axis=1))
+
+
+def test_a_few_huge_faces_cost_nothing() -> None:
+    """The order of windows stays fine though the mean edge is longer than the rest of the mesh."""
+    sphere = meshes.icosphere(3)
+    far = np.array([(5, 0, 0), (5 + 1e9, 0, 0), (5, 1e9, 0)], dtype=float), np.array([(0, 1, 2)], dtype=np.int32)
+    windows = [sb.ExactField(sb.Mesh(*arrays), [0]).window_count for arrays in (sphere, meshes.merge(sphere, far))]
+    assert windows[1] <= 1.1 * windows[0]
+
+
 def test_needles_of_the_plane() -> None:
     mesh = sb.Mesh(*meshes.needles())
     for source in (0, 1, 402, 799):
@@ -157,6 +175,26 @@ def test_nearest_is_the_least_of_the_fields(case: meshes.Case) -> None:
     np.testing.assert_allclose(at_nearest, distance[reached], rtol=1e-11, atol=1e-15)
     field = sb.ExactField(case.mesh, sources)
     assert np.array_equal(field.nearest, nearest)
+
+
+@pytest.mark.parametrize("shape", ["needles", "grid", "square"])
+@pytest.mark.parametrize("count", [2, 5, 60])
+def test_many_sources_in_one_face(shape: str, count: int) -> None:
+    """Some lie in the light of others, some on edges and corners."""
+    shapes = {"needles": meshes.needles(), "grid": meshes.grid(12, 12, 0.3), "square": meshes.grid(2, 2)}
+    mesh = sb.Mesh(*shapes[shape])
+    rng = np.random.default_rng(count)
+    for face in rng.integers(len(mesh.triangles), size=15):
+        weights = rng.dirichlet([0.6] * 3, count)
+        weights[:: 4 + count // 5] = (1, 0, 0)
+        weights[1 :: 5 + count // 5, 0] = 0
+        weights /= weights.sum(axis=1)[:, None]
+        sources = sb.SurfacePoints(np.full(count, face), weights)
+        gaps = np.linalg.norm(mesh.vertices[:, None] - sources.positions(mesh), axis=2)
+        for found in fields(mesh, sources):
+            assert_exact(found, gaps.min(axis=1), 1e-11)
+        nearest = sb.exact_nearest(mesh, sources)[1]
+        assert np.allclose(gaps[np.arange(len(gaps)), nearest], gaps.min(axis=1), rtol=1e-11, atol=1e-15)
 
 
 @pytest.mark.parametrize("pair", [(0, 24), (24, 0), (0, 600), (12, 612), (300, 324)])

@@ -181,6 +181,30 @@ def test_ends_anywhere_on_the_surface() -> None:
                 sb.SurfaceCurve(mesh, path.surface)
 
 
+@pytest.mark.parametrize("case", meshes.good(), ids=str)
+def test_a_path_between_points_that_see_each_other_is_straight_and_as_long_as_their_distance(case: meshes.Case) -> None:
+    mesh, graph, rng = case.mesh, graph_of(case), np.random.default_rng(5)
+    for _ in range(20):
+        start = sb.SurfacePoints([rng.integers(len(mesh.triangles))], [rng.dirichlet([1, 1, 1])])
+        line = sb.trace(mesh, start, rng.uniform(0, 6), rng.uniform(0.1, 3) * mesh.mean_edge_length)
+        end = line.surface[len(line.surface) - 1 :]
+        path = graph.path(start, end)
+        assert path.length == pytest.approx(graph.distance(start, end), rel=1e-9)
+        assert path.length == pytest.approx(polyline_length(path.points), rel=1e-9)
+        if case.name != "needles":  # there an edge is farther than a fan of k vertices reaches
+            assert path.length <= line.length * (1 + 1e-8)  # fans are rounded as arcs are
+        assert np.allclose(path.points[[0, -1]], line.points[[0, -1]], atol=1e-14)
+        assert_straight(mesh, path, legal=False)
+
+
+def test_of_equal_sources_the_first_is_the_path_s() -> None:
+    mesh = sb.Mesh(*meshes.grid())
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    for point in (sb.SurfacePoints([7] * 3, [[0.2, 0.3, 0.5]] * 3), np.array([5, 5, 5], dtype=np.int32)):
+        targets = sb.SurfacePoints([7, 90, 0], [[0.5, 0.3, 0.2], [0.2, 0.3, 0.5], [1, 0, 0]])
+        assert graph.paths(point, targets).sources.tolist() == [0, 0, 0]
+
+
 def test_a_point_to_itself_is_one_point() -> None:
     mesh = sb.Mesh(*meshes.grid())
     graph = sb.SaddleVertexGraph(mesh, k=12)

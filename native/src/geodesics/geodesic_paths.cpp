@@ -11,7 +11,9 @@
 #include "saddleback/surface_curve.h"
 
 #include "geodesics/label_propagation.h"
+#include "geodesics/line_of_sight.h"
 #include "geodesics/path_shortening.h"
+#include "geodesics/point_targets.h"
 #include "geodesics/window_propagation.h"
 #include "support/parallel.h"
 
@@ -44,27 +46,37 @@ class Propagators {
   std::vector<std::unique_ptr<WindowPropagator>> own_;
 };
 
+/// A fan as the queries know it, so that paths are as long as they say.
+PointFan point_fan(const SaddleVertexGraph& graph, const SurfacePoint& point, const std::vector<DirectArc>& arcs) {
+  PointFan fan;
+  const Index vertex = vertex_at(graph.mesh(), point);
+  if (vertex != k_none) return {{{vertex, 0}}, 0, true};
+  for (const DirectArc& arc : arcs) {
+    fan.arcs.push_back({arc.vertex, graph.arcs().codec().round(arc.length)});
+    fan.reach = std::max(fan.reach, arc.length);
+  }
+  std::ranges::sort(fan.arcs, {}, &PointFan::Arc::vertex);
+  return fan;
+}
+
 /// Distances from the sources and how they came about.
 struct PathField {
   const SurfacePoints& sources;
-  Fans fans;  ///< of the sources
+  Fans fans;                         ///< of the sources
+  std::vector<PointFan> point_fans;  ///< the same
   LabelField labels;
 };
 
 PathField make_field(const SaddleVertexGraph& graph, const SurfacePoints& sources, int threads, const JobStage& stage) {
-  PathField field{sources, Fans(sources.size()), {}};
+  PathField field{sources, Fans(sources.size()), std::vector<PointFan>(sources.size()), {}};
   Propagators propagators(graph, threads);
   const auto count = static_cast<Index>(sources.size());
   parallel_for(count, threads, 16, [&](Index i, int thread) {
     stage.check();
     propagators.fan(sources[i], thread, field.fans[i]);
+    field.point_fans[i] = point_fan(graph, sources[i], field.fans[i]);
   });
-  std::vector<Seed> seeds;
-  for (Index i = 0; i < count; ++i) {
-    if (const Index vertex = vertex_at(graph.mesh(), sources[i]); vertex != k_none) seeds.push_back({vertex, i, 0});
-    for (const DirectArc& arc : field.fans[i]) seeds.push_back({arc.vertex, i, graph.arcs().codec().round(arc.length)});
-  }
-  field.labels = propagate_labels(graph, seeds, {}, true, stage);
+  field.labels = propagate_labels(graph, seeds_of(field.point_fans), {}, true, stage);
   return field;
 }
 
@@ -78,10 +90,13 @@ struct Arrival {
 
 class PathMaker {
  public:
-  PathMaker(const SaddleVertexGraph& graph, const PathField& field, bool shorten)
+  PathMaker(const SaddleVertexGraph& graph, const PathField& field, const NearbySources& nearby, bool shorten,
+            const JobStage& stage)
       : graph_(graph),
         mesh_(graph.mesh()),
         field_(field),
+        nearby_(nearby),
+        stage_(stage),
         shorten_(shorten),
         unfolder_(graph.unfolding()),
         shortener_(graph.unfolding()) {}
@@ -111,13 +126,9 @@ class PathMaker {
       const double distance = field_.labels.distance[arc.vertex] + graph_.arcs().codec().round(arc.length);
       if (distance < best.distance) best = {distance, field_.labels.source[arc.vertex], &arc, arc.vertex};
     }
-    for (std::size_t i = 0; i < field_.sources.size(); ++i) {  // a source in the same face is seen straight
-      const SurfacePoint& source = field_.sources[i];
-      const auto seen = barycentric_in(mesh_, source, target.face);
-      if (!seen) continue;
-      const double distance = (position(mesh_, source) - position(mesh_, target)).norm();
-      if (distance <= best.distance) best = {distance, static_cast<Index>(i), nullptr, k_none};
-    }
+    Index seen = k_none;
+    const double direct = nearby_.least_length(target, point_fan(graph_, target, fan), best.distance, stage_, &seen);
+    if (seen != k_none) best = {direct, seen, nullptr, k_none};
     return best;
   }
 
@@ -127,9 +138,10 @@ class PathMaker {
     vertices_.clear();
     for (Index v = arrival.vertex; v != k_none; v = field_.labels.predecessor[v]) vertices_.push_back(v);
     std::reverse(vertices_.begin(), vertices_.end());
-    if (vertices_.empty()) {  // in one face
+    if (vertices_.empty()) {  // in sight
       chain_.ends = {leg_end(mesh_, source), leg_end(mesh_, target)};
-      lay_out(graph_.unfolding(), chain_.ends[0], chain_.ends[1], {}, chain_.add_leg());
+      sight_.length(graph_.unfolding(), source, target, std::nextafter(arrival.distance, k_infinity));
+      lay_out(graph_.unfolding(), chain_.ends[0], chain_.ends[1], sight_.entered(), chain_.add_leg());
       return;
     }
     if (vertex_at(mesh_, source) == k_none) add_source_leg(arrival.source, source);
@@ -217,7 +229,10 @@ class PathMaker {
   const SaddleVertexGraph& graph_;
   const Mesh& mesh_;
   const PathField& field_;
+  const NearbySources& nearby_;
+  const JobStage& stage_;
   const bool shorten_;
+  LineOfSight sight_;
   ArcUnfolder unfolder_;
   PathShortener shortener_;
   std::vector<Index> vertices_;
@@ -269,10 +284,11 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   std::vector<std::unique_ptr<PathMaker>> makers(thread_count(options.threads));
   std::vector<std::vector<DirectArc>> fans(makers.size());
   Propagators propagators(graph, options.threads);
+  const NearbySources nearby(graph, sources, field.point_fans);
   std::atomic<Index> done{0};
   const JobStage writing = stage.part(0.5, 1);
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
-    if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, options.shorten);
+    if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);
     for (Index i = block * k_block; i < std::min((block + 1) * k_block, count); ++i) {
       stage.check();
       propagators.fan(targets[i], thread, fans[thread]);

@@ -28,6 +28,7 @@ double LineOfSight::length(const Unfolding& unfolding, const SurfacePoint& a, co
   const bool in_order = comes_first(a, b);
   const SurfacePoint& source = in_order ? a : b;
   const SurfacePoint& target = in_order ? b : a;
+  entered_.clear();
   if (const Index face = shared_face(mesh, source, target); face != k_none) {
     const FaceChart chart(mesh, face);
     const Vec2 gap =
@@ -43,6 +44,8 @@ double LineOfSight::length(const Unfolding& unfolding, const SurfacePoint& a, co
     const double least = distance_to_segment(Vec2(Vec2::Zero()), window.from, window.to) +
                          distance_to_segment(goal, mesh.position(mesh.from(h)), mesh.position(mesh.to(h)));
     if (least > upper * k_too_long) continue;
+    trail_.resize(window.depth);
+    trail_.push_back(h);
     const Vec2 along = (window.to - window.from) / mesh.length(h);
     const Vec2 offset = unfolding.apex(h);
     const Vec2 apex = window.from + offset.x() * along + offset.y() * Vec2(-along.y(), along.x());
@@ -51,16 +54,23 @@ double LineOfSight::length(const Unfolding& unfolding, const SurfacePoint& a, co
       const Vec2 place =
           weights[h % 3] * window.from + weights[Mesh::next(h) % 3] * window.to + weights[Mesh::prev(h) % 3] * apex;
       const double tolerance = k_on_border * place.norm();
-      if (cross(window.right, place) >= -tolerance && cross(place, window.left) >= -tolerance)
-        upper = std::min(upper, place.norm());
+      const bool is_seen = cross(window.right, place) >= -tolerance && cross(place, window.left) >= -tolerance;
+      if (is_seen && place.norm() < upper) {
+        upper = place.norm();
+        entered_ = trail_;
+      }
     }
     const double reach = apex.norm(), tolerance = k_on_border * reach;
     const double from_right = cross(window.right, apex), to_left = cross(apex, window.left);
     const Vec2 ray = apex / reach;
     if (to_left > -tolerance)
-      push(mesh, Mesh::prev(h), window.from, apex, from_right > 0 ? ray : window.right, window.left);
+      push(mesh, Mesh::prev(h), window.depth + 1, window.from, apex, from_right > 0 ? ray : window.right, window.left);
     if (from_right > -tolerance)
-      push(mesh, Mesh::next(h), apex, window.to, window.right, to_left > 0 ? ray : window.left);
+      push(mesh, Mesh::next(h), window.depth + 1, apex, window.to, window.right, to_left > 0 ? ray : window.left);
+  }
+  if (!in_order) {
+    std::ranges::reverse(entered_);
+    for (Index& h : entered_) h = mesh.twin(h);
   }
   return upper;
 }
@@ -72,13 +82,14 @@ void LineOfSight::set_out(const Mesh& mesh, const SurfacePoint& point) {
   const Vec2 centre = chart.to_plane(point.barycentric);
   for (int corner = 0; corner < 3; ++corner) {
     const Vec2 right = chart.corner[corner] - centre, left = chart.corner[(corner + 1) % 3] - centre;
-    push(mesh, 3 * point.face + corner, left, right, right.normalized(), left.normalized());
+    push(mesh, 3 * point.face + corner, 0, left, right, right.normalized(), left.normalized());
   }
 }
 
-void LineOfSight::push(const Mesh& mesh, Index edge, const Vec2& from, const Vec2& to, const Vec2& right,
+void LineOfSight::push(const Mesh& mesh, Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right,
                        const Vec2& left) {
-  if (const Index entered = mesh.twin(edge); entered != k_none) stack_.push_back({entered, from, to, right, left});
+  if (const Index entered = mesh.twin(edge); entered != k_none)
+    stack_.push_back({entered, depth, from, to, right, left});
 }
 
 }  // namespace saddleback

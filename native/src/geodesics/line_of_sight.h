@@ -17,20 +17,26 @@ class LineOfSight {
   /// else `upper`. Equal to the bit from both ends: it is always sought from the point that comes first (face, then
   /// coordinates). O(faces within the ellipse about both), given up after k_most_windows.
   double length(const Unfolding& unfolding, const SurfacePoint& a, const SurfacePoint& b, double upper);
+  /// The half-edges that the last geodesic found crosses, from a to b, each of the face that is entered; none when the
+  /// points share a face.
+  const std::vector<Index>& entered() const { return entered_; }
 
  private:
   /// Half-edge about to be entered, its ends in the plane of the first point at the origin, and the part in sight.
   struct Window {
     Index entered;
+    Index depth;  ///< half-edges entered before
     Vec2 from, to;
     Vec2 right, left;  ///< left is counter-clockwise of right
   };
   static constexpr int k_most_windows = 10000;
 
   void set_out(const Mesh& mesh, const SurfacePoint& point);
-  void push(const Mesh& mesh, Index edge, const Vec2& from, const Vec2& to, const Vec2& right, const Vec2& left);
+  void push(const Mesh& mesh, Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right,
+            const Vec2& left);
 
   std::vector<Window> stack_;
+  std::vector<Index> trail_, entered_;
 };
 
 }  // namespace saddleback

@@ -43,8 +43,8 @@ NearbySources::NearbySources(const SaddleVertexGraph& graph, const SurfacePoints
   std::ranges::sort(entries_);
 }
 
-double NearbySources::least_length(const SurfacePoint& target, const PointFan& fan, double upper,
-                                   const JobStage& stage) const {
+double NearbySources::least_length(const SurfacePoint& target, const PointFan& fan, double upper, const JobStage& stage,
+                                   Index* point) const {
   if (fan.is_vertex) return upper;
   std::vector<Index> near;
   for (const PointFan::Arc& arc : fan.arcs) {
@@ -62,7 +62,10 @@ double NearbySources::least_length(const SurfacePoint& target, const PointFan& f
   for (const auto& [bird, s] : in_order) {
     if (bird >= upper) break;
     stage.check();
-    upper = std::min(upper, direct_length(graph_, points_[s], fans_[s], target, fan));
+    const double length = direct_length(graph_, points_[s], fans_[s], target, fan);
+    if (length >= upper) continue;
+    upper = length;
+    if (point) *point = s;
   }
   return upper;
 }

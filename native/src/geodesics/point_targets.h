@@ -18,9 +18,10 @@ class NearbySources {
  public:
   /// `fans` begin with those of `points`.
   NearbySources(const SaddleVertexGraph& graph, const SurfacePoints& points, std::span<const PointFan> fans);
-  /// The least direct_length between the target and any of the points if it is less than `upper`, else `upper`.
-  /// \throw Cancelled.
-  double least_length(const SurfacePoint& target, const PointFan& fan, double upper, const JobStage& stage) const;
+  /// The least direct_length between the target and any of the points if it is less than `upper`, else `upper`. On
+  /// request also which point it is. \throw Cancelled.
+  double least_length(const SurfacePoint& target, const PointFan& fan, double upper, const JobStage& stage,
+                      Index* point = nullptr) const;
 
  private:
   struct Entry {
