@@ -10,7 +10,7 @@ import numpy as np
 from . import cache as cache_module
 from . import native
 from .cache import Cache
-from .curve_points import points_on_surface
+from .curve_points import curves_on_surface, points_on_surface
 from .errors import BadInputError
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .level_lines import LevelLines, isoline_levels, level_lines
@@ -97,7 +97,7 @@ def distance(request: DistanceRequest, progress: Progress, cache: Cache | None =
         lone: Any | None
         if isinstance(sources, tuple):
             with progress.stage(0.6, "following the curves"):
-                chosen, lone = None, points_on_surface(mesh, sources)
+                chosen, lone = curves_on_surface(mesh, graph, sources)
         else:
             chosen, lone = surface_points(mesh, sources), None
         values = np.full(len(surface.vertices), np.inf)

@@ -14,6 +14,7 @@
 #include "geodesics/line_of_sight.h"
 #include "geodesics/path_shortening.h"
 #include "geodesics/point_targets.h"
+#include "geodesics/query_cache.h"
 #include "geodesics/window_propagation.h"
 #include "support/parallel.h"
 
@@ -67,7 +68,8 @@ struct PathField {
   LabelField labels;
 };
 
-PathField make_field(const SaddleVertexGraph& graph, const SurfacePoints& sources, int threads, const JobStage& stage) {
+PathField make_field(const SaddleVertexGraph& graph, const SurfacePoints& sources, double limit, int threads,
+                     const JobStage& stage) {
   PathField field{sources, Fans(sources.size()), std::vector<PointFan>(sources.size()), {}};
   Propagators propagators(graph, threads);
   const auto count = static_cast<Index>(sources.size());
@@ -76,8 +78,17 @@ PathField make_field(const SaddleVertexGraph& graph, const SurfacePoints& source
     propagators.fan(sources[i], thread, field.fans[i]);
     field.point_fans[i] = point_fan(graph, sources[i], field.fans[i]);
   });
-  field.labels = propagate_labels(graph, seeds_of(field.point_fans), {}, true, stage);
+  field.labels = propagate_labels(graph, seeds_of(field.point_fans), {.limit = limit}, true, stage);
   return field;
+}
+
+/// No shortest path is longer: the straight way between two points in sight of each other, so that near points are
+/// joined without a field of the whole mesh.
+double longest_path(const SaddleVertexGraph& graph, const SurfacePoints& sources, const SurfacePoints& targets) {
+  if (sources.size() != 1 || targets.size() != 1) return k_infinity;
+  const auto finder = graph.query_cache().fan_finders.lease();
+  const PointFan from = finder->find(graph, sources[0]), to = finder->find(graph, targets[0]);
+  return direct_length(graph, sources[0], from, targets[0], to);
 }
 
 /// Where a path to a target ends: after the last vertex, none when it comes straight from the source.
@@ -276,7 +287,8 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   check_surface_points(graph.mesh(), targets, "targets");
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
   const JobStage stage(job, "Finding paths");
-  const PathField field = make_field(graph, sources, options.threads, stage.part(0, 0.5));
+  const PathField field =
+      make_field(graph, sources, longest_path(graph, sources, targets), options.threads, stage.part(0, 0.5));
   constexpr Index k_block = 32;
   const auto count = static_cast<Index>(targets.size());
   const Index blocks = (count + k_block - 1) / k_block;
