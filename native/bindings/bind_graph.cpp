@@ -17,11 +17,25 @@ void check_device(const std::string& device) {
 }
 
 std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k,
-                                              const py::object& threads, const std::string& device,
+                                              const py::object& accuracy, bool exact, const py::object& threads,
+                                              const std::string& device, const std::string& instructions,
                                               const py::object& job) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
-  SaddleVertexGraphOptions options{.threads = as_integer(threads, "threads")};
-  options.k = k.is_none() ? std::min(options.k, mesh.vertex_count()) : as_integer(k, "k");
+  SaddleVertexGraphOptions options{
+      .exact = exact, .threads = as_integer(threads, "threads"), .instructions = instructions};
+  // Zero is the library's word for "not given".
+  if (!k.is_none()) {
+    options.k = as_integer(k, "k");
+    if (options.k == 0) throw InputError("k: wanted at least 1 vertex per geodesic disk, got 0");
+  }
+  if (!accuracy.is_none()) {
+    options.accuracy = as_real(accuracy, "accuracy");
+    if (options.accuracy == 0) {
+      throw InputError(
+          "accuracy: wanted a relative error above 0 and below 1, got 0; exact=True gives exact "
+          "distances");
+    }
+  }
   check_device(device);
   Job* const token = as_job(job);
   return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });
@@ -50,18 +64,27 @@ Parameters
 mesh : Mesh
 k : int, optional
     Vertices per geodesic disk, not counting the centre; 1 to the mesh's vertex count. More is slower and more accurate:
-    the mean error is about 0.4 % at 50 and 0.1 % at 100. None: 50, or all vertices of a smaller mesh.
+    the mean error is about 0.4 % at 50 and 0.1 % at 100.
+accuracy : float, optional
+    Largest relative error of a distance that is accepted, above 0 and below 1. The mean error is far below. When none
+    of k, accuracy and exact is given: 0.005.
+exact : bool
+    All straight geodesics, so that distances between vertices are exact. For small meshes: the graph has V^2 arcs where
+    nothing is a saddle.
 threads : int
     0: all cores. The result does not depend on it.
 device : str
     "auto" or "cpu".
+instructions : str
+    "auto", or one of "avx512", "avx2", "plain" and "neon" that the machine has. The result does not depend on it.
 job : Job, optional
     Progress and cancellation.
 
 Raises
 ------
 InputError
-    k below 1 or above the vertex count; an unknown device.
+    k below 1 or above the vertex count; accuracy not between 0 and 1; more than one of k, accuracy and exact; not
+    enough memory for the exact graph (the message says how much it would take); an unknown device or instruction set.
 DeviceError
     device="cuda": this build computes on the CPU.
 Cancelled
@@ -69,8 +92,10 @@ Cancelled
 
 Notes
 -----
-O(V k log k) time, about 12 bytes an arc. X. Ying, X. Wang, Y. He: Saddle Vertex Graph (SVG): A Novel Solution to the
-Discrete Geodesic Problem, ACM Transactions on Graphics 32(6), 2013.)";
+Time grows with V times the windows of a disk (about 250 for accuracy=0.005, 650 for k=100); 8 bytes an arc, about 55
+arcs a vertex for accuracy=0.005. X. Ying, X. Wang, Y. He: Saddle Vertex Graph (SVG): A Novel Solution to the Discrete
+Geodesic Problem, ACM Transactions on Graphics 32(6), 2013. Y. Adikusuma, Z. Fang, Y. He: Fast Construction of Discrete
+Geodesic Graphs, ACM Transactions on Graphics 39(2), 2020.)";
 
 constexpr const char* k_save_doc = R"(Write the graph to a file, without its mesh.
 
@@ -122,20 +147,35 @@ O(arcs), far less than building takes.)";
 
 void bind_graph(py::module_& m) {
   py::class_<SaddleVertexGraph> type(m, "SaddleVertexGraph", py::module_local(), k_graph_doc);
-  type.def(py::init(&make_graph), py::arg("mesh"), py::arg("k") = py::none(), py::kw_only(), py::arg("threads") = 0,
-           py::arg("device") = "auto", py::arg("job") = py::none(), py::keep_alive<1, 2>())
+  type.def(py::init(&make_graph), py::arg("mesh"), py::arg("k") = py::none(), py::kw_only(),
+           py::arg("accuracy") = py::none(), py::arg("exact") = false, py::arg("threads") = 0,
+           py::arg("device") = "auto", py::arg("instructions") = "auto", py::arg("job") = py::none(),
+           py::keep_alive<1, 2>())
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("job") = py::none(), k_save_doc)
       .def_static("load", &load, py::arg("path"), py::arg("mesh"), py::kw_only(), py::arg("job") = py::none(),
                   py::keep_alive<0, 2>(), k_load_doc)
       .def_property_readonly("arc_count", &SaddleVertexGraph::arc_count, "Directed arcs; each has its reverse.")
       .def_property_readonly("mean_degree", &SaddleVertexGraph::mean_degree, "Arcs per vertex.")
       .def_property_readonly("nbytes", &SaddleVertexGraph::nbytes, "Memory of the arcs, bytes.")
-      .def_property_readonly("k", &SaddleVertexGraph::k, "Vertices per geodesic disk.")
+      .def_property_readonly(
+          "k",
+          [](const SaddleVertexGraph& graph) { return graph.k() > 0 ? py::object(py::int_(graph.k())) : py::none(); },
+          "Vertices per geodesic disk; None when built otherwise.")
+      .def_property_readonly(
+          "accuracy",
+          [](const SaddleVertexGraph& graph) {
+            return graph.accuracy() > 0 ? py::object(py::float_(graph.accuracy())) : py::none();
+          },
+          "Largest relative error accepted; None when built otherwise.")
+      .def_property_readonly("is_exact", &SaddleVertexGraph::is_exact, "Whether distances between vertices are exact.")
       .def_property_readonly(
           "device", [](const SaddleVertexGraph&) { return "cpu"; }, "Which device built the graph.")
       .def_property_readonly("build_seconds", &SaddleVertexGraph::build_seconds, "Time of the build.")
       .def("__repr__", [](const SaddleVertexGraph& graph) {
-        return message("<saddleback.SaddleVertexGraph k=", graph.k(), ", ", graph.arc_count(), " arcs>");
+        const std::string how = graph.is_exact() ? "exact"
+                                : graph.k() > 0  ? message("k=", graph.k())
+                                                 : message("accuracy=", graph.accuracy());
+        return message("<saddleback.SaddleVertexGraph ", how, ", ", graph.arc_count(), " arcs>");
       });
   bind_queries(type);
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from tests.native.exact import exact_distances, random_points, with_vertex_at
 
 # Arc lengths are kept in single precision: distances may fall short of the exact ones by its rounding and no more.
 SINGLE = 2e-7
+FINE = [meshes.Case("a fine torus", *meshes.torus(90, 40)), meshes.Case("a fine sphere", *meshes.icosphere(4))]
 SMALL = [case for case in meshes.good() if len(case.vertices) <= 1200 and case.components == 1]
 
 
@@ -35,6 +37,27 @@ def test_distances_are_never_too_short_and_little_too_long(case: meshes.Case) ->
     assert error.min() >= -SINGLE
     # On needles 50 vertices are a thin strip: k says nothing of accuracy there, and only a larger one helps.
     assert error.mean() <= (0.006 if case.name != "needles" else 0.1)
+
+
+@pytest.mark.parametrize("accuracy", [2e-2, 5e-3, 2e-3])
+@pytest.mark.parametrize("case", [*SMALL, *FINE], ids=str)
+def test_errors_stay_below_the_accuracy(case: meshes.Case, accuracy: float) -> None:
+    graph = sb.SaddleVertexGraph(case.mesh, accuracy=accuracy)
+    for source in (1, len(case.vertices) // 2):
+        exact = np.asarray(sb.exact_distances(case.mesh, [source]))
+        far = np.isfinite(exact) & (exact > 0)
+        error = graph.distances([source])[far] / exact[far] - 1
+        assert error.min() >= -SINGLE
+        assert error.max() <= accuracy
+        assert error.mean() <= accuracy / 4
+
+
+@pytest.mark.parametrize("case", SMALL, ids=str)
+def test_the_exact_graph_is_exact(case: meshes.Case) -> None:
+    graph = sb.SaddleVertexGraph(case.mesh, exact=True)
+    for source in (0, len(case.vertices) // 2):
+        exact = np.asarray(sb.exact_distances(case.mesh, [source]))
+        np.testing.assert_allclose(graph.distances([source]), exact, rtol=2e-9, atol=1e-12)
 
 
 def mean_error(vertices: np.ndarray, triangles: np.ndarray, expected: np.ndarray, source: int) -> float:
@@ -148,10 +171,33 @@ def test_scale_changes_nothing_else(scale: float) -> None:
     np.testing.assert_allclose(large / scale, small, rtol=1e-6)
 
 
-def test_the_same_for_any_number_of_threads() -> None:
-    mesh = sb.Mesh(*meshes.torus(60, 24))
-    fields = [sb.SaddleVertexGraph(mesh, k=30, threads=threads).distances([11]) for threads in (1, 2, 8)]
-    assert fields[0].tobytes() == fields[1].tobytes() == fields[2].tobytes()
+def arcs_of(graph: sb.SaddleVertexGraph, folder: Path) -> bytes:
+    """Orders, degrees and arcs; the header before them says how long the build took."""
+    graph.save(folder / "graph.svg")
+    return (folder / "graph.svg").read_bytes()[96:-4]
+
+
+HOWS = [{"k": 30}, {"accuracy": 5e-3}, {"exact": True}]
+
+
+@pytest.mark.parametrize("how", HOWS, ids=str)
+def test_the_same_for_any_number_of_threads(how: dict[str, object], tmp_path: Path) -> None:
+    mesh = sb.Mesh(*meshes.torus(60, 24) if "exact" not in how else meshes.torus(24, 12))
+    built = [arcs_of(sb.SaddleVertexGraph(mesh, threads=threads, **how), tmp_path) for threads in (1, 2, 8)]
+    assert built[0] == built[1] == built[2]
+
+
+@pytest.mark.parametrize("how", HOWS[:2], ids=str)
+@pytest.mark.parametrize("case", [*meshes.good(), *FINE], ids=str)
+def test_the_same_for_any_instruction_set(case: meshes.Case, how: dict[str, object], tmp_path: Path) -> None:
+    how = {name: min(value, len(case.vertices)) for name, value in how.items()}
+    expected = arcs_of(sb.SaddleVertexGraph(case.mesh, **how), tmp_path)
+    for instructions in ("avx512", "avx2", "neon", "plain"):
+        try:
+            graph = sb.SaddleVertexGraph(case.mesh, instructions=instructions, **how)
+        except sb.InputError:  # not on this machine
+            continue
+        assert arcs_of(graph, tmp_path) == expected, instructions
 
 
 def test_progress_rises_and_cancel_is_quick() -> None:
@@ -183,6 +229,15 @@ def test_progress_rises_and_cancel_is_quick() -> None:
         ({"k": 0}, "k: wanted at least 1"),
         ({"k": 1000}, "1000 vertices per geodesic disk are more than the mesh has"),
         ({"k": 2.5}, "k"),
+        ({"k": -3}, "k: wanted at least 1"),
+        ({"accuracy": 0}, "accuracy: wanted a relative error above 0"),
+        ({"accuracy": -0.1}, "accuracy: wanted a relative error above 0"),
+        ({"accuracy": 1.0}, "accuracy: wanted a relative error above 0"),
+        ({"accuracy": float("nan")}, "accuracy"),
+        ({"k": 4, "accuracy": 0.01}, "k, accuracy, exact: give one"),
+        ({"k": 4, "exact": True}, "k, accuracy, exact: give one"),
+        ({"accuracy": 0.01, "exact": True}, "k, accuracy, exact: give one"),
+        ({"instructions": "abacus"}, "instructions: this machine runs 'auto'.*not 'abacus'"),
         ({"threads": -1}, "threads"),
         ({"device": "abacus"}, "abacus"),
     ],
@@ -192,9 +247,13 @@ def test_bad_options(arguments: dict[str, object], words: str) -> None:
         sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()), **arguments)
 
 
-def test_the_default_suits_meshes_smaller_than_a_disk() -> None:
-    assert sb.SaddleVertexGraph(sb.Mesh(*meshes.cube())).k == 8
-    assert sb.SaddleVertexGraph(sb.Mesh(*meshes.torus())).k == 50
+def test_a_graph_says_how_it_was_built() -> None:
+    mesh = sb.Mesh(*meshes.torus())
+    built = [sb.SaddleVertexGraph(mesh, **how) for how in ({}, {"accuracy": 0.02}, {"k": 20}, {"exact": True})]
+    assert [graph.accuracy for graph in built] == [5e-3, 0.02, None, None]
+    assert [graph.k for graph in built] == [None, None, 20, None]
+    assert [graph.is_exact for graph in built] == [False, False, False, True]
+    assert ["accuracy=0.005" in repr(built[0]), "k=20" in repr(built[2]), "exact" in repr(built[3])] == [True] * 3
 
 
 def test_no_graph_on_the_gpu_yet() -> None:

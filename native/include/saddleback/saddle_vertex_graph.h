@@ -20,11 +20,15 @@ class Unfolding;
 class WindowPropagator;
 struct ArcHint;
 struct DirectArc;
-struct FoundArcs;
 
+/// How a graph is built: by one of k, accuracy and exact; by k_default_accuracy when none is given.
 struct SaddleVertexGraphOptions {
-  Index k = 50;     ///< vertices per geodesic disk, not counting the centre
-  int threads = 0;  ///< 0: all cores; the result does not depend on it
+  Index k = 0;                        ///< vertices per geodesic disk, not counting the centre
+  double accuracy = 0;                ///< largest relative error of a distance that is accepted
+  bool exact = false;                 ///< all straight geodesics: exact between vertices, and much larger
+  int threads = 0;                    ///< 0: all cores; the result does not depend on it
+  std::string instructions = "auto";  ///< "avx512", "avx2", "plain", "neon": the result does not depend on it
+  static constexpr double k_default_accuracy = 5e-3;
 };
 
 enum class QueryMethod { label_correcting, dijkstra };
@@ -69,11 +73,14 @@ struct NearestField {
 ///
 /// Departures from the paper: found arcs are united with their reverses (the paper's graph is not symmetric), mesh
 /// edges are always arcs (the graph is as connected as the mesh), and windows behind saddles are not propagated (they
-/// would only confirm what two arcs say). Immutable once built: any number of threads may query it.
+/// would only confirm what two arcs say). With an accuracy instead of k, arcs that two shorter ones replace within a
+/// tolerance are left out while windows spread (Adikusuma, Fang and He 2020): fewer arcs for less error. Immutable once
+/// built: any number of threads may query it.
 class SaddleVertexGraph {
  public:
-  /// Builds the graph by window propagation from every vertex. The mesh must outlive the graph.
-  /// \throw InputError for k < 1 or k > V; Cancelled. O(V k log k) time, 8 bytes an arc.
+  /// Builds the graph by window propagation from every vertex. The mesh must outlive the graph. \throw InputError for k
+  /// or accuracy out of range, several of k, accuracy and exact, or when memory would not do for the exact graph;
+  /// Cancelled. Time O(V) times the windows of a disk (about 250 for the default); 8 bytes an arc.
   explicit SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options = {}, Job* job = nullptr);
   ~SaddleVertexGraph();
   SaddleVertexGraph(SaddleVertexGraph&&) noexcept;
@@ -88,7 +95,9 @@ class SaddleVertexGraph {
 
   const Mesh& mesh() const { return *mesh_; }
   const Unfolding& unfolding() const { return *unfolding_; }
-  Index k() const { return k_; }
+  Index k() const { return k_; }                 ///< 0 when built otherwise
+  double accuracy() const { return accuracy_; }  ///< 0 when built otherwise
+  bool is_exact() const { return exact_; }
   std::int64_t arc_count() const { return arcs_.count(); }
   double mean_degree() const { return static_cast<double>(arc_count()) / mesh_->vertex_count(); }
   std::size_t nbytes() const;  ///< memory of the arcs and the order of the nodes
@@ -136,11 +145,12 @@ class SaddleVertexGraph {
  private:
   SaddleVertexGraph();  ///< empty, for `load`
   void order_nodes();
-  std::vector<FoundArcs> find_arcs(const ArcCodec& codec, int threads, const JobStage& stage) const;
 
   const Mesh* mesh_ = nullptr;
   std::unique_ptr<Unfolding> unfolding_;
   Index k_ = 0;
+  double accuracy_ = 0;
+  bool exact_ = false;
   std::vector<Index> nodes_, vertices_;
   ArcRows arcs_;
   double build_seconds_ = 0;

@@ -190,8 +190,11 @@ class SaddleVertexGraph:
         mesh: Mesh,
         k: SupportsIndex | None = None,
         *,
+        accuracy: SupportsFloat | None = None,
+        exact: bool = False,
         threads: SupportsIndex = 0,
         device: _Device = "auto",
+        instructions: str = "auto",
         job: Job | None = None,
     ) -> None: ...
     def distances(
@@ -250,7 +253,11 @@ class SaddleVertexGraph:
     @property
     def nbytes(self) -> int: ...
     @property
-    def k(self) -> int: ...
+    def k(self) -> int | None: ...
+    @property
+    def accuracy(self) -> float | None: ...
+    @property
+    def is_exact(self) -> bool: ...
     @property
     def device(self) -> str: ...
     @property

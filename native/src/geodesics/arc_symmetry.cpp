@@ -16,8 +16,8 @@ struct MissingArc {
 
 class Union {
  public:
-  Union(const ArcCodec& codec, std::vector<FoundArcs>& found, Index block_size)
-      : codec_(codec), found_(found), block_size_(block_size), missing_(found.size()) {
+  Union(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found, Index block_size)
+      : codec_(codec), kernel_(kernel), found_(found), block_size_(block_size), missing_(found.size()) {
     const FoundArcs& last = found.back();
     node_count_ = last.first_node + static_cast<Index>(last.counts.size());
     starts_.resize(node_count_ + 1);
@@ -87,11 +87,10 @@ class Union {
   const std::uint64_t* find(Index node, Index target) const {
     const FoundArcs& block = found_[node / block_size_];
     const std::uint64_t* const row = block.words.data() + starts_[node];
-    const std::uint64_t* const end = row + block.counts[node - block.first_node];
-    const std::uint64_t mask = codec_.target_mask(), wanted = static_cast<std::uint64_t>(target);
-    const std::uint64_t* word = row;
-    while (word != end && (*word & mask) != wanted) ++word;
-    return word != end ? word : nullptr;
+    const int i =
+        kernel_.find_target(row, block.counts[node - block.first_node],
+                            static_cast<std::uint32_t>(codec_.target_mask()), static_cast<std::uint32_t>(target));
+    return i >= 0 ? row + i : nullptr;
   }
 
   std::uint64_t reversed(Index node, std::uint8_t sector, std::uint64_t word) const {
@@ -124,6 +123,7 @@ class Union {
   }
 
   const ArcCodec& codec_;
+  const WaveKernel& kernel_;
   std::vector<FoundArcs>& found_;
   Index block_size_, node_count_ = 0;
   std::vector<Index> starts_;  ///< of each node's row in its block
@@ -134,9 +134,9 @@ class Union {
 
 }  // namespace
 
-ArcRows unite_with_reverses(const ArcCodec& codec, std::vector<FoundArcs>& found, Index block_size, int threads,
-                            const JobStage& stage) {
-  Union work(codec, found, block_size);
+ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found,
+                            Index block_size, int threads, const JobStage& stage) {
+  Union work(codec, kernel, found, block_size);
   parallel_for(static_cast<Index>(found.size()), threads, 4, [&](Index b, int) {
     stage.check();
     work.look_for_reverses(b);

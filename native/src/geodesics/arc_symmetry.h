@@ -6,6 +6,8 @@
 #include "saddleback/arc_rows.h"
 #include "saddleback/job.h"
 
+#include "geodesics/window_waves.h"
+
 namespace saddleback {
 
 /// Arcs out of consecutive nodes, as the windows found them.
@@ -16,9 +18,10 @@ struct FoundArcs {
   std::vector<std::uint8_t> back_sectors;  ///< per word: direction back, at the target
 };
 
-/// The union of the found arcs and their reverses, the shorter of each pair. `found` holds the nodes in order, in blocks
-/// of `block_size`, and is emptied on the way. The same bytes for any number of threads. O(arcs). \throw Cancelled.
-ArcRows unite_with_reverses(const ArcCodec& codec, std::vector<FoundArcs>& found, Index block_size, int threads,
-                            const JobStage& stage);
+/// The union of the found arcs and their reverses, the shorter of each pair. `found` holds the nodes in order, in
+/// blocks of `block_size`, and is emptied on the way. The same bytes for any number of threads. O(arcs). \throw
+/// Cancelled.
+ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found,
+                            Index block_size, int threads, const JobStage& stage);
 
 }  // namespace saddleback

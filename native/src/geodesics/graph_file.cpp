@@ -6,8 +6,9 @@
 //   arcs      uint64 an arc, row after row, as ArcCodec packs them
 //   CRC-32    uint32, of all bytes before
 //
-// A file is believed nothing: its length must be what the header says before memory is taken, its checksum must be right
-// before its numbers are looked at, and they must describe a graph that a builder could have made (see graph_checks.h).
+// A file is believed nothing: its length must be what the header says before memory is taken, its checksum must be
+// right before its numbers are looked at, and they must describe a graph that a builder could have made (see
+// graph_checks.h).
 
 #include <cmath>
 
@@ -113,7 +114,8 @@ void check_mesh(const FileHeader& header, const Mesh& mesh, const std::string& p
                              "); give that mesh, or build the graph of this one"));
   }
   if (header.fingerprint != mesh.fingerprint()) {
-    throw InputError(message("path: ", path, " holds the graph of another mesh (with as many vertices and faces, but "
+    throw InputError(message("path: ", path,
+                             " holds the graph of another mesh (with as many vertices and faces, but "
                              "other positions or triangles); give that mesh, or build the graph of this one"));
   }
 }
@@ -125,9 +127,13 @@ bool same_codec(const FileHeader& header, const ArcCodec& codec) {
 
 void check_build(const FileHeader& header, const std::string& path) {
   const bool by_k = header.k > 0 && header.k <= header.vertex_count;
-  if (!by_k || header.accuracy != 0 || header.flags != 0) {
-    refuse_graph_file(path, message("it claims k = ", header.k, ", accuracy = ", header.accuracy, " and the flags ",
-                                    header.flags));
+  const bool by_accuracy = header.accuracy > 0 && header.accuracy < 1;
+  const bool is_exact = header.flags == k_exact_flag;
+  const bool known =
+      (header.k == 0 || by_k) && (header.accuracy == 0 || by_accuracy) && (header.flags == 0 || is_exact);
+  if (!known || by_k + by_accuracy + is_exact != 1) {
+    refuse_graph_file(
+        path, message("it claims k = ", header.k, ", accuracy = ", header.accuracy, " and the flags ", header.flags));
   }
   if (!std::isfinite(header.build_seconds) || header.build_seconds < 0)
     refuse_graph_file(path, message("it claims a build of ", header.build_seconds, " seconds"));
@@ -154,6 +160,8 @@ void SaddleVertexGraph::save(const std::string& path, Job* job) const {
   header.arc_count = static_cast<std::uint64_t>(arc_count());
   header.file_bytes = header.expected_bytes();
   header.k = static_cast<std::uint32_t>(k_);
+  header.accuracy = accuracy_;
+  header.flags = exact_ ? k_exact_flag : 0;
   header.build_seconds = build_seconds_;
   header.target_bits = arcs_.codec().target_bits();
   header.least_exponent = arcs_.codec().least_exponent();
@@ -198,6 +206,8 @@ SaddleVertexGraph SaddleVertexGraph::load(const std::string& path, const Mesh& m
   check_arcs(mesh, graph.arcs_, graph.vertices_, path, stage.part(0.4, 0.9));
   graph.unfolding_ = std::make_unique<Unfolding>(mesh, 0, stage.part(0.9, 1));
   graph.k_ = static_cast<Index>(header.k);
+  graph.accuracy_ = header.accuracy;
+  graph.exact_ = header.flags == k_exact_flag;
   graph.build_seconds_ = header.build_seconds;
   stage.update(1);
   return graph;

@@ -1,0 +1,108 @@
+#include "geodesics/graph_arcs.h"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+
+#include "saddleback/error.h"
+
+#include "geodesics/window_propagation.h"
+#include "support/memory.h"
+#include "support/parallel.h"
+
+namespace saddleback {
+namespace {
+
+Index block_count(const ArcSearch& search) {
+  return (static_cast<Index>(search.vertices.size()) + k_block - 1) / k_block;
+}
+
+/// Calls find(block) from all threads, and reports how many are done.
+template <class Find>
+std::vector<FoundArcs> find_by_blocks(const ArcSearch& search, const JobStage& stage, Find&& find) {
+  std::vector<FoundArcs> found(block_count(search));
+  std::atomic<Index> done{0};
+  parallel_for(static_cast<Index>(found.size()), search.threads, 1, [&](Index b, int thread) {
+    found[b].first_node = b * k_block;
+    const Index count = std::min(k_block, static_cast<Index>(search.vertices.size()) - found[b].first_node);
+    found[b].counts.reserve(count);
+    find(found[b], count, thread);
+    stage.update(static_cast<double>(++done) / static_cast<double>(found.size()));
+  });
+  return found;
+}
+
+int sector_of(double angle, double total_angle) {
+  return std::clamp(static_cast<int>(angle / total_angle * ArcCodec::k_sectors), 0, ArcCodec::k_sectors - 1);
+}
+
+void append_row(const ArcSearch& search, Index vertex, const std::vector<DirectArc>& row, FoundArcs& found) {
+  const Mesh& mesh = search.unfolding.mesh();
+  found.counts.push_back(static_cast<std::int32_t>(row.size()));
+  for (const DirectArc& arc : row) {
+    const int sector = sector_of(arc.start_angle, mesh.total_angle(vertex));
+    found.words.push_back(search.codec.pack(search.nodes[arc.vertex], sector, arc.length));
+    found.back_sectors.push_back(static_cast<std::uint8_t>(sector_of(arc.end_angle, mesh.total_angle(arc.vertex))));
+  }
+}
+
+std::string in_gigabytes(double bytes) { return message(std::max(0.1, std::round(bytes / 1e8) / 10), " GB"); }
+
+/// From a few sources all over the mesh. What is built holds the arcs twice for a while, with the directions back.
+void check_memory(const ArcSearch& search, WindowPropagator& propagator, const JobStage& stage) {
+  constexpr Index k_samples = 16;
+  constexpr double k_bytes_per_arc = 2 * sizeof(std::uint64_t) + 1;
+  const auto count = static_cast<Index>(search.vertices.size());
+  std::vector<DirectArc> row;
+  double arcs = 0;
+  const Index samples = std::min(k_samples, count);
+  for (Index i = 0; i < samples; ++i) {
+    stage.check();
+    propagator.from_vertex(search.vertices[static_cast<std::int64_t>(i) * count / samples], count, row);
+    arcs += static_cast<double>(row.size());
+  }
+  const double wanted = arcs / samples * count * k_bytes_per_arc;
+  const auto available = static_cast<double>(available_memory());
+  if (available > 0 && wanted > available) {
+    throw InputError(
+        message("exact: the exact graph of ", count, " vertices needs about ", in_gigabytes(wanted), " and ",
+                in_gigabytes(available),
+                " are free; give accuracy=1e-3 instead, or call exact_distances for the sources you need"));
+  }
+}
+
+}  // namespace
+
+std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage) {
+  const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, ArcCodec::k_sectors, search.threads, stage);
+  std::vector<std::unique_ptr<DiskFinder>> finders(thread_count(search.threads));
+  return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread) {
+    if (!finders[thread]) finders[thread] = std::make_unique<DiskFinder>(mesh, search.codec, search.kernel, rule);
+    for (Index i = 0; i < count; i += k_batch)
+      finders[thread]->find(found.first_node + i, std::min(k_batch, count - i), found, stage);
+  });
+}
+
+std::vector<FoundArcs> exact_arcs(const ArcSearch& search, const JobStage& stage) {
+  std::vector<std::unique_ptr<WindowPropagator>> propagators(thread_count(search.threads));
+  std::vector<std::vector<DirectArc>> rows(propagators.size());
+  propagators[0] = std::make_unique<WindowPropagator>(search.unfolding);
+  check_memory(search, *propagators[0], stage);
+  return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread) {
+    if (!propagators[thread]) propagators[thread] = std::make_unique<WindowPropagator>(search.unfolding);
+    for (Index i = 0; i < count; ++i) {
+      stage.check();
+      const Index vertex = search.vertices[found.first_node + i];
+      propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread]);
+      append_row(search, vertex, rows[thread], found);
+    }
+  });
+}
+
+double detour_tolerance(double accuracy) {
+  // Measured on ten meshes: see docs/distance.md.
+  constexpr double k_detour_per_error = 0.55;
+  return k_detour_per_error * accuracy;
+}
+
+}  // namespace saddleback

@@ -1,0 +1,38 @@
+#pragma once
+// The three ways to choose a graph's arcs.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geodesics/arc_symmetry.h"
+#include "geodesics/disk_finder.h"
+
+namespace saddleback {
+
+/// Nodes whose arcs are found and joined together.
+inline constexpr Index k_block = 256;
+
+/// Where arcs are looked for.
+struct ArcSearch {
+  const Unfolding& unfolding;
+  std::span<const Index> nodes, vertices;  ///< nodes of the vertices, vertices of the nodes
+  const ArcCodec& codec;
+  const WaveKernel& kernel;
+  int threads = 0;
+};
+
+/// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
+std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage);
+
+/// All straight geodesics of the mesh. \throw InputError when the graph would not fit into memory; Cancelled. O(V^2 log
+/// V).
+std::vector<FoundArcs> exact_arcs(const ArcSearch& search, const JobStage& stage);
+
+/// The detour by two arcs that a graph may take for the error of whole paths to stay below `accuracy`.
+double detour_tolerance(double accuracy);
+
+/// The fastest kernel that this machine runs for "auto", or the one named. \throw InputError when there is none.
+const WaveKernel& wave_kernel(const std::string& instructions);
+
+}  // namespace saddleback

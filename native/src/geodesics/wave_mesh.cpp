@@ -1,0 +1,64 @@
+#include "geodesics/wave_mesh.h"
+
+#include "support/parallel.h"
+
+namespace saddleback {
+namespace {
+
+constexpr Index k_chunk = 1024;
+
+/// Calls use(halfedge) for the half-edges out of a vertex, counter-clockwise.
+template <class Use>
+void for_each_out(const Mesh& mesh, Index vertex, Use&& use) {
+  const Index first = mesh.first_halfedge(vertex);
+  Index h = first;
+  do {
+    use(h);
+    h = mesh.rotate(h);
+  } while (h != k_none && h != first);
+}
+
+}  // namespace
+
+WaveMesh::WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
+                   int sectors, int threads, const JobStage& stage) {
+  const Mesh& mesh = unfolding.mesh();
+  const auto edges = static_cast<std::size_t>(mesh.halfedge_count());
+  unit_ = mesh.mean_edge_length();
+  first_.assign(vertices.size() + 1, 0);
+  std::vector<Index> edge_of(edges);
+  Index next = 0;
+  for (std::size_t node = 0; node < vertices.size(); ++node) {
+    for_each_out(mesh, vertices[node], [&](Index h) { edge_of[h] = next++; });
+    first_[node + 1] = next;
+  }
+  stage.check();
+  records_.resize(edges);
+  targets_.resize(edges);
+  lengths_.resize(edges);
+  sectors_.resize(edges);
+  reverse_sectors_.resize(edges);
+  apex_sectors_.resize(edges);
+  sectors_per_radian_.resize(vertices.size());
+  saddles_.resize(vertices.size());
+  const auto per_radian = [&](Index vertex) { return sectors / mesh.total_angle(vertex); };
+  const auto edge_behind = [&](Index h) { return mesh.twin(h) == k_none ? k_none : edge_of[mesh.twin(h)]; };
+  parallel_for(static_cast<Index>(vertices.size()), threads, k_chunk, [&](Index node, int) {
+    stage.check();
+    const Index vertex = vertices[node];
+    sectors_per_radian_[node] = static_cast<float>(per_radian(vertex));
+    saddles_[node] = mesh.is_saddle(vertex);
+    for_each_out(mesh, vertex, [&](Index h) {
+      const Index e = edge_of[h], apex = mesh.apex(h);
+      const Vec2 place = unfolding.apex(h) / mesh.length(h);
+      records_[e] = {place.x(), place.y(), edge_behind(Mesh::prev(h)), edge_behind(Mesh::next(h)), nodes[apex], 0};
+      targets_[e] = nodes[mesh.to(h)];
+      lengths_[e] = mesh.length(h) / unit_;
+      sectors_[e] = static_cast<float>(unfolding.polar(h) * per_radian(vertex));
+      reverse_sectors_[e] = static_cast<float>(unfolding.polar_of_reverse(h) * per_radian(mesh.to(h)));
+      apex_sectors_[e] = static_cast<float>(unfolding.polar(Mesh::prev(h)) * per_radian(apex));
+    });
+  });
+}
+
+}  // namespace saddleback

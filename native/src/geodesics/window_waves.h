@@ -1,0 +1,81 @@
+#pragma once
+// Windows by whole generations: the data that the driver (disk_finder) and the vector kernels share.
+//
+// Only plain data and no inline functions: this header is compiled for several instruction sets, and a function that
+// two of them define could be linked into code for a machine that lacks it.
+
+#include <cstdint>
+
+namespace saddleback {
+
+/// Sources that share their generations, to fill the lanes. A *slot* is a node and one of them: node * k_batch + lane.
+inline constexpr int k_batch = 8;
+inline constexpr int k_batch_bits = 3;
+/// Rows may be read and written so many entries past their end.
+inline constexpr int k_row_padding = 16;
+
+/// A half-edge about to be entered: where the far corner of its face lies, and the half-edges behind its other sides.
+/// A face's corner is at from + a * (to - from) + b * (to - from turned left).
+struct alignas(32) EdgeRecord {
+  double a, b;
+  std::int32_t left, right;  ///< edge records behind (from, apex) and (apex, to); -1 at the boundary
+  std::int32_t apex;         ///< node
+  std::int32_t unused;
+};
+
+/// Windows, a row a quantity. The source is at the origin of a plane of its own; a window shines through the part of a
+/// half-edge between two rays, each through a vertex that the source sees along it: its *flanks*.
+struct WindowRows {
+  double *from_x, *from_y, *to_x, *to_y;       ///< ends of the half-edge
+  float *right_x, *right_y, *left_x, *left_y;  ///< unit vectors along the rays; left is counter-clockwise of right
+  float *right_reach, *left_reach;             ///< distances of the flanks
+  float* most;                                 ///< radius beyond which the window serves nothing
+  std::int32_t* edge;                          ///< record * k_batch + lane
+  std::int32_t *from, *to;                     ///< slots of the half-edge's ends
+  std::int32_t* root;                          ///< record of the source's half-edge whose face the window left
+};
+
+/// What a window sees of its face's far corner; a row a window.
+struct ApexRows {
+  double *x, *y;
+  float *reach, *from_right, *to_left;  ///< distance; its offsets from the rays, positive inside
+  std::int32_t *left, *right;           ///< edge * k_batch + lane, negative at the boundary
+  std::int32_t* slot;
+};
+
+/// Vertices seen, a row a sighting.
+struct SightingRows {
+  double *x, *y;
+  float *back_x, *back_y;  ///< from the vertex to the start of the half-edge that the window came through
+  std::int32_t* slot;
+  std::int32_t* label;  ///< the distance's bits, the lowest one set when the sighting makes no arc
+  std::int32_t *edge, *root;
+};
+
+/// What all windows of a batch look up.
+struct WaveScene {
+  const EdgeRecord* edges;
+  const std::int32_t* labels;  ///< upper bounds of the distances of all slots
+  const float* limits;         ///< k_batch radii that bound the disks, infinite as long as they are unknown
+  float detour;                ///< 1 + the tolerance within which a way by a flank will do
+  float spread;                ///< the same tolerance, as the bound of a window's radius wants it
+};
+
+/// The two halves of a generation's work. All windows are sighted, and the labels updated, before any is split.
+struct WaveKernel {
+  const char* name;
+  /// Looks at the far corner of each window's face; appends the corners seen. \return the number of sightings then.
+  int (*sight)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const SightingRows&, int sightings);
+  /// The same where every sighting makes an arc.
+  int (*sight_all)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const SightingRows&, int sightings);
+  /// Appends the windows' children that may still serve: those behind the left sides, and those behind the right ones.
+  void (*split)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const WindowRows& lefts,
+                int* left_count, const WindowRows& rights, int* right_count);
+  /// The same with no bound but the disks' limits.
+  void (*split_all)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const WindowRows& lefts,
+                    int* left_count, const WindowRows& rights, int* right_count);
+  /// Index of the word whose low bits are `target`, -1 for none. `target` occurs at most once.
+  int (*find_target)(const std::uint64_t* words, int count, std::uint32_t mask, std::uint32_t target);
+};
+
+}  // namespace saddleback

@@ -1,0 +1,278 @@
+// The kernel of window_waves.h, included by one source a instruction set, which defines `Simd` (see support/simd_*.h)
+// and SADDLEBACK_WAVE_KERNEL. Multiplications and additions are not fused and roots and quotients are IEEE's, so that
+// every instruction set gives the same bits.
+//
+// Windows and their filters: Xin and Wang 2009; which arcs to keep, and how far a window serves: Adikusuma, Fang and
+// He 2020 ("Fast construction of discrete geodesic graphs").
+
+#include "geodesics/window_waves.h"
+
+namespace saddleback {
+namespace {
+
+using Floats = Simd::Floats;
+using Doubles = Simd::Doubles;
+using Ints = Simd::Ints;
+using Mask = Simd::Mask;
+
+// Of the sine between two directions: what float arithmetic cannot tell from a vertex on the ray itself.
+constexpr float k_on_ray = 1e-6f;
+// Squares must differ by more than rounding before a filter removes a window.
+constexpr float k_shorter = (1 - 1e-6f) * (1 - 1e-6f);
+// Of the half-edge: narrower windows serve no further vertex.
+constexpr float k_narrow = 1e-6f;
+
+Floats square(Floats a) { return a * a; }
+Floats length_squared(Floats x, Floats y) { return x * x + y * y; }
+Floats cross(Floats ax, Floats ay, Floats bx, Floats by) { return ax * by - ay * bx; }
+
+/// Whether the way by a flank at `reach` along the ray (x, y) is longer than the detour allowed to (px, py).
+Mask misses(Floats x, Floats y, Floats reach, Floats px, Floats py, Floats most) {
+  const Floats rest = Simd::max(most - reach, Simd::fill(0));
+  return square(rest) < length_squared(px - reach * x, py - reach * y);
+}
+
+template <bool All>
+int sight(const WaveScene& scene, const WindowRows& w, int count, const ApexRows& apexes, const SightingRows& seen,
+          int sightings) {
+  const Ints lane_mask = Simd::fill_int(k_batch - 1);
+  for (int i = 0; i < count; i += Simd::width) {
+    Doubles a{}, b{};
+    Ints left{}, right{}, apex{};
+    Simd::load_records(scene.edges, w.edge + i, a, b, left, right, apex);
+    const Doubles from_x = Simd::load(w.from_x + i), from_y = Simd::load(w.from_y + i);
+    const Doubles along_x = Simd::load(w.to_x + i) - from_x, along_y = Simd::load(w.to_y + i) - from_y;
+    const Doubles x = from_x + (a * along_x - b * along_y), y = from_y + (a * along_y + b * along_x);
+    const Ints lane = Simd::load(w.edge + i) & lane_mask;
+    const Ints slot = (apex << k_batch_bits) + lane;
+    Simd::store(apexes.x + i, x);
+    Simd::store(apexes.y + i, y);
+    Simd::store(apexes.left + i, (left << k_batch_bits) + lane);
+    Simd::store(apexes.right + i, (right << k_batch_bits) + lane);
+    Simd::store(apexes.slot + i, slot);
+
+    const Floats px = Simd::narrow(x), py = Simd::narrow(y), reach = Simd::sqrt(length_squared(px, py));
+    const Floats right_x = Simd::load(w.right_x + i), right_y = Simd::load(w.right_y + i);
+    const Floats left_x = Simd::load(w.left_x + i), left_y = Simd::load(w.left_y + i);
+    const Floats from_right = cross(right_x, right_y, px, py), to_left = cross(px, py, left_x, left_y);
+    Simd::store(apexes.reach + i, reach);
+    Simd::store(apexes.from_right + i, from_right);
+    Simd::store(apexes.to_left + i, to_left);
+
+    const Floats tolerance = Simd::fill(k_on_ray) * reach, border = Simd::fill(0) - tolerance;
+    const Mask in_sight = Simd::first(count - i) & (border < from_right) & (border < to_left);
+    // A vertex on a ray is reached by the flank as well.
+    Mask direct = (tolerance < from_right) & (tolerance < to_left);
+    if constexpr (!All) {
+      const Floats most = Simd::fill(scene.detour) * reach;
+      direct = direct & misses(right_x, right_y, Simd::load(w.right_reach + i), px, py, most) &
+               misses(left_x, left_y, Simd::load(w.left_reach + i), px, py, most);
+    }
+    const Ints bits = Simd::bits_of(reach) & Simd::fill_int(~1);
+    const auto packing = Simd::packing(in_sight);
+    packing.store(seen.slot + sightings, slot);
+    packing.store(seen.label + sightings, Simd::pick(direct, bits, bits | Simd::fill_int(1)));
+    packing.store(seen.x + sightings, x);
+    packing.store(seen.y + sightings, y);
+    packing.store(seen.back_x + sightings, Simd::narrow(from_x - x));
+    packing.store(seen.back_y + sightings, Simd::narrow(from_y - y));
+    packing.store(seen.edge + sightings, Simd::load(w.edge + i));
+    packing.store(seen.root + sightings, Simd::load(w.root + i));
+    sightings += packing.count();
+  }
+  return sightings;
+}
+
+/// The radius beyond which whatever lies between two flanks is reached by one of them within the tolerance. `cosine`
+/// and `sine` are of the angle between the flanks.
+Floats serving_radius(Floats cosine, Floats sine, Floats reach, Floats other_reach, Floats spread, Floats most) {
+  const Floats zero = Simd::fill(0), half = Simd::fill(0.5f), one = Simd::fill(1);
+  const Floats far = Simd::max(reach, other_reach), near = Simd::min(reach, other_reach), ratio = near / far;
+  // The chord of the angle at the farther flank's distance.
+  const Floats chord_squared = square(far) * ((sine * sine + sine * sine) / (one + cosine));
+  const Floats chord = Simd::sqrt(Simd::max(chord_squared, zero)), divisor = spread * (far - chord);
+  // The worst place between the flanks, as a fraction of the chord from the nearer one.
+  const Floats slope = one / (one - ratio);
+  const Floats discriminant = slope * (slope - one) - far * divisor / chord_squared;
+  const Floats root = slope - Simd::sqrt(Simd::max(discriminant, zero));
+  const Mask inside = (!(discriminant < zero)) & (!(root < half)) & (root < one);
+  const Floats worst = Simd::pick(ratio < Simd::fill(0.99f), Simd::pick(inside, root, one), half);
+  const Floats bound = square(worst) * ratio * chord_squared / divisor + ratio * far;
+  return Simd::pick((zero < cosine) & (chord < far) & (bound < most), bound, most);
+}
+
+/// One side of a window's face, in the words of its left side: from the near end of the half-edge to the apex.
+struct Side {
+  Mask lit;               ///< any light falls on it
+  Mask cut;               ///< the light ends at the apex
+  Floats near_x, near_y;  ///< end of the half-edge that the side shares
+  Floats far_x, far_y;    ///< the other end
+  Floats apex_x, apex_y;
+  Floats near_off, apex_off;  ///< offsets of the side's ends from the ray on the near side: outside and inside
+  Floats near_in, apex_out;   ///< from the other ray; used where the light does not end at the apex
+  Floats near_label, far_label, apex_label;
+};
+
+/// Where a child's light lies on its side, and whether it may serve.
+struct Child {
+  Mask useful;
+  Floats nearest_squared;  ///< from the source
+};
+
+Child look_at(const Side& side) {
+  const Floats zero = Simd::fill(0), one = Simd::fill(1), shorter = Simd::fill(k_shorter);
+  const Floats along_x = side.apex_x - side.near_x, along_y = side.apex_y - side.near_y;
+  const Floats length_2 = length_squared(along_x, along_y), length = Simd::sqrt(length_2);
+  const Floats near_off = Simd::max(side.near_off, zero), near_in = Simd::max(side.near_in, zero);
+  const Floats begin = near_off / (near_off + side.apex_off);
+  const Floats end = Simd::pick(side.cut, one, Simd::min(near_in / (near_in + side.apex_out), one));
+  Mask useful = side.lit & (Simd::fill(k_narrow) < end - begin);
+  const Floats begin_x = side.near_x + begin * along_x, begin_y = side.near_y + begin * along_y;
+  const Floats end_x = side.near_x + end * along_x, end_y = side.near_y + end * along_y;
+  const Floats begin_2 = length_squared(begin_x, begin_y), end_2 = length_squared(end_x, end_y);
+  // A corner of the face offers every point of the light a shorter way: three filters.
+  const Floats by_near = side.near_label + end * length, by_apex = side.apex_label + (one - begin) * length;
+  useful = useful & (!(square(by_near) < end_2 * shorter)) & (!(square(by_apex) < begin_2 * shorter));
+  const Floats left_over = Simd::sqrt(begin_2 * shorter) - side.far_label;
+  const Floats across_2 = length_squared(begin_x - side.far_x, begin_y - side.far_y);
+  useful = useful & (!((zero < left_over) & (across_2 < square(left_over))));
+  // The light's nearest point: an end, or the foot of the source on the side.
+  const Floats begin_ahead = begin_x * along_x + begin_y * along_y, end_ahead = end_x * along_x + end_y * along_y;
+  const Floats foot_2 = square(cross(side.near_x, side.near_y, along_x, along_y)) / length_2;
+  const Floats nearest = Simd::pick(zero < begin_ahead, begin_2, Simd::pick(end_ahead < zero, end_2, foot_2));
+  return {useful, nearest};
+}
+
+template <bool All>
+void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRows& apexes, const WindowRows& lefts,
+           int* left_count, const WindowRows& rights, int* right_count) {
+  int l = *left_count, r = *right_count;
+  const Floats zero = Simd::fill(0), spread = Simd::fill(scene.spread);
+  for (int i = 0; i < count; i += Simd::width) {
+    const Floats reach = Simd::load(apexes.reach + i), tolerance = Simd::fill(k_on_ray) * reach;
+    const Floats from_right = Simd::load(apexes.from_right + i), to_left = Simd::load(apexes.to_left + i);
+    const Mask active = Simd::first(count - i), inside_right = tolerance < from_right,
+               inside_left = tolerance < to_left;
+    const Ints left_edge = Simd::load(apexes.left + i), right_edge = Simd::load(apexes.right + i);
+    const Mask go_left = active & inside_left & (!Simd::negative(left_edge));
+    const Mask go_right = active & inside_right & (!Simd::negative(right_edge));
+
+    const Doubles from_dx = Simd::load(w.from_x + i), from_dy = Simd::load(w.from_y + i);
+    const Doubles to_dx = Simd::load(w.to_x + i), to_dy = Simd::load(w.to_y + i);
+    const Doubles apex_dx = Simd::load(apexes.x + i), apex_dy = Simd::load(apexes.y + i);
+    const Floats from_x = Simd::narrow(from_dx), from_y = Simd::narrow(from_dy);
+    const Floats to_x = Simd::narrow(to_dx), to_y = Simd::narrow(to_dy);
+    const Floats apex_x = Simd::narrow(apex_dx), apex_y = Simd::narrow(apex_dy);
+    const Floats right_x = Simd::load(w.right_x + i), right_y = Simd::load(w.right_y + i);
+    const Floats left_x = Simd::load(w.left_x + i), left_y = Simd::load(w.left_y + i);
+    const Floats right_reach = Simd::load(w.right_reach + i), left_reach = Simd::load(w.left_reach + i);
+    const Ints from = Simd::load(w.from + i), to = Simd::load(w.to + i), apex = Simd::load(apexes.slot + i);
+    const Floats from_label = Simd::look_up(scene.labels, from), to_label = Simd::look_up(scene.labels, to);
+    const Floats apex_label = Simd::look_up(scene.labels, apex);
+
+    const Side left_side{go_left,
+                         inside_right,
+                         from_x,
+                         from_y,
+                         to_x,
+                         to_y,
+                         apex_x,
+                         apex_y,
+                         cross(left_x, left_y, from_x, from_y),
+                         to_left,
+                         cross(right_x, right_y, from_x, from_y),
+                         zero - from_right,
+                         from_label,
+                         to_label,
+                         apex_label};
+    const Side right_side{go_right,
+                          inside_left,
+                          to_x,
+                          to_y,
+                          from_x,
+                          from_y,
+                          apex_x,
+                          apex_y,
+                          cross(to_x, to_y, right_x, right_y),
+                          from_right,
+                          cross(to_x, to_y, left_x, left_y),
+                          zero - to_left,
+                          to_label,
+                          from_label,
+                          apex_label};
+    const Child left = look_at(left_side), right = look_at(right_side);
+
+    // The ray to the apex, for children whose light ends there.
+    const Floats ray_x = apex_x / reach, ray_y = apex_y / reach;
+    Floats most = Simd::load(w.most + i), left_most = most, right_most = most;
+    if constexpr (All) {
+      left_most = right_most = Simd::look_up_lane(scene.limits, Simd::load(w.edge + i));
+    } else if (const Mask covered = inside_right & inside_left & (left.useful | right.useful); Simd::any(covered)) {
+      const Floats left_bound = serving_radius(ray_x * left_x + ray_y * left_y, cross(ray_x, ray_y, left_x, left_y),
+                                               reach, left_reach, spread, most);
+      const Floats right_bound = serving_radius(
+          right_x * ray_x + right_y * ray_y, cross(right_x, right_y, ray_x, ray_y), reach, right_reach, spread, most);
+      left_most = Simd::pick(covered, left_bound, most);
+      right_most = Simd::pick(covered, right_bound, most);
+    }
+
+    const Ints root = Simd::load(w.root + i);
+    if (const Mask keep = left.useful & (left.nearest_squared < square(left_most)); Simd::any(keep)) {
+      const auto packing = Simd::packing(keep);
+      packing.store(lefts.from_x + l, from_dx);
+      packing.store(lefts.from_y + l, from_dy);
+      packing.store(lefts.to_x + l, apex_dx);
+      packing.store(lefts.to_y + l, apex_dy);
+      packing.store(lefts.right_x + l, Simd::pick(inside_right, ray_x, right_x));
+      packing.store(lefts.right_y + l, Simd::pick(inside_right, ray_y, right_y));
+      packing.store(lefts.right_reach + l, Simd::pick(inside_right, reach, right_reach));
+      packing.store(lefts.left_x + l, left_x);
+      packing.store(lefts.left_y + l, left_y);
+      packing.store(lefts.left_reach + l, left_reach);
+      packing.store(lefts.most + l, left_most);
+      packing.store(lefts.edge + l, left_edge);
+      packing.store(lefts.from + l, from);
+      packing.store(lefts.to + l, apex);
+      packing.store(lefts.root + l, root);
+      l += packing.count();
+    }
+    if (const Mask keep = right.useful & (right.nearest_squared < square(right_most)); Simd::any(keep)) {
+      const auto packing = Simd::packing(keep);
+      packing.store(rights.from_x + r, apex_dx);
+      packing.store(rights.from_y + r, apex_dy);
+      packing.store(rights.to_x + r, to_dx);
+      packing.store(rights.to_y + r, to_dy);
+      packing.store(rights.right_x + r, right_x);
+      packing.store(rights.right_y + r, right_y);
+      packing.store(rights.right_reach + r, right_reach);
+      packing.store(rights.left_x + r, Simd::pick(inside_left, ray_x, left_x));
+      packing.store(rights.left_y + r, Simd::pick(inside_left, ray_y, left_y));
+      packing.store(rights.left_reach + r, Simd::pick(inside_left, reach, left_reach));
+      packing.store(rights.most + r, right_most);
+      packing.store(rights.edge + r, right_edge);
+      packing.store(rights.from + r, apex);
+      packing.store(rights.to + r, to);
+      packing.store(rights.root + r, root);
+      r += packing.count();
+    }
+  }
+  *left_count = l;
+  *right_count = r;
+}
+
+/// Without a branch a word, so that the compiler takes several at a time.
+int find_target(const std::uint64_t* words, int count, std::uint32_t mask, std::uint32_t target) {
+  int found = 0;
+  for (int i = 0; i < count; ++i) {
+    const int here = (static_cast<std::uint32_t>(words[i]) & mask) == target ? i + 1 : 0;
+    found = here > found ? here : found;
+  }
+  return found - 1;
+}
+
+}  // namespace
+
+extern const WaveKernel SADDLEBACK_WAVE_KERNEL;
+const WaveKernel SADDLEBACK_WAVE_KERNEL{Simd::name, sight<false>, sight<true>, split<false>, split<true>, find_target};
+
+}  // namespace saddleback
