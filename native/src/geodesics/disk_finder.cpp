@@ -17,8 +17,9 @@ constexpr float k_as_far = 1 + 1e-5f;
 constexpr float k_much_shorter = 1 - 1e-6f;
 // Finding the k-th nearest takes as long as a generation.
 constexpr int k_generations_per_bound = 3;
-// Fast DGG's constant: the bound of a window's radius is for a tolerance this many times the one given.
-constexpr double k_radius_tolerance = 2.25;
+// Windows end where a flank serves within this many times the tolerance. With 1 no error could exceed it, for half as
+// many arcs again; errors come near their bounds so seldom that with 1.5 they do not exceed the tolerance either.
+constexpr double k_radius_tolerance = 1.5;
 
 float distance_of(std::int32_t label) { return std::bit_cast<float>(label); }
 std::int32_t label_of(float distance, bool makes_arc) {
@@ -62,7 +63,8 @@ void WindowColumns::reserve(int count) {
 WindowRows WindowColumns::rows() {
   return {reals_[0].data(),  reals_[1].data(),  reals_[2].data(),  reals_[3].data(),  floats_[0].data(),
           floats_[1].data(), floats_[2].data(), floats_[3].data(), floats_[4].data(), floats_[5].data(),
-          floats_[6].data(), ints_[0].data(),   ints_[1].data(),   ints_[2].data(),   ints_[3].data()};
+          floats_[6].data(), floats_[7].data(), floats_[8].data(), ints_[0].data(),   ints_[1].data(),
+          ints_[2].data(),   ints_[3].data()};
 }
 
 void ApexColumns::reserve(int count) {
@@ -74,8 +76,8 @@ void ApexColumns::reserve(int count) {
 }
 
 ApexRows ApexColumns::rows() {
-  return {reals_[0].data(),  reals_[1].data(), floats_[0].data(), floats_[1].data(),
-          floats_[2].data(), ints_[0].data(),  ints_[1].data(),   ints_[2].data()};
+  return {reals_[0].data(),  reals_[1].data(), floats_[0].data(), floats_[1].data(), floats_[2].data(),
+          floats_[3].data(), ints_[0].data(),  ints_[1].data(),   ints_[2].data()};
 }
 
 void SightingColumns::reserve(int count) {
@@ -150,8 +152,8 @@ void DiskFinder::add_window(int lane, Index root, double length, const Vec2& ape
   rows.right_y[i] = 0;
   rows.left_x[i] = static_cast<float>(apex.x() / reach);
   rows.left_y[i] = static_cast<float>(apex.y() / reach);
-  rows.right_reach[i] = static_cast<float>(length);
-  rows.left_reach[i] = static_cast<float>(reach);
+  rows.right_reach[i] = rows.right_way[i] = static_cast<float>(length);
+  rows.left_reach[i] = rows.left_way[i] = static_cast<float>(reach);
   rows.most[i] = k_infinity;
   rows.edge[i] = mesh_.opposite(root) * k_batch + lane;
   rows.from[i] = mesh_.records()[root].apex * k_batch + lane;
@@ -170,17 +172,22 @@ void DiskFinder::run(const JobStage& stage) {
 
 /// Sights all windows of this generation, then splits them into the next.
 void DiskFinder::advance() {
-  const WaveScene scene{mesh_.records(), labels_.data(), limits_.data(), static_cast<float>(1 + rule_.tolerance),
-                        static_cast<float>(2 * k_radius_tolerance * rule_.tolerance)};
+  const double radius = 1 + k_radius_tolerance * rule_.tolerance;
+  const WaveScene scene{mesh_.records(),
+                        labels_.data(),
+                        limits_.data(),
+                        static_cast<float>(1 + rule_.tolerance),
+                        static_cast<float>(radius),
+                        static_cast<float>(radius * radius - 1)};
   const int before = sighting_count_;
   sightings_.reserve(sighting_count_ + now_.size() + k_row_padding);
   apexes_.reserve(now_.size() + 2 * k_row_padding);
   const ApexRows apexes = apexes_.rows();
   // Rows of the right half begin behind the padding of the left one.
   const int right = now_.left_count + k_row_padding;
-  const ApexRows right_apexes{apexes.x + right,          apexes.y + right,       apexes.reach + right,
-                              apexes.from_right + right, apexes.to_left + right, apexes.left + right,
-                              apexes.right + right,      apexes.slot + right};
+  const ApexRows right_apexes{apexes.x + right,     apexes.y + right,          apexes.way + right,
+                              apexes.reach + right, apexes.from_right + right, apexes.to_left + right,
+                              apexes.left + right,  apexes.right + right,      apexes.slot + right};
   const auto sight = by_count() ? kernel_.sight_all : kernel_.sight;
   sighting_count_ = sight(scene, now_.lefts.rows(), now_.left_count, apexes, sightings_.rows(), sighting_count_);
   sighting_count_ =

@@ -11,10 +11,10 @@
 namespace saddleback {
 
 /// What a source keeps of the vertices that it sees: with k > 0 those among the k nearest, otherwise those that no way
-/// by two shorter arcs reaches within the tolerance.
+/// by shorter arcs reaches within the tolerance.
 struct DiskRule {
   Index k = 0;
-  double tolerance = 0;
+  double tolerance = 0;  ///< relative
 };
 
 /// Columns of windows that grow, with room for vectors behind their end.
@@ -26,7 +26,7 @@ class WindowColumns {
  private:
   int room_ = 0;
   std::array<std::vector<double>, 4> reals_;
-  std::array<std::vector<float>, 7> floats_;
+  std::array<std::vector<float>, 9> floats_;
   std::array<std::vector<std::int32_t>, 4> ints_;
 };
 
@@ -39,7 +39,7 @@ class ApexColumns {
  private:
   int room_ = 0;
   std::array<std::vector<double>, 2> reals_;
-  std::array<std::vector<float>, 3> floats_;
+  std::array<std::vector<float>, 4> floats_;
   std::array<std::vector<std::int32_t>, 3> ints_;
 };
 

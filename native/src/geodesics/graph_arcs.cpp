@@ -99,10 +99,4 @@ std::vector<FoundArcs> exact_arcs(const ArcSearch& search, const JobStage& stage
   });
 }
 
-double detour_tolerance(double accuracy) {
-  // Measured on ten meshes: see docs/distance.md.
-  constexpr double k_detour_per_error = 0.55;
-  return k_detour_per_error * accuracy;
-}
-
 }  // namespace saddleback

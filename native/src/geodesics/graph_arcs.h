@@ -29,9 +29,6 @@ std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, 
 /// V).
 std::vector<FoundArcs> exact_arcs(const ArcSearch& search, const JobStage& stage);
 
-/// The detour by two arcs that a graph may take for the error of whole paths to stay below `accuracy`.
-double detour_tolerance(double accuracy);
-
 /// The fastest kernel that this machine runs for "auto", or the one named. \throw InputError when there is none.
 const WaveKernel& wave_kernel(const std::string& instructions);
 

@@ -51,7 +51,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, kernel, options.threads};
   const JobStage finding = stage.part(0, 0.9);
   auto found = exact_ ? exact_arcs(search, finding)
-                      : disk_arcs(search, {.k = k_, .tolerance = detour_tolerance(accuracy_)}, finding);
+                      : disk_arcs(search, {.k = k_, .tolerance = accuracy_}, finding);
   arcs_ = unite_with_reverses(codec, kernel, found, k_block, options.threads, stage.part(0.9, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }

@@ -29,15 +29,17 @@ struct WindowRows {
   double *from_x, *from_y, *to_x, *to_y;       ///< ends of the half-edge
   float *right_x, *right_y, *left_x, *left_y;  ///< unit vectors along the rays; left is counter-clockwise of right
   float *right_reach, *left_reach;             ///< distances of the flanks
-  float* most;                                 ///< radius beyond which the window serves nothing
-  std::int32_t* edge;                          ///< record * k_batch + lane
-  std::int32_t *from, *to;                     ///< slots of the half-edge's ends
-  std::int32_t* root;                          ///< record of the source's half-edge whose face the window left
+  float *right_way, *left_way;  ///< bounds of the graph's distances to them; unused where every sighting is an arc
+  float* most;                  ///< radius beyond which the window serves nothing
+  std::int32_t* edge;           ///< record * k_batch + lane
+  std::int32_t *from, *to;      ///< slots of the half-edge's ends
+  std::int32_t* root;           ///< record of the source's half-edge whose face the window left
 };
 
 /// What a window sees of its face's far corner; a row a window.
 struct ApexRows {
   double *x, *y;
+  float* way;                           ///< as of flanks
   float *reach, *from_right, *to_left;  ///< distance; its offsets from the rays, positive inside
   std::int32_t *left, *right;           ///< edge * k_batch + lane, negative at the boundary
   std::int32_t* slot;
@@ -57,8 +59,9 @@ struct WaveScene {
   const EdgeRecord* edges;
   const std::int32_t* labels;  ///< upper bounds of the distances of all slots
   const float* limits;         ///< k_batch radii that bound the disks, infinite as long as they are unknown
-  float detour;                ///< 1 + the tolerance within which a way by a flank will do
-  float spread;                ///< the same tolerance, as the bound of a window's radius wants it
+  float detour;                ///< what a way may be longer by than a straight geodesic: a factor
+  float radius;                ///< the same for what lies beyond a window's end
+  float radius_surplus;        ///< its square less 1
 };
 
 /// The two halves of a generation's work. All windows are sighted, and the labels updated, before any is split.

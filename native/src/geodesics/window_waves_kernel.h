@@ -2,8 +2,12 @@
 // and SADDLEBACK_WAVE_KERNEL. Multiplications and additions are not fused and roots and quotients are IEEE's, so that
 // every instruction set gives the same bits.
 //
-// Windows and their filters: Xin and Wang 2009; which arcs to keep, and how far a window serves: Adikusuma, Fang and
-// He 2020 ("Fast construction of discrete geodesic graphs").
+// Windows and their filters: Xin and Wang 2009. To keep an arc only where no way over a flank will do, and to end
+// windows there: Adikusuma, Fang and He 2020 ("Fast construction of discrete geodesic graphs"). Their rule allows every
+// detour the same share of the whole way, and such shares add up where the second leg is itself a detour. Here a way
+// counts the graph's distance to the flank, and the rest with the whole tolerance on top: way + (1 + e) rest <= (1 + e)
+// straight. By induction over lengths no distance in the graph is then longer than 1 + e times the geodesic, as far as
+// windows have run.
 
 #include "geodesics/window_waves.h"
 
@@ -25,12 +29,6 @@ constexpr float k_narrow = 1e-6f;
 Floats square(Floats a) { return a * a; }
 Floats length_squared(Floats x, Floats y) { return x * x + y * y; }
 Floats cross(Floats ax, Floats ay, Floats bx, Floats by) { return ax * by - ay * bx; }
-
-/// Whether the way by a flank at `reach` along the ray (x, y) is longer than the detour allowed to (px, py).
-Mask misses(Floats x, Floats y, Floats reach, Floats px, Floats py, Floats most) {
-  const Floats rest = Simd::max(most - reach, Simd::fill(0));
-  return square(rest) < length_squared(px - reach * x, py - reach * y);
-}
 
 template <bool All>
 int sight(const WaveScene& scene, const WindowRows& w, int count, const ApexRows& apexes, const SightingRows& seen,
@@ -64,9 +62,16 @@ int sight(const WaveScene& scene, const WindowRows& w, int count, const ApexRows
     // A vertex on a ray is reached by the flank as well.
     Mask direct = (tolerance < from_right) & (tolerance < to_left);
     if constexpr (!All) {
-      const Floats most = Simd::fill(scene.detour) * reach;
-      direct = direct & misses(right_x, right_y, Simd::load(w.right_reach + i), px, py, most) &
-               misses(left_x, left_y, Simd::load(w.left_reach + i), px, py, most);
+      const Floats right_reach = Simd::load(w.right_reach + i), left_reach = Simd::load(w.left_reach + i);
+      const Floats detour = Simd::fill(scene.detour);
+      const Floats by_right =
+          Simd::load(w.right_way + i) +
+          detour * Simd::sqrt(length_squared(px - right_reach * right_x, py - right_reach * right_y));
+      const Floats by_left = Simd::load(w.left_way + i) +
+                             detour * Simd::sqrt(length_squared(px - left_reach * left_x, py - left_reach * left_y));
+      const Floats way = Simd::min(by_right, by_left);
+      direct = direct & (detour * reach < way);
+      Simd::store(apexes.way + i, Simd::pick(direct, reach, way));
     }
     const Ints bits = Simd::bits_of(reach) & Simd::fill_int(~1);
     const auto packing = Simd::packing(in_sight);
@@ -83,22 +88,33 @@ int sight(const WaveScene& scene, const WindowRows& w, int count, const ApexRows
   return sightings;
 }
 
-/// The radius beyond which whatever lies between two flanks is reached by one of them within the tolerance. `cosine`
-/// and `sine` are of the angle between the flanks.
-Floats serving_radius(Floats cosine, Floats sine, Floats reach, Floats other_reach, Floats spread, Floats most) {
-  const Floats zero = Simd::fill(0), half = Simd::fill(0.5f), one = Simd::fill(1);
-  const Floats far = Simd::max(reach, other_reach), near = Simd::min(reach, other_reach), ratio = near / far;
-  // The chord of the angle at the farther flank's distance.
-  const Floats chord_squared = square(far) * ((sine * sine + sine * sine) / (one + cosine));
-  const Floats chord = Simd::sqrt(Simd::max(chord_squared, zero)), divisor = spread * (far - chord);
-  // The worst place between the flanks, as a fraction of the chord from the nearer one.
-  const Floats slope = one / (one - ratio);
-  const Floats discriminant = slope * (slope - one) - far * divisor / chord_squared;
-  const Floats root = slope - Simd::sqrt(Simd::max(discriminant, zero));
-  const Mask inside = (!(discriminant < zero)) & (!(root < half)) & (root < one);
-  const Floats worst = Simd::pick(ratio < Simd::fill(0.99f), Simd::pick(inside, root, one), half);
-  const Floats bound = square(worst) * ratio * chord_squared / divisor + ratio * far;
-  return Simd::pick((zero < cosine) & (chord < far) & (bound < most), bound, most);
+/// A vertex that a window's ray runs through.
+struct Flank {
+  Floats reach;  ///< distance from the source
+  Floats way;    ///< bound of the graph's distance
+};
+
+/// The distance from which on a flank serves all vertices whose directions are off its own by an angle at most: with r
+/// its reach, w its way and k the factor that a way may be longer by, the larger root of
+/// (k^2 - 1) D^2 - 2 (k w - r cos) D + w^2 - r^2 = 0, from w + |flank to vertex| = k D.
+Floats serving_distance(const Flank& flank, Floats angle, const WaveScene& scene) {
+  const Floats surplus = Simd::fill(scene.radius_surplus), half = Simd::fill(0.5f);
+  const Floats b = Simd::fill(scene.radius) * flank.way - flank.reach + half * flank.reach * square(angle);
+  const Floats c = surplus * (flank.reach - flank.way) * (flank.reach + flank.way);
+  return (b + Simd::sqrt(Simd::max(b * b + c, Simd::fill(0)))) / surplus;
+}
+
+/// The radius beyond which the way by one of two flanks does for all vertices between them. `cosine` and `sine` are of
+/// the angle between the flanks.
+Floats serving_radius(Floats cosine, Floats sine, const Flank& p, const Flank& q, const WaveScene& scene, Floats most) {
+  const Floats zero = Simd::fill(0);
+  // An upper bound of the angle (Huygens), closer than rounding for all that are small enough to count.
+  const Floats angle = (sine + sine + sine / cosine) / Simd::fill(3);
+  // Far away the detours are r (1 - cos): divide the angle so that they are the same.
+  const Floats p_root = Simd::sqrt(p.reach), q_root = Simd::sqrt(q.reach);
+  const Floats off_p = angle * (q_root / (p_root + q_root)), off_q = angle - off_p;
+  const Floats bound = Simd::max(serving_distance(p, off_p, scene), serving_distance(q, off_q, scene));
+  return Simd::pick((zero < cosine) & (bound < most), bound, most);
 }
 
 /// One side of a window's face, in the words of its left side: from the near end of the half-edge to the apex.
@@ -147,7 +163,7 @@ template <bool All>
 void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRows& apexes, const WindowRows& lefts,
            int* left_count, const WindowRows& rights, int* right_count) {
   int l = *left_count, r = *right_count;
-  const Floats zero = Simd::fill(0), spread = Simd::fill(scene.spread);
+  const Floats zero = Simd::fill(0);
   for (int i = 0; i < count; i += Simd::width) {
     const Floats reach = Simd::load(apexes.reach + i), tolerance = Simd::fill(k_on_ray) * reach;
     const Floats from_right = Simd::load(apexes.from_right + i), to_left = Simd::load(apexes.to_left + i);
@@ -166,9 +182,9 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
     const Floats right_x = Simd::load(w.right_x + i), right_y = Simd::load(w.right_y + i);
     const Floats left_x = Simd::load(w.left_x + i), left_y = Simd::load(w.left_y + i);
     const Floats right_reach = Simd::load(w.right_reach + i), left_reach = Simd::load(w.left_reach + i);
-    const Ints from = Simd::load(w.from + i), to = Simd::load(w.to + i), apex = Simd::load(apexes.slot + i);
+    const Ints from = Simd::load(w.from + i), to = Simd::load(w.to + i), apex_slot = Simd::load(apexes.slot + i);
     const Floats from_label = Simd::look_up(scene.labels, from), to_label = Simd::look_up(scene.labels, to);
-    const Floats apex_label = Simd::look_up(scene.labels, apex);
+    const Floats apex_label = Simd::look_up(scene.labels, apex_slot);
 
     const Side left_side{go_left,
                          inside_right,
@@ -208,10 +224,13 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
     if constexpr (All) {
       left_most = right_most = Simd::look_up_lane(scene.limits, Simd::load(w.edge + i));
     } else if (const Mask covered = inside_right & inside_left & (left.useful | right.useful); Simd::any(covered)) {
+      const Flank apex{reach, Simd::load(apexes.way + i)};
+      const Flank left_flank{left_reach, Simd::load(w.left_way + i)},
+          right_flank{right_reach, Simd::load(w.right_way + i)};
       const Floats left_bound = serving_radius(ray_x * left_x + ray_y * left_y, cross(ray_x, ray_y, left_x, left_y),
-                                               reach, left_reach, spread, most);
-      const Floats right_bound = serving_radius(
-          right_x * ray_x + right_y * ray_y, cross(right_x, right_y, ray_x, ray_y), reach, right_reach, spread, most);
+                                               apex, left_flank, scene, most);
+      const Floats right_bound = serving_radius(right_x * ray_x + right_y * ray_y,
+                                                cross(right_x, right_y, ray_x, ray_y), apex, right_flank, scene, most);
       left_most = Simd::pick(covered, left_bound, most);
       right_most = Simd::pick(covered, right_bound, most);
     }
@@ -226,13 +245,18 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
       packing.store(lefts.right_x + l, Simd::pick(inside_right, ray_x, right_x));
       packing.store(lefts.right_y + l, Simd::pick(inside_right, ray_y, right_y));
       packing.store(lefts.right_reach + l, Simd::pick(inside_right, reach, right_reach));
+      if constexpr (!All) {
+        packing.store(lefts.right_way + l,
+                      Simd::pick(inside_right, Simd::load(apexes.way + i), Simd::load(w.right_way + i)));
+        packing.store(lefts.left_way + l, Simd::load(w.left_way + i));
+      }
       packing.store(lefts.left_x + l, left_x);
       packing.store(lefts.left_y + l, left_y);
       packing.store(lefts.left_reach + l, left_reach);
       packing.store(lefts.most + l, left_most);
       packing.store(lefts.edge + l, left_edge);
       packing.store(lefts.from + l, from);
-      packing.store(lefts.to + l, apex);
+      packing.store(lefts.to + l, apex_slot);
       packing.store(lefts.root + l, root);
       l += packing.count();
     }
@@ -248,9 +272,14 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
       packing.store(rights.left_x + r, Simd::pick(inside_left, ray_x, left_x));
       packing.store(rights.left_y + r, Simd::pick(inside_left, ray_y, left_y));
       packing.store(rights.left_reach + r, Simd::pick(inside_left, reach, left_reach));
+      if constexpr (!All) {
+        packing.store(rights.left_way + r,
+                      Simd::pick(inside_left, Simd::load(apexes.way + i), Simd::load(w.left_way + i)));
+        packing.store(rights.right_way + r, Simd::load(w.right_way + i));
+      }
       packing.store(rights.most + r, right_most);
       packing.store(rights.edge + r, right_edge);
-      packing.store(rights.from + r, apex);
+      packing.store(rights.from + r, apex_slot);
       packing.store(rights.to + r, to);
       packing.store(rights.root + r, root);
       r += packing.count();
