@@ -14,7 +14,7 @@ namespace saddleback {
 
 /// A* from the vertices of one fan to those of another, bounded from below by landmarks and the straight line through
 /// space. Exact: a node is expanded only while it may lie on a shorter path than the best known. Holds its memory,
-/// which every run leaves clean, so that a short path costs as little as it is short; one a thread.
+/// which every run leaves clean, so that a short path costs as little as it is short; one a thread and graph.
 class PointSearch {
  public:
   /// The distance is `upper` when no path is shorter. `target` is the place that `to` is the fan of. \throw Cancelled.
@@ -30,6 +30,7 @@ class PointSearch {
   class Run;
   void clean();
 
+  double width_ = 0;  ///< of the queue's buckets; 0: not known yet
   std::vector<double> distances_;
   std::vector<Met> met_;
   std::vector<Index> touched_;
