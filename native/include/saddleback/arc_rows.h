@@ -54,7 +54,7 @@ class ArcCodec {
   std::uint64_t target_mask_ = 0, length_mask_ = 0, bias_ = 0;
   int target_bits_ = 1, length_shift_ = 9;
   std::int32_t least_exponent_ = 0;
-  double quantum_ = 1;
+  double quantum_ = 1, least_ = 1, rounder_ = 1;
 };
 
 /// Rows of arcs, a row a node, in compressed sparse rows.

@@ -144,7 +144,7 @@ class SaddleVertexGraph {
 
  private:
   SaddleVertexGraph();  ///< empty, for `load`
-  void order_nodes();
+  void order_nodes(int threads);
 
   const Mesh* mesh_ = nullptr;
   std::unique_ptr<Unfolding> unfolding_;

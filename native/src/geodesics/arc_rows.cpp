@@ -22,11 +22,13 @@ ArcCodec::ArcCodec(Index vertex_count, double mean_edge, double longest_path)
   length_shift_ = std::max(target_bits_ + 8, 64 - k_exponent_bits - k_most_mantissa_bits);
   length_mask_ = ~((std::uint64_t{1} << length_shift_) - 1);
   bias_ = static_cast<std::uint64_t>(least_exponent_ + k_double_exponent_bias) << k_double_mantissa_bits;
+  least_ = std::max(quantum_, std::ldexp(1.0, least_exponent_));
+  rounder_ = std::ldexp(quantum_, k_double_mantissa_bits);
 }
 
 double ArcCodec::round(double length) const {
-  const double least = std::ldexp(1.0, least_exponent_);
-  return std::max({std::round(length / quantum_) * quantum_, quantum_, least});
+  // No path is as long as the rounder, whose own last bit is the quantum: the sum has room for no smaller ones.
+  return std::max((length + rounder_) - rounder_, least_);
 }
 
 std::uint64_t ArcCodec::pack(Index target, int sector, double length) const {

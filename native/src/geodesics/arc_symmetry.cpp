@@ -17,7 +17,12 @@ struct MissingArc {
 class Union {
  public:
   Union(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found, Index block_size)
-      : codec_(codec), kernel_(kernel), found_(found), block_size_(block_size), missing_(found.size()) {
+      : codec_(codec),
+        kernel_(kernel),
+        found_(found),
+        block_size_(block_size),
+        missing_(found.size()),
+        paired_(found.size()) {
     const FoundArcs& last = found.back();
     node_count_ = last.first_node + static_cast<Index>(last.counts.size());
     starts_.resize(node_count_ + 1);
@@ -27,29 +32,55 @@ class Union {
         starts_[block.first_node + static_cast<Index>(i)] = begin;
         begin += block.counts[i];
       }
+      paired_[block.first_node / block_size_].resize(block.words.size());
     }
   }
 
-  /// Lists the reverses that their rows lack; where both are there and differ, the longer one of this block's arcs is
-  /// marked to be replaced. Only reads words, so that blocks may go at the same time.
-  void look_for_reverses(Index block_index) {
+  /// Looks for the reverses of arcs to later nodes; where one of the two is longer, it is marked to be replaced, and
+  /// where there is none, to be added. Writes nothing but marks of arcs that no other block marks.
+  void pair_with_later(Index block_index) {
     const FoundArcs& block = found_[block_index];
     std::int64_t i = 0;
     for (std::size_t row = 0; row < block.counts.size(); ++row) {
       const Index node = block.first_node + static_cast<Index>(row);
       for (const std::int64_t end = i + block.counts[row]; i < end; ++i) {
         const std::uint64_t word = block.words[i];
-        const std::uint64_t* reverse = find(codec_.target(word), node);
-        // A shorter arc replaces its reverse, too: then it leaves in another direction.
-        if (reverse && codec_.length_bits(*reverse) <= codec_.length_bits(word)) continue;
-        missing_[block_index].push_back({codec_.target(word), reversed(node, block.back_sectors[i], word)});
+        const Index target = codec_.target(word);
+        if (target < node) continue;
+        const Place reverse = find(target, node);
+        if (reverse.arc < 0) {
+          missing_[block_index].push_back({target, reversed(node, block.back_sectors[i], word)});
+          continue;
+        }
+        paired_[reverse.block][reverse.arc] = 1;
+        const FoundArcs& other = found_[reverse.block];
+        const std::uint64_t back = other.words[reverse.arc];
+        // The shorter one replaces its reverse: then that leaves in another direction.
+        if (codec_.length_bits(word) < codec_.length_bits(back))
+          missing_[block_index].push_back({target, reversed(node, block.back_sectors[i], word)});
+        if (codec_.length_bits(back) < codec_.length_bits(word))
+          missing_[block_index].push_back({node, reversed(target, other.back_sectors[reverse.arc], back)});
+      }
+    }
+  }
+
+  /// Arcs to earlier nodes that no reverse was paired with have none. To be called when all blocks are paired.
+  void add_unpaired(Index block_index) {
+    const FoundArcs& block = found_[block_index];
+    std::int64_t i = 0;
+    for (std::size_t row = 0; row < block.counts.size(); ++row) {
+      const Index node = block.first_node + static_cast<Index>(row);
+      for (const std::int64_t end = i + block.counts[row]; i < end; ++i) {
+        const Index target = codec_.target(block.words[i]);
+        if (target > node || paired_[block_index][i]) continue;
+        missing_[block_index].push_back({target, reversed(node, block.back_sectors[i], block.words[i])});
       }
     }
   }
 
   /// Empties the found arcs.
   ArcRows assemble(int threads, const JobStage& stage) {
-    sort_missing();
+    sort_missing(threads, stage);
     std::vector<std::int64_t> offsets(node_count_ + 1, 0);
     parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
       stage.check();
@@ -84,13 +115,17 @@ class Union {
   };
   SameTarget same_target(std::uint64_t word) const { return {codec_.target_mask(), word & codec_.target_mask()}; }
 
-  const std::uint64_t* find(Index node, Index target) const {
-    const FoundArcs& block = found_[node / block_size_];
-    const std::uint64_t* const row = block.words.data() + starts_[node];
+  struct Place {
+    Index block;
+    std::int64_t arc;  ///< in the block's words; negative: nowhere
+  };
+  Place find(Index node, Index target) const {
+    const Index b = node / block_size_;
+    const FoundArcs& block = found_[b];
     const int i =
-        kernel_.find_target(row, block.counts[node - block.first_node],
+        kernel_.find_target(block.words.data() + starts_[node], block.counts[node - block.first_node],
                             static_cast<std::uint32_t>(codec_.target_mask()), static_cast<std::uint32_t>(target));
-    return i >= 0 ? row + i : nullptr;
+    return {b, i < 0 ? -1 : starts_[node] + i};
   }
 
   std::uint64_t reversed(Index node, std::uint8_t sector, std::uint64_t word) const {
@@ -98,15 +133,22 @@ class Union {
            static_cast<std::uint64_t>(node);
   }
 
-  void sort_missing() {
+  /// Into the blocks of their nodes, each sorted: the order in which they were found does not matter.
+  void sort_missing(int threads, const JobStage& stage) {
+    first_missing_.assign(found_.size() + 1, 0);
+    for (const auto& list : missing_)
+      for (const MissingArc& arc : list) ++first_missing_[arc.node / block_size_ + 1];
+    for (std::size_t b = 0; b < found_.size(); ++b) first_missing_[b + 1] += first_missing_[b];
+    all_missing_.resize(first_missing_.back());
+    std::vector<std::int64_t> next(first_missing_.begin(), first_missing_.end() - 1);
     for (auto& list : missing_) {
-      all_missing_.insert(all_missing_.end(), list.begin(), list.end());
+      for (const MissingArc& arc : list) all_missing_[next[arc.node / block_size_]++] = arc;
       list = {};
     }
-    std::sort(all_missing_.begin(), all_missing_.end());
-    first_missing_.assign(found_.size() + 1, 0);
-    for (const MissingArc& arc : all_missing_) ++first_missing_[arc.node / block_size_ + 1];
-    for (std::size_t b = 0; b < found_.size(); ++b) first_missing_[b + 1] += first_missing_[b];
+    parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
+      stage.check();
+      std::sort(all_missing_.begin() + first_missing_[b], all_missing_.begin() + first_missing_[b + 1]);
+    });
   }
 
   template <class Use>
@@ -128,6 +170,7 @@ class Union {
   Index block_size_, node_count_ = 0;
   std::vector<Index> starts_;  ///< of each node's row in its block
   std::vector<std::vector<MissingArc>> missing_;
+  std::vector<std::vector<std::uint8_t>> paired_;  ///< per block and arc: its reverse was found
   std::vector<MissingArc> all_missing_;
   std::vector<std::int64_t> first_missing_;  ///< per block
 };
@@ -137,10 +180,14 @@ class Union {
 ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found,
                             Index block_size, int threads, const JobStage& stage) {
   Union work(codec, kernel, found, block_size);
-  parallel_for(static_cast<Index>(found.size()), threads, 4, [&](Index b, int) {
-    stage.check();
-    work.look_for_reverses(b);
-  });
+  const auto for_each_block = [&](auto&& use) {
+    parallel_for(static_cast<Index>(found.size()), threads, 4, [&](Index b, int) {
+      stage.check();
+      use(b);
+    });
+  };
+  for_each_block([&](Index b) { work.pair_with_later(b); });
+  for_each_block([&](Index b) { work.add_unpaired(b); });
   stage.update(0.6);
   ArcRows arcs = work.assemble(threads, stage.part(0.6, 1));
   stage.update(1);

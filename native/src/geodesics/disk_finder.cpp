@@ -102,7 +102,7 @@ DiskFinder::DiskFinder(const WaveMesh& mesh, const ArcCodec& codec, const WaveKe
 
 void DiskFinder::find(Index first, Index count, FoundArcs& found, const JobStage& stage) {
   sighting_count_ = 0;
-  now_.left_count = now_.right_count = 0;
+  now_->left_count = now_->right_count = 0;
   limits_.fill(k_infinity);
   generation_ = 0;
   for (int lane = 0; lane < count; ++lane) seed(first + lane, lane);
@@ -139,10 +139,10 @@ void DiskFinder::link(std::int32_t slot, double length, Index edge, bool other) 
 
 /// Through the side of `root`'s face that is opposite the source.
 void DiskFinder::add_window(int lane, Index root, double length, const Vec2& apex) {
-  WindowColumns& columns = now_.lefts;
-  columns.reserve(now_.left_count + 1);
+  WindowColumns& columns = now_->lefts;
+  columns.reserve(now_->left_count + 1);
   const WindowRows rows = columns.rows();
-  const int i = now_.left_count++;
+  const int i = now_->left_count++;
   const double reach = apex.norm();
   rows.from_x[i] = apex.x();
   rows.from_y[i] = apex.y();
@@ -162,9 +162,9 @@ void DiskFinder::add_window(int lane, Index root, double length, const Vec2& ape
 }
 
 void DiskFinder::run(const JobStage& stage) {
-  for (int windows = 0; now_.size() > 0 && windows < k_most_windows;) {
+  for (int windows = 0; now_->size() > 0 && windows < k_most_windows;) {
     stage.check();
-    windows += now_.size();
+    windows += now_->size();
     advance();
     std::swap(now_, next_);
   }
@@ -172,37 +172,38 @@ void DiskFinder::run(const JobStage& stage) {
 
 /// Sights all windows of this generation, then splits them into the next.
 void DiskFinder::advance() {
-  const double radius = 1 + k_radius_tolerance * rule_.tolerance;
+  const double radius = 1 + k_radius_tolerance * rule_.tolerance, surplus = radius * radius - 1;
   const WaveScene scene{mesh_.records(),
                         labels_.data(),
                         limits_.data(),
                         static_cast<float>(1 + rule_.tolerance),
                         static_cast<float>(radius),
-                        static_cast<float>(radius * radius - 1)};
+                        static_cast<float>(surplus),
+                        static_cast<float>(1 / surplus)};
   const int before = sighting_count_;
-  sightings_.reserve(sighting_count_ + now_.size() + k_row_padding);
-  apexes_.reserve(now_.size() + 2 * k_row_padding);
+  sightings_.reserve(sighting_count_ + now_->size() + k_row_padding);
+  apexes_.reserve(now_->size() + 2 * k_row_padding);
   const ApexRows apexes = apexes_.rows();
   // Rows of the right half begin behind the padding of the left one.
-  const int right = now_.left_count + k_row_padding;
+  const int right = now_->left_count + k_row_padding;
   const ApexRows right_apexes{apexes.x + right,     apexes.y + right,          apexes.way + right,
                               apexes.reach + right, apexes.from_right + right, apexes.to_left + right,
                               apexes.left + right,  apexes.right + right,      apexes.slot + right};
   const auto sight = by_count() ? kernel_.sight_all : kernel_.sight;
-  sighting_count_ = sight(scene, now_.lefts.rows(), now_.left_count, apexes, sightings_.rows(), sighting_count_);
+  sighting_count_ = sight(scene, now_->lefts.rows(), now_->left_count, apexes, sightings_.rows(), sighting_count_);
   sighting_count_ =
-      sight(scene, now_.rights.rows(), now_.right_count, right_apexes, sightings_.rows(), sighting_count_);
+      sight(scene, now_->rights.rows(), now_->right_count, right_apexes, sightings_.rows(), sighting_count_);
   lower_labels(before, sighting_count_);
   if (by_count()) bound_disks();
 
-  next_.left_count = next_.right_count = 0;
-  next_.lefts.reserve(now_.size() + k_row_padding);
-  next_.rights.reserve(now_.size() + k_row_padding);
+  next_->left_count = next_->right_count = 0;
+  next_->lefts.reserve(now_->size() + k_row_padding);
+  next_->rights.reserve(now_->size() + k_row_padding);
   const auto split = by_count() ? kernel_.split_all : kernel_.split;
-  const WindowRows lefts = next_.lefts.rows(), rights = next_.rights.rows();
-  split(scene, now_.lefts.rows(), now_.left_count, apexes, lefts, &next_.left_count, rights, &next_.right_count);
-  split(scene, now_.rights.rows(), now_.right_count, right_apexes, lefts, &next_.left_count, rights,
-        &next_.right_count);
+  const WindowRows lefts = next_->lefts.rows(), rights = next_->rights.rows();
+  split(scene, now_->lefts.rows(), now_->left_count, apexes, lefts, &next_->left_count, rights, &next_->right_count);
+  split(scene, now_->rights.rows(), now_->right_count, right_apexes, lefts, &next_->left_count, rights,
+        &next_->right_count);
 }
 
 void DiskFinder::lower_labels(int from, int to) {
@@ -218,27 +219,28 @@ void DiskFinder::lower_labels(int from, int to) {
 }
 
 void DiskFinder::write_row(Index node, int lane, FoundArcs& found) {
-  const std::size_t before = found.words.size();
-  for (const std::int32_t slot : touched_[lane]) {
-    const std::int32_t label = labels_[slot];
-    if (makes_arc(label) && distance_of(label) <= limits_[lane]) write_arc(node, slot, best_[slot], found);
-  }
-  // Edges stay even where something shorter, but no arc, was found.
   const SightingRows rows = sightings_.rows();
-  for (int i = 0; i < sighting_count_ && rows.root[i] < 0; ++i) {
-    const std::int32_t slot = rows.slot[i];
-    if (slot % k_batch != lane) continue;
-    const std::int32_t label = labels_[slot];
-    if (!makes_arc(label) || distance_of(label) > limits_[lane]) write_arc(node, slot, i, found);
-  }
-  found.counts.push_back(static_cast<std::int32_t>(found.words.size() - before));
+  const auto is_kept = [&](std::int32_t slot) {
+    return makes_arc(labels_[slot]) && distance_of(labels_[slot]) <= limits_[lane];
+  };
+  chosen_.clear();
+  for (const std::int32_t slot : touched_[lane])
+    if (is_kept(slot)) chosen_.push_back(best_[slot]);
+  // Edges stay even where something shorter, but no arc, was found.
+  for (int i = 0; i < sighting_count_ && rows.root[i] < 0; ++i)
+    if (rows.slot[i] % k_batch == lane && !is_kept(rows.slot[i])) chosen_.push_back(i);
+  const std::size_t before = found.words.size();
+  found.words.resize(before + chosen_.size());
+  found.back_sectors.resize(found.words.size());
+  for (std::size_t i = 0; i < chosen_.size(); ++i)
+    found.words[before + i] = arc_of(rows, node, chosen_[i], found.back_sectors[before + i]);
+  found.counts.push_back(static_cast<std::int32_t>(chosen_.size()));
 }
 
-void DiskFinder::write_arc(Index node, std::int32_t slot, int sighting, FoundArcs& found) {
-  const SightingRows rows = sightings_.rows();
-  const Index target = slot / k_batch, root = rows.root[sighting];
-  float leaving, back;
+std::uint64_t DiskFinder::arc_of(const SightingRows& rows, Index node, int sighting, std::uint8_t& back_sector) const {
+  const Index target = rows.slot[sighting] / k_batch, root = rows.root[sighting];
   double length = rows.x[sighting];
+  float leaving, back;
   if (root < 0) {
     const bool other = rows.edge[sighting] != 0;
     leaving = other ? ArcCodec::k_sectors : mesh_.sector(~root);
@@ -252,8 +254,8 @@ void DiskFinder::write_arc(Index node, std::int32_t slot, int sighting, FoundArc
     const float turn = angle_of(-(side_x * px + side_y * py), std::max(0.0f, side_y * px - side_x * py));
     back = mesh_.apex_sector(rows.edge[sighting] / k_batch) + turn * mesh_.sectors_per_radian(target);
   }
-  found.words.push_back(codec_.pack(target, to_sector(leaving), length * mesh_.unit()));
-  found.back_sectors.push_back(static_cast<std::uint8_t>(to_sector(back)));
+  back_sector = static_cast<std::uint8_t>(to_sector(back));
+  return codec_.pack(target, to_sector(leaving), length * mesh_.unit());
 }
 
 void DiskFinder::clear() {

@@ -81,7 +81,7 @@ class DiskFinder {
   void advance();
   void lower_labels(int from, int to);
   void write_row(Index node, int lane, FoundArcs& found);
-  void write_arc(Index node, std::int32_t slot, int sighting, FoundArcs& found);
+  std::uint64_t arc_of(const SightingRows& rows, Index node, int sighting, std::uint8_t& back_sector) const;
   void clear();
 
   bool by_count() const { return rule_.k > 0; }
@@ -98,13 +98,15 @@ class DiskFinder {
   std::vector<std::int32_t> labels_;  ///< per slot: bits of the distance, the lowest one set when it makes no arc
   std::vector<std::int32_t> best_;    ///< per slot: the sighting of its label
   std::array<std::vector<std::int32_t>, k_batch> touched_;  ///< slots with labels, per lane
-  Generation now_, next_;
+  Generation generations_[2];
+  Generation *now_ = &generations_[0], *next_ = &generations_[1];
   ApexColumns apexes_;
   SightingColumns sightings_;
   int sighting_count_ = 0, generation_ = 0;
   alignas(64) std::array<float, k_batch> limits_{};
   std::vector<std::int32_t> changed_;  ///< slots whose neighbours may have to be told of their labels
   std::vector<float> radii_;
+  std::vector<int> chosen_;  ///< sightings of a row
 };
 
 }  // namespace saddleback

@@ -46,20 +46,19 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const auto started = std::chrono::steady_clock::now();
   const JobStage stage(job, "Building the saddle vertex graph");
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
-  order_nodes();
+  order_nodes(options.threads);
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh));
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, kernel, options.threads};
   const JobStage finding = stage.part(0, 0.9);
-  auto found = exact_ ? exact_arcs(search, finding)
-                      : disk_arcs(search, {.k = k_, .tolerance = accuracy_}, finding);
+  auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, {.k = k_, .tolerance = accuracy_}, finding);
   arcs_ = unite_with_reverses(codec, kernel, found, k_block, options.threads, stage.part(0.9, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 
-void SaddleVertexGraph::order_nodes() {
+void SaddleVertexGraph::order_nodes(int threads) {
   const HilbertCurve curve(mesh_->positions());
   std::vector<std::uint64_t> keys(mesh_->vertex_count());
-  for (Index v = 0; v < mesh_->vertex_count(); ++v) keys[v] = curve.key(mesh_->position(v));
+  parallel_for(mesh_->vertex_count(), threads, 4096, [&](Index v, int) { keys[v] = curve.key(mesh_->position(v)); });
   vertices_ = order_of(keys);
   nodes_.resize(mesh_->vertex_count());
   for (Index node = 0; node < mesh_->vertex_count(); ++node) nodes_[vertices_[node]] = node;

@@ -26,13 +26,18 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std
   const auto edges = static_cast<std::size_t>(mesh.halfedge_count());
   unit_ = mesh.mean_edge_length();
   first_.assign(vertices.size() + 1, 0);
+  const auto count = static_cast<Index>(vertices.size());
+  parallel_for(count, threads, k_chunk, [&](Index node, int) {
+    stage.check();
+    for_each_out(mesh, vertices[node], [&](Index) { ++first_[node + 1]; });
+  });
+  for (Index node = 0; node < count; ++node) first_[node + 1] += first_[node];
   std::vector<Index> edge_of(edges);
-  Index next = 0;
-  for (std::size_t node = 0; node < vertices.size(); ++node) {
+  parallel_for(count, threads, k_chunk, [&](Index node, int) {
+    stage.check();
+    Index next = first_[node];
     for_each_out(mesh, vertices[node], [&](Index h) { edge_of[h] = next++; });
-    first_[node + 1] = next;
-  }
-  stage.check();
+  });
   records_.resize(edges);
   targets_.resize(edges);
   lengths_.resize(edges);
@@ -43,7 +48,7 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std
   saddles_.resize(vertices.size());
   const auto per_radian = [&](Index vertex) { return sectors / mesh.total_angle(vertex); };
   const auto edge_behind = [&](Index h) { return mesh.twin(h) == k_none ? k_none : edge_of[mesh.twin(h)]; };
-  parallel_for(static_cast<Index>(vertices.size()), threads, k_chunk, [&](Index node, int) {
+  parallel_for(count, threads, k_chunk, [&](Index node, int) {
     stage.check();
     const Index vertex = vertices[node];
     sectors_per_radian_[node] = static_cast<float>(per_radian(vertex));

@@ -61,7 +61,7 @@ struct WaveScene {
   const float* limits;         ///< k_batch radii that bound the disks, infinite as long as they are unknown
   float detour;                ///< what a way may be longer by than a straight geodesic: a factor
   float radius;                ///< the same for what lies beyond a window's end
-  float radius_surplus;        ///< its square less 1
+  float radius_surplus, per_radius_surplus;  ///< its square less 1, and one over that
 };
 
 /// The two halves of a generation's work. All windows are sighted, and the labels updated, before any is split.

@@ -101,7 +101,7 @@ Floats serving_distance(const Flank& flank, Floats angle, const WaveScene& scene
   const Floats surplus = Simd::fill(scene.radius_surplus), half = Simd::fill(0.5f);
   const Floats b = Simd::fill(scene.radius) * flank.way - flank.reach + half * flank.reach * square(angle);
   const Floats c = surplus * (flank.reach - flank.way) * (flank.reach + flank.way);
-  return (b + Simd::sqrt(Simd::max(b * b + c, Simd::fill(0)))) / surplus;
+  return (b + Simd::sqrt(Simd::max(b * b + c, Simd::fill(0)))) * Simd::fill(scene.per_radius_surplus);
 }
 
 /// The radius beyond which the way by one of two flanks does for all vertices between them. `cosine` and `sine` are of
@@ -109,7 +109,7 @@ Floats serving_distance(const Flank& flank, Floats angle, const WaveScene& scene
 Floats serving_radius(Floats cosine, Floats sine, const Flank& p, const Flank& q, const WaveScene& scene, Floats most) {
   const Floats zero = Simd::fill(0);
   // An upper bound of the angle (Huygens), closer than rounding for all that are small enough to count.
-  const Floats angle = (sine + sine + sine / cosine) / Simd::fill(3);
+  const Floats angle = (sine + sine + sine / cosine) * Simd::fill(1.0f / 3);
   // Far away the detours are r (1 - cos): divide the angle so that they are the same.
   const Floats p_root = Simd::sqrt(p.reach), q_root = Simd::sqrt(q.reach);
   const Floats off_p = angle * (q_root / (p_root + q_root)), off_q = angle - off_p;
@@ -129,10 +129,12 @@ struct Side {
   Floats near_label, far_label, apex_label;
 };
 
-/// Where a child's light lies on its side, and whether it may serve.
+/// What the light on a side has to tell.
 struct Child {
-  Mask useful;
-  Floats nearest_squared;  ///< from the source
+  Mask useful;                          ///< no filter removes it
+  Floats begin_squared, end_squared;    ///< distances of the light's ends from the source
+  Floats begin_ahead, end_ahead;        ///< how far the source's foot is behind them, times the side's length
+  Floats foot_squared, length_squared;  ///< distance of the foot times the side's length; both squared
 };
 
 Child look_at(const Side& side) {
@@ -152,11 +154,17 @@ Child look_at(const Side& side) {
   const Floats left_over = Simd::sqrt(begin_2 * shorter) - side.far_label;
   const Floats across_2 = length_squared(begin_x - side.far_x, begin_y - side.far_y);
   useful = useful & (!((zero < left_over) & (across_2 < square(left_over))));
-  // The light's nearest point: an end, or the foot of the source on the side.
   const Floats begin_ahead = begin_x * along_x + begin_y * along_y, end_ahead = end_x * along_x + end_y * along_y;
-  const Floats foot_2 = square(cross(side.near_x, side.near_y, along_x, along_y)) / length_2;
-  const Floats nearest = Simd::pick(zero < begin_ahead, begin_2, Simd::pick(end_ahead < zero, end_2, foot_2));
-  return {useful, nearest};
+  const Floats foot_2 = square(cross(side.near_x, side.near_y, along_x, along_y));
+  return {useful, begin_2, end_2, begin_ahead, end_ahead, foot_2, length_2};
+}
+
+/// Whether the light's nearest point, an end or the source's foot on the side, is nearer than `most`.
+Mask is_within(const Child& child, Floats most) {
+  const Floats zero = Simd::fill(0), most_2 = square(most);
+  return Simd::pick(zero < child.begin_ahead, child.begin_squared < most_2,
+                    Simd::pick(child.end_ahead < zero, child.end_squared < most_2,
+                               child.foot_squared < most_2 * child.length_squared));
 }
 
 template <bool All>
@@ -219,7 +227,7 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
     const Child left = look_at(left_side), right = look_at(right_side);
 
     // The ray to the apex, for children whose light ends there.
-    const Floats ray_x = apex_x / reach, ray_y = apex_y / reach;
+    const Floats per_reach = Simd::fill(1) / reach, ray_x = apex_x * per_reach, ray_y = apex_y * per_reach;
     Floats most = Simd::load(w.most + i), left_most = most, right_most = most;
     if constexpr (All) {
       left_most = right_most = Simd::look_up_lane(scene.limits, Simd::load(w.edge + i));
@@ -236,7 +244,7 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
     }
 
     const Ints root = Simd::load(w.root + i);
-    if (const Mask keep = left.useful & (left.nearest_squared < square(left_most)); Simd::any(keep)) {
+    if (const Mask keep = left.useful & is_within(left, left_most); Simd::any(keep)) {
       const auto packing = Simd::packing(keep);
       packing.store(lefts.from_x + l, from_dx);
       packing.store(lefts.from_y + l, from_dy);
@@ -260,7 +268,7 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
       packing.store(lefts.root + l, root);
       l += packing.count();
     }
-    if (const Mask keep = right.useful & (right.nearest_squared < square(right_most)); Simd::any(keep)) {
+    if (const Mask keep = right.useful & is_within(right, right_most); Simd::any(keep)) {
       const auto packing = Simd::packing(keep);
       packing.store(rights.from_x + r, apex_dx);
       packing.store(rights.from_y + r, apex_dy);
