@@ -205,6 +205,26 @@ def test_ties_go_to_the_smaller_index(pair: tuple[int, int]) -> None:
     assert np.array_equal(nearest, np.where(alone[0] <= alone[1] * (1 + 1e-12), 0, 1))
 
 
+@pytest.mark.parametrize("shift", [1e-16, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7])
+@pytest.mark.parametrize("case", CONNECTED, ids=str)
+def test_a_source_beside_a_vertex(case: meshes.Case, shift: float) -> None:
+    """As projections of vertices are: rays go round the vertex through next to nothing."""
+    mesh = case.mesh
+    rng = np.random.default_rng(1)
+    for vertex in rng.integers(len(mesh.vertices), size=4):
+        face, corner = np.argwhere(mesh.triangles == vertex)[0]
+        weights = shift * rng.dirichlet([1, 1, 1])
+        weights[corner] = 1 - weights[(corner + 1) % 3] - weights[(corner + 2) % 3]
+        source = sb.SurfacePoints([face], [weights])
+        moved = 2 * float(np.linalg.norm(mesh.vertices[vertex] - source.positions(mesh)[0]))
+        at_vertex = sb.exact_distances(mesh, [vertex])
+        targets = rng.integers(len(mesh.vertices), size=5)
+        field = sb.ExactField(mesh, source)
+        assert np.abs(field.distances - at_vertex).max() <= moved + 1e-12 * at_vertex.max()
+        for target, path in zip(targets, field.paths(targets), strict=True):
+            assert path.length == pytest.approx(field.distances[target], rel=1e-8, abs=2e-12 * mesh.mean_edge_length)
+
+
 def test_a_source_given_twice_counts_once() -> None:
     mesh = sb.Mesh(*meshes.torus())
     _, nearest = sb.exact_nearest(mesh, [5, 100, 100, 5])

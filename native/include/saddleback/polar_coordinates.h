@@ -36,8 +36,9 @@ struct LogMap {
 };
 
 /// The logarithmic map: length and direction of departure of the shortest path to every vertex within `radius`, exact.
-/// At an interior vertex angles are scaled so that its total angle becomes 2 pi. \throw InputError for a point off the
-/// mesh, a radius that is not above 0; Cancelled. O(n sqrt(n) log n) for n vertices within the radius.
+/// At an interior vertex angles are scaled so that its total angle becomes 2 pi; a centre within 1e-10 (barycentric) of
+/// a vertex is that vertex. Angles of an open fan (on the boundary) are as they are. \throw InputError for a point off
+/// the mesh, a radius that is not above 0; Cancelled. O(n sqrt(n) log n) for n vertices within the radius.
 LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, double radius, Job* job = nullptr);
 
 /// The exponential map: where straightest geodesics from `centre` end, each of the length and direction of a (scaled,

@@ -9,6 +9,16 @@
 namespace saddleback {
 namespace {
 
+// Barycentric. Rays from nearer to a vertex cannot be told from its own.
+constexpr double k_at_vertex = 1e-12;
+
+SurfacePoints snapped_to_vertices(SurfacePoints points) {
+  for (SurfacePoint& point : points)
+    for (int i = 0; i < 3; ++i)
+      if (point.barycentric[i] >= 1 - k_at_vertex) point.barycentric = Vec3::Unit(i);
+  return points;
+}
+
 void check(const Mesh& mesh, const SurfacePoints& sources, double limit) {
   if (sources.empty()) throw InputError("sources: wanted at least one source, got none");
   check_surface_points(mesh, sources, "sources");
@@ -34,8 +44,9 @@ constexpr const char* k_text = "Measuring exact distances";
 
 }  // namespace
 
-std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& sources, double limit, Job* job) {
-  check(mesh, sources, limit);
+std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& given, double limit, Job* job) {
+  check(mesh, given, limit);
+  const SurfacePoints sources = snapped_to_vertices(given);
   const JobStage stage(job, k_text);
   const ExactSurface surface(mesh, sources);
   ExactPropagation propagation(surface, sources, {.limit = limit});
@@ -43,8 +54,9 @@ std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& sourc
   return distances_of(surface, propagation);
 }
 
-NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& sources, double limit, Job* job) {
-  check(mesh, sources, limit);
+NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& given, double limit, Job* job) {
+  check(mesh, given, limit);
+  const SurfacePoints sources = snapped_to_vertices(given);
   const JobStage stage(job, k_text);
   const ExactSurface surface(mesh, sources);
   ExactPropagation propagation(surface, sources, {.limit = limit, .break_ties = sources.size() > 1});
@@ -54,7 +66,7 @@ NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& sources, doubl
 
 struct ExactField::Parts {
   Parts(const Mesh& mesh, const SurfacePoints& given, const JobStage& stage)
-      : sources(given),
+      : sources(snapped_to_vertices(given)),
         surface(mesh, sources),
         propagation(surface, sources, {.break_ties = sources.size() > 1, .keep_windows = true}),
         windows((propagation.run(stage), KeptWindows(surface, propagation))),

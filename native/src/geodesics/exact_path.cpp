@@ -103,8 +103,9 @@ Index ExactTracer::follow(const SightLine& line, const Vec2& from, SurfacePoints
     const double size = frame->length + frame->left_length + frame->right_length;
     const bool goes_right = side > 0;
     const Index exit = goes_right ? frame->right : frame->left;
-    if ((std::abs(side) <= k_meet * size * ahead.norm() && ahead.dot(to_apex) > 0) || exit == k_none)
-      return frame->apex;
+    const double along_line = ahead.dot(to_apex);
+    const bool is_between = along_line > 0 && along_line < ahead.squaredNorm();  // not beyond the root
+    if ((is_between && std::abs(side) <= k_meet * size * ahead.norm()) || exit == k_none) return frame->apex;
     const Vec2 origin = goes_right ? apex : Vec2(0, 0);
     const double length = goes_right ? frame->right_length : frame->left_length;
     const Vec2 along = (goes_right ? Vec2(frame->length, 0) - apex : apex) / length;

@@ -29,8 +29,9 @@ constexpr double k_pi = std::numbers::pi;
 constexpr double k_slack = 1e-11;
 // Two sources this close, relative to the distance, are equally near.
 constexpr double k_tie = 1e-12;
-// Relative to the edge. Narrower windows are not made: the rays of two windows through one lattice point of a grid lie
-// this far apart at most, by rounding. What is lost is a gap, of which the far end may be 1000 times as wide.
+// Relative to the edge or, where that is less, to how far the rays have come. Narrower windows are not made: the rays
+// of two windows through one lattice point of a grid lie this far apart at most, by rounding. What is lost is a gap, of
+// which the far end may be 1000 times as wide.
 constexpr double k_sliver = 1e-10, k_gap = 1e-7;
 // Relative to the length of a ray: rounding of where it crosses an edge, which on graded meshes exceeds the share
 // above.
@@ -40,6 +41,11 @@ constexpr double k_buckets_per_edge = 4;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
+
+/// What is too narrow for a window on an edge of that length.
+double least_width(double length, double sx, double sy, double b0, double b1) {
+  return k_sliver * std::min(length, std::abs(std::clamp(sx, b0, b1) - sx) - sy);
+}
 
 /// About the median, which a few huge faces do not change as they do the mean.
 double common_length(const Mesh& mesh) {
@@ -223,14 +229,14 @@ void ExactPropagation::propagate(const Window& window) {
   const double ox = ax - sx, oy = ay - sy;
   const double reach = length_of(ox, oy);
   const double split = sx - ox * (sy / oy);  // where the ray to the apex crosses the half-edge
-  const double gap = k_gap * length + k_ray_gap * reach;
+  const double gap = k_gap * length + k_ray_gap * reach, sliver = least_width(length, sx, sy, b0, b1);
   if (split >= b0 && split <= b1) {
     offer(frame.apex, sigma + reach, {ox, oy, halfedge, root});
   } else if (split >= b0 - gap && split <= b1 + gap) {
     const double b = split < b0 ? b0 : b1;
     offer(frame.apex, sigma + length_of(b - sx, sy) + length_of(ax - b, ay), {ox, oy, halfedge, root});
   }
-  const bool has_left = split > b0 + k_sliver * length, has_right = split < b1 - k_sliver * length;
+  const bool has_left = split > b0 + sliver, has_right = split < b1 - sliver;
   bool go_left = has_left && frame.left != k_none, go_right = has_right && frame.right != k_none;
   if (has_left && has_right) {
     Occupant& occupant = occupants_[halfedge];
@@ -255,8 +261,8 @@ void ExactPropagation::propagate(const Window& window) {
       return divisor > 0 ? std::min(-sy * b / divisor, l) : l;
     };
     const double q0 = hit(begin), q1 = to_apex ? l : hit(end);
-    if (!(q1 - q0 > k_sliver * l)) return;
     const double cx = ux * x + uy * sy, cy = std::min(0.0, ux * sy - uy * x);
+    if (!(q1 > q0) || q1 - q0 <= least_width(l, cx, cy, q0, q1)) return;
     const double r0 = length_of(cx - q0, cy), r1 = length_of(cx - q1, cy);
     const double across = length_of(length - q0 * ux, q0 * uy);
     if (at_near + q1 < r1 || at_apex + (l - q0) < r0 || at_far + across < r0) return;
@@ -310,7 +316,7 @@ void ExactPropagation::bend(Index vertex) {
   const Index original = surface_.mesh_vertex(vertex);
   const double total = mesh.total_angle(original);
   double lit[2][2] = {{0, total}, {0, 0}};
-  if (arrivals_[vertex].halfedge != Arrival::k_at_source) {
+  if (arrivals_[vertex].halfedge != Arrival::k_at_source && !surface_.is_beside_source(vertex)) {
     const double angle = arrival_angle(vertex);
     if (mesh.is_boundary(original)) {  // round the outside any angle will do
       lit[0][1] = angle - k_pi;

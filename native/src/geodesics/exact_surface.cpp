@@ -11,6 +11,9 @@ namespace {
 // Corner angles add up to a flat vertex's 2 pi within some 1e-15 a corner; a sharper saddle must be a bend, because the
 // gap that it leaves between the windows on its two sides grows with distance.
 constexpr double k_flat_tolerance = 1e-12;
+// Barycentric. Rays from nearer to a vertex, which pass it on both sides, are as far as this from telling all their
+// directions; what is lit from the vertex instead is no more than twice this too far.
+constexpr double k_beside = 1e-8;
 
 /// A point that is no vertex as a point of each face that it lies in.
 SurfacePoints in_each_face(const Mesh& mesh, const SurfacePoint& point) {
@@ -37,7 +40,7 @@ ExactSurface::ExactSurface(const Mesh& mesh, const SurfacePoints& sources) : mes
 }
 
 std::size_t ExactSurface::nbytes() const {
-  return frames_.size() * sizeof(EdgeFrame) + may_bend_.size() +
+  return frames_.size() * sizeof(EdgeFrame) + bends_.size() +
          (vertex_of_.size() + face_of_.size() + mesh_vertex_.size() + mesh_face_.size()) * sizeof(Index);
 }
 
@@ -86,18 +89,25 @@ void ExactSurface::lay_out() {
     frame.apex = vertex_of_[mesh.apex(g)];
     frame.holds_sources = false;
   }
-  may_bend_.resize(mesh.vertex_count());
+  bends_.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     const Index original = mesh_vertex_[v];
-    may_bend_[v] = mesh.is_boundary(original) || mesh.total_angle(original) > 2 * std::numbers::pi + k_flat_tolerance;
+    const bool bends =
+        mesh.is_boundary(original) || mesh.total_angle(original) > 2 * std::numbers::pi + k_flat_tolerance;
+    bends_[v] = bends ? Bends::at_pi : Bends::never;
   }
 }
 
 void ExactSurface::place_sources(const SurfacePoints& sources) {
   for (Index i = 0; i < static_cast<Index>(sources.size()); ++i) {
     if (vertex_at(*mesh_, sources[i]) != k_none) continue;
-    for (const SurfacePoint& place : in_each_face(*mesh_, sources[i]))
+    for (const SurfacePoint& place : in_each_face(*mesh_, sources[i])) {
       in_faces_.push_back({face_of_[place.face], i, place.barycentric});
+      for (int corner = 0; corner < 3; ++corner) {
+        if (place.barycentric[corner] >= 1 - k_beside)
+          bends_[vertex_of_[mesh_->triangles()[place.face][corner]]] = Bends::all_round;
+      }
+    }
   }
   std::stable_sort(in_faces_.begin(), in_faces_.end(),
                    [](const SourceInFace& a, const SourceInFace& b) { return a.face < b.face; });

@@ -45,7 +45,10 @@ class ExactSurface {
   /// Where the point of the half-edge's face is, in the frame of the half-edge.
   Vec2 in_frame(Index h, const Vec3& barycentric) const;
   /// Where a shortest path may bend: on the boundary, or the total angle exceeds 2 pi by more than rounding.
-  bool may_bend(Index vertex) const { return may_bend_[vertex] != 0; }
+  bool may_bend(Index vertex) const { return bends_[vertex] != Bends::never; }
+  /// So near to a source that rounding leaves gaps between rays on their way round it: it lights what a source there
+  /// would.
+  bool is_beside_source(Index vertex) const { return bends_[vertex] == Bends::all_round; }
 
   // Between the mesh's numbers and those here.
   Index vertex_of(Index mesh_vertex) const { return vertex_of_[mesh_vertex]; }
@@ -57,6 +60,7 @@ class ExactSurface {
   std::size_t nbytes() const;
 
  private:
+  enum class Bends : std::uint8_t { never, at_pi, all_round };
   void renumber();
   void lay_out();
   void place_sources(const SurfacePoints& sources);
@@ -64,7 +68,7 @@ class ExactSurface {
   const Mesh* mesh_;
   std::vector<Index> vertex_of_, face_of_, mesh_vertex_, mesh_face_;
   std::vector<EdgeFrame> frames_;
-  std::vector<std::uint8_t> may_bend_;
+  std::vector<Bends> bends_;
   std::vector<SourceInFace> in_faces_;
 };
 

@@ -39,8 +39,7 @@ PointStar::PointStar(const Unfolding& unfolding, const SurfacePoint& point)
     Index h = first;
     do {
       const Index face = Mesh::face_of(h);
-      sectors_.push_back(
-          {face, h, unfolding.polar(h), mesh_.corner_angle(h), chart_angle(FaceChart(mesh_, face), h)});
+      sectors_.push_back({face, h, unfolding.polar(h), mesh_.corner_angle(h), chart_angle(FaceChart(mesh_, face), h)});
       h = mesh_.rotate(h);
     } while (h != k_none && h != first);
     return;
@@ -92,11 +91,7 @@ void PointStar::shine(RayField& field, RayWindow window, double begin, double en
 void PointStar::shine_into(RayField& field, const RayWindow& window, const Sector& sector, double begin,
                            double end) const {
   if (sector.leaving != k_none) return shine_from_corner(field, window, sector, begin, end);
-  const int parts = std::max(1, static_cast<int>(std::ceil((end - begin) / (k_pi / 2) - k_border)));
-  for (int i = 0; i < parts; ++i) {
-    const double from = begin + (end - begin) * i / parts, to = begin + (end - begin) * (i + 1) / parts;
-    shine_inside(field, window, sector, from, to);
-  }
+  shine_inside(field, window, sector, begin, end);
 }
 
 void PointStar::shine_from_corner(RayField& field, RayWindow window, const Sector& sector, double begin,
@@ -127,8 +122,12 @@ void PointStar::shine_inside(RayField& field, RayWindow window, const Sector& se
   for (int i = 0; i < 3; ++i) {
     const Index g = 3 * sector.face + i;
     const Vec2 from = chart.corner[i] - place, to = chart.corner[(i + 1) % 3] - place;
-    const double start = std::remainder(std::atan2(from.y(), from.x()) - first, 2 * k_pi);
-    if (start >= -k_border && start <= width + k_border) {
+    // The corner's direction after `first`: 0 to 2 pi, but for rounding before `first`. From a point beside the corner
+    // rounding is all the more.
+    const double border = std::min(k_border + k_on_edge * mesh_.length(g) / from.norm(), k_pi / 2);
+    double start = std::remainder(std::atan2(from.y(), from.x()) - first, 2 * k_pi);
+    if (start < -border) start += 2 * k_pi;
+    if (start <= width + border) {
       const double angle = first + start + to_direction;
       const double value = window.rays == Rays::from_point ? angle : window.value;
       field.offer(mesh_.from(g), {window.offset + from.norm(), value, window.side, window.shadowed},
@@ -137,8 +136,6 @@ void PointStar::shine_inside(RayField& field, RayWindow window, const Sector& se
     const Index entered = mesh_.twin(g);
     const double spread = std::atan2(cross(from, to), from.dot(to));
     if (entered == k_none || spread <= 0 || (b && (*b)[(i + 2) % 3] <= k_on_edge)) continue;
-    const double right = std::max(0.0, start), left = std::min(width, start + spread);
-    if (left <= right) continue;
     const double base = mesh_.length(g);
     const Vec2 axis = (from - to) / base;  // of the entered half-edge, which starts where g ends
     const Vec2 source(-to.dot(axis), -cross(axis, to));
@@ -148,12 +145,18 @@ void PointStar::shine_inside(RayField& field, RayWindow window, const Sector& se
       return own.y() > 0 ? std::clamp(source.x() - source.y() * own.x() / own.y(), 0.0, base) : 0.0;
     };
     window.source = {source.x(), std::min(0.0, source.y())};
-    window.b0 = left >= start + spread ? 0 : met(left);
-    window.b1 = right <= start ? base : met(right);
-    if (window.b1 <= window.b0) continue;
     window.halfedge = entered;
     if (window.rays == Rays::from_point) window.value = std::atan2(axis.y(), axis.x()) + to_direction;
-    field.add_window(window);
+    const bool all_round = width >= 2 * k_pi - k_border;
+    // The edge lies between `start` and its end, which may be beyond a whole turn.
+    for (const double from_start : {start, start - 2 * k_pi}) {
+      const double right = std::max(0.0, from_start), left = std::min(width, from_start + spread);
+      if (!all_round && left <= right) continue;
+      window.b0 = all_round || left >= from_start + spread ? 0 : met(left);
+      window.b1 = all_round || right <= from_start ? base : met(right);
+      if (window.b1 > window.b0) field.add_window(window);
+      if (all_round) break;
+    }
   }
 }
 

@@ -31,9 +31,9 @@ class PointStar {
  private:
   struct Sector {
     Index face;
-    Index leaving;            ///< half-edge from the vertex, k_none for other points
-    double begin, size;       ///< directions
-    double chart_begin;       ///< of the first direction in the face's chart
+    Index leaving;       ///< half-edge from the vertex, k_none for other points
+    double begin, size;  ///< directions
+    double chart_begin;  ///< of the first direction in the face's chart
   };
   void shine_into(RayField& field, const RayWindow& window, const Sector& sector, double begin, double end) const;
   void shine_from_corner(RayField& field, RayWindow window, const Sector& sector, double begin, double end) const;

@@ -15,6 +15,17 @@
 namespace saddleback {
 namespace {
 
+// Barycentric. From nearer to a vertex rays past it on both sides cannot be told from each other.
+constexpr double k_at_vertex = 1e-10;
+
+/// The centre of a map: a vertex where it is as good as one.
+SurfacePoint centre_of(const SurfacePoint& given) {
+  SurfacePoint centre{given.face, normalised_barycentric(given.barycentric)};
+  for (int i = 0; i < 3; ++i)
+    if (centre.barycentric[i] >= 1 - k_at_vertex) centre.barycentric = Vec3::Unit(i);
+  return centre;
+}
+
 void check_radius(double radius) {
   if (!(radius > 0)) throw InputError(message("radius: wanted a distance above 0, got ", radius));
 }
@@ -51,7 +62,7 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, doubl
   check_surface_point(mesh, centre, "centre");
   check_radius(radius);
   const JobStage stage(job, "Measuring about the point");
-  const SurfacePoint point{centre.face, normalised_barycentric(centre.barycentric)};
+  const SurfacePoint point = centre_of(centre);
   RayField field(graph.unfolding());
   field.begin();
   const PointStar star(graph.unfolding(), point);
@@ -80,8 +91,9 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, doubl
   return result;
 }
 
-SurfacePoints exp_map(const Mesh& mesh, const SurfacePoint& centre, std::span<const Vec2> uv, int threads, Job* job) {
-  check_surface_point(mesh, centre, "centre");
+SurfacePoints exp_map(const Mesh& mesh, const SurfacePoint& given, std::span<const Vec2> uv, int threads, Job* job) {
+  check_surface_point(mesh, given, "centre");
+  const SurfacePoint centre = centre_of(given);
   if (threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", threads));
   const auto count = static_cast<Index>(uv.size());
   for (Index i = 0; i < count; ++i) {
@@ -95,7 +107,7 @@ SurfacePoints exp_map(const Mesh& mesh, const SurfacePoint& centre, std::span<co
   parallel_for(count, threads, 64, [&](Index i, int) {
     const double angle = std::atan2(uv[i].y(), uv[i].x());
     const double turned = angle < 0 && vertex_at(mesh, centre) != k_none ? angle + 2 * std::numbers::pi : angle;
-    result[i] = trace_end(mesh, centre, turned * scale, uv[i].norm()).point;
+    result[i] = trace_end(mesh, centre, turned * scale, uv[i].stableNorm()).point;
     if (const Index n = done.fetch_add(1, std::memory_order_relaxed) + 1; n % 64 == 0)
       stage.update(static_cast<double>(n) / count);
   });

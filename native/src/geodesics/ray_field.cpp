@@ -18,9 +18,9 @@ constexpr double k_shorter = 1 - 1e-12;
 constexpr double k_as_short = 1 + 1e-12;
 // What a filter must win by, relative to the distance: rounding over thousands of faces stays below it.
 constexpr double k_slack = 1 - 1e-11;
-// Relative to the edge: narrower windows are not made, see exact_propagation.cpp. A ray to an apex that misses its
-// window by no more than the gap that they leave, or by rounding relative to the ray, counts with the detour round the
-// window's end.
+// Relative to the edge or, where that is less, to how far the rays have come: narrower windows are not made, see
+// exact_propagation.cpp. A ray to an apex that misses its window by no more than the gap that they leave (relative to
+// the edge), or by rounding (relative to the ray), counts with the detour round the window's end.
 constexpr double k_sliver = 1e-10, k_gap = 1e-7, k_ray_gap = 1e-13;
 // A total angle above 2 pi by no more than this is flat: what lies behind is seen past the vertex.
 constexpr double k_flat = 1e-9;
@@ -29,6 +29,13 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 Vec2 turned(const Vec2& v, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+/// What is too narrow for a window on an edge of that length.
+double sliver(const RayWindow& window, double length) {
+  if (window.rays == Rays::perpendicular) return k_sliver * length;
+  const double x = std::clamp(window.source.x(), window.b0, window.b1);
+  return k_sliver * std::min(length, std::abs(x - window.source.x()) - window.source.y());
 }
 
 /// Direction of increasing arc length.
@@ -234,7 +241,8 @@ void RayField::propagate(const RayWindow& window) {
   if (ray.y() <= 0) return;  // grazes the edge: only rounding brings it here
   if (!places_.empty()) reach_places(window);
   const double reach = is_parallel ? window.offset + window.source.dot(apex) : window.offset + ray.norm();
-  const double sliver = k_sliver * mesh_.length(h), gap = k_gap * mesh_.length(h) + k_ray_gap * (reach - window.offset);
+  const double least = sliver(window, mesh_.length(h)),
+               gap = k_gap * mesh_.length(h) + k_ray_gap * (reach - window.offset);
   // Where the ray to the apex crosses the half-edge.
   const double split = apex.x() - ray.x() * (apex.y() / ray.y());
   if (split >= window.b0 - gap && split <= window.b1 + gap) {
@@ -245,13 +253,13 @@ void RayField::propagate(const RayWindow& window) {
     if (is_parallel) label.value += tangent(window).dot(apex);
     improve(mesh_.apex(h), label, ray, h);
   }
-  const bool has_left = split > window.b0 + sliver, has_right = split < window.b1 - sliver;
+  const bool has_left = split > window.b0 + least, has_right = split < window.b1 - least;
   bool go_left = has_left, go_right = has_right;
   if (has_left && has_right) {
     Occupant& occupant = occupants_[h];
     if (occupant.epoch != epoch_ || reach < occupant.distance * k_shorter) {
       occupant = {reach, split, epoch_};
-    } else if (std::abs(split - occupant.split) > sliver || reach > occupant.distance * k_as_short) {
+    } else if (std::abs(split - occupant.split) > least || reach > occupant.distance * k_as_short) {
       // A nearer window has split this angle: behind its ray everything is nearer by the other one. (The same ray, of
       // pieces of a curve that lie on each other, hides nothing.)
       go_left = split < occupant.split;
@@ -306,13 +314,13 @@ void RayField::add_child(const RayWindow& parent, const Side& side, double begin
     return divisor > 0 ? std::min(b * ray.y() / divisor, side.length) : side.length;
   };
   const double q0 = hit(std::max(begin, 0.0)), q1 = to_apex ? side.length : hit(end);
-  if (!(q1 - q0 > k_sliver * side.length)) return;
   RayWindow child = parent;
   child.halfedge = entered;
   child.b0 = q0;
   child.b1 = q1;
   child.source = {s.dot(u), cross(u, s)};
   if (!is_parallel) child.source.y() = std::min(0.0, child.source.y());
+  if (!(q1 - q0 > sliver(child, side.length))) return;
   const Index h = parent.halfedge;
   // In the side's coordinates, the origin being the near vertex.
   const double base = mesh_.length(h);
