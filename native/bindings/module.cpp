@@ -17,6 +17,7 @@ void bind_repair(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
 void bind_tessellation(py::module_& m);
+void bind_voronoi_2d(py::module_& m);
 
 namespace {
 
@@ -91,4 +92,5 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_graph(m);
   bind_paths(m);
   bind_tessellation(m);
+  bind_voronoi_2d(m);
 }

@@ -22,6 +22,7 @@ from saddleback._saddleback import (
     SurfaceCurve,
     SurfacePoints,
     TracedPath,
+    Voronoi2d,
     VoronoiEdge,
     __version__,
     centroidal_voronoi,
@@ -36,6 +37,7 @@ from saddleback._saddleback import (
     repair,
     sample,
     trace,
+    voronoi_2d,
 )
 from saddleback.progress import progress_bar
 
@@ -61,6 +63,7 @@ __all__ = [
     "SurfaceCurve",
     "SurfacePoints",
     "TracedPath",
+    "Voronoi2d",
     "VoronoiEdge",
     "__version__",
     "centroidal_voronoi",
@@ -78,4 +81,5 @@ __all__ = [
     "repair",
     "sample",
     "trace",
+    "voronoi_2d",
 ]

@@ -1,0 +1,57 @@
+#pragma once
+// Voronoi diagrams of the plane by sweep circles.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+struct Voronoi2dOptions {
+  Index circles =
+      0;            ///< how many sweep circles share the work; 0: as many as are good. The result does not depend on it
+  int threads = 0;  ///< 0: all cores. The result does not depend on it
+};
+
+/// A diagram with exact topology: which cells touch, and where more than three meet in one vertex, is decided without
+/// any tolerance; only the vertices' coordinates are rounded. Numbering depends on the sites alone.
+struct Voronoi2d {
+  std::vector<Vec2> sites;                       ///< (n) as given
+  std::vector<Index> site_of;                    ///< (n) smallest index of an equal site: only such have a cell
+  std::vector<Vec2> vertices;                    ///< (V)
+  std::vector<std::array<Index, 2>> edges;       ///< (E) vertices; -1 at infinity: (v, -1) is a ray, (-1, -1) a line
+  std::vector<std::array<Index, 2>> edge_sites;  ///< (E) the sites left and right of the edge, first to second vertex
+
+  // Cells in memory order; `cell_vertices` and `cell_edges` find a site's.
+  std::vector<Index> cell_sites;       ///< (C) site of each cell
+  std::vector<Index> cell_places;      ///< (n) cell of each site
+  std::vector<Index> cell_offsets;     ///< (C + 1)
+  std::vector<Index> corner_vertices;  ///< (2 E) by cell, counter-clockwise; -1 at infinity
+  std::vector<Index> side_edges;       ///< (2 E) by cell: the edge that ends at the corner
+
+  /// Vertices around a site's cell, counter-clockwise; -1 stands where the cell is open. O(1).
+  std::span<const Index> cell_vertices(Index site) const;
+  /// Edges around a site's cell: edge k leads to vertex k of `cell_vertices`. O(1).
+  std::span<const Index> cell_edges(Index site) const;
+  bool is_bounded(Index site) const;
+  /// (E) unit vectors from first to second vertex; of a ray from its vertex outwards. O(E).
+  std::vector<Vec2> edge_directions() const;
+  /// (T) sites, counter-clockwise: the Delaunay triangulation. Where more than three sites lie on an empty circle, all
+  /// triangles share the one with the smallest index. O(E).
+  std::vector<Triangle> delaunay() const;
+
+ private:
+  /// Sites of the cells that meet at a vertex, counter-clockwise, from the left of an edge that ends there.
+  void sites_around(Index vertex, Index edge, std::vector<Index>& around) const;
+};
+
+/// Voronoi diagram of points of the plane, by sweep circles that grow from among the sites. Duplicates share a cell.
+/// \throw InputError for a coordinate that is not finite; for coordinates so different in size (a factor of 1e100 and
+/// more) that products of four cannot be told exactly; for negative options. Cancelled.
+/// O(n log n) time, O(n) memory.
+Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options = {}, Job* job = nullptr);
+
+}  // namespace saddleback

@@ -1,0 +1,198 @@
+#include "voronoi2d/planar_mesh.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace saddleback::voronoi2d {
+
+using predicates::Sign;
+
+Sign circle_test(const PlanarMesh& mesh, Index half) {
+  const Index twin = mesh.twins[half];
+  return predicates::in_circle(mesh.point(mesh.triangles[half]), mesh.point(mesh.triangles[next_half(half)]),
+                               mesh.point(mesh.triangles[previous_half(half)]),
+                               mesh.point(mesh.triangles[previous_half(twin)]));
+}
+
+namespace {
+
+/// Whether b is above a; on a level, to its right. A full turn changes this twice.
+bool is_above(const PlanarMesh& mesh, Index a, Index b) {
+  return mesh.y[b] > mesh.y[a] || (mesh.y[b] == mesh.y[a] && mesh.x[b] > mesh.x[a]);
+}
+
+// Turning from one neighbour to the next crosses the level line of a site whenever `is_above` changes; a corner is less
+// than half a turn, so it counts all crossings.
+bool winds_once(const PlanarMesh& mesh, std::vector<Index>& border) {
+  std::vector<std::uint8_t> crossings(mesh.site_count, 0);
+  for (Index half = 0; half < mesh.half_count(); ++half) {
+    const Index site = mesh.triangles[half];
+    const Index right = mesh.triangles[next_half(half)], left = mesh.triangles[previous_half(half)];
+    if (is_above(mesh, site, right) != is_above(mesh, site, left) && ++crossings[site] > 2) return false;
+    if (mesh.twins[half] != k_none) continue;
+    if (border[site] != k_none) return false;
+    border[site] = right;
+  }
+  for (Index i = 0; i < mesh.site_count; ++i)
+    if (border[i] == k_none ? crossings[i] != 2 : crossings[i] > 1) return false;
+  return true;
+}
+
+bool is_triangulation(const PlanarMesh& mesh) {
+  std::vector<Index> border(mesh.site_count, k_none);  // by site: the next one along the border
+  if (!winds_once(mesh, border)) return false;
+  Index border_count = 0;
+  for (Index i = 0; i < mesh.site_count; ++i) {
+    const Index next = border[i];
+    if (next == k_none) continue;
+    ++border_count;
+    if (border[next] == k_none) return false;
+    if (predicates::orient_2d(mesh.point(i), mesh.point(next), mesh.point(border[next])) == Sign::negative)
+      return false;
+  }
+  return mesh.triangle_count == 2 * mesh.site_count - 2 - border_count;  // Euler: one disk
+}
+
+}  // namespace
+
+Verdict check(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat) {
+  bool is_delaunay = true;
+  std::fill(is_flat.begin(), is_flat.end(), std::uint8_t{0});
+  for (Index half = 0; half < mesh.half_count(); ++half) {
+    const Index twin = mesh.twins[half];
+    if (twin < half) continue;
+    const Sign sign = circle_test(mesh, half);
+    if (sign == Sign::zero) is_flat[half] = is_flat[twin] = 1;
+    if (sign == Sign::positive) is_delaunay = false;
+  }
+  if (!is_triangulation(mesh)) return Verdict::no_triangulation;
+  return is_delaunay ? Verdict::delaunay : Verdict::other_triangulation;
+}
+
+namespace {
+
+void set_twins(PlanarMesh& mesh, Index a, Index b) {
+  mesh.twins[a] = b;
+  if (b != k_none) mesh.twins[b] = a;
+}
+
+// The quadrilateral's other diagonal: triangles p q r | q p s become p s r | s q r.
+void exchange(PlanarMesh& mesh, Index half) {
+  const Index twin = mesh.twins[half];
+  const Index half_next = next_half(half), half_last = previous_half(half);
+  const Index twin_next = next_half(twin), twin_last = previous_half(twin);
+  const Index r = mesh.triangles[half_last], s = mesh.triangles[twin_last];
+  mesh.triangles[half_next] = s;
+  mesh.triangles[twin_next] = r;
+  const Index beyond_half = mesh.twins[half_next], beyond_twin = mesh.twins[twin_next];
+  set_twins(mesh, half, beyond_twin);
+  set_twins(mesh, twin, beyond_half);
+  set_twins(mesh, half_next, twin_next);
+}
+
+}  // namespace
+
+void exchange_triangles(PlanarMesh& mesh) {
+  std::vector<Index> doubtful;
+  for (Index half = 0; half < mesh.half_count(); ++half) {
+    if (mesh.twins[half] < half) continue;
+    doubtful.push_back(half);
+    while (!doubtful.empty()) {
+      const Index edge = doubtful.back();
+      doubtful.pop_back();
+      const Index twin = mesh.twins[edge];
+      if (twin == k_none || circle_test(mesh, edge) != Sign::positive) continue;
+      exchange(mesh, edge);
+      for (const Index rim : {edge, previous_half(edge), twin, previous_half(twin)}) doubtful.push_back(rim);
+    }
+  }
+}
+
+namespace {
+
+/// The convex hull that grows to the right, as a ring of sites with the half-edge that leaves each.
+struct Hull {
+  std::vector<Index> next, previous, half;
+};
+
+Index add_triangle(PlanarMesh& mesh, Index a, Index b, Index c) {
+  const Index half = 3 * mesh.triangle_count++;
+  mesh.triangles[half] = a;
+  mesh.triangles[half + 1] = b;
+  mesh.triangles[half + 2] = c;
+  std::fill(mesh.twins + half, mesh.twins + half + 3, k_none);
+  return half;
+}
+
+/// Covers the hull's edge that leaves `from` by a triangle with the site; returns the half-edge from the site.
+Index cover(PlanarMesh& mesh, const Hull& hull, Index from, Index site) {
+  const Index half = add_triangle(mesh, hull.next[from], from, site);
+  set_twins(mesh, half, hull.half[from]);
+  return half;
+}
+
+/// Joins a site that is to the right of all others to every edge of the hull that it sees.
+void join_to_hull(PlanarMesh& mesh, Hull& hull, Index latest, Index site) {
+  const auto sees = [&](Index from) {
+    return predicates::orient_2d(mesh.point(from), mesh.point(hull.next[from]), mesh.point(site)) == Sign::negative;
+  };
+  Index first = latest, last = latest, first_half = k_none, last_half = k_none;
+  while (sees(last)) {  // half + 1 comes from the ring to the site, half + 2 goes back
+    const Index half = cover(mesh, hull, last, site);
+    if (last_half != k_none) set_twins(mesh, last_half + 2, half + 1);
+    if (first_half == k_none) first_half = half;
+    last_half = half;
+    last = hull.next[last];
+  }
+  while (sees(hull.previous[first])) {
+    first = hull.previous[first];
+    const Index half = cover(mesh, hull, first, site);
+    if (first_half != k_none) set_twins(mesh, half + 2, first_half + 1);
+    if (last_half == k_none) last_half = half;
+    first_half = half;
+  }
+  hull.next[first] = site;
+  hull.previous[site] = first;
+  hull.next[site] = last;
+  hull.previous[last] = site;
+  hull.half[first] = first_half + 1;
+  hull.half[site] = last_half + 2;
+}
+
+}  // namespace
+
+void triangulate_from_left(PlanarMesh& mesh) {
+  mesh.triangle_count = 0;
+  std::vector<Index> order(mesh.site_count);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return mesh.x[a] != mesh.x[b] ? mesh.x[a] < mesh.x[b] : mesh.y[a] < mesh.y[b]; });
+  const auto turn = [&](Index a, Index b, Index c) {
+    return predicates::orient_2d(mesh.point(a), mesh.point(b), mesh.point(c));
+  };
+  Index apex = 2;  // the first that is not in line with those before
+  while (apex < mesh.site_count && turn(order[0], order[1], order[apex]) == Sign::zero) ++apex;
+  if (apex >= mesh.site_count) return;
+
+  // The line of the first, there and back, is a hull without inside: the apex sees one way of it.
+  Hull hull{std::vector<Index>(mesh.site_count, k_none), std::vector<Index>(mesh.site_count, k_none),
+            std::vector<Index>(mesh.site_count, k_none)};
+  const bool is_left = turn(order[0], order[1], order[apex]) == Sign::positive;
+  Index last_half = k_none;
+  const Index top = order[apex];
+  for (Index i = 0; i + 1 < apex; ++i) {
+    const Index a = is_left ? order[i] : order[apex - 1 - i], b = is_left ? order[i + 1] : order[apex - 2 - i];
+    const Index half = add_triangle(mesh, a, b, top);
+    if (last_half != k_none) set_twins(mesh, last_half + 1, half + 2);
+    if (last_half == k_none) hull.half[top] = half + 2;
+    last_half = half;
+    hull.next[a] = b;
+    hull.previous[b] = a;
+    hull.half[a] = half;
+    if (i == 0) hull.next[top] = a, hull.previous[a] = top;
+    hull.next[b] = top, hull.previous[top] = b, hull.half[b] = half + 1;
+  }
+  for (Index i = apex + 1; i < mesh.site_count; ++i) join_to_hull(mesh, hull, order[i - 1], order[i]);
+}
+
+}  // namespace saddleback::voronoi2d

@@ -1,0 +1,52 @@
+#pragma once
+// Triangulations of some sites as flat arrays, and the proof that one is Delaunay's.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saddleback/types.h"
+
+#include "predicates/predicates.h"
+
+namespace saddleback::voronoi2d {
+
+/// Half-edge 3 t + k goes from corner k of triangle t to the next corner, counter-clockwise.
+inline Index next_half(Index half) { return half % 3 == 2 ? half - 2 : half + 1; }
+inline Index previous_half(Index half) { return half % 3 == 0 ? half + 2 : half - 1; }
+
+/// A view: the arrays belong to others.
+struct PlanarMesh {
+  const double *x, *y;  ///< sites
+  Index site_count;
+  Index* triangles;  ///< corners
+  Index* twins;      ///< k_none at the border
+  Index triangle_count;
+
+  predicates::Point2 point(Index site) const { return {x[site], y[site]}; }
+  Index half_count() const { return 3 * triangle_count; }
+};
+
+/// Where the four sites about an edge between two triangles lie: `positive` when the triangles must be exchanged for
+/// the other two, `zero` when they share a Voronoi vertex. Exact.
+predicates::Sign circle_test(const PlanarMesh& mesh, Index half);
+
+enum class Verdict { delaunay, other_triangulation, no_triangulation };
+
+/// Marks the edges (both halves) whose triangles share a Voronoi vertex, and tells what the mesh is. Triangles must
+/// turn counter-clockwise and be joined by `twins` as a disk: then, exactly,
+/// - around an inner site they wind once, around a site of the border not more than half a turn, the border is convex
+///   and there is one of it: a triangulation;
+/// - all edges pass the circle test: Delaunay's.
+/// O(triangles).
+Verdict check(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat);
+
+/// Makes a triangulation Delaunay's (C. L. Lawson, 1977): exchanges triangles until all edges pass the circle test.
+void exchange_triangles(PlanarMesh& mesh);
+
+/// A triangulation of any distinct sites that are not all on one line, whatever the numbers: from the left, each site
+/// is joined to the edges of the convex hull that it sees. For the rare ones that no sweep in doubles gets through.
+/// `triangles` and `twins` have room for 2 n; sets `triangle_count`, 0 when all sites are on one line. O(n log n).
+void triangulate_from_left(PlanarMesh& mesh);
+
+}  // namespace saddleback::voronoi2d

@@ -1,0 +1,27 @@
+#pragma once
+// The sites as all circles see them: checked, scaled into the range of exact arithmetic, without duplicates, along a
+// space-filling curve.
+
+#include <span>
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/types.h"
+
+namespace saddleback::voronoi2d {
+
+/// Distinct sites in an order in which neighbours in the plane are near each other. It depends on the sites alone; a
+/// site's place in it is its rank, by which ties are decided and results are numbered.
+struct OrderedSites {
+  std::vector<double> x, y;     ///< by rank, times `scale`
+  std::vector<Index> original;  ///< by rank: the index given by the caller, the smallest of equal sites
+  std::vector<Index> site_of;   ///< by index: the smallest index of an equal site
+  double scale = 1;             ///< a power of two
+
+  Index count() const { return static_cast<Index>(x.size()); }
+};
+
+/// \throw InputError for a coordinate that is not finite, and for coordinates of too different size. O(n log n).
+OrderedSites order_sites(std::span<const Vec2> sites, const JobStage& stage);
+
+}  // namespace saddleback::voronoi2d

@@ -1,0 +1,308 @@
+#pragma once
+// One sweep circle, event by event: the beach curve of ellipse arcs, touching and vanishing events (thesis chapter 3).
+//
+// The circle grows from a site c. At radius R the points x with |x - c| + |x - s| = R form an ellipse about each site s
+// inside; the outermost parts of these ellipses are the beach curve, and what lies within it is final. A site that the
+// circle touches splits the arc it is seen through: a new Delaunay edge. An arc that vanishes leaves its two
+// neighbours side by side: a new Voronoi vertex, hence a Delaunay triangle.
+//
+// No trigonometry is needed. The circle that touches the sweep circle from within at the new site p and passes through
+// s has the radius |d|^2 |p| / (2 p.d), where d = p - s and p counts from c: the arc that p hits is the one with the
+// largest p.d / |d|^2. It is at least 1, the value of c itself, while sites as far from c as p have 1/2: equal radii
+// need no care, and neither does a start with several nearest sites, since c is the only one.
+//
+// What is decided in doubles here (which arc is hit, in which order arcs vanish) can only be wrong where two answers
+// are nearly equally right; that a triangle turns counter-clockwise is exact. `mesh_checks` proves the outcome.
+//
+// Plain functions on flat arrays, without allocation: the same code steps a circle on the device.
+
+#include <cfloat>
+#include <cstdint>
+
+#include "saddleback/types.h"
+
+#include "predicates/predicates.h"
+
+namespace saddleback::voronoi2d {
+
+/// A part of the beach curve: an ellipse about `site`. Arcs form a ring, counter-clockwise about the centre.
+struct Arc {
+  double x, y;           ///< the site
+  Index site;            ///< k_none for a slot out of use
+  Index previous, next;  ///< `next` of an unused slot is the next unused one
+  Index edge;            ///< of the breakpoint to `next`: its triangle's half-edge, or ~ the arc of its other end
+  std::uint32_t stamp;   ///< events with another stamp are out of date
+  Index bucket;          ///< where `SweepState::near` knows the arc, or k_none
+};
+
+/// When an arc vanishes, unless something happens before.
+struct Event {
+  double radius;
+  Index arc;
+  std::uint32_t stamp;
+};
+
+/// A circle at work. The arrays belong to the caller: room for 2 n arcs, 6 n events and 2 n triangles of n sites.
+struct SweepState {
+  const double *x, *y;  ///< sites, in the order of their distance from the first, which is the centre
+  Index count;
+
+  Arc* arcs;
+  Index arcs_used, free_arc, latest;
+  Event* events;  ///< a heap, the soonest first
+  Index event_count;
+  Index* near;  ///< by direction: an arc that was seen there
+  Index near_count;
+
+  Index* triangles;  ///< three sites each, counter-clockwise
+  Index* twins;      ///< of half-edge 3 t + k, from corner k to the next; k_none while there is none
+  Index triangle_count;
+};
+
+constexpr double k_never = DBL_MAX, k_latest = 0.5 * DBL_MAX;  ///< events lie before `k_latest`, or never
+
+SADDLEBACK_HOST_DEVICE inline void push_event(SweepState& s, const Event& event) {
+  Index place = s.event_count++;
+  while (place > 0) {
+    const Index parent = (place - 1) / 4;
+    if (s.events[parent].radius <= event.radius) break;
+    s.events[place] = s.events[parent];
+    place = parent;
+  }
+  s.events[place] = event;
+}
+
+SADDLEBACK_HOST_DEVICE inline void pop_event(SweepState& s) {
+  const Event last = s.events[--s.event_count];
+  Index place = 0;
+  for (Index child = 1; child < s.event_count; child = 4 * place + 1) {
+    const Index end = child + 4 < s.event_count ? child + 4 : s.event_count;
+    Index soonest = child;
+    for (Index i = child + 1; i < end; ++i)
+      if (s.events[i].radius < s.events[soonest].radius) soonest = i;
+    if (s.events[soonest].radius >= last.radius) break;
+    s.events[place] = s.events[soonest];
+    place = soonest;
+  }
+  s.events[place] = last;
+}
+
+/// The radius at which the arc of b between those of a and c vanishes; k_never when they do not turn clockwise (exact).
+/// It is |v - centre| + |v - b| for the circumcentre v.
+SADDLEBACK_HOST_DEVICE inline double vanishing_radius(const Arc& a, const Arc& b, const Arc& c, double centre_x,
+                                                      double centre_y) {
+  const double ax = a.x - b.x, ay = a.y - b.y, cx = c.x - b.x, cy = c.y - b.y;
+  const double left = ax * cy, right = ay * cx, det = left - right;
+  if (fabs(det) <= predicates::detail::k_orient_bound * (fabs(left) + fabs(right))) {
+    const bool turns =
+        predicates::detail::orient_2d_exact({a.x, a.y}, {b.x, b.y}, {c.x, c.y}) == predicates::Sign::negative;
+    return turns ? k_latest : k_never;  // flat: later than anything that matters
+  }
+  if (det < 0) return k_never;
+  const double half = 0.5 / det, a2 = ax * ax + ay * ay, c2 = cx * cx + cy * cy;
+  const double x = (cy * a2 - ay * c2) * half, y = (ax * c2 - cx * a2) * half;
+  const double from_x = x + (b.x - centre_x), from_y = y + (b.y - centre_y);
+  const double radius = sqrt(x * x + y * y) + sqrt(from_x * from_x + from_y * from_y);
+  return radius < k_latest ? radius : k_latest;
+}
+
+/// Says anew when an arc vanishes.
+SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index arc) {
+  Arc& b = s.arcs[arc];
+  ++b.stamp;
+  const Arc &a = s.arcs[b.previous], &c = s.arcs[b.next];
+  if (a.site == c.site) return;
+  const double radius = vanishing_radius(a, b, c, s.x[0], s.y[0]);
+  if (radius != k_never) push_event(s, {radius, arc, b.stamp});
+}
+
+SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {
+  if (s.free_arc == k_none) {
+    s.arcs[s.arcs_used].stamp = 0;
+    return s.arcs_used++;
+  }
+  const Index arc = s.free_arc;
+  s.free_arc = s.arcs[arc].next;
+  return arc;
+}
+
+/// The state before the second site: one closed arc about the first.
+SADDLEBACK_HOST_DEVICE inline void start(SweepState& s) {
+  s.arcs[0] = {s.x[0], s.y[0], 0, 0, 0, k_none, 0, k_none};
+  s.arcs_used = 1;
+  s.free_arc = k_none;
+  s.latest = 0;
+  s.event_count = s.triangle_count = 0;
+  for (Index i = 0; i < s.near_count; ++i) s.near[i] = 0;
+}
+
+/// A new site as the beach curve sees it: (x, y) counts from the centre.
+struct Touch {
+  double site_x, site_y, x, y;
+};
+
+/// How far out an arc is in the direction of the new site, as a number that grows with that distance.
+struct Height {
+  double along, squared;  ///< p.d and |d|^2
+  SADDLEBACK_HOST_DEVICE double value() const { return along / squared; }
+};
+SADDLEBACK_HOST_DEVICE inline Height height(const Touch& p, const Arc& arc) {
+  const double x = p.site_x - arc.x, y = p.site_y - arc.y;
+  return {p.x * x + p.y * y, x * x + y * y};
+}
+
+/// Whether the direction of p lies on this arc, which is further out there than both neighbours. One ellipse is outside
+/// another in one interval of directions, whose middle is m = s w' - s' w with w = |p|^2 - |s|^2 = 2 p.d - |d|^2: p
+/// must come after the middle of the previous arc's and before that of the next one's.
+SADDLEBACK_HOST_DEVICE inline bool is_between(const SweepState& s, const Touch& p, const Arc& arc, const Height& here,
+                                              const Height& before, const Height& after) {
+  const Arc &a = s.arcs[arc.previous], &c = s.arcs[arc.next];
+  if (a.site == c.site) return true;
+  const double w = 2 * here.along - here.squared, wa = 2 * before.along - before.squared,
+               wc = 2 * after.along - after.squared;
+  const double bx = arc.x - s.x[0], by = arc.y - s.y[0];
+  const double ax = (a.x - s.x[0]) * w - bx * wa, ay = (a.y - s.y[0]) * w - by * wa;
+  const double cx = (c.x - s.x[0]) * w - bx * wc, cy = (c.y - s.y[0]) * w - by * wc;
+  const bool left_of_a = ax * p.y - ay * p.x >= 0, right_of_c = p.x * cy - p.y * cx >= 0;
+  return left_of_a == right_of_c ? left_of_a : ax * cy - ay * cx <= 0;
+}
+
+/// Of all arcs the one that p hits: where walking does not find it.
+SADDLEBACK_HOST_DEVICE inline Index search_all(const SweepState& s, const Touch& p, Index from) {
+  Index best = k_none;
+  double best_value = 0;
+  bool best_fits = false;
+  Index arc = from;
+  do {
+    const Arc& b = s.arcs[arc];
+    const Height here = height(p, b);
+    const double value = here.value();
+    if (best == k_none || value > best_value || (value == best_value && !best_fits)) {
+      best = arc;
+      best_value = value;
+      best_fits = is_between(s, p, b, here, height(p, s.arcs[b.previous]), height(p, s.arcs[b.next]));
+    }
+    arc = b.next;
+  } while (arc != from);
+  return best;
+}
+
+/// The arc that p hits, walking along the beach from one that may be near. O(1) expected, O(arcs) at worst.
+SADDLEBACK_HOST_DEVICE inline Index hit_arc(const SweepState& s, const Touch& p, Index from) {
+  Index arc = from;
+  Height here = height(p, s.arcs[arc]);
+  double value = here.value();
+  Height after = height(p, s.arcs[s.arcs[arc].next]), before = height(p, s.arcs[s.arcs[arc].previous]);
+  double value_after = after.value(), value_before = before.value();
+  while (true) {
+    if (value_after > value && !(value_before > value_after)) {
+      before = here, value_before = value;
+      here = after, value = value_after;
+      arc = s.arcs[arc].next;
+      after = height(p, s.arcs[s.arcs[arc].next]);
+      value_after = after.value();
+    } else if (value_before > value) {
+      after = here, value_after = value;
+      here = before, value = value_before;
+      arc = s.arcs[arc].previous;
+      before = height(p, s.arcs[s.arcs[arc].previous]);
+      value_before = before.value();
+    } else {
+      break;
+    }
+  }
+  return is_between(s, p, s.arcs[arc], here, before, after) ? arc : search_all(s, p, arc);
+}
+
+/// Number of the bucket of a direction: an angle without trigonometry.
+SADDLEBACK_HOST_DEVICE inline Index bucket_of(const SweepState& s, double x, double y) {
+  const double share = y / (fabs(x) + fabs(y));  // -1 to 1
+  const double turn = x >= 0 ? 1 + share : 3 - share;
+  const Index bucket = static_cast<Index>(turn * (0.25 * s.near_count));
+  return bucket < s.near_count ? bucket : s.near_count - 1;
+}
+
+/// An arc alive that was seen in about this direction.
+SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, Index bucket) {
+  const Index mask = s.near_count - 1;
+  for (Index step = 0; 2 * step <= s.near_count && step < 16; ++step) {
+    const Index up = (bucket + step) & mask, down = (bucket - step) & mask;
+    if (s.arcs[s.near[up]].bucket == up) return s.near[up];
+    if (s.arcs[s.near[down]].bucket == down) return s.near[down];
+  }
+  return s.latest;
+}
+
+/// Touching event: the site splits the arc it is seen through.
+SADDLEBACK_HOST_DEVICE inline void touch(SweepState& s, Index site) {
+  const Touch p{s.x[site], s.y[site], s.x[site] - s.x[0], s.y[site] - s.y[0]};
+  const Index bucket = bucket_of(s, p.x, p.y);
+  const Index left = hit_arc(s, p, arc_near(s, bucket));
+  const Index middle = new_arc(s);
+  Arc& l = s.arcs[left];
+  Arc& m = s.arcs[middle];
+  m = {p.site_x, p.site_y, site, left, left, ~left, m.stamp, bucket};
+  s.near[bucket] = middle;
+  s.latest = middle;
+  if (l.next == left) {  // the first arc is closed: opened, not split
+    l.next = l.previous = middle;
+    l.edge = ~middle;
+    return;
+  }
+  const Index right = new_arc(s);
+  Arc& r = s.arcs[right];
+  r = {l.x, l.y, l.site, middle, l.next, l.edge, r.stamp, k_none};
+  if (r.edge < 0) s.arcs[~r.edge].edge = ~right;
+  s.arcs[l.next].previous = right;
+  l.next = middle;
+  m.next = right;
+  l.edge = ~middle;
+  ++m.stamp;
+  schedule(s, left);
+  schedule(s, right);
+}
+
+/// The triangle of half-edge `half` lies beyond a breakpoint whose inner side is `edge`.
+SADDLEBACK_HOST_DEVICE inline void join(SweepState& s, Index edge, Index half) {
+  if (edge < 0) {
+    s.arcs[~edge].edge = half;  // no triangle yet on that side: it will come at the other end
+  } else {
+    s.twins[edge] = half;
+    s.twins[half] = edge;
+  }
+}
+
+/// Vanishing event: the neighbours meet at a Voronoi vertex.
+SADDLEBACK_HOST_DEVICE inline void vanish(SweepState& s, Index arc) {
+  Arc& b = s.arcs[arc];
+  const Index before = b.previous, after = b.next;
+  Arc &a = s.arcs[before], &c = s.arcs[after];
+  const Index half = 3 * s.triangle_count++;
+  s.triangles[half] = a.site;
+  s.triangles[half + 1] = c.site;
+  s.triangles[half + 2] = b.site;
+  s.twins[half] = s.twins[half + 1] = s.twins[half + 2] = k_none;
+  join(s, a.edge, half + 2);
+  join(s, b.edge, half + 1);
+  a.edge = half;
+  a.next = after;
+  c.previous = before;
+  ++b.stamp;
+  b.site = b.bucket = k_none;
+  b.next = s.free_arc;
+  s.free_arc = arc;
+  if (s.latest == arc) s.latest = after;
+  schedule(s, before);
+  schedule(s, after);
+}
+
+/// Lets all arcs vanish that do so up to a radius.
+SADDLEBACK_HOST_DEVICE inline void vanish_until(SweepState& s, double radius) {
+  while (s.event_count > 0 && s.events[0].radius <= radius) {
+    const Event event = s.events[0];
+    pop_event(s);
+    if (s.arcs[event.arc].stamp == event.stamp) vanish(s, event.arc);
+  }
+}
+
+}  // namespace saddleback::voronoi2d

@@ -1,0 +1,126 @@
+// From sites to the numbered diagram: order, sweep, stitch, place the vertices.
+
+#include "saddleback/voronoi_2d.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "saddleback/error.h"
+
+#include "voronoi2d/circumcentre.h"
+#include "voronoi2d/half_edges.h"
+#include "voronoi2d/site_order.h"
+#include "voronoi2d/sweep_circle.h"
+
+namespace saddleback {
+namespace {
+
+using namespace voronoi2d;
+
+Cells find_cells(const OrderedSites& sites, const JobStage& stage) {
+  SweepCircle circle;
+  const auto [left, right] = std::minmax_element(sites.x.begin(), sites.x.end());
+  const auto [low, high] = std::minmax_element(sites.y.begin(), sites.y.end());
+  const Vec2 centre = sites.count() ? Vec2(0.5 * (*left + *right), 0.5 * (*low + *high)) : Vec2(0, 0);
+  const PlanarMesh mesh = circle.triangulate(sites.x, sites.y, centre, stage);
+  return mesh.triangle_count > 0 ? cells_of(mesh, circle.is_flat()) : strips_of(sites);
+}
+
+std::vector<Vec2> vertex_positions(const OrderedSites& sites, std::span<const std::array<Index, 3>> vertex_sites) {
+  const auto point = [&](Index rank) { return predicates::Point2{sites.x[rank], sites.y[rank]}; };
+  std::vector<Vec2> result;
+  result.reserve(vertex_sites.size());
+  for (const auto& [a, b, c] : vertex_sites) result.push_back(circumcentre(point(a), point(b), point(c)) / sites.scale);
+  return result;
+}
+
+}  // namespace
+
+Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, Job* job) {
+  if (options.circles < 0) throw InputError(message("circles: wanted 0 or more, got ", options.circles));
+  if (options.threads < 0) throw InputError(message("threads: wanted 0 or more, got ", options.threads));
+  const JobStage stage(job, "Voronoi diagram");
+  OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
+  Cells cells = find_cells(ordered, stage.part(0.1, 0.8));
+  Numbering numbering = number(cells);
+  stage.update(0.9);
+
+  Voronoi2d result;
+  result.sites.assign(sites.begin(), sites.end());
+  result.vertices = vertex_positions(ordered, numbering.vertex_sites);
+  result.edges = std::move(numbering.edge_vertices);
+  result.edge_sites = std::move(numbering.edge_sites);
+  for (auto& pair : result.edge_sites)
+    for (Index& site : pair) site = ordered.original[site];
+  result.cell_places.assign(sites.size(), k_none);
+  for (Index rank = 0; rank < ordered.count(); ++rank) result.cell_places[ordered.original[rank]] = rank;
+  for (std::size_t i = 0; i < sites.size(); ++i) result.cell_places[i] = result.cell_places[ordered.site_of[i]];
+  result.site_of = std::move(ordered.site_of);
+  result.cell_sites = std::move(ordered.original);
+  result.cell_offsets = std::move(cells.offsets);
+  result.corner_vertices = std::move(numbering.corner_vertices);
+  result.side_edges = std::move(numbering.side_edges);
+  stage.update(1);
+  return result;
+}
+
+std::span<const Index> Voronoi2d::cell_vertices(Index site) const {
+  const Index place = cell_places[site];
+  return std::span(corner_vertices).subspan(cell_offsets[place], cell_offsets[place + 1] - cell_offsets[place]);
+}
+
+std::span<const Index> Voronoi2d::cell_edges(Index site) const {
+  const Index place = cell_places[site];
+  return std::span(side_edges).subspan(cell_offsets[place], cell_offsets[place + 1] - cell_offsets[place]);
+}
+
+bool Voronoi2d::is_bounded(Index site) const {
+  const std::span<const Index> corners = cell_vertices(site);
+  return !corners.empty() && std::find(corners.begin(), corners.end(), k_none) == corners.end();
+}
+
+std::vector<Vec2> Voronoi2d::edge_directions() const {
+  std::vector<Vec2> result;
+  result.reserve(edges.size());
+  for (const auto& [left, right] : edge_sites) {
+    const Vec2 &a = sites[left], &b = sites[right];
+    // Halves and a largest component of 1 keep squares among the doubles.
+    Vec2 across = 0.5 * b - 0.5 * a;
+    if (across.isZero(0)) across = b - a;
+    across /= across.cwiseAbs().maxCoeff();
+    result.push_back(Vec2(-across.y(), across.x()).normalized());
+  }
+  return result;
+}
+
+std::vector<Triangle> Voronoi2d::delaunay() const {
+  std::vector<Triangle> result;
+  result.reserve(2 * cell_sites.size());
+  std::vector<bool> is_done(vertices.size(), false);
+  std::vector<Index> around;
+  for (std::size_t corner = 0; corner < corner_vertices.size(); ++corner) {
+    const Index vertex = corner_vertices[corner];
+    if (vertex == k_none || is_done[vertex]) continue;
+    is_done[vertex] = true;
+    sites_around(vertex, side_edges[corner], around);
+    std::rotate(around.begin(), std::min_element(around.begin(), around.end()), around.end());
+    for (std::size_t i = 1; i + 1 < around.size(); ++i) result.push_back({around[0], around[i], around[i + 1]});
+  }
+  return result;
+}
+
+void Voronoi2d::sites_around(Index vertex, Index edge, std::vector<Index>& around) const {
+  // Counter-clockwise from cell to cell: each cell has an edge that leads to the vertex, with the next cell behind it.
+  around.clear();
+  const Index first_edge = edge;
+  do {
+    const bool leads_there = edges[edge][1] == vertex;
+    const Index site = edge_sites[edge][leads_there ? 0 : 1], next = edge_sites[edge][leads_there ? 1 : 0];
+    around.push_back(site);
+    const std::span<const Index> corners = cell_vertices(next);
+    edge = cell_edges(next)[std::find(corners.begin(), corners.end(), vertex) - corners.begin()];
+  } while (edge != first_edge);
+}
+
+}  // namespace saddleback

@@ -1,0 +1,176 @@
+"""Voronoi diagrams of the plane: exact topology for any finite sites."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import plane_sites
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import Delaunay
+
+import saddleback as sb
+
+
+@pytest.mark.parametrize("kind", plane_sites.KINDS)
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 7, 12, 40, 300, 3000])
+def test_every_kind_of_sites_is_exactly_right(kind, n):
+    sites = plane_sites.KINDS[kind](n, np.random.default_rng(n))
+    assert plane_sites.faults(sb.voronoi_2d(sites)) == []
+
+
+# Few values, near each other and far apart: many sites on common lines and circles, many nearly so.
+coordinates = st.one_of(
+    st.integers(-3, 3).map(float),
+    st.integers(-4, 4).map(lambda i: 1.0 + i * 2.0**-52),
+    st.floats(-10, 10, allow_subnormal=False).filter(lambda x: x == 0 or abs(x) > 1e-30),
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(st.tuples(coordinates, coordinates), max_size=14))
+def test_any_few_sites_are_exactly_right(points):
+    assert plane_sites.faults(sb.voronoi_2d(np.array(points).reshape(-1, 2))) == []
+
+
+def test_the_proof_finds_faults():
+    class Wrong:
+        sites = np.array([[0.0, 0], [2, 0], [1, 0.5], [1, -0.5]])
+        site_of = np.arange(4)
+        delaunay = np.array([[0, 1, 2], [0, 3, 1]])
+        vertices, edges = np.zeros((2, 2)), np.zeros((5, 2))
+
+    assert plane_sites.faults(Wrong) == ["1 edges are not Delaunay's"]
+
+
+@pytest.mark.parametrize("n", [10, 1000, 20000])
+def test_triangles_are_those_of_qhull(n):
+    sites = plane_sites.uniform(n, np.random.default_rng(n))
+    ours, theirs = (
+        np.unique(np.sort(t, axis=1), axis=0) for t in (sb.voronoi_2d(sites).delaunay, Delaunay(sites).simplices)
+    )
+    assert np.array_equal(ours, theirs)
+
+
+def test_vertices_are_equally_far_from_their_sites():
+    sites = plane_sites.uniform(500, np.random.default_rng(1))
+    diagram = sb.voronoi_2d(sites)
+    for site in range(len(sites)):
+        corners = diagram.vertices[[v for v in diagram.cell_vertices(site) if v >= 0]]
+        to_all = np.linalg.norm(corners[:, None] - sites, axis=2)
+        assert np.allclose(to_all[:, site], to_all.min(axis=1), rtol=1e-9)
+
+
+def test_a_flat_triangle_has_its_vertex_where_fractions_say():
+    sites = [(0.0, 0.0), (1.0, 1e-17), (2.0, 0.0)]
+    (x, y) = sb.voronoi_2d(sites).vertices[0]
+    h = Fraction(1e-17)  # equally far from (0, 0) and (1, h) at x = 1: y^2 + 1 = (y - h)^2
+    assert x == pytest.approx(1, rel=1e-12)
+    assert y == pytest.approx(float((h * h - 1) / (2 * h)), rel=1e-12)
+
+
+def test_a_square_has_one_vertex_of_four_cells():
+    diagram = sb.voronoi_2d([[0, 0], [1, 0], [1, 1], [0, 1]])
+    assert diagram.vertices.tolist() == [[0.5, 0.5]]
+    assert (diagram.edges == [0, -1]).all()
+    assert len(diagram.edges) == 4
+    assert diagram.delaunay.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+
+def test_a_star_of_integers_on_one_circle_has_one_vertex():
+    directions = [(3, 4), (4, 3), (5, 0), (0, 5)]
+    sites = sorted({(a * x, b * y) for x, y in directions for a in (-1, 1) for b in (-1, 1)})
+    diagram = sb.voronoi_2d(np.array(sites) * 0.25 + 10)
+    assert diagram.vertices.tolist() == [[10, 10]]
+    assert len(diagram.edges) == len(sites) == 12
+    assert (diagram.delaunay[:, 0] == 0).all()
+
+
+def test_two_sites_are_parted_by_a_line():
+    diagram = sb.voronoi_2d([[0, 0], [2, 0]])
+    assert diagram.edges.tolist() == [[-1, -1]]
+    (left, right), direction = diagram.edge_sites[0], diagram.edge_directions[0]
+    assert abs(direction[1]) == 1
+    across = diagram.sites[left] - diagram.sites[right]
+    assert direction[0] * across[1] - direction[1] * across[0] > 0
+
+
+def test_rays_leave_along_their_direction():
+    sites = plane_sites.uniform(50, np.random.default_rng(3))
+    diagram = sb.voronoi_2d(sites)
+    rays = diagram.edges[:, 1] < 0
+    far = diagram.vertices[diagram.edges[rays, 0]] + 1e4 * diagram.edge_directions[rays]
+    two_nearest = np.sort(np.argsort(np.linalg.norm(far[:, None] - sites, axis=2), axis=1)[:, :2], axis=1)
+    assert np.array_equal(two_nearest, np.sort(diagram.edge_sites[rays], axis=1))
+
+
+def test_edges_have_their_sites_at_their_sides():
+    sites = plane_sites.uniform(200, np.random.default_rng(4))
+    diagram = sb.voronoi_2d(sites)
+    left, right = sites[diagram.edge_sites.T]
+    across, along = right - left, diagram.edge_directions
+    assert np.allclose(np.linalg.norm(along, axis=1), 1)
+    assert (along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0] < 0).all()
+    both = (diagram.edges >= 0).all(axis=1)
+    span = np.diff(diagram.vertices[diagram.edges[both]], axis=1)[:, 0]
+    long = np.linalg.norm(span, axis=1) > 1e-9
+    assert (np.einsum("ij,ij->i", span, along[both])[long] > 0).all()
+
+
+def test_cells_list_their_edges_before_their_vertices():
+    diagram = sb.voronoi_2d(plane_sites.grid(400, np.random.default_rng(5)))
+    for site in range(400):
+        vertices, edges = diagram.cell_vertices(site), diagram.cell_edges(site)
+        for k, edge in enumerate(edges):
+            assert site in diagram.edge_sites[edge]
+            assert {vertices[k - 1], vertices[k]} == set(diagram.edges[edge])
+
+
+def test_no_sites_and_one():
+    none, one = sb.voronoi_2d(np.zeros((0, 2))), sb.voronoi_2d([[1.5, 2]])
+    for diagram in (none, one):
+        assert [len(part) for part in (diagram.vertices, diagram.edges, diagram.delaunay)] == [0, 0, 0]
+    assert one.cell_vertices(0).tolist() == []
+
+
+def test_equal_sites_share_the_smallest_index():
+    diagram = sb.voronoi_2d([[1, 0], [0, 0], [1, 0], [-0.0, 0], [0, 1]])
+    assert diagram.site_of.tolist() == [0, 1, 0, 1, 4]
+    assert diagram.delaunay.tolist() == [[0, 4, 1]]
+    assert diagram.cell_vertices(3).tolist() == diagram.cell_vertices(1).tolist()
+
+
+def test_numbering_does_not_depend_on_the_order_of_equal_calls():
+    sites = plane_sites.small_integers(500, np.random.default_rng(6))
+    first, second = sb.voronoi_2d(sites), sb.voronoi_2d(sites)
+    for name in ("vertices", "edges", "edge_sites", "delaunay"):
+        assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
+
+
+@pytest.mark.parametrize("sites", [[[0, 0], [1, np.nan]], [[0, 0], [np.inf, 1]]])
+def test_sites_that_are_not_finite_are_named(sites):
+    with pytest.raises(sb.InputError, match="site 1"):
+        sb.voronoi_2d(sites)
+
+
+def test_sites_too_different_in_size_are_named():
+    with pytest.raises(sb.InputError, match="site 2"):
+        sb.voronoi_2d([[1e300, 0], [0, 1e300], [1e-300, 1e-300]])
+
+
+@pytest.mark.parametrize(("argument", "value"), [("circles", -1), ("threads", -1), ("device", "gpu")])
+def test_wrong_options_are_named(argument, value):
+    with pytest.raises(sb.InputError, match=argument):
+        sb.voronoi_2d([[0, 0]], **{argument: value})
+
+
+def test_progress_and_cancel():
+    sites = plane_sites.uniform(1000, np.random.default_rng(7))
+    job = sb.Job()
+    sb.voronoi_2d(sites, job=job)
+    assert job.fraction == 1
+    job.cancel()
+    with pytest.raises(sb.Cancelled):
+        sb.voronoi_2d(sites, job=job)
