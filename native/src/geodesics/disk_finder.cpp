@@ -28,21 +28,6 @@ std::int32_t label_of(float distance, bool makes_arc) {
 }
 bool makes_arc(std::int32_t label) { return (label & 1) == 0; }
 
-/// Angle of a vector in the upper half-plane, to 1e-5 radians: enough for a sector, and several times faster than
-/// atan2.
-float angle_of(float x, float y) {
-  const float ax = std::abs(x), ay = std::abs(y), least = std::min(ax, ay), most = std::max(ax, ay);
-  const float t = most > 0 ? least / most : 0, t2 = t * t;
-  // Minimax polynomial of the arc tangent on [0, 1].
-  float angle =
-      t * (0.99997726f +
-           t2 * (-0.33262347f + t2 * (0.19354346f + t2 * (-0.11643287f + t2 * (0.05265332f - t2 * 0.01172120f)))));
-  constexpr float k_right = 1.57079633f, k_straight = 3.14159265f;
-  if (ay > ax) angle = k_right - angle;
-  if (x < 0) angle = k_straight - angle;
-  return angle;
-}
-
 int to_sector(float sector) { return std::clamp(static_cast<int>(sector), 0, ArcCodec::k_sectors - 1); }
 
 template <class Columns>
@@ -129,6 +114,8 @@ void DiskFinder::link(std::int32_t slot, double length, Index edge, bool other) 
   sightings_.reserve(sighting_count_ + 1);
   const SightingRows rows = sightings_.rows();
   rows.x[sighting_count_] = length;
+  rows.y[sighting_count_] = 0;
+  rows.back_x[sighting_count_] = rows.back_y[sighting_count_] = 0;
   rows.slot[sighting_count_] = slot;
   rows.label[sighting_count_] = label_of(static_cast<float>(length), true);
   rows.root[sighting_count_] = ~edge;
@@ -229,33 +216,39 @@ void DiskFinder::write_row(Index node, int lane, FoundArcs& found) {
   // Edges stay even where something shorter, but no arc, was found.
   for (int i = 0; i < sighting_count_ && rows.root[i] < 0; ++i)
     if (rows.slot[i] % k_batch == lane && !is_kept(rows.slot[i])) chosen_.push_back(i);
-  const std::size_t before = found.words.size();
-  found.words.resize(before + chosen_.size());
-  found.back_sectors.resize(found.words.size());
-  for (std::size_t i = 0; i < chosen_.size(); ++i)
-    found.words[before + i] = arc_of(rows, node, chosen_[i], found.back_sectors[before + i]);
-  found.counts.push_back(static_cast<std::int32_t>(chosen_.size()));
+  const auto count = static_cast<int>(chosen_.size());
+  found.counts.push_back(count);
+  const std::size_t room = chosen_.size() + k_row_padding;
+  chosen_.resize(room);
+  lengths_.resize(room);
+  leaving_.resize(room);
+  back_.resize(room);
+  kernel_.aim(rows, chosen_.data(), count, lengths_.data(), leaving_.data(), back_.data());
+  for (int i = 0; i < count; ++i) {
+    const Index root = rows.root[chosen_[i]];
+    if (root < 0) {
+      append_edge(~root, rows.edge[chosen_[i]] != 0, found);
+      continue;
+    }
+    const Index target = rows.slot[chosen_[i]] / k_batch, entered = rows.edge[chosen_[i]] / k_batch;
+    const float begin = mesh_.sector(root) + leaving_[i] * mesh_.sectors_per_radian(node);
+    const float end = mesh_.apex_sector(entered) + back_[i] * mesh_.sectors_per_radian(target);
+    append(target, lengths_[i], begin, end, found);
+  }
 }
 
-std::uint64_t DiskFinder::arc_of(const SightingRows& rows, Index node, int sighting, std::uint8_t& back_sector) const {
-  const Index target = rows.slot[sighting] / k_batch, root = rows.root[sighting];
-  double length = rows.x[sighting];
-  float leaving, back;
-  if (root < 0) {
-    const bool other = rows.edge[sighting] != 0;
-    leaving = other ? ArcCodec::k_sectors : mesh_.sector(~root);
-    back = other ? mesh_.apex_sector(~root) : mesh_.reverse_sector(~root);
+/// An edge of a source, or the other one of its face.
+void DiskFinder::append_edge(Index edge, bool other, FoundArcs& found) const {
+  if (other) {
+    append(mesh_.records()[edge].apex, mesh_.apex(edge).norm(), ArcCodec::k_sectors, mesh_.apex_sector(edge), found);
   } else {
-    const double x = rows.x[sighting], y = rows.y[sighting];
-    length = std::sqrt(x * x + y * y);
-    const auto px = static_cast<float>(x), py = static_cast<float>(y);
-    const float side_x = rows.back_x[sighting], side_y = rows.back_y[sighting];
-    leaving = mesh_.sector(root) + angle_of(px, py) * mesh_.sectors_per_radian(node);
-    const float turn = angle_of(-(side_x * px + side_y * py), std::max(0.0f, side_y * px - side_x * py));
-    back = mesh_.apex_sector(rows.edge[sighting] / k_batch) + turn * mesh_.sectors_per_radian(target);
+    append(mesh_.target(edge), mesh_.length(edge), mesh_.sector(edge), mesh_.reverse_sector(edge), found);
   }
-  back_sector = static_cast<std::uint8_t>(to_sector(back));
-  return codec_.pack(target, to_sector(leaving), length * mesh_.unit());
+}
+
+void DiskFinder::append(Index target, double length, float leaving, float back, FoundArcs& found) const {
+  found.words.push_back(codec_.pack(target, to_sector(leaving), length * mesh_.unit()));
+  found.back_sectors.push_back(static_cast<std::uint8_t>(to_sector(back)));
 }
 
 void DiskFinder::clear() {

@@ -81,7 +81,8 @@ class DiskFinder {
   void advance();
   void lower_labels(int from, int to);
   void write_row(Index node, int lane, FoundArcs& found);
-  std::uint64_t arc_of(const SightingRows& rows, Index node, int sighting, std::uint8_t& back_sector) const;
+  void append_edge(Index edge, bool other, FoundArcs& found) const;
+  void append(Index target, double length, float leaving, float back, FoundArcs& found) const;
   void clear();
 
   bool by_count() const { return rule_.k > 0; }
@@ -106,7 +107,9 @@ class DiskFinder {
   alignas(64) std::array<float, k_batch> limits_{};
   std::vector<std::int32_t> changed_;  ///< slots whose neighbours may have to be told of their labels
   std::vector<float> radii_;
-  std::vector<int> chosen_;  ///< sightings of a row
+  std::vector<std::int32_t> chosen_;  ///< sightings of a row
+  std::vector<double> lengths_;       ///< and what is made of them
+  std::vector<float> leaving_, back_;
 };
 
 }  // namespace saddleback

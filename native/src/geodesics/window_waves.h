@@ -77,6 +77,10 @@ struct WaveKernel {
   /// The same with no bound but the disks' limits.
   void (*split_all)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const WindowRows& lefts,
                     int* left_count, const WindowRows& rights, int* right_count);
+  /// Lengths of chosen sightings, the angles at which they leave the source, from its half-edge in the root's face, and
+  /// those at which they come in, from the half-edge to the start of the last one crossed. In radians, to 1e-5. Reads
+  /// `chosen` up to its padding.
+  void (*aim)(const SightingRows&, const std::int32_t* chosen, int count, double* lengths, float* leaving, float* back);
   /// Index of the word whose low bits are `target`, -1 for none. `target` occurs at most once.
   int (*find_target)(const std::uint64_t* words, int count, std::uint32_t mask, std::uint32_t target);
 };

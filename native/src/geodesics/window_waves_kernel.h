@@ -297,6 +297,33 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
   *right_count = r;
 }
 
+/// Of a vector in the upper half-plane.
+Floats angle_of(Floats x, Floats y) {
+  const Floats zero = Simd::fill(0), width = Simd::max(x, zero - x), height = Simd::max(y, zero);
+  const Floats least = Simd::min(width, height), most = Simd::max(Simd::max(width, height), Simd::fill(1e-30f));
+  const Floats t = least / most, t2 = t * t;
+  // Minimax polynomial of the arc tangent on [0, 1].
+  constexpr float k_terms[] = {0.05265332f, -0.11643287f, 0.19354346f, -0.33262347f, 0.99997726f};
+  Floats sum = Simd::fill(-0.01172120f);
+  for (const float term : k_terms) sum = sum * t2 + Simd::fill(term);
+  const Floats octant = t * sum, quadrant = Simd::pick(width < height, Simd::fill(1.57079633f) - octant, octant);
+  return Simd::pick(x < zero, Simd::fill(3.14159265f) - quadrant, quadrant);
+}
+
+void aim(const SightingRows& seen, const std::int32_t* chosen, int count, double* lengths, float* leaving,
+         float* back) {
+  const Floats zero = Simd::fill(0);
+  for (int i = 0; i < count; i += Simd::width) {
+    const Ints index = Simd::load(chosen + i);
+    const Doubles x = Simd::look_up(seen.x, index), y = Simd::look_up(seen.y, index);
+    Simd::store(lengths + i, Simd::sqrt(x * x + y * y));
+    const Floats px = Simd::narrow(x), py = Simd::narrow(y);
+    const Floats side_x = Simd::look_up(seen.back_x, index), side_y = Simd::look_up(seen.back_y, index);
+    Simd::store(leaving + i, angle_of(px, py));
+    Simd::store(back + i, angle_of(zero - (side_x * px + side_y * py), cross(px, py, side_x, side_y)));
+  }
+}
+
 /// Without a branch a word, so that the compiler takes several at a time.
 int find_target(const std::uint64_t* words, int count, std::uint32_t mask, std::uint32_t target) {
   int found = 0;
@@ -310,6 +337,7 @@ int find_target(const std::uint64_t* words, int count, std::uint32_t mask, std::
 }  // namespace
 
 extern const WaveKernel SADDLEBACK_WAVE_KERNEL;
-const WaveKernel SADDLEBACK_WAVE_KERNEL{Simd::name, sight<false>, sight<true>, split<false>, split<true>, find_target};
+const WaveKernel SADDLEBACK_WAVE_KERNEL{Simd::name,  sight<false>, sight<true>, split<false>,
+                                        split<true>, aim,          find_target};
 
 }  // namespace saddleback

@@ -52,6 +52,15 @@ struct Simd : Vectors<8> {
     return floats_of(Ints{table[index[0]], table[index[1]], table[index[2]], table[index[3]], table[index[4]],
                           table[index[5]], table[index[6]], table[index[7]]});
   }
+  static Floats look_up(const float* table, Ints index) {
+    return _mm256_i32gather_ps(table, reinterpret_cast<__m256i>(index), 4);
+  }
+  static Doubles look_up(const double* table, Ints index) {
+    const auto indices = reinterpret_cast<__m256i>(index);
+    return {_mm256_i32gather_pd(table, _mm256_castsi256_si128(indices), 8),
+            _mm256_i32gather_pd(table, _mm256_extracti128_si256(indices, 1), 8)};
+  }
+  static Doubles sqrt(Doubles a) { return {_mm256_sqrt_pd(a.low), _mm256_sqrt_pd(a.high)}; }
   /// The values at table[edge % 8].
   static Floats look_up_lane(const float* table, Ints edge) {
     return _mm256_permutevar8x32_ps(_mm256_loadu_ps(table), reinterpret_cast<__m256i>(edge));

@@ -20,6 +20,15 @@ struct Simd : Vectors<16> {
   static Floats look_up(const std::int32_t* table, Ints index) {
     return _mm512_i32gather_ps(reinterpret_cast<__m512i>(index), table, 4);
   }
+  static Floats look_up(const float* table, Ints index) {
+    return _mm512_i32gather_ps(reinterpret_cast<__m512i>(index), table, 4);
+  }
+  static Doubles look_up(const double* table, Ints index) {
+    const auto indices = reinterpret_cast<__m512i>(index);
+    return {_mm512_i32gather_pd(_mm512_castsi512_si256(indices), table, 8),
+            _mm512_i32gather_pd(_mm512_extracti32x8_epi32(indices, 1), table, 8)};
+  }
+  static Doubles sqrt(Doubles a) { return {_mm512_sqrt_pd(a.low), _mm512_sqrt_pd(a.high)}; }
   /// The values at table[edge % 8].
   static Floats look_up_lane(const float* table, Ints edge) {
     const __m512i lane = _mm512_and_si512(reinterpret_cast<__m512i>(edge), _mm512_set1_epi32(7));

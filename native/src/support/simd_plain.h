@@ -25,6 +25,16 @@ struct Simd : Vectors<4> {
   static Floats look_up(const std::int32_t* table, Ints index) {
     return floats_of(Ints{table[index[0]], table[index[1]], table[index[2]], table[index[3]]});
   }
+  static Floats look_up(const float* table, Ints index) {
+    return Floats{table[index[0]], table[index[1]], table[index[2]], table[index[3]]};
+  }
+  static Doubles look_up(const double* table, Ints index) {
+    return {Half{table[index[0]], table[index[1]]}, Half{table[index[2]], table[index[3]]}};
+  }
+  static Doubles sqrt(Doubles a) {
+    return {Half{__builtin_sqrt(a.low[0]), __builtin_sqrt(a.low[1])},
+            Half{__builtin_sqrt(a.high[0]), __builtin_sqrt(a.high[1])}};
+  }
   /// The values at table[edge % 8].
   static Floats look_up_lane(const float* table, Ints edge) {
     return Floats{table[edge[0] & 7], table[edge[1] & 7], table[edge[2] & 7], table[edge[3] & 7]};
