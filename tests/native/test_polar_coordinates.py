@@ -125,8 +125,7 @@ def test_curves_inside_one_face(name: str, closed: bool) -> None:
         assert_as_in_plane(mesh, sb.SurfacePoints(faces, weights), closed)
 
 
-def test_a_piece_in_the_light_of_another() -> None:
-    """A curve whose end stands between another piece and a vertex: without the end of those rays one is lost."""
+def test_many_folded_curves_of_the_plane() -> None:
     mesh = sb.Mesh(*meshes.grid(12, 12, 0.3))
     rng = np.random.default_rng(5)
     for _ in range(150):
