@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace saddleback::voronoi2d {
 
@@ -28,15 +29,7 @@ void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> 
     const double dx = x[i] - centre.x(), dy = y[i] - centre.y(), distance = dx * dx + dy * dy;
     if (distance < nearest) nearest = distance, first = i;
   }
-  order_.resize(count);
-  for (Index i = 0; i < count; ++i) {
-    const double dx = x[i] - x[first], dy = y[i] - y[first];
-    order_[i] = {std::sqrt(dx * dx + dy * dy), i};
-  }
-  std::swap(order_[0], order_[first]);
-  std::sort(order_.begin() + std::min<Index>(1, count), order_.end(), [](const Place& a, const Place& b) {
-    return a.radius != b.radius ? a.radius < b.radius : a.site < b.site;
-  });
+  near_to_far(x, y, first);
   x_.resize(count);
   y_.resize(count);
   for (Index i = 0; i < count; ++i) {
@@ -45,24 +38,49 @@ void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> 
   }
 }
 
+// By equal steps of the squared distance, about one site each, then within each step.
+void SweepCircle::near_to_far(std::span<const double> x, std::span<const double> y, Index first) {
+  const Index count = static_cast<Index>(x.size());
+  order_.resize(count);
+  unsorted_.resize(count);
+  double farthest = 0;
+  for (Index i = 0; i < count; ++i) {
+    const double dx = x[i] - x[first], dy = y[i] - y[first];
+    unsorted_[i] = {dx * dx + dy * dy, i};
+    farthest = std::max(farthest, unsorted_[i].radius);
+  }
+  days_per_area_ = farthest > 0 ? static_cast<double>(count) / farthest : 0;
+  const auto day = [&](const Place& place) { return static_cast<Index>(place.radius * days_per_area_); };
+  days_.assign(count + 2, 0);
+  for (const Place& place : unsorted_) ++days_[day(place) + 1];
+  std::partial_sum(days_.begin(), days_.end(), days_.begin());
+  for (const Place& place : unsorted_) order_[days_[day(place)]++] = place;
+  const auto is_nearer = [](const Place& a, const Place& b) {
+    return a.radius != b.radius ? a.radius < b.radius : a.site < b.site;
+  };
+  for (Index begin = 0, i = 0; i <= count; ++i) {  // each day's begin has moved to its end
+    std::sort(order_.begin() + begin, order_.begin() + days_[i], is_nearer);
+    begin = days_[i];
+  }
+  for (Place& place : order_) place.radius = std::sqrt(place.radius);
+}
+
 void SweepCircle::sweep(const JobStage& stage) {
   const Index count = static_cast<Index>(order_.size());
   reserve(count);
   near_.resize(std::bit_ceil(static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(count))) + 8));
-  state_ = {x_.data(),
-            y_.data(),
-            count,
-            arcs_.get(),
-            0,
-            0,
-            0,
-            events_.get(),
-            0,
-            near_.data(),
-            static_cast<Index>(near_.size()),
-            triangles_.get(),
-            twins_.get(),
-            0};
+  state_ = {.x = x_.data(),
+            .y = y_.data(),
+            .count = count,
+            .arcs = arcs_.get(),
+            .days = days_.data(),
+            .day_count = static_cast<Index>(days_.size()),
+            .days_per_area = days_per_area_,
+            .events = events_.get(),
+            .near = near_.data(),
+            .near_count = static_cast<Index>(near_.size()),
+            .triangles = triangles_.get(),
+            .twins = twins_.get()};
   start(state_);
   constexpr Index k_block = 4096;
   for (Index begin = 1; begin < count; begin += k_block) {

@@ -27,6 +27,7 @@ class SweepCircle {
 
  private:
   void sort_sites(std::span<const double> x, std::span<const double> y, const Vec2& centre);
+  void near_to_far(std::span<const double> x, std::span<const double> y, Index first);
   void reserve(Index count);
   void sweep(const JobStage& stage);
 
@@ -34,7 +35,9 @@ class SweepCircle {
     double radius;
     Index site;
   };
-  std::vector<Place> order_;
+  std::vector<Place> order_, unsorted_;
+  std::vector<Index> days_;
+  double days_per_area_ = 0;
   std::vector<double> x_, y_;
   std::unique_ptr<Arc[]> arcs_;
   std::unique_ptr<Event[]> events_;

@@ -27,15 +27,19 @@ namespace saddleback::voronoi2d {
 
 /// A part of the beach curve: an ellipse about `site`. Arcs form a ring, counter-clockwise about the centre.
 struct Arc {
-  double x, y;           ///< the site
-  Index site;            ///< k_none for a slot out of use
-  Index previous, next;  ///< `next` of an unused slot is the next unused one
-  Index edge;            ///< of the breakpoint to `next`: its triangle's half-edge, or ~ the arc of its other end
-  std::uint32_t stamp;   ///< events with another stamp are out of date
-  Index bucket;          ///< where `SweepState::near` knows the arc, or k_none
+  double x, y;                   ///< the site
+  Index site;                    ///< k_none for a slot out of use
+  Index previous, next;          ///< `next` of an unused slot is the next unused one
+  Index edge;                    ///< of the breakpoint to `next`: its triangle's half-edge, or ~ the arc of its
+                                 ///< other end
+  Index sector;                  ///< where `SweepState::near` knows the arc, or k_none
+  std::uint32_t stamp;           ///< events in the heap with another stamp are out of date
+  double radius;                 ///< when it vanishes
+  Index day;                     ///< page of the calendar that lists it for that, or k_none
+  Index day_previous, day_next;  ///< others on that page
 };
 
-/// When an arc vanishes, unless something happens before.
+/// An arc vanishes soon.
 struct Event {
   double radius;
   Index arc;
@@ -48,15 +52,22 @@ struct SweepState {
   Index count;
 
   Arc* arcs;
-  Index arcs_used, free_arc, latest;
-  Event* events;  ///< a heap, the soonest first
-  Index event_count;
+  Index arcs_used = 0, free_arc = k_none, latest = 0;
+
+  // Vanishing events: by equal steps of the squared radius, as sites are where they are equally dense. The pages of
+  // the calendar up to today are in the heap, the soonest event first.
+  Index* days;  ///< the first arc on each page
+  Index day_count, today = 0;
+  double days_per_area;  ///< pages by squared radius
+  Event* events;
+  Index event_count = 0;
+
   Index* near;  ///< by direction: an arc that was seen there
   Index near_count;
 
   Index* triangles;  ///< three sites each, counter-clockwise
   Index* twins;      ///< of half-edge 3 t + k, from corner k to the next; k_none while there is none
-  Index triangle_count;
+  Index triangle_count = 0;
 };
 
 constexpr double k_never = DBL_MAX, k_latest = 0.5 * DBL_MAX;  ///< events lie before `k_latest`, or never
@@ -106,14 +117,43 @@ SADDLEBACK_HOST_DEVICE inline double vanishing_radius(const Arc& a, const Arc& b
   return radius < k_latest ? radius : k_latest;
 }
 
+/// Page of the calendar for a radius; the last one holds all that comes after.
+SADDLEBACK_HOST_DEVICE inline Index day_of(const SweepState& s, double radius) {
+  const double day = radius * radius * s.days_per_area;
+  return day < s.day_count - 1 ? static_cast<Index>(day) : s.day_count - 1;
+}
+
+/// Whatever was said of when an arc vanishes is void.
+SADDLEBACK_HOST_DEVICE inline void unschedule(SweepState& s, Arc& arc) {
+  ++arc.stamp;
+  if (arc.day == k_none) return;
+  if (arc.day_previous == k_none) {
+    s.days[arc.day] = arc.day_next;
+  } else {
+    s.arcs[arc.day_previous].day_next = arc.day_next;
+  }
+  if (arc.day_next != k_none) s.arcs[arc.day_next].day_previous = arc.day_previous;
+  arc.day = k_none;
+}
+
 /// Says anew when an arc vanishes.
 SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index arc) {
   Arc& b = s.arcs[arc];
-  ++b.stamp;
+  unschedule(s, b);
   const Arc &a = s.arcs[b.previous], &c = s.arcs[b.next];
   if (a.site == c.site) return;
-  const double radius = vanishing_radius(a, b, c, s.x[0], s.y[0]);
-  if (radius != k_never) push_event(s, {radius, arc, b.stamp});
+  b.radius = vanishing_radius(a, b, c, s.x[0], s.y[0]);
+  if (b.radius == k_never) return;
+  const Index day = day_of(s, b.radius);
+  if (day <= s.today) {
+    push_event(s, {b.radius, arc, b.stamp});
+    return;
+  }
+  b.day = day;
+  b.day_previous = k_none;
+  b.day_next = s.days[day];
+  if (b.day_next != k_none) s.arcs[b.day_next].day_previous = arc;
+  s.days[day] = arc;
 }
 
 SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {
@@ -128,11 +168,12 @@ SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {
 
 /// The state before the second site: one closed arc about the first.
 SADDLEBACK_HOST_DEVICE inline void start(SweepState& s) {
-  s.arcs[0] = {s.x[0], s.y[0], 0, 0, 0, k_none, 0, k_none};
+  s.arcs[0] = {s.x[0], s.y[0], 0, 0, 0, k_none, k_none, 0, 0, k_none, k_none, k_none};
   s.arcs_used = 1;
   s.free_arc = k_none;
   s.latest = 0;
-  s.event_count = s.triangle_count = 0;
+  s.event_count = s.triangle_count = s.today = 0;
+  for (Index i = 0; i < s.day_count; ++i) s.days[i] = k_none;
   for (Index i = 0; i < s.near_count; ++i) s.near[i] = 0;
 }
 
@@ -151,84 +192,85 @@ SADDLEBACK_HOST_DEVICE inline Height height(const Touch& p, const Arc& arc) {
   return {p.x * x + p.y * y, x * x + y * y};
 }
 
-/// Whether the direction of p lies on this arc, which is further out there than both neighbours. One ellipse is outside
-/// another in one interval of directions, whose middle is m = s w' - s' w with w = |p|^2 - |s|^2 = 2 p.d - |d|^2: p
-/// must come after the middle of the previous arc's and before that of the next one's.
-SADDLEBACK_HOST_DEVICE inline bool is_between(const SweepState& s, const Touch& p, const Arc& arc, const Height& here,
-                                              const Height& before, const Height& after) {
+enum class Turn { here, ahead, back };
+
+/// For an arc that is further out in the direction of p than both neighbours: whether p hits it, or where to go on. One
+/// ellipse is outside another in one interval of directions, whose middle is m = s w' - s' w with
+/// w = |p|^2 - |s|^2 = 2 p.d - |d|^2: p must come after the middle of the previous arc's and before the next one's.
+SADDLEBACK_HOST_DEVICE inline Turn turn_to(const SweepState& s, const Touch& p, const Arc& arc, const Height& here,
+                                           const Height& before, const Height& after) {
   const Arc &a = s.arcs[arc.previous], &c = s.arcs[arc.next];
-  if (a.site == c.site) return true;
+  if (a.site == c.site) return Turn::here;
   const double w = 2 * here.along - here.squared, wa = 2 * before.along - before.squared,
                wc = 2 * after.along - after.squared;
   const double bx = arc.x - s.x[0], by = arc.y - s.y[0];
   const double ax = (a.x - s.x[0]) * w - bx * wa, ay = (a.y - s.y[0]) * w - by * wa;
   const double cx = (c.x - s.x[0]) * w - bx * wc, cy = (c.y - s.y[0]) * w - by * wc;
   const bool left_of_a = ax * p.y - ay * p.x >= 0, right_of_c = p.x * cy - p.y * cx >= 0;
-  return left_of_a == right_of_c ? left_of_a : ax * cy - ay * cx <= 0;
+  if (left_of_a && right_of_c) return Turn::here;
+  if (left_of_a != right_of_c && ax * cy - ay * cx <= 0) return Turn::here;
+  return right_of_c ? Turn::back : Turn::ahead;
 }
 
-/// Of all arcs the one that p hits: where walking does not find it.
-SADDLEBACK_HOST_DEVICE inline Index search_all(const SweepState& s, const Touch& p, Index from) {
-  Index best = k_none;
-  double best_value = 0;
-  bool best_fits = false;
-  Index arc = from;
-  do {
-    const Arc& b = s.arcs[arc];
-    const Height here = height(p, b);
-    const double value = here.value();
-    if (best == k_none || value > best_value || (value == best_value && !best_fits)) {
-      best = arc;
-      best_value = value;
-      best_fits = is_between(s, p, b, here, height(p, s.arcs[b.previous]), height(p, s.arcs[b.next]));
-    }
-    arc = b.next;
-  } while (arc != from);
+/// Of all arcs the furthest out: where rounding misleads every walk.
+SADDLEBACK_HOST_DEVICE inline Index highest_arc(const SweepState& s, const Touch& p, Index from) {
+  Index best = from;
+  for (Index arc = s.arcs[from].next; arc != from; arc = s.arcs[arc].next)
+    if (height(p, s.arcs[arc]).value() > height(p, s.arcs[best]).value()) best = arc;
   return best;
 }
 
 /// The arc that p hits, walking along the beach from one that may be near. O(1) expected, O(arcs) at worst.
+///
+/// The first walk climbs to an arc that is further out than both neighbours. Several arcs may be: parts of one ellipse
+/// with others between. The second walk passes these towards p.
 SADDLEBACK_HOST_DEVICE inline Index hit_arc(const SweepState& s, const Touch& p, Index from) {
   Index arc = from;
   Height here = height(p, s.arcs[arc]);
-  double value = here.value();
   Height after = height(p, s.arcs[s.arcs[arc].next]), before = height(p, s.arcs[s.arcs[arc].previous]);
-  double value_after = after.value(), value_before = before.value();
-  while (true) {
-    if (value_after > value && !(value_before > value_after)) {
+  double value = here.value(), value_after = after.value(), value_before = before.value();
+  Turn turn = Turn::here, first_turn = Turn::here;
+  for (Index step = 0; step < 2 * s.arcs_used; ++step) {
+    if (value_before <= value && value_after <= value) {
+      turn = turn_to(s, p, s.arcs[arc], here, before, after);
+      if (turn == Turn::here) return arc;
+      if (first_turn == Turn::here) first_turn = turn;
+      turn = first_turn;
+    } else if (first_turn == Turn::here) {
+      turn = value_after >= value_before ? Turn::ahead : Turn::back;
+    }
+    if (turn == Turn::ahead) {
       before = here, value_before = value;
       here = after, value = value_after;
       arc = s.arcs[arc].next;
       after = height(p, s.arcs[s.arcs[arc].next]);
       value_after = after.value();
-    } else if (value_before > value) {
+    } else {
       after = here, value_after = value;
       here = before, value = value_before;
       arc = s.arcs[arc].previous;
       before = height(p, s.arcs[s.arcs[arc].previous]);
       value_before = before.value();
-    } else {
-      break;
     }
   }
-  return is_between(s, p, s.arcs[arc], here, before, after) ? arc : search_all(s, p, arc);
+  return highest_arc(s, p, from);
 }
 
-/// Number of the bucket of a direction: an angle without trigonometry.
-SADDLEBACK_HOST_DEVICE inline Index bucket_of(const SweepState& s, double x, double y) {
+/// Number of the sector of a direction: an angle without trigonometry.
+SADDLEBACK_HOST_DEVICE inline Index sector_of(const SweepState& s, double x, double y) {
   const double share = y / (fabs(x) + fabs(y));  // -1 to 1
   const double turn = x >= 0 ? 1 + share : 3 - share;
-  const Index bucket = static_cast<Index>(turn * (0.25 * s.near_count));
-  return bucket < s.near_count ? bucket : s.near_count - 1;
+  const Index sector = static_cast<Index>(turn * (0.25 * s.near_count));
+  return sector < s.near_count ? sector : s.near_count - 1;
 }
 
 /// An arc alive that was seen in about this direction.
-SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, Index bucket) {
+SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, Index sector) {
   const Index mask = s.near_count - 1;
   for (Index step = 0; 2 * step <= s.near_count && step < 16; ++step) {
-    const Index up = (bucket + step) & mask, down = (bucket - step) & mask;
-    if (s.arcs[s.near[up]].bucket == up) return s.near[up];
-    if (s.arcs[s.near[down]].bucket == down) return s.near[down];
+    const Index up = (sector + step) & mask, down = (sector - step) & mask;
+    if (s.arcs[s.near[up]].sector == up) return s.near[up];
+    if (s.arcs[s.near[down]].sector == down) return s.near[down];
   }
   return s.latest;
 }
@@ -236,13 +278,13 @@ SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, Index bucket) 
 /// Touching event: the site splits the arc it is seen through.
 SADDLEBACK_HOST_DEVICE inline void touch(SweepState& s, Index site) {
   const Touch p{s.x[site], s.y[site], s.x[site] - s.x[0], s.y[site] - s.y[0]};
-  const Index bucket = bucket_of(s, p.x, p.y);
-  const Index left = hit_arc(s, p, arc_near(s, bucket));
+  const Index sector = sector_of(s, p.x, p.y);
+  const Index left = hit_arc(s, p, arc_near(s, sector));
   const Index middle = new_arc(s);
   Arc& l = s.arcs[left];
   Arc& m = s.arcs[middle];
-  m = {p.site_x, p.site_y, site, left, left, ~left, m.stamp, bucket};
-  s.near[bucket] = middle;
+  m = {p.site_x, p.site_y, site, left, left, ~left, sector, m.stamp, 0, k_none, k_none, k_none};
+  s.near[sector] = middle;
   s.latest = middle;
   if (l.next == left) {  // the first arc is closed: opened, not split
     l.next = l.previous = middle;
@@ -251,13 +293,12 @@ SADDLEBACK_HOST_DEVICE inline void touch(SweepState& s, Index site) {
   }
   const Index right = new_arc(s);
   Arc& r = s.arcs[right];
-  r = {l.x, l.y, l.site, middle, l.next, l.edge, r.stamp, k_none};
+  r = {l.x, l.y, l.site, middle, l.next, l.edge, k_none, r.stamp, 0, k_none, k_none, k_none};
   if (r.edge < 0) s.arcs[~r.edge].edge = ~right;
   s.arcs[l.next].previous = right;
   l.next = middle;
   m.next = right;
   l.edge = ~middle;
-  ++m.stamp;
   schedule(s, left);
   schedule(s, right);
 }
@@ -287,8 +328,8 @@ SADDLEBACK_HOST_DEVICE inline void vanish(SweepState& s, Index arc) {
   a.edge = half;
   a.next = after;
   c.previous = before;
-  ++b.stamp;
-  b.site = b.bucket = k_none;
+  unschedule(s, b);
+  b.site = b.sector = k_none;
   b.next = s.free_arc;
   s.free_arc = arc;
   if (s.latest == arc) s.latest = after;
@@ -298,10 +339,19 @@ SADDLEBACK_HOST_DEVICE inline void vanish(SweepState& s, Index arc) {
 
 /// Lets all arcs vanish that do so up to a radius.
 SADDLEBACK_HOST_DEVICE inline void vanish_until(SweepState& s, double radius) {
-  while (s.event_count > 0 && s.events[0].radius <= radius) {
-    const Event event = s.events[0];
-    pop_event(s);
-    if (s.arcs[event.arc].stamp == event.stamp) vanish(s, event.arc);
+  const Index last = day_of(s, radius);
+  while (true) {
+    while (s.event_count > 0 && s.events[0].radius <= radius) {
+      const Event event = s.events[0];
+      pop_event(s);
+      if (s.arcs[event.arc].stamp == event.stamp) vanish(s, event.arc);
+    }
+    if (s.today >= last) return;
+    ++s.today;
+    for (Index arc = s.days[s.today]; arc != k_none; arc = s.arcs[arc].day_next) {
+      s.arcs[arc].day = k_none;
+      push_event(s, {s.arcs[arc].radius, arc, s.arcs[arc].stamp});
+    }
   }
 }
 
