@@ -28,11 +28,16 @@ class BucketQueue {
   void push(Index node, double key) {
     const double place = key * inverse_width_;
     // Rounding must not put an entry behind the bucket being emptied, nor round the ring.
-    const std::int64_t bucket = std::clamp(static_cast<std::int64_t>(place), current_, current_ + mask_);
-    Chunk*& last = buckets_[static_cast<std::size_t>(bucket & mask_)].last;
-    if (!last || last->count == k_chunk) last = append(buckets_[static_cast<std::size_t>(bucket & mask_)]);
-    last->entries[last->count++] = {node, static_cast<float>(place)};
-    ++size_;
+    push_into(std::clamp(static_cast<std::int64_t>(place), current_, current_ + mask_), node, place);
+  }
+
+  /// As push, for a node whose key was `before` (negative: none) and has fallen: an entry that waits in the right
+  /// bucket will do, so that is_due must tell what to expand. Only for keys that keep what `reset` asks.
+  void lower(Index node, double key, double before) {
+    const double place = key * inverse_width_;
+    const auto bucket = static_cast<std::int64_t>(place);
+    if (bucket > current_ && bucket == bucket_of(before)) return;
+    push_into(bucket, node, place);
   }
 
   bool pop(Entry& entry) {
@@ -57,6 +62,10 @@ class BucketQueue {
     return static_cast<float>(key * inverse_width_) == entry.key;
   }
 
+  /// Whether the entry's node, now with this key, belongs into the bucket being emptied: else its key has fallen since
+  /// and it was expanded before.
+  bool is_due(const Entry&, double key) const { return bucket_of(key) == current_; }
+
   /// The entry to be popped after `count` more, null when it is not at hand.
   const Entry* ahead(int count) const {
     return front_ && next_ + count < front_->count ? &front_->entries[next_ + count] : nullptr;
@@ -77,6 +86,13 @@ class BucketQueue {
     Chunk *first, *last;
   };
 
+  std::int64_t bucket_of(double key) const { return static_cast<std::int64_t>(key * inverse_width_); }
+  void push_into(std::int64_t bucket, Index node, double place) {
+    Chunk*& last = buckets_[static_cast<std::size_t>(bucket & mask_)].last;
+    if (!last || last->count == k_chunk) last = append(buckets_[static_cast<std::size_t>(bucket & mask_)]);
+    last->entries[last->count++] = {node, static_cast<float>(place)};
+    ++size_;
+  }
   Chunk* append(Bucket& bucket);
   void drop_front();
   void leave_bucket();

@@ -23,7 +23,7 @@ enum class SearchLabels { none, sources, sources_and_predecessors };
 
 /// Least distance and, if asked for, among equals the least source of every node. Sums of arcs are exact (see
 /// ArcCodec), so that neither the queue nor the order of the work shows in the result. Holds its memory for the next
-/// run; one a thread.
+/// run; one a thread and graph.
 class GraphSearch {
  public:
   /// \throw Cancelled. O(arcs) with buckets, O(arcs + V log V) with Dijkstra's heap.
@@ -44,6 +44,7 @@ class GraphSearch {
   void propagate(Queue& queue, RelaxRow relax, const SaddleVertexGraph& graph, std::span<const Seed> seeds,
                  const JobStage& stage);
 
+  double width_ = 0;  ///< of the buckets; 0: not known yet
   double bound_ = 0;  ///< what unreached nodes hold: the first number that is beyond the limit
   std::vector<double> distances_;
   std::vector<Index> sources_, predecessors_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geodesics/arc_scale.h"
 #include "geodesics/relax_row.h"
 
 namespace saddleback {
@@ -12,28 +13,11 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // out of order are expanded again. On graded meshes it is the short edges that count: most nodes are there.
 constexpr double k_bucket_width = 1.0 / 16;
 constexpr double k_short_share = 0.1;
-constexpr Index k_most_sampled = 4096;
 // Arcs are rounded to 22 bits or more, as the number of vertices leaves: a path may fall short of the straight line by
 // this part of it.
 constexpr double k_straight_line = 1 - 2e-7;
 constexpr double k_rounding = 1 - 1e-12;
 constexpr Index k_nodes_a_check = 4096;
-
-/// Length that a tenth of the nodes' shortest arcs do not exceed.
-double short_arc(const ArcRows& arcs) {
-  std::vector<double> shortest;
-  const Index count = arcs.node_count(), stride = std::max<Index>(1, count / k_most_sampled);
-  for (Index node = 0; node < count; node += stride) {
-    double least = k_infinity;
-    for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc)
-      least = std::min(least, arcs.length(arc));
-    shortest.push_back(least);
-  }
-  const auto chosen =
-      shortest.begin() + static_cast<std::ptrdiff_t>(k_short_share * static_cast<double>(shortest.size()));
-  std::nth_element(shortest.begin(), chosen, shortest.end());
-  return *chosen;
-}
 
 }  // namespace
 
@@ -101,7 +85,7 @@ PointDistance PointSearch::run(const SaddleVertexGraph& graph, const Landmarks& 
   const auto count = static_cast<std::size_t>(graph.arcs().node_count());
   distances_.resize(count, k_infinity);
   met_.resize(count);
-  if (width_ == 0) width_ = k_bucket_width * short_arc(graph.arcs());
+  if (width_ == 0) width_ = k_bucket_width * shortest_arcs_below(graph.arcs(), k_short_share);
   const Landmarks::Target target = landmarks.target(to, position);
   Run work(*this, graph, landmarks, target, upper);
   struct Cleaner {

@@ -61,6 +61,7 @@ void take(const ArcCodec& codec, std::uint64_t word, const RowOffer& offer, Lowe
   if (distance == known && !(offer.labels && offer.label < offer.labels[target])) return;
   offer.distances[target] = distance;
   lowered.nodes[lowered.count] = target;
+  lowered.before[lowered.count] = known;
   lowered.distances[lowered.count++] = distance;
 }
 

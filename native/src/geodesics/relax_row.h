@@ -7,12 +7,13 @@
 
 namespace saddleback {
 
-/// Nodes whose distance a row has lowered, at most k_most a call.
+/// Nodes whose distance a row has lowered, with it and the one before; at most k_most a call.
 struct LoweredNodes {
   static constexpr int k_most = 256;
   int count = 0;
   Index nodes[k_most];
   double distances[k_most];
+  double before[k_most];
 };
 
 /// What is offered along a row, and where it is written.
