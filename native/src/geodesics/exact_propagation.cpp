@@ -38,9 +38,13 @@ constexpr double k_sliver = 1e-10, k_gap = 1e-7;
 constexpr double k_ray_gap = 1e-13;
 constexpr double k_narrow_fan = 1e-12;  ///< radians; rounding of the sum of a vertex's angles
 constexpr double k_buckets_per_edge = 4;
+constexpr Index k_ahead = 4;  ///< windows, enough for memory to answer
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
+double squared(double x, double y) { return x * x + y * y; }
+double length_of(double x, double y) { return std::sqrt(squared(x, y)); }
+/// Whether a length, which may be negative, is less than the root of a square.
+bool is_less(double length, double square) { return length < 0 || length * length < square; }
 
 /// What is too narrow for a window on an edge of that length.
 double least_width(double length, double sx, double sy, double b0, double b1) {
@@ -96,12 +100,20 @@ std::size_t ExactPropagation::nbytes() const {
          occupants_.size() * sizeof(Occupant);
 }
 
+/// Asks for what a window needs before it is its turn: half of the time would be waiting for memory.
+void ExactPropagation::fetch(Index halfedge) const {
+  if (halfedge < 0) return;
+  __builtin_prefetch(&surface_.frame(halfedge));
+  __builtin_prefetch(&occupants_[halfedge]);
+}
+
 /// Propagates a chain of blocks.
 void ExactPropagation::drain(WindowBlock* block, const JobStage& stage) {
   while (block) {
     stage.check();
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->windows[i];
+      if (i + k_ahead < block->size) fetch(block->windows[i + k_ahead].halfedge);
       if (window.halfedge >= 0) {
         if (surface_.frame(window.halfedge).holds_sources) [[unlikely]] {
           cut_at_sources(window, false, [this](const Window& part) { propagate(part); });
@@ -226,31 +238,35 @@ void ExactPropagation::propagate(const Window& window) {
   const EdgeFrame& frame = surface_.frame(window.halfedge);
   const auto [sx, sy, b0, b1, sigma, halfedge, root] = window;
   const double length = frame.length, ax = frame.apex_x, ay = frame.apex_y;
-  const double ox = ax - sx, oy = ay - sy;
-  const double reach = length_of(ox, oy);
-  const double split = sx - ox * (sy / oy);  // where the ray to the apex crosses the half-edge
-  const double gap = k_gap * length + k_ray_gap * reach, sliver = least_width(length, sx, sy, b0, b1);
-  if (split >= b0 && split <= b1) {
-    offer(frame.apex, sigma + reach, {ox, oy, halfedge, root});
-  } else if (split >= b0 - gap && split <= b1 + gap) {
-    const double b = split < b0 ? b0 : b1;
-    offer(frame.apex, sigma + length_of(b - sx, sy) + length_of(ax - b, ay), {ox, oy, halfedge, root});
-  }
-  const bool has_left = split > b0 + sliver, has_right = split < b1 - sliver;
-  bool go_left = has_left && frame.left != k_none, go_right = has_right && frame.right != k_none;
-  if (has_left && has_right) {
-    Occupant& occupant = occupants_[halfedge];
-    if (sigma + reach < occupant.distance) {
-      occupant = {sigma + reach, split};
-    } else if (split < occupant.split) {  // a nearer window split this angle: beyond its ray all is nearer by that one
-      go_right = false;
-    } else {
-      go_left = false;
-    }
-  }
   // Distances of the corners, from the root's on.
   const double at_from = distances_[frame.from] * (1 + k_slack) - sigma;
   const double at_to = distances_[frame.to] * (1 + k_slack) - sigma;
+  if (is_less(at_from + b1, squared(b1 - sx, sy)) || is_less(at_to + (length - b0), squared(b0 - sx, sy))) return;
+  const double ox = ax - sx, oy = ay - sy;
+  const double split = sx - ox * (sy / oy);  // where the ray to the apex crosses the half-edge
+  const double sliver = least_width(length, sx, sy, b0, b1);
+  const double gap = k_gap * length + k_ray_gap * (std::abs(ox) + oy);
+  const bool has_left = split > b0 + sliver, has_right = split < b1 - sliver;
+  bool go_left = has_left && frame.left != k_none, go_right = has_right && frame.right != k_none;
+  if (split >= b0 - gap && split <= b1 + gap) {
+    const double reach = sigma + length_of(ox, oy);
+    if (split >= b0 && split <= b1) {
+      offer(frame.apex, reach, {ox, oy, halfedge, root});
+    } else {
+      const double b = split < b0 ? b0 : b1;
+      offer(frame.apex, sigma + length_of(b - sx, sy) + length_of(ax - b, ay), {ox, oy, halfedge, root});
+    }
+    if (has_left && has_right) {
+      Occupant& occupant = occupants_[halfedge];
+      if (reach < occupant.distance) {
+        occupant = {reach, split};
+      } else if (split < occupant.split) {  // beyond the ray of a nearer window all is nearer by that one
+        go_right = false;
+      } else {
+        go_left = false;
+      }
+    }
+  }
   const double at_apex = distances_[frame.apex] * (1 + k_slack) - sigma;
   // Makes a child on the edge from a corner `near` of the half-edge to the apex. Coordinates start at that corner: the
   // half-edge on the x axis, the edge of length `l` in direction (ux, uy), the parent between `begin` and `end`.
@@ -263,21 +279,21 @@ void ExactPropagation::propagate(const Window& window) {
     const double q0 = hit(begin), q1 = to_apex ? l : hit(end);
     const double cx = ux * x + uy * sy, cy = std::min(0.0, ux * sy - uy * x);
     if (!(q1 > q0) || q1 - q0 <= least_width(l, cx, cy, q0, q1)) return;
-    const double r0 = length_of(cx - q0, cy), r1 = length_of(cx - q1, cy);
-    const double across = length_of(length - q0 * ux, q0 * uy);
-    if (at_near + q1 < r1 || at_apex + (l - q0) < r0 || at_far + across < r0) return;
-    make(cx, cy, q0, q1, sigma + (cx < q0 ? r0 : cx > q1 ? r1 : -cy));
+    const double to_q0 = squared(cx - q0, cy), to_q1 = squared(cx - q1, cy);
+    if (is_less(at_near + q1, to_q1) || is_less(at_apex + (l - q0), to_q0)) return;
+    if (is_less(at_far + length_of(length - q0 * ux, q0 * uy), to_q0)) return;
+    make(cx, cy, q0, q1, sigma + (cx < q0 ? std::sqrt(to_q0) : cx > q1 ? std::sqrt(to_q1) : -cy));
   };
   if (go_left) {
-    const double l = frame.left_length;
-    child(l, ax / l, ay / l, sx, b0, b1, has_right, at_from, at_to,
+    const double l = frame.left_length, to_unit = 1 / l;
+    child(l, ax * to_unit, ay * to_unit, sx, b0, b1, has_right, at_from, at_to,
           [&](double cx, double cy, double q0, double q1, double key) {
             queue_->push({cx, cy, q0, q1, sigma, frame.left, root}, key);
           });
   }
   if (go_right) {  // the mirror image
-    const double l = frame.right_length;
-    child(l, (length - ax) / l, ay / l, length - sx, length - b1, length - b0, has_left, at_to, at_from,
+    const double l = frame.right_length, to_unit = 1 / l;
+    child(l, (length - ax) * to_unit, ay * to_unit, length - sx, length - b1, length - b0, has_left, at_to, at_from,
           [&](double cx, double cy, double q0, double q1, double key) {
             queue_->push({l - cx, cy, l - q1, l - q0, sigma, frame.right, root}, key);
           });

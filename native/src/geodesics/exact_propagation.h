@@ -59,6 +59,7 @@ class ExactPropagation {
 
   void start();
   void start_in_face(const SourceInFace& place);
+  void fetch(Index halfedge) const;
   void drain(WindowBlock* block, const JobStage& stage);
   void offer(Index vertex, double distance, const Arrival& arrival);
   bool owns_before(const Arrival& a, const Arrival& b) const;
