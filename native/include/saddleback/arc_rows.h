@@ -3,7 +3,10 @@
 
 #include <bit>
 #include <cstdint>
+#include <memory>
+#include <new>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "saddleback/types.h"
@@ -57,11 +60,29 @@ class ArcCodec {
   double quantum_ = 1, least_ = 1, rounder_ = 1;
 };
 
+/// Leaves memory as it is: whoever fills it touches it first, on a core of its own.
+template <class Number>
+struct UninitializedAllocator : std::allocator<Number> {
+  template <class Other>
+  struct rebind {
+    using other = UninitializedAllocator<Other>;
+  };
+  template <class Other>
+  void construct(Other* place) noexcept {
+    ::new (static_cast<void*>(place)) Other;
+  }
+  template <class Other, class... Arguments>
+  void construct(Other* place, Arguments&&... arguments) {
+    ::new (static_cast<void*>(place)) Other(std::forward<Arguments>(arguments)...);
+  }
+};
+using ArcWords = std::vector<std::uint64_t, UninitializedAllocator<std::uint64_t>>;
+
 /// Rows of arcs, a row a node, in compressed sparse rows.
 class ArcRows {
  public:
   ArcRows() = default;
-  ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, std::vector<std::uint64_t> words);
+  ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, ArcWords words);
 
   Index node_count() const { return static_cast<Index>(offsets_.size()) - 1; }
   std::int64_t count() const { return static_cast<std::int64_t>(words_.size()); }
@@ -81,7 +102,7 @@ class ArcRows {
  private:
   ArcCodec codec_;
   std::vector<std::int64_t> offsets_{0};
-  std::vector<std::uint64_t> words_;
+  ArcWords words_;
   double longest_ = 0;
 };
 

@@ -39,7 +39,7 @@ std::uint64_t ArcCodec::pack(Index target, int sector, double length) const {
          static_cast<std::uint64_t>(target);
 }
 
-ArcRows::ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, std::vector<std::uint64_t> words)
+ArcRows::ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, ArcWords words)
     : codec_(codec), offsets_(std::move(offsets)), words_(std::move(words)) {
   std::uint64_t longest = 0;
   for (const std::uint64_t word : words_) longest = std::max(longest, codec_.length_bits(word));

@@ -7,9 +7,10 @@
 namespace saddleback {
 namespace {
 
-/// An arc that only its target's end was told of.
+/// An arc that only its target's end was told of, or told of better.
 struct MissingArc {
   Index node;
+  bool replaces;  ///< a longer one of the same ends
   std::uint64_t word;
   bool operator<(const MissingArc& other) const { return node != other.node ? node < other.node : word < other.word; }
 };
@@ -49,7 +50,7 @@ class Union {
         if (target < node) continue;
         const Place reverse = find(target, node);
         if (reverse.arc < 0) {
-          missing_[block_index].push_back({target, reversed(node, block.back_sectors[i], word)});
+          missing_[block_index].push_back({target, false, reversed(node, block.back_sectors[i], word)});
           continue;
         }
         paired_[reverse.block][reverse.arc] = 1;
@@ -57,9 +58,9 @@ class Union {
         const std::uint64_t back = other.words[reverse.arc];
         // The shorter one replaces its reverse: then that leaves in another direction.
         if (codec_.length_bits(word) < codec_.length_bits(back))
-          missing_[block_index].push_back({target, reversed(node, block.back_sectors[i], word)});
+          missing_[block_index].push_back({target, true, reversed(node, block.back_sectors[i], word)});
         if (codec_.length_bits(back) < codec_.length_bits(word))
-          missing_[block_index].push_back({node, reversed(target, other.back_sectors[reverse.arc], back)});
+          missing_[block_index].push_back({node, true, reversed(target, other.back_sectors[reverse.arc], back)});
       }
     }
   }
@@ -73,7 +74,7 @@ class Union {
       for (const std::int64_t end = i + block.counts[row]; i < end; ++i) {
         const Index target = codec_.target(block.words[i]);
         if (target > node || paired_[block_index][i]) continue;
-        missing_[block_index].push_back({target, reversed(node, block.back_sectors[i], block.words[i])});
+        missing_[block_index].push_back({target, false, reversed(node, block.back_sectors[i], block.words[i])});
       }
     }
   }
@@ -85,22 +86,23 @@ class Union {
     parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
       stage.check();
       for_each_row(b, [&](Index node, std::span<const std::uint64_t> own, std::span<const MissingArc> others) {
-        std::int64_t count = static_cast<std::int64_t>(own.size());
-        for (const MissingArc& other : others) count += std::ranges::none_of(own, same_target(other.word));
-        offsets[node + 1] = count;
+        const auto added = std::ranges::count_if(others, [](const MissingArc& arc) { return !arc.replaces; });
+        offsets[node + 1] = static_cast<std::int64_t>(own.size()) + added;
       });
     });
     for (Index v = 0; v < node_count_; ++v) offsets[v + 1] += offsets[v];
-    std::vector<std::uint64_t> words(offsets.back());
+    ArcWords words(offsets.back());
     parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
       stage.check();
       for_each_row(b, [&](Index node, std::span<const std::uint64_t> own, std::span<const MissingArc> others) {
         const auto row = words.begin() + offsets[node];
         auto end = std::copy(own.begin(), own.end(), row);
         for (const MissingArc& other : others) {
-          const auto known = std::find_if(row, end, same_target(other.word));
-          *known = other.word;
-          end = std::max(end, known + 1);
+          if (other.replaces) {
+            *std::find_if(row, end, same_target(other.word)) = other.word;
+          } else {
+            *end++ = other.word;
+          }
         }
       });
       found_[b] = {};

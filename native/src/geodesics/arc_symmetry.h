@@ -14,7 +14,7 @@ namespace saddleback {
 struct FoundArcs {
   Index first_node = 0;
   std::vector<std::int32_t> counts;        ///< per node
-  std::vector<std::uint64_t> words;        ///< row after row
+  std::vector<std::uint64_t> words;        ///< row after row, then k_row_padding more
   std::vector<std::uint8_t> back_sectors;  ///< per word: direction back, at the target
 };
 

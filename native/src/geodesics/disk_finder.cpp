@@ -224,31 +224,27 @@ void DiskFinder::write_row(Index node, int lane, FoundArcs& found) {
   leaving_.resize(room);
   back_.resize(room);
   kernel_.aim(rows, chosen_.data(), count, lengths_.data(), leaving_.data(), back_.data());
+  const std::size_t before = found.words.size();
+  found.words.resize(before + chosen_.size() - k_row_padding);
+  found.back_sectors.resize(found.words.size());
+  const float per_radian = mesh_.sectors_per_radian(node);
   for (int i = 0; i < count; ++i) {
-    const Index root = rows.root[chosen_[i]];
-    if (root < 0) {
-      append_edge(~root, rows.edge[chosen_[i]] != 0, found);
-      continue;
+    const std::int32_t sighting = chosen_[i];
+    const Index target = rows.slot[sighting] / k_batch, root = rows.root[sighting];
+    float leaving, back;
+    if (root >= 0) {
+      leaving = mesh_.sector(root) + leaving_[i] * per_radian;
+      back = mesh_.apex_sector(rows.edge[sighting] / k_batch) + back_[i] * mesh_.sectors_per_radian(target);
+    } else if (rows.edge[sighting] == 0) {  // an edge of the source
+      leaving = mesh_.sector(~root);
+      back = mesh_.reverse_sector(~root);
+    } else {  // the other one of its face, at the boundary
+      leaving = ArcCodec::k_sectors;
+      back = mesh_.apex_sector(~root);
     }
-    const Index target = rows.slot[chosen_[i]] / k_batch, entered = rows.edge[chosen_[i]] / k_batch;
-    const float begin = mesh_.sector(root) + leaving_[i] * mesh_.sectors_per_radian(node);
-    const float end = mesh_.apex_sector(entered) + back_[i] * mesh_.sectors_per_radian(target);
-    append(target, lengths_[i], begin, end, found);
+    found.words[before + i] = codec_.pack(target, to_sector(leaving), lengths_[i] * mesh_.unit());
+    found.back_sectors[before + i] = static_cast<std::uint8_t>(to_sector(back));
   }
-}
-
-/// An edge of a source, or the other one of its face.
-void DiskFinder::append_edge(Index edge, bool other, FoundArcs& found) const {
-  if (other) {
-    append(mesh_.records()[edge].apex, mesh_.apex(edge).norm(), ArcCodec::k_sectors, mesh_.apex_sector(edge), found);
-  } else {
-    append(mesh_.target(edge), mesh_.length(edge), mesh_.sector(edge), mesh_.reverse_sector(edge), found);
-  }
-}
-
-void DiskFinder::append(Index target, double length, float leaving, float back, FoundArcs& found) const {
-  found.words.push_back(codec_.pack(target, to_sector(leaving), length * mesh_.unit()));
-  found.back_sectors.push_back(static_cast<std::uint8_t>(to_sector(back)));
 }
 
 void DiskFinder::clear() {

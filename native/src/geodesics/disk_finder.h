@@ -81,8 +81,6 @@ class DiskFinder {
   void advance();
   void lower_labels(int from, int to);
   void write_row(Index node, int lane, FoundArcs& found);
-  void append_edge(Index edge, bool other, FoundArcs& found) const;
-  void append(Index target, double length, float leaving, float back, FoundArcs& found) const;
   void clear();
 
   bool by_count() const { return rule_.k > 0; }

@@ -27,6 +27,7 @@ std::vector<FoundArcs> find_by_blocks(const ArcSearch& search, const JobStage& s
     const Index count = std::min(k_block, static_cast<Index>(search.vertices.size()) - found[b].first_node);
     found[b].counts.reserve(count);
     find(found[b], count, thread);
+    found[b].words.resize(found[b].words.size() + k_row_padding);
     stage.update(static_cast<double>(++done) / static_cast<double>(found.size()));
   });
   return found;

@@ -191,7 +191,7 @@ SaddleVertexGraph SaddleVertexGraph::load(const std::string& path, const Mesh& m
   graph.vertices_.resize(header.vertex_count);
   file.read(std::span(graph.vertices_));
   std::vector<std::int64_t> offsets = read_offsets(file, header.vertex_count);
-  std::vector<std::uint64_t> words(header.arc_count);
+  ArcWords words(header.arc_count);
   file.read(std::span(words), stage.part(0.05, 0.4));
   if (const std::uint32_t crc = file.crc(); file.read<std::uint32_t>() != crc)
     refuse_graph_file(path, "its checksum is wrong");

@@ -81,7 +81,7 @@ struct WaveKernel {
   /// those at which they come in, from the half-edge to the start of the last one crossed. In radians, to 1e-5. Reads
   /// `chosen` up to its padding.
   void (*aim)(const SightingRows&, const std::int32_t* chosen, int count, double* lengths, float* leaving, float* back);
-  /// Index of the word whose low bits are `target`, -1 for none. `target` occurs at most once.
+  /// Index of the first word whose bits below `mask` are `target`, -1 for none. Reads k_row_padding words more.
   int (*find_target)(const std::uint64_t* words, int count, std::uint32_t mask, std::uint32_t target);
 };
 

@@ -324,14 +324,14 @@ void aim(const SightingRows& seen, const std::int32_t* chosen, int count, double
   }
 }
 
-/// Without a branch a word, so that the compiler takes several at a time.
 int find_target(const std::uint64_t* words, int count, std::uint32_t mask, std::uint32_t target) {
-  int found = 0;
-  for (int i = 0; i < count; ++i) {
-    const int here = (static_cast<std::uint32_t>(words[i]) & mask) == target ? i + 1 : 0;
-    found = here > found ? here : found;
+  const Ints low_bits = Simd::fill_int(static_cast<std::int32_t>(mask));
+  const Ints wanted = Simd::fill_int(static_cast<std::int32_t>(target));
+  for (int i = 0; i < count; i += Simd::width) {
+    const Mask here = ((Simd::low_words(words + i) & low_bits) == wanted) & Simd::first(count - i);
+    if (Simd::any(here)) return i + Simd::first_of(here);
   }
-  return found - 1;
+  return -1;
 }
 
 }  // namespace

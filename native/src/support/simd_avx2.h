@@ -45,6 +45,15 @@ struct Simd : Vectors<8> {
   static constexpr const char* name = "avx2";
 
   static bool any(Mask mask) { return _mm256_movemask_ps(reinterpret_cast<__m256>(mask)) != 0; }
+  /// The number of the first lane of a mask that has one.
+  static int first_of(Mask mask) { return __builtin_ctz(_mm256_movemask_ps(reinterpret_cast<__m256>(mask))); }
+  /// Lower halves of 64-bit words.
+  static Ints low_words(const std::uint64_t* words) {
+    const __m256 low = _mm256_loadu_ps(reinterpret_cast<const float*>(words));
+    const __m256 high = _mm256_loadu_ps(reinterpret_cast<const float*>(words + 4));
+    const auto pairs = reinterpret_cast<__m256d>(_mm256_shuffle_ps(low, high, 0x88));
+    return reinterpret_cast<Ints>(_mm256_permute4x64_pd(pairs, 0xD8));
+  }
   static Floats sqrt(Floats a) { return _mm256_sqrt_ps(a); }
   static Floats narrow(Doubles a) { return _mm256_set_m128(_mm256_cvtpd_ps(a.high), _mm256_cvtpd_ps(a.low)); }
   /// The values at table[index].

@@ -12,6 +12,14 @@ struct Simd : Vectors<16> {
   static constexpr const char* name = "avx512";
 
   static bool any(Mask mask) { return bits(mask) != 0; }
+  /// The number of the first lane of a mask that has one.
+  static int first_of(Mask mask) { return __builtin_ctz(bits(mask)); }
+  /// Lower halves of 64-bit words.
+  static Ints low_words(const std::uint64_t* words) {
+    const __m256i low = _mm512_cvtepi64_epi32(_mm512_loadu_si512(words));
+    const __m256i high = _mm512_cvtepi64_epi32(_mm512_loadu_si512(words + 8));
+    return reinterpret_cast<Ints>(_mm512_inserti32x8(_mm512_castsi256_si512(low), high, 1));
+  }
   static Floats sqrt(Floats a) { return _mm512_sqrt_ps(a); }
   static Floats narrow(Doubles a) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(a.low)), _mm512_cvtpd_ps(a.high), 1);

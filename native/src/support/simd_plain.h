@@ -14,6 +14,13 @@ struct Simd : Vectors<4> {
 #endif
 
   static bool any(Mask mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
+  /// The number of the first lane of a mask that has one.
+  static int first_of(Mask mask) { return mask[0] ? 0 : mask[1] ? 1 : mask[2] ? 2 : 3; }
+  /// Lower halves of 64-bit words.
+  static Ints low_words(const std::uint64_t* words) {
+    return Ints{static_cast<std::int32_t>(words[0]), static_cast<std::int32_t>(words[1]),
+                static_cast<std::int32_t>(words[2]), static_cast<std::int32_t>(words[3])};
+  }
   static Floats sqrt(Floats a) {
     return Floats{__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3])};
   }
