@@ -174,3 +174,14 @@ def test_progress_and_cancel():
     job.cancel()
     with pytest.raises(sb.Cancelled):
         sb.voronoi_2d(sites, job=job)
+
+
+@pytest.mark.parametrize("kind", plane_sites.KINDS)
+def test_the_same_bytes_for_any_circles_and_threads(kind):
+    sites = plane_sites.KINDS[kind](3000, np.random.default_rng(8))
+    results = set()
+    for circles, threads in ((1, 1), (7, 1), (100, 2)):
+        diagram = sb.voronoi_2d(sites, circles=circles, threads=threads)
+        arrays = ("vertices", "edges", "edge_sites", "site_of", "delaunay")
+        results.add(tuple(getattr(diagram, name).tobytes() for name in arrays))
+    assert len(results) == 1

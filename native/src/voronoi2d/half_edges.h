@@ -22,23 +22,25 @@ struct Cells {
   Index cell_count() const { return static_cast<Index>(is_open.size()); }
 };
 
-/// The cells of a triangulation of all sites (corners are ranks). Edges marked flat have no length: they are left out,
-/// which makes one vertex of all triangles on one circle.
-Cells cells_of(const PlanarMesh& mesh, std::span<const std::uint8_t> is_flat);
-
 /// The cells of sites on one line: strips.
 Cells strips_of(const OrderedSites& sites);
 
-/// What the cells' corners and sides are called.
+/// The cells' corners and sides by number.
 struct Numbering {
   std::vector<Index> corner_vertices;               ///< by corner: its vertex, k_none at infinity
   std::vector<Index> side_edges;                    ///< by neighbour: its edge
-  std::vector<std::array<Index, 3>> vertex_sites;   ///< three sites (ranks) equally far from the vertex
+  std::vector<Vec2> vertices;                       ///< in the given coordinates
   std::vector<std::array<Index, 2>> edge_vertices;  ///< k_none at infinity, which is never the first of two
-  std::vector<std::array<Index, 2>> edge_sites;     ///< ranks: left and right of the edge
+  std::vector<std::array<Index, 2>> edge_sites;     ///< given indices: left and right of the edge
 };
 
-/// Numbers vertices by their lowest site, then counter-clockwise about it; edges likewise. O(corners).
-Numbering number(const Cells& cells);
+/// Numbers vertices by the lowest rank about them, then counter-clockwise about that site; edges likewise.
+///
+/// False when the cells do not fit together, because some were found from too few sites. Cells that do are right: every
+/// edge passes the circle test among the neighbours of its cells; if each cell's neighbours wind around it once, if
+/// neighbourhood is mutual, and if the number of vertices is Euler's, they are a triangulation of one plane (up to
+/// vertices of more than three cells); and one that passes all circle tests is Delaunay's. All of this is exact.
+/// O(corners).
+bool number(const Cells& cells, const OrderedSites& sites, int threads, const JobStage& stage, Numbering& result);
 
 }  // namespace saddleback::voronoi2d

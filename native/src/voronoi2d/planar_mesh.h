@@ -11,9 +11,9 @@
 
 namespace saddleback::voronoi2d {
 
-/// Half-edge 3 t + k goes from corner k of triangle t to the next corner, counter-clockwise.
-inline Index next_half(Index half) { return half % 3 == 2 ? half - 2 : half + 1; }
-inline Index previous_half(Index half) { return half % 3 == 0 ? half + 2 : half - 1; }
+/// Half-edge 4 t + k goes from corner k of triangle t to the next corner, counter-clockwise; k = 3 is not used.
+inline Index next_half(Index half) { return (half & 3) == 2 ? half - 2 : half + 1; }
+inline Index previous_half(Index half) { return (half & 3) == 0 ? half + 2 : half - 1; }
 
 /// A view: the arrays belong to others.
 struct PlanarMesh {
@@ -24,22 +24,20 @@ struct PlanarMesh {
   Index triangle_count;
 
   predicates::Point2 point(Index site) const { return {x[site], y[site]}; }
-  Index half_count() const { return 3 * triangle_count; }
+  Index half_end() const { return 4 * triangle_count; }
 };
 
 /// Where the four sites about an edge between two triangles lie: `positive` when the triangles must be exchanged for
 /// the other two, `zero` when they share a Voronoi vertex. Exact.
 predicates::Sign circle_test(const PlanarMesh& mesh, Index half);
 
-enum class Verdict { delaunay, other_triangulation, no_triangulation };
+/// True when all edges pass the circle test; marks those (both halves) whose triangles share a Voronoi vertex. Exact.
+bool passes_circle_tests(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat);
 
-/// Marks the edges (both halves) whose triangles share a Voronoi vertex, and tells what the mesh is. Triangles must
-/// turn counter-clockwise and be joined by `twins` as a disk: then, exactly,
-/// - around an inner site they wind once, around a site of the border not more than half a turn, the border is convex
-///   and there is one of it: a triangulation;
-/// - all edges pass the circle test: Delaunay's.
-/// O(triangles).
-Verdict check(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat);
+/// Whether triangles that turn counter-clockwise and are joined by `twins` cover the convex hull of the sites once:
+/// around an inner site they wind once, around a site of the border at most half a turn, the border is convex, and
+/// there is one of it. Exact. If the edges pass the circle test as well it is Delaunay's triangulation.
+bool is_triangulation(const PlanarMesh& mesh);
 
 /// Makes a triangulation Delaunay's (C. L. Lawson, 1977): exchanges triangles until all edges pass the circle test.
 void exchange_triangles(PlanarMesh& mesh);

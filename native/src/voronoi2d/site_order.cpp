@@ -199,6 +199,8 @@ OrderedSites order_sites(std::span<const Vec2> sites, const JobStage& stage) {
     radix_sort(items, other);
     stage.update(0.6);
   }
+  std::vector<std::uint32_t> places(items.size());  // the runs' own curves overwrite theirs
+  for (std::size_t i = 0; i < items.size(); ++i) places[i] = items[i].place;
   sorter.sort_runs(items);
   stage.update(0.8);
 
@@ -206,12 +208,15 @@ OrderedSites order_sites(std::span<const Vec2> sites, const JobStage& stage) {
   result.original.reserve(sites.size());
   result.x.reserve(sites.size());
   result.y.reserve(sites.size());
-  for (const Keyed& item : items) {
+  result.places.reserve(sites.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Keyed& item = items[i];
     const double x = sites[item.index].x() * result.scale, y = sites[item.index].y() * result.scale;
     if (result.x.empty() || result.x.back() != x || result.y.back() != y) {
       result.x.push_back(x);
       result.y.push_back(y);
       result.original.push_back(item.index);
+      result.places.push_back(places[i]);
     }
     result.site_of[item.index] = result.original.back();
   }

@@ -1,5 +1,5 @@
-// Events in the order of the radius, then the proof that the outcome is Delaunay's. Where rounding made the sweep take
-// two nearly simultaneous events in the wrong order, some triangles are exchanged; where it led to no triangulation at
+// Sites from near to far, then events in the order of the radius. Where rounding made the sweep take two nearly
+// simultaneous events in the wrong order, some triangles are exchanged afterwards; where it led to no triangulation at
 // all, the sites are triangulated in another way.
 
 #include "voronoi2d/sweep_circle.h"
@@ -13,33 +13,16 @@ namespace saddleback::voronoi2d {
 
 void SweepCircle::reserve(Index count) {
   if (count <= capacity_) return;
-  capacity_ = count;
-  const std::size_t n = static_cast<std::size_t>(count);
+  capacity_ = count + count / 4;
+  const std::size_t n = static_cast<std::size_t>(capacity_);
   arcs_ = std::make_unique_for_overwrite<Arc[]>(2 * n);
   events_ = std::make_unique_for_overwrite<Event[]>(6 * n);
-  triangles_ = std::make_unique_for_overwrite<Index[]>(6 * n);
-  twins_ = std::make_unique_for_overwrite<Index[]>(6 * n);
-}
-
-void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> y, const Vec2& centre) {
-  const Index count = static_cast<Index>(x.size());
-  Index first = 0;
-  double nearest = INFINITY;
-  for (Index i = 0; i < count; ++i) {
-    const double dx = x[i] - centre.x(), dy = y[i] - centre.y(), distance = dx * dx + dy * dy;
-    if (distance < nearest) nearest = distance, first = i;
-  }
-  near_to_far(x, y, first);
-  x_.resize(count);
-  y_.resize(count);
-  for (Index i = 0; i < count; ++i) {
-    x_[i] = x[order_[i].site];
-    y_[i] = y[order_[i].site];
-  }
+  triangles_ = std::make_unique_for_overwrite<Index[]>(8 * n);
+  twins_ = std::make_unique_for_overwrite<Index[]>(8 * n);
 }
 
 // By equal steps of the squared distance, about one site each, then within each step.
-void SweepCircle::near_to_far(std::span<const double> x, std::span<const double> y, Index first) {
+void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> y, Index first) {
   const Index count = static_cast<Index>(x.size());
   order_.resize(count);
   unsorted_.resize(count);
@@ -65,13 +48,50 @@ void SweepCircle::near_to_far(std::span<const double> x, std::span<const double>
   for (Place& place : order_) place.radius = std::sqrt(place.radius);
 }
 
-void SweepCircle::sweep(const JobStage& stage) {
-  const Index count = static_cast<Index>(order_.size());
+// True when it ended early, with all cells of its own closed.
+bool SweepCircle::run(const JobStage& stage) {
+  const Index count = state_.count;
+  Index own_left = static_cast<Index>(std::count(is_own_.begin(), is_own_.end(), std::uint8_t{1})) - state_.is_own[0];
+  constexpr Index k_block = 4096;
+  for (Index begin = 1; begin < count; begin += k_block) {
+    const Index end = std::min(count, begin + k_block);
+    for (Index site = begin; site < end; ++site) {
+      vanish_until(state_, order_[site].radius);
+      if (state_.own_open == 0 && own_left == 0) return true;
+      own_left -= state_.is_own[site];
+      touch(state_, site);
+    }
+    stage.update(static_cast<double>(end) / static_cast<double>(count));
+  }
+  vanish_until(state_, k_latest);
+  return false;
+}
+
+PlanarMesh SweepCircle::sweep(std::span<const double> x, std::span<const double> y, Index own_count, const Vec2& place,
+                              const JobStage& stage) {
+  const Index count = static_cast<Index>(x.size());
+  Index first = 0;
+  double nearest = INFINITY;
+  for (Index i = 0; i < own_count; ++i) {
+    const double dx = x[i] - place.x(), dy = y[i] - place.y(), distance = dx * dx + dy * dy;
+    if (distance < nearest) nearest = distance, first = i;
+  }
+  sort_sites(x, y, first);
+  stage.update(0.2);
+  x_.resize(count);
+  y_.resize(count);
+  is_own_.resize(count);
+  for (Index i = 0; i < count; ++i) {
+    x_[i] = x[order_[i].site];
+    y_[i] = y[order_[i].site];
+    is_own_[i] = order_[i].site < own_count;
+  }
   reserve(count);
   near_.resize(std::bit_ceil(static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(count))) + 8));
   state_ = {.x = x_.data(),
             .y = y_.data(),
             .count = count,
+            .is_own = is_own_.data(),
             .arcs = arcs_.get(),
             .days = days_.data(),
             .day_count = static_cast<Index>(days_.size()),
@@ -82,39 +102,22 @@ void SweepCircle::sweep(const JobStage& stage) {
             .triangles = triangles_.get(),
             .twins = twins_.get()};
   start(state_);
-  constexpr Index k_block = 4096;
-  for (Index begin = 1; begin < count; begin += k_block) {
-    const Index end = std::min(count, begin + k_block);
-    for (Index site = begin; site < end; ++site) {
-      vanish_until(state_, order_[site].radius);
-      touch(state_, site);
-    }
-    stage.update(static_cast<double>(end) / static_cast<double>(count));
-  }
-  vanish_until(state_, k_latest);
+  run(stage.part(0.2, 1));
+  return {x_.data(), y_.data(), count, triangles_.get(), twins_.get(), state_.triangle_count};
 }
 
-PlanarMesh SweepCircle::triangulate(std::span<const double> x, std::span<const double> y, const Vec2& centre,
+PlanarMesh SweepCircle::triangulate(std::span<const double> x, std::span<const double> y, const Vec2& place,
                                     const JobStage& stage) {
-  PlanarMesh mesh{x_.data(), y_.data(), 0, nullptr, nullptr, 0};
-  is_flat_.clear();
-  if (x.empty()) return mesh;
-  sort_sites(x, y, centre);
-  stage.update(0.1);
-  sweep(stage.part(0.1, 0.7));
-  mesh = {x_.data(), y_.data(), state_.count, triangles_.get(), twins_.get(), state_.triangle_count};
-  is_flat_.resize(mesh.half_count());
-  Verdict verdict = check(mesh, is_flat_);
-  stage.update(0.8);
-  if (verdict != Verdict::delaunay) {
-    if (verdict == Verdict::no_triangulation) triangulate_from_left(mesh);
+  PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.8));
+  is_flat.resize(mesh.half_end());
+  const bool is_delaunay = passes_circle_tests(mesh, is_flat), is_whole = is_triangulation(mesh);
+  stage.update(0.9);
+  if (!is_delaunay || !is_whole) {
+    if (!is_whole) triangulate_from_left(mesh);
     exchange_triangles(mesh);
-    is_flat_.resize(mesh.half_count());
-    check(mesh, is_flat_);
+    is_flat.resize(mesh.half_end());
+    passes_circle_tests(mesh, is_flat);
   }
-  for (Index half = 0; half < mesh.half_count(); ++half) mesh.triangles[half] = order_[mesh.triangles[half]].site;
-  mesh.x = x.data();
-  mesh.y = y.data();
   stage.update(1);
   return mesh;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// One sweep circle over some sites: their Delaunay triangulation, exactly.
+// One sweep circle over some sites.
 
 #include <cstdint>
 #include <memory>
@@ -16,34 +16,38 @@ namespace saddleback::voronoi2d {
 /// Working memory of circles, kept from one to the next.
 class SweepCircle {
  public:
-  /// Sweeps all of the sites (distinct, any order) from the one nearest to a place. The result's corners are positions
-  /// in the arrays given; it lives as long as they do and until the next call. O(n log n).
-  /// \throw Cancelled
-  PlanarMesh triangulate(std::span<const double> x, std::span<const double> y, const Vec2& centre,
+  /// Sweeps distinct sites until the cells of the first `own_count` are closed, or to the end. The circle grows from
+  /// the one of these nearest to a place. Triangles are right up to rounding: see `PlanarMesh` for proof and repair.
+  /// The mesh counts the sites from near to far; it lives until the next call. O(n log n). \throw Cancelled
+  PlanarMesh sweep(std::span<const double> x, std::span<const double> y, Index own_count, const Vec2& place,
+                   const JobStage& stage);
+
+  /// Delaunay's triangulation of all sites, exactly, whatever the sites.
+  PlanarMesh triangulate(std::span<const double> x, std::span<const double> y, const Vec2& place,
                          const JobStage& stage);
 
-  /// By half-edge of the latest result: whether its two triangles share a Voronoi vertex.
-  std::span<const std::uint8_t> is_flat() const { return {is_flat_.data(), is_flat_.size()}; }
+  /// Position in the arrays given of the k-th site from near to far.
+  Index position(Index k) const { return order_[k].site; }
+  /// Scratch by half-edge of the latest result: whether its two triangles share a Voronoi vertex.
+  std::vector<std::uint8_t> is_flat;
 
  private:
-  void sort_sites(std::span<const double> x, std::span<const double> y, const Vec2& centre);
-  void near_to_far(std::span<const double> x, std::span<const double> y, Index first);
-  void reserve(Index count);
-  void sweep(const JobStage& stage);
-
   struct Place {
     double radius;
     Index site;
   };
+  void sort_sites(std::span<const double> x, std::span<const double> y, Index first);
+  void reserve(Index count);
+  bool run(const JobStage& stage);
+
   std::vector<Place> order_, unsorted_;
-  std::vector<Index> days_;
-  double days_per_area_ = 0;
   std::vector<double> x_, y_;
+  std::vector<std::uint8_t> is_own_;
+  std::vector<Index> days_, near_;
+  double days_per_area_ = 0;
   std::unique_ptr<Arc[]> arcs_;
   std::unique_ptr<Event[]> events_;
   std::unique_ptr<Index[]> triangles_, twins_;
-  std::vector<Index> near_;
-  std::vector<std::uint8_t> is_flat_;
   Index capacity_ = 0;
   SweepState state_{};
 };

@@ -50,6 +50,8 @@ struct Event {
 struct SweepState {
   const double *x, *y;  ///< sites, in the order of their distance from the first, which is the centre
   Index count;
+  const std::uint8_t* is_own;  ///< 1 for the sites whose cells are wanted
+  Index own_open = 0;          ///< parts of the beach curve that belong to such
 
   Arc* arcs;
   Index arcs_used = 0, free_arc = k_none, latest = 0;
@@ -65,8 +67,8 @@ struct SweepState {
   Index* near;  ///< by direction: an arc that was seen there
   Index near_count;
 
-  Index* triangles;  ///< three sites each, counter-clockwise
-  Index* twins;      ///< of half-edge 3 t + k, from corner k to the next; k_none while there is none
+  Index* triangles;  ///< 4 t + k: site at corner k of triangle t, counter-clockwise; k = 3 is not used
+  Index* twins;      ///< of half-edge 4 t + k, from corner k to the next; k_none while there is none
   Index triangle_count = 0;
 };
 
@@ -98,23 +100,35 @@ SADDLEBACK_HOST_DEVICE inline void pop_event(SweepState& s) {
   s.events[place] = last;
 }
 
-/// The radius at which the arc of b between those of a and c vanishes; k_never when they do not turn clockwise (exact).
-/// It is |v - centre| + |v - b| for the circumcentre v.
-SADDLEBACK_HOST_DEVICE inline double vanishing_radius(const Arc& a, const Arc& b, const Arc& c, double centre_x,
-                                                      double centre_y) {
-  const double ax = a.x - b.x, ay = a.y - b.y, cx = c.x - b.x, cy = c.y - b.y;
-  const double left = ax * cy, right = ay * cx, det = left - right;
-  if (fabs(det) <= predicates::detail::k_orient_bound * (fabs(left) + fabs(right))) {
-    const bool turns =
-        predicates::detail::orient_2d_exact({a.x, a.y}, {b.x, b.y}, {c.x, c.y}) == predicates::Sign::negative;
-    return turns ? k_latest : k_never;  // flat: later than anything that matters
+/// Two arcs b with the arcs a and c before and after them: what is to be known of their vanishing, side by side so that
+/// vector units compute both at once.
+struct Pair {
+  double ax[2], ay[2], bx[2], by[2], cx[2], cy[2];
+  double radius[2], turn[2], doubt[2];
+};
+
+/// Sets the radius |v - centre| + |v - b| at which each arc vanishes, v being the circumcentre, if the three sites turn
+/// clockwise, which they do where `turn` is above `doubt`, and do not where it is below -doubt.
+SADDLEBACK_HOST_DEVICE inline void find_radii(Pair& p, double centre_x, double centre_y) {
+  for (int k = 0; k < 2; ++k) {
+    const double ax = p.ax[k] - p.bx[k], ay = p.ay[k] - p.by[k], cx = p.cx[k] - p.bx[k], cy = p.cy[k] - p.by[k];
+    const double left = ax * cy, right = ay * cx, det = left - right;
+    p.turn[k] = det;
+    p.doubt[k] = predicates::detail::k_orient_bound * (fabs(left) + fabs(right));
+    const double half = 0.5 / det, a2 = ax * ax + ay * ay, c2 = cx * cx + cy * cy;
+    const double x = (cy * a2 - ay * c2) * half, y = (ax * c2 - cx * a2) * half;
+    const double from_x = x + (p.bx[k] - centre_x), from_y = y + (p.by[k] - centre_y);
+    p.radius[k] = sqrt(x * x + y * y) + sqrt(from_x * from_x + from_y * from_y);
   }
-  if (det < 0) return k_never;
-  const double half = 0.5 / det, a2 = ax * ax + ay * ay, c2 = cx * cx + cy * cy;
-  const double x = (cy * a2 - ay * c2) * half, y = (ax * c2 - cx * a2) * half;
-  const double from_x = x + (b.x - centre_x), from_y = y + (b.y - centre_y);
-  const double radius = sqrt(x * x + y * y) + sqrt(from_x * from_x + from_y * from_y);
-  return radius < k_latest ? radius : k_latest;
+}
+
+/// The radius at which one of them vanishes, or k_never. Whether it does is exact.
+SADDLEBACK_HOST_DEVICE inline double radius_of(const Pair& p, int k) {
+  if (p.turn[k] > p.doubt[k]) return p.radius[k] < k_latest ? p.radius[k] : k_latest;
+  if (p.turn[k] < -p.doubt[k]) return k_never;
+  const bool turns = predicates::detail::orient_2d_exact({p.ax[k], p.ay[k]}, {p.bx[k], p.by[k]}, {p.cx[k], p.cy[k]}) ==
+                     predicates::Sign::negative;
+  return turns ? k_latest : k_never;  // flat: later than anything that matters
 }
 
 /// Page of the calendar for a radius; the last one holds all that comes after.
@@ -136,17 +150,14 @@ SADDLEBACK_HOST_DEVICE inline void unschedule(SweepState& s, Arc& arc) {
   arc.day = k_none;
 }
 
-/// Says anew when an arc vanishes.
-SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index arc) {
+/// Notes in the calendar or, for today, in the heap when an arc vanishes.
+SADDLEBACK_HOST_DEVICE inline void note(SweepState& s, Index arc, double radius) {
+  if (radius == k_never) return;
   Arc& b = s.arcs[arc];
-  unschedule(s, b);
-  const Arc &a = s.arcs[b.previous], &c = s.arcs[b.next];
-  if (a.site == c.site) return;
-  b.radius = vanishing_radius(a, b, c, s.x[0], s.y[0]);
-  if (b.radius == k_never) return;
-  const Index day = day_of(s, b.radius);
+  b.radius = radius;
+  const Index day = day_of(s, radius);
   if (day <= s.today) {
-    push_event(s, {b.radius, arc, b.stamp});
+    push_event(s, {radius, arc, b.stamp});
     return;
   }
   b.day = day;
@@ -154,6 +165,23 @@ SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index arc) {
   b.day_next = s.days[day];
   if (b.day_next != k_none) s.arcs[b.day_next].day_previous = arc;
   s.days[day] = arc;
+}
+
+/// Says anew when two arcs vanish.
+SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index first, Index second) {
+  Pair pair;
+  bool is_parted[2];
+  for (int k = 0; k < 2; ++k) {
+    const Arc& b = s.arcs[k == 0 ? first : second];
+    const Arc &a = s.arcs[b.previous], &c = s.arcs[b.next];
+    pair.ax[k] = a.x, pair.ay[k] = a.y, pair.bx[k] = b.x, pair.by[k] = b.y, pair.cx[k] = c.x, pair.cy[k] = c.y;
+    is_parted[k] = a.site != c.site;  // between two parts of one ellipse an arc stays
+  }
+  find_radii(pair, s.x[0], s.y[0]);
+  unschedule(s, s.arcs[first]);
+  unschedule(s, s.arcs[second]);
+  if (is_parted[0]) note(s, first, radius_of(pair, 0));
+  if (is_parted[1]) note(s, second, radius_of(pair, 1));
 }
 
 SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {
@@ -175,6 +203,7 @@ SADDLEBACK_HOST_DEVICE inline void start(SweepState& s) {
   s.event_count = s.triangle_count = s.today = 0;
   for (Index i = 0; i < s.day_count; ++i) s.days[i] = k_none;
   for (Index i = 0; i < s.near_count; ++i) s.near[i] = 0;
+  s.own_open = s.is_own[0];
 }
 
 /// A new site as the beach curve sees it: (x, y) counts from the centre.
@@ -286,6 +315,7 @@ SADDLEBACK_HOST_DEVICE inline void touch(SweepState& s, Index site) {
   m = {p.site_x, p.site_y, site, left, left, ~left, sector, m.stamp, 0, k_none, k_none, k_none};
   s.near[sector] = middle;
   s.latest = middle;
+  s.own_open += s.is_own[site];
   if (l.next == left) {  // the first arc is closed: opened, not split
     l.next = l.previous = middle;
     l.edge = ~middle;
@@ -294,13 +324,13 @@ SADDLEBACK_HOST_DEVICE inline void touch(SweepState& s, Index site) {
   const Index right = new_arc(s);
   Arc& r = s.arcs[right];
   r = {l.x, l.y, l.site, middle, l.next, l.edge, k_none, r.stamp, 0, k_none, k_none, k_none};
+  s.own_open += s.is_own[l.site];
   if (r.edge < 0) s.arcs[~r.edge].edge = ~right;
   s.arcs[l.next].previous = right;
   l.next = middle;
   m.next = right;
   l.edge = ~middle;
-  schedule(s, left);
-  schedule(s, right);
+  schedule(s, left, right);
 }
 
 /// The triangle of half-edge `half` lies beyond a breakpoint whose inner side is `edge`.
@@ -318,7 +348,7 @@ SADDLEBACK_HOST_DEVICE inline void vanish(SweepState& s, Index arc) {
   Arc& b = s.arcs[arc];
   const Index before = b.previous, after = b.next;
   Arc &a = s.arcs[before], &c = s.arcs[after];
-  const Index half = 3 * s.triangle_count++;
+  const Index half = 4 * s.triangle_count++;
   s.triangles[half] = a.site;
   s.triangles[half + 1] = c.site;
   s.triangles[half + 2] = b.site;
@@ -328,13 +358,13 @@ SADDLEBACK_HOST_DEVICE inline void vanish(SweepState& s, Index arc) {
   a.edge = half;
   a.next = after;
   c.previous = before;
+  s.own_open -= s.is_own[b.site];
   unschedule(s, b);
   b.site = b.sector = k_none;
   b.next = s.free_arc;
   s.free_arc = arc;
   if (s.latest == arc) s.latest = after;
-  schedule(s, before);
-  schedule(s, after);
+  schedule(s, before, after);
 }
 
 /// Lets all arcs vanish that do so up to a radius.

@@ -8,31 +8,29 @@
 
 #include "saddleback/error.h"
 
-#include "voronoi2d/circumcentre.h"
-#include "voronoi2d/half_edges.h"
+#include "voronoi2d/find_cells.h"
 #include "voronoi2d/site_order.h"
-#include "voronoi2d/sweep_circle.h"
 
 namespace saddleback {
 namespace {
 
 using namespace voronoi2d;
 
-Cells find_cells(const OrderedSites& sites, const JobStage& stage) {
-  SweepCircle circle;
-  const auto [left, right] = std::minmax_element(sites.x.begin(), sites.x.end());
-  const auto [low, high] = std::minmax_element(sites.y.begin(), sites.y.end());
-  const Vec2 centre = sites.count() ? Vec2(0.5 * (*left + *right), 0.5 * (*low + *high)) : Vec2(0, 0);
-  const PlanarMesh mesh = circle.triangulate(sites.x, sites.y, centre, stage);
-  return mesh.triangle_count > 0 ? cells_of(mesh, circle.is_flat()) : strips_of(sites);
-}
-
-std::vector<Vec2> vertex_positions(const OrderedSites& sites, std::span<const std::array<Index, 3>> vertex_sites) {
-  const auto point = [&](Index rank) { return predicates::Point2{sites.x[rank], sites.y[rank]}; };
-  std::vector<Vec2> result;
-  result.reserve(vertex_sites.size());
-  for (const auto& [a, b, c] : vertex_sites) result.push_back(circumcentre(point(a), point(b), point(c)) / sites.scale);
-  return result;
+Numbering find_numbering(const OrderedSites& sites, const Voronoi2dOptions& options, Cells& cells,
+                         const JobStage& stage) {
+  constexpr Index k_circle_size = 8000;  // whose working memory stays in a core's cache
+  const Index circles = options.circles > 0 ? options.circles : sites.count() / k_circle_size;
+  Numbering numbering;
+  if (circles > 1) {
+    cells =
+        find_cells_by_tiles(sites, std::max<Index>(1, sites.count() / circles), options.threads, stage.part(0, 0.6));
+    if (cells.cell_count() > 0 && number(cells, sites, options.threads, stage.part(0.6, 0.9), numbering))
+      return numbering;
+  }
+  cells = find_cells(sites, circles > 1 ? stage.part(0.9, 0.97) : stage.part(0, 0.8));
+  if (!number(cells, sites, options.threads, stage.part(0.97, 1), numbering))
+    throw Error("voronoi_2d: the cells of one circle do not fit together");
+  return numbering;
 }
 
 }  // namespace
@@ -42,17 +40,14 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
   if (options.threads < 0) throw InputError(message("threads: wanted 0 or more, got ", options.threads));
   const JobStage stage(job, "Voronoi diagram");
   OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
-  Cells cells = find_cells(ordered, stage.part(0.1, 0.8));
-  Numbering numbering = number(cells);
-  stage.update(0.9);
+  Cells cells;
+  Numbering numbering = find_numbering(ordered, options, cells, stage.part(0.1, 0.95));
 
   Voronoi2d result;
   result.sites.assign(sites.begin(), sites.end());
-  result.vertices = vertex_positions(ordered, numbering.vertex_sites);
+  result.vertices = std::move(numbering.vertices);
   result.edges = std::move(numbering.edge_vertices);
   result.edge_sites = std::move(numbering.edge_sites);
-  for (auto& pair : result.edge_sites)
-    for (Index& site : pair) site = ordered.original[site];
   result.cell_places.assign(sites.size(), k_none);
   for (Index rank = 0; rank < ordered.count(); ++rank) result.cell_places[ordered.original[rank]] = rank;
   for (std::size_t i = 0; i < sites.size(); ++i) result.cell_places[i] = result.cell_places[ordered.site_of[i]];
