@@ -3,22 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geodesics/planar.h"
+
 namespace saddleback {
 namespace {
 
 // A geodesic may run through vertices: they lie on the border of their windows, up to rounding.
 constexpr double k_on_border = 1e-9;
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 bool same_length(double found, const ArcHint& hint) {
   return std::abs(found - hint.length) <= hint.tolerance * hint.length;
 }
 
-double distance_to_segment(const Vec2& from, const Vec2& to) {
+/// Whether no point of a segment is nearer to the origin.
+bool is_beyond(const Vec2& from, const Vec2& to, double squared_length, double distance) {
   const Vec2 along = to - from;
-  const double t = std::clamp(-from.dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (from + t * along).norm();
+  const double at = -from.dot(along), squared = distance * distance;
+  if (at <= 0) return from.squaredNorm() > squared;
+  if (at >= squared_length) return to.squaredNorm() > squared;
+  const double area = cross(from, along);
+  return area * area > squared * squared_length;
 }
 
 }  // namespace
@@ -40,6 +44,8 @@ bool ArcUnfolder::unfold(const ArcHint& hint, const SurfacePoint* target, Unfold
 }
 
 bool ArcUnfolder::along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const {
+  const double straight = (mesh_.position(hint.to) - mesh_.position(hint.from)).norm();
+  if (straight < hint.length * (1 - 2 * hint.tolerance)) return false;
   const Index first = mesh_.first_halfedge(hint.from);
   Index h = first;
   do {
@@ -76,8 +82,9 @@ bool ArcUnfolder::start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) {
 
 bool ArcUnfolder::inside_first_face(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) const {
   const Vec3& b = target_->barycentric;
-  const Vec2 place(b[(halfedge + 1) % 3] * mesh_.length(halfedge) + b[(halfedge + 2) % 3] * unfolding_.apex(halfedge).x(),
-                   b[(halfedge + 2) % 3] * unfolding_.apex(halfedge).y());
+  const Vec2 place(
+      b[(halfedge + 1) % 3] * mesh_.length(halfedge) + b[(halfedge + 2) % 3] * unfolding_.apex(halfedge).x(),
+      b[(halfedge + 2) % 3] * unfolding_.apex(halfedge).y());
   arc.length = place.norm();
   arc.start_angle = unfolding_.polar(halfedge) + std::atan2(place.y(), place.x());
   return same_length(arc.length, hint);
@@ -94,7 +101,8 @@ bool ArcUnfolder::find_target(const ArcHint& hint, const Window& window, const V
     place = apex;
   }
   const double reach = place.norm(), tolerance = k_on_border * reach;
-  return same_length(reach, hint) && cross(window.right, place) >= -tolerance && cross(place, window.left) >= -tolerance;
+  return same_length(reach, hint) && cross(window.right, place) >= -tolerance &&
+         cross(place, window.left) >= -tolerance;
 }
 
 void ArcUnfolder::push(Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right, const Vec2& left) {
@@ -103,41 +111,49 @@ void ArcUnfolder::push(Index edge, Index depth, const Vec2& from, const Vec2& to
 }
 
 bool ArcUnfolder::search(const ArcHint& hint, double base_angle, UnfoldedArc& arc) {
+  const double farthest = hint.length * (1 + hint.tolerance);
   while (!stack_.empty()) {
-    const Window window = stack_.back();
+    Window window = stack_.back();
     stack_.pop_back();
-    if (distance_to_segment(window.from, window.to) > hint.length * (1 + hint.tolerance)) continue;
     trail_.resize(window.depth);
-    trail_.push_back(window);
-    const Index h = window.entered;
-    const Vec2 along = (window.to - window.from) / mesh_.length(h);
-    const Vec2 offset = unfolding_.apex(h);
-    const Vec2 apex = window.from + offset.x() * along + offset.y() * Vec2(-along.y(), along.x());
-    const double reach = apex.norm();
-    const double from_right = cross(window.right, apex), to_left = cross(apex, window.left);
-    const double tolerance = k_on_border * reach;
-    if (Vec2 place; find_target(hint, window, apex, place)) return finish(window, place, base_angle, arc);
-    const Vec2 ray = apex / reach;
-    if (to_left > -tolerance) {
-      const Vec2& right = from_right > 0 ? ray : window.right;
-      push(Mesh::prev(h), window.depth + 1, window.from, apex, right, window.left);
-    }
-    if (from_right > -tolerance) {
-      const Vec2& left = to_left > 0 ? ray : window.left;
-      push(Mesh::next(h), window.depth + 1, apex, window.to, window.right, left);
+    for (bool goes_on = true; goes_on;) {
+      const Index h = window.entered;
+      const Vec2 edge = window.to - window.from;
+      const double squared = edge.squaredNorm();  // the mesh knows the length, but memory is slower than a root
+      if (is_beyond(window.from, window.to, squared, farthest)) break;
+      trail_.push_back({h, window.from, window.to});
+      const Vec2 along = edge / std::sqrt(squared);
+      const Vec2 offset = unfolding_.apex(h);
+      const Vec2 apex = window.from + offset.x() * along + offset.y() * Vec2(-along.y(), along.x());
+      if (Vec2 place; find_target(hint, window, apex, place)) return finish(window, place, base_angle, arc);
+      const double reach = apex.norm(), tolerance = k_on_border * reach;
+      const double from_right = cross(window.right, apex), to_left = cross(apex, window.left);
+      const bool goes_left = to_left > -tolerance, goes_right = from_right > -tolerance;
+      const Vec2 ray = apex / reach;
+      const Vec2 right = from_right > 0 ? ray : window.right, left = to_left > 0 ? ray : window.left;
+      // The right side now, the left side after it.
+      if (goes_left && goes_right) push(Mesh::prev(h), window.depth + 1, window.from, apex, right, window.left);
+      const Index next = mesh_.twin(goes_right ? Mesh::next(h) : Mesh::prev(h));
+      goes_on = next != k_none && (goes_left || goes_right);
+      if (goes_right) {
+        window = {next, window.depth + 1, apex, window.to, window.right, left};
+      } else {
+        window = {next, window.depth + 1, window.from, apex, right, window.left};
+      }
     }
   }
   return false;
 }
 
 bool ArcUnfolder::finish(const Window& last, const Vec2& target, double base_angle, UnfoldedArc& arc) {
-  for (const Window& window : trail_) {
-    const double to = cross(window.to, target), from = cross(target, window.from);
-    arc.entered.push_back(window.entered);
+  for (const Crossed& edge : trail_) {
+    const double to = cross(edge.to, target), from = cross(target, edge.from);
+    arc.entered.push_back(edge.entered);
     // The areas of the triangles on either side of the ray divide the half-edge as the ray does.
     arc.crossings.push_back(to + from > 0 ? std::clamp(from / (to + from), 0.0, 1.0) : 0.5);
   }
   arc.length = target.norm();
+  if (!with_angles_) return true;
   arc.start_angle = base_angle + std::atan2(target.y(), target.x());
   const Index leaving = Mesh::prev(last.entered);
   const Vec2 side = last.from - target;

@@ -11,18 +11,19 @@ namespace saddleback {
 
 /// What a graph keeps of an arc: enough to find the geodesic again.
 struct ArcHint {
-  Index from, to;  ///< vertices
-  double length;   ///< up to rounding
+  Index from, to;                 ///< vertices
+  double length;                  ///< up to rounding
   double begin_angle, end_angle;  ///< surface angles at `from` between which the arc leaves
-  /// Relative: how near its length an arc must be. Two geodesics to one vertex inside one window usually differ by more.
+  /// Relative: how near its length an arc must be. Two geodesics to one vertex inside one window usually differ by
+  /// more.
   double tolerance = 1e-7;
 };
 
 /// A straight geodesic from a vertex to a vertex or point.
 struct UnfoldedArc {
   double length = 0;
-  double start_angle = 0;  ///< at the first vertex, surface angle from first_halfedge
-  double end_angle = 0;    ///< direction back, at the last vertex; unused where the last is a point
+  double start_angle = 0;         ///< at the first vertex, surface angle from first_halfedge
+  double end_angle = 0;           ///< direction back, at the last vertex; unused where the last is a point
   std::vector<Index> entered;     ///< half-edges crossed, each of the face that is entered; empty along a mesh edge
   std::vector<double> crossings;  ///< where, as a fraction of the half-edge from its start
 };
@@ -32,7 +33,9 @@ struct UnfoldedArc {
 /// memory; one a thread.
 class ArcUnfolder {
  public:
-  explicit ArcUnfolder(const Unfolding& unfolding) : unfolding_(unfolding), mesh_(unfolding.mesh()) {}
+  /// Without angles those of the arcs are not set, where that saves time.
+  explicit ArcUnfolder(const Unfolding& unfolding, bool with_angles = true)
+      : unfolding_(unfolding), mesh_(unfolding.mesh()), with_angles_(with_angles) {}
   /// \return false when no such geodesic exists (the hint belongs to another mesh). O(faces crossed).
   bool unfold(const ArcHint& hint, UnfoldedArc& arc) { return unfold(hint, nullptr, arc); }
   /// The same to a point that is no vertex; hint.to is not looked at.
@@ -46,6 +49,10 @@ class ArcUnfolder {
     Vec2 from, to;
     Vec2 right, left;  ///< unit vectors; left is counter-clockwise of right
   };
+  struct Crossed {
+    Index entered;
+    Vec2 from, to;  ///< its ends, as above
+  };
   bool unfold(const ArcHint& hint, const SurfacePoint* target, UnfoldedArc& arc);
   bool along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const;
   bool inside_first_face(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) const;
@@ -58,8 +65,10 @@ class ArcUnfolder {
 
   const Unfolding& unfolding_;
   const Mesh& mesh_;
+  const bool with_angles_;
   const SurfacePoint* target_ = nullptr;  ///< null: the vertex hint.to
-  std::vector<Window> stack_, trail_;
+  std::vector<Window> stack_;
+  std::vector<Crossed> trail_;
 };
 
 }  // namespace saddleback

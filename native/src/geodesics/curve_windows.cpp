@@ -71,8 +71,9 @@ void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits
     const RayLabel& label = field_.label(vertex);
     const double distance = std::max(0.0, label.distance);
     const int side = distance > 0 ? label.side : 0;
-    feet.push_back({vertex, distance, std::clamp(label.value, 0.0, curve.length()), static_cast<std::int8_t>(side),
-                    label.shadowed});
+    double along = std::clamp(label.value, 0.0, curve.length());
+    if (curve.closed() && along >= curve.length() * (1 - k_on_curve)) along = 0;  // the end is the start
+    feet.push_back({vertex, distance, along, static_cast<std::int8_t>(side), label.shadowed});
   }
 }
 

@@ -109,7 +109,7 @@ class PathMaker {
         nearby_(nearby),
         stage_(stage),
         shorten_(shorten),
-        unfolder_(graph.unfolding()),
+        unfolder_(graph.unfolding(), shorten),
         shortener_(graph.unfolding()) {}
 
   /// Appends the path to the target, without any points when nothing reaches it.
@@ -218,8 +218,12 @@ class PathMaker {
   void add_end(GeodesicPaths& paths, const LegEnd& end) { add(paths, end.point, position(mesh_, end.point)); }
 
   void add_crossing(GeodesicPaths& paths, Index h, double t) {
-    const double near = std::min(k_at_most, k_at_vertex * std::max(1.0, mesh_.mean_edge_length() / mesh_.length(h)));
-    const double b = t < near ? 0 : t > 1 - near ? 1 : t, a = 1 - b;
+    double b = t;
+    if (t < k_at_most || t > 1 - k_at_most) {
+      const double near = std::min(k_at_most, k_at_vertex * std::max(1.0, mesh_.mean_edge_length() / mesh_.length(h)));
+      b = t < near ? 0 : t > 1 - near ? 1 : t;
+    }
+    const double a = 1 - b;
     SurfacePoint point{Mesh::face_of(h), Vec3::Zero()};
     point.barycentric[h % 3] = a;
     point.barycentric[(h + 1) % 3] = b;
@@ -250,14 +254,28 @@ class PathMaker {
   LegChain chain_;
 };
 
-void append(GeodesicPaths& paths, GeodesicPaths&& part) {
-  const std::int64_t start = paths.offsets.back();
-  paths.points.insert(paths.points.end(), part.points.begin(), part.points.end());
-  paths.surface.insert(paths.surface.end(), part.surface.begin(), part.surface.end());
-  paths.lengths.insert(paths.lengths.end(), part.lengths.begin(), part.lengths.end());
-  paths.sources.insert(paths.sources.end(), part.sources.begin(), part.sources.end());
-  for (std::size_t i = 1; i < part.offsets.size(); ++i) paths.offsets.push_back(start + part.offsets[i]);
-  part = {};
+GeodesicPaths joined(std::vector<GeodesicPaths>& parts) {
+  GeodesicPaths paths;
+  std::size_t points = 0, count = 0;
+  for (const GeodesicPaths& part : parts) {
+    points += part.points.size();
+    count += part.count();
+  }
+  paths.points.reserve(points);
+  paths.surface.reserve(points);
+  paths.offsets.reserve(count + 1);
+  paths.lengths.reserve(count);
+  paths.sources.reserve(count);
+  for (GeodesicPaths& part : parts) {
+    const std::int64_t start = paths.offsets.back();
+    paths.points.insert(paths.points.end(), part.points.begin(), part.points.end());
+    paths.surface.insert(paths.surface.end(), part.surface.begin(), part.surface.end());
+    paths.lengths.insert(paths.lengths.end(), part.lengths.begin(), part.lengths.end());
+    paths.sources.insert(paths.sources.end(), part.sources.begin(), part.sources.end());
+    for (std::size_t i = 1; i < part.offsets.size(); ++i) paths.offsets.push_back(start + part.offsets[i]);
+    part = {};
+  }
+  return paths;
 }
 
 }  // namespace
@@ -309,9 +327,7 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
     writing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
   });
   if (blocks == 1) return std::move(parts[0]);
-  GeodesicPaths paths;
-  for (GeodesicPaths& part : parts) append(paths, std::move(part));
-  return paths;
+  return joined(parts);
 }
 
 }  // namespace saddleback
