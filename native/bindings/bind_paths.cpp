@@ -34,12 +34,13 @@ Path i has the points `points[offsets[i]:offsets[i + 1]]`.
 constexpr const char* k_path_doc = R"(The path between two points, whose length is their distance in the graph.
 
 Every arc is unfolded into the faces that it crosses: a polyline with one point for each edge crossed, straight in between,
-that bends at vertices only. At saddle vertices it is legal (at least pi on either side); bends at other vertices are
-what the graph is inexact by. Consecutive points share a face.
+that bends at vertices only. Consecutive points share a face. A shortest path bends at saddle vertices alone, with at
+least pi on either side, as paths in an exact graph do; all other bends are what the graph is inexact by.
 
 Args:
     a, b: a vertex or a point anywhere on the surface each.
-    shorten: straighten those bends too, to a local geodesic, which is never longer than the distance in the graph.
+    shorten: straighten those bends, to a local geodesic (straight to rounding, at least pi on either side of every
+        vertex that it meets), which is never longer than the distance in the graph.
     job: progress and cancellation.
 
 Raises:
@@ -77,10 +78,11 @@ either side of it may lie far apart in the map.
 `uv` is `distance` times the unit vector of the angle. Angles are measured as `trace` does: in the chart of the point's face
 (corner 0 to corner 1 is 0) or, at a vertex, on the surface about it from its first edge. About an interior vertex they
 are scaled in `uv` so that its total angle becomes 2 pi; `angle` holds them unscaled, as `trace` takes them.
+A cone's tip or any other vertex with less than 2 pi throws such a seam: the two ways past it meet behind it.
 
 Args:
-    centre: a vertex or one surface point.
-    radius: mesh units; inf for the whole component.
+    centre: a vertex or one surface point; one within 1e-10 (barycentric) of a vertex is that vertex.
+    radius: mesh units, above 0; inf for the whole component.
     job: progress and cancellation.
 
 Raises:
@@ -101,7 +103,8 @@ Args:
 
 Returns:
     SurfacePoints, n of them. A curve that meets the boundary ends there; through vertices it goes on with half of the
-    total angle on either side.
+    total angle on either side, unlike a shortest path that touches a saddle vertex: there alone, and where `log_map`
+    says `shadowed`, the maps are not each other's inverse.
 
 Raises:
     InputError: a point off the mesh, a vector that is not finite, a curve over more than a million faces.
@@ -110,14 +113,16 @@ Raises:
 
 constexpr const char* k_polar_doc = R"(Coordinates along a curve for every vertex about it.
 
-Exact: rays leave the curve at right angles to its segments and as fans from its bends. Where the nearest point of the
-curve is not unique one of them is taken. Beyond the ends of an open curve the foot is its end, and left and right are told
-by the curve run straight on.
+Exact: rays leave the curve at right angles to its segments and as fans from its bends. It may cross itself, double back,
+run through vertices and along edges or the boundary. Where the nearest point of the curve is not unique (the cut locus)
+one of them is taken, so that neighbours on either side of it may lie far apart; vertices on the curve itself have
+distance 0 and the arc length where it first meets them. Behind a saddle vertex (`shadowed`) the foot is that of the way
+there. Beyond the ends of an open curve the foot is its end, and left and right are told by the curve run straight on.
 
 Args:
     graph: the graph of the mesh.
     curve: a SurfaceCurve, a GeodesicPath, or its points as a SurfacePoints or vertices (taken as an open curve).
-    radius: mesh units; inf for everything that the curve reaches.
+    radius: mesh units, above 0; inf for everything that the curve reaches.
     job: progress and cancellation.
 
 Raises:
@@ -258,7 +263,8 @@ void bind_maps(py::module_& m) {
       .def_property_readonly("distance", view_of_member(&PolarCoordinates::distance),
                              "(m,) float64: mesh units; positive on the left of the curve, negative on its right.")
       .def_property_readonly("along", view_of_member(&PolarCoordinates::along),
-                             "(m,) float64: arc length of the nearest point of the curve, 0 to its length.")
+                             "(m,) float64: arc length of the nearest point of the curve, 0 to its length (on a closed "
+                             "curve less than it).")
       .def_property_readonly("shadowed", view_of_flags(&PolarCoordinates::shadowed),
                              "(m,) bool: the shortest path bends at a saddle vertex.")
       .def("__len__", [](const PolarCoordinates& polar) { return polar.vertices.size(); });

@@ -1,8 +1,8 @@
 """Paths and coordinates: `python -m tests.bench paths FOLDER [FACTOR]`.
 
-How long a path takes after its field (CPU time of one thread, from the difference between many targets and one), whether
-paths are as long as distances, straight over edges and legal at vertices, and how exact log maps and polar coordinates
-are. FACTOR: how many times slower than the reference this machine is; bars are multiplied by it.
+How long a path takes after its field (CPU time of one thread, from the difference between many targets and one),
+whether paths are as long as distances, straight over edges and legal at vertices, and how exact log maps and polar
+coordinates are. FACTOR: how many times slower than the reference this machine is; bars are multiplied by it.
 """
 
 from __future__ import annotations

@@ -28,8 +28,8 @@ struct GeodesicPaths {
 };
 
 /// The path from `a` to `b` whose length is their distance in the graph: each arc unfolded into the faces that it
-/// crosses, consecutive points share a face. It bends at vertices only. Where the graph leads round a saddle vertex both
-/// side angles are at least pi; bends at other vertices are what the graph is inexact by, `shorten` removes them.
+/// crosses, consecutive points share a face. It bends at vertices only. A shortest path bends at saddle vertices alone,
+/// with at least pi on either side; all other bends are what the graph is inexact by, `shorten` removes them.
 /// \throw InputError for a point off the mesh, points of two components (naming them); Cancelled. A distance field and
 /// O(faces crossed).
 GeodesicPath shortest_path(const SaddleVertexGraph& graph, const SurfacePoint& a, const SurfacePoint& b,
