@@ -15,6 +15,7 @@ constexpr int k_most_windows = 1 << 20;
 // Vertices as far as the k-th, but for rounding, belong to the disk: on regular meshes there are many.
 constexpr float k_as_far = 1 + 1e-5f;
 constexpr float k_much_shorter = 1 - 1e-6f;
+constexpr double k_rounding = 1e-6;
 // Finding the k-th nearest takes as long as a generation.
 constexpr int k_generations_per_bound = 3;
 // Windows end where a flank serves within this many times the tolerance. With 1 no error could exceed it, for half as
@@ -82,6 +83,7 @@ DiskFinder::DiskFinder(const WaveMesh& mesh, const ArcCodec& codec, const WaveKe
     : mesh_(mesh), codec_(codec), kernel_(kernel), rule_(rule) {
   const std::size_t slots = static_cast<std::size_t>(mesh.node_count()) * k_batch;
   labels_.assign(slots + k_row_padding, k_unreached);
+  arc_labels_.assign(slots, k_unreached);
   best_.resize(slots);
 }
 
@@ -159,14 +161,8 @@ void DiskFinder::run(const JobStage& stage) {
 
 /// Sights all windows of this generation, then splits them into the next.
 void DiskFinder::advance() {
-  const double radius = 1 + k_radius_tolerance * rule_.tolerance, surplus = radius * radius - 1;
-  const WaveScene scene{mesh_.records(),
-                        labels_.data(),
-                        limits_.data(),
-                        static_cast<float>(1 + rule_.tolerance),
-                        static_cast<float>(radius),
-                        static_cast<float>(surplus),
-                        static_cast<float>(1 / surplus)};
+  const WaveScene scene{mesh_.records(), labels_.data(), limits_.data(), static_cast<float>(1 + rule_.tolerance),
+                        static_cast<float>(k_radius_tolerance * rule_.tolerance)};
   const int before = sighting_count_;
   sightings_.reserve(sighting_count_ + now_->size() + k_row_padding);
   apexes_.reserve(now_->size() + 2 * k_row_padding);
@@ -196,20 +192,28 @@ void DiskFinder::advance() {
 void DiskFinder::lower_labels(int from, int to) {
   const SightingRows rows = sightings_.rows();
   for (int i = from; i < to; ++i) {
-    const std::int32_t slot = rows.slot[i], label = labels_[slot];
-    if (rows.label[i] >= label) continue;
-    if (label == k_unreached) touched_[slot % k_batch].push_back(slot);
-    labels_[slot] = rows.label[i];
-    best_[slot] = i;
+    const std::int32_t slot = rows.slot[i], label = rows.label[i];
+    if (makes_arc(label) && label < arc_labels_[slot]) {
+      arc_labels_[slot] = label;
+      best_[slot] = i;
+    }
+    if (label >= labels_[slot]) continue;
+    if (labels_[slot] == k_unreached) touched_[slot % k_batch].push_back(slot);
+    labels_[slot] = label;
     if (by_count()) changed_.push_back(slot);
   }
 }
 
+/// An arc that is not the shortest way stays as long as others may rely on it: no distance in the graph exceeds the
+/// shortest by more than the tolerance, so that longer arcs serve nothing.
+bool DiskFinder::is_kept(std::int32_t slot) const {
+  const double slack = 1 + std::max(rule_.tolerance, k_rounding);
+  const float reach = distance_of(arc_labels_[slot]);
+  return reach < k_infinity && reach <= slack * distance_of(labels_[slot]) && reach <= limits_[slot % k_batch];
+}
+
 void DiskFinder::write_row(Index node, int lane, FoundArcs& found) {
   const SightingRows rows = sightings_.rows();
-  const auto is_kept = [&](std::int32_t slot) {
-    return makes_arc(labels_[slot]) && distance_of(labels_[slot]) <= limits_[lane];
-  };
   chosen_.clear();
   for (const std::int32_t slot : touched_[lane])
     if (is_kept(slot)) chosen_.push_back(best_[slot]);
@@ -250,7 +254,7 @@ void DiskFinder::write_row(Index node, int lane, FoundArcs& found) {
 void DiskFinder::clear() {
   changed_.clear();
   for (auto& slots : touched_) {
-    for (const std::int32_t slot : slots) labels_[slot] = k_unreached;
+    for (const std::int32_t slot : slots) labels_[slot] = arc_labels_[slot] = k_unreached;
     slots.clear();
   }
 }

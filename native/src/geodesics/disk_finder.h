@@ -80,6 +80,7 @@ class DiskFinder {
   void run(const JobStage& stage);
   void advance();
   void lower_labels(int from, int to);
+  bool is_kept(std::int32_t slot) const;
   void write_row(Index node, int lane, FoundArcs& found);
   void clear();
 
@@ -94,8 +95,9 @@ class DiskFinder {
   const ArcCodec& codec_;
   const WaveKernel& kernel_;
   DiskRule rule_;
-  std::vector<std::int32_t> labels_;  ///< per slot: bits of the distance, the lowest one set when it makes no arc
-  std::vector<std::int32_t> best_;    ///< per slot: the sighting of its label
+  std::vector<std::int32_t> labels_;      ///< per slot: bits of the distance, the lowest one set when it makes no arc
+  std::vector<std::int32_t> arc_labels_;  ///< the same of the shortest arc
+  std::vector<std::int32_t> best_;        ///< the sighting of that arc
   std::array<std::vector<std::int32_t>, k_batch> touched_;  ///< slots with labels, per lane
   Generation generations_[2];
   Generation *now_ = &generations_[0], *next_ = &generations_[1];

@@ -19,6 +19,10 @@
 namespace saddleback {
 namespace {
 
+// Windows end a little early, see disk_finder: on thousands of fields over twenty meshes this kept every error below
+// the accuracy asked for.
+constexpr double k_room = 0.95;
+
 void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
   if ((options.k != 0) + (options.accuracy != 0) + options.exact > 1)
     throw InputError("k, accuracy, exact: give one of them; each says how the graph is built");
@@ -50,7 +54,8 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh));
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, kernel, options.threads};
   const JobStage finding = stage.part(0, 0.9);
-  auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, {.k = k_, .tolerance = accuracy_}, finding);
+  auto found =
+      exact_ ? exact_arcs(search, finding) : disk_arcs(search, {.k = k_, .tolerance = k_room * accuracy_}, finding);
   arcs_ = unite_with_reverses(codec, kernel, found, k_block, options.threads, stage.part(0.9, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }

@@ -60,8 +60,7 @@ struct WaveScene {
   const std::int32_t* labels;  ///< upper bounds of the distances of all slots
   const float* limits;         ///< k_batch radii that bound the disks, infinite as long as they are unknown
   float detour;                ///< what a way may be longer by than a straight geodesic: a factor
-  float radius;                ///< the same for what lies beyond a window's end
-  float radius_surplus, per_radius_surplus;  ///< its square less 1, and one over that
+  float excess;                ///< the same for what lies beyond a window's end, less 1
 };
 
 /// The two halves of a generation's work. All windows are sighted, and the labels updated, before any is split.

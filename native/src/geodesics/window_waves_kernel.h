@@ -7,7 +7,7 @@
 // detour the same share of the whole way, and such shares add up where the second leg is itself a detour. Here a way
 // counts the graph's distance to the flank, and the rest with the whole tolerance on top: way + (1 + e) rest <= (1 + e)
 // straight. By induction over lengths no distance in the graph is then longer than 1 + e times the geodesic, as far as
-// windows have run.
+// windows have run; their end is a bound on one detour alone, with a factor found by measuring.
 
 #include "geodesics/window_waves.h"
 
@@ -97,11 +97,16 @@ struct Flank {
 /// The distance from which on a flank serves all vertices whose directions are off its own by an angle at most: with r
 /// its reach, w its way and k the factor that a way may be longer by, the larger root of
 /// (k^2 - 1) D^2 - 2 (k w - r cos) D + w^2 - r^2 = 0, from w + |flank to vertex| = k D.
+///
+/// Flanks nearer than a mean edge are allowed less: they leave nearly the whole way to others, which may be detours in
+/// their turn.
 Floats serving_distance(const Flank& flank, Floats angle, const WaveScene& scene) {
-  const Floats surplus = Simd::fill(scene.radius_surplus), half = Simd::fill(0.5f);
-  const Floats b = Simd::fill(scene.radius) * flank.way - flank.reach + half * flank.reach * square(angle);
+  const Floats one = Simd::fill(1), half = Simd::fill(0.5f);
+  const Floats excess = Simd::fill(scene.excess) * Simd::min(flank.reach, one);
+  const Floats surplus = excess * (excess + one + one);
+  const Floats b = (one + excess) * flank.way - flank.reach + half * flank.reach * square(angle);
   const Floats c = surplus * (flank.reach - flank.way) * (flank.reach + flank.way);
-  return (b + Simd::sqrt(Simd::max(b * b + c, Simd::fill(0)))) * Simd::fill(scene.per_radius_surplus);
+  return (b + Simd::sqrt(Simd::max(b * b + c, Simd::fill(0)))) / surplus;
 }
 
 /// The radius beyond which the way by one of two flanks does for all vertices between them. `cosine` and `sine` are of
