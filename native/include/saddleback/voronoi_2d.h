@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saddleback/job.h"
+#include "saddleback/large_array.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -19,18 +20,18 @@ struct Voronoi2dOptions {
 /// A diagram with exact topology: which cells touch, and where more than three meet in one vertex, is decided without
 /// any tolerance; only the vertices' coordinates are rounded. Numbering depends on the sites alone.
 struct Voronoi2d {
-  std::vector<Vec2> sites;                       ///< (n) as given
-  std::vector<Index> site_of;                    ///< (n) smallest index of an equal site: only such have a cell
-  std::vector<Vec2> vertices;                    ///< (V)
-  std::vector<std::array<Index, 2>> edges;       ///< (E) vertices; -1 at infinity: (v, -1) is a ray, (-1, -1) a line
-  std::vector<std::array<Index, 2>> edge_sites;  ///< (E) the sites left and right of the edge, first to second vertex
+  LargeArray<Vec2> sites;                       ///< (n) as given
+  LargeArray<Index> site_of;                    ///< (n) smallest index of an equal site: only such have a cell
+  LargeArray<Vec2> vertices;                    ///< (V)
+  LargeArray<std::array<Index, 2>> edges;       ///< (E) vertices; -1 at infinity: (v, -1) is a ray, (-1, -1) a line
+  LargeArray<std::array<Index, 2>> edge_sites;  ///< (E) the sites left and right of the edge, first to second vertex
 
   // Cells in memory order; `cell_vertices` and `cell_edges` find a site's.
-  std::vector<Index> cell_sites;       ///< (C) site of each cell
-  std::vector<Index> cell_places;      ///< (n) cell of each site
-  std::vector<Index> cell_offsets;     ///< (C + 1)
-  std::vector<Index> corner_vertices;  ///< (2 E) by cell, counter-clockwise; -1 at infinity
-  std::vector<Index> side_edges;       ///< (2 E) by cell: the edge that ends at the corner
+  LargeArray<Index> cell_sites;       ///< (C) site of each cell
+  LargeArray<Index> cell_places;      ///< (n) cell of each site
+  LargeArray<Index> cell_offsets;     ///< (C + 1)
+  LargeArray<Index> corner_vertices;  ///< (2 E) by cell, counter-clockwise; -1 at infinity
+  LargeArray<Index> side_edges;       ///< (2 E) by cell: the edge that ends at the corner
 
   /// Vertices around a site's cell, counter-clockwise; -1 stands where the cell is open. O(1).
   std::span<const Index> cell_vertices(Index site) const;

@@ -44,58 +44,62 @@ Box box_of(const OrderedSites& sites, Index begin, Index end) {
 
 /// Cells of some sites, one after another.
 struct CellLists {
-  std::vector<Index> neighbours, sizes;
-  std::vector<std::uint8_t> is_open, is_doubtful;
-  void clear() { neighbours.clear(), sizes.clear(), is_open.clear(), is_doubtful.clear(); }
+  LargeArray<Index> neighbours, sizes;
+  LargeArray<std::uint8_t> is_open, is_doubtful;
+
+  void reserve(Index count) {
+    neighbours.reserve(static_cast<std::size_t>(6) * count + count / 8);
+    sizes.reserve(count);
+    is_open.reserve(count);
+    is_doubtful.reserve(count);
+  }
 };
 
-/// Reads cells off a mesh. Corners of the mesh become ranks by `rank_of`.
+/// Reads cells off the mesh of a circle.
 class CellReader {
  public:
-  /// Prepares for a mesh; of its sites, those at positions below `own_count` will be read.
-  template <class PositionOf>
-  void open(const PlanarMesh& mesh, Index own_count, PositionOf&& position_of) {
-    mesh_ = &mesh;
-    leaving_.assign(own_count, k_none);
-    for (Index first = 0; first < mesh.half_end(); first += 4) {
-      for (Index half = first; half < first + 3; ++half) {
-        const Index position = position_of(mesh.triangles[half]);
-        if (position >= own_count) continue;
-        Index& mine = leaving_[position];  // at the border the first one counter-clockwise
-        if (mine == k_none || mesh.twins[half] == k_none) mine = half;
-      }
+  /// `rank_of` tells the ranks of the sites by their position in the arrays that the circle was given.
+  template <class RankOf>
+  void open(const PlanarMesh& mesh, const SweepCircle& circle, RankOf&& rank_of) {
+    mesh_ = mesh;
+    is_flat_ = circle.is_flat.data();
+    ranks_.resize(mesh.site_count);
+    places_.resize(mesh.site_count);
+    for (Index k = 0; k < mesh.site_count; ++k) {
+      const Index position = circle.position(k);
+      places_[position] = k;
+      ranks_[k] = rank_of(position);
     }
+    leaving_.assign(mesh.site_count, k_none);
+    for (Index first = 0; first < mesh.half_end(); first += 4)
+      for (Index half = first; half < first + 3; ++half) leaving_[mesh.triangles[half]] = half;
+    for (Index first = 0; first < mesh.half_end(); first += 4)  // from the border counter-clockwise
+      for (Index half = first; half < first + 3; ++half)
+        if (mesh.twins[half] == k_none) leaving_[mesh.triangles[half]] = half;
   }
 
-  /// Appends the cell of a site. An edge between triangles on one circle is no neighbour.
-  template <class RankOf>
-  void read(Index position, std::span<const std::uint8_t> is_flat, RankOf&& rank_of, CellLists& out) const {
-    const PlanarMesh& mesh = *mesh_;
+  /// Appends the cell of the site at a position. An edge between triangles on one circle is no neighbour.
+  void read(Index position, CellLists& out) const {
     const std::size_t begin = out.neighbours.size();
-    const Index first = leaving_[position];
-    bool is_open = true;
-    if (first != k_none) {
-      is_open = mesh.twins[first] == k_none;
-      Index half = first;
-      do {
-        if (!is_flat[half]) out.neighbours.push_back(rank_of(mesh.triangles[next_half(half)]));
-        const Index last = previous_half(half);
-        half = mesh.twins[last];
-        if (half == k_none) {
-          is_open = true;
-          out.neighbours.push_back(rank_of(mesh.triangles[last]));
-        }
-      } while (half != k_none && half != first);
-      const auto list = out.neighbours.begin() + static_cast<std::ptrdiff_t>(begin);
-      if (!is_open) std::rotate(list, std::min_element(list, out.neighbours.end()), out.neighbours.end());
+    const Index first = leaving_[places_[position]];
+    bool is_open = first == k_none || mesh_.twins[first] == k_none;
+    for (Index half = first; half != k_none;) {
+      if (!is_flat_[half]) out.neighbours.push_back(ranks_[mesh_.triangles[next_half(half)]]);
+      const Index last = previous_half(half);
+      half = mesh_.twins[last];
+      if (half == first) break;
+      if (half == k_none) out.neighbours.push_back(ranks_[mesh_.triangles[last]]);
     }
+    const auto list = out.neighbours.begin() + static_cast<std::ptrdiff_t>(begin);
+    if (!is_open) std::rotate(list, std::min_element(list, out.neighbours.end()), out.neighbours.end());
     out.sizes.push_back(static_cast<Index>(out.neighbours.size() - begin));
     out.is_open.push_back(is_open);
   }
 
  private:
-  const PlanarMesh* mesh_ = nullptr;
-  std::vector<Index> leaving_;
+  PlanarMesh mesh_{};
+  const std::uint8_t* is_flat_ = nullptr;
+  std::vector<Index> ranks_, places_, leaving_;
 };
 
 /// Boxes about every 32 sites in the order, and about every 32 of those.
@@ -170,7 +174,7 @@ class Tiling {
     }
   }
 
-  const std::vector<std::uint32_t>& places_;
+  const LargeArray<std::uint32_t>& places_;
   Index size_;
   std::vector<Index> ends_;
 };
@@ -184,16 +188,26 @@ struct Worker {
   std::vector<std::uint8_t> leaves_margin;
 };
 
-// Circles about vertices that leave a box, by site.
+// Whether the circle through three sites stays in a box, up to rounding. Most do by far: then without a division.
+bool stays_in(const Box& box, const predicates::Point2& a, const predicates::Point2& b, const predicates::Point2& c) {
+  const auto reach_of = [&](double x, double y) {
+    return std::min(std::min(x - box.low[0], box.high[0] - x), std::min(y - box.low[1], box.high[1] - y));
+  };
+  const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y, det = bx * cy - by * cx;
+  const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy, bc2 = (bx - cx) * (bx - cx) + (by - cy) * (by - cy);
+  const double reach = reach_of(a.x, a.y);
+  if (b2 * c2 * bc2 <= det * det * reach * reach) return true;  // a diameter fits between a and the box
+  const Vec2 v = circumcentre(a, b, c);
+  const double reach_of_centre = reach_of(v.x(), v.y()), dx = v.x() - a.x, dy = v.y() - a.y;
+  return reach_of_centre > 0 && dx * dx + dy * dy < reach_of_centre * reach_of_centre;
+}
+
+// Marks the positions of sites with a vertex whose circle leaves a box.
 void mark_leaving(const PlanarMesh& mesh, const Box& box, const SweepCircle& circle, std::vector<std::uint8_t>& marks) {
   for (Index first = 0; first < mesh.half_end(); first += 4) {
-    const predicates::Point2 a = mesh.point(mesh.triangles[first]);
-    const Vec2 v = circumcentre(a, mesh.point(mesh.triangles[first + 1]), mesh.point(mesh.triangles[first + 2]));
-    const double reach =
-        std::min(std::min(v.x() - box.low[0], box.high[0] - v.x()), std::min(v.y() - box.low[1], box.high[1] - v.y()));
-    const double dx = v.x() - a.x, dy = v.y() - a.y;
-    if (reach > 0 && dx * dx + dy * dy < reach * reach) continue;
-    for (Index k = 0; k < 3; ++k) marks[circle.position(mesh.triangles[first + k])] = 1;
+    const Index* const corners = mesh.triangles + first;
+    if (stays_in(box, mesh.point(corners[0]), mesh.point(corners[1]), mesh.point(corners[2]))) continue;
+    for (Index k = 0; k < 3; ++k) marks[circle.position(corners[k])] = 1;
   }
 }
 
@@ -218,10 +232,10 @@ void find_tile(const OrderedSites& sites, const BoxTree& tree, Index begin, Inde
   if (!passes_circle_tests(mesh, w.circle.is_flat)) mesh = w.circle.triangulate(w.x, w.y, box.centre(), stage);
   w.leaves_margin.assign(w.ranks.size(), 0);
   mark_leaving(mesh, margin_box, w.circle, w.leaves_margin);
-  w.reader.open(mesh, own_count, [&](Index k) { return w.circle.position(k); });
-  const auto rank_of = [&](Index k) { return w.ranks[w.circle.position(k)]; };
+  w.reader.open(mesh, w.circle, [&](Index position) { return w.ranks[position]; });
+  out.reserve(own_count);
   for (Index i = 0; i < own_count; ++i) {
-    w.reader.read(i, w.circle.is_flat, rank_of, out);
+    w.reader.read(i, out);
     out.is_doubtful.push_back(out.is_open.back() | w.leaves_margin[i]);
   }
 }
@@ -242,7 +256,7 @@ Cells joined(std::vector<CellLists>& tiles, Index count, int threads) {
   parallel_for(static_cast<Index>(tiles.size()), threads, 1, [&](Index i, int) {
     std::copy(tiles[i].neighbours.begin(), tiles[i].neighbours.end(),
               cells.neighbours.begin() + cells.offsets[first[i]]);
-    std::vector<Index>().swap(tiles[i].neighbours);
+    LargeArray<Index>().swap(tiles[i].neighbours);
   });
   return cells;
 }
@@ -259,47 +273,6 @@ void add_neighbours(const Cells& cells, std::vector<Index>& ranks, std::size_t b
   }
 }
 
-// Finds some cells again among their neighbours and the neighbours of those.
-Cells renewed(const OrderedSites& sites, const Cells& cells, std::vector<Index> ranks, const JobStage& stage) {
-  const std::size_t own_count = ranks.size();
-  std::vector<bool> is_in(sites.count(), false);
-  for (const Index rank : ranks) is_in[rank] = true;
-  add_neighbours(cells, ranks, 0, is_in);
-  add_neighbours(cells, ranks, own_count, is_in);
-  std::vector<double> x, y;
-  for (const Index rank : ranks) x.push_back(sites.x[rank]), y.push_back(sites.y[rank]);
-  SweepCircle circle;
-  const PlanarMesh mesh = circle.triangulate(x, y, box_of(sites, 0, sites.count()).centre(), stage);
-  CellReader reader;
-  reader.open(mesh, static_cast<Index>(own_count), [&](Index k) { return circle.position(k); });
-  CellLists lists;
-  for (std::size_t i = 0; i < own_count; ++i)
-    reader.read(
-        static_cast<Index>(i), circle.is_flat, [&](Index k) { return ranks[circle.position(k)]; }, lists);
-
-  Cells result;
-  result.offsets.reserve(cells.offsets.size());
-  result.offsets.push_back(0);
-  result.neighbours.reserve(cells.neighbours.size() + lists.neighbours.size());
-  result.is_open = cells.is_open;
-  auto list = lists.neighbours.begin();
-  Index kept = 0;  // cells before the next renewed one go over as they are
-  for (std::size_t i = 0; i <= own_count; ++i) {
-    const Index rank = i < own_count ? ranks[i] : sites.count();
-    const Index shift = static_cast<Index>(result.neighbours.size()) - cells.offsets[kept];
-    result.neighbours.insert(result.neighbours.end(), cells.neighbours.begin() + cells.offsets[kept],
-                             cells.neighbours.begin() + cells.offsets[rank]);
-    for (; kept < rank; ++kept) result.offsets.push_back(cells.offsets[kept + 1] + shift);
-    if (i == own_count) break;
-    result.neighbours.insert(result.neighbours.end(), list, list + lists.sizes[i]);
-    list += lists.sizes[i];
-    result.offsets.push_back(static_cast<Index>(result.neighbours.size()));
-    result.is_open[rank] = lists.is_open[i];
-    kept = rank + 1;
-  }
-  return result;
-}
-
 }  // namespace
 
 Cells find_cells(const OrderedSites& sites, const JobStage& stage) {
@@ -309,16 +282,13 @@ Cells find_cells(const OrderedSites& sites, const JobStage& stage) {
   if (count > 2) mesh = circle.triangulate(sites.x, sites.y, box_of(sites, 0, count).centre(), stage);
   if (mesh.triangle_count == 0) return strips_of(sites);
   CellReader reader;
-  reader.open(mesh, count, [&](Index k) { return circle.position(k); });
+  reader.open(mesh, circle, [](Index position) { return position; });
   CellLists lists;
-  lists.neighbours.reserve(static_cast<std::size_t>(6) * count);
-  lists.sizes.reserve(count);
-  lists.is_open.reserve(count);
-  for (Index i = 0; i < count; ++i)
-    reader.read(
-        i, circle.is_flat, [&](Index k) { return circle.position(k); }, lists);
+  lists.reserve(count);
+  for (Index i = 0; i < count; ++i) reader.read(i, lists);
   Cells cells;
   cells.offsets.resize(count + 1);
+  cells.offsets[0] = 0;
   std::partial_sum(lists.sizes.begin(), lists.sizes.end(), cells.offsets.begin() + 1);
   cells.neighbours = std::move(lists.neighbours);
   cells.is_open = std::move(lists.is_open);
@@ -345,7 +315,60 @@ Cells find_cells_by_tiles(const OrderedSites& sites, Index circle_size, int thre
     for (Index k = 0; k < tiling.end(i) - tiling.begin(i); ++k)
       if (tiles[i].is_doubtful[k]) ranks.push_back(tiling.begin(i) + k);
   const Cells cells = joined(tiles, sites.count(), threads);
-  return renewed(sites, cells, std::move(ranks), stage.part(0.9, 1));
+  return renew_cells(sites, cells, std::move(ranks), stage.part(0.9, 1));
+}
+
+Cells renew_cells(const OrderedSites& sites, const Cells& cells, std::vector<Index> ranks, const JobStage& stage) {
+  const std::size_t own_count = ranks.size();
+  std::vector<bool> is_in(sites.count(), false);
+  for (const Index rank : ranks) is_in[rank] = true;
+  add_neighbours(cells, ranks, 0, is_in);
+  add_neighbours(cells, ranks, own_count, is_in);
+  std::vector<double> x, y;
+  for (const Index rank : ranks) x.push_back(sites.x[rank]), y.push_back(sites.y[rank]);
+  SweepCircle circle;
+  const PlanarMesh mesh = circle.triangulate(x, y, box_of(sites, 0, sites.count()).centre(), stage);
+  CellReader reader;
+  reader.open(mesh, circle, [&](Index position) { return ranks[position]; });
+  CellLists lists;
+  for (std::size_t i = 0; i < own_count; ++i) reader.read(static_cast<Index>(i), lists);
+
+  Cells result;
+  result.offsets.reserve(cells.offsets.size());
+  result.offsets.push_back(0);
+  result.neighbours.reserve(cells.neighbours.size() + lists.neighbours.size());
+  result.is_open = cells.is_open;
+  auto list = lists.neighbours.begin();
+  Index kept = 0;  // cells before the next renewed one go over as they are
+  for (std::size_t i = 0; i <= own_count; ++i) {
+    const Index rank = i < own_count ? ranks[i] : sites.count();
+    const Index shift = static_cast<Index>(result.neighbours.size()) - cells.offsets[kept];
+    result.neighbours.insert(result.neighbours.end(), cells.neighbours.begin() + cells.offsets[kept],
+                             cells.neighbours.begin() + cells.offsets[rank]);
+    for (; kept < rank; ++kept) result.offsets.push_back(cells.offsets[kept + 1] + shift);
+    if (i == own_count) break;
+    result.neighbours.insert(result.neighbours.end(), list, list + lists.sizes[i]);
+    list += lists.sizes[i];
+    result.offsets.push_back(static_cast<Index>(result.neighbours.size()));
+    result.is_open[rank] = lists.is_open[i];
+    kept = rank + 1;
+  }
+  return result;
+}
+
+std::vector<Index> misfits(const Cells& cells) {
+  std::vector<Index> result;
+  for (Index cell = 0; cell < cells.cell_count(); ++cell) {
+    for (Index side = cells.offsets[cell]; side < cells.offsets[cell + 1]; ++side) {
+      const Index other = cells.neighbours[side];
+      const auto begin = cells.neighbours.begin() + cells.offsets[other],
+                 end = cells.neighbours.begin() + cells.offsets[other + 1];
+      if (std::find(begin, end, cell) == end) result.insert(result.end(), {cell, other});
+    }
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
 }
 
 }  // namespace saddleback::voronoi2d

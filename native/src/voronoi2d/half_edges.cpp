@@ -34,7 +34,7 @@ namespace {
 
 // A side of a cell and whether it is the first in its cell's list, in one number.
 struct Side {
-  std::uint32_t code = 0;
+  std::uint32_t code;
   Index index() const { return static_cast<Index>(code >> 1); }
   bool is_first() const { return code & 1; }
 };
@@ -47,8 +47,8 @@ class Stitcher {
   bool stitch(int threads, const JobStage& stage) {
     const Index count = cells_.cell_count(), side_count = static_cast<Index>(twins_.size());
     const Index edge_count = side_count / 2, vertex_count = cells_.are_strips ? 0 : edge_count - count + 1;
-    // Enough pieces for any number of threads; their boundaries do not show in the result.
-    const Index piece_count = std::clamp<Index>(count / 8192, 1, 256);
+    // The pieces' boundaries do not show in the result.
+    const Index piece_count = thread_count(threads) == 1 ? 1 : std::clamp<Index>(count / 8192, 1, 256);
     std::vector<Piece> pieces(piece_count + 1);
     for (Index i = 0; i <= piece_count; ++i)
       pieces[i].begin = static_cast<Index>(static_cast<std::int64_t>(count) * i / piece_count);
@@ -62,7 +62,12 @@ class Stitcher {
     result_.corner_vertices.assign(side_count, k_none);
     result_.side_edges.resize(side_count);
     stage.update(0.3);
-    parallel_for(piece_count, threads, 1, [&](Index i, int) { count_own(pieces[i], pieces[i + 1].begin); });
+    if (piece_count > 1) {
+      parallel_for(piece_count, threads, 1, [&](Index i, int) { count_own(pieces[i], pieces[i + 1].begin); });
+    } else {
+      pieces[0].vertices = vertex_count;
+      pieces[0].edges = edge_count;
+    }
     for (Index i = 0, vertices = 0, edges = 0; i <= piece_count; ++i) {
       std::swap(pieces[i].vertices, vertices);
       std::swap(pieces[i].edges, edges);
@@ -76,8 +81,9 @@ class Stitcher {
     result_.edge_sites.resize(edge_count);
     parallel_for(piece_count, threads, 1, [&](Index i, int) {
       stage.check();
-      add_vertices(pieces[i], pieces[i + 1].begin);
+      if (!add_vertices(pieces[i], pieces[i + 1])) fits = false;
     });
+    if (!fits) return false;
     stage.update(0.8);
     parallel_for(piece_count, threads, 1, [&](Index i, int) {
       stage.check();
@@ -90,7 +96,7 @@ class Stitcher {
  private:
   struct Piece {
     Index begin = 0;                ///< cell
-    Index vertices = 0, edges = 0;  ///< how many, then those before
+    Index vertices = 0, edges = 0;  ///< how many are its own, then how many come before
   };
 
   // An edge belongs to the lower rank, which finds both of its sides.
@@ -166,9 +172,13 @@ class Stitcher {
 
   predicates::Point2 point(Index rank) const { return {sites_.x[rank], sites_.y[rank]}; }
 
-  void add_vertices(const Piece& piece, Index end) {
+  // False when there are not as many as there should be.
+  bool add_vertices(const Piece& piece, const Piece& next) {
     Index vertex = piece.vertices;
-    for_own_vertices(piece.begin, end, [&](Index cell, Index corner) {
+    bool fits = true;
+    for_own_vertices(piece.begin, next.begin, [&](Index cell, Index corner) {
+      fits = fits && vertex < next.vertices;
+      if (!fits) return;
       // Three sites evenly about the vertex, so that their circle is well determined.
       Index walk = corner, size = 0;
       do {
@@ -185,6 +195,7 @@ class Stitcher {
       }
       result_.vertices[vertex++] = circumcentre(point(about[0]), point(about[1]), point(about[2])) / sites_.scale;
     });
+    return fits && vertex == next.vertices;
   }
 
   void add_edges(const Piece& piece, Index end) {
@@ -212,7 +223,7 @@ class Stitcher {
   const Cells& cells_;
   const OrderedSites& sites_;
   Numbering& result_;
-  std::vector<Side> twins_;
+  LargeArray<Side> twins_;
 };
 
 }  // namespace

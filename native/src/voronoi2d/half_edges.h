@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/large_array.h"
 #include "saddleback/types.h"
 
 #include "voronoi2d/planar_mesh.h"
@@ -15,10 +16,10 @@ namespace saddleback::voronoi2d {
 /// By rank of the site: the neighbours around it, counter-clockwise. An open cell's first and last neighbours are
 /// those on the border; other lists begin with the lowest rank. Corner k of a cell lies after neighbour k.
 struct Cells {
-  std::vector<Index> offsets;         ///< (n + 1)
-  std::vector<Index> neighbours;      ///< ranks
-  std::vector<std::uint8_t> is_open;  ///< (n): the last corner is at infinity
-  bool are_strips = false;            ///< all sites on one line: every corner is at infinity
+  LargeArray<Index> offsets;         ///< (n + 1)
+  LargeArray<Index> neighbours;      ///< ranks
+  LargeArray<std::uint8_t> is_open;  ///< (n): the last corner is at infinity
+  bool are_strips = false;           ///< all sites on one line: every corner is at infinity
   Index cell_count() const { return static_cast<Index>(is_open.size()); }
 };
 
@@ -27,11 +28,11 @@ Cells strips_of(const OrderedSites& sites);
 
 /// The cells' corners and sides by number.
 struct Numbering {
-  std::vector<Index> corner_vertices;               ///< by corner: its vertex, k_none at infinity
-  std::vector<Index> side_edges;                    ///< by neighbour: its edge
-  std::vector<Vec2> vertices;                       ///< in the given coordinates
-  std::vector<std::array<Index, 2>> edge_vertices;  ///< k_none at infinity, which is never the first of two
-  std::vector<std::array<Index, 2>> edge_sites;     ///< given indices: left and right of the edge
+  LargeArray<Index> corner_vertices;               ///< by corner: its vertex, k_none at infinity
+  LargeArray<Index> side_edges;                    ///< by neighbour: its edge
+  LargeArray<Vec2> vertices;                       ///< in the given coordinates
+  LargeArray<std::array<Index, 2>> edge_vertices;  ///< k_none at infinity, which is never the first of two
+  LargeArray<std::array<Index, 2>> edge_sites;     ///< given indices: left and right of the edge
 };
 
 /// Numbers vertices by the lowest rank about them, then counter-clockwise about that site; edges likewise.

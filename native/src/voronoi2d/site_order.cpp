@@ -108,7 +108,7 @@ struct Keyed {
 };
 
 // Stable, least digit first.
-void radix_sort(std::vector<Keyed>& items, std::vector<Keyed>& other) {
+void radix_sort(LargeArray<Keyed>& items, LargeArray<Keyed>& other) {
   constexpr int k_digit = 11;
   constexpr std::size_t k_values = std::size_t{1} << k_digit;
   other.resize(items.size());
@@ -191,7 +191,7 @@ OrderedSites order_sites(std::span<const Vec2> sites, const JobStage& stage) {
   result.scale = scale_for(sites, range);
   stage.update(0.1);
 
-  std::vector<Keyed> items(sites.size()), other;
+  LargeArray<Keyed> items(sites.size()), other;
   for (std::size_t i = 0; i < items.size(); ++i) items[i] = {0, static_cast<Index>(i)};
   Sorter sorter(sites);
   if (items.size() > 1 && sorter.place(items)) {
@@ -199,7 +199,7 @@ OrderedSites order_sites(std::span<const Vec2> sites, const JobStage& stage) {
     radix_sort(items, other);
     stage.update(0.6);
   }
-  std::vector<std::uint32_t> places(items.size());  // the runs' own curves overwrite theirs
+  LargeArray<std::uint32_t> places(items.size());  // the runs' own curves overwrite theirs
   for (std::size_t i = 0; i < items.size(); ++i) places[i] = items[i].place;
   sorter.sort_runs(items);
   stage.update(0.8);

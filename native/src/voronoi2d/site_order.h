@@ -4,9 +4,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "saddleback/job.h"
+#include "saddleback/large_array.h"
 #include "saddleback/types.h"
 
 namespace saddleback::voronoi2d {
@@ -14,11 +14,11 @@ namespace saddleback::voronoi2d {
 /// Distinct sites in an order in which neighbours in the plane are near each other. It depends on the sites alone; a
 /// site's place in it is its rank, by which ties are decided and results are numbered.
 struct OrderedSites {
-  std::vector<double> x, y;           ///< by rank, times `scale`
-  std::vector<Index> original;        ///< by rank: the index given by the caller, the smallest of equal sites
-  std::vector<Index> site_of;         ///< by index: the smallest index of an equal site
-  std::vector<std::uint32_t> places;  ///< by rank: two bits for each halving of the squares, never falling
-  double scale = 1;                   ///< a power of two
+  LargeArray<double> x, y;           ///< by rank, times `scale`
+  LargeArray<Index> original;        ///< by rank: the index given by the caller, the smallest of equal sites
+  LargeArray<Index> site_of;         ///< by index: the smallest index of an equal site
+  LargeArray<std::uint32_t> places;  ///< by rank: two bits for each halving of the squares, never falling
+  double scale = 1;                  ///< a power of two
 
   Index count() const { return static_cast<Index>(x.size()); }
 };

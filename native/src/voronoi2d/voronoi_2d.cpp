@@ -24,8 +24,13 @@ Numbering find_numbering(const OrderedSites& sites, const Voronoi2dOptions& opti
   if (circles > 1) {
     cells =
         find_cells_by_tiles(sites, std::max<Index>(1, sites.count() / circles), options.threads, stage.part(0, 0.6));
-    if (cells.cell_count() > 0 && number(cells, sites, options.threads, stage.part(0.6, 0.9), numbering))
-      return numbering;
+    constexpr int k_attempts = 8;
+    for (int attempt = 0; attempt < k_attempts && cells.cell_count() > 0; ++attempt) {
+      if (number(cells, sites, options.threads, stage.part(0.6, 0.9), numbering)) return numbering;
+      std::vector<Index> ranks = misfits(cells);
+      if (ranks.empty() || static_cast<Index>(ranks.size()) > sites.count() / 2) break;
+      cells = renew_cells(sites, cells, std::move(ranks), stage.part(0.8, 0.8));
+    }
   }
   cells = find_cells(sites, circles > 1 ? stage.part(0.9, 0.97) : stage.part(0, 0.8));
   if (!number(cells, sites, options.threads, stage.part(0.97, 1), numbering))
@@ -50,7 +55,8 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
   result.edge_sites = std::move(numbering.edge_sites);
   result.cell_places.assign(sites.size(), k_none);
   for (Index rank = 0; rank < ordered.count(); ++rank) result.cell_places[ordered.original[rank]] = rank;
-  for (std::size_t i = 0; i < sites.size(); ++i) result.cell_places[i] = result.cell_places[ordered.site_of[i]];
+  for (std::size_t i = 0; i < sites.size() && ordered.original.size() < sites.size(); ++i)
+    result.cell_places[i] = result.cell_places[ordered.site_of[i]];
   result.site_of = std::move(ordered.site_of);
   result.cell_sites = std::move(ordered.original);
   result.cell_offsets = std::move(cells.offsets);
