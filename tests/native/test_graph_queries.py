@@ -116,12 +116,12 @@ def test_one_distance_has_the_bits_of_the_field_in_both_directions(case: meshes.
 )
 def test_a_star_returns_what_a_whole_field_says(arrays: meshes.Arrays) -> None:
     """On regular meshes very many ways are equally long; on needles arcs are long and short by a factor of 1000."""
-    graph = sb.SaddleVertexGraph(sb.Mesh(*arrays), k=30)
-    rng = np.random.default_rng(5)
-    for a in rng.integers(len(arrays[0]), size=6):
-        field = graph.distances([a])
-        for b in rng.integers(len(arrays[0]), size=25):
-            assert graph.distance(a, b) == field[b]
+    mesh, rng = sb.Mesh(*arrays), np.random.default_rng(5)
+    for graph in (sb.SaddleVertexGraph(mesh, k=30), sb.SaddleVertexGraph(mesh)):
+        for a in rng.integers(len(arrays[0]), size=6):
+            field = graph.distances([a])
+            for b in rng.integers(len(arrays[0]), size=25):
+                assert graph.distance(a, b) == field[b]
 
 
 def test_a_star_looks_at_a_small_part_of_the_mesh() -> None:
@@ -192,6 +192,26 @@ def test_between_any_points_never_too_short_and_little_too_long(case: meshes.Cas
         assert error.min() >= -ROUNDING
         if case.name != "needles":  # 50 vertices are a thin strip there: k says nothing of accuracy
             assert error.mean() <= 0.006
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.2])
+@pytest.mark.parametrize("accuracy", [2e-2, 5e-3])
+def test_points_and_curves_keep_to_the_accuracy(accuracy: float, jitter: float) -> None:
+    """Points by their own fans may add 0.3 %; a curve's strip is exact, so that it adds nothing."""
+    mesh = sb.Mesh(*meshes.grid(40, 40, jitter))
+    graph = sb.SaddleVertexGraph(mesh, accuracy=accuracy)
+    points, targets = random_points(mesh, 6, seed=13), random_points(mesh, 500, seed=14)
+    for i in range(len(points)):
+        straight = np.linalg.norm(targets.positions(mesh) - points.positions(mesh)[i], axis=1)
+        error = graph.distances_to(one(points, i), targets) / straight - 1
+        assert error.min() >= -ROUNDING
+        assert error.max() <= accuracy + 0.003
+        assert error.mean() <= 0.4 * accuracy
+    curve = traced(mesh, 2 * 39 * 16 + 30, 0.4, 0.45)
+    straight = to_segments(mesh.vertices, curve.points.positions(mesh)[[0, -1]])
+    found = graph.distances(curve)
+    assert (found <= (1 + accuracy) * straight + 1e-12).all()
+    assert (found >= (1 - ROUNDING) * straight - 1e-12).all()
 
 
 def test_many_sources_in_one_face() -> None:

@@ -31,6 +31,10 @@ struct SaddleVertexGraphOptions {
   static constexpr double k_default_accuracy = 5e-3;
 };
 
+/// How many vertices the arcs of a point lead to: as many as a vertex has, or twice as many, by which distances of
+/// points are off by no more than the accuracy that the graph was asked for and 0.3 %.
+enum class FanWidth { as_disks, as_accurate };
+
 enum class QueryMethod { label_correcting, dijkstra };
 
 struct QueryOptions {
@@ -114,7 +118,8 @@ class SaddleVertexGraph {
   ArcHint hint(Index node, std::int64_t arc) const;
   /// The arcs that a point of the surface has, to vertices; lengths as they are, not yet rounded as arcs are. Takes a
   /// propagator of the caller's thread.
-  void fan(const SurfacePoint& point, WindowPropagator& propagator, std::vector<DirectArc>& arcs) const;
+  void fan(const SurfacePoint& point, WindowPropagator& propagator, std::vector<DirectArc>& arcs,
+           FanWidth width = FanWidth::as_disks) const;
 
   /// Distance of every vertex from the nearest source: (V,), infinity where none reaches. Points that are not vertices
   /// are linked by a window propagation of their own. Both methods return the same bits. \throw InputError for no

@@ -39,7 +39,7 @@ class Propagators {
   void fan(const SurfacePoint& point, int thread, std::vector<DirectArc>& arcs) {
     if (vertex_at(graph_.mesh(), point) != k_none) return arcs.clear();
     if (!own_[thread]) own_[thread] = std::make_unique<WindowPropagator>(graph_.unfolding());
-    graph_.fan(point, *own_[thread], arcs);
+    graph_.fan(point, *own_[thread], arcs, FanWidth::as_accurate);
   }
 
  private:

@@ -23,8 +23,8 @@ constexpr double k_median = 0.5;
 constexpr int k_fetch_offset = 4, k_fetch_row = 2;
 constexpr std::int64_t k_most_fetched = 32;
 constexpr int k_words_a_line = 8;
-// Nodes between two looks at the job: a millisecond.
-constexpr Index k_nodes_a_check = 4096;
+// Arcs between two looks at the job: about a millisecond, also where rows are very long.
+constexpr std::int64_t k_arcs_a_check = 1 << 18;
 
 /// Dijkstra's queue, with the same face as the buckets.
 class Heap {
@@ -95,7 +95,7 @@ void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGrap
 
   LoweredNodes lowered;
   RowOffer offer{0, distances_.data(), with_sources ? sources_.data() : nullptr, k_none};
-  Index expanded = 0;
+  std::int64_t expanded = 0, arcs_to_check = k_arcs_a_check;
   for (typename Queue::Entry entry{}; queue.pop(entry);) {
     if (const auto* next = queue.ahead(k_fetch_offset)) {
       __builtin_prefetch(offsets + next->node);
@@ -107,10 +107,14 @@ void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGrap
     }
     offer.distance = distances_[entry.node];
     if (!queue.is_due(entry, offer.distance)) continue;
-    if (++expanded % k_nodes_a_check == 0)
-      stage.update(static_cast<double>(expanded) / static_cast<double>(distances_.size()));
-    if (with_sources) offer.label = sources_[entry.node];
+    ++expanded;
     const std::int64_t end = offsets[entry.node + 1];
+    arcs_to_check -= end - offsets[entry.node];
+    if (arcs_to_check < 0) {
+      arcs_to_check = k_arcs_a_check;
+      stage.update(static_cast<double>(expanded) / static_cast<double>(distances_.size()));
+    }
+    if (with_sources) offer.label = sources_[entry.node];
     for (std::int64_t first = offsets[entry.node]; first < end; first += LoweredNodes::k_most) {
       const auto arcs = static_cast<int>(std::min<std::int64_t>(end - first, LoweredNodes::k_most));
       relax(codec, words + first, arcs, offer, lowered);

@@ -16,7 +16,7 @@ namespace {
 // strip leaves the mean error as it is.
 constexpr double k_edges_an_arc = 0.15;
 // Nodes that a search expands while a fan is found.
-constexpr double k_cost_of_point = 1000, k_cost_of_strip_vertex = 15;
+constexpr double k_cost_of_point = 2000, k_cost_of_strip_vertex = 15;
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
@@ -53,7 +53,7 @@ std::vector<ScratchPool<FanFinder>::Lease> lease_finders(const SaddleVertexGraph
 PointFan FanFinder::find(const SaddleVertexGraph& graph, const SurfacePoint& point) {
   if (const Index vertex = vertex_at(graph.mesh(), point); vertex != k_none) return {{{vertex, 0}}, 0, true};
   if (!propagator_) propagator_ = std::make_unique<WindowPropagator>(graph.unfolding());
-  graph.fan(point, *propagator_, arcs_);
+  graph.fan(point, *propagator_, arcs_, FanWidth::as_accurate);
   PointFan fan;
   fan.arcs.reserve(arcs_.size());
   for (const DirectArc& arc : arcs_) {

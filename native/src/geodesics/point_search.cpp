@@ -17,7 +17,7 @@ constexpr double k_short_share = 0.1;
 // this part of it.
 constexpr double k_straight_line = 1 - 2e-7;
 constexpr double k_rounding = 1 - 1e-12;
-constexpr Index k_nodes_a_check = 4096;
+constexpr std::int64_t k_arcs_a_check = 1 << 18;
 
 }  // namespace
 
@@ -42,14 +42,20 @@ class PointSearch::Run {
     const RelaxRow relax = relax_row();
     RowOffer row{0, memory_.distances_.data(), nullptr, k_none};
     Index settled = 0;
+    std::int64_t arcs_to_check = k_arcs_a_check;
     // Along a path keys rise but for the rounding of bounds, so that a bucket may hold keys a little below its own.
     const double slack = landmarks_.slack();
     for (BucketQueue::Entry entry{}; queue.pop(entry) && queue.least_key() * k_rounding - slack < best_;) {
       row.distance = memory_.distances_[entry.node];
       const double key = row.distance + memory_.met_[entry.node].bound;
       if (!queue.is_current(entry, key) || key >= best_) continue;
-      if (++settled % k_nodes_a_check == 0) stage.check();
+      ++settled;
       const std::int64_t end = arcs.first(entry.node + 1);
+      arcs_to_check -= end - arcs.first(entry.node);
+      if (arcs_to_check < 0) {
+        arcs_to_check = k_arcs_a_check;
+        stage.check();
+      }
       for (std::int64_t first = arcs.first(entry.node); first < end; first += LoweredNodes::k_most) {
         const auto count = static_cast<int>(std::min<std::int64_t>(end - first, LoweredNodes::k_most));
         relax(arcs.codec(), words + first, count, row, lowered_);
