@@ -7,36 +7,76 @@
 namespace saddleback::bindings {
 namespace {
 
-std::vector<Vec2> as_sites(const py::object& value) {
-  const ArrayIn<double> in = as_points2(value, "sites");
+std::vector<Vec2> as_points_2d(const py::object& value, const char* name) {
+  const ArrayIn<double> in = as_points2(value, name);
   std::vector<Vec2> sites(in.count);
   for (Index i = 0; i < in.count; ++i) sites[i] = {in.values[2 * i], in.values[2 * i + 1]};
   return sites;
 }
 
-Voronoi2d find_diagram(const py::object& sites, const py::object& weights, const py::object& domain,
-                       const py::object& circles, const py::object& threads, const std::string& device,
-                       const py::object& job) {
+// An (m, 2) array, or a sequence of such: the outline and its holes.
+PlanarDomain as_domain(const py::object& value, const char* name) {
+  std::vector<std::vector<Vec2>> loops;
+  const bool is_list = py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value);
+  const py::object first = is_list && py::len(value) > 0 ? py::object(value[py::int_(0)]) : py::none();
+  const bool holds_loops = !first.is_none() && py::hasattr(first, "__len__") && py::len(first) > 0 &&
+                           py::hasattr(first[py::int_(0)], "__len__");
+  if (holds_loops) {
+    for (const py::handle loop : value) loops.push_back(as_points_2d(py::reinterpret_borrow<py::object>(loop), name));
+  } else {
+    loops.push_back(as_points_2d(value, name));
+  }
+  return PlanarDomain(std::move(loops));
+}
+
+/// The diagram and, if the caller gave a domain, its cells in there.
+struct Diagram {
+  Voronoi2d result;
+  py::object clipped;
+};
+
+Diagram find_diagram(const py::object& sites, const py::object& weights, const py::object& domain,
+                     const py::object& circles, const py::object& threads, const std::string& device,
+                     const py::object& job) {
   if (device != "auto" && device != "cpu" && device != "cuda")
     throw InputError(message("device: wanted 'auto', 'cpu' or 'cuda', got '", device, "'"));
   if (device == "cuda") throw DeviceError("device: Voronoi diagrams of the plane run on the CPU only");
   if (!weights.is_none()) throw InputError("weights: not supported yet");
-  if (!domain.is_none()) throw InputError("domain: not supported yet");
-  const std::vector<Vec2> points = as_sites(sites);
+  const std::vector<Vec2> points = as_points_2d(sites, "sites");
+  std::optional<PlanarDomain> within;
+  if (!domain.is_none()) within = as_domain(domain, "domain");
   const Voronoi2dOptions options{.circles = as_integer(circles, "circles"), .threads = as_integer(threads, "threads")};
   Job* const token = as_job(job);
-  return without_gil([&] { return voronoi_2d(points, options, token); });
+  ClippedCells clipped;
+  Voronoi2d diagram = without_gil([&] {
+    Voronoi2d result = voronoi_2d(points, options, token);
+    if (within) clipped = result.clip(*within, options.threads, token);
+    return result;
+  });
+  return {std::move(diagram), within ? py::cast(std::move(clipped)) : py::none()};
 }
 
 template <auto Member, class Scalar>
 py::array rows(const py::object& self) {
-  const auto& vector = py::cast<const Voronoi2d&>(self).*Member;
+  const auto& vector = py::cast<const Diagram&>(self).result.*Member;
   return view_of_rows<Scalar>(std::span(vector), self);
 }
 template <auto Member>
 py::array array(const py::object& self) {
-  const auto& vector = py::cast<const Voronoi2d&>(self).*Member;
+  const auto& vector = py::cast<const Diagram&>(self).result.*Member;
   return view_of(std::span(vector), self);
+}
+
+template <auto Member>
+py::array clipped_array(const py::object& self) {
+  const auto& vector = py::cast<const ClippedCells&>(self).*Member;
+  return view_of(std::span(vector), self);
+}
+py::array clipped_points(const py::object& self) {
+  return view_of_rows<double>(std::span(py::cast<const ClippedCells&>(self).points), self);
+}
+py::array clipped_centroids(const py::object& self) {
+  return view_of_rows<double>(std::span(py::cast<const ClippedCells&>(self).centroids), self);
 }
 
 Index as_site(const Voronoi2d& diagram, const py::object& site) {
@@ -53,6 +93,8 @@ Parameters
 ----------
 sites : (n, 2) float array
     Any finite numbers in any order. Equal sites share one cell.
+domain : (m, 2) float array or list of such, optional
+    A simple polygon, or an outline and its holes: `clipped` then holds the cells within.
 circles : int
     How many sweep circles share the work; 0: as many as are good. The result does not depend on it.
 threads : int
@@ -68,7 +110,8 @@ Voronoi2d
 Raises
 ------
 InputError
-    A coordinate that is not finite, or coordinates so different in size that exact arithmetic cannot take them.
+    A coordinate that is not finite, coordinates so different in size that exact arithmetic cannot take them, a domain
+    that is not a simple polygon with holes.
 Cancelled
     The job was cancelled.
 
@@ -76,10 +119,68 @@ Notes
 -----
 O(n log n) time, O(n) memory. H. Tong: the sweep circle that needs no transformation.)";
 
+constexpr const char* k_clip_doc = R"(The cells within a simple polygon with holes: ClippedCells.
+
+Parameters
+----------
+polygon : (m, 2) float array or list of such
+    A simple polygon, or an outline and its holes, in any direction.
+threads : int
+    0: all cores.
+job : Job, optional
+
+Raises
+------
+InputError
+    Fewer than three corners, loops that touch or cross, a hole outside the outline.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(n), and O(m) for each cell at the polygon's edges.)";
+
+constexpr const char* k_locate_doc = R"(Nearest site of each point, exactly; of equally near ones the smallest index.
+
+Parameters
+----------
+points : (m, 2) float array
+threads : int
+    0: all cores.
+job : Job, optional
+
+Returns
+-------
+(m,) int32 array
+
+Raises
+------
+InputError
+    A coordinate that is not finite, or a diagram without sites.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(n + m) expected.)";
+
 }  // namespace
 
 void bind_voronoi_2d(py::module_& m) {
-  py::class_<Voronoi2d>(m, "Voronoi2d", py::module_local(), "Voronoi diagram of the plane; made by `voronoi_2d`.")
+  py::class_<ClippedCells>(m, "ClippedCells", py::module_local(), "Cells within a domain; made by `Voronoi2d.clip`.")
+      .def_property_readonly("points", &clipped_points, "(P, 2) float64: corners of all loops, one after another.")
+      .def_property_readonly("loop_offsets", &clipped_array<&ClippedCells::loop_offsets>,
+                             "(L + 1,) int32: loop i is [offsets[i], offsets[i + 1]).")
+      .def_property_readonly("loop_sites", &clipped_array<&ClippedCells::loop_sites>,
+                             "(L,) int32, ascending: outlines turn counter-clockwise, holes clockwise.")
+      .def_property_readonly(
+          "areas", &clipped_array<&ClippedCells::areas>,
+          "(n,) float64: 0 outside, and for sites equal to an earlier one. They sum to the domain's.")
+      .def_property_readonly("centroids", &clipped_centroids, "(n, 2) float64: not a number where the area is 0.")
+      .def("__repr__", [](const ClippedCells& c) {
+        return message("<saddleback.ClippedCells in ", c.loop_sites.size(), " loops>");
+      });
+  py::class_<Diagram>(m, "Voronoi2d", py::module_local(), "Voronoi diagram of the plane; made by `voronoi_2d`.")
       .def_property_readonly("sites", &rows<&Voronoi2d::sites, double>, "(n, 2) float64: as given.")
       .def_property_readonly("site_of", &array<&Voronoi2d::site_of>,
                              "(n,) int32: smallest index of an equal site; only such sites have a cell.")
@@ -89,27 +190,53 @@ void bind_voronoi_2d(py::module_& m) {
       .def_property_readonly("edge_sites", &rows<&Voronoi2d::edge_sites, Index>,
                              "(E, 2) int32: the sites left and right of the edge.")
       .def_property_readonly(
-          "edge_directions", [](const Voronoi2d& d) { return to_array(d.edge_directions()); },
+          "edge_directions", [](const Diagram& d) { return to_array(d.result.edge_directions()); },
           "(E, 2) float64 unit vectors from first to second vertex; of a ray outwards.")
       .def_property_readonly(
-          "delaunay", [](const Voronoi2d& d) { return to_array(without_gil([&] { return d.delaunay(); })); },
+          "delaunay", [](const Diagram& d) { return to_array(without_gil([&] { return d.result.delaunay(); })); },
           "(T, 3) int32 sites, counter-clockwise: the Delaunay triangulation. Triangles about one vertex share its "
           "smallest site.")
       .def(
           "cell_vertices",
           [](const py::object& self, const py::object& site) {
-            const auto& d = py::cast<const Voronoi2d&>(self);
+            const Voronoi2d& d = py::cast<const Diagram&>(self).result;
             return view_of(d.cell_vertices(as_site(d, site)), self);
           },
           py::arg("site"), "(k,) int32: vertices around a site's cell, counter-clockwise; -1 where it is open.")
       .def(
           "cell_edges",
           [](const py::object& self, const py::object& site) {
-            const auto& d = py::cast<const Voronoi2d&>(self);
+            const Voronoi2d& d = py::cast<const Diagram&>(self).result;
             return view_of(d.cell_edges(as_site(d, site)), self);
           },
           py::arg("site"), "(k,) int32: edges around a site's cell; edge k leads to vertex k of `cell_vertices`.")
-      .def("__repr__", [](const Voronoi2d& d) {
+      .def_property_readonly(
+          "areas", [](const Diagram& d) { return to_array(d.result.areas()); },
+          "(n,) float64: areas of the cells, inf for open ones. Equal sites have the same cell.")
+      .def_property_readonly(
+          "centroids", [](const Diagram& d) { return to_array(d.result.centroids()); },
+          "(n, 2) float64: centres of mass of the cells, not a number for open ones.")
+      .def_readonly("clipped", &Diagram::clipped, "ClippedCells within the domain given to `voronoi_2d`, or None.")
+      .def(
+          "clip",
+          [](const Diagram& d, const py::object& polygon, const py::object& threads, const py::object& job) {
+            const PlanarDomain domain = as_domain(polygon, "domain");
+            const int count = as_integer(threads, "threads");
+            Job* const token = as_job(job);
+            return without_gil([&] { return d.result.clip(domain, count, token); });
+          },
+          py::arg("polygon"), py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(), k_clip_doc)
+      .def(
+          "locate",
+          [](const Diagram& d, const py::object& points, const py::object& threads, const py::object& job) {
+            const std::vector<Vec2> queries = as_points_2d(points, "points");
+            const int count = as_integer(threads, "threads");
+            Job* const token = as_job(job);
+            return to_array(without_gil([&] { return d.result.locate(queries, count, token); }));
+          },
+          py::arg("points"), py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(), k_locate_doc)
+      .def("__repr__", [](const Diagram& self) {
+        const Voronoi2d& d = self.result;
         return message("<saddleback.Voronoi2d of ", d.cell_sites.size(), " cells, ", d.vertices.size(), " vertices>");
       });
   m.def("voronoi_2d", &find_diagram, py::arg("sites"), py::arg("weights") = py::none(), py::arg("domain") = py::none(),

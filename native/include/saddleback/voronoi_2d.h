@@ -7,6 +7,7 @@
 
 #include "saddleback/job.h"
 #include "saddleback/large_array.h"
+#include "saddleback/planar_domain.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -15,6 +16,15 @@ struct Voronoi2dOptions {
   Index circles =
       0;            ///< how many sweep circles share the work; 0: as many as are good. The result does not depend on it
   int threads = 0;  ///< 0: all cores. The result does not depend on it
+};
+
+/// What lies of each cell in a domain.
+struct ClippedCells {
+  std::vector<Vec2> points;         ///< (P) the corners of all loops, one after another
+  std::vector<Index> loop_offsets;  ///< (L + 1) loop i is [offsets[i], offsets[i + 1])
+  std::vector<Index> loop_sites;    ///< (L) ascending; outlines counter-clockwise, holes clockwise
+  std::vector<double> areas;        ///< (n) 0 outside, and for sites equal to an earlier one
+  std::vector<Vec2> centroids;      ///< (n) not a number where the area is 0
 };
 
 /// A diagram with exact topology: which cells touch, and where more than three meet in one vertex, is decided without
@@ -43,6 +53,15 @@ struct Voronoi2d {
   /// (T) sites, counter-clockwise: the Delaunay triangulation. Where more than three sites lie on an empty circle, all
   /// triangles share the one with the smallest index. O(E).
   std::vector<Triangle> delaunay() const;
+  /// (n) areas of the cells, infinite for open ones. Equal sites have the same cell. O(E).
+  std::vector<double> areas() const;
+  /// (n) centres of mass of the cells, not a number for open ones. O(E).
+  std::vector<Vec2> centroids() const;
+  /// The cells within a domain. O(n) plus, for cells at the domain's edges, O(corners of the domain). \throw Cancelled
+  ClippedCells clip(const PlanarDomain& domain, int threads = 0, Job* job = nullptr) const;
+  /// (m) nearest site of each point, exactly; of equally near ones the smallest index. O(m + n) expected.
+  /// \throw InputError for a point that is not finite, and without sites. Cancelled
+  std::vector<Index> locate(std::span<const Vec2> points, int threads = 0, Job* job = nullptr) const;
 
  private:
   /// Sites of the cells that meet at a vertex, counter-clockwise, from the left of an edge that ends there.

@@ -4,6 +4,7 @@ from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
     Cancelled,
     CentroidalVoronoi,
+    ClippedCells,
     DeviceError,
     Error,
     ExactField,
@@ -44,6 +45,7 @@ from saddleback.progress import progress_bar
 __all__ = [
     "Cancelled",
     "CentroidalVoronoi",
+    "ClippedCells",
     "Device",
     "DeviceError",
     "Error",

@@ -72,6 +72,18 @@ SADDLEBACK_HOST_DEVICE inline Sign in_circle(const Point2& a, const Point2& b, c
   return detail::in_circle_exact(a, b, c, d);
 }
 
+/// Negative if p is nearer to a than to b, zero if equally far. O(1).
+SADDLEBACK_HOST_DEVICE inline Sign compare_distances(const Point2& p, const Point2& a, const Point2& b) {
+  const double ax = plus(a.x, -p.x), ay = plus(a.y, -p.y), bx = plus(b.x, -p.x), by = plus(b.y, -p.y);
+  const double to_a = plus(times(ax, ax), times(ay, ay)), to_b = plus(times(bx, bx), times(by, by));
+  const double det = plus(to_a, -to_b);
+  if (fabs(det) > times(6 * detail::k_epsilon, plus(to_a, to_b))) return detail::to_sign(det);
+  const Expansion<2> dax = difference(a.x, p.x), day = difference(a.y, p.y), dbx = difference(b.x, p.x),
+                     dby = difference(b.y, p.y);
+  const auto exact_a = sum(product(dax, dax), product(day, day)), exact_b = sum(product(dbx, dbx), product(dby, dby));
+  return static_cast<Sign>(sum(exact_a, exact_b, -1).sign());
+}
+
 /// True if three points in space lie on one line: then, and only then, their shadows along all three axes do. O(1).
 inline bool collinear_3d(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int i = 0; i < 3; ++i) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "saddleback/error.h"
@@ -122,6 +123,50 @@ void Voronoi2d::sites_around(Index vertex, Index edge, std::vector<Index>& aroun
     const std::span<const Index> corners = cell_vertices(next);
     edge = cell_edges(next)[std::find(corners.begin(), corners.end(), vertex) - corners.begin()];
   } while (edge != first_edge);
+}
+
+namespace {
+
+struct Moments {
+  double area;
+  Vec2 centroid;
+};
+
+// Of a polygon, counted from a point inside, which keeps small cells far from the origin exact.
+template <class CornerAt>
+Moments moments_of(std::size_t count, const Vec2& inside, CornerAt&& corner_at) {
+  double twice_area = 0;
+  Vec2 first_moment(0, 0), before = corner_at(count - 1) - inside;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 corner = corner_at(i) - inside;
+    const double cross = before.x() * corner.y() - before.y() * corner.x();
+    twice_area += cross;
+    first_moment += cross * (before + corner);
+    before = corner;
+  }
+  return {0.5 * twice_area, inside + first_moment / (3 * twice_area)};
+}
+
+Moments cell_moments(const Voronoi2d& diagram, Index site) {
+  constexpr double k_infinity = std::numeric_limits<double>::infinity(),
+                   k_nan = std::numeric_limits<double>::quiet_NaN();
+  if (!diagram.is_bounded(site)) return {k_infinity, {k_nan, k_nan}};
+  const std::span<const Index> corners = diagram.cell_vertices(site);
+  return moments_of(corners.size(), diagram.sites[site], [&](std::size_t i) { return diagram.vertices[corners[i]]; });
+}
+
+}  // namespace
+
+std::vector<double> Voronoi2d::areas() const {
+  std::vector<double> result(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i) result[i] = cell_moments(*this, static_cast<Index>(i)).area;
+  return result;
+}
+
+std::vector<Vec2> Voronoi2d::centroids() const {
+  std::vector<Vec2> result(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i) result[i] = cell_moments(*this, static_cast<Index>(i)).centroid;
+  return result;
 }
 
 }  // namespace saddleback

@@ -1,0 +1,29 @@
+#pragma once
+// Parts of the plane within polygons.
+
+#include <span>
+#include <vector>
+
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+/// A simple polygon with holes.
+class PlanarDomain {
+ public:
+  /// The outline first, then the holes, each in either direction, its last corner joined to its first (which may be
+  /// repeated). \throw InputError naming loop and corner: fewer than three corners, a coordinate that is not finite or
+  /// beyond 1e60, loops that touch or cross themselves or each other, a hole outside. O(m log m) expected.
+  explicit PlanarDomain(std::vector<std::vector<Vec2>> loops);
+
+  /// Outline counter-clockwise, holes clockwise.
+  std::span<const std::vector<Vec2>> loops() const { return loops_; }
+  double area() const;
+  /// O(m).
+  bool contains(const Vec2& point) const;
+
+ private:
+  std::vector<std::vector<Vec2>> loops_;
+};
+
+}  // namespace saddleback

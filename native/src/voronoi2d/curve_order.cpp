@@ -1,0 +1,144 @@
+// Places along a Hilbert curve of 2^16 x 2^16 squares over the points' box, sorted by radix; points that share a square
+// are put in order by a curve over their own box, and so on, which follows clusters of any size.
+
+#include "voronoi2d/curve_order.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace saddleback::voronoi2d {
+namespace {
+
+constexpr int k_bits = 16;
+
+// Hilbert's curve, two bits of each axis at a time: state, then bits of x and y, to bits of the place and a new state.
+struct CurveTable {
+  struct Step {
+    std::uint8_t place, state;
+  };
+  std::array<Step, 4 * 16> steps{};
+
+  constexpr CurveTable() {
+    for (unsigned state = 0; state < 4; ++state) {
+      for (unsigned xy = 0; xy < 16; ++xy) {
+        unsigned s = state, place = 0;
+        for (int bit = 1; bit >= 0; --bit) {
+          const unsigned x = (xy >> (2 + bit)) & 1, y = (xy >> bit) & 1;
+          const unsigned u = s & 2 ? 1 - x : x, v = s & 2 ? 1 - y : y;  // state: 1 swaps the axes, 2 turns around
+          const unsigned p = s & 1 ? v : u, q = s & 1 ? u : v;
+          place = 4 * place + (3 * p ^ q);
+          if (q == 0) s ^= p == 1 ? 3 : 1;
+        }
+        steps[16 * state + xy] = {static_cast<std::uint8_t>(place), static_cast<std::uint8_t>(s)};
+      }
+    }
+  }
+};
+constexpr CurveTable k_curve;
+
+std::uint32_t place_on_curve(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t place = 0;
+  unsigned state = 0;
+  for (int shift = k_bits - 2; shift >= 0; shift -= 2) {
+    const auto step = k_curve.steps[16 * state + 4 * ((x >> shift) & 3) + ((y >> shift) & 3)];
+    place = 16 * place + step.place;
+    state = step.state;
+  }
+  return place;
+}
+
+// Stable, least digit first.
+void radix_sort(LargeArray<Placed>& items, LargeArray<Placed>& other) {
+  constexpr int k_digit = 11;
+  constexpr std::size_t k_values = std::size_t{1} << k_digit;
+  other.resize(items.size());
+  for (int shift = 0; shift < 2 * k_bits; shift += k_digit) {
+    std::array<std::size_t, k_values + 1> begin{};
+    for (const Placed& item : items) ++begin[((item.place >> shift) & (k_values - 1)) + 1];
+    for (std::size_t i = 0; i < k_values; ++i) begin[i + 1] += begin[i];
+    for (const Placed& item : items) other[begin[(item.place >> shift) & (k_values - 1)]++] = item;
+    items.swap(other);
+  }
+}
+
+struct Box {
+  double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+};
+
+class Sorter {
+ public:
+  Sorter(std::span<const Vec2> points) : points_(points) {}
+
+  /// Sorts indices along the curve over their box; equal points end up side by side, the smallest index first.
+  void sort(std::span<Placed> items) {
+    constexpr std::size_t k_few = 48;
+    const std::uint32_t outer_place = items[0].place;
+    sort_inside(items, k_few);
+    for (Placed& item : items) item.place = outer_place;
+  }
+
+  void sort_inside(std::span<Placed> items, std::size_t few) {
+    if (items.size() <= few || !place(items)) {
+      std::sort(items.begin(), items.end(), [&](const Placed& a, const Placed& b) { return less(a.index, b.index); });
+      return;
+    }
+    std::sort(items.begin(), items.end(), [](const Placed& a, const Placed& b) {
+      return a.place != b.place ? a.place < b.place : a.index < b.index;
+    });
+    sort_runs(items);
+  }
+
+  void sort_runs(std::span<Placed> items) {
+    for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
+      for (end = begin + 1; end < items.size() && items[end].place == items[begin].place;) ++end;
+      if (end - begin > 1) sort(items.subspan(begin, end - begin));
+    }
+  }
+
+  /// Fills in the places; false when all points are one.
+  bool place(std::span<Placed> items) {
+    Box box;
+    for (const Placed& item : items) {
+      for (int k = 0; k < 2; ++k) {
+        box.low[k] = std::min(box.low[k], points_[item.index][k]);
+        box.high[k] = std::max(box.high[k], points_[item.index][k]);
+      }
+    }
+    // Halves, since the width of the box may be beyond the doubles.
+    const double width = std::max(0.5 * box.high[0] - 0.5 * box.low[0], 0.5 * box.high[1] - 0.5 * box.low[1]);
+    if (!(width > 0)) return false;
+    constexpr double k_squares = 1 << k_bits;
+    for (Placed& item : items) {
+      std::uint32_t square[2];
+      for (int k = 0; k < 2; ++k) {
+        const double share = (0.5 * points_[item.index][k] - 0.5 * box.low[k]) / width;
+        square[k] = static_cast<std::uint32_t>(std::min(share * k_squares, k_squares - 1));
+      }
+      item.place = place_on_curve(square[0], square[1]);
+    }
+    return true;
+  }
+
+ private:
+  bool less(Index a, Index b) const {
+    const Vec2 &p = points_[a], &q = points_[b];
+    if (p.x() != q.x()) return p.x() < q.x();
+    return p.y() != q.y() ? p.y() < q.y() : a < b;
+  }
+  std::span<const Vec2> points_;
+};
+
+}  // namespace
+
+LargeArray<Placed> curve_order(std::span<const Vec2> points) {
+  LargeArray<Placed> items(points.size()), other;
+  for (std::size_t i = 0; i < items.size(); ++i) items[i] = {0, static_cast<Index>(i)};
+  Sorter sorter(points);
+  if (items.size() > 1 && sorter.place(items)) radix_sort(items, other);
+  sorter.sort_runs(items);
+  return items;
+}
+
+}  // namespace saddleback::voronoi2d

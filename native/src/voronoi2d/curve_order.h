@@ -1,0 +1,21 @@
+#pragma once
+// Points of the plane along a space-filling curve.
+
+#include <cstdint>
+#include <span>
+
+#include "saddleback/large_array.h"
+#include "saddleback/types.h"
+
+namespace saddleback::voronoi2d {
+
+/// A point and where it lies: two bits for each halving of the square about all points.
+struct Placed {
+  std::uint32_t place;
+  Index index;
+};
+
+/// Points along a Hilbert curve, by ascending place; equal points side by side, the smallest index first. O(n log n).
+LargeArray<Placed> curve_order(std::span<const Vec2> points);
+
+}  // namespace saddleback::voronoi2d

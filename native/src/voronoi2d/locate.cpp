@@ -1,0 +1,93 @@
+// From cell to cell towards the point: a site that is not the nearest has a neighbour that is nearer. Each point starts
+// at a site next to it on a space-filling curve through sites and points alike.
+
+#include <algorithm>
+#include <cmath>
+
+#include "saddleback/error.h"
+#include "saddleback/voronoi_2d.h"
+
+#include "predicates/predicates.h"
+#include "support/parallel.h"
+#include "voronoi2d/curve_order.h"
+
+namespace saddleback {
+namespace {
+
+/// A diagram whose coordinates are multiplied by a power of two, so that squares stay among the doubles.
+struct Scaled {
+  const Voronoi2d& diagram;
+  double scale;
+
+  predicates::Point2 operator()(const Vec2& v) const { return {v.x() * scale, v.y() * scale}; }
+  predicates::Point2 site(Index i) const { return (*this)(diagram.sites[i]); }
+
+  /// The nearer of two sites, the smaller index if none is (exact).
+  bool is_nearer(const predicates::Point2& point, Index a, Index b) const {
+    const predicates::Sign sign = predicates::compare_distances(point, site(a), site(b));
+    return sign == predicates::Sign::negative || (sign == predicates::Sign::zero && a < b);
+  }
+
+  Index nearest_from(const predicates::Point2& point, Index site) const {
+    for (Index next = site;; site = next) {
+      for (const Index edge : diagram.cell_edges(site)) {
+        const auto [left, right] = diagram.edge_sites[edge];
+        const Index other = left == site ? right : left;
+        if (is_nearer(point, other, next)) next = other;
+      }
+      if (next == site) return site;
+    }
+  }
+};
+
+double scale_for(std::span<const Vec2> points) {
+  double largest = 0;
+  for (const Vec2& point : points) largest = std::max(largest, point.cwiseAbs().maxCoeff());
+  if (largest == 0 || (largest < 0x1p250 && largest > 0x1p-200)) return 1;
+  int exponent;
+  std::frexp(largest, &exponent);
+  return std::ldexp(1, std::clamp(-exponent, -1022, 1023));
+}
+
+}  // namespace
+
+std::vector<Index> Voronoi2d::locate(std::span<const Vec2> points, int threads, Job* job) const {
+  using voronoi2d::Placed;
+  if (sites.empty()) throw InputError("locate: the diagram has no sites");
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!points[i].allFinite())
+      throw InputError(message("points: coordinates of point ", i, " are ", points[i].x(), ", ", points[i].y(),
+                               ", wanted finite numbers"));
+  const JobStage stage(job, "Nearest sites");
+  LargeArray<Vec2> all(points.begin(), points.end());
+  for (const Index site : cell_sites) all.push_back(sites[site]);
+  const Scaled scaled{*this, scale_for(all)};
+  const LargeArray<Placed> order = voronoi2d::curve_order(all);
+  stage.update(0.3);
+
+  const Index point_count = static_cast<Index>(points.size()), count = static_cast<Index>(order.size());
+  std::vector<Index> result(points.size());
+  constexpr Index k_block = 4096;
+  const Index block_count = (count + k_block - 1) / k_block;
+  parallel_for(block_count, threads, 1, [&](Index block, int) {
+    stage.check();
+    Index site = cell_sites[0];  // the last one on the curve
+    for (Index i = block * k_block; i-- > 0;) {
+      if (order[i].index < point_count) continue;
+      site = cell_sites[order[i].index - point_count];
+      break;
+    }
+    for (Index i = block * k_block; i < std::min(count, (block + 1) * k_block); ++i) {
+      const Index index = order[i].index;
+      if (index >= point_count) {
+        site = cell_sites[index - point_count];
+      } else {
+        site = result[index] = scaled.nearest_from(scaled(points[index]), site);
+      }
+    }
+  });
+  stage.update(1);
+  return result;
+}
+
+}  // namespace saddleback

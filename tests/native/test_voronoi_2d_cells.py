@@ -1,0 +1,127 @@
+"""What is asked of a diagram of the plane: areas, nearest sites, cells within polygons."""
+
+from __future__ import annotations
+
+import numpy as np
+import plane_sites
+import pytest
+from scipy.spatial import cKDTree
+
+import saddleback as sb
+
+SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
+L_SHAPE = [[0, 0], [1, 0], [1, 0.3], [0.4, 0.3], [0.4, 1], [0, 1]]
+COMB = [[0, 0], [1, 0], *([[1 - k * 0.1 - d, y] for k in range(9) for d, y in ((0, 1), (0.02, 0.1))]), [0, 1]]
+HOLES = [SQUARE, [[0.2, 0.2], [0.4, 0.2], [0.4, 0.4], [0.2, 0.4]], [[0.6, 0.5], [0.9, 0.6], [0.5, 0.9]]]
+DOMAINS = {"square": SQUARE, "l_shape": L_SHAPE, "comb": COMB, "holes": HOLES}
+
+
+def shoelace(loop):
+    x, y = (np.asarray(loop, dtype=float) - np.asarray(loop, dtype=float)[0]).T
+    return 0.5 * (x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+def area_of(domain):
+    loops = domain if np.ndim(domain[0][0]) else [domain]
+    return abs(shoelace(loops[0])) - sum(abs(shoelace(hole)) for hole in loops[1:])
+
+
+@pytest.mark.parametrize("domain", DOMAINS)
+@pytest.mark.parametrize("kind", ["uniform", "clusters", "duplicates", "nearly_collinear", "circle"])
+@pytest.mark.parametrize("n", [1, 2, 3, 50, 2000])
+def test_clipped_areas_sum_to_the_domain(domain, kind, n):
+    sites = plane_sites.KINDS[kind](n, np.random.default_rng(n))
+    clipped = sb.voronoi_2d(sites).clip(DOMAINS[domain])
+    assert clipped.areas.min() >= -1e-15
+    assert clipped.areas.sum() == pytest.approx(area_of(DOMAINS[domain]), rel=1e-12)
+
+
+def test_clipped_loops_have_the_areas_told():
+    sites = plane_sites.uniform(300, np.random.default_rng(1))
+    diagram = sb.voronoi_2d(sites, domain=HOLES)
+    clipped, areas = diagram.clipped, np.zeros(300)
+    for i, site in enumerate(clipped.loop_sites):
+        areas[site] += shoelace(clipped.points[clipped.loop_offsets[i] : clipped.loop_offsets[i + 1]])
+    assert np.allclose(areas, clipped.areas, rtol=1e-9, atol=1e-15)
+    assert (np.diff(clipped.loop_sites) >= 0).all()
+
+
+def test_clipped_points_are_nearest_to_their_site():
+    sites = plane_sites.uniform(400, np.random.default_rng(2))
+    clipped = sb.voronoi_2d(sites).clip(COMB)
+    owners = np.repeat(clipped.loop_sites, np.diff(clipped.loop_offsets))
+    nearest = cKDTree(sites).query(clipped.points)[0]
+    assert np.allclose(np.linalg.norm(clipped.points - sites[owners], axis=1), nearest, atol=1e-12)
+
+
+def test_one_site_owns_the_domain_with_its_holes():
+    clipped = sb.voronoi_2d([[5, 5]], domain=HOLES).clipped
+    assert np.diff(clipped.loop_offsets).tolist() == [4, 4, 3]
+    assert [shoelace(clipped.points[a:b]) > 0 for a, b in ((0, 4), (4, 8), (8, 11))] == [True, False, False]
+
+
+def test_a_cell_may_fall_into_parts():
+    u_shape = [[0, 0], [3, 0], [3, 2], [2, 2], [2, 1], [1, 1], [1, 2], [0, 2]]
+    clipped = sb.voronoi_2d([[1.5, 10], [1.5, -7]]).clip(u_shape)  # parted at y = 1.5
+    assert clipped.loop_sites.tolist() == [0, 0, 1]
+    assert clipped.areas.tolist() == [1.0, 4.0]
+
+
+def test_areas_and_centroids_of_bounded_cells():
+    diagram = sb.voronoi_2d(plane_sites.grid(100, np.random.default_rng(3)))
+    inner = ((diagram.sites > 0) & (diagram.sites < 9)).all(axis=1)
+    assert np.allclose(diagram.areas[inner], 1)
+    assert np.isinf(diagram.areas[~inner]).all()
+    assert np.allclose(diagram.centroids[inner], diagram.sites[inner])
+    assert np.isnan(diagram.centroids[~inner]).all()
+
+
+@pytest.mark.parametrize("kind", plane_sites.KINDS)
+def test_the_nearest_site_of_any_point(kind):
+    rng = np.random.default_rng(4)
+    sites = plane_sites.scaled(plane_sites.KINDS[kind](800, rng))
+    low, high = sites.min(axis=0), sites.max(axis=0)
+    points = np.vstack([low + (high - low) * (1.5 * rng.random((1500, 2)) - 0.25), sites])
+    found = sb.voronoi_2d(sites).locate(points)
+    scale = np.abs(sites).max()
+    squared = ((points[:, None] - sites) / scale) ** 2
+    distances = squared.sum(axis=2)
+    assert (distances[np.arange(len(points)), found] <= distances.min(axis=1) * (1 + 1e-12)).all()
+
+
+def test_equally_near_sites_give_the_smallest_index():
+    sites = [[1, 1], [0, 0], [1, 0], [0, 1], [0, 0]]
+    assert sb.voronoi_2d(sites).locate([[0.5, 0.5], [0.5, 0], [0, 0.5], [0, -1]]).tolist() == [0, 1, 1, 1]
+
+
+def test_a_million_points_find_their_sites():
+    rng = np.random.default_rng(5)
+    sites, points = rng.random((20000, 2)), rng.random((10**6, 2))
+    distances, nearest = cKDTree(sites).query(points)
+    found = sb.voronoi_2d(sites).locate(points)
+    differ = found != nearest
+    assert np.allclose(np.linalg.norm(points[differ] - sites[found[differ]], axis=1), distances[differ], rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("domain", "text"),
+    [
+        ([[0, 0], [1, 0]], "2 corners"),
+        ([[0, 0], [1, 1], [1, 0], [0, 1]], "meets"),
+        ([[0, 0], [2, 0], [1, 0], [1, 1]], "meets"),
+        ([SQUARE, [[2, 2], [3, 2], [3, 3]]], "outside"),
+        ([SQUARE, [[0.5, 0.5], [2, 0.5], [0.5, 0.6]]], "meets"),
+        ([[0, 0], [1, 0], [np.nan, 1]], "corner 2"),
+        ([SQUARE, [[0.1, 0.1], [0.9, 0.1], [0.5, 0.9]], [[0.4, 0.2], [0.6, 0.2], [0.5, 0.4]]], "loop 1"),
+    ],
+)
+def test_domains_that_are_no_simple_polygons_are_named(domain, text):
+    with pytest.raises(sb.InputError, match=text):
+        sb.voronoi_2d([[0, 0]], domain=domain)
+
+
+def test_locate_refuses_what_it_cannot_answer():
+    with pytest.raises(sb.InputError, match="point 1"):
+        sb.voronoi_2d([[0, 0]]).locate([[0, 0], [np.nan, 0]])
+    with pytest.raises(sb.InputError, match="no sites"):
+        sb.voronoi_2d(np.zeros((0, 2))).locate([[0, 0]])
