@@ -14,6 +14,7 @@ void bind_paths(py::module_& m);
 void bind_predicates(py::module_& m);
 void bind_read_mesh(py::module_& m);
 void bind_repair(py::module_& m);
+void bind_stepped_sweep(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
 void bind_tessellation(py::module_& m);
@@ -87,6 +88,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_predicates(m);
   bind_read_mesh(m);
   bind_repair(m);
+  bind_stepped_sweep(m);
   bind_surface(m);
   bind_exact(m);
   bind_graph(m);

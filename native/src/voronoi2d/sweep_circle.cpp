@@ -91,6 +91,8 @@ PlanarMesh SweepCircle::sweep(std::span<const double> x, std::span<const double>
   state_ = {.x = x_.data(),
             .y = y_.data(),
             .count = count,
+            .centre_x = x_[0],
+            .centre_y = y_[0],
             .is_own = is_own_.data(),
             .arcs = arcs_.get(),
             .days = days_.data(),

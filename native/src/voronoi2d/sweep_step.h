@@ -8,8 +8,9 @@
 //
 // No trigonometry is needed. The circle that touches the sweep circle from within at the new site p and passes through
 // s has the radius |d|^2 |p| / (2 p.d), where d = p - s and p counts from c: the arc that p hits is the one with the
-// largest p.d / |d|^2. It is at least 1, the value of c itself, while sites as far from c as p have 1/2: equal radii
-// need no care, and neither does a start with several nearest sites, since c is the only one.
+// largest p.d / |d|^2. With a site at c, as where speed matters, it is at least 1, the value of c itself, while sites
+// as far from c as p have 1/2: equal radii need no care. Without one, several sites may be nearest: `start` takes them
+// all.
 //
 // What is decided in doubles here (which arc is hit, in which order arcs vanish) can only be wrong where two answers
 // are nearly equally right; that a triangle turns counter-clockwise is exact. `mesh_checks` proves the outcome.
@@ -48,8 +49,9 @@ struct Event {
 
 /// A circle at work. The arrays belong to the caller: room for 2 n arcs, 6 n events and 2 n triangles of n sites.
 struct SweepState {
-  const double *x, *y;  ///< sites, in the order of their distance from the first, which is the centre
+  const double *x, *y;  ///< sites, in the order of their distance from the centre
   Index count;
+  double centre_x, centre_y;
   const std::uint8_t* is_own;  ///< 1 for the sites whose cells are wanted
   Index own_open = 0;          ///< parts of the beach curve that belong to such
 
@@ -177,7 +179,7 @@ SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index first, Index se
     pair.ax[k] = a.x, pair.ay[k] = a.y, pair.bx[k] = b.x, pair.by[k] = b.y, pair.cx[k] = c.x, pair.cy[k] = c.y;
     is_parted[k] = a.site != c.site;  // between two parts of one ellipse an arc stays
   }
-  find_radii(pair, s.x[0], s.y[0]);
+  find_radii(pair, s.centre_x, s.centre_y);
   unschedule(s, s.arcs[first]);
   unschedule(s, s.arcs[second]);
   if (is_parted[0]) note(s, first, radius_of(pair, 0));
@@ -194,7 +196,7 @@ SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {
   return arc;
 }
 
-/// The state before the second site: one closed arc about the first.
+/// One closed arc about the first site.
 SADDLEBACK_HOST_DEVICE inline void start(SweepState& s) {
   s.arcs[0] = {s.x[0], s.y[0], 0, 0, 0, k_none, k_none, 0, 0, k_none, k_none, k_none};
   s.arcs_used = 1;
@@ -204,6 +206,34 @@ SADDLEBACK_HOST_DEVICE inline void start(SweepState& s) {
   for (Index i = 0; i < s.day_count; ++i) s.days[i] = k_none;
   for (Index i = 0; i < s.near_count; ++i) s.near[i] = 0;
   s.own_open = s.is_own[0];
+}
+
+/// Arcs about the first `count` sites, three or more, which are equally far from the centre and in counter-clockwise
+/// order about it: the centre is a Voronoi vertex, their polygon a fan of triangles.
+SADDLEBACK_HOST_DEVICE inline void start_about_vertex(SweepState& s, Index count) {
+  start(s);
+  s.own_open = 0;
+  for (Index i = 0; i < count; ++i) {
+    s.arcs[i] = {s.x[i], s.y[i], i,     i == 0 ? count - 1 : i - 1, i + 1 == count ? 0 : i + 1, k_none, k_none, 0, 0,
+                 k_none, k_none, k_none};
+    s.own_open += s.is_own[i];
+  }
+  s.arcs_used = count;
+  for (Index i = 1; i + 1 < count; ++i) {
+    const Index half = 4 * s.triangle_count++;
+    const Index corners[3] = {0, i, i + 1};
+    for (int k = 0; k < 3; ++k) {
+      s.triangles[half + k] = corners[k];
+      s.twins[half + k] = k_none;
+    }
+    if (i > 1) {
+      s.twins[half] = half - 2;
+      s.twins[half - 2] = half;
+    }
+    s.arcs[i].edge = half + 1;
+  }
+  s.arcs[0].edge = 0;
+  s.arcs[count - 1].edge = 4 * s.triangle_count - 2;
 }
 
 /// A new site as the beach curve sees it: (x, y) counts from the centre.
@@ -232,9 +262,9 @@ SADDLEBACK_HOST_DEVICE inline Turn turn_to(const SweepState& s, const Touch& p, 
   if (a.site == c.site) return Turn::here;
   const double w = 2 * here.along - here.squared, wa = 2 * before.along - before.squared,
                wc = 2 * after.along - after.squared;
-  const double bx = arc.x - s.x[0], by = arc.y - s.y[0];
-  const double ax = (a.x - s.x[0]) * w - bx * wa, ay = (a.y - s.y[0]) * w - by * wa;
-  const double cx = (c.x - s.x[0]) * w - bx * wc, cy = (c.y - s.y[0]) * w - by * wc;
+  const double bx = arc.x - s.centre_x, by = arc.y - s.centre_y;
+  const double ax = (a.x - s.centre_x) * w - bx * wa, ay = (a.y - s.centre_y) * w - by * wa;
+  const double cx = (c.x - s.centre_x) * w - bx * wc, cy = (c.y - s.centre_y) * w - by * wc;
   const bool left_of_a = ax * p.y - ay * p.x >= 0, right_of_c = p.x * cy - p.y * cx >= 0;
   if (left_of_a && right_of_c) return Turn::here;
   if (left_of_a != right_of_c && ax * cy - ay * cx <= 0) return Turn::here;
@@ -306,7 +336,7 @@ SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, Index sector) 
 
 /// Touching event: the site splits the arc it is seen through.
 SADDLEBACK_HOST_DEVICE inline void touch(SweepState& s, Index site) {
-  const Touch p{s.x[site], s.y[site], s.x[site] - s.x[0], s.y[site] - s.y[0]};
+  const Touch p{s.x[site], s.y[site], s.x[site] - s.centre_x, s.y[site] - s.centre_y};
   const Index sector = sector_of(s, p.x, p.y);
   const Index left = hit_arc(s, p, arc_near(s, sector));
   const Index middle = new_arc(s);
@@ -367,22 +397,29 @@ SADDLEBACK_HOST_DEVICE inline void vanish(SweepState& s, Index arc) {
   schedule(s, before, after);
 }
 
-/// Lets all arcs vanish that do so up to a radius.
-SADDLEBACK_HOST_DEVICE inline void vanish_until(SweepState& s, double radius) {
+/// Lets the arc vanish that does so first, if it does up to a radius: returns its radius, or else k_never.
+SADDLEBACK_HOST_DEVICE inline double vanish_next(SweepState& s, double radius) {
   const Index last = day_of(s, radius);
   while (true) {
     while (s.event_count > 0 && s.events[0].radius <= radius) {
       const Event event = s.events[0];
       pop_event(s);
-      if (s.arcs[event.arc].stamp == event.stamp) vanish(s, event.arc);
+      if (s.arcs[event.arc].stamp != event.stamp) continue;
+      vanish(s, event.arc);
+      return event.radius;
     }
-    if (s.today >= last) return;
+    if (s.today >= last) return k_never;
     ++s.today;
     for (Index arc = s.days[s.today]; arc != k_none; arc = s.arcs[arc].day_next) {
       s.arcs[arc].day = k_none;
       push_event(s, {s.arcs[arc].radius, arc, s.arcs[arc].stamp});
     }
   }
+}
+
+/// Lets all arcs vanish that do so up to a radius.
+SADDLEBACK_HOST_DEVICE inline void vanish_until(SweepState& s, double radius) {
+  while (vanish_next(s, radius) != k_never) {}
 }
 
 }  // namespace saddleback::voronoi2d

@@ -1,0 +1,263 @@
+// The ellipse |x - c| + |x - s| = R about the centre c and a site s lies at the distance w / (2 (R - s.u)) in direction
+// u, with w = R^2 - |s|^2 and s counted from c. Two of them are equally far where m.u = R (w' - w), m = s w' - s' w.
+
+#include "saddleback/stepped_sweep.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "saddleback/error.h"
+#include "saddleback/job.h"
+
+#include "voronoi2d/circumcentre.h"
+#include "voronoi2d/planar_mesh.h"
+#include "voronoi2d/site_order.h"
+#include "voronoi2d/sweep_step.h"
+
+namespace saddleback {
+
+using namespace voronoi2d;
+
+struct SteppedSweep::State {
+  OrderedSites ordered;
+  std::vector<double> x, y, radii;  ///< from near to far
+  std::vector<Index> original;
+  std::vector<std::uint8_t> is_own;
+  std::vector<voronoi2d::Arc> arcs;
+  std::vector<voronoi2d::Event> events;
+  std::vector<Index> days, near, triangles, twins;
+  SweepState sweep{};
+  Vec2 centre;
+  double radius = 0;
+  Index touched = 0;  ///< sites
+  Index nearest = 0;  ///< how many sites are equally near and nearest
+
+  void sort_sites(const Vec2& scaled_centre);
+  void start_sweep();
+  Vec2 site(Index k) const { return {x[k] - sweep.centre_x, y[k] - sweep.centre_y}; }
+  Vec2 outside(const Vec2& from_centre) const { return centre + from_centre / ordered.scale; }
+  double scaled_radius() const { return radius * ordered.scale; }
+  double weight(Index k) const { return (scaled_radius() - radii[k]) * (scaled_radius() + radii[k]); }
+  Vec2 point_in(Index k, const Vec2& direction) const;
+  double breakpoint(const voronoi2d::Arc& arc) const;
+  Vec2 vertex(Index triangle) const;
+  template <class Visit>
+  void for_each_arc(Visit&& visit) const;
+};
+
+// From near to far; of the nearest ones, if there are several, counter-clockwise.
+void SteppedSweep::State::sort_sites(const Vec2& scaled_centre) {
+  const Index count = ordered.count();
+  std::vector<Index> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  std::vector<double> distances(count);
+  for (Index i = 0; i < count; ++i)
+    distances[i] = std::hypot(ordered.x[i] - scaled_centre.x(), ordered.y[i] - scaled_centre.y());
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return distances[a] != distances[b] ? distances[a] < distances[b] : a < b; });
+  const auto point = [&](Index i) { return predicates::Point2{ordered.x[i], ordered.y[i]}; };
+  const predicates::Point2 c{scaled_centre.x(), scaled_centre.y()};
+  nearest = count > 0;
+  while (nearest < count &&
+         predicates::compare_distances(c, point(order[0]), point(order[nearest])) == predicates::Sign::zero)
+    ++nearest;
+  const auto angle = [&](Index i) { return std::atan2(ordered.y[i] - c.y, ordered.x[i] - c.x); };
+  std::sort(order.begin(), order.begin() + nearest, [&](Index a, Index b) { return angle(a) < angle(b); });
+  for (const Index i : order) {
+    x.push_back(ordered.x[i]);
+    y.push_back(ordered.y[i]);
+    radii.push_back(distances[i]);
+    original.push_back(ordered.original[i]);
+  }
+}
+
+void SteppedSweep::State::start_sweep() {
+  const std::size_t count = x.size();
+  is_own.assign(count, 1);
+  arcs.resize(2 * count);
+  events.resize(6 * count);
+  days.resize(count + 2);
+  near.resize(256);
+  triangles.resize(8 * count);
+  twins.resize(8 * count);
+  const double farthest = radii.back();
+  sweep = {.x = x.data(),
+           .y = y.data(),
+           .count = static_cast<Index>(count),
+           .centre_x = sweep.centre_x,
+           .centre_y = sweep.centre_y,
+           .is_own = is_own.data(),
+           .arcs = arcs.data(),
+           .days = days.data(),
+           .day_count = static_cast<Index>(days.size()),
+           .days_per_area = farthest > 0 ? static_cast<double>(count) / (farthest * farthest) : 0,
+           .events = events.data(),
+           .near = near.data(),
+           .near_count = static_cast<Index>(near.size()),
+           .triangles = triangles.data(),
+           .twins = twins.data()};
+}
+
+SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& centre) : state_(std::make_unique<State>()) {
+  if (!centre.allFinite())
+    throw InputError(message("centre: wanted finite numbers, got (", centre.x(), ", ", centre.y(), ")"));
+  State& s = *state_;
+  s.ordered = order_sites(sites, {});
+  s.centre = centre;
+  s.sweep.centre_x = centre.x() * s.ordered.scale;
+  s.sweep.centre_y = centre.y() * s.ordered.scale;
+  s.sort_sites({s.sweep.centre_x, s.sweep.centre_y});
+  if (!s.x.empty()) s.start_sweep();
+}
+
+SteppedSweep::~SteppedSweep() = default;
+SteppedSweep::SteppedSweep(SteppedSweep&&) noexcept = default;
+SteppedSweep& SteppedSweep::operator=(SteppedSweep&&) noexcept = default;
+
+double SteppedSweep::radius() const { return state_->radius; }
+const Vec2& SteppedSweep::centre() const { return state_->centre; }
+
+std::optional<SteppedSweep::Event> SteppedSweep::step() {
+  State& s = *state_;
+  const Index count = static_cast<Index>(s.x.size());
+  const bool is_started = s.touched >= std::max<Index>(1, s.nearest < 3 ? 1 : s.nearest);
+  const double next_touch = s.touched < count ? s.radii[s.touched] : k_latest;
+  if (count == 0) return std::nullopt;
+  if (is_started) {
+    const double radius = vanish_next(s.sweep, next_touch);
+    if (radius != k_never) {
+      const Index triangle = s.sweep.triangle_count - 1;
+      std::vector<Index> sites;
+      for (Index k = 0; k < 3; ++k) sites.push_back(s.original[s.triangles[4 * triangle + k]]);
+      if (radius < k_latest) s.radius = std::max(s.radius, radius / s.ordered.scale);
+      return Event{false, s.radius, std::move(sites), s.vertex(triangle)};
+    }
+  }
+  if (s.touched == count) return std::nullopt;
+  const Index site = s.touched++;
+  s.radius = std::max(s.radius, next_touch / s.ordered.scale);
+  if (s.nearest >= 3 && s.touched <= s.nearest) {
+    if (s.touched == s.nearest) start_about_vertex(s.sweep, s.nearest);
+  } else if (site == 0) {
+    start(s.sweep);
+  } else {
+    touch(s.sweep, site);
+  }
+  return Event{true, s.radius, {s.original[site]}, s.outside(s.site(site))};
+}
+
+void SteppedSweep::grow(double radius) {
+  if (!std::isfinite(radius) || radius < 0)
+    throw InputError(message("radius: wanted a finite number, 0 or more, got ", radius));
+  State& s = *state_;
+  const double scaled = radius * s.ordered.scale;
+  while (true) {
+    const bool may_vanish = s.touched > 0 && (s.nearest < 3 || s.touched >= s.nearest);
+    const double next_touch = s.touched < static_cast<Index>(s.x.size()) ? s.radii[s.touched] : k_never;
+    if (may_vanish && vanish_next(s.sweep, std::min(scaled, next_touch)) != k_never) continue;
+    if (next_touch > scaled) break;
+    step();
+  }
+  s.radius = std::max(s.radius, radius);
+}
+
+template <class Visit>
+void SteppedSweep::State::for_each_arc(Visit&& visit) const {
+  if (touched == 0 || (nearest >= 3 && touched < nearest)) return;
+  Index arc = sweep.latest;
+  do {
+    visit(sweep.arcs[arc]);
+    arc = sweep.arcs[arc].next;
+  } while (arc != sweep.latest);
+}
+
+// A point of the ellipse about a site, counted from the centre.
+Vec2 SteppedSweep::State::point_in(Index k, const Vec2& direction) const {
+  const double reach = scaled_radius() - site(k).dot(direction);
+  return reach > 0 ? Vec2(weight(k) / (2 * reach) * direction) : Vec2(0, 0);
+}
+
+// Direction of the point where an arc meets the next one.
+double SteppedSweep::State::breakpoint(const voronoi2d::Arc& arc) const {
+  const Index i = arc.site, j = sweep.arcs[arc.next].site;
+  const double wi = weight(i), wj = weight(j);
+  const Vec2 m = site(i) * wj - site(j) * wi;
+  const double length = m.norm();
+  if (!(length > 0)) return std::atan2(site(j).y(), site(j).x());
+  return std::atan2(m.y(), m.x()) + std::acos(std::clamp(scaled_radius() * (wj - wi) / length, -1.0, 1.0));
+}
+
+std::vector<SteppedSweep::Arc> SteppedSweep::arcs() const {
+  const State& s = *state_;
+  constexpr double k_turn = 2 * std::numbers::pi;
+  std::vector<Arc> result;
+  s.for_each_arc([&](const voronoi2d::Arc& arc) {
+    Arc shown{s.original[arc.site], 0, k_turn};
+    if (s.sweep.arcs[arc.next].site != arc.site) {
+      shown.begin = s.breakpoint(s.sweep.arcs[arc.previous]);
+      shown.end = s.breakpoint(arc);
+      const double turns = std::floor((shown.end - shown.begin) / k_turn);
+      shown.end -= turns * k_turn;
+    }
+    result.push_back(shown);
+  });
+  return result;
+}
+
+std::vector<Vec2> SteppedSweep::beach_curve(Index samples) const {
+  if (samples < 1) throw InputError(message("samples: wanted 1 or more, got ", samples));
+  const State& s = *state_;
+  std::vector<Index> sites;
+  s.for_each_arc([&](const voronoi2d::Arc& arc) { sites.push_back(arc.site); });
+  std::vector<Vec2> result;
+  for (Index k = 0; k < samples && !sites.empty(); ++k) {
+    const double angle = 2 * std::numbers::pi * k / samples;
+    const Vec2 direction(std::cos(angle), std::sin(angle));
+    Vec2 farthest(0, 0);
+    for (const Index site : sites) {
+      const Vec2 point = s.point_in(site, direction);
+      if (point.squaredNorm() > farthest.squaredNorm()) farthest = point;
+    }
+    result.push_back(s.outside(farthest));
+  }
+  return result;
+}
+
+Vec2 SteppedSweep::State::vertex(Index triangle) const {
+  const auto point = [&](Index k) {
+    return predicates::Point2{x[triangles[4 * triangle + k]], y[triangles[4 * triangle + k]]};
+  };
+  return circumcentre(point(0), point(1), point(2)) / ordered.scale;
+}
+
+std::vector<SteppedSweep::Edge> SteppedSweep::edges() const {
+  const State& s = *state_;
+  std::vector<Edge> result;
+  for (Index half = 0; half < 4 * s.sweep.triangle_count; ++half) {
+    if ((half & 3) == 3 || s.twins[half] < half) continue;
+    const std::array<Index, 2> pair{s.original[s.triangles[half]], s.original[s.triangles[next_half(half)]]};
+    result.push_back({s.vertex(half / 4), s.vertex(s.twins[half] / 4), pair, true});
+  }
+  const auto tip = [&](const voronoi2d::Arc& arc) {
+    const double angle = s.breakpoint(arc);
+    const Vec2 direction(std::cos(angle), std::sin(angle));
+    const Index other = s.sweep.arcs[arc.next].site;
+    return s.outside(s.point_in(s.weight(arc.site) > s.weight(other) ? arc.site : other, direction));
+  };
+  s.for_each_arc([&](const voronoi2d::Arc& arc) {
+    const voronoi2d::Arc& next = s.sweep.arcs[arc.next];
+    if (next.site == arc.site) return;
+    const std::array<Index, 2> pair{s.original[arc.site], s.original[next.site]};
+    if (arc.edge >= 0) {
+      result.push_back({s.vertex(arc.edge / 4), tip(arc), pair, false});
+    } else if (&s.sweep.arcs[~arc.edge] > &arc) {  // both ends grow: told once
+      result.push_back({tip(s.sweep.arcs[~arc.edge]), tip(arc), pair, false});
+    }
+  });
+  return result;
+}
+
+}  // namespace saddleback
