@@ -41,6 +41,8 @@ std::vector<Index> owners_of(const ExactSurface& surface, const ExactPropagation
 }
 
 constexpr const char* k_text = "Measuring exact distances";
+// Share of the time that is gone before the first window moves.
+constexpr double k_prepared = 0.08;
 
 }  // namespace
 
@@ -48,9 +50,9 @@ std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& given
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
   const JobStage stage(job, k_text);
-  const ExactSurface surface(mesh, sources);
+  const ExactSurface surface(mesh, sources, stage.part(0, k_prepared));
   ExactPropagation propagation(surface, sources, {.limit = limit});
-  propagation.run(stage);
+  propagation.run(stage.part(k_prepared, 1));
   return distances_of(surface, propagation);
 }
 
@@ -58,18 +60,19 @@ NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& given, double 
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
   const JobStage stage(job, k_text);
-  const ExactSurface surface(mesh, sources);
+  const ExactSurface surface(mesh, sources, stage.part(0, k_prepared));
   ExactPropagation propagation(surface, sources, {.limit = limit, .break_ties = sources.size() > 1});
-  propagation.run(stage);
+  propagation.run(stage.part(k_prepared, 1));
   return {distances_of(surface, propagation), owners_of(surface, propagation)};
 }
 
 struct ExactField::Parts {
   Parts(const Mesh& mesh, const SurfacePoints& given, const JobStage& stage)
       : sources(snapped_to_vertices(given)),
-        surface(mesh, sources),
+        surface(mesh, sources, stage.part(0, k_prepared / 2)),
         propagation(surface, sources, {.break_ties = sources.size() > 1, .keep_windows = true}),
-        windows((propagation.run(stage), KeptWindows(surface, propagation))),
+        windows((propagation.run(stage.part(k_prepared / 2, 0.65)),
+                 KeptWindows(surface, propagation, stage.part(0.65, 1)))),
         tracer(surface, sources, propagation, windows),
         distances(distances_of(surface, propagation)),
         nearest(owners_of(surface, propagation)) {

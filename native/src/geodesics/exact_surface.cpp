@@ -14,6 +14,7 @@ constexpr double k_flat_tolerance = 1e-12;
 // Barycentric. Rays from nearer to a vertex, which pass it on both sides, are as far as this from telling all their
 // directions; what is lit from the vertex instead is no more than twice this too far.
 constexpr double k_beside = 1e-8;
+constexpr Index k_check = 1 << 15;  ///< vertices or half-edges: some milliseconds
 
 /// A point that is no vertex as a point of each face that it lies in.
 SurfacePoints in_each_face(const Mesh& mesh, const SurfacePoint& point) {
@@ -33,9 +34,9 @@ SurfacePoints in_each_face(const Mesh& mesh, const SurfacePoint& point) {
 
 }  // namespace
 
-ExactSurface::ExactSurface(const Mesh& mesh, const SurfacePoints& sources) : mesh_(&mesh) {
-  renumber();
-  lay_out();
+ExactSurface::ExactSurface(const Mesh& mesh, const SurfacePoints& sources, const JobStage& stage) : mesh_(&mesh) {
+  renumber(stage.part(0, 0.5));
+  lay_out(stage.part(0.5, 1));
   place_sources(sources);
 }
 
@@ -44,12 +45,16 @@ std::size_t ExactSurface::nbytes() const {
          (vertex_of_.size() + face_of_.size() + mesh_vertex_.size() + mesh_face_.size()) * sizeof(Index);
 }
 
-void ExactSurface::renumber() {
+void ExactSurface::renumber(const JobStage& stage) {
   const Index vertices = mesh_->vertex_count(), faces = mesh_->face_count();
   const HilbertCurve curve(mesh_->positions());
   std::vector<std::uint64_t> keys(vertices);
-  for (Index v = 0; v < vertices; ++v) keys[v] = curve.key(mesh_->position(v));
+  for (Index v = 0; v < vertices; ++v) {
+    if (v % k_check == 0) stage.update(0.5 * v / vertices);
+    keys[v] = curve.key(mesh_->position(v));
+  }
   mesh_vertex_ = order_of(keys);
+  stage.update(0.8);
   vertex_of_.resize(vertices);
   for (Index v = 0; v < vertices; ++v) vertex_of_[mesh_vertex_[v]] = v;
   // A face comes with the first of its vertices: a counting sort, stable in the mesh's order.
@@ -68,11 +73,12 @@ void ExactSurface::renumber() {
   }
 }
 
-void ExactSurface::lay_out() {
+void ExactSurface::lay_out(const JobStage& stage) {
   const Mesh& mesh = *mesh_;
   frames_.resize(mesh.halfedge_count());
   const auto beyond = [&](Index h) { return mesh.twin(h) == k_none ? k_none : halfedge_of(mesh.twin(h)); };
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (h % k_check == 0) stage.update(static_cast<double>(h) / mesh.halfedge_count());
     EdgeFrame& frame = frames_[h];
     const Index g = mesh_halfedge(h), next = Mesh::next(g), prev = Mesh::prev(g);
     frame.length = mesh.length(g);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/mesh.h"
 #include "saddleback/surface_points.h"
 
@@ -31,7 +32,8 @@ struct SourceInFace {
 /// renumbered face f, as in Mesh.
 class ExactSurface {
  public:
-  ExactSurface(const Mesh& mesh, const SurfacePoints& sources);
+  /// \throw Cancelled.
+  ExactSurface(const Mesh& mesh, const SurfacePoints& sources, const JobStage& stage);
 
   const Mesh& mesh() const { return *mesh_; }
   Index vertex_count() const { return mesh_->vertex_count(); }
@@ -61,8 +63,8 @@ class ExactSurface {
 
  private:
   enum class Bends : std::uint8_t { never, at_pi, all_round };
-  void renumber();
-  void lay_out();
+  void renumber(const JobStage& stage);
+  void lay_out(const JobStage& stage);
   void place_sources(const SurfacePoints& sources);
 
   const Mesh* mesh_;

@@ -10,9 +10,12 @@ constexpr double k_slack = 1e-11;  // as in the propagation
 
 }  // namespace
 
-KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation)
+KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation, const JobStage& stage)
     : surface_(surface), propagation_(propagation), begins_(surface.halfedge_count() + 1, 0) {
+  const auto blocks = static_cast<double>(propagation.kept().size());
+  double done = 0;
   for (WindowBlock* const block : propagation.kept()) {
+    stage.update(done++ / (2 * blocks));
     Index count = 0;
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->windows[i];
@@ -27,6 +30,7 @@ KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& pr
   roots_.resize(begins_.back());
   std::vector<std::int64_t> next(begins_.begin(), begins_.end() - 1);
   for (const WindowBlock* const block : propagation.kept()) {
+    stage.update(done++ / (2 * blocks));
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->windows[i];
       const std::int64_t place = next[window.halfedge]++;

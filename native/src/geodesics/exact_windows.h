@@ -25,7 +25,8 @@ struct SightLine {
 /// Windows that some corner of their edge does not make needless, sorted by half-edge. 36 bytes each.
 class KeptWindows {
  public:
-  KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation);
+  /// \throw Cancelled.
+  KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation, const JobStage& stage);
 
   /// Shortens `best` if a window of the half-edge leads to the point (in the half-edge's frame) on a shorter way.
   void improve(Index halfedge, const Vec2& point, SightLine& best) const;

@@ -254,7 +254,7 @@ class PathMaker {
   LegChain chain_;
 };
 
-GeodesicPaths joined(std::vector<GeodesicPaths>& parts) {
+GeodesicPaths joined(std::vector<GeodesicPaths>& parts, const JobStage& stage) {
   GeodesicPaths paths;
   std::size_t points = 0, count = 0;
   for (const GeodesicPaths& part : parts) {
@@ -267,6 +267,7 @@ GeodesicPaths joined(std::vector<GeodesicPaths>& parts) {
   paths.lengths.reserve(count);
   paths.sources.reserve(count);
   for (GeodesicPaths& part : parts) {
+    stage.check();
     const std::int64_t start = paths.offsets.back();
     paths.points.insert(paths.points.end(), part.points.begin(), part.points.end());
     paths.surface.insert(paths.surface.end(), part.surface.begin(), part.surface.end());
@@ -305,8 +306,11 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   check_surface_points(graph.mesh(), targets, "targets");
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
   const JobStage stage(job, "Finding paths");
+  // A path takes as long as some hundred vertices of the field, a shortened one ten times that.
+  const double of_path = (options.shorten ? 2000.0 : 200.0) * static_cast<double>(targets.size());
+  const double vertices = graph.mesh().vertex_count(), share = vertices / (vertices + of_path);
   const PathField field =
-      make_field(graph, sources, longest_path(graph, sources, targets), options.threads, stage.part(0, 0.5));
+      make_field(graph, sources, longest_path(graph, sources, targets), options.threads, stage.part(0, share));
   constexpr Index k_block = 32;
   const auto count = static_cast<Index>(targets.size());
   const Index blocks = (count + k_block - 1) / k_block;
@@ -316,7 +320,7 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   Propagators propagators(graph, options.threads);
   const NearbySources nearby(graph, sources, field.point_fans);
   std::atomic<Index> done{0};
-  const JobStage writing = stage.part(0.5, 1);
+  const JobStage writing = stage.part(share, 0.95);
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);
     for (Index i = block * k_block; i < std::min((block + 1) * k_block, count); ++i) {
@@ -326,8 +330,9 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
     }
     writing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
   });
-  if (blocks == 1) return std::move(parts[0]);
-  return joined(parts);
+  GeodesicPaths paths = blocks == 1 ? std::move(parts[0]) : joined(parts, stage);
+  stage.update(1);
+  return paths;
 }
 
 }  // namespace saddleback

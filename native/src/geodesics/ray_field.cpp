@@ -22,6 +22,8 @@ constexpr double k_slack = 1 - 1e-11;
 // exact_propagation.cpp. A ray to an apex that misses its window by no more than the gap that they leave (relative to
 // the edge), or by rounding (relative to the ray), counts with the detour round the window's end.
 constexpr double k_sliver = 1e-10, k_gap = 1e-7, k_ray_gap = 1e-13;
+// Windows a vertex grow with the distance: so does the work with the area, found by trying.
+constexpr double k_work_of_area = 1.6;
 // A total angle above 2 pi by no more than this is flat: what lies behind is seen past the vertex.
 constexpr double k_flat = 1e-9;
 
@@ -170,7 +172,7 @@ void RayField::run(const RayLimits& limits, const JobStage& stage) {
       countdown = 256;
       const double of_count = static_cast<double>(settled_.size()) / std::min(limits_.k, mesh_.vertex_count());
       const double of_radius = event.key / limits_.radius;
-      stage.update(std::max(of_count, of_radius * of_radius));  // the work grows with the area
+      stage.update(std::pow(std::max(of_count, of_radius * of_radius), k_work_of_area));
     }
     if (event.id >= 0) {
       const RayWindow window = windows_[event.id];
