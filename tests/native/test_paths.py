@@ -95,6 +95,20 @@ def test_a_path_is_as_long_as_the_distance(case: meshes.Case) -> None:
 
 
 @pytest.mark.parametrize("case", meshes.good(), ids=str)
+def test_paths_of_a_graph_of_given_accuracy(case: meshes.Case) -> None:
+    graph = sb.SaddleVertexGraph(case.mesh, accuracy=5e-3)
+    targets = np.arange(0, case.mesh.vertex_count, 1 + case.mesh.vertex_count // 80, dtype=np.int32)
+    distance = graph.distances([0])[targets]
+    for shorten in (False, True):
+        for length, path in zip(distance, graph.paths([0], targets, shorten), strict=True):
+            if np.isinf(length):
+                continue
+            assert path.length <= length * (1 + 1e-9)
+            assert shorten or path.length >= length * (1 - 1e-9)
+            assert_straight(case.mesh, path, legal=shorten)
+
+
+@pytest.mark.parametrize("case", meshes.good(), ids=str)
 @pytest.mark.parametrize("shorten", [False, True])
 def test_paths_are_straight_and_shortened_ones_legal(case: meshes.Case, shorten: bool) -> None:
     mesh, graph = case.mesh, graph_of(case)
