@@ -35,7 +35,7 @@ class GraphChoice:
         """What the library is asked for."""
         if self.k > 0:  # a neighbourhood cannot hold more than the whole surface
             return {"k": min(self.k, len(surface.vertices))}
-        return {"k": min({"FAST": 20, "NORMAL": 50, "FINE": 100}[self.quality], len(surface.vertices))}
+        return {"accuracy": ACCURACY[self.quality]}
 
     def name(self, surface: Surface) -> str:
         """The same for the same graph of whatever object, today and tomorrow."""

@@ -64,10 +64,6 @@ class ArcCodec {
 template <class Number>
 struct UninitializedAllocator : std::allocator<Number> {
   template <class Other>
-  struct rebind {
-    using other = UninitializedAllocator<Other>;
-  };
-  template <class Other>
   void construct(Other* place) noexcept {
     ::new (static_cast<void*>(place)) Other;
   }

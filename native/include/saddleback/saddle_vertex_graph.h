@@ -46,8 +46,8 @@ struct QueryOptions {
 struct QuerySources {
   SurfacePoints points;
   std::vector<const SurfaceCurve*> curves;  ///< on the graph's mesh: the distance is to the curve, not to its points
-  QuerySources(SurfacePoints the_points) : points(std::move(the_points)) {}
-  QuerySources(std::vector<const SurfaceCurve*> the_curves) : curves(std::move(the_curves)) {}
+  explicit QuerySources(SurfacePoints the_points) : points(std::move(the_points)) {}
+  explicit QuerySources(std::vector<const SurfaceCurve*> the_curves) : curves(std::move(the_curves)) {}
   std::size_t size() const { return points.size() + curves.size(); }
 };
 

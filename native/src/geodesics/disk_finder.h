@@ -99,8 +99,9 @@ class DiskFinder {
   std::vector<std::int32_t> arc_labels_;  ///< the same of the shortest arc
   std::vector<std::int32_t> best_;        ///< the sighting of that arc
   std::array<std::vector<std::int32_t>, k_batch> touched_;  ///< slots with labels, per lane
-  Generation generations_[2];
-  Generation *now_ = &generations_[0], *next_ = &generations_[1];
+  std::array<Generation, 2> generations_;
+  Generation* now_ = generations_.data();
+  Generation* next_ = generations_.data() + 1;
   ApexColumns apexes_;
   SightingColumns sightings_;
   int sighting_count_ = 0, generation_ = 0;
