@@ -2,12 +2,11 @@
 // -DKIND_HEAT. The mesh: counts (int64), positions (float64), triangles (int32). Tells its times and memory as JSON.
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
-#include <sys/resource.h>
-
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <sys/resource.h>
 #include <vector>
 #ifdef KIND_EXACT
 #include <CGAL/Surface_mesh_shortest_path.h>

@@ -107,8 +107,7 @@ NumberFileReader::NumberFileReader(const std::string& path) : path_(path) {
 
 void NumberFileReader::read_bytes(std::span<std::byte> bytes) {
   if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) {
-    if (std::ferror(file_.get()))
-      throw InputError(message("path: ", path_, " cannot be read: ", std::strerror(errno)));
+    if (std::ferror(file_.get())) throw InputError(message("path: ", path_, " cannot be read: ", std::strerror(errno)));
     throw InputError(message("path: ", path_, " ended while it was read; save it again"));
   }
   crc_ = crc32(bytes, crc_);
