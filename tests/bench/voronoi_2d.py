@@ -1,0 +1,118 @@
+"""Voronoi diagrams of the plane: `python -m tests.bench voronoi_2d [LARGEST [THREADS]]`; 1e6 sites and one thread.
+
+Processor nanoseconds per site, medians over fresh sites in every repetition (the same ones again would train the
+branch predictor), beside CGAL's, Boost.Polygon's and SciPy's in the same run; numbers of vertices and edges against
+CGAL's; then nanoseconds by the kind of sites, and the growth of memory. CGAL and Boost need a compiler and their
+headers (Debian: g++, libcgal-dev); without them their columns stay empty.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import Delaunay
+
+import saddleback as sb
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "native"))
+import plane_sites
+
+KINDS = ("uniform", "clusters", "circle", "grid", "nearly_collinear", "duplicates")
+
+
+def build_peers(folder: Path) -> Path | None:
+    """Compile the peers; None when that is not possible here."""
+    compiler = shutil.which("g++")
+    program = folder / "voronoi_2d_peers"
+    source = Path(__file__).with_name("voronoi_2d_peers.cpp")
+    if compiler is None or not Path("/usr/include/CGAL/Delaunay_triangulation_2.h").exists():
+        return None
+    command = [compiler, "-O3", "-march=native", "-DNDEBUG", "-std=c++17", source, "-o", program, "-lgmp", "-lmpfr"]
+    done = subprocess.run(command, capture_output=True, check=False)
+    return program if done.returncode == 0 else None
+
+
+def run_peers(program: Path, sites: plane_sites.Points) -> dict[str, list[float]]:
+    """Seconds by peer; CGAL's are followed by its numbers of vertices and edges."""
+    with tempfile.NamedTemporaryFile() as file:
+        file.write(np.ascontiguousarray(sites).tobytes())
+        file.flush()
+        lines = subprocess.run([program, file.name], capture_output=True, text=True, check=True).stdout.splitlines()
+    return {name: [float(value) for value in values] for name, *values in map(str.split, lines)}
+
+
+def measured(work: Callable[[], object]) -> float:
+    """Processor seconds."""
+    start = time.process_time()
+    work()
+    return time.process_time() - start
+
+
+def repetitions(n: int) -> int:
+    return max(1, min(31, 10**6 // n))
+
+
+def compare(kind: str, n: int, threads: int, peers: Path | None, *, with_scipy: bool) -> dict[str, float]:
+    """Median nanoseconds per site by library; "wall" is ours by the clock. Stops when the counts differ."""
+    times: dict[str, list[float]] = {}
+    for seed in range(repetitions(n)):
+        sites = plane_sites.KINDS[kind](n, np.random.default_rng(1000 * n + seed))
+        start, cpu_start = time.perf_counter(), time.process_time()
+        diagram = sb.voronoi_2d(sites, threads=threads)
+        times.setdefault("cpu", []).append(time.process_time() - cpu_start)
+        times.setdefault("wall", []).append(time.perf_counter() - start)
+        if peers is not None:
+            found = run_peers(peers, sites)
+            counts = [len(diagram.vertices), len(diagram.edges)]
+            if counts != found["cgal"][1:]:
+                raise SystemExit(f"{kind}, {n}, seed {seed}: {counts} vertices and edges, CGAL has {found['cgal'][1:]}")
+            for name, values in found.items():
+                times.setdefault(name, []).append(values[0])
+        if with_scipy:
+            times.setdefault("scipy", []).append(measured(lambda sites=sites: Delaunay(sites)))
+    return {name: 1e9 * float(np.median(values)) / n for name, values in times.items()}
+
+
+def peak_memory(n: int) -> float:
+    """MB that a diagram takes above its sites, at most, in a process of its own."""
+    code = (
+        "import re, numpy as np, saddleback as sb\n"
+        "def peak(): return int(re.search(r'VmHWM:\\s+(\\d+)', open('/proc/self/status').read()).group(1)) / 1024\n"
+        f"sites = np.random.default_rng(0).random(({n}, 2))\n"
+        "sb.voronoi_2d(sites[:1000])\n"
+        "before = peak()\n"
+        "sb.voronoi_2d(sites, threads=1)\n"
+        "print(peak() - before)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=os.environ)
+    return float(done.stdout)
+
+
+def print_row(label: str, times: dict[str, float]) -> None:
+    cells = (f"{times[name]:9.0f}" if name in times else " " * 9 for name in ("cpu", "wall", "cgal", "boost", "scipy"))
+    print(f"{label:24s}{''.join(cells)}", flush=True)
+
+
+def main(arguments: list[str]) -> int:
+    largest = int(float(arguments[0])) if arguments else 10**6
+    threads = int(arguments[1]) if len(arguments) > 1 else 1
+    with tempfile.TemporaryDirectory() as folder:
+        peers = build_peers(Path(folder))
+        print(f"ns per site, {threads} thread(s); CGAL's counts are {'equal' if peers else 'not checked'}")
+        print(f"{'uniform':24s}{'cpu':>9s}{'wall':>9s}{'cgal':>9s}{'boost':>9s}{'scipy':>9s}")
+        n = 1000
+        while n <= largest:
+            print_row(f"{n:,d}", compare("uniform", n, threads, peers, with_scipy=n <= 10**5))
+            n *= 10
+        for kind in KINDS:
+            print_row(f"{kind}, {largest:,d}", compare(kind, largest, threads, peers, with_scipy=False))
+    print(f"peak memory above the sites, {largest:,d}: {peak_memory(largest):.0f} MB")
+    return 0
