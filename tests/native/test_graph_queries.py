@@ -214,6 +214,17 @@ def test_points_and_curves_keep_to_the_accuracy(accuracy: float, jitter: float) 
     assert (found >= (1 - ROUNDING) * straight - 1e-12).all()
 
 
+@pytest.mark.parametrize("options", [{"k": 36 * 14}, {"exact": True}, {"k": 20}])
+def test_near_points_see_each_other_however_wide_the_disks(options: dict[str, object]) -> None:
+    mesh = sb.Mesh(*meshes.torus())
+    graph = sb.SaddleVertexGraph(mesh, **options)
+    points = sb.SurfacePoints(np.arange(30), np.random.default_rng(0).dirichlet([1, 1, 1], 30))
+    for i in range(len(points)):
+        exact = sb.ExactField(mesh, one(points, i)).distance_to(points)
+        near = exact < 0.2
+        np.testing.assert_allclose(graph.distances_to(one(points, i), points)[near], exact[near], rtol=1e-8, atol=1e-12)
+
+
 def test_many_sources_in_one_face() -> None:
     """Sources that all see each other: only the nearest few are looked at, and nothing is lost."""
     mesh = sb.Mesh(*meshes.grid(20, 20, 0.2))

@@ -12,24 +12,29 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // Room for rounding: no geodesic is shorter than the straight line.
 constexpr double k_bird = 1 - 1e-12;
 
-bool share_a_vertex(const PointFan& a, const PointFan& b) {
+/// The shortest way over a vertex that both fans lead to, infinity when there is none.
+double over_a_vertex(const PointFan& a, const PointFan& b) {
+  double least = k_infinity;
   auto i = a.arcs.begin();
   auto j = b.arcs.begin();
   while (i != a.arcs.end() && j != b.arcs.end()) {
-    if (i->vertex == j->vertex) return true;
+    if (i->vertex == j->vertex) least = std::min(least, i->length + j->length);
     ++(i->vertex < j->vertex ? i : j);
   }
-  return false;
+  return least;
 }
 
 }  // namespace
 
 double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, const PointFan& a_fan,
                      const SurfacePoint& b, const PointFan& b_fan) {
-  if (a_fan.is_vertex || b_fan.is_vertex || !share_a_vertex(a_fan, b_fan)) return k_infinity;
+  if (a_fan.is_vertex || b_fan.is_vertex) return k_infinity;
+  const double around = over_a_vertex(a_fan, b_fan);
+  if (around == k_infinity) return k_infinity;
+  // The tighter the bound, the fewer windows: without, wide fans would end the search before it has seen the point.
   thread_local LineOfSight sight;
-  const double reach = a_fan.reach + b_fan.reach, length = sight.length(graph.unfolding(), a, b, reach);
-  return length < reach ? length : k_infinity;
+  const double length = sight.length(graph.unfolding(), a, b, around);
+  return length < around ? length : k_infinity;
 }
 
 NearbySources::NearbySources(const SaddleVertexGraph& graph, const SurfacePoints& points,

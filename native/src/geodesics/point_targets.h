@@ -9,7 +9,7 @@
 namespace saddleback {
 
 /// Length of the straight geodesic between two points that are no vertices, infinity unless they see each other within
-/// their fans: farther apart, ways over vertices are as good. Equal to the bit from both ends.
+/// their fans and it is shorter than any way over one vertex. Equal to the bit from both ends.
 double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, const PointFan& a_fan,
                      const SurfacePoint& b, const PointFan& b_fan);
 
