@@ -279,38 +279,61 @@ SADDLEBACK_HOST_DEVICE inline Index highest_arc(const SweepState& s, const Touch
   return best;
 }
 
+/// A walker on the beach curve, with the heights of its arc and of the two beside it.
+struct Walker {
+  Index arc;
+  Height here, before, after;
+  double value, value_before, value_after;
+
+  SADDLEBACK_HOST_DEVICE Walker(const SweepState& s, const Touch& p, Index start)
+      : arc(start),
+        here(height(p, s.arcs[start])),
+        before(height(p, s.arcs[s.arcs[start].previous])),
+        after(height(p, s.arcs[s.arcs[start].next])),
+        value(here.value()),
+        value_before(before.value()),
+        value_after(after.value()) {}
+  SADDLEBACK_HOST_DEVICE bool is_on_top() const { return value_before <= value && value_after <= value; }
+  SADDLEBACK_HOST_DEVICE void go_ahead(const SweepState& s, const Touch& p) {
+    before = here, value_before = value;
+    here = after, value = value_after;
+    arc = s.arcs[arc].next;
+    after = height(p, s.arcs[s.arcs[arc].next]);
+    value_after = after.value();
+  }
+  SADDLEBACK_HOST_DEVICE void go_back(const SweepState& s, const Touch& p) {
+    after = here, value_after = value;
+    here = before, value = value_before;
+    arc = s.arcs[arc].previous;
+    before = height(p, s.arcs[s.arcs[arc].previous]);
+    value_before = before.value();
+  }
+  SADDLEBACK_HOST_DEVICE bool is_hit(const SweepState& s, const Touch& p) const {
+    return is_on_top() && turn_to(s, p, s.arcs[arc], here, before, after) == Turn::here;
+  }
+};
+
 /// The arc that p hits, walking along the beach from one that may be near. O(1) expected, O(arcs) at worst.
 ///
 /// The first walk climbs to an arc that is further out than both neighbours. Several arcs may be: parts of one ellipse
-/// with others between. The second walk passes these towards p.
+/// with others between. Two more walks pass these, one each way, the likelier first.
 SADDLEBACK_HOST_DEVICE inline Index hit_arc(const SweepState& s, const Touch& p, Index from) {
-  Index arc = from;
-  Height here = height(p, s.arcs[arc]);
-  Height after = height(p, s.arcs[s.arcs[arc].next]), before = height(p, s.arcs[s.arcs[arc].previous]);
-  double value = here.value(), value_after = after.value(), value_before = before.value();
-  Turn turn = Turn::here, first_turn = Turn::here;
-  for (Index step = 0; step < 2 * s.arcs_used; ++step) {
-    if (value_before <= value && value_after <= value) {
-      turn = turn_to(s, p, s.arcs[arc], here, before, after);
-      if (turn == Turn::here) return arc;
-      if (first_turn == Turn::here) first_turn = turn;
-      turn = first_turn;
-    } else if (first_turn == Turn::here) {
-      turn = value_after >= value_before ? Turn::ahead : Turn::back;
-    }
-    if (turn == Turn::ahead) {
-      before = here, value_before = value;
-      here = after, value = value_after;
-      arc = s.arcs[arc].next;
-      after = height(p, s.arcs[s.arcs[arc].next]);
-      value_after = after.value();
+  Walker walker(s, p, from);
+  while (!walker.is_on_top()) {
+    if (walker.value_after >= walker.value_before) {
+      walker.go_ahead(s, p);
     } else {
-      after = here, value_after = value;
-      here = before, value = value_before;
-      arc = s.arcs[arc].previous;
-      before = height(p, s.arcs[s.arcs[arc].previous]);
-      value_before = before.value();
+      walker.go_back(s, p);
     }
+  }
+  const Turn turn = turn_to(s, p, s.arcs[walker.arc], walker.here, walker.before, walker.after);
+  if (turn == Turn::here) return walker.arc;
+  Walker ahead = walker, back = walker;
+  for (Index step = 0; step <= s.arcs_used; ++step) {
+    if (turn == Turn::ahead || step > 1) ahead.go_ahead(s, p);
+    if (turn == Turn::back || step > 1) back.go_back(s, p);
+    if (ahead.is_hit(s, p)) return ahead.arc;
+    if (back.is_hit(s, p)) return back.arc;
   }
   return highest_arc(s, p, from);
 }
@@ -323,13 +346,29 @@ SADDLEBACK_HOST_DEVICE inline Index sector_of(const SweepState& s, double x, dou
   return sector < s.near_count ? sector : s.near_count - 1;
 }
 
-/// An arc alive that was seen in about this direction.
-SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, Index sector) {
+/// An arc alive that was seen in about this direction: of those to both sides the one further out there, since on the
+/// beach it may be a long way from one to the other.
+SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, const Touch& p, Index sector) {
   const Index mask = s.near_count - 1;
-  for (Index step = 0; 2 * step <= s.near_count && step < 16; ++step) {
+  if (s.arcs[s.near[sector]].sector == sector) {
+    const Index up = s.near[(sector + 1) & mask], down = s.near[(sector - 1) & mask], here = s.near[sector];
+    Index best = here;
+    double best_value = height(p, s.arcs[here]).value();
+    const Index others[2] = {up, down};
+    for (int k = 0; k < 2; ++k) {
+      const Index other = others[k];
+      const double value = height(p, s.arcs[other]).value();
+      if (value > best_value && s.arcs[other].site != k_none) best = other, best_value = value;
+    }
+    return best;
+  }
+  for (Index step = 1; 2 * step <= s.near_count && step < 16; ++step) {
     const Index up = (sector + step) & mask, down = (sector - step) & mask;
-    if (s.arcs[s.near[up]].sector == up) return s.near[up];
-    if (s.arcs[s.near[down]].sector == down) return s.near[down];
+    const bool is_up = s.arcs[s.near[up]].sector == up, is_down = s.arcs[s.near[down]].sector == down;
+    if (is_up && is_down)
+      return height(p, s.arcs[s.near[up]]).value() > height(p, s.arcs[s.near[down]]).value() ? s.near[up]
+                                                                                             : s.near[down];
+    if (is_up || is_down) return s.near[is_up ? up : down];
   }
   return s.latest;
 }
@@ -338,7 +377,7 @@ SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, Index sector) 
 SADDLEBACK_HOST_DEVICE inline void touch(SweepState& s, Index site) {
   const Touch p{s.x[site], s.y[site], s.x[site] - s.centre_x, s.y[site] - s.centre_y};
   const Index sector = sector_of(s, p.x, p.y);
-  const Index left = hit_arc(s, p, arc_near(s, sector));
+  const Index left = hit_arc(s, p, arc_near(s, p, sector));
   const Index middle = new_arc(s);
   Arc& l = s.arcs[left];
   Arc& m = s.arcs[middle];
