@@ -81,6 +81,7 @@ class Union {
 
   /// Empties the found arcs.
   ArcRows assemble(int threads, const JobStage& stage) {
+    paired_ = {};
     sort_missing(threads, stage);
     std::vector<std::int64_t> offsets(node_count_ + 1, 0);
     parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {

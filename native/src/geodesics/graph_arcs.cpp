@@ -17,17 +17,21 @@ Index block_count(const ArcSearch& search) {
   return (static_cast<Index>(search.vertices.size()) + k_block - 1) / k_block;
 }
 
-/// Calls find(block) from all threads, and reports how many are done.
+/// Calls find(block, count, thread) from all threads, and reports how many are done. Blocks are filled in memory that
+/// each thread keeps, and kept without room to grow.
 template <class Find>
 std::vector<FoundArcs> find_by_blocks(const ArcSearch& search, const JobStage& stage, Find&& find) {
-  std::vector<FoundArcs> found(block_count(search));
+  std::vector<FoundArcs> found(block_count(search)), drafts(thread_count(search.threads));
   std::atomic<Index> done{0};
   parallel_for(static_cast<Index>(found.size()), search.threads, 1, [&](Index b, int thread) {
-    found[b].first_node = b * k_block;
-    const Index count = std::min(k_block, static_cast<Index>(search.vertices.size()) - found[b].first_node);
-    found[b].counts.reserve(count);
-    find(found[b], count, thread);
-    found[b].words.resize(found[b].words.size() + k_row_padding);
+    FoundArcs& draft = drafts[thread];
+    draft.first_node = b * k_block;
+    draft.counts.clear();
+    draft.words.clear();
+    draft.back_sectors.clear();
+    find(draft, std::min(k_block, static_cast<Index>(search.vertices.size()) - draft.first_node), thread);
+    draft.words.resize(draft.words.size() + k_row_padding);
+    found[b] = draft;
     stage.update(static_cast<double>(++done) / static_cast<double>(found.size()));
   });
   return found;
