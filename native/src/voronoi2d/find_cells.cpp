@@ -6,6 +6,7 @@
 #include "voronoi2d/find_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -55,6 +56,20 @@ struct CellLists {
   }
 };
 
+// Turns a ring of ranks until the lowest is the first.
+void lowest_first(std::span<Index> ring) {
+  constexpr std::size_t k_few = 16;
+  std::size_t lowest = 0;
+  for (std::size_t i = 1; i < ring.size(); ++i) lowest = ring[i] < ring[lowest] ? i : lowest;
+  if (ring.size() > k_few) {
+    std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(lowest), ring.end());
+    return;
+  }
+  std::array<Index, 2 * k_few> twice;
+  for (std::size_t i = 0; i < ring.size(); ++i) twice[i] = twice[i + ring.size()] = ring[i];
+  for (std::size_t i = 0; i < ring.size(); ++i) ring[i] = twice[lowest + i];
+}
+
 /// Reads cells off the mesh of a circle.
 class CellReader {
  public:
@@ -90,8 +105,7 @@ class CellReader {
       if (half == first) break;
       if (half == k_none) out.neighbours.push_back(ranks_[mesh_.triangles[last]]);
     }
-    const auto list = out.neighbours.begin() + static_cast<std::ptrdiff_t>(begin);
-    if (!is_open) std::rotate(list, std::min_element(list, out.neighbours.end()), out.neighbours.end());
+    if (!is_open) lowest_first(std::span(out.neighbours).subspan(begin));
     out.sizes.push_back(static_cast<Index>(out.neighbours.size() - begin));
     out.is_open.push_back(is_open);
   }

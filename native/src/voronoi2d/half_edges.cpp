@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <numeric>
+#include <utility>
 
 #include "support/parallel.h"
 #include "voronoi2d/circumcentre.h"
@@ -32,65 +34,65 @@ Cells strips_of(const OrderedSites& sites) {
 
 namespace {
 
-// A side of a cell and whether it is the first in its cell's list, in one number.
-struct Side {
-  std::uint32_t code;
-  Index index() const { return static_cast<Index>(code >> 1); }
-  bool is_first() const { return code & 1; }
-};
-
 class Stitcher {
  public:
   Stitcher(const Cells& cells, const OrderedSites& sites, Numbering& result)
-      : cells_(cells), sites_(sites), result_(result), twins_(cells.neighbours.size()) {}
+      : cells_(cells), sites_(sites), result_(result), next_corners_(cells.neighbours.size()) {}
 
   bool stitch(int threads, const JobStage& stage) {
-    const Index count = cells_.cell_count(), side_count = static_cast<Index>(twins_.size());
-    const Index edge_count = side_count / 2, vertex_count = cells_.are_strips ? 0 : edge_count - count + 1;
-    // The pieces' boundaries do not show in the result.
-    const Index piece_count = thread_count(threads) == 1 ? 1 : std::clamp<Index>(count / 8192, 1, 256);
-    std::vector<Piece> pieces(piece_count + 1);
-    for (Index i = 0; i <= piece_count; ++i)
-      pieces[i].begin = static_cast<Index>(static_cast<std::int64_t>(count) * i / piece_count);
-
-    std::atomic<bool> fits{side_count % 2 == 0 && vertex_count >= 0};
-    parallel_for(piece_count, threads, 1, [&](Index i, int) {
-      stage.check();
-      if (!find_twins(pieces[i].begin, pieces[i + 1].begin)) fits = false;
-    });
-    if (!fits) return false;
-    result_.corner_vertices.assign(side_count, k_none);
+    const Index count = cells_.cell_count(), side_count = static_cast<Index>(next_corners_.size());
+    const Index edge_count = side_count / 2;
+    vertex_count_ = cells_.are_strips ? 0 : edge_count - count + 1;
+    if (side_count % 2 != 0 || vertex_count_ < 0) return false;
+    result_.corner_vertices.resize(side_count);
     result_.side_edges.resize(side_count);
-    stage.update(0.3);
-    if (piece_count > 1) {
-      parallel_for(piece_count, threads, 1, [&](Index i, int) { count_own(pieces[i], pieces[i + 1].begin); });
-    } else {
-      pieces[0].vertices = vertex_count;
-      pieces[0].edges = edge_count;
-    }
-    for (Index i = 0, vertices = 0, edges = 0; i <= piece_count; ++i) {
-      std::swap(pieces[i].vertices, vertices);
-      std::swap(pieces[i].edges, edges);
-      vertices += pieces[i].vertices;
-      edges += pieces[i].edges;
-    }
-    if (pieces.back().vertices != vertex_count || pieces.back().edges != edge_count) return false;
-    stage.update(0.5);
-    result_.vertices.resize(vertex_count);
+    result_.vertices.resize(vertex_count_);
     result_.edge_vertices.resize(edge_count);
     result_.edge_sites.resize(edge_count);
-    parallel_for(piece_count, threads, 1, [&](Index i, int) {
-      stage.check();
-      if (!add_vertices(pieces[i], pieces[i + 1])) fits = false;
+
+    // Boundaries of pieces do not show in the result.
+    const Index piece_count =
+        thread_count(threads) == 1 ? std::clamp<Index>(count / 65536, 1, 256) : std::clamp<Index>(count / 8192, 1, 256);
+    pieces_.assign(piece_count + 1, {});
+    for (Index i = 0; i <= piece_count; ++i)
+      pieces_[i].begin = static_cast<Index>(static_cast<std::int64_t>(count) * i / piece_count);
+    const bool in_order = thread_count(threads) == 1;  // then the numbers follow without being counted before
+    const auto for_pieces = [&](double done, auto&& work) {
+      std::atomic<bool> fits{true};
+      parallel_for(piece_count, threads, 1, [&](Index i, int) {
+        stage.check();
+        if (fits && !work(pieces_[i], pieces_[i + 1])) fits = false;
+      });
+      stage.update(done);
+      return fits.load();
+    };
+    if (!in_order) {
+      for_pieces(0.05, [&](Piece& piece, const Piece& next) { return count_edges(piece, next); });
+      add_up(&Piece::edges);
+      if (pieces_.back().edges != edge_count) return false;
+    }
+    Index edge = 0;
+    const bool are_joined = for_pieces(0.4, [&](Piece& piece, const Piece& next) {
+      if (in_order) piece.edges = edge;
+      Index mine = piece.edges;
+      const bool fits = join_sides(piece, next, mine);
+      if (in_order) edge = mine;
+      return fits;
     });
-    if (!fits) return false;
-    stage.update(0.8);
-    parallel_for(piece_count, threads, 1, [&](Index i, int) {
-      stage.check();
-      add_edges(pieces[i], pieces[i + 1].begin);
+    if (!are_joined || (in_order && edge != edge_count)) return false;
+    pieces_.back().edges = edge_count;
+    if (!in_order) {
+      for_pieces(0.55, [&](Piece& piece, const Piece& next) { return count_vertices(piece, next); });
+      add_up(&Piece::vertices);
+      if (pieces_.back().vertices != vertex_count_) return false;
+    }
+    Index vertex = 0;
+    const bool are_placed = for_pieces(0.85, [&](Piece& piece, const Piece& next) {
+      Index mine = piece.vertices;
+      return add_vertices(piece, next, in_order ? vertex : mine);
     });
-    stage.update(1);
-    return true;
+    if (!are_placed || (in_order && vertex != vertex_count_)) return false;
+    return for_pieces(1, [&](Piece& piece, const Piece& next) { return add_ends(piece, next); });
   }
 
  private:
@@ -99,20 +101,55 @@ class Stitcher {
     Index vertices = 0, edges = 0;  ///< how many are its own, then how many come before
   };
 
-  // An edge belongs to the lower rank, which finds both of its sides.
-  bool find_twins(Index begin, Index end) {
-    for (Index cell = begin; cell < end; ++cell) {
-      const Index first = cells_.offsets[cell];
+  void add_up(Index Piece::*member) {
+    Index before = 0;
+    for (Piece& piece : pieces_) before += std::exchange(piece.*member, before);
+  }
+
+  bool count_edges(Piece& piece, const Piece& next) const {
+    for (Index cell = piece.begin; cell < next.begin; ++cell)
+      for (Index side = cells_.offsets[cell]; side < cells_.offsets[cell + 1]; ++side)
+        piece.edges += cells_.neighbours[side] > cell;
+    return true;
+  }
+
+  // Where a cell stands in the list of another; beyond its end when it does not.
+  Index find(Index cell, Index begin, Index end) const {
+    constexpr Index k_most = 8;
+    const Index* const list = cells_.neighbours.data() + begin;
+    if (begin + k_most <= static_cast<Index>(cells_.neighbours.size())) {  // without branches
+      unsigned found = 0;
+      for (Index k = 0; k < k_most; ++k) found |= static_cast<unsigned>(list[k] == cell) << k;
+      if (found != 0) return begin + std::countr_zero(found);
+    }
+    return static_cast<Index>(std::find(list, list + (end - begin), cell) - list) + begin;
+  }
+
+  // Numbers the edges, which belong to the lower rank, from `edge` on, and moves that. Of each side finds the next
+  // corner, counter-clockwise, about the vertex behind it: that of the cell across the side.
+  bool join_sides(const Piece& piece, const Piece& next, Index& edge) {
+    const Index edge_count = static_cast<Index>(result_.edge_sites.size());
+    for (Index cell = piece.begin; cell < next.begin; ++cell) {
+      const Index first = cells_.offsets[cell], end = cells_.offsets[cell + 1];
       if (!cells_.are_strips && !winds_once(cell)) return false;
-      for (Index side = first; side < cells_.offsets[cell + 1]; ++side) {
+      for (Index side = first; side < end; ++side) {
         const Index other = cells_.neighbours[side];
-        const Index other_first = cells_.offsets[other], other_end = cells_.offsets[other + 1];
         if (other < cell) continue;
-        Index twin = other_first;
-        while (twin < other_end && cells_.neighbours[twin] != cell) ++twin;
-        if (twin == other_end) return false;
-        twins_[side] = {2 * static_cast<std::uint32_t>(twin) + (twin == other_first)};
-        twins_[twin] = {2 * static_cast<std::uint32_t>(side) + (side == first)};
+        const Index other_first = cells_.offsets[other], other_end = cells_.offsets[other + 1];
+        const Index twin = find(cell, other_first, other_end);
+        if (twin >= other_end || edge == edge_count) return false;
+        next_corners_[side] = twin == other_first ? other_end - 1 : twin - 1;
+        const Index before = side == first ? end - 1 : side - 1;
+        next_corners_[twin] = before;
+        result_.edge_vertices[edge] = {before, side};  // the corners for now
+        result_.side_edges[side] = result_.side_edges[twin] = edge;
+        result_.edge_sites[edge] = {sites_.original[cell], sites_.original[other]};
+        ++edge;
+      }
+      if (cells_.are_strips) {
+        std::fill(result_.corner_vertices.begin() + first, result_.corner_vertices.begin() + end, k_none);
+      } else if (cells_.is_open[cell]) {
+        result_.corner_vertices[end - 1] = k_none;
       }
     }
     return true;
@@ -127,11 +164,10 @@ class Stitcher {
     const auto is_above = [&](Index rank) {
       return (sites_.y[rank] > y) | ((sites_.y[rank] == y) & (sites_.x[rank] > x));
     };
-    bool before = is_above(cells_.neighbours[cells_.is_open[cell] ? first : last]);
-    int crossings = 0;
+    int before = is_above(cells_.neighbours[cells_.is_open[cell] ? first : last]), crossings = 0;
     for (Index side = first; side <= last; ++side) {
-      const bool now = is_above(cells_.neighbours[side]);
-      crossings += now != before;
+      const int now = is_above(cells_.neighbours[side]);
+      crossings += now ^ before;
       before = now;
     }
     if (!cells_.is_open[cell]) return crossings == 2;
@@ -139,91 +175,77 @@ class Stitcher {
                                                    point(cells_.neighbours[first])) != predicates::Sign::negative;
   }
 
-  // The next corner about the same vertex, counter-clockwise: that of the cell across the corner's side.
-  Index next_corner(Index corner) const {
-    const Side twin = twins_[corner];
-    if (!twin.is_first()) return twin.index() - 1;
-    return cells_.offsets[cells_.neighbours[corner] + 1] - 1;
-  }
-
-  // Calls found(corner) for the corners of the vertices that belong to the cells: no lower rank is about them.
+  // Calls found(cell, corner) for the corners of the vertices that belong to the cells: no lower rank is about them.
   template <class Found>
   void for_own_vertices(Index begin, Index end, Found&& found) const {
     if (cells_.are_strips) return;
     for (Index cell = begin; cell < end; ++cell) {
       const Index first = cells_.offsets[cell], last = cells_.offsets[cell + 1] - 1;
       for (Index corner = first; corner <= last - cells_.is_open[cell]; ++corner) {
-        if (cells_.neighbours[corner] < cell) continue;
-        if (cells_.neighbours[corner == last ? first : corner + 1] < cell) continue;
+        const Index other = cells_.neighbours[corner], third = cells_.neighbours[corner == last ? first : corner + 1];
+        if (std::min(other, third) < cell) continue;
         Index lowest = cell;
-        for (Index walk = next_corner(corner); walk != corner; walk = next_corner(walk))
+        for (Index walk = next_corners_[corner]; walk != corner; walk = next_corners_[walk])
           lowest = std::min(lowest, cells_.neighbours[walk]);
         if (lowest == cell) found(cell, corner);
       }
     }
   }
 
-  void count_own(Piece& piece, Index end) const {
-    for_own_vertices(piece.begin, end, [&](Index, Index) { ++piece.vertices; });
-    for (Index cell = piece.begin; cell < end; ++cell)
-      for (Index side = cells_.offsets[cell]; side < cells_.offsets[cell + 1]; ++side)
-        piece.edges += cells_.neighbours[side] > cell;
+  bool count_vertices(Piece& piece, const Piece& next) const {
+    for_own_vertices(piece.begin, next.begin, [&](Index, Index) { ++piece.vertices; });
+    return true;
   }
 
   predicates::Point2 point(Index rank) const { return {sites_.x[rank], sites_.y[rank]}; }
 
-  // False when there are not as many as there should be.
-  bool add_vertices(const Piece& piece, const Piece& next) {
-    Index vertex = piece.vertices;
+  // Numbers vertices from `vertex` on, and moves that. False when there are more than there should be.
+  bool add_vertices(const Piece& piece, const Piece& next, Index& vertex) {
     bool fits = true;
     for_own_vertices(piece.begin, next.begin, [&](Index cell, Index corner) {
-      fits = fits && vertex < next.vertices;
+      fits = fits && vertex < vertex_count_;
       if (!fits) return;
-      // Three sites evenly about the vertex, so that their circle is well determined.
-      Index walk = corner, size = 0;
-      do {
-        result_.corner_vertices[walk] = vertex;
-        walk = next_corner(walk);
-        ++size;
-      } while (walk != corner);
-      std::array<Index, 3> about{cell, cells_.neighbours[corner], cells_.neighbours[next_corner(corner)]};
-      if (size > 3) {
-        for (Index k = 1, step = 0; k < 3; ++k) {
-          for (; step + 1 < k * size / 3; ++step) walk = next_corner(walk);
-          about[k] = cells_.neighbours[walk];
-        }
-      }
+      const Index second = next_corners_[corner], third = next_corners_[second];
+      std::array<Index, 3> about{cell, cells_.neighbours[corner], cells_.neighbours[second]};
+      result_.corner_vertices[corner] = result_.corner_vertices[second] = result_.corner_vertices[third] = vertex;
+      if (next_corners_[third] != corner) about = add_large_vertex(corner, vertex);
       result_.vertices[vertex++] = circumcentre(point(about[0]), point(about[1]), point(about[2])) / sites_.scale;
     });
-    return fits && vertex == next.vertices;
+    return fits;
   }
 
-  void add_edges(const Piece& piece, Index end) {
-    Index edge = piece.edges;
-    for (Index cell = piece.begin; cell < end; ++cell) {
-      const Index first = cells_.offsets[cell], last = cells_.offsets[cell + 1] - 1;
-      for (Index side = first; side <= last; ++side) {
-        const Index other = cells_.neighbours[side];
-        if (other < cell) continue;
-        result_.side_edges[side] = result_.side_edges[twins_[side].index()] = edge;
-        std::array<Index, 2> ends{result_.corner_vertices[side == first ? last : side - 1],
-                                  result_.corner_vertices[side]};
-        std::array<Index, 2> pair{sites_.original[cell], sites_.original[other]};
-        if (ends[0] == k_none) {
-          std::swap(ends[0], ends[1]);
-          std::swap(pair[0], pair[1]);
-        }
-        result_.edge_vertices[edge] = ends;
-        result_.edge_sites[edge] = pair;
-        ++edge;
+  // A vertex of more than three cells; returns three of them evenly about it, so that their circle is well determined.
+  std::array<Index, 3> add_large_vertex(Index corner, Index vertex) {
+    std::vector<Index> around;
+    Index walk = corner;
+    do {
+      result_.corner_vertices[walk] = vertex;
+      around.push_back(cells_.neighbours[walk]);
+      walk = next_corners_[walk];
+    } while (walk != corner);
+    const std::size_t size = around.size();  // the last one is the cell that owns the corner
+    return {around[size - 1], around[size / 3 - 1], around[2 * size / 3 - 1]};
+  }
+
+  // From the corners at the ends of the edges to their vertices.
+  bool add_ends(const Piece& piece, const Piece& next) {
+    for (Index edge = piece.edges; edge < next.edges; ++edge) {
+      std::array<Index, 2>& ends = result_.edge_vertices[edge];
+      for (Index& end : ends) end = result_.corner_vertices[end];
+      if (ends[0] == k_none) {
+        std::swap(ends[0], ends[1]);
+        std::swap(result_.edge_sites[edge][0], result_.edge_sites[edge][1]);
       }
     }
+    return true;
   }
 
   const Cells& cells_;
   const OrderedSites& sites_;
   Numbering& result_;
-  LargeArray<Side> twins_;
+  LargeArray<Index> next_corners_;
+  std::vector<Piece> pieces_;
+  Index vertex_count_ = 0;
 };
 
 }  // namespace

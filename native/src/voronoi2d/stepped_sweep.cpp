@@ -77,7 +77,7 @@ void SteppedSweep::State::sort_sites(const Vec2& scaled_centre) {
 void SteppedSweep::State::start_sweep() {
   const std::size_t count = x.size();
   is_own.assign(count, 1);
-  arcs.resize(2 * count);
+  arcs.resize(2 * count + 1);
   events.resize(6 * count);
   days.resize(count + 2);
   near.resize(256);
@@ -90,7 +90,7 @@ void SteppedSweep::State::start_sweep() {
            .centre_x = sweep.centre_x,
            .centre_y = sweep.centre_y,
            .is_own = is_own.data(),
-           .arcs = arcs.data(),
+           .arcs = arcs.data() + 1,
            .days = days.data(),
            .day_count = static_cast<Index>(days.size()),
            .days_per_area = farthest > 0 ? static_cast<double>(count) / (farthest * farthest) : 0,

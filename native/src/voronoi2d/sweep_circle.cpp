@@ -15,7 +15,7 @@ void SweepCircle::reserve(Index count) {
   if (count <= capacity_) return;
   capacity_ = count + count / 4;
   const std::size_t n = static_cast<std::size_t>(capacity_);
-  arcs_ = std::make_unique_for_overwrite<Arc[]>(2 * n);
+  arcs_ = std::make_unique_for_overwrite<Arc[]>(2 * n + 1);
   events_ = std::make_unique_for_overwrite<Event[]>(6 * n);
   triangles_ = std::make_unique_for_overwrite<Index[]>(8 * n);
   twins_ = std::make_unique_for_overwrite<Index[]>(8 * n);
@@ -94,7 +94,7 @@ PlanarMesh SweepCircle::sweep(std::span<const double> x, std::span<const double>
             .centre_x = x_[0],
             .centre_y = y_[0],
             .is_own = is_own_.data(),
-            .arcs = arcs_.get(),
+            .arcs = arcs_.get() + 1,
             .days = days_.data(),
             .day_count = static_cast<Index>(days_.size()),
             .days_per_area = days_per_area_,

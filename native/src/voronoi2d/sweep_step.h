@@ -47,7 +47,7 @@ struct Event {
   std::uint32_t stamp;
 };
 
-/// A circle at work. The arrays belong to the caller: room for 2 n arcs, 6 n events and 2 n triangles of n sites.
+/// A circle at work. The arrays belong to the caller: room for 2 n + 1 arcs, 6 n events and 2 n triangles of n sites.
 struct SweepState {
   const double *x, *y;  ///< sites, in the order of their distance from the centre
   Index count;
@@ -55,7 +55,7 @@ struct SweepState {
   const std::uint8_t* is_own;  ///< 1 for the sites whose cells are wanted
   Index own_open = 0;          ///< parts of the beach curve that belong to such
 
-  Arc* arcs;
+  Arc* arcs;  ///< and one before the first, which k_none stands for
   Index arcs_used = 0, free_arc = k_none, latest = 0;
 
   // Vanishing events: by equal steps of the squared radius, as sites are where they are equally dense. The pages of
@@ -126,8 +126,10 @@ SADDLEBACK_HOST_DEVICE inline void find_radii(Pair& p, double centre_x, double c
 
 /// The radius at which one of them vanishes, or k_never. Whether it does is exact.
 SADDLEBACK_HOST_DEVICE inline double radius_of(const Pair& p, int k) {
-  if (p.turn[k] > p.doubt[k]) return p.radius[k] < k_latest ? p.radius[k] : k_latest;
-  if (p.turn[k] < -p.doubt[k]) return k_never;
+  if (fabs(p.turn[k]) > p.doubt[k]) {
+    const double radius = p.radius[k] < k_latest ? p.radius[k] : k_latest;
+    return p.turn[k] > 0 ? radius : k_never;
+  }
   const bool turns = predicates::detail::orient_2d_exact({p.ax[k], p.ay[k]}, {p.bx[k], p.by[k]}, {p.cx[k], p.cy[k]}) ==
                      predicates::Sign::negative;
   return turns ? k_latest : k_never;  // flat: later than anything that matters
@@ -139,33 +141,29 @@ SADDLEBACK_HOST_DEVICE inline Index day_of(const SweepState& s, double radius) {
   return day < s.day_count - 1 ? static_cast<Index>(day) : s.day_count - 1;
 }
 
-/// Whatever was said of when an arc vanishes is void.
+/// Whatever was said of when an arc vanishes is void. Without branches, which could not be predicted.
 SADDLEBACK_HOST_DEVICE inline void unschedule(SweepState& s, Arc& arc) {
   ++arc.stamp;
   if (arc.day == k_none) return;
-  if (arc.day_previous == k_none) {
-    s.days[arc.day] = arc.day_next;
-  } else {
-    s.arcs[arc.day_previous].day_next = arc.day_next;
-  }
-  if (arc.day_next != k_none) s.arcs[arc.day_next].day_previous = arc.day_previous;
+  Index* const from = arc.day_previous == k_none ? &s.days[arc.day] : &s.arcs[arc.day_previous].day_next;
+  *from = arc.day_next;
+  s.arcs[arc.day_next].day_previous = arc.day_previous;
   arc.day = k_none;
 }
 
-/// Notes in the calendar or, for today, in the heap when an arc vanishes.
+/// Notes in the calendar or, for today, in the heap when an arc vanishes. One that never does is on the last page.
 SADDLEBACK_HOST_DEVICE inline void note(SweepState& s, Index arc, double radius) {
-  if (radius == k_never) return;
   Arc& b = s.arcs[arc];
   b.radius = radius;
   const Index day = day_of(s, radius);
   if (day <= s.today) {
-    push_event(s, {radius, arc, b.stamp});
+    if (radius != k_never) push_event(s, {radius, arc, b.stamp});
     return;
   }
   b.day = day;
   b.day_previous = k_none;
   b.day_next = s.days[day];
-  if (b.day_next != k_none) s.arcs[b.day_next].day_previous = arc;
+  s.arcs[b.day_next].day_previous = arc;
   s.days[day] = arc;
 }
 
@@ -182,8 +180,8 @@ SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index first, Index se
   find_radii(pair, s.centre_x, s.centre_y);
   unschedule(s, s.arcs[first]);
   unschedule(s, s.arcs[second]);
-  if (is_parted[0]) note(s, first, radius_of(pair, 0));
-  if (is_parted[1]) note(s, second, radius_of(pair, 1));
+  note(s, first, is_parted[0] ? radius_of(pair, 0) : k_never);
+  note(s, second, is_parted[1] ? radius_of(pair, 1) : k_never);
 }
 
 SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {
@@ -451,7 +449,7 @@ SADDLEBACK_HOST_DEVICE inline double vanish_next(SweepState& s, double radius) {
     ++s.today;
     for (Index arc = s.days[s.today]; arc != k_none; arc = s.arcs[arc].day_next) {
       s.arcs[arc].day = k_none;
-      push_event(s, {s.arcs[arc].radius, arc, s.arcs[arc].stamp});
+      if (s.arcs[arc].radius != k_never) push_event(s, {s.arcs[arc].radius, arc, s.arcs[arc].stamp});
     }
   }
 }
