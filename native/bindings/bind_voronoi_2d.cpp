@@ -196,6 +196,14 @@ void bind_voronoi_2d(py::module_& m) {
           "delaunay", [](const Diagram& d) { return to_array(without_gil([&] { return d.result.delaunay(); })); },
           "(T, 3) int32 sites, counter-clockwise: the Delaunay triangulation. Triangles about one vertex share its "
           "smallest site.")
+      .def_property_readonly(
+          "cells",
+          [](const Diagram& d) {
+            CellRows cells = without_gil([&] { return d.result.cells(); });
+            return py::make_tuple(to_array(std::move(cells.offsets)), to_array(std::move(cells.vertices)));
+          },
+          "(n + 1,) int32 offsets and int32 vertices: the cell of site i is vertices[offsets[i]:offsets[i + 1]], "
+          "counter-clockwise, -1 where it is open; empty for a site equal to an earlier one.")
       .def(
           "cell_vertices",
           [](const py::object& self, const py::object& site) {

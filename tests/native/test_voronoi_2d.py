@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from fractions import Fraction
 
 import numpy as np
@@ -185,3 +187,22 @@ def test_the_same_bytes_for_any_circles_and_threads(kind):
         arrays = ("vertices", "edges", "edge_sites", "site_of", "delaunay")
         results.add(tuple(getattr(diagram, name).tobytes() for name in arrays))
     assert len(results) == 1
+
+
+def test_a_million_sites_stop_within_a_moment():
+    sites = plane_sites.uniform(10**6, np.random.default_rng(9))
+    job = sb.Job()
+    stopped_at = []
+
+    def stop():
+        while job.fraction < 0.3:
+            time.sleep(0.001)
+        stopped_at.append(time.perf_counter())
+        job.cancel()
+
+    watcher = threading.Thread(target=stop)
+    watcher.start()
+    with pytest.raises(sb.Cancelled):
+        sb.voronoi_2d(sites, job=job)
+    watcher.join()
+    assert time.perf_counter() - stopped_at[0] < 0.5  # 0.1 s on a machine that is not busy

@@ -125,3 +125,11 @@ def test_locate_refuses_what_it_cannot_answer():
         sb.voronoi_2d([[0, 0]]).locate([[0, 0], [np.nan, 0]])
     with pytest.raises(sb.InputError, match="no sites"):
         sb.voronoi_2d(np.zeros((0, 2))).locate([[0, 0]])
+
+
+def test_all_cells_at_once():
+    diagram = sb.voronoi_2d(plane_sites.duplicates(300, np.random.default_rng(6)))
+    offsets, vertices = diagram.cells
+    for site, first in enumerate(diagram.site_of):
+        cell = vertices[offsets[site] : offsets[site + 1]]
+        assert cell.tolist() == (diagram.cell_vertices(site).tolist() if first == site else [])

@@ -18,6 +18,12 @@ struct Voronoi2dOptions {
   int threads = 0;  ///< 0: all cores. The result does not depend on it
 };
 
+/// All cells in the order of their sites.
+struct CellRows {
+  std::vector<Index> offsets;   ///< (n + 1) the cell of site i is [offsets[i], offsets[i + 1])
+  std::vector<Index> vertices;  ///< counter-clockwise; -1 where a cell is open
+};
+
 /// What lies of each cell in a domain.
 struct ClippedCells {
   std::vector<Vec2> points;         ///< (P) the corners of all loops, one after another
@@ -45,6 +51,8 @@ struct Voronoi2d {
 
   /// Vertices around a site's cell, counter-clockwise; -1 stands where the cell is open. O(1).
   std::span<const Index> cell_vertices(Index site) const;
+  /// The vertices of all cells, none for sites equal to an earlier one. O(E).
+  CellRows cells() const;
   /// Edges around a site's cell: edge k leads to vertex k of `cell_vertices`. O(1).
   std::span<const Index> cell_edges(Index site) const;
   bool is_bounded(Index site) const;

@@ -48,8 +48,19 @@ std::uint32_t place_on_curve(std::uint32_t x, std::uint32_t y) {
   return place;
 }
 
+// Calls work(item) for all, with a look at the job from time to time.
+template <class Items, class Work>
+void for_blocks(Items& items, const JobStage& stage, Work&& work) {
+  constexpr std::size_t k_block = std::size_t{1} << 16;
+  for (std::size_t begin = 0; begin < items.size(); begin += k_block) {
+    stage.check();
+    const std::size_t end = std::min(items.size(), begin + k_block);
+    for (std::size_t i = begin; i < end; ++i) work(items[i]);
+  }
+}
+
 // Stable, least digit first.
-void radix_sort(LargeArray<Placed>& items, LargeArray<Placed>& other) {
+void radix_sort(LargeArray<Placed>& items, LargeArray<Placed>& other, const JobStage& stage) {
   constexpr int k_digit = 11;
   constexpr std::size_t k_values = std::size_t{1} << k_digit;
   other.resize(items.size());
@@ -57,7 +68,9 @@ void radix_sort(LargeArray<Placed>& items, LargeArray<Placed>& other) {
     std::array<std::size_t, k_values + 1> begin{};
     for (const Placed& item : items) ++begin[((item.place >> shift) & (k_values - 1)) + 1];
     for (std::size_t i = 0; i < k_values; ++i) begin[i + 1] += begin[i];
-    for (const Placed& item : items) other[begin[(item.place >> shift) & (k_values - 1)]++] = item;
+    stage.update((shift + 0.2 * k_digit) / (2.0 * k_bits));
+    for_blocks(items, stage,
+               [&](const Placed& item) { other[begin[(item.place >> shift) & (k_values - 1)]++] = item; });
     items.swap(other);
   }
 }
@@ -69,18 +82,18 @@ struct Box {
 
 class Sorter {
  public:
-  Sorter(std::span<const Vec2> points) : points_(points) {}
+  Sorter(std::span<const Vec2> points, const JobStage& stage) : points_(points), stage_(stage) {}
 
   /// Sorts indices along the curve over their box; equal points end up side by side, the smallest index first.
   void sort(std::span<Placed> items) {
-    constexpr std::size_t k_few = 48;
     const std::uint32_t outer_place = items[0].place;
-    sort_inside(items, k_few);
+    sort_inside(items);
     for (Placed& item : items) item.place = outer_place;
   }
 
-  void sort_inside(std::span<Placed> items, std::size_t few) {
-    if (items.size() <= few || !place(items)) {
+  void sort_inside(std::span<Placed> items) {
+    constexpr std::size_t k_few = 48;
+    if (items.size() <= k_few || !place(items)) {
       std::sort(items.begin(), items.end(), [&](const Placed& a, const Placed& b) { return less(a.index, b.index); });
       return;
     }
@@ -93,7 +106,9 @@ class Sorter {
   void sort_runs(std::span<Placed> items) {
     for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
       for (end = begin + 1; end < items.size() && items[end].place == items[begin].place;) ++end;
-      if (end - begin > 1) sort(items.subspan(begin, end - begin));
+      if (end - begin == 1) continue;
+      stage_.check();
+      sort(items.subspan(begin, end - begin));
     }
   }
 
@@ -110,14 +125,14 @@ class Sorter {
     const double width = std::max(0.5 * box.high[0] - 0.5 * box.low[0], 0.5 * box.high[1] - 0.5 * box.low[1]);
     if (!(width > 0)) return false;
     constexpr double k_squares = 1 << k_bits;
-    for (Placed& item : items) {
+    for_blocks(items, stage_, [&](Placed& item) {
       std::uint32_t square[2];
       for (int k = 0; k < 2; ++k) {
         const double share = (0.5 * points_[item.index][k] - 0.5 * box.low[k]) / width;
         square[k] = static_cast<std::uint32_t>(std::min(share * k_squares, k_squares - 1));
       }
       item.place = place_on_curve(square[0], square[1]);
-    }
+    });
     return true;
   }
 
@@ -128,16 +143,19 @@ class Sorter {
     return p.y() != q.y() ? p.y() < q.y() : a < b;
   }
   std::span<const Vec2> points_;
+  const JobStage& stage_;
 };
 
 }  // namespace
 
-LargeArray<Placed> curve_order(std::span<const Vec2> points) {
+LargeArray<Placed> curve_order(std::span<const Vec2> points, const JobStage& stage) {
   LargeArray<Placed> items(points.size()), other;
   for (std::size_t i = 0; i < items.size(); ++i) items[i] = {0, static_cast<Index>(i)};
-  Sorter sorter(points);
-  if (items.size() > 1 && sorter.place(items)) radix_sort(items, other);
+  Sorter sorter(points, stage);
+  stage.update(0.1);
+  if (items.size() > 1 && sorter.place(items)) radix_sort(items, other, stage.part(0.3, 0.9));
   sorter.sort_runs(items);
+  stage.update(1);
   return items;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "saddleback/job.h"
 #include "saddleback/large_array.h"
 #include "saddleback/types.h"
 
@@ -16,6 +17,7 @@ struct Placed {
 };
 
 /// Points along a Hilbert curve, by ascending place; equal points side by side, the smallest index first. O(n log n).
-LargeArray<Placed> curve_order(std::span<const Vec2> points);
+/// \throw Cancelled
+LargeArray<Placed> curve_order(std::span<const Vec2> points, const JobStage& stage);
 
 }  // namespace saddleback::voronoi2d

@@ -255,7 +255,7 @@ void find_tile(const OrderedSites& sites, const BoxTree& tree, Index begin, Inde
 }
 
 // One after another, in the order of the ranks.
-Cells joined(std::vector<CellLists>& tiles, Index count, int threads) {
+Cells joined(std::vector<CellLists>& tiles, Index count, int threads, const JobStage& stage) {
   Cells cells;
   cells.offsets.reserve(count + 1);
   cells.offsets.push_back(0);
@@ -268,6 +268,7 @@ Cells joined(std::vector<CellLists>& tiles, Index count, int threads) {
   std::vector<Index> first{0};
   for (const CellLists& tile : tiles) first.push_back(first.back() + static_cast<Index>(tile.sizes.size()));
   parallel_for(static_cast<Index>(tiles.size()), threads, 1, [&](Index i, int) {
+    stage.check();
     std::copy(tiles[i].neighbours.begin(), tiles[i].neighbours.end(),
               cells.neighbours.begin() + cells.offsets[first[i]]);
     LargeArray<Index>().swap(tiles[i].neighbours);
@@ -299,7 +300,10 @@ Cells find_cells(const OrderedSites& sites, const JobStage& stage) {
   reader.open(mesh, circle, [](Index position) { return position; });
   CellLists lists;
   lists.reserve(count);
-  for (Index i = 0; i < count; ++i) reader.read(i, lists);
+  for (Index i = 0; i < count; ++i) {
+    if (i % 65536 == 0) stage.check();
+    reader.read(i, lists);
+  }
   Cells cells;
   cells.offsets.resize(count + 1);
   cells.offsets[0] = 0;
@@ -328,7 +332,9 @@ Cells find_cells_by_tiles(const OrderedSites& sites, Index circle_size, int thre
   for (Index i = 0; i < tiling.count(); ++i)
     for (Index k = 0; k < tiling.end(i) - tiling.begin(i); ++k)
       if (tiles[i].is_doubtful[k]) ranks.push_back(tiling.begin(i) + k);
-  const Cells cells = joined(tiles, sites.count(), threads);
+  stage.check();
+  const Cells cells = joined(tiles, sites.count(), threads, stage);
+  stage.check();
   return renew_cells(sites, cells, std::move(ranks), stage.part(0.9, 1));
 }
 
@@ -355,6 +361,7 @@ Cells renew_cells(const OrderedSites& sites, const Cells& cells, std::vector<Ind
   auto list = lists.neighbours.begin();
   Index kept = 0;  // cells before the next renewed one go over as they are
   for (std::size_t i = 0; i <= own_count; ++i) {
+    if (i % 1024 == 0) stage.check();
     const Index rank = i < own_count ? ranks[i] : sites.count();
     const Index shift = static_cast<Index>(result.neighbours.size()) - cells.offsets[kept];
     result.neighbours.insert(result.neighbours.end(), cells.neighbours.begin() + cells.offsets[kept],

@@ -68,17 +68,18 @@ OrderedSites order_sites(std::span<const Vec2> sites, const JobStage& stage) {
   OrderedSites result;
   const Range range = check(sites);
   result.scale = scale_for(sites, range);
-  stage.update(0.1);
+  stage.update(0.05);
 
-  const LargeArray<Placed> items = curve_order(sites);
-  stage.update(0.8);
+  const LargeArray<Placed> items = curve_order(sites, stage.part(0.05, 0.8));
 
   result.site_of.resize(sites.size());
   result.original.reserve(sites.size());
   result.x.reserve(sites.size());
   result.y.reserve(sites.size());
   result.places.reserve(sites.size());
+  std::size_t done = 0;
   for (const Placed& item : items) {
+    if ((++done & 0xffff) == 0) stage.check();
     const double x = sites[item.index].x() * result.scale, y = sites[item.index].y() * result.scale;
     if (result.x.empty() || result.x.back() != x || result.y.back() != y) {
       result.x.push_back(x);

@@ -44,6 +44,8 @@ Numbering find_numbering(const OrderedSites& sites, const Voronoi2dOptions& opti
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, Job* job) {
   if (options.circles < 0) throw InputError(message("circles: wanted 0 or more, got ", options.circles));
   if (options.threads < 0) throw InputError(message("threads: wanted 0 or more, got ", options.threads));
+  constexpr std::size_t k_most = 300'000'000;  // six neighbours each are counted in 32 bits
+  if (sites.size() > k_most) throw InputError(message("sites: wanted up to ", k_most, ", got ", sites.size()));
   const JobStage stage(job, "Voronoi diagram");
   OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
   Cells cells;
@@ -55,7 +57,10 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
   result.edges = std::move(numbering.edge_vertices);
   result.edge_sites = std::move(numbering.edge_sites);
   result.cell_places.assign(sites.size(), k_none);
-  for (Index rank = 0; rank < ordered.count(); ++rank) result.cell_places[ordered.original[rank]] = rank;
+  for (Index rank = 0; rank < ordered.count(); ++rank) {
+    if (rank % 65536 == 0) stage.check();
+    result.cell_places[ordered.original[rank]] = rank;
+  }
   for (std::size_t i = 0; i < sites.size() && ordered.original.size() < sites.size(); ++i)
     result.cell_places[i] = result.cell_places[ordered.site_of[i]];
   result.site_of = std::move(ordered.site_of);
@@ -75,6 +80,22 @@ std::span<const Index> Voronoi2d::cell_vertices(Index site) const {
 std::span<const Index> Voronoi2d::cell_edges(Index site) const {
   const Index place = cell_places[site];
   return std::span(side_edges).subspan(cell_offsets[place], cell_offsets[place + 1] - cell_offsets[place]);
+}
+
+CellRows Voronoi2d::cells() const {
+  CellRows result;
+  result.offsets.reserve(sites.size() + 1);
+  result.offsets.push_back(0);
+  result.vertices.reserve(corner_vertices.size());
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const Index site = static_cast<Index>(i);
+    if (site_of[i] == site) {
+      const std::span<const Index> corners = cell_vertices(site);
+      result.vertices.insert(result.vertices.end(), corners.begin(), corners.end());
+    }
+    result.offsets.push_back(static_cast<Index>(result.vertices.size()));
+  }
+  return result;
 }
 
 bool Voronoi2d::is_bounded(Index site) const {
