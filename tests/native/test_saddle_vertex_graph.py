@@ -60,6 +60,12 @@ def test_the_exact_graph_is_exact(case: meshes.Case) -> None:
         np.testing.assert_allclose(graph.distances([source]), exact, rtol=2e-9, atol=1e-12)
 
 
+def test_an_exact_graph_beyond_the_memory_is_refused() -> None:
+    """On a sphere all vertices see each other: 164,000 of them would take 450 GB."""
+    with pytest.raises(sb.InputError, match=r"exact: the exact graph of 163842 vertices needs about \d+\.?\d* GB and"):
+        sb.SaddleVertexGraph(sb.Mesh(*meshes.icosphere(7)), exact=True)
+
+
 def mean_error(vertices: np.ndarray, triangles: np.ndarray, expected: np.ndarray, source: int) -> float:
     found = sb.SaddleVertexGraph(sb.Mesh(vertices, triangles), k=50).distances([source])
     away = expected > 0

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <memory>
 
 #include "saddleback/error.h"
@@ -53,27 +54,36 @@ void append_row(const ArcSearch& search, Index vertex, const std::vector<DirectA
 
 std::string in_gigabytes(double bytes) { return message(std::max(0.1, std::round(bytes / 1e8) / 10), " GB"); }
 
-/// From a few sources all over the mesh. What is built holds the arcs twice for a while, with the directions back.
-void check_memory(const ArcSearch& search, WindowPropagator& propagator, const JobStage& stage) {
-  constexpr Index k_samples = 16;
-  constexpr double k_bytes_per_arc = 2 * sizeof(std::uint64_t) + 1;
+/// Vertices in sight of one, in the mean of a few all over the mesh. Their number grows like a power of that of the
+/// vertices looked at, which is told from disks of two sizes.
+double mean_in_sight(const ArcSearch& search, WindowPropagator& propagator, const JobStage& stage) {
+  constexpr Index k_samples = 16, k_disk = 4000, k_ratio = 4;
   const auto count = static_cast<Index>(search.vertices.size());
+  const Index samples = std::min(k_samples, count), disk = std::min(k_disk, count);
   std::vector<DirectArc> row;
-  double arcs = 0;
-  const Index samples = std::min(k_samples, count);
+  double small = 0, large = 0;
   for (Index i = 0; i < samples; ++i) {
     stage.check();
-    propagator.from_vertex(search.vertices[static_cast<std::int64_t>(i) * count / samples], count, row);
-    arcs += static_cast<double>(row.size());
+    const Index vertex = search.vertices[static_cast<std::int64_t>(i) * count / samples];
+    propagator.from_vertex(vertex, std::max<Index>(disk / k_ratio, 1), row);
+    small += static_cast<double>(row.size()) / samples;
+    propagator.from_vertex(vertex, disk, row);
+    large += static_cast<double>(row.size()) / samples;
   }
-  const double wanted = arcs / samples * count * k_bytes_per_arc;
-  const auto available = static_cast<double>(available_memory());
-  if (available > 0 && wanted > available) {
-    throw InputError(
-        message("exact: the exact graph of ", count, " vertices needs about ", in_gigabytes(wanted), " and ",
-                in_gigabytes(available),
-                " are free; give accuracy=1e-3 instead, or call exact_distances for the sources you need"));
-  }
+  const double power = std::clamp(std::log(large / small) / std::log(k_ratio), 0.0, 1.0);
+  return large * std::pow(static_cast<double>(count) / disk, power);
+}
+
+/// What is built holds the arcs twice for a while, with the directions back.
+void check_memory(const ArcSearch& search, WindowPropagator& propagator, const JobStage& stage) {
+  constexpr double k_bytes_per_arc = 2 * sizeof(std::uint64_t) + 1;
+  const auto count = static_cast<double>(search.vertices.size()), available = static_cast<double>(available_memory());
+  if (available <= 0 || count * count * k_bytes_per_arc <= available) return;
+  const double wanted = mean_in_sight(search, propagator, stage) * count * k_bytes_per_arc;
+  if (wanted <= available) return;
+  throw InputError(message("exact: the exact graph of ", search.vertices.size(), " vertices needs about ",
+                           in_gigabytes(wanted), " and ", in_gigabytes(available),
+                           " are free; give accuracy=1e-3 instead, or call exact_distances for the sources you need"));
 }
 
 }  // namespace
