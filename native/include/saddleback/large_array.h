@@ -15,7 +15,7 @@ void free_large(void* memory) noexcept;
 /// New elements have no value until they are given one, as those of a plain array.
 template <class T>
 struct LargeAllocator {
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): the standard's name
   LargeAllocator() = default;
   template <class U>
   explicit(false) LargeAllocator(const LargeAllocator<U>&) {}

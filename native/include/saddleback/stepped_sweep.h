@@ -32,7 +32,7 @@ class SteppedSweep {
 
   /// \throw InputError as voronoi_2d does. O(n log n).
   SteppedSweep(std::span<const Vec2> sites, const Vec2& centre);
-  ~SteppedSweep();
+  ~SteppedSweep();  // NOLINT(performance-trivially-destructible): State is known in the .cpp only
   SteppedSweep(SteppedSweep&&) noexcept;
   SteppedSweep& operator=(SteppedSweep&&) noexcept;
 

@@ -98,10 +98,10 @@ class EdgeMap {
  public:
   EdgeMap(const PlanarDomain& domain, Index size) : domain_(domain), size_(size) {
     for (const Vec2& p : domain.loops()[0]) {
-      low_ = low_.cwiseMin(p);
-      high_ = high_.cwiseMax(p);
+      lower_ = lower_.cwiseMin(p);
+      upper_ = upper_.cwiseMax(p);
     }
-    scale_ = (high_ - low_).cwiseInverse() * size;
+    scale_ = (upper_ - lower_).cwiseInverse() * size;
     sums_.assign(static_cast<std::size_t>(size + 1) * (size + 1), 0);
     for (const auto& loop : domain.loops())
       for (std::size_t i = 0; i < loop.size(); ++i) mark(loop[i], loop[(i + 1) % loop.size()]);
@@ -112,16 +112,16 @@ class EdgeMap {
   enum class Place { outside, inside, at_edge };
   /// Where a box lies; `at_edge` when in doubt.
   Place place(const Vec2& low, const Vec2& high) const {
-    if ((high.array() < low_.array()).any() || (low.array() > high_.array()).any()) return Place::outside;
-    if ((low.array() < low_.array()).any() || (high.array() > high_.array()).any()) return Place::at_edge;
+    if ((high.array() < lower_.array()).any() || (low.array() > upper_.array()).any()) return Place::outside;
+    if ((low.array() < lower_.array()).any() || (high.array() > upper_.array()).any()) return Place::at_edge;
     const Index x = column(low.x()), y = row(low.y()), end_x = column(high.x()) + 1, end_y = row(high.y()) + 1;
     if (sum(end_x, end_y) - sum(x, end_y) - sum(end_x, y) + sum(x, y) > 0) return Place::at_edge;
     return domain_.contains(low) ? Place::inside : Place::outside;
   }
 
  private:
-  Index column(double x) const { return std::clamp(static_cast<Index>((x - low_.x()) * scale_.x()), 0, size_ - 1); }
-  Index row(double y) const { return std::clamp(static_cast<Index>((y - low_.y()) * scale_.y()), 0, size_ - 1); }
+  Index column(double x) const { return std::clamp(static_cast<Index>((x - lower_.x()) * scale_.x()), 0, size_ - 1); }
+  Index row(double y) const { return std::clamp(static_cast<Index>((y - lower_.y()) * scale_.y()), 0, size_ - 1); }
   Index& sum(Index x, Index y) { return sums_[static_cast<std::size_t>(y) * (size_ + 1) + x]; }
   Index sum(Index x, Index y) const { return sums_[static_cast<std::size_t>(y) * (size_ + 1) + x]; }
 
@@ -131,7 +131,7 @@ class EdgeMap {
     const Index first = std::max(0, row(a.y()) - 1), last = std::min(size_ - 1, row(b.y()) + 1);
     for (Index y = first; y <= last; ++y) {
       const auto x_at = [&](Index line) {
-        const double share = (low_.y() + line / scale_.y() - a.y()) / (b.y() - a.y());
+        const double share = (lower_.y() + line / scale_.y() - a.y()) / (b.y() - a.y());
         return a.x() + (share > 0 ? std::min(share, 1.0) : 0.0) * (b.x() - a.x());
       };
       const bool is_level = row(a.y()) == row(b.y());
@@ -144,7 +144,9 @@ class EdgeMap {
 
   const PlanarDomain& domain_;
   Index size_;
-  Vec2 low_ = Vec2::Constant(std::numeric_limits<double>::infinity()), high_ = -low_, scale_;
+  Vec2 lower_ = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 upper_ = -lower_;
+  Vec2 scale_;  ///< squares by length
   std::vector<Index> sums_;
 };
 

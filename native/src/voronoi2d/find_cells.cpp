@@ -181,11 +181,8 @@ class Tiling {
   }
   void add(Index end) {
     const std::size_t n = ends_.size();
-    if (n >= 2 && end - ends_[n - 2] <= size_) {
-      ends_.back() = end;
-    } else {
-      ends_.push_back(end);
-    }
+    if (n >= 2 && end - ends_[n - 2] <= size_) ends_.pop_back();  // one tile with the one before
+    ends_.push_back(end);
   }
 
   const LargeArray<std::uint32_t>& places_;

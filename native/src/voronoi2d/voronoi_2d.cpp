@@ -136,14 +136,14 @@ std::vector<Triangle> Voronoi2d::delaunay() const {
 void Voronoi2d::sites_around(Index vertex, Index edge, std::vector<Index>& around) const {
   // Counter-clockwise from cell to cell: each cell has an edge that leads to the vertex, with the next cell behind it.
   around.clear();
-  const Index first_edge = edge;
+  Index walk = edge;
   do {
-    const bool leads_there = edges[edge][1] == vertex;
-    const Index site = edge_sites[edge][leads_there ? 0 : 1], next = edge_sites[edge][leads_there ? 1 : 0];
-    around.push_back(site);
+    const bool leads_there = edges[walk][1] == vertex;
+    around.push_back(edge_sites[walk][leads_there ? 0 : 1]);
+    const Index next = edge_sites[walk][leads_there ? 1 : 0];
     const std::span<const Index> corners = cell_vertices(next);
-    edge = cell_edges(next)[std::find(corners.begin(), corners.end(), vertex) - corners.begin()];
-  } while (edge != first_edge);
+    walk = cell_edges(next)[std::find(corners.begin(), corners.end(), vertex) - corners.begin()];
+  } while (walk != edge);
 }
 
 namespace {
