@@ -18,8 +18,8 @@ constexpr float k_much_shorter = 1 - 1e-6f;
 constexpr double k_rounding = 1e-6;
 // Finding the k-th nearest takes as long as a generation.
 constexpr int k_generations_per_bound = 3;
-// Windows end where a flank serves within this many times the tolerance. With 1 no error could exceed it, for half as
-// many arcs again; errors come near their bounds so seldom that with 1.5 they do not exceed the tolerance either.
+// Windows end where a flank serves within this many times the tolerance. Less costs windows and arcs: with 1 a fifth
+// more of both; more lets errors exceed the accuracy here and there.
 constexpr double k_radius_tolerance = 1.5;
 
 float distance_of(std::int32_t label) { return std::bit_cast<float>(label); }
@@ -31,53 +31,7 @@ bool makes_arc(std::int32_t label) { return (label & 1) == 0; }
 
 int to_sector(float sector) { return std::clamp(static_cast<int>(sector), 0, ArcCodec::k_sectors - 1); }
 
-template <class Columns>
-void grow(Columns& columns, int room) {
-  for (auto& column : columns) column.resize(static_cast<std::size_t>(room));
-}
-
 }  // namespace
-
-void WindowColumns::reserve(int count) {
-  if (count + k_row_padding <= room_) return;
-  room_ = 2 * (count + k_row_padding);
-  grow(reals_, room_);
-  grow(floats_, room_);
-  grow(ints_, room_);
-}
-
-WindowRows WindowColumns::rows() {
-  return {reals_[0].data(),  reals_[1].data(),  reals_[2].data(),  reals_[3].data(),  floats_[0].data(),
-          floats_[1].data(), floats_[2].data(), floats_[3].data(), floats_[4].data(), floats_[5].data(),
-          floats_[6].data(), floats_[7].data(), floats_[8].data(), ints_[0].data(),   ints_[1].data(),
-          ints_[2].data(),   ints_[3].data()};
-}
-
-void ApexColumns::reserve(int count) {
-  if (count + k_row_padding <= room_) return;
-  room_ = 2 * (count + k_row_padding);
-  grow(reals_, room_);
-  grow(floats_, room_);
-  grow(ints_, room_);
-}
-
-ApexRows ApexColumns::rows() {
-  return {reals_[0].data(),  reals_[1].data(), floats_[0].data(), floats_[1].data(), floats_[2].data(),
-          floats_[3].data(), ints_[0].data(),  ints_[1].data(),   ints_[2].data()};
-}
-
-void SightingColumns::reserve(int count) {
-  if (count + k_row_padding <= room_) return;
-  room_ = 2 * (count + k_row_padding);
-  grow(reals_, room_);
-  grow(floats_, room_);
-  grow(ints_, room_);
-}
-
-SightingRows SightingColumns::rows() {
-  return {reals_[0].data(), reals_[1].data(), floats_[0].data(), floats_[1].data(),
-          ints_[0].data(),  ints_[1].data(),  ints_[2].data(),   ints_[3].data()};
-}
 
 DiskFinder::DiskFinder(const WaveMesh& mesh, const ArcCodec& codec, const WaveKernel& kernel, const DiskRule& rule)
     : mesh_(mesh), codec_(codec), kernel_(kernel), rule_(rule) {
@@ -166,12 +120,8 @@ void DiskFinder::advance() {
   const int before = sighting_count_;
   sightings_.reserve(sighting_count_ + now_->size() + k_row_padding);
   apexes_.reserve(now_->size() + 2 * k_row_padding);
-  const ApexRows apexes = apexes_.rows();
   // Rows of the right half begin behind the padding of the left one.
-  const int right = now_->left_count + k_row_padding;
-  const ApexRows right_apexes{apexes.x + right,     apexes.y + right,          apexes.way + right,
-                              apexes.reach + right, apexes.from_right + right, apexes.to_left + right,
-                              apexes.left + right,  apexes.right + right,      apexes.slot + right};
+  const ApexRows apexes = apexes_.rows(0), right_apexes = apexes_.rows(now_->left_count + k_row_padding);
   const auto sight = by_count() ? kernel_.sight_all : kernel_.sight;
   sighting_count_ = sight(scene, now_->lefts.rows(), now_->left_count, apexes, sightings_.rows(), sighting_count_);
   sighting_count_ =

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geodesics/arc_symmetry.h"
+#include "geodesics/wave_columns.h"
 #include "geodesics/wave_mesh.h"
 
 namespace saddleback {
@@ -15,44 +16,6 @@ namespace saddleback {
 struct DiskRule {
   Index k = 0;
   double tolerance = 0;  ///< relative
-};
-
-/// Columns of windows that grow, with room for vectors behind their end.
-class WindowColumns {
- public:
-  WindowRows rows();
-  void reserve(int count);
-
- private:
-  int room_ = 0;
-  std::array<std::vector<double>, 4> reals_;
-  std::array<std::vector<float>, 9> floats_;
-  std::array<std::vector<std::int32_t>, 4> ints_;
-};
-
-/// The windows' corners, in columns as those of the windows.
-class ApexColumns {
- public:
-  ApexRows rows();
-  void reserve(int count);
-
- private:
-  int room_ = 0;
-  std::array<std::vector<double>, 2> reals_;
-  std::array<std::vector<float>, 4> floats_;
-  std::array<std::vector<std::int32_t>, 3> ints_;
-};
-
-class SightingColumns {
- public:
-  SightingRows rows();
-  void reserve(int count);
-
- private:
-  int room_ = 0;
-  std::array<std::vector<double>, 2> reals_;
-  std::array<std::vector<float>, 2> floats_;
-  std::array<std::vector<std::int32_t>, 4> ints_;
 };
 
 /// Propagates the windows of k_batch sources without any order but that of generations: first every window looks at the

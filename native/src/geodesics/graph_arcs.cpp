@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "saddleback/error.h"
@@ -89,6 +90,12 @@ void check_memory(const ArcSearch& search, WindowPropagator& propagator, const J
 }  // namespace
 
 std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage) {
+  if (search.unfolding.mesh().halfedge_count() > std::numeric_limits<std::int32_t>::max() / k_batch) {
+    throw InputError(message("mesh: ", search.unfolding.mesh().face_count(),
+                             " triangles are more than a graph can be "
+                             "built for (",
+                             std::numeric_limits<std::int32_t>::max() / k_batch / 3, ")"));
+  }
   const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, ArcCodec::k_sectors, search.threads, stage);
   std::vector<std::unique_ptr<DiskFinder>> finders(thread_count(search.threads));
   return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread) {
