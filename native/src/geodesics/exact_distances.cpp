@@ -1,10 +1,12 @@
 #include "saddleback/exact_distances.h"
 
 #include <cmath>
+#include <limits>
 
 #include "saddleback/error.h"
 
 #include "geodesics/exact_path.h"
+#include "geodesics/exact_progress.h"
 
 namespace saddleback {
 namespace {
@@ -41,8 +43,9 @@ std::vector<Index> owners_of(const ExactSurface& surface, const ExactPropagation
 }
 
 constexpr const char* k_text = "Measuring exact distances";
-// Share of the time that is gone before the first window moves.
-constexpr double k_prepared = 0.08;
+// Of the time of a field whose windows are kept: sorting them comes last.
+constexpr double k_windows_made = 0.72;
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -50,9 +53,10 @@ std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& given
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
   const JobStage stage(job, k_text);
-  const ExactSurface surface(mesh, sources, stage.part(0, k_prepared));
+  const double share = share_of_surface(mesh, sources.size(), limit);
+  const ExactSurface surface(mesh, sources, stage.part(0, share));
   ExactPropagation propagation(surface, sources, {.limit = limit});
-  propagation.run(stage.part(k_prepared, 1));
+  propagation.run(stage.part(share, 1));
   return distances_of(surface, propagation);
 }
 
@@ -60,19 +64,21 @@ NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& given, double 
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
   const JobStage stage(job, k_text);
-  const ExactSurface surface(mesh, sources, stage.part(0, k_prepared));
+  const double share = share_of_surface(mesh, sources.size(), limit);
+  const ExactSurface surface(mesh, sources, stage.part(0, share));
   ExactPropagation propagation(surface, sources, {.limit = limit, .break_ties = sources.size() > 1});
-  propagation.run(stage.part(k_prepared, 1));
+  propagation.run(stage.part(share, 1));
   return {distances_of(surface, propagation), owners_of(surface, propagation)};
 }
 
 struct ExactField::Parts {
   Parts(const Mesh& mesh, const SurfacePoints& given, const JobStage& stage)
       : sources(snapped_to_vertices(given)),
-        surface(mesh, sources, stage.part(0, k_prepared / 2)),
+        share(k_windows_made * share_of_surface(mesh, sources.size(), k_infinity)),
+        surface(mesh, sources, stage.part(0, share)),
         propagation(surface, sources, {.break_ties = sources.size() > 1, .keep_windows = true}),
-        windows((propagation.run(stage.part(k_prepared / 2, 0.65)),
-                 KeptWindows(surface, propagation, stage.part(0.65, 1)))),
+        windows((propagation.run(stage.part(share, k_windows_made)),
+                 KeptWindows(surface, propagation, stage.part(k_windows_made, 1)))),
         tracer(surface, sources, propagation, windows),
         distances(distances_of(surface, propagation)),
         nearest(owners_of(surface, propagation)) {
@@ -80,6 +86,7 @@ struct ExactField::Parts {
   }
 
   const SurfacePoints sources;
+  const double share;  ///< of the time, until the surface is laid out
   const ExactSurface surface;
   ExactPropagation propagation;
   const KeptWindows windows;
@@ -89,7 +96,7 @@ struct ExactField::Parts {
 };
 
 ExactField::ExactField(const Mesh& mesh, const SurfacePoints& sources, Job* job) {
-  check(mesh, sources, std::numeric_limits<double>::infinity());
+  check(mesh, sources, k_infinity);
   parts_ = std::make_unique<Parts>(mesh, sources, JobStage(job, k_text));
 }
 

@@ -7,15 +7,17 @@ namespace saddleback {
 namespace {
 
 constexpr double k_slack = 1e-11;  // as in the propagation
+constexpr double k_chosen = 0.7;   // of the time: then the windows that are kept are copied
 
 }  // namespace
 
 KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation, const JobStage& stage)
     : surface_(surface), propagation_(propagation), begins_(surface.halfedge_count() + 1, 0) {
   const auto blocks = static_cast<double>(propagation.kept().size());
+  const JobStage choosing = stage.part(0, k_chosen), copying = stage.part(k_chosen, 1);
   double done = 0;
   for (WindowBlock* const block : propagation.kept()) {
-    stage.update(done++ / (2 * blocks));
+    choosing.update(done++ / blocks);
     Index count = 0;
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->windows[i];
@@ -29,8 +31,9 @@ KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& pr
   windows_.resize(begins_.back());
   roots_.resize(begins_.back());
   std::vector<std::int64_t> next(begins_.begin(), begins_.end() - 1);
+  done = 0;
   for (const WindowBlock* const block : propagation.kept()) {
-    stage.update(done++ / (2 * blocks));
+    copying.update(done++ / blocks);
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->windows[i];
       const std::int64_t place = next[window.halfedge]++;

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/large_array.h"
+
 #include "geodesics/exact_propagation.h"
 
 namespace saddleback {
@@ -39,8 +41,8 @@ class KeptWindows {
   const ExactSurface& surface_;
   const ExactPropagation& propagation_;
   std::vector<std::int64_t> begins_;
-  std::vector<KeptWindow> windows_;
-  std::vector<Index> roots_;
+  LargeArray<KeptWindow> windows_;
+  LargeArray<Index> roots_;
 };
 
 }  // namespace saddleback

@@ -73,12 +73,15 @@ PathField make_field(const SaddleVertexGraph& graph, const SurfacePoints& source
   PathField field{sources, Fans(sources.size()), std::vector<PointFan>(sources.size()), {}};
   Propagators propagators(graph, threads);
   const auto count = static_cast<Index>(sources.size());
+  const double cost = cost_of_fans(graph, sources), share = cost / (cost + graph.mesh().vertex_count());
+  const JobStage seeing = stage.part(0, share);
+  std::atomic<Index> done{0};
   parallel_for(count, threads, 16, [&](Index i, int thread) {
-    stage.check();
     propagators.fan(sources[i], thread, field.fans[i]);
     field.point_fans[i] = point_fan(graph, sources[i], field.fans[i]);
+    seeing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
   });
-  field.labels = propagate_labels(graph, seeds_of(field.point_fans), {.limit = limit}, true, stage);
+  field.labels = propagate_labels(graph, seeds_of(field.point_fans), {.limit = limit}, true, stage.part(share, 1));
   return field;
 }
 
@@ -266,8 +269,9 @@ GeodesicPaths joined(std::vector<GeodesicPaths>& parts, const JobStage& stage) {
   paths.offsets.reserve(count + 1);
   paths.lengths.reserve(count);
   paths.sources.reserve(count);
+  double done = 0;
   for (GeodesicPaths& part : parts) {
-    stage.check();
+    stage.update(done++ / static_cast<double>(parts.size()));
     const std::int64_t start = paths.offsets.back();
     paths.points.insert(paths.points.end(), part.points.begin(), part.points.end());
     paths.surface.insert(paths.surface.end(), part.surface.begin(), part.surface.end());
@@ -307,8 +311,9 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
   const JobStage stage(job, "Finding paths");
   // A path takes as long as some hundred vertices of the field, a shortened one ten times that.
-  const double of_path = (options.shorten ? 2000.0 : 200.0) * static_cast<double>(targets.size());
-  const double vertices = graph.mesh().vertex_count(), share = vertices / (vertices + of_path);
+  const double of_paths = (options.shorten ? 2000.0 : 200.0) * static_cast<double>(targets.size());
+  const double of_field = graph.mesh().vertex_count() + cost_of_fans(graph, sources);
+  const double share = of_field / (of_field + of_paths + cost_of_fans(graph, targets));
   const PathField field =
       make_field(graph, sources, longest_path(graph, sources, targets), options.threads, stage.part(0, share));
   constexpr Index k_block = 32;
@@ -320,7 +325,8 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   Propagators propagators(graph, options.threads);
   const NearbySources nearby(graph, sources, field.point_fans);
   std::atomic<Index> done{0};
-  const JobStage writing = stage.part(share, 0.95);
+  const double written = options.shorten ? 0.98 : 0.85;  // the rest of the time goes into one list of all points
+  const JobStage following = stage.part(share, 1), writing = following.part(0, written);
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);
     for (Index i = block * k_block; i < std::min((block + 1) * k_block, count); ++i) {
@@ -330,7 +336,7 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
     }
     writing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
   });
-  GeodesicPaths paths = blocks == 1 ? std::move(parts[0]) : joined(parts, stage);
+  GeodesicPaths paths = blocks == 1 ? std::move(parts[0]) : joined(parts, following.part(written, 1));
   stage.update(1);
   return paths;
 }

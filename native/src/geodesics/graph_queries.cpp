@@ -129,14 +129,13 @@ std::vector<double> SaddleVertexGraph::distances_to(const QuerySources& sources,
   check(*this, sources);
   check_surface_points(*mesh_, targets, "targets");
   const double source_cost = cost_of_fans(*this, sources), target_cost = cost_of_fans(*this, targets);
-  const double all = source_cost + 2 * target_cost + mesh_->vertex_count();
+  const double all = source_cost + target_cost + mesh_->vertex_count();
   const double half = source_cost / all, most = (source_cost + target_cost) / all;
   const WatchedPlaces places(targets);
   const SourceFans from = find_fans(*this, sources, stage.part(0, half), {.places = &places});
   const std::vector<PointFan> to = find_fans(*this, targets, stage.part(half, most));
   const auto search = queries_->field_searches.lease();
-  const JobStage searching = stage.part(most, most + mesh_->vertex_count() / all);
-  search->run(*this, seeds_of(from.fans), {}, SearchLabels::none, searching);
+  search->run(*this, seeds_of(from.fans), {}, SearchLabels::none, stage.part(most, 1));
   const NearbySources nearby(*this, sources.points, from.fans);
   std::vector<double> result = from.at_places;
   for (std::size_t i = 0; i < targets.size(); ++i) {

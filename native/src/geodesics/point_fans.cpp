@@ -16,7 +16,7 @@ namespace {
 // strip leaves the mean error as it is.
 constexpr double k_edges_an_arc = 0.15;
 // Nodes that a search expands while a fan is found.
-constexpr double k_cost_of_point = 2000, k_cost_of_strip_vertex = 15;
+constexpr double k_cost_of_point = 700, k_cost_of_strip_vertex = 15;
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
