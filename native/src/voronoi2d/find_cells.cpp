@@ -285,6 +285,66 @@ void add_neighbours(const Cells& cells, std::vector<Index>& ranks, std::size_t b
   }
 }
 
+// Finds the cells of some ranks (ascending) again, among these, their neighbours and the neighbours of those.
+Cells renew_cells(const OrderedSites& sites, const Cells& cells, std::vector<Index> ranks, const JobStage& stage) {
+  const std::size_t own_count = ranks.size();
+  std::vector<bool> is_in(sites.count(), false);
+  for (const Index rank : ranks) is_in[rank] = true;
+  add_neighbours(cells, ranks, 0, is_in);
+  add_neighbours(cells, ranks, own_count, is_in);
+  std::vector<double> x, y;
+  for (const Index rank : ranks) x.push_back(sites.x[rank]), y.push_back(sites.y[rank]);
+  SweepCircle circle;
+  const PlanarMesh mesh = circle.triangulate(x, y, box_of(sites, 0, sites.count()).centre(), stage);
+  CellReader reader;
+  reader.open(mesh, circle, [&](Index position) { return ranks[position]; });
+  CellLists lists;
+  for (std::size_t i = 0; i < own_count; ++i) reader.read(static_cast<Index>(i), lists);
+
+  Cells result;
+  result.offsets.reserve(cells.offsets.size());
+  result.offsets.push_back(0);
+  result.neighbours.reserve(cells.neighbours.size() + lists.neighbours.size());
+  result.is_open = cells.is_open;
+  auto list = lists.neighbours.begin();
+  Index kept = 0;  // cells before the next renewed one go over as they are
+  for (std::size_t i = 0; i <= own_count; ++i) {
+    if (i % 1024 == 0) stage.check();
+    const Index rank = i < own_count ? ranks[i] : sites.count();
+    const Index shift = static_cast<Index>(result.neighbours.size()) - cells.offsets[kept];
+    result.neighbours.insert(result.neighbours.end(), cells.neighbours.begin() + cells.offsets[kept],
+                             cells.neighbours.begin() + cells.offsets[rank]);
+    for (; kept < rank; ++kept) result.offsets.push_back(cells.offsets[kept + 1] + shift);
+    if (i == own_count) break;
+    result.neighbours.insert(result.neighbours.end(), list, list + lists.sizes[i]);
+    list += lists.sizes[i];
+    result.offsets.push_back(static_cast<Index>(result.neighbours.size()));
+    result.is_open[rank] = lists.is_open[i];
+    kept = rank + 1;
+  }
+  return result;
+}
+
+// Ranks, ascending, of the cells on both sides where one has the other for its neighbour but not the other way round,
+// if one of them is among some.
+std::vector<Index> misfits(const Cells& cells, std::span<const Index> among) {
+  std::vector<bool> is_among(cells.cell_count(), false);
+  for (const Index cell : among) is_among[cell] = true;
+  std::vector<Index> result;
+  for (Index cell = 0; cell < cells.cell_count(); ++cell) {
+    for (Index side = cells.offsets[cell]; side < cells.offsets[cell + 1]; ++side) {
+      const Index other = cells.neighbours[side];
+      if (!is_among[other] && !is_among[cell]) continue;
+      const auto begin = cells.neighbours.begin() + cells.offsets[other],
+                 end = cells.neighbours.begin() + cells.offsets[other + 1];
+      if (std::find(begin, end, cell) == end) result.insert(result.end(), {cell, other});
+    }
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
 }  // namespace
 
 Cells find_cells(const OrderedSites& sites, const JobStage& stage) {
@@ -330,63 +390,16 @@ Cells find_cells_by_tiles(const OrderedSites& sites, Index circle_size, int thre
     for (Index k = 0; k < tiling.end(i) - tiling.begin(i); ++k)
       if (tiles[i].is_doubtful[k]) ranks.push_back(tiling.begin(i) + k);
   stage.check();
-  const Cells cells = joined(tiles, sites.count(), threads, stage);
-  stage.check();
-  return renew_cells(sites, cells, std::move(ranks), stage.part(0.9, 1));
-}
-
-Cells renew_cells(const OrderedSites& sites, const Cells& cells, std::vector<Index> ranks, const JobStage& stage) {
-  const std::size_t own_count = ranks.size();
-  std::vector<bool> is_in(sites.count(), false);
-  for (const Index rank : ranks) is_in[rank] = true;
-  add_neighbours(cells, ranks, 0, is_in);
-  add_neighbours(cells, ranks, own_count, is_in);
-  std::vector<double> x, y;
-  for (const Index rank : ranks) x.push_back(sites.x[rank]), y.push_back(sites.y[rank]);
-  SweepCircle circle;
-  const PlanarMesh mesh = circle.triangulate(x, y, box_of(sites, 0, sites.count()).centre(), stage);
-  CellReader reader;
-  reader.open(mesh, circle, [&](Index position) { return ranks[position]; });
-  CellLists lists;
-  for (std::size_t i = 0; i < own_count; ++i) reader.read(static_cast<Index>(i), lists);
-
-  Cells result;
-  result.offsets.reserve(cells.offsets.size());
-  result.offsets.push_back(0);
-  result.neighbours.reserve(cells.neighbours.size() + lists.neighbours.size());
-  result.is_open = cells.is_open;
-  auto list = lists.neighbours.begin();
-  Index kept = 0;  // cells before the next renewed one go over as they are
-  for (std::size_t i = 0; i <= own_count; ++i) {
-    if (i % 1024 == 0) stage.check();
-    const Index rank = i < own_count ? ranks[i] : sites.count();
-    const Index shift = static_cast<Index>(result.neighbours.size()) - cells.offsets[kept];
-    result.neighbours.insert(result.neighbours.end(), cells.neighbours.begin() + cells.offsets[kept],
-                             cells.neighbours.begin() + cells.offsets[rank]);
-    for (; kept < rank; ++kept) result.offsets.push_back(cells.offsets[kept + 1] + shift);
-    if (i == own_count) break;
-    result.neighbours.insert(result.neighbours.end(), list, list + lists.sizes[i]);
-    list += lists.sizes[i];
-    result.offsets.push_back(static_cast<Index>(result.neighbours.size()));
-    result.is_open[rank] = lists.is_open[i];
-    kept = rank + 1;
+  Cells cells = joined(tiles, sites.count(), threads, stage);
+  // A cell may lack a neighbour that was not among the sites it was found from, but knows it: then both once more.
+  constexpr int k_attempts = 8;
+  for (int attempt = 0; attempt < k_attempts && !ranks.empty(); ++attempt) {
+    if (static_cast<Index>(ranks.size()) > sites.count() / 2) return {};
+    stage.check();
+    cells = renew_cells(sites, cells, ranks, stage.part(0.9, 0.9));
+    ranks = misfits(cells, ranks);
   }
-  return result;
-}
-
-std::vector<Index> misfits(const Cells& cells) {
-  std::vector<Index> result;
-  for (Index cell = 0; cell < cells.cell_count(); ++cell) {
-    for (Index side = cells.offsets[cell]; side < cells.offsets[cell + 1]; ++side) {
-      const Index other = cells.neighbours[side];
-      const auto begin = cells.neighbours.begin() + cells.offsets[other],
-                 end = cells.neighbours.begin() + cells.offsets[other + 1];
-      if (std::find(begin, end, cell) == end) result.insert(result.end(), {cell, other});
-    }
-  }
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
+  return cells;
 }
 
 }  // namespace saddleback::voronoi2d

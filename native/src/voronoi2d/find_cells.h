@@ -16,10 +16,4 @@ Cells find_cells(const OrderedSites& sites, const JobStage& stage);
 /// one circle is better. \throw Cancelled
 Cells find_cells_by_tiles(const OrderedSites& sites, Index circle_size, int threads, const JobStage& stage);
 
-/// Finds the cells of some ranks (ascending) again, among these, their neighbours and the neighbours of those.
-Cells renew_cells(const OrderedSites& sites, const Cells& cells, std::vector<Index> ranks, const JobStage& stage);
-
-/// Ranks, ascending, of the cells on both sides where one has the other for its neighbour but not the other way round.
-std::vector<Index> misfits(const Cells& cells);
-
 }  // namespace saddleback::voronoi2d

@@ -25,13 +25,8 @@ Numbering find_numbering(const OrderedSites& sites, const Voronoi2dOptions& opti
   if (circles > 1) {
     cells =
         find_cells_by_tiles(sites, std::max<Index>(1, sites.count() / circles), options.threads, stage.part(0, 0.6));
-    constexpr int k_attempts = 8;
-    for (int attempt = 0; attempt < k_attempts && cells.cell_count() > 0; ++attempt) {
-      if (number(cells, sites, options.threads, stage.part(0.6, 0.9), numbering)) return numbering;
-      std::vector<Index> ranks = misfits(cells);
-      if (ranks.empty() || static_cast<Index>(ranks.size()) > sites.count() / 2) break;
-      cells = renew_cells(sites, cells, std::move(ranks), stage.part(0.8, 0.8));
-    }
+    if (cells.cell_count() > 0 && number(cells, sites, options.threads, stage.part(0.6, 0.9), numbering))
+      return numbering;
   }
   cells = find_cells(sites, circles > 1 ? stage.part(0.9, 0.97) : stage.part(0, 0.8));
   if (!number(cells, sites, options.threads, stage.part(0.97, 1), numbering))
