@@ -17,18 +17,26 @@ namespace {
 
 using namespace voronoi2d;
 
+// Few enough sites for a core's cache. Tiles are squares, whose numbers of sites fall by four from size to size: a
+// little more than one of these, so that a tile of evenly spread sites is one square and not a few odd ones.
+Index good_circle_size(Index count) {
+  constexpr double k_most = 20000, k_spread = 1.15;
+  double size = count;
+  while (size > k_most) size /= 4;
+  return size < count ? static_cast<Index>(k_spread * size) : count;
+}
+
 Numbering find_numbering(const OrderedSites& sites, const Voronoi2dOptions& options, Cells& cells,
                          const JobStage& stage) {
-  constexpr Index k_circle_size = 8000;  // whose working memory stays in a core's cache
-  const Index circles = options.circles > 0 ? options.circles : sites.count() / k_circle_size;
+  const Index circle_size = options.circles > 0 ? sites.count() / options.circles : good_circle_size(sites.count());
+  const bool has_tiles = circle_size < sites.count();
   Numbering numbering;
-  if (circles > 1) {
-    cells =
-        find_cells_by_tiles(sites, std::max<Index>(1, sites.count() / circles), options.threads, stage.part(0, 0.6));
+  if (has_tiles) {
+    cells = find_cells_by_tiles(sites, std::max<Index>(1, circle_size), options.threads, stage.part(0, 0.6));
     if (cells.cell_count() > 0 && number(cells, sites, options.threads, stage.part(0.6, 0.9), numbering))
       return numbering;
   }
-  cells = find_cells(sites, circles > 1 ? stage.part(0.9, 0.97) : stage.part(0, 0.8));
+  cells = find_cells(sites, has_tiles ? stage.part(0.9, 0.97) : stage.part(0, 0.8));
   if (!number(cells, sites, options.threads, stage.part(0.97, 1), numbering))
     throw Error("voronoi_2d: the cells of one circle do not fit together");
   return numbering;
