@@ -35,7 +35,7 @@ Placed first_portal(const Unfolding& unfolding, const LegEnd& begin, Index enter
   const Mesh& mesh = unfolding.mesh();
   const Index g = mesh.twin(entered);
   const Placed own{Vec2(0, 0), Vec2(mesh.length(g), 0)};
-  const Vec2 apex = unfolding.apex(g);
+  const Vec2& apex = unfolding.apex(g);
   const Vec2 origin = begin.is_vertex() ? apex : place_of(mesh, begin.point, g, own, apex);
   return {own.to - origin, own.from - origin};
 }
