@@ -47,7 +47,7 @@ double LineOfSight::length(const Unfolding& unfolding, const SurfacePoint& a, co
     trail_.resize(window.depth);
     trail_.push_back(h);
     const Vec2 along = (window.to - window.from) / mesh.length(h);
-    const Vec2 offset = unfolding.apex(h);
+    const Vec2& offset = unfolding.apex(h);
     const Vec2 apex = window.from + offset.x() * along + offset.y() * Vec2(-along.y(), along.x());
     if (Mesh::face_of(h) == target.face) {
       const Vec3& weights = target.barycentric;

@@ -77,7 +77,7 @@ double PointStar::angle_of(Index face, double chart_angle) const {
   return chart_angle;
 }
 
-void PointStar::shine(RayField& field, RayWindow window, double begin, double end) const {
+void PointStar::shine(RayField& field, const RayWindow& window, double begin, double end) const {
   for (const Sector& sector : sectors_) {
     for (int round = round_ ? -2 : 0; round <= (round_ ? 2 : 0); ++round) {
       const double shift = round * total_;
