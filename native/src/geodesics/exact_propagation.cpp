@@ -76,7 +76,7 @@ ExactPropagation::ExactPropagation(const ExactSurface& surface, const SurfacePoi
       occupants_(surface.halfedge_count(), {k_far, 0}) {}
 
 void ExactPropagation::run(const JobStage& stage) {
-  ExactProgress progress(surface_, sources_, options_.limit, stage);
+  DistanceProgress progress = exact_progress(surface_.mesh(), sources_, options_.limit, stage);
   start();
   while (queue_->advance() && queue_->reached() <= options_.limit) {
     progress.reached(queue_->reached());

@@ -310,8 +310,10 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   check_surface_points(graph.mesh(), targets, "targets");
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
   const JobStage stage(job, "Finding paths");
-  // A path takes as long as some hundred vertices of the field, a shortened one ten times that.
-  const double of_paths = (options.shorten ? 2000.0 : 200.0) * static_cast<double>(targets.size());
+  // A path takes as long as some hundred vertices of the field, more where it passes more, a shortened one ten times
+  // that.
+  const double of_path = (options.shorten ? 12 : 1.3) * std::sqrt(graph.mesh().vertex_count());
+  const double of_paths = of_path * static_cast<double>(targets.size());
   const double of_field = graph.mesh().vertex_count() + cost_of_fans(graph, sources);
   const double share = of_field / (of_field + of_paths + cost_of_fans(graph, targets));
   const PathField field =

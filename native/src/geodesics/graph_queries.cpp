@@ -129,17 +129,22 @@ std::vector<double> SaddleVertexGraph::distances_to(const QuerySources& sources,
   check(*this, sources);
   check_surface_points(*mesh_, targets, "targets");
   const double source_cost = cost_of_fans(*this, sources), target_cost = cost_of_fans(*this, targets);
-  const double all = source_cost + target_cost + mesh_->vertex_count();
+  // The more sources near a target, the more straight ways there are to try.
+  constexpr double k_cost_of_sight = 0.05;
+  const double sight_cost = k_cost_of_sight * cost_of_fans(*this, sources.points) * target_cost / mesh_->vertex_count();
+  const double all = source_cost + target_cost + mesh_->vertex_count() + sight_cost;
   const double half = source_cost / all, most = (source_cost + target_cost) / all;
+  const double searched = 1 - sight_cost / all;
   const WatchedPlaces places(targets);
   const SourceFans from = find_fans(*this, sources, stage.part(0, half), {.places = &places});
   const std::vector<PointFan> to = find_fans(*this, targets, stage.part(half, most));
   const auto search = queries_->field_searches.lease();
-  search->run(*this, seeds_of(from.fans), {}, SearchLabels::none, stage.part(most, 1));
+  search->run(*this, seeds_of(from.fans), {}, SearchLabels::none, stage.part(most, searched));
   const NearbySources nearby(*this, sources.points, from.fans);
   std::vector<double> result = from.at_places;
+  const JobStage looking = stage.part(searched, 1);
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    stage.check();
+    looking.update(static_cast<double>(i) / static_cast<double>(targets.size()));
     result[i] = std::min(result[i], through_fan(*search, *this, to[i]));
     result[i] = nearby.least_length(targets[i], to[i], result[i], stage);
   }

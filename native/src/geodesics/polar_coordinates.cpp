@@ -30,6 +30,11 @@ void check_radius(double radius) {
   if (!(radius > 0)) throw InputError(message("radius: wanted a distance above 0, got ", radius));
 }
 
+DistanceProgress progress_of(const Mesh& mesh, const SurfacePoints& sources, double radius, const JobStage& stage) {
+  constexpr double k_guessed = 0.03, k_growth = 0.3;  // found by trying
+  return {mesh, sources, {.limit = radius, .growth = k_growth}, stage.part(0, k_guessed), stage.part(k_guessed, 1)};
+}
+
 }  // namespace
 
 PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const SurfaceCurve& curve, double radius, Job* job) {
@@ -39,7 +44,10 @@ PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const Surface
   const JobStage stage(job, "Measuring from the curve");
   CurveWindows windows(graph.unfolding());
   std::vector<CurveFoot> feet;
-  windows.from_curve(curve, {.radius = radius}, feet, stage);
+  SurfacePoints places;
+  for (const CurveSegment& segment : curve.segments()) places.push_back({segment.face, segment.begin});
+  DistanceProgress progress = progress_of(graph.mesh(), places, radius, stage);
+  windows.from_curve(curve, {.radius = radius}, feet, stage, nullptr, &progress);
   std::ranges::sort(feet, {}, &CurveFoot::vertex);
   PolarCoordinates result;
   for (const CurveFoot& foot : feet) {
@@ -69,7 +77,8 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, doubl
   if (star.vertex() != k_none) field.add_source(star.vertex(), {0, 0, 0, false});
   const RayWindow window{Vec2::Zero(), 0, 0, 0, 0, k_none, Rays::from_point, 0, false};
   star.shine(field, window, star.begin(), star.begin() + star.total_angle());
-  field.run({.radius = radius}, stage);
+  DistanceProgress progress = progress_of(mesh, {point}, radius, stage);
+  field.run({.radius = radius}, stage, &progress);
   LogMap result;
   result.vertices = field.settled();
   std::ranges::sort(result.vertices);

@@ -22,8 +22,6 @@ constexpr double k_slack = 1 - 1e-11;
 // exact_propagation.cpp. A ray to an apex that misses its window by no more than the gap that they leave (relative to
 // the edge), or by rounding (relative to the ray), counts with the detour round the window's end.
 constexpr double k_sliver = 1e-10, k_gap = 1e-7, k_ray_gap = 1e-13;
-// Windows a vertex grow with the distance: so does the work with the area, found by trying.
-constexpr double k_work_of_area = 1.6;
 // A total angle above 2 pi by no more than this is flat: what lies behind is seen past the vertex.
 constexpr double k_flat = 1e-9;
 
@@ -160,7 +158,7 @@ bool RayField::is_too_far(const RayWindow& window, double key) const {
   return key > limits_.edges * edge;
 }
 
-void RayField::run(const RayLimits& limits, const JobStage& stage) {
+void RayField::run(const RayLimits& limits, const JobStage& stage, DistanceProgress* progress) {
   limits_ = limits;
   int countdown = 1;
   while (!queue_.empty() && static_cast<Index>(settled_.size()) < limits_.k) {
@@ -170,9 +168,8 @@ void RayField::run(const RayLimits& limits, const JobStage& stage) {
     queue_.pop_back();
     if (--countdown <= 0) {
       countdown = 256;
-      const double of_count = static_cast<double>(settled_.size()) / std::min(limits_.k, mesh_.vertex_count());
-      const double of_radius = event.key / limits_.radius;
-      stage.update(std::pow(std::max(of_count, of_radius * of_radius), k_work_of_area));
+      stage.check();
+      if (progress) progress->reached(event.key);
     }
     if (event.id >= 0) {
       const RayWindow window = windows_[event.id];

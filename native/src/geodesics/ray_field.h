@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "geodesics/distance_progress.h"
 #include "geodesics/ray_barriers.h"
 #include "geodesics/ray_window.h"
 #include "geodesics/unfolding.h"
@@ -47,7 +48,7 @@ class RayField {
   /// What ends rays, to be filled after `begin` and before anything else; none at first.
   RayBarriers& barriers() { return barriers_; }
   /// \throw Cancelled.
-  void run(const RayLimits& limits, const JobStage& stage);
+  void run(const RayLimits& limits, const JobStage& stage, DistanceProgress* progress = nullptr);
 
   /// Vertices with their final labels, in order of distance; those that were reached within the limits.
   const std::vector<Index>& settled() const { return settled_; }

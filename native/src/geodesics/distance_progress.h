@@ -1,0 +1,32 @@
+#pragma once
+// How much of a propagation from sources outwards is done, told from how far it has come.
+
+#include <limits>
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/surface_points.h"
+
+namespace saddleback {
+
+/// The work within a distance is guessed from the lengths of paths along edges, which take little of the time; without
+/// a watched job nothing is computed.
+class DistanceProgress {
+ public:
+  struct Extent {
+    double limit = std::numeric_limits<double>::infinity();  ///< where the propagation ends
+    double growth = 0;  ///< a vertex's share of the work grows by this power of its distance
+  };
+  /// \throw Cancelled.
+  DistanceProgress(const Mesh& mesh, const SurfacePoints& sources, const Extent& extent, const JobStage& guessing,
+                   const JobStage& running);
+  /// All vertices up to that distance are done. \throw Cancelled.
+  void reached(double distance);
+
+ private:
+  JobStage stage_;
+  double per_edge_;
+  std::vector<double> work_;  ///< up to and with each ring about the sources, an edge wide
+};
+
+}  // namespace saddleback
