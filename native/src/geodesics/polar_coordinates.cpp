@@ -56,6 +56,7 @@ PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const Surface
     result.along.push_back(foot.along);
     result.shadowed.push_back(foot.shadowed);
   }
+  stage.update(1);
   return result;
 }
 
@@ -97,6 +98,7 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, doubl
     result.uv.emplace_back(label.distance * std::cos(angle / scale), label.distance * std::sin(angle / scale));
     result.shadowed.push_back(label.shadowed);
   }
+  stage.update(1);
   return result;
 }
 
