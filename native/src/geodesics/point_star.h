@@ -26,7 +26,7 @@ class PointStar {
 
   /// Sends the rays between two directions (begin <= end) into the field. `window` says what they are and tell; the
   /// rest of it is filled in. The angle that Rays::from_point tell is the direction.
-  void shine(RayField& field, RayWindow window, double begin, double end) const;
+  void shine(RayField& field, const RayWindow& window, double begin, double end) const;
 
  private:
   struct Sector {

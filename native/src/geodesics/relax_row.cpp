@@ -65,11 +65,11 @@ void take(const ArcCodec& codec, std::uint64_t word, const RowOffer& offer, Lowe
   lowered.distances[lowered.count++] = distance;
 }
 
-template <FindCandidates find>
+template <FindCandidates Find>
 void relax(const ArcCodec& codec, const std::uint64_t* words, int count, const RowOffer& offer, LoweredNodes& lowered) {
   lowered.count = 0;
   for (int first = 0; first < count; first += k_block) {
-    std::uint64_t candidates = find(codec, words + first, std::min(count - first, k_block), offer);
+    std::uint64_t candidates = Find(codec, words + first, std::min(count - first, k_block), offer);
     for (; candidates; candidates &= candidates - 1)
       take(codec, words[first + std::countr_zero(candidates)], offer, lowered);
   }
