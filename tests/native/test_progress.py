@@ -7,11 +7,11 @@ import threading
 import time
 from collections.abc import Callable
 
-import meshes
 import numpy as np
 import pytest
 
 import saddleback as sb
+from tests import meshes
 
 Call = Callable[[sb.Job], object]
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import plane_sites
 import pytest
 
 import saddleback as sb
+from tests.native import plane_sites
 
 
 def run(sweep):

@@ -7,13 +7,13 @@ import time
 from fractions import Fraction
 
 import numpy as np
-import plane_sites
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
 import saddleback as sb
+from tests.native import plane_sites
 
 
 @pytest.mark.parametrize("kind", plane_sites.KINDS)

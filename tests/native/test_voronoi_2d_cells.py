@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import plane_sites
 import pytest
 from scipy.spatial import cKDTree
 
 import saddleback as sb
+from tests.native import plane_sites
 
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
 L_SHAPE = [[0, 0], [1, 0], [1, 0.3], [0.4, 0.3], [0.4, 1], [0, 1]]
