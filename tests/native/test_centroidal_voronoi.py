@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import threading
-import time
-
 import numpy as np
 import pytest
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 
 CONNECTED = [c for c in meshes.good() if len(c.vertices) >= 100]
 
@@ -130,25 +128,7 @@ def test_unpainted_regions_keep_their_cells() -> None:
 def test_progress_rises_and_cancel_is_quick() -> None:
     mesh = sb.Mesh(*meshes.grid(150, 150))
     graph = sb.SaddleVertexGraph(mesh, k=20)
-    job, seen, ended = sb.Job(), [], []
-
-    def run() -> None:
-        try:
-            sb.centroidal_voronoi(graph, count=300, max_iterations=1000, job=job)
-        except sb.Cancelled:
-            ended.append(time.perf_counter())
-
-    worker = threading.Thread(target=run)
-    worker.start()
-    while job.fraction < 0.005 and worker.is_alive():
-        seen.append(job.fraction)
-        time.sleep(0.01)
-    asked = time.perf_counter()
-    job.cancel()
-    worker.join()
-    assert seen == sorted(seen)
-    assert ended
-    assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
+    check_progress_and_cancel(lambda job: sb.centroidal_voronoi(graph, count=300, max_iterations=1000, job=job), 0.005)
 
 
 @pytest.mark.parametrize(

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import threading
-import time
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 from tests.native.exact import with_vertex_at
 
 Floats = NDArray[np.float64]
@@ -334,22 +332,4 @@ def test_bad_vectors_are_named(arguments: tuple[int, list[list[float]]], sentenc
 @pytest.mark.parametrize("radius", [np.inf, 2.5])
 def test_progress_rises_and_cancel_is_quick(radius: float) -> None:
     graph = graph_of(sb.Mesh(*meshes.icosphere(6)))
-    job, seen, ended = sb.Job(), [], []
-
-    def measure() -> None:
-        try:
-            graph.log_map(0, radius, job=job)
-        except sb.Cancelled:
-            ended.append(time.perf_counter())
-
-    worker = threading.Thread(target=measure)
-    worker.start()
-    while job.fraction < 0.3 and worker.is_alive():
-        seen.append(job.fraction)
-        time.sleep(0.005)
-    asked = time.perf_counter()
-    job.cancel()
-    worker.join()
-    assert seen == sorted(seen)
-    assert ended
-    assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
+    check_progress_and_cancel(lambda job: graph.log_map(0, radius, job=job), 0.3)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +10,7 @@ from numpy.typing import NDArray
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 from tests.native.exact import random_points
 
 Floats = NDArray[np.float64]
@@ -353,22 +352,4 @@ def test_progress_rises_and_cancel_is_quick() -> None:
     mesh = sb.Mesh(*meshes.icosphere(6))
     graph = sb.SaddleVertexGraph(mesh, k=3)
     line = sb.trace(mesh, 7, 0.3, 1.0)
-    job, seen, ended = sb.Job(), [], []
-
-    def measure() -> None:
-        try:
-            sb.polar_coordinates(graph, line, np.inf, job=job)
-        except sb.Cancelled:
-            ended.append(time.perf_counter())
-
-    worker = threading.Thread(target=measure)
-    worker.start()
-    while job.fraction < 0.3 and worker.is_alive():
-        seen.append(job.fraction)
-        time.sleep(0.005)
-    asked = time.perf_counter()
-    job.cancel()
-    worker.join()
-    assert seen == sorted(seen)
-    assert ended
-    assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
+    check_progress_and_cancel(lambda job: sb.polar_coordinates(graph, line, np.inf, job=job), 0.3)

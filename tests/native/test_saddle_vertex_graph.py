@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-import time
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +9,7 @@ import pytest
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 from tests.native.exact import exact_distances, random_points, with_vertex_at
 
 # Arc lengths are kept in single precision: distances may fall short of the exact ones by its rounding and no more.
@@ -208,25 +207,7 @@ def test_the_same_for_any_instruction_set(case: meshes.Case, how: dict[str, obje
 
 def test_progress_rises_and_cancel_is_quick() -> None:
     mesh = sb.Mesh(*meshes.icosphere(6))
-    job, seen, ended = sb.Job(), [], []
-
-    def build() -> None:
-        try:
-            sb.SaddleVertexGraph(mesh, k=200, job=job)
-        except sb.Cancelled:
-            ended.append(time.perf_counter())
-
-    worker = threading.Thread(target=build)
-    worker.start()
-    while job.fraction < 0.02 and worker.is_alive():
-        seen.append(job.fraction)
-        time.sleep(0.01)
-    asked = time.perf_counter()
-    job.cancel()
-    worker.join()
-    assert seen == sorted(seen)
-    assert ended
-    assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
+    check_progress_and_cancel(lambda job: sb.SaddleVertexGraph(mesh, k=200, job=job), 0.02)
 
 
 @pytest.mark.parametrize(
