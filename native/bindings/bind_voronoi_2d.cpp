@@ -2,32 +2,10 @@
 
 #include "saddleback/voronoi_2d.h"
 
-#include "convert.h"
+#include "planar.h"
 
 namespace saddleback::bindings {
 namespace {
-
-std::vector<Vec2> as_points_2d(const py::object& value, const char* name) {
-  const ArrayIn<double> in = as_points2(value, name);
-  std::vector<Vec2> sites(in.count);
-  for (Index i = 0; i < in.count; ++i) sites[i] = {in.values[2 * i], in.values[2 * i + 1]};
-  return sites;
-}
-
-// An (m, 2) array, or a sequence of such: the outline and its holes.
-PlanarDomain as_domain(const py::object& value, const char* name) {
-  std::vector<std::vector<Vec2>> loops;
-  const bool is_list = py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value);
-  const py::object first = is_list && py::len(value) > 0 ? py::object(value[py::int_(0)]) : py::none();
-  const bool holds_loops = !first.is_none() && py::hasattr(first, "__len__") && py::len(first) > 0 &&
-                           py::hasattr(first[py::int_(0)], "__len__");
-  if (holds_loops) {
-    for (const py::handle loop : value) loops.push_back(as_points_2d(py::reinterpret_borrow<py::object>(loop), name));
-  } else {
-    loops.push_back(as_points_2d(value, name));
-  }
-  return PlanarDomain(std::move(loops));
-}
 
 /// The diagram and, if the caller gave a domain, its cells in there.
 struct Diagram {
@@ -165,6 +143,11 @@ Notes
 O(n + m) expected.)";
 
 }  // namespace
+
+const Voronoi2d& as_voronoi_2d(const py::object& value, const char* name) {
+  if (!py::isinstance<Diagram>(value)) throw InputError(message(name, ": wanted a Voronoi2d, as voronoi_2d gives"));
+  return py::cast<const Diagram&>(value).result;
+}
 
 void bind_voronoi_2d(py::module_& m) {
   py::class_<ClippedCells>(m, "ClippedCells", py::module_local(), "Cells within a domain; made by `Voronoi2d.clip`.")

@@ -7,6 +7,7 @@
 
 namespace saddleback::bindings {
 
+void bind_charts(py::module_& m);
 void bind_exact(py::module_& m);
 void bind_job(py::module_& m);
 void bind_mesh(py::module_& m);
@@ -95,4 +96,5 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_paths(m);
   bind_tessellation(m);
   bind_voronoi_2d(m);
+  bind_charts(m);
 }

@@ -8,6 +8,7 @@
 #include "saddleback/error.h"
 
 #include "tessellation/diagram.h"
+#include "tessellation/split_mesh.h"
 
 namespace saddleback {
 namespace {
@@ -125,22 +126,6 @@ class Chains {
   GeodesicVoronoi& out_;
 };
 
-/// Cuts a convex loop into triangles from the corner that leaves the fattest ones.
-void triangulate(const Index* loop, const Vec3* place, Index count, std::vector<Triangle>& triangles) {
-  Index apex = 0;
-  double best = -1;
-  for (Index a = 0; a < count && count > 3; ++a) {
-    double least = 1;
-    for (Index i = 1; i + 1 < count; ++i) {
-      least = std::min(least, double_area(place[a], place[(a + i) % count], place[(a + i + 1) % count]));
-    }
-    if (least > best) best = least, apex = a;
-  }
-  for (Index i = 1; i + 1 < count; ++i) {
-    triangles.push_back({loop[apex], loop[(apex + i) % count], loop[(apex + i + 1) % count]});
-  }
-}
-
 }  // namespace
 
 GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
@@ -216,21 +201,7 @@ std::vector<Index> GeodesicVoronoi::corners(Index cell) const {
 }
 
 SplitMesh GeodesicVoronoi::split(const Mesh& mesh) const {
-  SplitMesh result;
-  result.vertices.assign(mesh.positions().begin(), mesh.positions().end());
-  result.vertices.insert(result.vertices.end(), positions.begin(), positions.end());
-  result.vertex_origin.assign(result.vertices.size(), k_none);
-  for (Index v = 0; v < mesh.vertex_count(); ++v) result.vertex_origin[v] = v;
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    if (face_cell[f] == k_none) continue;
-    result.triangles.push_back(mesh.triangles()[f]);
-    result.triangle_cell.push_back(face_cell[f]);
-  }
-  for (const Piece& piece : pieces) {
-    triangulate(&piece_vertices[piece.first], &piece_barycentric[piece.first], piece.count, result.triangles);
-    result.triangle_cell.resize(result.triangles.size(), piece.cell);
-  }
-  return result;
+  return split_mesh(mesh, {positions, face_cell, pieces, piece_vertices, piece_barycentric});
 }
 
 }  // namespace saddleback

@@ -99,7 +99,7 @@ PlanarDomain::PlanarDomain(std::vector<std::vector<Vec2>> loops) : loops_(std::m
     if (loop.size() < 3)
       throw InputError(message("domain: loop ", l, " has ", loop.size(), " corners, wanted 3 or more"));
     for (std::size_t i = 0; i < loop.size(); ++i)
-      if (!(loop[i].cwiseAbs().maxCoeff() <= 1e60))  // squares of areas stay among the doubles
+      if (!(loop[i].array().abs() <= 1e60).all())  // squares of areas stay among the doubles
         throw InputError(message("domain: corner ", i, " of loop ", l, " is (", loop[i].x(), ", ", loop[i].y(),
                                  "), wanted numbers up to 1e60"));
   }

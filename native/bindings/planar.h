@@ -1,0 +1,22 @@
+#pragma once
+// Arguments of the plane that several bindings take.
+
+#include <vector>
+
+#include "saddleback/planar_domain.h"
+#include "saddleback/voronoi_2d.h"
+
+#include "convert.h"
+
+namespace saddleback::bindings {
+
+/// An (n, 2) array.
+std::vector<Vec2> as_points_2d(const py::object& value, const char* name);
+
+/// An (m, 2) array, or a sequence of such: the outline and its holes.
+PlanarDomain as_domain(const py::object& value, const char* name);
+
+/// The diagram of an argument. \throw InputError when it is anything else.
+const Voronoi2d& as_voronoi_2d(const py::object& value, const char* name);
+
+}  // namespace saddleback::bindings
