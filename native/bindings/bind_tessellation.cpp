@@ -110,7 +110,7 @@ Parameters
 ----------
 graph : SaddleVertexGraph
 sites : (n,) int array or SurfacePoints
-    Vertices, or points anywhere on the surface. At most as many as the mesh has vertices.
+    Vertices, or points anywhere on the surface.
 threads : int
     0: all cores. The result does not depend on it.
 job : Job, optional

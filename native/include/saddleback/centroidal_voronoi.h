@@ -25,7 +25,7 @@ struct CentroidalVoronoi {
 };
 
 /// A start for `count` cells: sampled by density and seed, at least one site on every component.
-/// \throw InputError for count < 1, more than vertices or fewer than components; for a density that `sample` refuses.
+/// \throw InputError for count < 1 or fewer than components; for a density that `sample` refuses.
 SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const double> density, std::uint64_t seed);
 
 /// Moves the sites to the centres of their cells until they rest (Lloyd's method on the surface).

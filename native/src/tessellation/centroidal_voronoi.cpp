@@ -40,17 +40,17 @@ void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
 /// Sites with their cells and what is needed to move on.
 struct State {
   SurfacePoints sites;
-  std::unique_ptr<CellComplex> complex;
+  std::unique_ptr<CellClaims> claims;
   std::vector<CellMoments> moments;
   double energy = 0;
 };
 
-State evaluate(const SaddleVertexGraph& graph, SurfacePoints sites, const CentroidalVoronoiOptions& options,
+State evaluate(const SaddleVertexGraph& graph, SurfacePoints sites, const FaceWeights& weights, int threads,
                const JobStage& stage) {
   State state;
   state.sites = std::move(sites);
-  state.complex = std::make_unique<CellComplex>(graph, state.sites, options.threads, stage);
-  state.moments = cell_moments(*state.complex, options.density, options.threads, stage);
+  state.claims = std::make_unique<CellClaims>(graph, state.sites, threads, stage);
+  state.moments = cell_moments(*state.claims, weights, threads, stage);
   for (const CellMoments& cell : state.moments) state.energy += cell.energy;
   return state;
 }
@@ -84,10 +84,6 @@ SurfacePoints moved_sites(const Mesh& mesh, const State& state, double share) {
 
 SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const double> density, std::uint64_t seed) {
   if (count < 1) throw InputError(message("count: wanted at least 1 cell, got ", count));
-  if (count > mesh.vertex_count()) {
-    throw InputError(message("count: ", count, " cells are more than the mesh has vertices (", mesh.vertex_count(),
-                             "); subdivide the mesh or ask for fewer"));
-  }
   if (count < mesh.component_count()) {
     throw InputError(message("count: ", count, " cells cannot cover the mesh's ", mesh.component_count(),
                              " separate parts; ask for more cells or join the parts"));
@@ -102,19 +98,20 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
   check_options(mesh, options);
   const JobStage stage(job, "Finding cells");
   const double part = 1.0 / (options.max_iterations + 1);
+  const FaceWeights weights(mesh, options.density, options.threads);
   CentroidalVoronoi result;
   result.stop_reason = "max_iterations";
-  State state = evaluate(graph, sites, options, stage.part(0, part));
+  State state = evaluate(graph, sites, weights, options.threads, stage.part(0, part));
   result.energy.push_back(state.energy);
   while (result.iterations < options.max_iterations) {
     const JobStage step =
         stage.part((result.iterations + 1) * part, (result.iterations + 2) * part,
                    message("Relaxing cells, step ", result.iterations + 1, " of ", options.max_iterations));
     double share = 1;
-    State next = evaluate(graph, moved_sites(mesh, state, share), options, step);
+    State next = evaluate(graph, moved_sites(mesh, state, share), weights, options.threads, step);
     for (int halving = 0; next.energy > state.energy && halving < k_most_halvings; ++halving) {
       share /= 2;
-      next = evaluate(graph, moved_sites(mesh, state, share), options, step);
+      next = evaluate(graph, moved_sites(mesh, state, share), weights, options.threads, step);
     }
     if (next.energy > state.energy) {
       result.converged = true;
@@ -132,7 +129,7 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
     }
   }
   result.sites = state.sites;
-  result.cells = make_diagram(*state.complex, state.sites, stage);
+  result.cells = make_diagram(CellComplex(*state.claims, options.threads, stage), state.sites, stage);
   stage.update(1);
   return result;
 }

@@ -133,7 +133,8 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
   const Mesh& mesh = graph.mesh();
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells");
-  return make_diagram(CellComplex(graph, sites, options.threads, stage.part(0, 0.9)), sites, stage);
+  const CellClaims claims(graph, sites, options.threads, stage.part(0, 0.7));
+  return make_diagram(CellComplex(claims, options.threads, stage.part(0.7, 0.9)), sites, stage);
 }
 
 GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {
@@ -141,10 +142,7 @@ GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& si
   GeodesicVoronoi result;
   result.sites = sites;
   result.vertex_cell = complex.vertex_site();
-  result.vertex_distance.resize(mesh.vertex_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    result.vertex_distance[v] = complex.maps().known_log(v, result.vertex_cell[v]).norm();
-  }
+  result.vertex_distance = complex.vertex_distance();
   stage.check();
   result.areas = cell_areas(complex);
   result.points = complex.added();

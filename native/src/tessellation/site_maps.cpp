@@ -1,6 +1,6 @@
-// Method: labels by shortest paths in the graph; then each vertex is placed in the plane of its site, after the vertex
-// before it on its path. A vertex next to another site's cell is placed there through a neighbour in the graph which
-// that site owns: the last bit of the path leaves the cell, all before lies inside (cells are star-shaped).
+// Method: labels by shortest paths in the graph; then each cell's vertices are placed in order of their distance. A
+// vertex next to another site's cell is placed from vertices of that cell alone: the last bit of the path leaves the
+// cell, all before lies inside (cells are star-shaped).
 
 #include "tessellation/site_maps.h"
 
@@ -16,7 +16,27 @@ namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
+// Less excess of angle than this bends wavefronts so little (its square an eighth, relative to the distance) that what
+// lies behind the vertex may be seen across edges as if straight.
+constexpr double k_flat_excess = 0.1;
+
+// Straight lines are shorter than paths in a graph by its error; more than this is no straight line on the surface.
+constexpr double k_least_slack = 1e-2;
+
+// Of arcs, see ArcCodec.
+constexpr double k_arc_rounding = 2e-9;
+
+// An edge's end that a ray passes by less than this share of the edge's length it may as well hit.
+constexpr double k_least_miss = 1e-3;
+
+// Square of the least angle at which an edge must be seen: what lies beyond one seen end-on cannot be told from it.
+constexpr double k_end_on = 1e-10;
+
 Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+double angle_between(const Vec2& a, const Vec2& b) { return std::atan2(cross(a, b), a.dot(b)); }
 
 /// By how much a path that comes from direction `back` and goes on in direction `out` turns (left positive) when
 /// developed.
@@ -25,7 +45,9 @@ double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
     return out >= back ? std::min(out - back - M_PI, 0.0) : std::max(M_PI - (back - out), 0.0);
   }
   const double total = mesh.total_angle(vertex);
-  const double left_side = out >= back ? out - back : out - back + total;  // counter-clockwise from back to out
+  double left_side = out - back;  // counter-clockwise from back to out
+  if (left_side < 0) left_side += total;
+  if (left_side >= total) left_side -= total;
   if (total <= 2 * M_PI) return left_side - total / 2;
   if (left_side < M_PI) return left_side - M_PI;
   if (total - left_side < M_PI) return M_PI - (total - left_side);
@@ -36,26 +58,37 @@ void sort_by_vertex(std::vector<DirectArc>& arcs) {
   std::sort(arcs.begin(), arcs.end(), [](const DirectArc& a, const DirectArc& b) { return a.vertex < b.vertex; });
 }
 
+bool bends_much(const Mesh& mesh, Index vertex) {
+  return mesh.total_angle(vertex) > (mesh.is_boundary(vertex) ? M_PI : 2 * M_PI) + k_flat_excess;
+}
+
 }  // namespace
 
 SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, const JobStage& stage)
     : graph_(graph),
       mesh_(graph.mesh()),
-      unfolder_(graph.unfolding()),
+      sites_(sites),
+      slack_(std::max(2 * graph.accuracy(), k_least_slack)),
       fans_(sites.size()),
       places_(graph.mesh().vertex_count()),
-      first_known_(graph.mesh().vertex_count(), k_none) {
+      placed_(graph.mesh().vertex_count(), 0) {
   std::vector<std::unique_ptr<WindowPropagator>> propagators(thread_count(threads));
-  parallel_for(static_cast<Index>(sites.size()), threads, 4, [&](Index site, int thread) {
+  parallel_for(site_count(), threads, 4, [&](Index site, int thread) {
     stage.check();
     if (!propagators[thread]) propagators[thread] = std::make_unique<WindowPropagator>(graph.unfolding());
     make_fan(site, sites[site], *propagators[thread]);
   });
   stage.update(0.3);
-  std::vector<Index> predecessor;
-  label_vertices(stage, predecessor);
+  label_vertices(stage);
+  group_vertices();
   stage.update(0.8);
-  develop(predecessor, stage);
+  std::vector<std::unique_ptr<Scratch>> scratch(thread_count(threads));
+  const std::vector<Index> order = sites_along_curve();
+  parallel_for(site_count(), threads, 16, [&](Index i, int thread) {
+    stage.check();
+    if (!scratch[thread]) scratch[thread] = std::make_unique<Scratch>(*this);
+    place_cell(order[i], *scratch[thread]);
+  });
   stage.update(1);
 }
 
@@ -82,35 +115,57 @@ void SiteMaps::make_fan_at_vertex(Fan& fan) {
   sort_by_vertex(fan.arcs);
 }
 
-void SiteMaps::label_vertices(const JobStage& stage, std::vector<Index>& predecessor) {
+void SiteMaps::label_vertices(const JobStage& stage) {
   std::vector<Seed> seeds;
-  for (Index site = 0; site < static_cast<Index>(fans_.size()); ++site) {
+  for (Index site = 0; site < site_count(); ++site) {
     const Fan& fan = fans_[site];
     if (fan.centre != k_none) seeds.push_back({fan.centre, site, 0});
     for (const DirectArc& arc : fan.arcs) seeds.push_back({arc.vertex, site, arc.length});
   }
-  LabelField field = propagate_labels(graph_, seeds, {}, true, stage.part(0.3, 0.8));
+  LabelField field = propagate_labels(graph_, seeds, {}, false, stage.part(0.3, 0.8));
   label_ = std::move(field.source);
   distance_ = std::move(field.distance);
-  predecessor = std::move(field.predecessor);
 }
 
-void SiteMaps::develop(const std::vector<Index>& predecessor, const JobStage& stage) {
-  std::vector<std::uint8_t> placed(label_.size(), 0);
-  std::vector<Index> chain;
-  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    if (v % 1024 == 0) stage.check();
-    if (label_[v] == k_none) continue;
-    for (Index u = v; u != k_none && !placed[u]; u = predecessor[u]) chain.push_back(u);
-    for (; !chain.empty(); chain.pop_back()) {
-      const Index u = chain.back();
-      const Fan& fan = fans_[label_[u]];
-      placed[u] = 1;
-      if (u == fan.centre) continue;
-      // A vertex just after a site's own vertex is reached by an arc of the fan, too: same arc, scaled angle.
-      const bool direct = predecessor[u] == k_none || predecessor[u] == fan.centre;
-      places_[u] = direct ? place_direct(*fan_arc(label_[u], u)) : place_after(u, predecessor[u]);
+void SiteMaps::group_vertices() {
+  first_vertex_.assign(site_count() + 1, 0);
+  for (const Index site : label_) ++first_vertex_[site + 1];
+  for (Index site = 0; site < site_count(); ++site) first_vertex_[site + 1] += first_vertex_[site];
+  vertices_.resize(label_.size() + 1);  // one more: the last cells may be without any
+  std::vector<Index> cursor(first_vertex_.begin(), first_vertex_.end() - 1);
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) vertices_[cursor[label_[v]]++] = v;
+}
+
+/// Cells beside each other one after the other: they use the same memory.
+std::vector<Index> SiteMaps::sites_along_curve() const {
+  std::vector<std::pair<Index, Index>> order;
+  for (Index site = 0; site < site_count(); ++site) {
+    order.emplace_back(graph_.node_of(mesh_.triangles()[sites_[site].face][0]), site);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Index> sites;
+  for (const auto& [node, site] : order) sites.push_back(site);
+  return sites;
+}
+
+void SiteMaps::place_cell(Index site, Scratch& scratch) {
+  const auto first = vertices_.begin() + first_vertex_[site], last = vertices_.begin() + first_vertex_[site + 1];
+  std::sort(first, last,
+            [&](Index a, Index b) { return distance_[a] != distance_[b] ? distance_[a] < distance_[b] : a < b; });
+  const Fan& fan = fans_[site];
+  // Straight ones first: each may serve as the end of an edge that others are seen across.
+  for (const DirectArc& arc : fan.arcs) {
+    if (label_[arc.vertex] != site || arc.length > distance_[arc.vertex]) continue;
+    places_[arc.vertex] = place_direct(arc);
+    placed_[arc.vertex] = 1;
+  }
+  if (fan.centre != k_none && label_[fan.centre] == site) placed_[fan.centre] = 1;
+  for (auto v = first; v != last; ++v) {
+    if (placed_[*v]) continue;
+    if (!place_own(*v, site, places_[*v])) {
+      places_[*v] = place_after(*v, previous_vertex(graph_, distance_, label_, *v), scratch);
     }
+    placed_[*v] = 1;
   }
 }
 
@@ -122,49 +177,129 @@ const DirectArc* SiteMaps::fan_arc(Index site, Index vertex) const {
 }
 
 SiteMaps::Place SiteMaps::place_direct(const DirectArc& arc) const {
-  return {polar(arc.length, arc.start_angle), arc.start_angle, arc.end_angle};
+  return {polar(arc.length, arc.start_angle), arc.length, arc.end_angle, k_none};
 }
 
-SiteMaps::Place SiteMaps::place_after(Index vertex, Index previous) {
+/// Whether a path may bend where it comes from `back` and goes on towards `out`, so much that it counts.
+bool SiteMaps::is_anchor(Index vertex, double back, double out) const {
+  return bends_much(mesh_, vertex) && turn_at(mesh_, vertex, back, out) == 0;
+}
+
+SiteMaps::Place SiteMaps::place_after(Index vertex, Index previous, Scratch& scratch) const {
   const Place& before = places_[previous];
   const Index node = graph_.node_of(previous);
   const std::int64_t arc = graph_.arcs().find(node, graph_.node_of(vertex));
-  unfolder_.unfold(graph_.hint(node, arc), unfolded_);
-  const double heading = before.heading + turn_at(mesh_, previous, before.back, unfolded_.start_angle);
-  return {before.log + polar(graph_.arcs().length(arc), heading), heading, unfolded_.end_angle};
-}
-
-Vec2 SiteMaps::log(Index vertex, Index site, Index halfedge) {
-  if (label_[vertex] == site) return places_[vertex].log;
-  if (const Known* known = find_known(vertex, site)) return known->log;
-  Vec2 result;
-  if (!pull(vertex, site, result)) result = lay_beside(halfedge, site);
-  known_.push_back({result, site, first_known_[vertex]});
-  first_known_[vertex] = static_cast<Index>(known_.size()) - 1;
-  return result;
-}
-
-Vec2 SiteMaps::known_log(Index vertex, Index site) const {
-  return label_[vertex] == site ? places_[vertex].log : find_known(vertex, site)->log;
-}
-
-const SiteMaps::Known* SiteMaps::find_known(Index vertex, Index site) const {
-  for (Index i = first_known_[vertex]; i != k_none; i = known_[i].next) {
-    if (known_[i].site == site) return &known_[i];
+  scratch.unfolder.unfold(graph_.hint(node, arc), scratch.unfolded);
+  const double length = graph_.arcs().length(arc), out = scratch.unfolded.start_angle;
+  if (is_anchor(previous, before.back, out)) {
+    return {polar(length, out - before.back), before.distance + length, scratch.unfolded.end_angle, previous};
   }
-  return nullptr;
+  const double heading = std::atan2(before.at.y(), before.at.x()) + turn_at(mesh_, previous, before.back, out);
+  const Vec2 step = polar(length, heading), at = before.at + step;
+  return {at, anchor_distance(before) + at.norm(), scratch.unfolded.end_angle + angle_between(step, at), before.anchor};
 }
 
-/// Places the vertex by the site's own fan or by the nearest way over a graph neighbour that the site owns.
-bool SiteMaps::pull(Index vertex, Index site, Vec2& log) {
-  if (vertex == fans_[site].centre) {  // two sites on one vertex
-    log = Vec2::Zero();
+/// False where the lengths make no triangle, or the ray passes an end that is not nearly flat.
+bool SiteMaps::see(Index halfedge, const Place& from, const Place& to, Sight& sight) const {
+  if (from.anchor != to.anchor) return false;
+  const double length = mesh_.length(halfedge), a = from.at.squaredNorm(), b = to.at.squaredNorm();
+  // The edge runs along the x axis, the corner above, the anchor below.
+  const double x = (a - b + length * length) / (2 * length), y = a - x * x;
+  if (!(y > k_end_on * length * length)) return false;
+  sight.anchor = Vec2(x, -std::sqrt(y));
+  sight.ray = graph_.unfolding().apex(halfedge) - sight.anchor;
+  const double at_edge = x - sight.ray.x() * sight.anchor.y() / sight.ray.y();
+  sight.beyond = at_edge < 0 ? at_edge / length : std::max(0.0, at_edge / length - 1);
+  sight.distance = sight.ray.norm();
+  return sight.beyond == 0 || !bends_much(mesh_, sight.beyond < 0 ? mesh_.from(halfedge) : mesh_.to(halfedge));
+}
+
+/// The direction divides the angle between those of the edge's ends as the ray divides it in the edge's frame.
+SiteMaps::Place SiteMaps::place_by(const Sight& sight, Index halfedge, const Place& from, const Place& to) const {
+  const Vec2 to_start = -sight.anchor, to_end = Vec2(mesh_.length(halfedge), 0) - sight.anchor;
+  const double share = angle_between(to_start, sight.ray) / angle_between(to_start, to_end);
+  const double angle = std::atan2(from.at.y(), from.at.x()) + share * angle_between(from.at, to.at);
+  Place place{polar(sight.distance, angle), sight.distance, 0, from.anchor};
+  place.distance += anchor_distance(place);
+  const Vec2& apex = graph_.unfolding().apex(halfedge);
+  place.back = graph_.unfolding().polar(Mesh::prev(halfedge)) + angle_between(Vec2(-apex), Vec2(-sight.ray));
+  return place;
+}
+
+/// Places a vertex of the site's own cell beyond an edge whose ends are placed already: the first that leads to the
+/// graph's distance or little less. False where there is none.
+bool SiteMaps::place_own(Index vertex, Index site, Place& place) const {
+  const double most = distance_[vertex] * (1 + k_arc_rounding), least = (1 - slack_) * most;
+  const Index first = mesh_.first_halfedge(vertex);
+  for (Index h = first; h != k_none;) {
+    const Index edge = Mesh::next(h), a = mesh_.from(edge), b = mesh_.to(edge);
+    h = mesh_.rotate(h);
+    if (h == first) h = k_none;
+    if (label_[a] != site || label_[b] != site || !placed_[a] || !placed_[b]) continue;
+    const Place &from = places_[a], &to = places_[b];
+    Sight sight;
+    if (!see(edge, from, to, sight) || std::abs(sight.beyond) > k_least_miss) continue;
+    const double distance = anchor_distance(from) + sight.distance;
+    if (distance > most || distance < least) continue;
+    place = place_by(sight, edge, from, to);
     return true;
   }
+  return false;
+}
+
+/// An end of an edge as the site sees it; the site's own or, where `deep`, any that can be placed beside its own.
+bool SiteMaps::end_of_edge(Index vertex, Index site, bool deep, Place& place) const {
+  if (label_[vertex] != site) return deep && place_beside(vertex, site, false, place);
+  place = places_[vertex];
+  return placed_[vertex] != 0;
+}
+
+/// Places a vertex beyond the edge across which the site is seen best: between the edge's ends if there is one, else
+/// least beside them; among equals the shortest way.
+bool SiteMaps::place_beside(Index vertex, Index site, bool deep, Place& place) const {
+  Sight best;
+  Index best_edge = k_none;
+  Place best_from, best_to;
+  const Index first = mesh_.first_halfedge(vertex);
+  for (Index h = first; h != k_none;) {
+    const Index edge = Mesh::next(h), a = mesh_.from(edge), b = mesh_.to(edge);
+    h = mesh_.rotate(h);
+    if (h == first) h = k_none;
+    if (label_[a] != site && label_[b] != site) continue;
+    Place from, to;
+    Sight found;
+    if (!end_of_edge(a, site, deep, from) || !end_of_edge(b, site, deep, to) || !see(edge, from, to, found)) continue;
+    const double beyond = std::abs(found.beyond), best_beyond = std::abs(best.beyond);
+    const bool better =
+        best_edge == k_none || beyond < best_beyond || (beyond == best_beyond && found.distance < best.distance);
+    if (better) best = found, best_edge = edge, best_from = from, best_to = to;
+  }
+  if (best_edge == k_none) return false;
+  place = place_by(best, best_edge, best_from, best_to);
+  return true;
+}
+
+/// What lies behind an anchor is seen in its direction.
+SiteVector SiteMaps::vector_of(const Place& place) const {
+  if (place.anchor == k_none) return {place.at, place.distance};
+  return {place.distance * vector_of(places_[place.anchor]).log.normalized(), place.distance};
+}
+
+SiteVector SiteMaps::from(Index site, Index vertex, Scratch& scratch) const {
+  if (label_[vertex] == site) return own(vertex);
+  if (vertex == fans_[site].centre) return {};  // two sites on one vertex
+  if (const DirectArc* direct = fan_arc(site, vertex)) return vector_of(place_direct(*direct));
+  Place place;
+  if (place_beside(vertex, site, false, place) || place_beside(vertex, site, true, place)) return vector_of(place);
+  if (place_through_neighbour(vertex, site, scratch, place)) return vector_of(place);
+  const double distance = far_distance(vertex, site);
+  return {Vec2(distance, 0), distance};
+}
+
+/// By the nearest way over a graph neighbour that the site owns.
+bool SiteMaps::place_through_neighbour(Index vertex, Index site, Scratch& scratch, Place& place) const {
   double best = k_infinity;
   Index through = k_none;
-  const DirectArc* direct = fan_arc(site, vertex);
-  if (direct) best = direct->length;
   const ArcRows& arcs = graph_.arcs();
   const Index node = graph_.node_of(vertex);
   for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
@@ -173,19 +308,23 @@ bool SiteMaps::pull(Index vertex, Index site, Vec2& log) {
     best = distance_[neighbour] + arcs.length(arc);
     through = neighbour;
   }
-  if (best == k_infinity) return false;
-  log =
-      through == k_none || through == fans_[site].centre ? place_direct(*direct).log : place_after(vertex, through).log;
+  if (through == k_none || through == fans_[site].centre) return false;
+  place = place_after(vertex, through, scratch);
   return true;
 }
 
-/// Lays the face of the half-edge down in the site's plane, on the side of the edge where it lies on the surface.
-Vec2 SiteMaps::lay_beside(Index halfedge, Index site) const {
-  const Vec2 from = known_log(mesh_.from(halfedge), site), to = known_log(mesh_.to(halfedge), site);
-  Vec2 along = to - from;
-  along = along.norm() > 0 ? along.normalized() : Vec2(1, 0);
-  const Vec2 apex = graph_.unfolding().apex(halfedge);
-  return from + apex.x() * along + apex.y() * Vec2(-along.y(), along.x());
+/// Over any vertex that the site sees; where there is none, more than what could be nearest.
+double SiteMaps::far_distance(Index vertex, Index site) const {
+  const ArcRows& arcs = graph_.arcs();
+  const Index node = graph_.node_of(vertex);
+  double best = k_infinity;
+  for (const DirectArc& arc : fans_[site].arcs) {
+    const std::int64_t last = arcs.find(node, graph_.node_of(arc.vertex));
+    if (last >= 0) best = std::min(best, arc.length + arcs.length(last));
+  }
+  if (best < k_infinity) return best;
+  constexpr double k_far = 4;
+  return distance_[vertex] + k_far * (mesh_.position(vertex) - position(mesh_, sites_[site])).norm();
 }
 
 }  // namespace saddleback

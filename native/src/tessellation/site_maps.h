@@ -1,6 +1,7 @@
 #pragma once
-// Where the vertices lie in the tangent planes of the sites: the discrete logarithm map of each cell.
+// Where vertices lie in the tangent planes of the sites: the discrete logarithm map of each cell.
 
+#include <span>
 #include <vector>
 
 #include "saddleback/saddle_vertex_graph.h"
@@ -10,12 +11,20 @@
 
 namespace saddleback {
 
-/// Labels every vertex with its nearest site by the graph and develops the path to it into the site's tangent plane.
+/// Where a vertex lies, seen from a site.
+struct SiteVector {
+  Vec2 log = Vec2::Zero();  ///< in the site's tangent plane; as long as the distance, to rounding
+  double distance = 0;
+};
+
+/// Labels every vertex with its nearest site by the graph and places it in that site's tangent plane.
 ///
-/// A path in the graph may bend at a vertex where a shortest path would not (an angle below pi on one side). Developed
-/// with its bends, its end lies at the straight distance and in the true direction, exactly so on flat parts; where the
-/// bend is legal (a saddle vertex, a reflex boundary) the path goes straight on and the distance is the path's length.
-/// Squared distances so obtained differ by affine functions inside a flat face, which makes bisectors straight there.
+/// A path in the graph may bend at a vertex where a shortest path would not (an angle below pi on one side). Vertices
+/// are therefore placed one after another, by distance: straight from the site where an arc of its own leads there,
+/// else beyond an edge whose ends are placed (the site seen across that edge in one plane), else after the vertex
+/// before on the path, its bend developed. So the distance is the straight one, exactly so on flat parts. Where a bend
+/// is legal at a vertex with much excess of angle (a saddle, a reflex boundary), that vertex becomes the anchor of what
+/// lies behind: distances go on from it, and directions at the site are its own.
 ///
 /// The plane's axes are those of the site's FaceChart or, for a site that is a vertex, of its first half-edge, with
 /// angles scaled to 2 pi when it is not on the boundary.
@@ -24,53 +33,77 @@ class SiteMaps {
   /// \throw Cancelled. O(sites k log k + arcs).
   SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, const JobStage& stage);
 
-  /// Nearest site by the graph, k_none where none reaches.
+  const Mesh& mesh() const { return mesh_; }
+  Index site_count() const { return static_cast<Index>(fans_.size()); }
+  /// Nearest site by the graph; ties: the smaller.
   Index label(Index vertex) const { return label_[vertex]; }
+  /// The vertices of a label, by distance.
+  std::span<const Index> vertices_of(Index site) const {
+    return {&vertices_[first_vertex_[site]], &vertices_[first_vertex_[site + 1]]};
+  }
+  /// From the site of its label.
+  SiteVector own(Index vertex) const { return vector_of(places_[vertex]); }
 
-  /// The vertex in the tangent plane of the site, which need not be its own. Near the site's cell that is a developed
-  /// path; farther away the face of `halfedge` (whose third corner the vertex is) is laid beside the edge, whose ends
-  /// must be known. What was answered once is kept.
-  Vec2 log(Index vertex, Index site, Index halfedge);
-
-  /// The same, of the vertex's own label or asked for before.
-  Vec2 known_log(Index vertex, Index site) const;
+  /// Memory of a caller that asks for more; one a thread.
+  struct Scratch {
+    explicit Scratch(const SiteMaps& maps) : unfolder(maps.graph_.unfolding()) {}
+    ArcUnfolder unfolder;
+    UnfoldedArc unfolded;
+  };
+  /// From any site near whose cell the vertex lies. Depends on the vertex and the site alone: faces that
+  /// share an edge get the same bits.
+  SiteVector from(Index site, Index vertex, Scratch& scratch) const;
 
  private:
   struct Place {
-    Vec2 log = Vec2::Zero();
-    double heading = 0;  ///< of the path where it arrives, in the site's plane
-    double back = 0;     ///< direction back along the path, surface angle at the vertex
-  };
-  struct Known {
-    Vec2 log;
-    Index site, next;
+    Vec2 at = Vec2::Zero();  ///< from the anchor, in its plane
+    double distance = 0;     ///< from the site
+    double back = 0;         ///< direction to the anchor, surface angle at the vertex
+    Index anchor = k_none;   ///< vertex from which it is seen straight on; k_none: the site
   };
   struct Fan {
     std::vector<DirectArc> arcs;  ///< sorted by vertex; lengths rounded as the graph's, start angles scaled
     Index centre = k_none;        ///< the vertex that the site is
   };
+  /// The anchor of an edge's ends, both placed from it, seen across the edge from the third corner.
+  struct Sight {
+    Vec2 anchor, ray;     ///< in the frame of the half-edge; from the anchor to the corner
+    double distance = 0;  ///< the ray's length
+    double beyond = 0;    ///< by how much of the edge's length the ray passes the edge's ends; below 0 past its start
+  };
 
   void make_fan(Index site, const SurfacePoint& point, WindowPropagator& propagator);
   void make_fan_at_vertex(Fan& fan);
-  void label_vertices(const JobStage& stage, std::vector<Index>& predecessor);
-  void develop(const std::vector<Index>& predecessor, const JobStage& stage);
+  void label_vertices(const JobStage& stage);
+  void group_vertices();
+  std::vector<Index> sites_along_curve() const;
+  void place_cell(Index site, Scratch& scratch);
   const DirectArc* fan_arc(Index site, Index vertex) const;
   Place place_direct(const DirectArc& arc) const;
-  Place place_after(Index vertex, Index previous);
-  bool pull(Index vertex, Index site, Vec2& log);
-  Vec2 lay_beside(Index halfedge, Index site) const;
-  const Known* find_known(Index vertex, Index site) const;
+  Place place_after(Index vertex, Index previous, Scratch& scratch) const;
+  bool place_own(Index vertex, Index site, Place& place) const;
+  bool place_beside(Index vertex, Index site, bool deep, Place& place) const;
+  bool end_of_edge(Index vertex, Index site, bool deep, Place& place) const;
+  bool see(Index halfedge, const Place& from, const Place& to, Sight& sight) const;
+  Place place_by(const Sight& sight, Index halfedge, const Place& from, const Place& to) const;
+  bool place_through_neighbour(Index vertex, Index site, Scratch& scratch, Place& place) const;
+  double far_distance(Index vertex, Index site) const;
+  SiteVector vector_of(const Place& place) const;
+  double anchor_distance(const Place& place) const {
+    return place.anchor == k_none ? 0 : places_[place.anchor].distance;
+  }
+  bool is_anchor(Index vertex, double back, double out) const;
 
   const SaddleVertexGraph& graph_;
   const Mesh& mesh_;
-  ArcUnfolder unfolder_;
-  UnfoldedArc unfolded_;
+  const SurfacePoints sites_;
+  double slack_;  ///< how far below the graph's a distance may be, relative
   std::vector<Fan> fans_;
   std::vector<Index> label_;
-  std::vector<double> distance_;
+  std::vector<double> distance_;  ///< in the graph
+  std::vector<Index> vertices_, first_vertex_;
   std::vector<Place> places_;
-  std::vector<Index> first_known_;  ///< per vertex, a list through known_
-  std::vector<Known> known_;
+  std::vector<std::uint8_t> placed_;
 };
 
 }  // namespace saddleback

@@ -1,0 +1,80 @@
+#pragma once
+// Which sites may own a part of which face.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tessellation/edge_envelope.h"
+#include "tessellation/site_maps.h"
+
+namespace saddleback {
+
+/// \throw InputError naming the first offender: no sites, a site off the mesh, a component without a site.
+void check_sites(const Mesh& mesh, const SurfacePoints& sites);
+
+/// A site that may own a part of a face, and how it sees the face's corners.
+struct FaceClaim {
+  Index face, site;
+  std::array<SiteVector, 3> corner;
+  double squared_distance(int i) const { return corner[i].distance * corner[i].distance; }
+};
+
+/// The claims on every face that several sites may share; the other faces belong to one cell.
+///
+/// Claims on a face start with the labels of its corners and the sites that lie in it; a site that is nearest on a part
+/// of an edge claims the face beyond, too, until nothing changes. Thus cells smaller than a face, or without any
+/// vertex, are found: a cell is connected, and its site's own face begins the walk.
+class CellClaims {
+ public:
+  /// The sites must have passed check_sites and outlive the claims. \throw Cancelled.
+  CellClaims(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, const JobStage& stage);
+
+  const Mesh& mesh() const { return maps_.mesh(); }
+  const SiteMaps& maps() const { return maps_; }
+  Index site_count() const { return maps_.site_count(); }
+
+  /// The shared faces, in increasing order.
+  Index shared_count() const { return static_cast<Index>(faces_.size()); }
+  Index face(Index shared) const { return faces_[shared]; }
+  /// Its claims, by site.
+  std::span<const FaceClaim> claims(Index shared) const {
+    return {claims_.data() + first_[shared], claims_.data() + first_[shared + 1]};
+  }
+  /// Claims are numbered face after face.
+  Index claim_count() const { return static_cast<Index>(claims_.size()); }
+  Index first_claim(Index shared) const { return first_[shared]; }
+  /// Number of a face among the shared ones, k_none for others.
+  Index shared_index(Index face) const { return shared_index_[face]; }
+  /// The cell that owns a face whole, k_none for shared ones.
+  Index face_site(Index face) const {
+    return shared_index_[face] == k_none ? maps_.label(mesh().triangles()[face][0]) : k_none;
+  }
+
+  /// The claims' squared distances along a half-edge of a shared face, by site.
+  void lines_along(Index shared, Index halfedge, std::vector<EdgeLine>& lines) const;
+
+ private:
+  struct Worker;
+  struct Wish {
+    Index face, site;
+    auto operator<=>(const Wish&) const = default;
+  };
+  void claim_by_corners(std::vector<Worker>& workers, int threads, const JobStage& stage);
+  std::vector<Wish> wishes_of_sites(const SurfacePoints& sites) const;
+  void spread(const SurfacePoints& sites, std::vector<Worker>& workers, int threads, const JobStage& stage);
+  void merge_late();
+  FaceClaim make_claim(Index face, Index site, Worker& worker) const;
+  std::span<const FaceClaim> late_claims(Index face) const;
+  template <class Visit>
+  void visit_claims(Index face, Visit&& visit) const;
+  void find_wishes(Index face, Worker& worker) const;
+  void wish_for(Index face, Index site, std::vector<Wish>& wishes) const;
+
+  SiteMaps maps_;
+  std::vector<Index> shared_index_, faces_, first_;
+  std::vector<FaceClaim> claims_;
+  std::vector<FaceClaim> late_;  ///< found while claims spread, by face and site
+};
+
+}  // namespace saddleback
