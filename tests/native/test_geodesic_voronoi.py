@@ -158,6 +158,13 @@ def test_many_sites_in_one_face_and_cells_without_vertices() -> None:
     assert len(np.unique(cells.vertex_cell)) < 12
 
 
+@pytest.mark.parametrize("case", [c for c in meshes.good() if len(c.vertices) <= 200 and c.components == 1], ids=str)
+def test_more_sites_than_triangles(case: meshes.Case) -> None:
+    cells = sb.geodesic_voronoi(graph_of(case), random_points(case.mesh, 3 * len(case.triangles), seed=4))
+    check(case.mesh, cells)
+    assert (cells.areas > 0).mean() > 0.99
+
+
 def test_of_two_sites_in_one_place_the_smaller_has_the_cell() -> None:
     mesh = sb.Mesh(*meshes.torus())
     graph = sb.SaddleVertexGraph(mesh, k=30)
