@@ -14,6 +14,7 @@ void bind_mesh(py::module_& m);
 void bind_paths(py::module_& m);
 void bind_predicates(py::module_& m);
 void bind_read_mesh(py::module_& m);
+void bind_relax_2d(py::module_& m);
 void bind_repair(py::module_& m);
 void bind_stepped_sweep(py::module_& m);
 void bind_surface(py::module_& m);
@@ -97,4 +98,5 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_tessellation(m);
   bind_voronoi_2d(m);
   bind_charts(m);
+  bind_relax_2d(m);
 }

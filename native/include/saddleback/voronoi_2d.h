@@ -67,6 +67,8 @@ struct Voronoi2d {
   std::vector<Vec2> centroids() const;
   /// The cells within a domain. O(n) plus, for cells at the domain's edges, O(corners of the domain). \throw Cancelled
   ClippedCells clip(const PlanarDomain& domain, int threads = 0, Job* job = nullptr) const;
+  /// The same as a part of other work.
+  ClippedCells clip(const PlanarDomain& domain, int threads, const JobStage& stage) const;
   /// (m) nearest site of each point, exactly; of equally near ones the smallest index. O(m + n) expected.
   /// \throw InputError for a point that is not finite, and without sites. Cancelled
   std::vector<Index> locate(std::span<const Vec2> points, int threads = 0, Job* job = nullptr) const;
@@ -81,5 +83,7 @@ struct Voronoi2d {
 /// more) that products of four cannot be told exactly; for negative options. Cancelled.
 /// O(n log n) time, O(n) memory.
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options = {}, Job* job = nullptr);
+/// The same as a part of other work.
+Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage);
 
 }  // namespace saddleback

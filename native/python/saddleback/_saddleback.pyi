@@ -1,7 +1,7 @@
 """Types of the compiled part; its docstrings tell shapes, units, errors and sources."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Literal, SupportsFloat, SupportsIndex, TypeAlias, final
 
 import numpy as np
@@ -511,3 +511,28 @@ class Chart:
     ) -> tuple[SurfacePoints, NDArray[np.bool_]]: ...
     def places(self, points: _Points) -> _Floats: ...
     def lift(self, diagram: Voronoi2d, *, threads: SupportsIndex = 0, job: Job | None = None) -> LiftedVoronoi: ...
+
+@final
+class Relaxation2d:
+    @property
+    def sites(self) -> _Floats: ...
+    @property
+    def energy(self) -> _Floats: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def stop_reason(self) -> str: ...
+
+def relax_2d(
+    sites: ArrayLike,
+    domain: _Domain,
+    density: ArrayLike | Callable[[_Floats], ArrayLike] | None = None,
+    max_iterations: SupportsIndex = 100,
+    tolerance: SupportsFloat = 1e-6,
+    *,
+    samples: SupportsIndex = 512,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
+) -> Relaxation2d: ...

@@ -197,7 +197,10 @@ void add_moments(const std::vector<Loop>& loops, const Vec2& near, double& area,
 }  // namespace
 
 ClippedCells Voronoi2d::clip(const PlanarDomain& domain, int threads, Job* job) const {
-  const JobStage stage(job, "Clipping cells");
+  return clip(domain, threads, JobStage(job, "Clipping cells"));
+}
+
+ClippedCells Voronoi2d::clip(const PlanarDomain& domain, int threads, const JobStage& stage) const {
   const Index count = static_cast<Index>(sites.size());
   const double side = 0.5 * std::sqrt(static_cast<double>(cell_sites.size()));
   const EdgeMap map(domain, std::clamp(static_cast<Index>(side), 1, 1024));

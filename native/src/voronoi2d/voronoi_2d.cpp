@@ -45,11 +45,14 @@ Numbering find_numbering(const OrderedSites& sites, const Voronoi2dOptions& opti
 }  // namespace
 
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, Job* job) {
+  return voronoi_2d(sites, options, JobStage(job, "Voronoi diagram"));
+}
+
+Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage) {
   if (options.circles < 0) throw InputError(message("circles: wanted 0 or more, got ", options.circles));
   if (options.threads < 0) throw InputError(message("threads: wanted 0 or more, got ", options.threads));
   constexpr std::size_t k_most = 300'000'000;  // six neighbours each are counted in 32 bits
   if (sites.size() > k_most) throw InputError(message("sites: wanted up to ", k_most, ", got ", sites.size()));
-  const JobStage stage(job, "Voronoi diagram");
   OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
   Cells cells;
   Numbering numbering = find_numbering(ordered, options, cells, stage.part(0.1, 0.95));

@@ -1,0 +1,123 @@
+#include "saddleback/relax_2d.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saddleback/error.h"
+#include "saddleback/voronoi_2d.h"
+
+#include "support/parallel.h"
+#include "voronoi2d/raster_moments.h"
+
+namespace saddleback {
+namespace {
+
+using voronoi2d::RasterIntegral;
+using voronoi2d::RasterMoments;
+
+void check_density(const DensityRaster& density) {
+  if (density.values.empty()) return;
+  const auto& values = density.values;
+  if (density.rows < 1 || density.columns < 1 ||
+      values.size() != static_cast<std::size_t>(density.rows) * density.columns)
+    throw InputError(message("density: wanted ", density.rows, " rows of ", density.columns, " values, got ",
+                             values.size(), " values"));
+  const auto bad = std::find_if(values.begin(), values.end(), [](double d) { return !(d >= 0) || std::isinf(d); });
+  if (bad == values.end()) return;
+  const auto place = bad - values.begin();
+  throw InputError(message("density: wanted finite values of 0 or more, got ", *bad, " in row ",
+                           place / density.columns, ", column ", place % density.columns));
+}
+
+void check_options(std::span<const Vec2> sites, const Relaxation2dOptions& options) {
+  if (sites.empty()) throw InputError("sites: wanted at least one site, got none");
+  if (options.max_iterations < 0)
+    throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
+  if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
+  check_density(options.density);
+}
+
+/// Sites with what they need to know of their cells to move on.
+struct State {
+  std::vector<Vec2> sites;
+  std::vector<RasterMoments> moments;
+  double energy = 0;
+};
+
+State evaluate(std::vector<Vec2> sites, const PlanarDomain& domain, const RasterIntegral& integral, int threads,
+               const JobStage& stage) {
+  const Voronoi2d diagram = voronoi_2d(sites, {.threads = threads}, stage.part(0, 0.5));
+  const ClippedCells cells = diagram.clip(domain, threads, stage.part(0.5, 0.8));
+  const auto count = static_cast<Index>(cells.loop_sites.size());
+  std::vector<RasterMoments> of_loops(count);
+  parallel_for(count, threads, 64, [&](Index loop, int) {
+    stage.check();
+    const Index begin = cells.loop_offsets[loop], end = cells.loop_offsets[loop + 1];
+    of_loops[loop] = integral.along(std::span(cells.points).subspan(begin, end - begin));
+  });
+  State state{std::move(sites), {}, 0};
+  state.moments.resize(state.sites.size());
+  for (Index loop = 0; loop < count; ++loop) state.moments[cells.loop_sites[loop]] += of_loops[loop];
+  for (std::size_t i = 0; i < state.sites.size(); ++i) {
+    const Vec2 site = state.sites[i] - integral.middle();
+    const RasterMoments& cell = state.moments[i];
+    state.energy += cell.squared - 2 * site.dot(cell.first) + site.squaredNorm() * cell.mass;
+  }
+  stage.update(1);
+  return state;
+}
+
+std::vector<Vec2> moved_sites(const State& state, const RasterIntegral& integral, double least_mass) {
+  std::vector<Vec2> sites = state.sites;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const RasterMoments& cell = state.moments[i];
+    if (cell.mass > least_mass) sites[i] = integral.middle() + cell.first / cell.mass;
+  }
+  return sites;
+}
+
+}  // namespace
+
+Relaxation2d relax_2d(std::span<const Vec2> sites, const PlanarDomain& domain, const Relaxation2dOptions& options,
+                      Job* job) {
+  check_options(sites, options);
+  const JobStage stage(job, "Finding cells");
+  const RasterIntegral integral(domain, options.density);
+  RasterMoments whole;
+  for (const std::vector<Vec2>& loop : domain.loops()) whole += integral.along(loop);
+  // Sums from the raster's left side on leave a cell without density with a mass of rounding; it must not move a site.
+  constexpr double k_rounding = 1e-14;
+  const double least_mass = k_rounding * whole.mass;
+  if (!(whole.mass > 0)) throw InputError("density: it is 0 all over the domain");
+
+  const double part = 1.0 / (options.max_iterations + 1);
+  Relaxation2d result;
+  result.stop_reason = "max_iterations";
+  State state = evaluate({sites.begin(), sites.end()}, domain, integral, options.threads, stage.part(0, part));
+  result.energy.push_back(state.energy);
+  while (result.iterations < options.max_iterations) {
+    const JobStage step =
+        stage.part((result.iterations + 1) * part, (result.iterations + 2) * part,
+                   message("Relaxing sites, step ", result.iterations + 1, " of ", options.max_iterations));
+    State next = evaluate(moved_sites(state, integral, least_mass), domain, integral, options.threads, step);
+    if (next.energy > state.energy) {  // by rounding only
+      result.converged = true;
+      result.stop_reason = "no step lowers the energy";
+      break;
+    }
+    const double fall = state.energy - next.energy;
+    state = std::move(next);
+    result.energy.push_back(state.energy);
+    ++result.iterations;
+    if (fall <= options.tolerance * state.energy) {
+      result.converged = true;
+      result.stop_reason = "tolerance";
+      break;
+    }
+  }
+  result.sites = std::move(state.sites);
+  stage.update(1);
+  return result;
+}
+
+}  // namespace saddleback
