@@ -17,9 +17,8 @@ namespace saddleback {
 
 class QueryCache;
 class Unfolding;
-class WindowPropagator;
 struct ArcHint;
-struct DirectArc;
+struct WaveKernel;
 
 /// How a graph is built: by one of k, accuracy and exact; by k_default_accuracy when none is given.
 struct SaddleVertexGraphOptions {
@@ -30,10 +29,6 @@ struct SaddleVertexGraphOptions {
   std::string instructions = "auto";  ///< "avx512", "avx2", "plain", "neon": the result does not depend on it
   static constexpr double k_default_accuracy = 5e-3;
 };
-
-/// How many vertices the arcs of a point lead to: as many as a vertex has, or twice as many, by which distances of
-/// points are off by no more than the accuracy that the graph was asked for and 0.3 %.
-enum class FanWidth { as_disks, as_accurate };
 
 enum class QueryMethod { label_correcting, dijkstra };
 
@@ -116,10 +111,8 @@ class SaddleVertexGraph {
   const ArcRows& arcs() const { return arcs_; }
   /// What unfold_arc needs to find the faces of an arc of `node`.
   ArcHint hint(Index node, std::int64_t arc) const;
-  /// The arcs that a point of the surface has, to vertices; lengths as they are, not yet rounded as arcs are. Takes a
-  /// propagator of the caller's thread.
-  void fan(const SurfacePoint& point, WindowPropagator& propagator, std::vector<DirectArc>& arcs,
-           FanWidth width = FanWidth::as_disks) const;
+  /// What fans of points are found with: the instructions that the graph was built by.
+  const WaveKernel& kernel() const { return *kernel_; }
 
   /// Distance of every vertex from the nearest source: (V,), infinity where none reaches. Points that are not vertices
   /// are linked by a window propagation of their own. Both methods return the same bits. \throw InputError for no
@@ -152,6 +145,7 @@ class SaddleVertexGraph {
   void order_nodes(int threads);
 
   const Mesh* mesh_ = nullptr;
+  const WaveKernel* kernel_ = nullptr;
   std::unique_ptr<Unfolding> unfolding_;
   Index k_ = 0;
   double accuracy_ = 0;

@@ -29,88 +29,104 @@ std::int32_t label_of(float distance, bool makes_arc) {
 }
 bool makes_arc(std::int32_t label) { return (label & 1) == 0; }
 
-int to_sector(float sector) { return std::clamp(static_cast<int>(sector), 0, ArcCodec::k_sectors - 1); }
-
 }  // namespace
 
-DiskFinder::DiskFinder(const WaveMesh& mesh, const ArcCodec& codec, const WaveKernel& kernel, const DiskRule& rule)
-    : mesh_(mesh), codec_(codec), kernel_(kernel), rule_(rule) {
+DiskFinder::DiskFinder(const WaveMesh& mesh, const WaveKernel& kernel, const DiskRule& rule)
+    : mesh_(mesh), kernel_(kernel), rule_(rule) {
   const std::size_t slots = static_cast<std::size_t>(mesh.node_count()) * k_batch;
   labels_.assign(slots + k_row_padding, k_unreached);
   arc_labels_.assign(slots, k_unreached);
   best_.resize(slots);
 }
 
-void DiskFinder::find(Index first, Index count, FoundArcs& found, const JobStage& stage) {
+void DiskFinder::begin(Sources sources) {
+  clear();
+  sources_ = sources;
   sighting_count_ = 0;
   now_->left_count = now_->right_count = 0;
   limits_.fill(k_infinity);
   generation_ = 0;
-  for (int lane = 0; lane < count; ++lane) seed(first + lane, lane);
-  run(stage);
-  if (by_count()) finish_disks();
-  for (int lane = 0; lane < count; ++lane) write_row(first + lane, lane, found);
-  clear();
 }
 
-void DiskFinder::seed(Index node, int lane) {
+void DiskFinder::add_node(int lane, Index node) {
   const std::int32_t centre = node * k_batch + lane;
   labels_[centre] = label_of(0, false);
   touched_[lane].push_back(centre);
   for (Index e = mesh_.begin(node); e < mesh_.end(node); ++e) {
-    const Vec2 apex = mesh_.apex(e);
-    link(mesh_.target(e) * k_batch + lane, mesh_.length(e), e, false);
-    if (!mesh_.has_left(e)) link(mesh_.records()[e].apex * k_batch + lane, apex.norm(), e, true);
-    if (mesh_.opposite(e) >= 0) add_window(lane, e, mesh_.length(e), apex);
+    const Vec2 along(mesh_.length(e), 0), apex = mesh_.apex(e), other(apex.norm(), 0);
+    const Index apex_node = mesh_.records()[e].apex;
+    add_link(mesh_.target(e) * k_batch + lane, along, along, 0, ~e);
+    if (!mesh_.has_left(e)) add_link(apex_node * k_batch + lane, other, other, 1, ~e);
+    if (mesh_.opposite(e) >= 0) add_window(lane, {along, apex, mesh_.target(e), apex_node, mesh_.opposite(e), e});
   }
 }
 
-/// An edge of the source, or the other one of its face where that has no half-edge of its own, is a sighting as well.
-void DiskFinder::link(std::int32_t slot, double length, Index edge, bool other) {
-  sightings_.reserve(sighting_count_ + 1);
-  const SightingRows rows = sightings_.rows();
-  rows.x[sighting_count_] = length;
-  rows.y[sighting_count_] = 0;
-  rows.back_x[sighting_count_] = rows.back_y[sighting_count_] = 0;
-  rows.slot[sighting_count_] = slot;
-  rows.label[sighting_count_] = label_of(static_cast<float>(length), true);
-  rows.root[sighting_count_] = ~edge;
-  rows.edge[sighting_count_] = other;
-  lower_labels(sighting_count_, sighting_count_ + 1);
-  ++sighting_count_;
+void DiskFinder::add_point(int lane, const FaceSource& source) {
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    add_link(source.node[i] * k_batch + lane, source.corner[i], source.corner[next], source.edge[next] * k_batch + lane,
+             ~0);
+    if (source.entered[i] >= 0) {
+      add_window(lane, {source.corner[i], source.corner[next], source.node[i], source.node[next], source.entered[i],
+                        source.edge[i]});
+    }
+  }
 }
 
-/// Through the side of `root`'s face that is opposite the source.
-void DiskFinder::add_window(int lane, Index root, double length, const Vec2& apex) {
+/// Corners of the source's own face are sightings as well. `from` is the start of the half-edge opposite, where there
+/// is one.
+void DiskFinder::add_link(std::int32_t slot, const Vec2& place, const Vec2& from, std::int32_t edge,
+                          std::int32_t root) {
+  sightings_.reserve(sighting_count_ + 1);
+  const SightingRows rows = sightings();
+  const int i = sighting_count_++;
+  rows.x[i] = place.x();
+  rows.y[i] = place.y();
+  rows.back_x[i] = static_cast<float>(from.x() - place.x());
+  rows.back_y[i] = static_cast<float>(from.y() - place.y());
+  if (rows.from_x) {
+    rows.from_x[i] = from.x();
+    rows.from_y[i] = from.y();
+  }
+  rows.slot[i] = slot;
+  rows.label[i] = label_of(static_cast<float>(place.norm()), true);
+  rows.edge[i] = edge;
+  rows.root[i] = root;
+  lower_labels(i, i + 1);
+}
+
+void DiskFinder::add_window(int lane, const FirstWindow& window) {
   WindowColumns& columns = now_->lefts;
   columns.reserve(now_->left_count + 1);
   const WindowRows rows = columns.rows();
   const int i = now_->left_count++;
-  const double reach = apex.norm();
-  rows.from_x[i] = apex.x();
-  rows.from_y[i] = apex.y();
-  rows.to_x[i] = length;
-  rows.to_y[i] = 0;
-  rows.right_x[i] = 1;
-  rows.right_y[i] = 0;
-  rows.left_x[i] = static_cast<float>(apex.x() / reach);
-  rows.left_y[i] = static_cast<float>(apex.y() / reach);
-  rows.right_reach[i] = rows.right_way[i] = static_cast<float>(length);
-  rows.left_reach[i] = rows.left_way[i] = static_cast<float>(reach);
+  const double right_reach = window.right.norm(), left_reach = window.left.norm();
+  rows.from_x[i] = window.left.x();
+  rows.from_y[i] = window.left.y();
+  rows.to_x[i] = window.right.x();
+  rows.to_y[i] = window.right.y();
+  rows.right_x[i] = static_cast<float>(window.right.x() / right_reach);
+  rows.right_y[i] = static_cast<float>(window.right.y() / right_reach);
+  rows.left_x[i] = static_cast<float>(window.left.x() / left_reach);
+  rows.left_y[i] = static_cast<float>(window.left.y() / left_reach);
+  rows.right_reach[i] = rows.right_way[i] = static_cast<float>(right_reach);
+  rows.left_reach[i] = rows.left_way[i] = static_cast<float>(left_reach);
   rows.most[i] = k_infinity;
-  rows.edge[i] = mesh_.opposite(root) * k_batch + lane;
-  rows.from[i] = mesh_.records()[root].apex * k_batch + lane;
-  rows.to[i] = mesh_.target(root) * k_batch + lane;
-  rows.root[i] = root;
+  rows.edge[i] = window.entered * k_batch + lane;
+  rows.from[i] = window.left_node * k_batch + lane;
+  rows.to[i] = window.right_node * k_batch + lane;
+  rows.root[i] = window.root;
 }
 
-void DiskFinder::run(const JobStage& stage) {
-  for (int windows = 0; now_->size() > 0 && windows < k_most_windows;) {
+bool DiskFinder::run(const JobStage& stage) {
+  int windows = 0;
+  for (; now_->size() > 0 && windows < k_most_windows; std::swap(now_, next_)) {
     stage.check();
     windows += now_->size();
     advance();
-    std::swap(now_, next_);
   }
+  if (by_count()) finish_disks();
+  return now_->size() == 0;
 }
 
 /// Sights all windows of this generation, then splits them into the next.
@@ -123,9 +139,8 @@ void DiskFinder::advance() {
   // Rows of the right half begin behind the padding of the left one.
   const ApexRows apexes = apexes_.rows(0), right_apexes = apexes_.rows(now_->left_count + k_row_padding);
   const auto sight = by_count() ? kernel_.sight_all : kernel_.sight;
-  sighting_count_ = sight(scene, now_->lefts.rows(), now_->left_count, apexes, sightings_.rows(), sighting_count_);
-  sighting_count_ =
-      sight(scene, now_->rights.rows(), now_->right_count, right_apexes, sightings_.rows(), sighting_count_);
+  sighting_count_ = sight(scene, now_->lefts.rows(), now_->left_count, apexes, sightings(), sighting_count_);
+  sighting_count_ = sight(scene, now_->rights.rows(), now_->right_count, right_apexes, sightings(), sighting_count_);
   lower_labels(before, sighting_count_);
   if (by_count()) bound_disks();
 
@@ -140,7 +155,7 @@ void DiskFinder::advance() {
 }
 
 void DiskFinder::lower_labels(int from, int to) {
-  const SightingRows rows = sightings_.rows();
+  const SightingRows rows = sightings();
   for (int i = from; i < to; ++i) {
     const std::int32_t slot = rows.slot[i], label = rows.label[i];
     if (makes_arc(label) && label < arc_labels_[slot]) {
@@ -162,43 +177,17 @@ bool DiskFinder::is_kept(std::int32_t slot) const {
   return reach < k_infinity && reach <= slack * distance_of(labels_[slot]) && reach <= limits_[slot % k_batch];
 }
 
-void DiskFinder::write_row(Index node, int lane, FoundArcs& found) {
-  const SightingRows rows = sightings_.rows();
+std::span<const std::int32_t> DiskFinder::choose(int lane) {
+  const SightingRows rows = sightings();
   chosen_.clear();
   for (const std::int32_t slot : touched_[lane])
     if (is_kept(slot)) chosen_.push_back(best_[slot]);
   // Edges stay even where something shorter, but no arc, was found.
-  for (int i = 0; i < sighting_count_ && rows.root[i] < 0; ++i)
+  for (int i = 0; i < sighting_count_ && is_link(rows.root[i]); ++i)
     if (rows.slot[i] % k_batch == lane && !is_kept(rows.slot[i])) chosen_.push_back(i);
-  const auto count = static_cast<int>(chosen_.size());
-  found.counts.push_back(count);
-  const std::size_t room = chosen_.size() + k_row_padding;
-  chosen_.resize(room);
-  lengths_.resize(room);
-  leaving_.resize(room);
-  back_.resize(room);
-  kernel_.aim(rows, chosen_.data(), count, lengths_.data(), leaving_.data(), back_.data());
-  const std::size_t before = found.words.size();
-  found.words.resize(before + chosen_.size() - k_row_padding);
-  found.back_sectors.resize(found.words.size());
-  const float per_radian = mesh_.sectors_per_radian(node);
-  for (int i = 0; i < count; ++i) {
-    const std::int32_t sighting = chosen_[i];
-    const Index target = rows.slot[sighting] / k_batch, root = rows.root[sighting];
-    float leaving, back;
-    if (root >= 0) {
-      leaving = mesh_.sector(root) + leaving_[i] * per_radian;
-      back = mesh_.apex_sector(rows.edge[sighting] / k_batch) + back_[i] * mesh_.sectors_per_radian(target);
-    } else if (rows.edge[sighting] == 0) {  // an edge of the source
-      leaving = mesh_.sector(~root);
-      back = mesh_.reverse_sector(~root);
-    } else {  // the other one of its face, at the boundary
-      leaving = ArcCodec::k_sectors;
-      back = mesh_.apex_sector(~root);
-    }
-    found.words[before + i] = codec_.pack(target, to_sector(leaving), lengths_[i] * mesh_.unit());
-    found.back_sectors[before + i] = static_cast<std::uint8_t>(to_sector(back));
-  }
+  const std::size_t count = chosen_.size();
+  chosen_.resize(count + k_row_padding);
+  return {chosen_.data(), count};
 }
 
 void DiskFinder::clear() {
@@ -212,10 +201,11 @@ void DiskFinder::clear() {
 /// Lowers the radius of a lane's disk to that of the k-th nearest vertex, as far as is known.
 bool DiskFinder::bound_disk(int lane) {
   const auto& slots = touched_[lane];
-  if (static_cast<Index>(slots.size()) <= rule_.k) return false;
+  const Index before = sources_ == Sources::nodes ? rule_.k : rule_.k - 1;  // a node is its own nearest
+  if (static_cast<Index>(slots.size()) <= before) return false;
   radii_.clear();
   for (const std::int32_t slot : slots) radii_.push_back(distance_of(labels_[slot]));
-  const auto kth = radii_.begin() + rule_.k;  // the source is the nearest
+  const auto kth = radii_.begin() + before;
   std::nth_element(radii_.begin(), kth, radii_.end());
   const float radius = *kth * k_as_far;
   const bool smaller = radius < limits_[lane];

@@ -1,11 +1,11 @@
 #pragma once
-// The arcs of a graph, found from several sources at a time by whole generations of windows.
+// What sources see of the vertices about them, found for several sources at a time by whole generations of windows.
 
 #include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
-#include "geodesics/arc_symmetry.h"
 #include "geodesics/wave_columns.h"
 #include "geodesics/wave_mesh.h"
 
@@ -18,17 +18,47 @@ struct DiskRule {
   double tolerance = 0;  ///< relative
 };
 
+/// A source inside a face or on its border, in a plane of its own with the source at the origin.
+struct FaceSource {
+  std::array<Vec2, 3> corner;    ///< counter-clockwise, in units of the WaveMesh
+  std::array<Index, 3> node;     ///< of the corners
+  std::array<Index, 3> edge;     ///< from each corner to the next, inside the face
+  std::array<Index, 3> entered;  ///< the same from the other side; -1 at the boundary
+};
+
 /// Propagates the windows of k_batch sources without any order but that of generations: first every window looks at the
 /// far corner of its face, then the vertices' distances are lowered, then every window is split. Filters by upper
-/// bounds of distances hold in any order, and since all of a generation sees the same bounds, the arcs do not depend on
-/// how many windows are taken at a time. Holds scratch memory of O(V); one a thread.
+/// bounds of distances hold in any order, and since all of a generation sees the same bounds, what is seen does not
+/// depend on how many windows are taken at a time, nor on the other sources. Holds scratch memory of O(V); one a
+/// thread.
 class DiskFinder {
  public:
-  DiskFinder(const WaveMesh& mesh, const ArcCodec& codec, const WaveKernel& kernel, const DiskRule& rule);
+  DiskFinder(const WaveMesh& mesh, const WaveKernel& kernel, const DiskRule& rule);
 
-  /// Appends the arcs of nodes first to first + count - 1, at most k_batch. Mesh edges are always among them.
-  /// \throw Cancelled.
-  void find(Index first, Index count, FoundArcs& found, const JobStage& stage);
+  /// Begins with new sources: nodes, or points of faces, whose sightings tell where the half-edges lie.
+  enum class Sources { nodes, points };
+  void begin(Sources sources);
+  void add_node(int lane, Index node);
+  void add_point(int lane, const FaceSource& source);
+  /// False when windows were so many that it was stopped: no arc is wrong then, but some may be missing. \throw
+  /// Cancelled.
+  bool run(const JobStage& stage);
+  /// The sightings that make a lane's arcs, and k_row_padding more entries that are valid. The links are always among
+  /// them.
+  std::span<const std::int32_t> choose(int lane);
+  SightingRows sightings() { return sightings_.rows(sources_ == Sources::points); }
+
+  /// Sightings of what a source is linked with by mesh edges or, of a point, by the lines to its face's corners. From a
+  /// node: along `edge` or, where that has no half-edge of its own, along the other side of its face.
+  struct Link {
+    Index edge;
+    bool other_side;
+  };
+  static bool is_link(std::int32_t root) { return root < 0; }
+  /// Of a sighting that is the link of a node.
+  static Link link_of(const SightingRows& rows, std::int32_t sighting) {
+    return {~rows.root[sighting], rows.edge[sighting] != 0};
+  }
 
  private:
   struct Generation {
@@ -36,16 +66,19 @@ class DiskFinder {
     int left_count = 0, right_count = 0;
     int size() const { return left_count + right_count; }
   };
+  /// A side of the source's face, seen from it from right to left.
+  struct FirstWindow {
+    Vec2 right, left;
+    Index right_node, left_node;
+    Index entered, root;
+  };
 
-  void seed(Index node, int lane);
-  void link(std::int32_t slot, double length, Index edge, bool other);
-  void add_window(int lane, Index root, double length, const Vec2& apex);
-  void run(const JobStage& stage);
+  void clear();
+  void add_link(std::int32_t slot, const Vec2& place, const Vec2& from, std::int32_t edge, std::int32_t root);
+  void add_window(int lane, const FirstWindow& window);
   void advance();
   void lower_labels(int from, int to);
   bool is_kept(std::int32_t slot) const;
-  void write_row(Index node, int lane, FoundArcs& found);
-  void clear();
 
   bool by_count() const { return rule_.k > 0; }
   bool bound_disk(int lane);
@@ -55,9 +88,9 @@ class DiskFinder {
   void relax_from(std::int32_t slot);
 
   const WaveMesh& mesh_;
-  const ArcCodec& codec_;
   const WaveKernel& kernel_;
   DiskRule rule_;
+  Sources sources_ = Sources::nodes;
   std::vector<std::int32_t> labels_;      ///< per slot: bits of the distance, the lowest one set when it makes no arc
   std::vector<std::int32_t> arc_labels_;  ///< the same of the shortest arc
   std::vector<std::int32_t> best_;        ///< the sighting of that arc
@@ -71,9 +104,7 @@ class DiskFinder {
   alignas(64) std::array<float, k_batch> limits_{};
   std::vector<std::int32_t> changed_;  ///< slots whose neighbours may have to be told of their labels
   std::vector<float> radii_;
-  std::vector<std::int32_t> chosen_;  ///< sightings of a row
-  std::vector<double> lengths_;       ///< and what is made of them
-  std::vector<float> leaving_, back_;
+  std::vector<std::int32_t> chosen_;
 };
 
 }  // namespace saddleback

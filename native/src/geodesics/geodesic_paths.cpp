@@ -30,68 +30,32 @@ constexpr double k_angle_margin = 1e-7;
 // mean edge, of the mean edge, so that long and short edges of a vertex agree; but never more than a small share.
 constexpr double k_at_vertex = 1e-12, k_at_most = 1e-6;
 
-/// The arcs of points that are no vertices; empty for those that are.
-using Fans = std::vector<std::vector<DirectArc>>;
-
-class Propagators {
- public:
-  Propagators(const SaddleVertexGraph& graph, int threads) : graph_(graph), own_(thread_count(threads)) {}
-  void fan(const SurfacePoint& point, int thread, std::vector<DirectArc>& arcs) {
-    if (vertex_at(graph_.mesh(), point) != k_none) return arcs.clear();
-    if (!own_[thread]) own_[thread] = std::make_unique<WindowPropagator>(graph_.unfolding());
-    graph_.fan(point, *own_[thread], arcs, FanWidth::as_accurate);
-  }
-
- private:
-  const SaddleVertexGraph& graph_;
-  std::vector<std::unique_ptr<WindowPropagator>> own_;
-};
-
-/// A fan as the queries know it, so that paths are as long as they say.
-PointFan point_fan(const SaddleVertexGraph& graph, const SurfacePoint& point, const std::vector<DirectArc>& arcs) {
-  PointFan fan;
-  const Index vertex = vertex_at(graph.mesh(), point);
-  if (vertex != k_none) return {{{vertex, 0}}, 0, true};
-  for (const DirectArc& arc : arcs) {
-    fan.arcs.push_back({arc.vertex, graph.arcs().codec().round(arc.length)});
-    fan.reach = std::max(fan.reach, arc.length);
-  }
-  std::ranges::sort(fan.arcs, {}, &PointFan::Arc::vertex);
-  return fan;
-}
-
 /// Distances from the sources and how they came about.
 struct PathField {
   const SurfacePoints& sources;
-  Fans fans;                         ///< of the sources
+  DirectFans fans;                   ///< of the sources
   std::vector<PointFan> point_fans;  ///< the same
   LabelField labels;
 };
 
 PathField make_field(const SaddleVertexGraph& graph, const SurfacePoints& sources, double limit, int threads,
                      const JobStage& stage) {
-  PathField field{sources, Fans(sources.size()), std::vector<PointFan>(sources.size()), {}};
-  Propagators propagators(graph, threads);
-  const auto count = static_cast<Index>(sources.size());
+  PathField field{sources, {}, {}, {}};
   const double cost = cost_of_fans(graph, sources), share = cost / (cost + graph.mesh().vertex_count());
-  const JobStage seeing = stage.part(0, share);
-  std::atomic<Index> done{0};
-  parallel_for(count, threads, 16, [&](Index i, int thread) {
-    propagators.fan(sources[i], thread, field.fans[i]);
-    field.point_fans[i] = point_fan(graph, sources[i], field.fans[i]);
-    seeing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
-  });
+  field.fans = direct_fans(graph, sources, threads, stage.part(0, share));
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    field.point_fans.push_back(point_fan(graph, sources[i], field.fans[i]));
   field.labels = propagate_labels(graph, seeds_of(field.point_fans), {.limit = limit}, true, stage.part(share, 1));
   return field;
 }
 
 /// No shortest path is longer: the straight way between two points in sight of each other, so that near points are
 /// joined without a field of the whole mesh.
-double longest_path(const SaddleVertexGraph& graph, const SurfacePoints& sources, const SurfacePoints& targets) {
+double longest_path(const SaddleVertexGraph& graph, const SurfacePoints& sources, const SurfacePoints& targets,
+                    const JobStage& stage) {
   if (sources.size() != 1 || targets.size() != 1) return k_infinity;
-  const auto finder = graph.query_cache().fan_finders.lease();
-  const PointFan from = finder->find(graph, sources[0]), to = finder->find(graph, targets[0]);
-  return direct_length(graph, sources[0], from, targets[0], to);
+  const std::vector<PointFan> fans = find_fans(graph, {sources[0], targets[0]}, stage, {.threads = 1});
+  return direct_length(graph, sources[0], fans[0], targets[0], fans[1]);
 }
 
 /// Where a path to a target ends: after the last vertex, none when it comes straight from the source.
@@ -116,7 +80,7 @@ class PathMaker {
         shortener_(graph.unfolding()) {}
 
   /// Appends the path to the target, without any points when nothing reaches it.
-  void append(const SurfacePoint& target, const std::vector<DirectArc>& fan, GeodesicPaths& paths) {
+  void append(const SurfacePoint& target, std::span<const DirectArc> fan, GeodesicPaths& paths) {
     const Arrival arrival = arrive(target, fan);
     double length = k_infinity;
     if (arrival.source != k_none) {
@@ -131,7 +95,7 @@ class PathMaker {
   }
 
  private:
-  Arrival arrive(const SurfacePoint& target, const std::vector<DirectArc>& fan) const {
+  Arrival arrive(const SurfacePoint& target, std::span<const DirectArc> fan) const {
     Arrival best;
     if (const Index vertex = vertex_at(mesh_, target); vertex != k_none) {
       return {field_.labels.distance[vertex], field_.labels.source[vertex], nullptr, vertex};
@@ -171,7 +135,7 @@ class PathMaker {
   }
 
   void add_source_leg(Index index, const SurfacePoint& source) {
-    const auto& fan = field_.fans[index];
+    const std::span<const DirectArc> fan = field_.fans[index];
     const auto arc = std::ranges::find_if(fan, [&](const DirectArc& a) { return a.vertex == vertices_[0]; });
     chain_.ends.push_back(leg_end(mesh_, source));
     UnfoldedArc& leg = chain_.add_leg();
@@ -316,25 +280,27 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   const double of_paths = of_path * static_cast<double>(targets.size());
   const double of_field = graph.mesh().vertex_count() + cost_of_fans(graph, sources);
   const double share = of_field / (of_field + of_paths + cost_of_fans(graph, targets));
-  const PathField field =
-      make_field(graph, sources, longest_path(graph, sources, targets), options.threads, stage.part(0, share));
+  const PathField field = make_field(graph, sources, longest_path(graph, sources, targets, stage.part(0, 0)),
+                                     options.threads, stage.part(0, share));
   constexpr Index k_block = 32;
   const auto count = static_cast<Index>(targets.size());
   const Index blocks = (count + k_block - 1) / k_block;
   std::vector<GeodesicPaths> parts(blocks);
   std::vector<std::unique_ptr<PathMaker>> makers(thread_count(options.threads));
-  std::vector<std::vector<DirectArc>> fans(makers.size());
-  Propagators propagators(graph, options.threads);
+  std::vector<DirectFans> fans(makers.size());
+  FanTeam team(graph, targets, options.threads, stage.part(0, 0));
   const NearbySources nearby(graph, sources, field.point_fans);
   std::atomic<Index> done{0};
   const double written = options.shorten ? 0.98 : 0.85;  // the rest of the time goes into one list of all points
   const JobStage following = stage.part(share, 1), writing = following.part(0, written);
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);
-    for (Index i = block * k_block; i < std::min((block + 1) * k_block, count); ++i) {
+    const std::span own = std::span(targets).subspan(block * k_block, std::min(k_block, count - block * k_block));
+    fans[thread].clear();
+    team[thread].find(graph, own, fans[thread], stage);
+    for (std::size_t i = 0; i < own.size(); ++i) {
       stage.check();
-      propagators.fan(targets[i], thread, fans[thread]);
-      makers[thread]->append(targets[i], fans[thread], parts[block]);
+      makers[thread]->append(own[i], fans[thread][i], parts[block]);
     }
     writing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
   });

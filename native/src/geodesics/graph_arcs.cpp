@@ -8,12 +8,17 @@
 
 #include "saddleback/error.h"
 
+#include "geodesics/disk_rows.h"
 #include "geodesics/window_propagation.h"
 #include "support/memory.h"
 #include "support/parallel.h"
 
 namespace saddleback {
 namespace {
+
+// Windows end a little early, see disk_finder: on thousands of fields over twenty meshes this kept every error below
+// the accuracy asked for.
+constexpr double k_room = 0.95;
 
 Index block_count(const ArcSearch& search) {
   return (static_cast<Index>(search.vertices.size()) + k_block - 1) / k_block;
@@ -89,6 +94,8 @@ void check_memory(const ArcSearch& search, WindowPropagator& propagator, const J
 
 }  // namespace
 
+DiskRule disk_rule(Index k, double accuracy) { return {.k = k, .tolerance = k_room * accuracy}; }
+
 std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage) {
   if (search.unfolding.mesh().halfedge_count() > std::numeric_limits<std::int32_t>::max() / k_batch) {
     throw InputError(message("mesh: ", search.unfolding.mesh().face_count(),
@@ -96,10 +103,12 @@ std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, 
                              "built for (",
                              std::numeric_limits<std::int32_t>::max() / k_batch / 3, ")"));
   }
-  const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, ArcCodec::k_sectors, search.threads, stage);
-  std::vector<std::unique_ptr<DiskFinder>> finders(thread_count(search.threads));
+  const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, search.threads, stage);
+  const WaveSectors sectors(mesh, search.unfolding, search.vertices, ArcCodec::k_sectors, search.threads, stage);
+  std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
   return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread) {
-    if (!finders[thread]) finders[thread] = std::make_unique<DiskFinder>(mesh, search.codec, search.kernel, rule);
+    if (!finders[thread])
+      finders[thread] = std::make_unique<DiskRows>(mesh, sectors, search.codec, search.kernel, rule);
     for (Index i = 0; i < count; i += k_batch)
       finders[thread]->find(found.first_node + i, std::min(k_batch, count - i), found, stage);
   });

@@ -22,6 +22,9 @@ struct ArcSearch {
   int threads = 0;
 };
 
+/// What a graph of the given options keeps, of vertices and of other points.
+DiskRule disk_rule(Index k, double accuracy);
+
 /// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
 std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage);
 

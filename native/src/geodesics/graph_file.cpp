@@ -15,6 +15,7 @@
 #include "saddleback/error.h"
 #include "saddleback/saddle_vertex_graph.h"
 
+#include "geodesics/graph_arcs.h"
 #include "geodesics/graph_checks.h"
 #include "geodesics/path_bound.h"
 #include "geodesics/unfolding.h"
@@ -187,6 +188,7 @@ SaddleVertexGraph SaddleVertexGraph::load(const std::string& path, const Mesh& m
   check_size(header, file, path);
   check_mesh(header, mesh, path);
   SaddleVertexGraph graph;
+  graph.kernel_ = &wave_kernel(SaddleVertexGraphOptions{}.instructions);
   graph.mesh_ = &mesh;
   graph.vertices_.resize(header.vertex_count);
   file.read(std::span(graph.vertices_));

@@ -114,8 +114,7 @@ PointDistance SaddleVertexGraph::distance(const SurfacePoint& a, const SurfacePo
   };
   if (component(a) != component(b)) return {k_infinity, 0};
   const Landmarks& landmarks = queries_->landmarks(*this, stage);
-  const auto finder = queries_->fan_finders.lease();
-  const PointFan fans[] = {finder->find(*this, a), finder->find(*this, b)};
+  const std::vector<PointFan> fans = find_fans(*this, {a, b}, stage.part(0, 0), {.threads = 1});
   const double direct = direct_length(*this, a, fans[0], b, fans[1]);
   const auto search = queries_->point_searches.lease();
   const PointDistance result = search->run(*this, landmarks, fans[0], fans[1], position(*mesh_, b), direct, stage);

@@ -40,32 +40,10 @@ void sort_arcs(std::vector<PointFan::Arc>& arcs) {
   arcs.erase(rest.begin(), rest.end());
 }
 
-std::vector<ScratchPool<FanFinder>::Lease> lease_finders(const SaddleVertexGraph& graph, int threads,
-                                                         std::size_t count) {
-  std::vector<ScratchPool<FanFinder>::Lease> finders;
-  const auto team = std::min(static_cast<std::size_t>(thread_count(threads)), count);
-  for (std::size_t thread = 0; thread < team; ++thread) finders.push_back(graph.query_cache().fan_finders.lease());
-  return finders;
-}
-
 }  // namespace
 
-PointFan FanFinder::find(const SaddleVertexGraph& graph, const SurfacePoint& point) {
-  if (const Index vertex = vertex_at(graph.mesh(), point); vertex != k_none) return {{{vertex, 0}}, 0, true};
-  if (!propagator_) propagator_ = std::make_unique<WindowPropagator>(graph.unfolding());
-  graph.fan(point, *propagator_, arcs_, FanWidth::as_accurate);
-  PointFan fan;
-  fan.arcs.reserve(arcs_.size());
-  for (const DirectArc& arc : arcs_) {
-    fan.arcs.push_back({arc.vertex, graph.arcs().codec().round(arc.length)});
-    fan.reach = std::max(fan.reach, arc.length);
-  }
-  sort_arcs(fan.arcs);
-  return fan;
-}
-
-PointFan FanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve& curve, const FanOptions& options,
-                         const JobStage& stage) {
+PointFan CurveFanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve& curve, const FanOptions& options,
+                              const JobStage& stage) {
   if (!curve_windows_) curve_windows_ = std::make_unique<CurveWindows>(graph.unfolding());
   const RayLimits limits{.radius = options.limit, .edges = strip_width(graph)};
   curve_windows_->from_curve(curve, limits, feet_, stage.part(0, 0), options.places);
@@ -80,26 +58,22 @@ PointFan FanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve& cur
   return fan;
 }
 
+PointFan point_fan(const SaddleVertexGraph& graph, const SurfacePoint& point, std::span<const DirectArc> arcs) {
+  if (const Index vertex = vertex_at(graph.mesh(), point); vertex != k_none) return {{{vertex, 0}}, 0, true};
+  PointFan fan;
+  fan.arcs.reserve(arcs.size());
+  for (const DirectArc& arc : arcs) {
+    fan.arcs.push_back({arc.vertex, graph.arcs().codec().round(arc.length)});
+    fan.reach = std::max(fan.reach, arc.length);
+  }
+  return fan;
+}
+
 std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, const JobStage& stage,
                                 const FanOptions& options) {
-  const auto count = static_cast<Index>(points.size());
-  std::vector<PointFan> fans(count);
-  std::vector<Index> inside;  // of faces and edges: the others cost nothing
-  FanFinder of_vertices;
-  for (Index i = 0; i < count; ++i) {
-    if (vertex_at(graph.mesh(), points[i]) == k_none) {
-      inside.push_back(i);
-    } else {
-      fans[i] = of_vertices.find(graph, points[i]);
-    }
-  }
-  const auto finders = lease_finders(graph, options.threads, inside.size());
-  std::atomic<std::size_t> done{0};
-  parallel_for(static_cast<Index>(inside.size()), options.threads, 8, [&](Index i, int thread) {
-    fans[inside[i]] = finders[thread]->find(graph, points[inside[i]]);
-    stage.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) /
-                 static_cast<double>(inside.size()));
-  });
+  std::vector<PointFan> fans(points.size());
+  for_each_fan(graph, points, options.threads, stage,
+               [&](Index i, std::span<const DirectArc> arcs) { fans[i] = point_fan(graph, points[i], arcs); });
   return fans;
 }
 
@@ -111,11 +85,15 @@ SourceFans find_fans(const SaddleVertexGraph& graph, const QuerySources& sources
   result.fans.resize(sources.size());
   if (options.places) result.at_places.assign(options.places->size(), std::numeric_limits<double>::infinity());
   const JobStage rest = stage.part(share, 1);
-  const auto finders = lease_finders(graph, options.threads, sources.curves.size());
+  std::vector<ScratchPool<CurveFanFinder>::Lease> finders;
+  if (!sources.curves.empty()) {
+    for (int thread = 0; thread < thread_count(options.threads); ++thread)
+      finders.push_back(graph.query_cache().curve_fan_finders.lease());
+  }
   std::atomic<std::size_t> done{0};
   std::mutex mutex;
   parallel_for(static_cast<Index>(sources.curves.size()), options.threads, 1, [&](Index i, int thread) {
-    FanFinder& finder = *finders[thread];
+    CurveFanFinder& finder = *finders[thread];
     result.fans[sources.points.size() + static_cast<std::size_t>(i)] =
         finder.find(graph, *sources.curves[i], options, rest);
     if (options.places) {

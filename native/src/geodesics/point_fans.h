@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "geodesics/curve_windows.h"
+#include "geodesics/direct_fans.h"
 #include "geodesics/graph_search.h"
-#include "geodesics/window_propagation.h"
 
 namespace saddleback {
 
@@ -30,10 +30,9 @@ struct FanOptions {
   const WatchedPlaces* places = nullptr;  ///< points whose straight distances from curves are wanted, too
 };
 
-/// Finds fans one after the other; one a thread, made when first needed.
-class FanFinder {
+/// Finds the fans of curves one after the other; one a thread.
+class CurveFanFinder {
  public:
-  PointFan find(const SaddleVertexGraph& graph, const SurfacePoint& point);
   /// \throw Cancelled.
   PointFan find(const SaddleVertexGraph& graph, const SurfaceCurve& curve, const FanOptions& options,
                 const JobStage& stage);
@@ -41,11 +40,12 @@ class FanFinder {
   std::span<const double> place_distances() const { return curve_windows_->place_distances(); }
 
  private:
-  std::unique_ptr<WindowPropagator> propagator_;
   std::unique_ptr<CurveWindows> curve_windows_;
-  std::vector<DirectArc> arcs_;
   std::vector<CurveFoot> feet_;
 };
+
+/// A point's row of direct_fans, rounded.
+PointFan point_fan(const SaddleVertexGraph& graph, const SurfacePoint& point, std::span<const DirectArc> arcs);
 
 /// The fans of many points, by all cores. \throw Cancelled.
 std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, const JobStage& stage,
@@ -53,7 +53,7 @@ std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoi
 
 struct SourceFans {
   std::vector<PointFan> fans;     ///< of the points, then of the curves
-  std::vector<double> at_places;  ///< of options.places: the least distance from a curve, as FanFinder tells it
+  std::vector<double> at_places;  ///< of options.places: the least distance from a curve, as CurveFanFinder tells it
 };
 SourceFans find_fans(const SaddleVertexGraph& graph, const QuerySources& sources, const JobStage& stage,
                      const FanOptions& options);

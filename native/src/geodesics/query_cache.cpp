@@ -4,15 +4,31 @@
 
 namespace saddleback {
 
-const Landmarks& QueryCache::landmarks(const SaddleVertexGraph& graph, const JobStage& stage) {
+namespace {
+
+/// Who waits may be cancelled, too.
+std::unique_lock<std::timed_mutex> wait_for(std::timed_mutex& mutex, const JobStage& stage) {
   using namespace std::chrono_literals;
-  while (!landmarks_mutex_.try_lock_for(20ms)) stage.check();  // who waits may be cancelled, too
-  const std::lock_guard lock(landmarks_mutex_, std::adopt_lock);
+  while (!mutex.try_lock_for(20ms)) stage.check();
+  return {mutex, std::adopt_lock};
+}
+
+}  // namespace
+
+const Landmarks& QueryCache::landmarks(const SaddleVertexGraph& graph, const JobStage& stage) {
+  const auto lock = wait_for(landmarks_mutex_, stage);
   if (!landmarks_) {
     const auto search = field_searches.lease();
     landmarks_ = std::make_unique<Landmarks>(graph, *search, stage);
   }
   return *landmarks_;
+}
+
+const WaveMesh& QueryCache::wave_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage) {
+  const auto lock = wait_for(wave_mesh_mutex_, stage);
+  if (!wave_mesh_)
+    wave_mesh_ = std::make_unique<WaveMesh>(graph.unfolding(), graph.nodes(), graph.vertices(), threads, stage);
+  return *wave_mesh_;
 }
 
 std::shared_ptr<QueryCache> make_query_cache() { return std::make_shared<QueryCache>(); }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 
+#include "geodesics/direct_fans.h"
 #include "geodesics/graph_search.h"
 #include "geodesics/landmarks.h"
 #include "geodesics/point_fans.h"
@@ -16,14 +17,18 @@ namespace saddleback {
 struct QueryCache {
   ScratchPool<GraphSearch> field_searches;
   ScratchPool<PointSearch> point_searches;
-  ScratchPool<FanFinder> fan_finders;
+  ScratchPool<DirectFanFinder> fan_finders;
+  ScratchPool<CurveFanFinder> curve_fan_finders;
 
   /// Found by the first who asks; others wait. \throw Cancelled.
   const Landmarks& landmarks(const SaddleVertexGraph& graph, const JobStage& stage);
+  /// The same for what fans of points are found with.
+  const WaveMesh& wave_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage);
 
  private:
-  std::timed_mutex landmarks_mutex_;
+  std::timed_mutex landmarks_mutex_, wave_mesh_mutex_;
   std::unique_ptr<Landmarks> landmarks_;
+  std::unique_ptr<WaveMesh> wave_mesh_;
 };
 
 }  // namespace saddleback

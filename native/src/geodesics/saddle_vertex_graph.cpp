@@ -12,16 +12,11 @@
 #include "geodesics/arc_unfolding.h"
 #include "geodesics/graph_arcs.h"
 #include "geodesics/path_bound.h"
-#include "geodesics/window_propagation.h"
 #include "mesh/hilbert.h"
 #include "support/parallel.h"
 
 namespace saddleback {
 namespace {
-
-// Windows end a little early, see disk_finder: on thousands of fields over twenty meshes this kept every error below
-// the accuracy asked for.
-constexpr double k_room = 0.95;
 
 void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
   if ((options.k != 0) + (options.accuracy != 0) + options.exact > 1)
@@ -46,17 +41,17 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
     : mesh_(&mesh), k_(options.k), accuracy_(options.accuracy), exact_(options.exact) {
   check_options(mesh, options);
   if (k_ == 0 && accuracy_ == 0 && !exact_) accuracy_ = SaddleVertexGraphOptions::k_default_accuracy;
-  const WaveKernel& kernel = wave_kernel(options.instructions);
+  kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
   const JobStage stage(job, "Building the saddle vertex graph");
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
   order_nodes(options.threads);
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh));
-  const ArcSearch search{*unfolding_, nodes_, vertices_, codec, kernel, options.threads};
+  const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   const JobStage finding = stage.part(0, 0.9);
   auto found =
-      exact_ ? exact_arcs(search, finding) : disk_arcs(search, {.k = k_, .tolerance = k_room * accuracy_}, finding);
-  arcs_ = unite_with_reverses(codec, kernel, found, k_block, options.threads, stage.part(0.9, 1));
+      exact_ ? exact_arcs(search, finding) : disk_arcs(search, disk_rule(k_, accuracy_), finding);
+  arcs_ = unite_with_reverses(codec, *kernel_, found, k_block, options.threads, stage.part(0.9, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 
@@ -83,16 +78,6 @@ ArcHint SaddleVertexGraph::hint(Index node, std::int64_t arc) const {
   const double sector = arcs_.sector(arc), width = mesh_->total_angle(vertex) / ArcCodec::k_sectors;
   return {vertex, vertices_[arcs_.target(arc)], arcs_.length(arc), sector * width - k_margin,
           (sector + 1) * width + k_margin};
-}
-
-void SaddleVertexGraph::fan(const SurfacePoint& point, WindowPropagator& propagator, std::vector<DirectArc>& arcs,
-                            FanWidth width) const {
-  // Vertices reach far where nothing stands between, a disk about a point does not. Measured on planes: between any two
-  // points the error is within the accuracy by twice the disk, and up to twice the accuracy by a simple one.
-  const double disks = width == FanWidth::as_accurate ? 2 : 1;
-  constexpr Index k_at_least = 32;
-  const auto as_dense = std::max(k_at_least, static_cast<Index>(disks * mean_degree()));
-  propagator.from_point(point, k_ > 0 ? k_ : std::min(as_dense, mesh_->vertex_count()), arcs);
 }
 
 }  // namespace saddleback

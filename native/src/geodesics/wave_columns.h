@@ -75,13 +75,16 @@ class ApexColumns : public WaveColumns<2, 4, 3> {
   }
 };
 
-class SightingColumns : public WaveColumns<2, 2, 4> {
+class SightingColumns : public WaveColumns<4, 2, 4> {
  public:
-  SightingRows rows() {
+  /// With the places of half-edges or without.
+  SightingRows rows(bool with_edges) {
     return {.x = real(0),
             .y = real(1),
             .back_x = single(0),
             .back_y = single(1),
+            .from_x = with_edges ? real(2) : nullptr,
+            .from_y = with_edges ? real(3) : nullptr,
             .slot = integer(0),
             .label = integer(1),
             .edge = integer(2),

@@ -21,7 +21,7 @@ void for_each_out(const Mesh& mesh, Index vertex, Use&& use) {
 }  // namespace
 
 WaveMesh::WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
-                   int sectors, int threads, const JobStage& stage) {
+                   int threads, const JobStage& stage) {
   const Mesh& mesh = unfolding.mesh();
   const auto edges = static_cast<std::size_t>(mesh.halfedge_count());
   unit_ = mesh.mean_edge_length();
@@ -41,17 +41,11 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std
   records_.resize(edges);
   targets_.resize(edges);
   lengths_.resize(edges);
-  sectors_.resize(edges);
-  reverse_sectors_.resize(edges);
-  apex_sectors_.resize(edges);
-  sectors_per_radian_.resize(vertices.size());
   saddles_.resize(vertices.size());
-  const auto per_radian = [&](Index vertex) { return sectors / mesh.total_angle(vertex); };
   const auto edge_behind = [&](Index h) { return mesh.twin(h) == k_none ? k_none : edge_of[mesh.twin(h)]; };
   parallel_for(count, threads, k_chunk, [&](Index node, int) {
     stage.check();
     const Index vertex = vertices[node];
-    sectors_per_radian_[node] = static_cast<float>(per_radian(vertex));
     saddles_[node] = mesh.is_saddle(vertex);
     for_each_out(mesh, vertex, [&](Index h) {
       const Index e = edge_of[h], apex = mesh.apex(h);
@@ -59,9 +53,35 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std
       records_[e] = {place.x(), place.y(), edge_behind(Mesh::prev(h)), edge_behind(Mesh::next(h)), nodes[apex], 0};
       targets_[e] = nodes[mesh.to(h)];
       lengths_[e] = mesh.length(h) / unit_;
+    });
+  });
+}
+
+Index WaveMesh::edge_between(Index from, Index to) const {
+  Index edge = begin(from);
+  while (edge < end(from) && target(edge) != to) ++edge;
+  return edge < end(from) ? edge : k_none;
+}
+
+WaveSectors::WaveSectors(const WaveMesh& waves, const Unfolding& unfolding, std::span<const Index> vertices,
+                         int sectors, int threads, const JobStage& stage) {
+  const Mesh& mesh = unfolding.mesh();
+  const auto edges = static_cast<std::size_t>(mesh.halfedge_count());
+  sectors_.resize(edges);
+  reverse_sectors_.resize(edges);
+  apex_sectors_.resize(edges);
+  per_radian_.resize(vertices.size());
+  const auto per_radian = [&](Index vertex) { return sectors / mesh.total_angle(vertex); };
+  parallel_for(waves.node_count(), threads, k_chunk, [&](Index node, int) {
+    stage.check();
+    const Index vertex = vertices[node];
+    per_radian_[node] = static_cast<float>(per_radian(vertex));
+    Index e = waves.begin(node);
+    for_each_out(mesh, vertex, [&](Index h) {
       sectors_[e] = static_cast<float>(unfolding.polar(h) * per_radian(vertex));
       reverse_sectors_[e] = static_cast<float>(unfolding.polar_of_reverse(h) * per_radian(mesh.to(h)));
-      apex_sectors_[e] = static_cast<float>(unfolding.polar(Mesh::prev(h)) * per_radian(apex));
+      apex_sectors_[e] = static_cast<float>(unfolding.polar(Mesh::prev(h)) * per_radian(mesh.apex(h)));
+      ++e;
     });
   });
 }

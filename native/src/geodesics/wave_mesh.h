@@ -12,12 +12,12 @@
 namespace saddleback {
 
 /// Half-edges out of one node are neighbours, counter-clockwise. Lengths are in units of the mean edge, so that
-/// single-precision bounds hold at any scale; directions are counted in sectors of the full angle about their vertex.
+/// single-precision bounds hold at any scale.
 class WaveMesh {
  public:
   /// `nodes` of the vertices and `vertices` of the nodes. \throw Cancelled.
-  WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int sectors,
-           int threads, const JobStage& stage);
+  WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+           const JobStage& stage);
 
   Index node_count() const { return static_cast<Index>(first_.size()) - 1; }
   Index begin(Index node) const { return first_[node]; }  ///< edges out of a node: [begin, end)
@@ -25,28 +25,40 @@ class WaveMesh {
   const EdgeRecord* records() const { return records_.data(); }
   double unit() const { return unit_; }
 
-  Index target(Index edge) const { return targets_[edge]; }                  ///< node that the edge leads to
-  double length(Index edge) const { return lengths_[edge]; }                 ///< in units
-  float sector(Index edge) const { return sectors_[edge]; }                  ///< direction of the edge at its origin
-  float reverse_sector(Index edge) const { return reverse_sectors_[edge]; }  ///< and at its target
-  float apex_sector(Index edge) const {
-    return apex_sectors_[edge];
-  }  ///< of the way from its face's apex to its origin
-  float sectors_per_radian(Index node) const { return sectors_per_radian_[node]; }
+  Index target(Index edge) const { return targets_[edge]; }   ///< node that the edge leads to
+  double length(Index edge) const { return lengths_[edge]; }  ///< in units
   bool is_saddle(Index node) const { return saddles_[node] != 0; }
   /// The edge's face, seen from the origin with the edge along x: its far corner in units.
   Vec2 apex(Index edge) const { return {records_[edge].a * lengths_[edge], records_[edge].b * lengths_[edge]}; }
   /// Behind the side opposite the edge's origin; -1 at the boundary.
   Index opposite(Index edge) const { return records_[edge].right; }
   bool has_left(Index edge) const { return records_[edge].left >= 0; }
+  /// The edge from one node to another. O(degree).
+  Index edge_between(Index from, Index to) const;
 
  private:
   std::vector<EdgeRecord> records_;
   std::vector<Index> first_, targets_;
   std::vector<double> lengths_;
-  std::vector<float> sectors_, reverse_sectors_, apex_sectors_, sectors_per_radian_;
   std::vector<std::uint8_t> saddles_;
   double unit_ = 1;
+};
+
+/// Directions of a WaveMesh's edges, counted in sectors of the full angle about their vertex.
+class WaveSectors {
+ public:
+  /// `vertices` of the nodes. \throw Cancelled.
+  WaveSectors(const WaveMesh& waves, const Unfolding& unfolding, std::span<const Index> vertices, int sectors,
+              int threads, const JobStage& stage);
+
+  float sector(Index edge) const { return sectors_[edge]; }                  ///< of the edge at its origin
+  float reverse_sector(Index edge) const { return reverse_sectors_[edge]; }  ///< and at its target
+  /// Of the way from its face's apex to its origin.
+  float apex_sector(Index edge) const { return apex_sectors_[edge]; }
+  float per_radian(Index node) const { return per_radian_[node]; }
+
+ private:
+  std::vector<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;
 };
 
 }  // namespace saddleback

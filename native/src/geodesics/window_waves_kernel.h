@@ -81,6 +81,10 @@ int sight(const WaveScene& scene, const WindowRows& w, int count, const ApexRows
     packing.store(seen.y + sightings, y);
     packing.store(seen.back_x + sightings, Simd::narrow(from_x - x));
     packing.store(seen.back_y + sightings, Simd::narrow(from_y - y));
+    if (seen.from_x) {
+      packing.store(seen.from_x + sightings, from_x);
+      packing.store(seen.from_y + sightings, from_y);
+    }
     packing.store(seen.edge + sightings, Simd::load(w.edge + i));
     packing.store(seen.root + sightings, Simd::load(w.root + i));
     sightings += packing.count();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "geodesics/direct_fans.h"
 #include "geodesics/label_propagation.h"
 #include "support/parallel.h"
 
@@ -72,13 +73,8 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, i
       fans_(sites.size()),
       places_(graph.mesh().vertex_count()),
       placed_(graph.mesh().vertex_count(), 0) {
-  std::vector<std::unique_ptr<WindowPropagator>> propagators(thread_count(threads));
-  parallel_for(site_count(), threads, 4, [&](Index site, int thread) {
-    stage.check();
-    if (!propagators[thread]) propagators[thread] = std::make_unique<WindowPropagator>(graph.unfolding());
-    make_fan(site, sites[site], *propagators[thread]);
-  });
-  stage.update(0.3);
+  for_each_fan(graph, sites, threads, stage.part(0, 0.3),
+               [&](Index site, std::span<const DirectArc> arcs) { make_fan(site, sites[site], arcs); });
   label_vertices(stage);
   group_vertices();
   stage.update(0.8);
@@ -92,13 +88,12 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, i
   stage.update(1);
 }
 
-void SiteMaps::make_fan(Index site, const SurfacePoint& point, WindowPropagator& propagator) {
+void SiteMaps::make_fan(Index site, const SurfacePoint& point, std::span<const DirectArc> arcs) {
   Fan& fan = fans_[site];
   fan.centre = vertex_at(mesh_, point);
   if (fan.centre != k_none) return make_fan_at_vertex(fan);
-  graph_.fan(point, propagator, fan.arcs);
+  fan.arcs.assign(arcs.begin(), arcs.end());
   for (DirectArc& arc : fan.arcs) arc.length = graph_.arcs().codec().round(arc.length);
-  sort_by_vertex(fan.arcs);
 }
 
 void SiteMaps::make_fan_at_vertex(Fan& fan) {

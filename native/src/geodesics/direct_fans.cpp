@@ -1,0 +1,168 @@
+#include "geodesics/direct_fans.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "saddleback/saddle_vertex_graph.h"
+
+#include "geodesics/graph_arcs.h"
+#include "geodesics/planar.h"
+#include "geodesics/query_cache.h"
+#include "support/parallel.h"
+
+namespace saddleback {
+namespace {
+
+// Points a thread takes at a time.
+constexpr Index k_chunk = 8 * k_batch;
+// In mean edges: a corner nearer than this has no direction in single precision, where its square is as good as zero.
+constexpr double k_nearest = 1e-18;
+
+bool is_vertex(const Mesh& mesh, const SurfacePoint& point) { return vertex_at(mesh, point) != k_none; }
+
+FaceSource face_source(const SaddleVertexGraph& graph, const WaveMesh& waves, const SurfacePoint& point) {
+  const Mesh& mesh = graph.mesh();
+  const FaceChart chart(mesh, point.face);
+  FaceSource source;
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3, last = (i + 2) % 3;
+    // From differences, so that the nearest corner lies in its true direction.
+    const Vec2 from_next = chart.corner[i] - chart.corner[next], from_last = chart.corner[i] - chart.corner[last];
+    Vec2 corner = (point.barycentric[next] * from_next + point.barycentric[last] * from_last) / waves.unit();
+    if (corner.norm() < k_nearest) corner = k_nearest * (from_next + from_last).normalized();
+    source.corner[i] = corner;
+    source.node[i] = graph.node_of(mesh.triangles()[point.face][i]);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Index from = source.node[i], to = source.node[(i + 1) % 3];
+    source.edge[i] = waves.edge_between(from, to);
+    source.entered[i] = waves.edge_between(to, from);
+  }
+  return source;
+}
+
+/// The half-edge out of a vertex whose face goes on to another one.
+Index halfedge_before(const Mesh& mesh, Index vertex, Index second) {
+  Index h = mesh.first_halfedge(vertex);
+  while (mesh.to(Mesh::next(h)) != second) h = mesh.rotate(h);
+  return h;
+}
+
+/// Direction, at the vertex of a sighting, back to the source.
+double end_angle(const SaddleVertexGraph& graph, const WaveMesh& waves, const SightingRows& rows, std::int32_t i) {
+  const Mesh& mesh = graph.mesh();
+  const Index vertex = graph.vertex_of(rows.slot[i] / k_batch);
+  const Index side = halfedge_before(mesh, vertex, graph.vertex_of(waves.target(rows.edge[i] / k_batch)));
+  const Vec2 place(rows.x[i], rows.y[i]), along = Vec2(rows.from_x[i], rows.from_y[i]) - place;
+  const double angle = std::atan2(cross(along, -place), along.dot(-place));
+  return graph.unfolding().polar(side) + std::clamp(angle, 0.0, mesh.corner_angle(side));
+}
+
+/// The exact graph's fans are no wider than rows of arcs need be: 32 vertices at least, twice as many as a vertex sees.
+Index exact_width(const SaddleVertexGraph& graph) {
+  constexpr Index k_at_least = 32;
+  return std::min(std::max(k_at_least, static_cast<Index>(2 * graph.mean_degree())), graph.mesh().vertex_count());
+}
+
+}  // namespace
+
+void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, DirectFans& fans,
+                           const JobStage& stage) {
+  for (std::size_t i = 0; i < points.size();) {
+    batch_.clear();
+    std::size_t end = i;
+    for (; end < points.size() && batch_.size() < k_batch; ++end)
+      if (!is_vertex(graph.mesh(), points[end])) batch_.push_back(end);
+    const bool together = !graph.is_exact() && see(graph, points, batch_, stage);
+    for (int lane = 0; i < end; ++i) {
+      stage.check();
+      if (lane < std::ssize(batch_) && batch_[lane] == i) {
+        if (graph.is_exact()) {
+          append_arcs(graph, points[i], fans.arcs);
+        } else {
+          // So many windows that all were stopped: alone each may need fewer.
+          if (!together) see(graph, points, Batch(batch_).subspan(lane, 1), stage);
+          append_arcs(graph, together ? lane : 0, fans.arcs);
+        }
+        ++lane;
+      }
+      fans.offsets.push_back(std::ssize(fans.arcs));
+    }
+  }
+}
+
+/// Whether all windows of a batch ran to their end.
+bool DirectFanFinder::see(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, Batch batch,
+                          const JobStage& stage) {
+  if (batch.empty()) return true;
+  if (!waves_) {
+    mesh_ = &graph.query_cache().wave_mesh(graph, 1, stage);
+    waves_ = std::make_unique<DiskFinder>(*mesh_, graph.kernel(), disk_rule(graph.k(), graph.accuracy()));
+  }
+  waves_->begin(DiskFinder::Sources::points);
+  int lane = 0;
+  for (const std::size_t i : batch) waves_->add_point(lane++, face_source(graph, *mesh_, points[i]));
+  return waves_->run(stage);
+}
+
+void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, std::vector<DirectArc>& arcs) {
+  const SightingRows rows = waves_->sightings();
+  row_.clear();
+  for (const std::int32_t i : waves_->choose(lane)) {
+    const Vec2 place(rows.x[i], rows.y[i]);
+    row_.push_back({graph.vertex_of(rows.slot[i] / k_batch), place.norm() * mesh_->unit(),
+                    std::atan2(place.y(), place.x()), end_angle(graph, *mesh_, rows, i)});
+  }
+  std::ranges::sort(row_, {}, &DirectArc::vertex);
+  arcs.insert(arcs.end(), row_.begin(), row_.end());
+}
+
+void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, const SurfacePoint& point,
+                                  std::vector<DirectArc>& arcs) {
+  if (!propagator_) propagator_ = std::make_unique<WindowPropagator>(graph.unfolding());
+  propagator_->from_point(point, exact_width(graph), row_);
+  std::ranges::sort(row_, {}, &DirectArc::vertex);
+  arcs.insert(arcs.end(), row_.begin(), row_.end());
+}
+
+FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
+                 const JobStage& stage) {
+  if (!graph.is_exact() &&
+      std::ranges::any_of(points, [&](const SurfacePoint& point) { return !is_vertex(graph.mesh(), point); }))
+    graph.query_cache().wave_mesh(graph, threads, stage);
+  for (int thread = 0; thread < thread_count(threads); ++thread)
+    finders_.push_back(graph.query_cache().fan_finders.lease());
+}
+
+void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
+                  const JobStage& stage, const UseFan& use) {
+  FanTeam team(graph, points, threads, stage);
+  const auto count = static_cast<Index>(points.size()), blocks = (count + k_chunk - 1) / k_chunk;
+  std::vector<DirectFans> found(thread_count(threads));
+  std::atomic<Index> done{0};
+  parallel_for(blocks, threads, 1, [&](Index block, int thread) {
+    const Index first = block * k_chunk, size = std::min(k_chunk, count - first);
+    DirectFans& fans = found[thread];
+    fans.clear();
+    team[thread].find(graph, points.subspan(first, size), fans, stage);
+    for (Index i = 0; i < size; ++i) use(first + i, fans[i]);
+    stage.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
+  });
+}
+
+DirectFans direct_fans(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
+                       const JobStage& stage) {
+  std::vector<std::vector<DirectArc>> rows(points.size());
+  for_each_fan(graph, points, threads, stage,
+               [&](Index i, std::span<const DirectArc> fan) { rows[i].assign(fan.begin(), fan.end()); });
+  DirectFans fans;
+  fans.offsets.reserve(points.size() + 1);
+  for (const auto& row : rows) {
+    fans.arcs.insert(fans.arcs.end(), row.begin(), row.end());
+    fans.offsets.push_back(std::ssize(fans.arcs));
+  }
+  return fans;
+}
+
+}  // namespace saddleback

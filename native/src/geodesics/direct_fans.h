@@ -1,0 +1,79 @@
+#pragma once
+// The arcs of points that are no vertices.
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/surface_points.h"
+
+#include "geodesics/disk_finder.h"
+#include "geodesics/window_propagation.h"
+#include "support/scratch_pool.h"
+
+namespace saddleback {
+
+class SaddleVertexGraph;
+
+/// Arcs from points to vertices, a row a point, in compressed sparse rows.
+struct DirectFans {
+  std::vector<std::int64_t> offsets{0};  ///< (n + 1,)
+  std::vector<DirectArc> arcs;           ///< each row by vertex
+
+  std::size_t size() const { return offsets.size() - 1; }
+  std::span<const DirectArc> operator[](std::size_t i) const {
+    return std::span(arcs).subspan(offsets[i], offsets[i + 1] - offsets[i]);
+  }
+  void clear() {
+    offsets.resize(1);
+    arcs.clear();
+  }
+};
+
+/// Finds fans by the rule that the graph's own arcs were found by: to the k nearest vertices, to those that no way over
+/// another serves within the accuracy or, for the exact graph, to twice as many as a vertex has. One a thread.
+class DirectFanFinder {
+ public:
+  /// Appends a row for every point: lengths as they are, not yet rounded as the graph's arcs are; nothing for a point
+  /// that is a vertex. What a point sees does not depend on the others. \throw Cancelled.
+  void find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, DirectFans& fans,
+            const JobStage& stage);
+
+ private:
+  using Batch = std::span<const std::size_t>;
+  bool see(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, Batch batch, const JobStage& stage);
+  void append_arcs(const SaddleVertexGraph& graph, int lane, std::vector<DirectArc>& arcs);
+  void append_arcs(const SaddleVertexGraph& graph, const SurfacePoint& point, std::vector<DirectArc>& arcs);
+
+  const WaveMesh* mesh_ = nullptr;
+  std::unique_ptr<DiskFinder> waves_;
+  std::unique_ptr<WindowPropagator> propagator_;  ///< for the exact graph
+  std::vector<std::size_t> batch_;
+  std::vector<DirectArc> row_;
+};
+
+/// Finders for the threads of one call, and what they share.
+class FanTeam {
+ public:
+  /// \throw Cancelled. O(V) at the first points that are no vertices.
+  FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads, const JobStage& stage);
+  DirectFanFinder& operator[](int thread) { return *finders_[thread]; }
+
+ private:
+  std::vector<ScratchPool<DirectFanFinder>::Lease> finders_;
+};
+
+/// Takes the fan of the point of an index. May be called by several threads at once.
+using UseFan = std::function<void(Index, std::span<const DirectArc>)>;
+/// Calls use(i, fan) once for every point; what it is called with is the same for any number of threads (0: all cores).
+/// \throw Cancelled.
+void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
+                  const JobStage& stage, const UseFan& use);
+
+/// All fans at once. \throw Cancelled.
+DirectFans direct_fans(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
+                       const JobStage& stage);
+
+}  // namespace saddleback

@@ -1,0 +1,51 @@
+#include "geodesics/disk_rows.h"
+
+#include <algorithm>
+
+namespace saddleback {
+namespace {
+
+int to_sector(float sector) { return std::clamp(static_cast<int>(sector), 0, ArcCodec::k_sectors - 1); }
+
+}  // namespace
+
+void DiskRows::find(Index first, Index count, FoundArcs& found, const JobStage& stage) {
+  finder_.begin(DiskFinder::Sources::nodes);
+  for (int lane = 0; lane < count; ++lane) finder_.add_node(lane, first + lane);
+  finder_.run(stage);
+  for (int lane = 0; lane < count; ++lane) write_row(first + lane, lane, found);
+}
+
+void DiskRows::write_row(Index node, int lane, FoundArcs& found) {
+  const SightingRows rows = finder_.sightings();
+  const std::span<const std::int32_t> chosen = finder_.choose(lane);
+  const std::size_t count = chosen.size(), room = count + k_row_padding;
+  found.counts.push_back(static_cast<std::int32_t>(count));
+  lengths_.resize(room);
+  leaving_.resize(room);
+  back_.resize(room);
+  kernel_.aim(rows, chosen.data(), static_cast<int>(count), lengths_.data(), leaving_.data(), back_.data());
+  const std::size_t before = found.words.size();
+  found.words.resize(before + count);
+  found.back_sectors.resize(found.words.size());
+  const float per_radian = sectors_.per_radian(node);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t sighting = chosen[i];
+    const Index target = rows.slot[sighting] / k_batch, root = rows.root[sighting];
+    float leaving, back;
+    if (!DiskFinder::is_link(root)) {
+      leaving = sectors_.sector(root) + leaving_[i] * per_radian;
+      back = sectors_.apex_sector(rows.edge[sighting] / k_batch) + back_[i] * sectors_.per_radian(target);
+    } else if (const auto [edge, other_side] = DiskFinder::link_of(rows, sighting); !other_side) {
+      leaving = sectors_.sector(edge);
+      back = sectors_.reverse_sector(edge);
+    } else {  // at the boundary
+      leaving = ArcCodec::k_sectors;
+      back = sectors_.apex_sector(edge);
+    }
+    found.words[before + i] = codec_.pack(target, to_sector(leaving), lengths_[i] * mesh_.unit());
+    found.back_sectors[before + i] = static_cast<std::uint8_t>(to_sector(back));
+  }
+}
+
+}  // namespace saddleback

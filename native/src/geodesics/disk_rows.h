@@ -1,0 +1,34 @@
+#pragma once
+// The arcs of a graph's nodes, packed.
+
+#include <vector>
+
+#include "geodesics/arc_symmetry.h"
+#include "geodesics/disk_finder.h"
+
+namespace saddleback {
+
+/// Writes what a DiskFinder sees as rows of arcs. One a thread.
+class DiskRows {
+ public:
+  DiskRows(const WaveMesh& mesh, const WaveSectors& sectors, const ArcCodec& codec, const WaveKernel& kernel,
+           const DiskRule& rule)
+      : mesh_(mesh), sectors_(sectors), codec_(codec), kernel_(kernel), finder_(mesh, kernel, rule) {}
+
+  /// Appends the arcs of nodes first to first + count - 1, at most k_batch. Mesh edges are always among them.
+  /// \throw Cancelled.
+  void find(Index first, Index count, FoundArcs& found, const JobStage& stage);
+
+ private:
+  void write_row(Index node, int lane, FoundArcs& found);
+
+  const WaveMesh& mesh_;
+  const WaveSectors& sectors_;
+  const ArcCodec& codec_;
+  const WaveKernel& kernel_;
+  DiskFinder finder_;
+  std::vector<double> lengths_;  ///< of a row
+  std::vector<float> leaving_, back_;
+};
+
+}  // namespace saddleback
