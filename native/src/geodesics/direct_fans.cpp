@@ -14,6 +14,8 @@
 namespace saddleback {
 namespace {
 
+// Of the time that one fan takes, for each vertex of the mesh.
+constexpr double k_wave_mesh_cost = 1.0 / 60;
 // Points a thread takes at a time.
 constexpr Index k_chunk = 8 * k_batch;
 // In mean edges: a corner nearer than this has no direction in single precision, where its square is as good as zero.
@@ -65,10 +67,21 @@ Index exact_width(const SaddleVertexGraph& graph) {
   return std::min(std::max(k_at_least, static_cast<Index>(2 * graph.mean_degree())), graph.mesh().vertex_count());
 }
 
+/// Points side by side in memory, as the nodes are.
+std::vector<Index> order_of_nodes(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points) {
+  std::vector<std::pair<Index, Index>> entries(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    entries[i] = {graph.node_of(graph.mesh().triangles()[points[i].face][0]), static_cast<Index>(i)};
+  std::ranges::sort(entries);
+  std::vector<Index> order(points.size());
+  std::ranges::transform(entries, order.begin(), &std::pair<Index, Index>::second);
+  return order;
+}
+
 }  // namespace
 
-void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, DirectFans& fans,
-                           const JobStage& stage) {
+void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles,
+                           DirectFans& fans, const JobStage& stage) {
   for (std::size_t i = 0; i < points.size();) {
     batch_.clear();
     std::size_t end = i;
@@ -83,7 +96,7 @@ void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const Surfa
         } else {
           // So many windows that all were stopped: alone each may need fewer.
           if (!together) see(graph, points, Batch(batch_).subspan(lane, 1), stage);
-          append_arcs(graph, together ? lane : 0, fans.arcs);
+          append_arcs(graph, together ? lane : 0, angles, fans.arcs);
         }
         ++lane;
       }
@@ -106,13 +119,18 @@ bool DirectFanFinder::see(const SaddleVertexGraph& graph, std::span<const Surfac
   return waves_->run(stage);
 }
 
-void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, std::vector<DirectArc>& arcs) {
+void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, FanAngles angles,
+                                  std::vector<DirectArc>& arcs) {
   const SightingRows rows = waves_->sightings();
   row_.clear();
   for (const std::int32_t i : waves_->choose(lane)) {
     const Vec2 place(rows.x[i], rows.y[i]);
-    row_.push_back({graph.vertex_of(rows.slot[i] / k_batch), place.norm() * mesh_->unit(),
-                    std::atan2(place.y(), place.x()), end_angle(graph, *mesh_, rows, i)});
+    DirectArc arc{graph.vertex_of(rows.slot[i] / k_batch), place.norm() * mesh_->unit(), 0, 0};
+    if (angles == FanAngles::both) {
+      arc.start_angle = std::atan2(place.y(), place.x());
+      arc.end_angle = end_angle(graph, *mesh_, rows, i);
+    }
+    row_.push_back(arc);
   }
   std::ranges::sort(row_, {}, &DirectArc::vertex);
   arcs.insert(arcs.end(), row_.begin(), row_.end());
@@ -126,6 +144,10 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, const SurfaceP
   arcs.insert(arcs.end(), row_.begin(), row_.end());
 }
 
+double fans_a_wave_mesh_costs(const SaddleVertexGraph& graph) {
+  return graph.query_cache().has_wave_mesh() ? 0 : k_wave_mesh_cost * graph.mesh().vertex_count();
+}
+
 FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
                  const JobStage& stage) {
   if (!graph.is_exact() &&
@@ -135,26 +157,36 @@ FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> p
     finders_.push_back(graph.query_cache().fan_finders.lease());
 }
 
-void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
+void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles, int threads,
                   const JobStage& stage, const UseFan& use) {
-  FanTeam team(graph, points, threads, stage);
+  const double of_mesh = graph.is_exact() ? 0 : fans_a_wave_mesh_costs(graph);
+  const double before = of_mesh > 0 ? of_mesh / (of_mesh + static_cast<double>(points.size())) : 0;
+  FanTeam team(graph, points, threads, stage.part(0, before));
+  const JobStage finding = stage.part(before, 1);
+  const std::vector<Index> order = order_of_nodes(graph, points);
   const auto count = static_cast<Index>(points.size()), blocks = (count + k_chunk - 1) / k_chunk;
-  std::vector<DirectFans> found(thread_count(threads));
+  struct Work {
+    std::vector<SurfacePoint> points;
+    DirectFans fans;
+  };
+  std::vector<Work> works(thread_count(threads));
   std::atomic<Index> done{0};
   parallel_for(blocks, threads, 1, [&](Index block, int thread) {
-    const Index first = block * k_chunk, size = std::min(k_chunk, count - first);
-    DirectFans& fans = found[thread];
+    auto& [own, fans] = works[thread];
+    const std::span chosen = std::span(order).subspan(block * k_chunk, std::min(k_chunk, count - block * k_chunk));
+    own.clear();
     fans.clear();
-    team[thread].find(graph, points.subspan(first, size), fans, stage);
-    for (Index i = 0; i < size; ++i) use(first + i, fans[i]);
-    stage.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
+    for (const Index i : chosen) own.push_back(points[i]);
+    team[thread].find(graph, own, angles, fans, stage);
+    for (std::size_t i = 0; i < chosen.size(); ++i) use(chosen[i], fans[i]);
+    finding.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
   });
 }
 
 DirectFans direct_fans(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
                        const JobStage& stage) {
   std::vector<std::vector<DirectArc>> rows(points.size());
-  for_each_fan(graph, points, threads, stage,
+  for_each_fan(graph, points, FanAngles::both, threads, stage,
                [&](Index i, std::span<const DirectArc> fan) { rows[i].assign(fan.begin(), fan.end()); });
   DirectFans fans;
   fans.offsets.reserve(points.size() + 1);

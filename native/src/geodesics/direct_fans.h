@@ -32,19 +32,22 @@ struct DirectFans {
   }
 };
 
+/// Whether the angles of arcs are wanted, which are as much work as all else about an arc.
+enum class FanAngles { none, both };
+
 /// Finds fans by the rule that the graph's own arcs were found by: to the k nearest vertices, to those that no way over
 /// another serves within the accuracy or, for the exact graph, to twice as many as a vertex has. One a thread.
 class DirectFanFinder {
  public:
   /// Appends a row for every point: lengths as they are, not yet rounded as the graph's arcs are; nothing for a point
   /// that is a vertex. What a point sees does not depend on the others. \throw Cancelled.
-  void find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, DirectFans& fans,
+  void find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles, DirectFans& fans,
             const JobStage& stage);
 
  private:
   using Batch = std::span<const std::size_t>;
   bool see(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, Batch batch, const JobStage& stage);
-  void append_arcs(const SaddleVertexGraph& graph, int lane, std::vector<DirectArc>& arcs);
+  void append_arcs(const SaddleVertexGraph& graph, int lane, FanAngles angles, std::vector<DirectArc>& arcs);
   void append_arcs(const SaddleVertexGraph& graph, const SurfacePoint& point, std::vector<DirectArc>& arcs);
 
   const WaveMesh* mesh_ = nullptr;
@@ -53,6 +56,9 @@ class DirectFanFinder {
   std::vector<std::size_t> batch_;
   std::vector<DirectArc> row_;
 };
+
+/// How many fans could be found in the time that the first ones wait for what all need; 0 when that is there.
+double fans_a_wave_mesh_costs(const SaddleVertexGraph& graph);
 
 /// Finders for the threads of one call, and what they share.
 class FanTeam {
@@ -67,12 +73,12 @@ class FanTeam {
 
 /// Takes the fan of the point of an index. May be called by several threads at once.
 using UseFan = std::function<void(Index, std::span<const DirectArc>)>;
-/// Calls use(i, fan) once for every point; what it is called with is the same for any number of threads (0: all cores).
-/// \throw Cancelled.
-void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
+/// Calls use(i, fan) once for every point, in no particular order; what it is called with is the same for any number of
+/// threads (0: all cores). \throw Cancelled.
+void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles, int threads,
                   const JobStage& stage, const UseFan& use);
 
-/// All fans at once. \throw Cancelled.
+/// All fans at once, with their angles. \throw Cancelled.
 DirectFans direct_fans(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
                        const JobStage& stage);
 

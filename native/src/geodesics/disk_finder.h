@@ -77,6 +77,7 @@ class DiskFinder {
   void add_link(std::int32_t slot, const Vec2& place, const Vec2& from, std::int32_t edge, std::int32_t root);
   void add_window(int lane, const FirstWindow& window);
   void advance();
+  void fetch_records(const std::int32_t* edges, int count) const;
   void lower_labels(int from, int to);
   bool is_kept(std::int32_t slot) const;
 

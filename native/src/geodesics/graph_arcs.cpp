@@ -103,8 +103,9 @@ std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, 
                              "built for (",
                              std::numeric_limits<std::int32_t>::max() / k_batch / 3, ")"));
   }
-  const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, search.threads, stage);
-  const WaveSectors sectors(mesh, search.unfolding, search.vertices, ArcCodec::k_sectors, search.threads, stage);
+  const JobStage tables = stage.part(0, 0);
+  const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, search.threads, tables);
+  const WaveSectors sectors(mesh, search.unfolding, search.vertices, ArcCodec::k_sectors, search.threads, tables);
   std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
   return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread) {
     if (!finders[thread])

@@ -127,10 +127,12 @@ std::vector<double> SaddleVertexGraph::distances_to(const QuerySources& sources,
   const JobStage stage(job, "Measuring distances to points");
   check(*this, sources);
   check_surface_points(*mesh_, targets, "targets");
-  const double source_cost = cost_of_fans(*this, sources), target_cost = cost_of_fans(*this, targets);
+  const double source_cost = cost_of_fans(*this, sources);
+  const double target_cost = cost_of_fans(*this, targets, source_cost > 0 ? FirstFans::later : FirstFans::maybe);
   // The more sources near a target, the more straight ways there are to try.
-  constexpr double k_cost_of_sight = 0.05;
-  const double sight_cost = k_cost_of_sight * cost_of_fans(*this, sources.points) * target_cost / mesh_->vertex_count();
+  constexpr double k_cost_of_sight = 1e4;
+  const double sight_cost = k_cost_of_sight * static_cast<double>(sources.points.size()) *
+                            static_cast<double>(targets.size()) / mesh_->vertex_count();
   const double all = source_cost + target_cost + mesh_->vertex_count() + sight_cost;
   const double half = source_cost / all, most = (source_cost + target_cost) / all;
   const double searched = 1 - sight_cost / all;

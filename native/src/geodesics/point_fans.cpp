@@ -15,8 +15,8 @@ namespace {
 // seen from the vertex in it whose ray passes nearest, by a detour the smaller the more vertices there are: twice the
 // strip leaves the mean error as it is.
 constexpr double k_edges_an_arc = 0.15;
-// Nodes that a search expands while a fan is found.
-constexpr double k_cost_of_point = 700, k_cost_of_strip_vertex = 15;
+// Nodes that a search expands while a fan is found: of a point by waves and one by one, of a curve.
+constexpr double k_cost_of_point = 100, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 15;
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
@@ -72,7 +72,7 @@ PointFan point_fan(const SaddleVertexGraph& graph, const SurfacePoint& point, st
 std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, const JobStage& stage,
                                 const FanOptions& options) {
   std::vector<PointFan> fans(points.size());
-  for_each_fan(graph, points, options.threads, stage,
+  for_each_fan(graph, points, FanAngles::none, options.threads, stage,
                [&](Index i, std::span<const DirectArc> arcs) { fans[i] = point_fan(graph, points[i], arcs); });
   return fans;
 }
@@ -107,10 +107,12 @@ SourceFans find_fans(const SaddleVertexGraph& graph, const QuerySources& sources
   return result;
 }
 
-double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points) {
+double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, FirstFans first) {
   const auto inside = std::ranges::count_if(
       points, [&](const SurfacePoint& point) { return vertex_at(graph.mesh(), point) == k_none; });
-  return k_cost_of_point * static_cast<double>(inside);
+  if (graph.is_exact()) return k_cost_of_exact_point * static_cast<double>(inside);
+  const double of_mesh = inside > 0 && first == FirstFans::maybe ? fans_a_wave_mesh_costs(graph) : 0;
+  return k_cost_of_point * (static_cast<double>(inside) + of_mesh);
 }
 
 double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources) {

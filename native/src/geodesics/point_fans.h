@@ -58,9 +58,11 @@ struct SourceFans {
 SourceFans find_fans(const SaddleVertexGraph& graph, const QuerySources& sources, const JobStage& stage,
                      const FanOptions& options);
 
-/// What the fans of these sources cost, as a number of nodes that a search expands in the time.
+/// What the fans of these sources cost, as a number of nodes that a search expands in the time. The first of points may
+/// have to wait for what all need, unless others come before them.
+enum class FirstFans { maybe, later };
 double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources);
-double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points);
+double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, FirstFans first = FirstFans::maybe);
 
 /// Each fan's arcs as seeds of its own source.
 std::vector<Seed> seeds_of(std::span<const PointFan> fans);

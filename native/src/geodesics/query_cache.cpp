@@ -28,6 +28,7 @@ const WaveMesh& QueryCache::wave_mesh(const SaddleVertexGraph& graph, int thread
   const auto lock = wait_for(wave_mesh_mutex_, stage);
   if (!wave_mesh_)
     wave_mesh_ = std::make_unique<WaveMesh>(graph.unfolding(), graph.nodes(), graph.vertices(), threads, stage);
+  has_wave_mesh_ = true;
   return *wave_mesh_;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // What queries of one graph keep for the next query.
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 
@@ -24,11 +25,13 @@ struct QueryCache {
   const Landmarks& landmarks(const SaddleVertexGraph& graph, const JobStage& stage);
   /// The same for what fans of points are found with.
   const WaveMesh& wave_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage);
+  bool has_wave_mesh() const { return has_wave_mesh_; }
 
  private:
   std::timed_mutex landmarks_mutex_, wave_mesh_mutex_;
   std::unique_ptr<Landmarks> landmarks_;
   std::unique_ptr<WaveMesh> wave_mesh_;
+  std::atomic<bool> has_wave_mesh_{false};
 };
 
 }  // namespace saddleback

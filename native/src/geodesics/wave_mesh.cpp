@@ -32,12 +32,14 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std
     for_each_out(mesh, vertices[node], [&](Index) { ++first_[node + 1]; });
   });
   for (Index node = 0; node < count; ++node) first_[node + 1] += first_[node];
+  stage.update(0.2);
   std::vector<Index> edge_of(edges);
   parallel_for(count, threads, k_chunk, [&](Index node, int) {
     stage.check();
     Index next = first_[node];
     for_each_out(mesh, vertices[node], [&](Index h) { edge_of[h] = next++; });
   });
+  stage.update(0.4);
   records_.resize(edges);
   targets_.resize(edges);
   lengths_.resize(edges);

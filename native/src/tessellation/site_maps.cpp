@@ -73,7 +73,7 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, i
       fans_(sites.size()),
       places_(graph.mesh().vertex_count()),
       placed_(graph.mesh().vertex_count(), 0) {
-  for_each_fan(graph, sites, threads, stage.part(0, 0.3),
+  for_each_fan(graph, sites, FanAngles::both, threads, stage.part(0, 0.3),
                [&](Index site, std::span<const DirectArc> arcs) { make_fan(site, sites[site], arcs); });
   label_vertices(stage);
   group_vertices();
