@@ -91,13 +91,20 @@ def draw_progress(layout: bpy.types.UILayout, manager: bpy.types.WindowManager) 
 
 def write_corners(mesh: bpy.types.Mesh, triangles: NDArray[np.int32]) -> None:
     """Gives a mesh that has vertices but no faces yet its (T, 3) triangles; edges come with `mesh.update`."""
-    count = len(triangles)
-    mesh.loops.add(3 * count)
-    mesh.polygons.add(count)
-    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(triangles, np.int32).ravel())
-    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
+    write_polygons(mesh, triangles.ravel(), np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int32))
+
+
+def write_polygons(mesh: bpy.types.Mesh, corners: NDArray[np.int32], offsets: NDArray[np.int32]) -> None:
+    """Gives a mesh that has vertices but no faces yet its polygons; edges come with `mesh.update`.
+
+    Polygon i of p has the vertices corners[offsets[i]:offsets[i + 1]].
+    """
+    mesh.loops.add(len(corners))
+    mesh.polygons.add(len(offsets) - 1)
+    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(corners, np.int32))
+    mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(offsets[:-1], np.int32))
     if not mesh.bl_rna.properties["polygons"].fixed_type.properties["loop_total"].is_readonly:
-        mesh.polygons.foreach_set("loop_total", np.full(count, 3, np.int32))
+        mesh.polygons.foreach_set("loop_total", np.diff(offsets).astype(np.int32))
 
 
 def shade_smooth_by_angle(mesh: bpy.types.Mesh, angle: float) -> None:
@@ -182,3 +189,24 @@ def in_order_of_selection(mesh: bpy.types.Mesh, vertices: NDArray[np.int32]) -> 
         loaded.free()
     is_known = len(history) == len(vertices) and set(history) == set(vertices.tolist())
     return np.array(history, np.int32) if is_known else vertices
+
+
+def make_keys_linear(item: bpy.types.Object) -> None:
+    """Straight lines between the keyframes of an object. From 4.4 on an action's curves belong to slots."""
+    data = item.animation_data
+    if hasattr(data.action, "fcurves"):
+        curves = data.action.fcurves
+    else:
+        curves = data.action.layers[0].strips[0].channelbag(data.action_slot).fcurves
+    for curve in curves:
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+
+
+def move_modifier_first(item: bpy.types.Object, modifier: bpy.types.Modifier) -> None:
+    """Puts a modifier before all others; `modifiers.move` comes with 3.5."""
+    if hasattr(item.modifiers, "move"):
+        item.modifiers.move(item.modifiers.find(modifier.name), 0)
+        return
+    with bpy.context.temp_override(object=item):
+        bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=0)

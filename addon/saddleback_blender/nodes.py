@@ -10,12 +10,14 @@ from . import compat
 
 MARK = "saddleback_made"  # custom property: which of the things below a data-block is
 
-TUBES, INSTANCES = "tubes", "instances"
+TUBES, INSTANCES, SWEEP = "tubes", "instances", "sweep"
 CELLS, EDGES, PATHS = "cells", "edges", "paths"
 
 SIZE_ATTRIBUTE = "saddleback_size"
 ROTATION_ATTRIBUTE = "saddleback_rotation"
 COLOR_ATTRIBUTE = "saddleback_color"
+# Radii of a sweep circle from which on, and until which, a vertex is shown.
+FROM_ATTRIBUTE, UNTIL_ATTRIBUTE = "saddleback_from", "saddleback_until"
 
 
 def is_ours(block: bpy.types.ID) -> bool:
@@ -69,13 +71,20 @@ def set_instances(item: bpy.types.Object, instance: bpy.types.Object | None, sca
     return modifier
 
 
+def set_sweep(item: bpy.types.Object, circle: bpy.types.Object, draws_circle: bool) -> bpy.types.Modifier:
+    """Shows of the object's vertices those whose time has come, by the scale of a circle of radius 1.
+
+    With `draws_circle` the circle itself is shown, too, about the object's origin.
+    """
+    return _add_first(item, "Saddleback Sweep", _new_sweep_group(circle, draws_circle))
+
+
 def _add_first(item: bpy.types.Object, name: str, group: bpy.types.NodeTree) -> bpy.types.Modifier:
     """Adds our modifier before those of the artist, which expect its result."""
     modifier = item.modifiers.new(name, "NODES")
     modifier.node_group = group
-    while item.modifiers[0] != modifier:
-        position = item.modifiers.find(modifier.name)
-        item.modifiers.move(position, position - 1)
+    if item.modifiers[0] != modifier:
+        compat.move_modifier_first(item, modifier)
     return modifier
 
 
@@ -187,6 +196,51 @@ def _new_instances_group() -> bpy.types.NodeTree:
     link(scaled.outputs["Value"], placed.inputs["Scale"])
     link(placed.outputs["Instances"], sink.inputs["Geometry"])
     _place((source, rotation, size), (points, info, scaled), placed, sink)
+    return group
+
+
+def _new_sweep_group(circle: bpy.types.Object, draws_circle: bool) -> bpy.types.NodeTree:
+    """Keyframes of the circle's scale drive everything: an artist may move them."""
+    group, source, sink = _new_group("Saddleback Sweep", SWEEP)
+    nodes, link = group.nodes, group.links.new
+
+    info = nodes.new("GeometryNodeObjectInfo")
+    info.inputs["Object"].default_value = circle
+    radius = nodes.new("ShaderNodeSeparateXYZ")
+    begin, end = nodes.new("GeometryNodeInputNamedAttribute"), nodes.new("GeometryNodeInputNamedAttribute")
+    is_early, is_late = nodes.new("FunctionNodeCompare"), nodes.new("FunctionNodeCompare")
+    for node, attribute, compare, operation in (
+        (begin, FROM_ATTRIBUTE, is_early, "GREATER_THAN"),
+        (end, UNTIL_ATTRIBUTE, is_late, "LESS_EQUAL"),
+    ):
+        node.data_type = "FLOAT"
+        node.inputs["Name"].default_value = attribute
+        compare.data_type, compare.operation = "FLOAT", operation
+        compared = {socket.name: socket for socket in compare.inputs if socket.enabled}
+        link(_attribute_output(node), compared["A"])
+        link(radius.outputs["X"], compared["B"])
+    either = nodes.new("FunctionNodeBooleanMath")
+    either.operation = "OR"
+    hidden = nodes.new("GeometryNodeDeleteGeometry")
+    link(info.outputs["Scale"], radius.inputs[0])
+    link(is_early.outputs["Result"], either.inputs[0])
+    link(is_late.outputs["Result"], either.inputs[1])
+    link(source.outputs["Geometry"], hidden.inputs["Geometry"])
+    link(either.outputs["Boolean"], hidden.inputs["Selection"])
+    shown = hidden.outputs["Geometry"]
+    if draws_circle:
+        drawn, edges = nodes.new("GeometryNodeCurvePrimitiveCircle"), nodes.new("GeometryNodeCurveToMesh")
+        drawn.inputs["Resolution"].default_value = 256
+        joined = nodes.new("GeometryNodeJoinGeometry")
+        link(radius.outputs["X"], drawn.inputs["Radius"])
+        link(drawn.outputs["Curve"], edges.inputs["Curve"])
+        link(edges.outputs["Mesh"], joined.inputs["Geometry"])
+        link(shown, joined.inputs["Geometry"])
+        shown = joined.outputs["Geometry"]
+        drawn.location, edges.location, joined.location = (660, -440), (880, -440), (1100, 0)
+    link(shown, sink.inputs["Geometry"])
+    _place((source, info), (begin, end, radius), (is_early, is_late), either, hidden)
+    sink.location = (1320, 0)
     return group
 
 

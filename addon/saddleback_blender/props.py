@@ -8,14 +8,15 @@ from typing import Any, TypeVar
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
-from .core.settings import DistanceSettings, PathSettings, RepairSettings, TessellateSettings
+from .core.settings import DistanceSettings, PathSettings, RepairSettings, TessellateSettings, Voronoi2dSettings
 
-Settings = TypeVar("Settings", TessellateSettings, DistanceSettings, PathSettings, RepairSettings)
+Settings = TypeVar("Settings", TessellateSettings, DistanceSettings, PathSettings, Voronoi2dSettings, RepairSettings)
 
 # An operator names objects by strings, so that scripts and presets can; the object itself keeps pointers, which survive
 # renaming. These names are pointers on the object and strings on the operator.
 OBJECT_NAMES = ("sites_object", "instance_object", "sources_object")
 COLLECTION_NAMES = ("sources_collection", "points_collection")
+IMAGE_NAMES = ("image_name",)
 
 SITES_SOURCES = (
     ("COUNT", "Count", "Place this many sites, by the density"),
@@ -60,6 +61,17 @@ PATH_CONNECTIONS = (
 ISOLINES_BY = (
     ("COUNT", "Count", "So many lines between the sources and the farthest point"),
     ("SPACING", "Spacing", "A line at every multiple of a distance"),
+)
+SPACES = (
+    ("OUTLINE", "Outline", "The plane of a flat mesh, within its outline and around its holes"),
+    ("UV", "UV Map", "The plane of a UV map; cells and edges are brought back to the surface"),
+    ("DISK", "Disk", "A disk that the surface is laid into; for surfaces with one border and without a UV map"),
+)
+PLANE_SITES = (
+    ("COUNT", "Count", "Place this many sites evenly on the surface"),
+    SITES_SOURCES[1],
+    SITES_SOURCES[2],
+    ("IMAGE", "Image", "Place this many sites by how dark an image is: stippling"),
 )
 QUALITIES = (
     ("FAST", "Fast", "Distances at most 2 % too long"),
@@ -219,16 +231,65 @@ PATH: dict[str, Any] = {
     "lift": _length("Lift", "How far the paths run above the surface", 0.0),
 }
 
+VORONOI_2D: dict[str, Any] = {
+    "space": _choice("Space", "The plane that the diagram is made in", SPACES, "OUTLINE"),
+    "uv_name": _name("UV Map", "The UV map; empty means the active one"),
+    "sites_source": _choice("Sites", "Where the cells' sites come from", PLANE_SITES, "COUNT"),
+    "count": TESSELLATE["count"],
+    "seed": TESSELLATE["seed"],
+    "sites_object": TESSELLATE["sites_object"],
+    "image_name": _name("Image", "Sites are close together where it is dark; it fills the outline or the UV square"),
+    "image_invert": _switch("Invert", "Sites are close together where the image is light", False),
+    "weights_name": _name("Weights", "A number attribute of the sites' vertices: cells of heavier sites are larger"),
+    "iterations": IntProperty(
+        name="Iterations",
+        description="Steps that make the cells even, or follow the image; 0 leaves the sites where they are",
+        default=0,
+        min=0,
+        soft_max=200,
+        options={"SKIP_SAVE"},
+    ),
+    "use_modifiers": _use_modifiers(),
+    "make_edges": TESSELLATE["make_edges"],
+    "edge_kind": TESSELLATE["edge_kind"],
+    "edge_radius": TESSELLATE["edge_radius"],
+    "make_cells": _switch("Cells", "Make a mesh of the cells", True),
+    "gap": TESSELLATE["gap"],
+    "inset": TESSELLATE["inset"],
+    "thickness": TESSELLATE["thickness"],
+    "underside": TESSELLATE["underside"],
+    "make_centres": _switch("Centres", "Make an object of points at the sites", False),
+    "instance_object": TESSELLATE["instance_object"],
+    "instance_scale": TESSELLATE["instance_scale"],
+    "animate": _switch("Animate", "Make a sweep circle that grows and uncovers the edges, frame by frame", False),
+    "frame_start": IntProperty(
+        name="Start", description="Frame in which the sweep begins", default=1, options={"SKIP_SAVE"}
+    ),
+    "frame_end": IntProperty(
+        name="End", description="Frame in which all edges are there", default=120, options={"SKIP_SAVE"}
+    ),
+}
+
 REPAIR: dict[str, Any] = {
     "weld_distance": _length("Weld Distance", "Join vertices closer than this; 0 joins those at the same place", 0.0),
 }
 
-PROPERTIES = {"tessellate": TESSELLATE, "distance": DISTANCE, "path": PATH, "repair": REPAIR}
+PROPERTIES = {
+    "tessellate": TESSELLATE,
+    "distance": DISTANCE,
+    "path": PATH,
+    "voronoi_2d": VORONOI_2D,
+    "repair": REPAIR,
+}
 
 
 def _kept(properties: dict[str, Any]) -> dict[str, Any]:
-    """The same properties for an object to keep: named objects and collections become pointers."""
-    pointers = dict.fromkeys(OBJECT_NAMES, bpy.types.Object) | dict.fromkeys(COLLECTION_NAMES, bpy.types.Collection)
+    """The same properties for an object to keep: named objects, collections and images become pointers."""
+    pointers = (
+        dict.fromkeys(OBJECT_NAMES, bpy.types.Object)
+        | dict.fromkeys(COLLECTION_NAMES, bpy.types.Collection)
+        | dict.fromkeys(IMAGE_NAMES, bpy.types.Image)
+    )
     kept = {}
     for name, prop in properties.items():
         if name in pointers:
@@ -258,6 +319,12 @@ class SaddlebackPathProps(bpy.types.PropertyGroup):
     __annotations__ = _kept(PATH)
 
 
+class SaddlebackVoronoi2dProps(bpy.types.PropertyGroup):
+    """Settings of `saddleback.voronoi_2d`."""
+
+    __annotations__ = _kept(VORONOI_2D)
+
+
 class SaddlebackRepairProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.repair`."""
 
@@ -271,6 +338,7 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
         "tessellate": PointerProperty(type=SaddlebackTessellateProps),
         "distance": PointerProperty(type=SaddlebackDistanceProps),
         "path": PointerProperty(type=SaddlebackPathProps),
+        "voronoi_2d": PointerProperty(type=SaddlebackVoronoi2dProps),
         "repair": PointerProperty(type=SaddlebackRepairProps),
     }
 
@@ -279,6 +347,7 @@ CLASSES = (
     SaddlebackTessellateProps,
     SaddlebackDistanceProps,
     SaddlebackPathProps,
+    SaddlebackVoronoi2dProps,
     SaddlebackRepairProps,
     SaddlebackObjectProps,
 )
@@ -295,7 +364,7 @@ def fill_operator(operator: bpy.types.Operator, source: bpy.types.Object, settin
     for name in PROPERTIES[settings_name]:
         if not operator.properties.is_property_set(name) and group.is_property_set(name):
             value = getattr(group, name)
-            if name in OBJECT_NAMES + COLLECTION_NAMES:
+            if name in OBJECT_NAMES + COLLECTION_NAMES + IMAGE_NAMES:
                 value = value.name if value is not None else ""
             setattr(operator, name, value)
 
@@ -308,6 +377,8 @@ def keep_settings(settings: Settings, group: bpy.types.PropertyGroup) -> None:
             value = bpy.data.objects.get(value)
         elif field.name in COLLECTION_NAMES:
             value = bpy.data.collections.get(value)
+        elif field.name in IMAGE_NAMES:
+            value = bpy.data.images.get(value)
         # Default values stay unset, so that an object carries no more than what was chosen for it.
         if getattr(group, field.name) != value:
             setattr(group, field.name, value)

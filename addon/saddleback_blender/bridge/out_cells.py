@@ -6,12 +6,13 @@ import math
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from .. import compat, nodes
 from ..core.cell_colors import cell_colors
 from ..core.cell_mesh import CellMesh, CellShape, build_cell_mesh
-from ..core.results import CellsResult
-from ..core.settings import TessellateSettings
+from ..core.results import CellsResult, FlatCells
+from ..core.settings import TessellateSettings, Voronoi2dSettings
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
 
@@ -24,7 +25,11 @@ CREASE_ANGLE = math.radians(30.0)
 
 
 def write_cells(
-    context: bpy.types.Context, source: bpy.types.Object, result: CellsResult, settings: TessellateSettings
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: CellsResult,
+    settings: TessellateSettings | Voronoi2dSettings,
+    role: str = CELLS_ROLE,
 ) -> bpy.types.Object:
     """Makes or replaces the source's cells object; gap, inset and thickness are in world units."""
     shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
@@ -32,9 +37,22 @@ def write_cells(
     colors = cell_colors(len(result.sites_position), result.edge_cells)
     place = level_place(source)
     mesh = _mesh(to_place(place, cells.vertices), cells, colors)
-    mesh.materials.append(nodes.cells_material())
-    item = replace_object(context, source, CELLS_ROLE, mesh, place)
+    item = _shown(context, source, role, mesh, place)
     item[VANISHED] = len(cells.vanished)
+    return item
+
+
+def write_flat_cells(
+    context: bpy.types.Context, source: bpy.types.Object, cells: FlatCells, count: int, role: str
+) -> bpy.types.Object:
+    """Makes or replaces the source's cells object: one polygon a cell, or one for each part that the border leaves."""
+    place = level_place(source)
+    mesh = _new_mesh(to_place(place, cells.vertices))
+    compat.write_polygons(mesh, cells.corners, cells.offsets)
+    colors = cell_colors(count, cells.edge_cells)
+    _mark_cells(mesh, cells.polygon_cell, np.diff(cells.offsets), colors)
+    item = _shown(context, source, role, mesh, place)
+    item[VANISHED] = 0
     return item
 
 
@@ -44,16 +62,33 @@ def vanished_cells(item: bpy.types.Object) -> int:
 
 
 def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray) -> bpy.types.Mesh:
+    mesh = _new_mesh(positions)
+    compat.write_corners(mesh, cells.triangles)
+    _mark_cells(mesh, cells.triangle_cell, np.full(len(cells.triangles), 3), colors)
+    compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
+    return mesh
+
+
+def _new_mesh(positions: np.ndarray) -> bpy.types.Mesh:
     mesh = bpy.data.meshes.new("Saddleback Cells")
     mesh.vertices.add(len(positions))
     mesh.vertices.foreach_set("co", positions.astype(np.float32).ravel())
-    compat.write_corners(mesh, cells.triangles)
+    return mesh
+
+
+def _shown(
+    context: bpy.types.Context, source: bpy.types.Object, role: str, mesh: bpy.types.Mesh, place: Matrix
+) -> bpy.types.Object:
+    mesh.materials.append(nodes.cells_material())
+    return replace_object(context, source, role, mesh, place)
+
+
+def _mark_cells(mesh: bpy.types.Mesh, face_cell: np.ndarray, corner_counts: np.ndarray, colors: np.ndarray) -> None:
+    """Edges, and each face's cell and colour."""
     mesh.update(calc_edges=True)
-    set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.triangle_cell)
+    set_attribute(mesh, CELL_ATTRIBUTE, "FACE", face_cell)
     # On the corners, because Blender shows colours of corners and vertices only, and vertices may be shared by cells.
     color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
     rgba = np.column_stack([colors, np.ones(len(colors))]).astype(np.float32)
-    color.data.foreach_set("color", rgba[np.repeat(cells.triangle_cell, 3)].ravel())
+    color.data.foreach_set("color", rgba[np.repeat(face_cell, corner_counts)].ravel())
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
-    compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
-    return mesh

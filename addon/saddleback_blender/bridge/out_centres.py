@@ -9,7 +9,7 @@ from .. import nodes
 from ..core.centres import cell_size, euler_to_normal
 from ..core.errors import BadInputError
 from ..core.results import CellsResult
-from ..core.settings import TessellateSettings
+from ..core.settings import TessellateSettings, Voronoi2dSettings
 from .out_attributes import set_attribute
 from .out_collection import directions_to_place, find_output, level_place, replace_object, to_place
 
@@ -18,14 +18,18 @@ CELL_ATTRIBUTE, AREA_ATTRIBUTE, NORMAL_ATTRIBUTE = "saddleback_cell", "saddlebac
 
 
 def write_centres(
-    context: bpy.types.Context, source: bpy.types.Object, result: CellsResult, settings: TessellateSettings
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: CellsResult,
+    settings: TessellateSettings | Voronoi2dSettings,
+    role: str = CENTRES_ROLE,
 ) -> bpy.types.Object:
     """Makes or replaces the source's centres object, with the chosen object on every centre.
 
     Point attributes: cell, area (world units squared), normal (unit), size (radius of the disk of that area) and
     rotation (Euler XYZ that takes Z to the normal).
     """
-    instance = _instance(source, settings.instance_object)
+    instance = _instance(source, settings.instance_object, role)
     place = level_place(source)
     mesh = bpy.data.meshes.new("Saddleback Centres")
     count = len(result.sites_position)
@@ -42,18 +46,18 @@ def write_centres(
     for name, values in columns.items():
         set_attribute(mesh, name, "POINT", values)
     mesh.update()
-    item = replace_object(context, source, CENTRES_ROLE, mesh, place)
+    item = replace_object(context, source, role, mesh, place)
     nodes.set_instances(item, instance, settings.instance_scale)
     return item
 
 
-def _instance(source: bpy.types.Object, name: str) -> bpy.types.Object | None:
+def _instance(source: bpy.types.Object, name: str, role: str) -> bpy.types.Object | None:
     """The object to put on the centres. Raises BadInputError where none has that name, or it is the centres'."""
     if not name:
         return None
     instance = bpy.data.objects.get(name)
     if instance is None:
         raise BadInputError(f"There is no object '{name}' to put on the centres of '{source.name}'; choose another")
-    if instance == find_output(source, CENTRES_ROLE):
+    if instance == find_output(source, role):
         raise BadInputError(f"'{name}' holds the centres themselves and cannot be put on them; choose another object")
     return instance

@@ -147,13 +147,16 @@ def clear_outputs(context: bpy.types.Context, source: bpy.types.Object) -> int:
 
 def remove_object(item: bpy.types.Object) -> None:
     """Removes an object, and its data and node groups unless something else uses them."""
-    data = item.data
+    data, animation = item.data, item.animation_data
+    action = animation.action if animation is not None else None
     groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
     bpy.data.objects.remove(item)
     _remove_data(data)
     for group in groups:
         if group is not None and nodes.is_ours(group) and group.users == 0:
             bpy.data.node_groups.remove(group)
+    if action is not None and action.users == 0:
+        bpy.data.actions.remove(action)
 
 
 def _owns(source: bpy.types.Object, token: str) -> bool:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 
 from .. import nodes
 from ..core.edge_network import EdgeNetwork, edge_network, long_lines
 from ..core.results import CellsResult
-from ..core.settings import TessellateSettings
+from ..core.settings import TessellateSettings, Voronoi2dSettings
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
 from .out_curves import new_curve
@@ -19,22 +21,37 @@ FIRST_CELL, SECOND_CELL = "saddleback_cell_a", "saddleback_cell_b"
 
 
 def write_edges(
-    context: bpy.types.Context, source: bpy.types.Object, result: CellsResult, settings: TessellateSettings
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: CellsResult,
+    settings: TessellateSettings | Voronoi2dSettings,
+    role: str = EDGES_ROLE,
 ) -> bpy.types.Object:
     """Makes or replaces the source's edges object; the radius is in world units whatever the source's scale."""
+    network = edge_network(result.edge_points, result.edge_offsets, result.edge_cells, result.edge_closed)
+    return write_network(context, source, network, settings, role)
+
+
+def write_network(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    network: EdgeNetwork,
+    settings: TessellateSettings | Voronoi2dSettings,
+    role: str,
+) -> bpy.types.Object:
+    """The same from lines that are joined already, in the world."""
     place = level_place(source)
-    points = to_place(place, result.edge_points)
-    network = edge_network(points, result.edge_offsets, result.edge_cells, result.edge_closed)
+    network = replace(network, vertices=to_place(place, network.vertices))
     if settings.edge_kind == "CURVE":
         # Few and long splines, because Blender's cost is by the spline.
         lines = ((network.vertices[vertices], is_closed) for vertices, is_closed in long_lines(network))
         data: bpy.types.ID = new_curve("Saddleback Edges", lines, settings.edge_radius)
         data.materials.append(nodes.edges_material())
-        return replace_object(context, source, EDGES_ROLE, data, place)
+        return replace_object(context, source, role, data, place)
     data = _edge_mesh(network)
     material = nodes.edges_material()
     data.materials.append(material)
-    item = replace_object(context, source, EDGES_ROLE, data, place)
+    item = replace_object(context, source, role, data, place)
     nodes.set_tubes(item, settings.edge_radius, material)
     return item
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .disk_cache import DiskCache
 from .results import Indices, Reals
-from .settings import DistanceSettings, PathSettings, TessellateSettings
+from .settings import DistanceSettings, PathSettings, TessellateSettings, Voronoi2dSettings
 
 Number = TypeVar("Number", bound=np.generic)
 
@@ -122,3 +122,18 @@ class PathRequest:
     points: Points
     threads: int = 0
     disk: DiskCache | None = None
+
+
+@dataclass(frozen=True)
+class Voronoi2dRequest:
+    """One diagram of the plane. `sites` speaks of the Blender mesh's vertices, or of places in the world."""
+
+    surface: Surface
+    settings: Voronoi2dSettings
+    polygons: Indices  # (F,) polygon of the Blender mesh that each triangle is part of, for messages
+    uv: Reals | None = None  # (3 F, 2) UV places of the triangles' corners, of the space UV
+    is_mirrored: bool = False  # by the object's scale: the UV map is seen from behind
+    sites: Points | None = None  # None: place `settings.count`
+    weights: Reals | None = None  # one for each of `sites`
+    darkness: Reals | None = None  # (rows, columns) 0 to 1, the first row below; of the sites source IMAGE
+    threads: int = 0

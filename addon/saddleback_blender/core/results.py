@@ -52,6 +52,53 @@ class CellsResult:
 
 
 @dataclass(frozen=True)
+class FlatCells:
+    """Cells of the plane within a flat mesh, as polygons that share their vertices.
+
+    Polygon i runs through corners[offsets[i]:offsets[i + 1]], counter-clockwise seen against the normal. A cell that
+    the domain cuts apart has several polygons.
+    """
+
+    vertices: Reals  # (n, 3)
+    corners: Indices
+    offsets: Indices  # (p + 1,)
+    polygon_cell: Indices  # (p,)
+    edges: Indices  # (e, 2)
+    edge_cells: Indices  # (e, 2) the cells on the left and on the right; -1 beyond the border
+    has_holes: bool  # some cell lies around a hole: its polygons are the outline and, clockwise, the hole
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays."""
+        return _nbytes(self)
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A sweep circle that grows: what is to be seen at which radius."""
+
+    centre: Reals  # (3,)
+    axes: Reals  # (3, 3) rows: two directions in the plane, and its normal
+    last_radius: float  # all edges are there
+    edge_vertices: Reals  # (n, 3) edges in short pieces
+    edges: Indices  # (m, 2)
+    edge_radius: Reals  # (n,) radius at which the beach curve has passed the vertex
+    rings: Reals  # (k, s, 3) the beach curve at k radii: last_radius * (1 to k) / k
+
+
+@dataclass(frozen=True)
+class Voronoi2dResult:
+    """A diagram of the plane on a flat mesh (`flat`) or on a surface; `cells` has what it always has.
+
+    On a flat mesh the edges and pieces of `cells` are empty unless its shape asks for them.
+    """
+
+    cells: CellsResult
+    flat: FlatCells | None
+    sweep: Sweep | None
+
+
+@dataclass(frozen=True)
 class DistanceResult:
     """Geodesic distances of a mesh of V vertices to the nearest source: world units, inf = unreached."""
 

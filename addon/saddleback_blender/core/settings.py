@@ -82,6 +82,37 @@ class PathSettings:
 
 
 @dataclass(frozen=True)
+class Voronoi2dSettings:
+    """All properties of `saddleback.voronoi_2d`; lengths are world units, objects are given by name ("" = none)."""
+
+    space: str = "OUTLINE"  # OUTLINE, UV, DISK
+    uv_name: str = ""  # the UV map; "" = the active one
+    sites_source: str = "COUNT"  # COUNT, SELECTED, OBJECT, IMAGE
+    count: int = 200  # of COUNT and IMAGE
+    seed: int = 0
+    sites_object: str = ""
+    image_name: str = ""
+    image_invert: bool = False  # cells are small where the image is light
+    weights_name: str = ""  # attribute of the vertices that are sites; "" = all weigh the same
+    iterations: int = 0
+    use_modifiers: bool = False
+    make_edges: bool = True
+    edge_kind: str = "MESH"  # MESH, CURVE
+    edge_radius: float = 0.01
+    make_cells: bool = True
+    gap: float = 0.0
+    inset: float = 0.0
+    thickness: float = 0.0
+    underside: bool = False
+    make_centres: bool = False
+    instance_object: str = ""
+    instance_scale: float = 1.0
+    animate: bool = False
+    frame_start: int = 1
+    frame_end: int = 120
+
+
+@dataclass(frozen=True)
 class RepairSettings:
     """All properties of `saddleback.repair`."""
 

@@ -261,6 +261,80 @@ class SADDLEBACK_PT_path(SaddlebackSubPanel, bpy.types.Panel):
         layout.prop(settings, "use_modifiers")
 
 
+class SADDLEBACK_PT_voronoi_2d(SaddlebackSubPanel, bpy.types.Panel):
+    """Diagrams of the plane."""
+
+    bl_label = "Voronoi 2D"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        item = context.view_layer.objects.active
+        settings = item.saddleback.voronoi_2d
+        layout = self.split_layout(context)
+        _draw_button(layout, context, "saddleback.voronoi_2d", "MESH_GRID")
+        rows.draw_plane_sites(layout.column(), settings, item)
+        layout.prop(settings, "use_modifiers")
+
+
+class SaddlebackPlaneOutputPanel(SaddlebackSubPanel):
+    """Mixin: a panel whose header switches an output of the diagram on."""
+
+    bl_parent_id = "SADDLEBACK_PT_voronoi_2d"
+    switch: str
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draws the switch."""
+        self.layout.enabled = not context.window_manager.saddleback_running
+        self.layout.prop(context.view_layer.objects.active.saddleback.voronoi_2d, self.switch, text="")
+
+
+class SADDLEBACK_PT_plane_edges(SaddlebackPlaneOutputPanel, bpy.types.Panel):
+    """The lines between cells."""
+
+    bl_label = "Edges"
+    switch = "make_edges"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_edges(self.split_layout(context), context.view_layer.objects.active.saddleback.voronoi_2d)
+
+
+class SADDLEBACK_PT_plane_cells(SaddlebackPlaneOutputPanel, bpy.types.Panel):
+    """The mesh of the cells."""
+
+    bl_label = "Cells"
+    switch = "make_cells"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_cells(self.split_layout(context), context.view_layer.objects.active.saddleback.voronoi_2d)
+
+
+class SADDLEBACK_PT_plane_centres(SaddlebackPlaneOutputPanel, bpy.types.Panel):
+    """The sites."""
+
+    bl_label = "Centres"
+    bl_options = {"DEFAULT_CLOSED"}
+    switch = "make_centres"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_centres(self.split_layout(context), context.view_layer.objects.active.saddleback.voronoi_2d)
+
+
+class SADDLEBACK_PT_sweep(SaddlebackPlaneOutputPanel, bpy.types.Panel):
+    """The sweep circle, frame by frame."""
+
+    bl_label = "Animate"
+    bl_options = {"DEFAULT_CLOSED"}
+    switch = "animate"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_sweep(self.split_layout(context), context.view_layer.objects.active.saddleback.voronoi_2d)
+
+
 class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
     """Faults of the mesh."""
 
@@ -292,5 +366,10 @@ CLASSES = (
     SADDLEBACK_PT_isolines,
     SADDLEBACK_PT_preview,
     SADDLEBACK_PT_path,
+    SADDLEBACK_PT_voronoi_2d,
+    SADDLEBACK_PT_plane_edges,
+    SADDLEBACK_PT_plane_cells,
+    SADDLEBACK_PT_plane_centres,
+    SADDLEBACK_PT_sweep,
     SADDLEBACK_PT_repair,
 )

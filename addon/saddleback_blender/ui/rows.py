@@ -92,6 +92,34 @@ def draw_quality(layout: bpy.types.UILayout, settings: Any) -> None:
     row.prop(settings, "cache_on_disk")
 
 
+def draw_plane_sites(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """The plane of a diagram, and where its sites come from."""
+    layout.prop(settings, "space")
+    if settings.space == "UV":
+        layout.prop_search(settings, "uv_name", item.data, "uv_layers", text="UV Map", icon="GROUP_UVS")
+    layout.prop(settings, "sites_source")
+    source = settings.sites_source
+    if source == "IMAGE":
+        draw_pointer(layout, settings, "image_name", "images")
+        layout.prop(settings, "image_invert")
+    if source == "OBJECT":
+        draw_object(layout, settings, "sites_object")
+    if source in ("COUNT", "IMAGE"):
+        layout.prop(settings, "count")
+        layout.prop(settings, "seed")
+    else:
+        layout.prop(settings, "weights_name")
+    layout.prop(settings, "iterations")
+
+
+def draw_sweep(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The frames of the sweep."""
+    layout.active = settings.animate
+    column = layout.column(align=True)
+    column.prop(settings, "frame_start")
+    column.prop(settings, "frame_end")
+
+
 def draw_distance_sources(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
     """Where distances are measured from, and how far."""
     layout.prop(settings, "sources")
@@ -128,17 +156,19 @@ def draw_path_points(layout: bpy.types.UILayout, settings: Any, item: bpy.types.
 
 
 def draw_collection(layout: bpy.types.UILayout, settings: Any, name: str) -> None:
-    """A choice among collections: a pointer on the object's settings, a name on an operator."""
-    if _is_name(settings, name):
-        layout.prop_search(settings, name, bpy.data, "collections")
-    else:
-        layout.prop(settings, name)
+    """A choice among collections."""
+    draw_pointer(layout, settings, name, "collections")
 
 
 def draw_object(layout: bpy.types.UILayout, settings: Any, name: str) -> None:
-    """A choice among objects: a pointer on the object's settings, a name on an operator."""
+    """A choice among objects."""
+    draw_pointer(layout, settings, name, "objects")
+
+
+def draw_pointer(layout: bpy.types.UILayout, settings: Any, name: str, blocks: str) -> None:
+    """A choice among data-blocks: a pointer on the object's settings, a name on an operator."""
     if _is_name(settings, name):
-        layout.prop_search(settings, name, bpy.data, "objects")
+        layout.prop_search(settings, name, bpy.data, blocks)
     else:
         layout.prop(settings, name)
 

@@ -1,0 +1,237 @@
+"""Voronoi diagrams of the plane, on flat meshes and brought to surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from . import cache as cache_module
+from . import native
+from .cache import Cache
+from .darkness import places_by_density
+from .errors import BadInputError
+from .flat_cells import flat_cells
+from .normals import normals_at
+from .progress import Progress
+from .requests import Voronoi2dRequest, digest
+from .results import CellsResult, FlatCells, Indices, Reals, Voronoi2dResult
+from .spaces import Space, space_of
+from .surface_places import compact_points
+from .sweep import sweep_over
+
+
+def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | None = None) -> Voronoi2dResult:
+    """A diagram on a surface. Sites and maps of earlier runs are used again.
+
+    Raises BadInputError, the library's MeshError and InputError with sentences, and its Cancelled.
+    """
+    cache = cache or cache_module.shared
+    settings = request.settings
+    _check(request)
+    space = space_of(request, progress, cache)
+    what = digest(
+        settings.space, settings.sites_source, settings.count, settings.seed, settings.iterations,
+        request.uv, request.is_mirrored, request.sites, request.weights, request.darkness,
+    )  # fmt: skip
+    key = ("sites 2d", request.surface.key, what)
+    sites = cache.get(key, lambda: _relaxed(request, space, _sites(request, space), progress), lambda s: s.nbytes)
+    with progress.stage(0.8, "finding the cells") as job:
+        diagram = native.load().voronoi_2d(sites.places, weights=request.weights, threads=request.threads, job=job)
+    if space.frame is None:
+        result = Voronoi2dResult(_lifted(request, space, sites, diagram, progress), None, None)
+    else:
+        result = _flat(request, space, sites, diagram, progress)
+    progress.check()
+    return result
+
+
+@dataclass(frozen=True)
+class _Sites:
+    """Places in the plane (n, 2) and, but for flat meshes, the points of the surface there."""
+
+    places: Reals
+    faces: Indices | None = None  # (n,)
+    barycentric: Reals | None = None  # (n, 3)
+
+    @classmethod
+    def at(cls, space: Space, points: Any) -> _Sites:
+        """Surface points, or vertices."""
+        if not isinstance(points, np.ndarray):
+            return cls(space.chart.places(points), points.faces.copy(), points.barycentric.copy())
+        corners = space.mesh.triangles.ravel()
+        first = np.full(len(space.mesh.vertices), -1, np.int64)
+        first[corners[::-1]] = np.arange(len(corners))[::-1]
+        corner = first[points]
+        return cls(space.chart.corners[corner], (corner // 3).astype(np.int32), np.eye(3)[corner % 3])
+
+    def moved(self, space: Space, places: Reals) -> _Sites:
+        """Those that stay on the surface go to their new places, the others stay."""
+        found, inside = space.chart.locate(places)
+        kept = np.where(inside[:, None], places, self.places)
+        if self.faces is None or self.barycentric is None:
+            return _Sites(kept)
+        faces, barycentric = self.faces.copy(), self.barycentric.copy()
+        faces[inside], barycentric[inside] = found.faces, found.barycentric
+        return _Sites(kept, faces, barycentric)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays."""
+        return 3 * self.places.nbytes
+
+
+def _check(request: Voronoi2dRequest) -> None:
+    settings, name = request.settings, request.surface.name
+    if settings.animate and settings.space != "OUTLINE":
+        raise BadInputError(f"'{name}': the sweep is shown on flat meshes only; switch Animate off, or choose Outline")
+    if request.weights is None:
+        return
+    if settings.space != "OUTLINE":
+        raise BadInputError(f"'{name}': weights count on flat meshes only; leave their name empty, or choose Outline")
+    if settings.iterations:
+        raise BadInputError(f"'{name}': sites with weights cannot be relaxed; set the iterations to 0")
+    if settings.make_cells and (settings.gap or settings.inset or settings.thickness):
+        raise BadInputError(f"'{name}': cells of sites with weights have no gap, bevel or thickness; set them to 0")
+
+
+def _sites(request: Voronoi2dRequest, space: Space) -> _Sites:
+    """Where the sites are at first."""
+    sb, settings, surface = native.load(), request.settings, request.surface
+    if settings.sites_source == "COUNT":
+        return _Sites.at(space, sb.sample(space.mesh, settings.count, seed=settings.seed))
+    if request.sites is None:
+        places = places_by_density(
+            _darkness(request, space), *space.box, settings.count, settings.seed,
+            lambda tried: space.chart.locate(tried)[1],
+        )  # fmt: skip
+        return _Sites(places, np.zeros(len(places), np.int32), np.zeros((len(places), 3))).moved(space, places)
+    points = compact_points(surface, request.sites, "site")
+    if space.frame is not None:
+        where: Reals = space.mesh.vertices[points] if points.ndim == 1 else np.asarray(points, np.float64)
+        return _Sites(space.frame.to_plane(where))
+    return _Sites.at(space, points if points.ndim == 1 else sb.project(space.mesh, points))
+
+
+def _darkness(request: Voronoi2dRequest, space: Space) -> Reals:
+    """The image as it lies over the domain's box, empty where no surface is."""
+    assert request.darkness is not None
+    density = request.darkness[:, ::-1] if request.is_mirrored and space.frame is None else request.darkness
+    rows, columns = density.shape
+    low, high = space.box
+    x = low[0] + (np.arange(columns) + 0.5) / columns * (high[0] - low[0])
+    y = low[1] + (np.arange(rows) + 0.5) / rows * (high[1] - low[1])
+    _, inside = space.chart.locate(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
+    covered: Reals = density * inside.reshape(rows, columns)
+    if not covered.any():
+        raise BadInputError(
+            f"'{request.surface.name}': the image is white where the surface is; choose another, or Invert"
+        )
+    return covered
+
+
+def _relaxed(request: Voronoi2dRequest, space: Space, sites: _Sites, progress: Progress) -> _Sites:
+    """The sites after the wanted steps. A step that would take a site off the surface is not taken."""
+    settings = request.settings
+    if not settings.iterations:
+        return sites
+    if space.frame is None and request.darkness is None:
+        return _relaxed_on_surface(request, space, sites, progress)
+    density = _darkness(request, space) if request.darkness is not None else None
+    with progress.stage(0.7, "relaxing the sites") as job:
+        relaxed = native.load().relax_2d(
+            sites.places, space.loops, density, max_iterations=settings.iterations, tolerance=0.0,
+            threads=request.threads, job=job,
+        )  # fmt: skip
+    return sites.moved(space, relaxed.sites)
+
+
+def _relaxed_on_surface(request: Voronoi2dRequest, space: Space, sites: _Sites, progress: Progress) -> _Sites:
+    """Cells of equal area on the surface, not in its map: centres of mass by area on the surface."""
+    sb, begin, steps = native.load(), progress.fraction, request.settings.iterations
+    for number in range(steps):
+        with progress.stage(begin + (0.7 - begin) * (number + 1) / steps, "relaxing the sites"):
+            diagram = sb.voronoi_2d(sites.places, threads=request.threads)
+            centroids = space.chart.lift(diagram, threads=request.threads).centroids
+            sites = sites.moved(space, np.where(np.isfinite(centroids), centroids, sites.places))
+    return sites
+
+
+def _lifted(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any, progress: Progress) -> CellsResult:
+    with progress.stage(0.95, "bringing the cells to the surface") as job:
+        lifted = space.chart.lift(diagram, threads=request.threads, job=job)
+    result = replace(
+        _bare_cells(space, sites, np.asarray(lifted.areas)),
+        edge_points=lifted.edge_points,
+        edge_offsets=lifted.edge_offsets,
+        edge_cells=lifted.edge_cells,
+        edge_closed=np.zeros(len(lifted.edge_of), bool),
+    )
+    if not request.settings.make_cells:
+        return result
+    split = lifted.split()
+    return replace(
+        result,
+        split_vertices=split.vertices,
+        split_triangles=split.triangles,
+        split_cell=split.triangle_cell,
+        split_origin=split.vertex_origin,
+    )
+
+
+def _flat(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any, progress: Progress) -> Voronoi2dResult:
+    assert space.frame is not None
+    settings = request.settings
+    with progress.stage(0.9, "cutting the cells out") as job:
+        clipped = diagram.clip(space.loops, threads=request.threads, job=job)
+    flat = flat_cells(clipped, space.frame)
+    if needs_pieces(request, flat):
+        cells = _lifted(request, space, sites, diagram, progress)
+    else:
+        cells = _bare_cells(space, sites, np.asarray(clipped.areas))
+    sweep = None
+    if settings.animate:
+        frames = settings.frame_end - settings.frame_start + 1
+        with progress.stage(0.98, "following the sweep"):
+            sweep = sweep_over(sites.places, request.weights, flat, space.frame, frames, progress)
+    return Voronoi2dResult(cells, flat, sweep)
+
+
+def needs_pieces(request: Voronoi2dRequest, flat: FlatCells) -> bool:
+    """Whether the polygons of a flat diagram cannot show its cells: raised, parted, or around a hole."""
+    settings = request.settings
+    shaped = settings.gap > 0 or settings.inset > 0 or settings.thickness > 0
+    return settings.make_cells and (shaped or (flat.has_holes and request.weights is None))
+
+
+def _bare_cells(space: Space, sites: _Sites, areas: Reals) -> CellsResult:
+    """Sites and areas, without edges and pieces."""
+    vertices, triangles = space.mesh.vertices, space.mesh.triangles
+    if space.frame is not None:
+        positions = space.frame.to_world(sites.places)
+        normals: Reals = np.tile(space.frame.axes[2], (len(positions), 1))
+    else:
+        assert sites.faces is not None and sites.barycentric is not None
+        positions = (sites.barycentric[:, :, None] * vertices[triangles[sites.faces]]).sum(axis=1)
+        normals = normals_at(vertices, triangles, sites.faces, sites.barycentric)
+    indices, reals = np.empty(0, np.int32), np.empty(0)
+    return CellsResult(
+        vertex_cell=indices,
+        vertex_distance=reals,
+        vertex_density=None,
+        sites_position=positions,
+        sites_normal=normals,
+        cell_area=areas,
+        edge_points=np.empty((0, 3)),
+        edge_offsets=np.zeros(1, np.int32),
+        edge_cells=np.empty((0, 2), np.int32),
+        edge_closed=np.empty(0, bool),
+        split_vertices=np.empty((0, 3)),
+        split_triangles=np.empty((0, 3), np.int32),
+        split_cell=indices,
+        split_origin=indices,
+        energy=reals,
+        iterations=0,
+        stop_reason="",
+    )

@@ -1,0 +1,139 @@
+"""`saddleback.voronoi_2d`: Voronoi diagrams of the plane, on flat meshes and on surfaces through their maps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import bpy
+import numpy as np
+
+from .. import prefs
+from ..bridge.mesh_in import mesh_of, read_surface, read_triangle_polygons
+from ..bridge.out_cells import vanished_cells, write_cells, write_flat_cells
+from ..bridge.out_centres import write_centres
+from ..bridge.out_collection import find_output, remove_output
+from ..bridge.out_edges import write_edges, write_network
+from ..bridge.out_sweep import remove_sweep, write_sweep
+from ..bridge.voronoi_in import read_darkness, read_uv, read_voronoi_sites
+from ..core import voronoi_runs
+from ..core.edge_network import EdgeNetwork
+from ..core.errors import BadInputError
+from ..core.progress import Progress
+from ..core.requests import Voronoi2dRequest
+from ..core.results import FlatCells, Voronoi2dResult
+from ..core.settings import Voronoi2dSettings
+from ..props import VORONOI_2D, keep_settings, settings_of
+from .base import SurfaceOperator
+
+# Other names than tessellate's, so that an object can show both.
+EDGES_ROLE, CELLS_ROLE, CENTRES_ROLE = "voronoi edges", "voronoi cells", "voronoi centres"
+
+
+class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
+    """Makes plane diagrams."""
+
+    bl_idname = "saddleback.voronoi_2d"
+    bl_label = "Voronoi 2D"
+    bl_description = "Divide a flat mesh, or a surface through its UV map, into the cells of a plane Voronoi diagram"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = dict(VORONOI_2D)
+
+    settings_name = "voronoi_2d"
+
+    def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], Voronoi2dResult]:
+        """Reads everything from Blender."""
+        settings = settings_of(self, Voronoi2dSettings)
+        _check(source, settings)
+        with mesh_of(context, source, settings.use_modifiers) as mesh:
+            sites, weights = read_voronoi_sites(context, source, mesh, settings)
+            request = Voronoi2dRequest(
+                surface=read_surface(source, mesh),
+                settings=settings,
+                polygons=read_triangle_polygons(mesh),
+                uv=read_uv(source, mesh, settings.uv_name) if settings.space == "UV" else None,
+                is_mirrored=source.matrix_world.determinant() < 0,
+                sites=sites,
+                weights=weights,
+                darkness=read_darkness(source, settings),
+                threads=prefs.threads(context),
+            )
+        return partial(voronoi_runs.voronoi_2d, request)
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, result: Voronoi2dResult) -> str:
+        """Writes the result into Blender."""
+        settings = settings_of(self, Voronoi2dSettings)
+        _write_edges(context, source, result, settings)
+        _write_cells(context, source, result, settings)
+        if settings.make_centres:
+            write_centres(context, source, result.cells, settings, CENTRES_ROLE)
+        else:
+            remove_output(source, CENTRES_ROLE)
+        if result.sweep is not None:
+            write_sweep(context, source, result.sweep, settings)
+        else:
+            remove_sweep(source)
+        keep_settings(settings, source.saddleback.voronoi_2d)
+        return f"'{source.name}': {_told(result)}{_lost(source)}"
+
+
+def _write_edges(
+    context: bpy.types.Context, source: bpy.types.Object, result: Voronoi2dResult, settings: Voronoi2dSettings
+) -> None:
+    if not settings.make_edges:
+        remove_output(source, EDGES_ROLE)
+    elif result.flat is not None:
+        write_network(context, source, _network(result.flat), settings, EDGES_ROLE)
+    else:
+        write_edges(context, source, result.cells, settings, EDGES_ROLE)
+
+
+def _write_cells(
+    context: bpy.types.Context, source: bpy.types.Object, result: Voronoi2dResult, settings: Voronoi2dSettings
+) -> None:
+    if not settings.make_cells:
+        remove_output(source, CELLS_ROLE)
+    elif result.flat is not None and not len(result.cells.split_triangles):
+        write_flat_cells(context, source, result.flat, result.cells.count, CELLS_ROLE)
+    else:
+        write_cells(context, source, result.cells, settings, CELLS_ROLE)
+
+
+def _network(flat: FlatCells) -> EdgeNetwork:
+    count = len(flat.edges)
+    offsets = np.arange(0, 2 * count + 1, 2, dtype=np.int32)
+    return EdgeNetwork(flat.vertices, flat.edges.ravel(), offsets, flat.edge_cells, np.zeros(count, bool))
+
+
+def _told(result: Voronoi2dResult) -> str:
+    alive = int(np.count_nonzero(result.cells.cell_area > 0))
+    without = result.cells.count - alive
+    cells = f"{alive} cell" if alive == 1 else f"{alive} cells"
+    return f"{cells}, {without} sites without one" if without else cells
+
+
+def _lost(source: bpy.types.Object) -> str:
+    """How many cells are too narrow for the gap, where there are any."""
+    cells = find_output(source, CELLS_ROLE)
+    lost = vanished_cells(cells) if cells is not None else 0
+    return f", {lost} narrower than the gap left out" if lost else ""
+
+
+def _check(source: bpy.types.Object, settings: Voronoi2dSettings) -> None:
+    """Refuses what leads nowhere, before anything is computed."""
+    if settings.animate and settings.frame_end <= settings.frame_start:
+        raise BadInputError(
+            f"'{source.name}': the sweep ends in frame {settings.frame_end}, not after frame {settings.frame_start} "
+            "in which it starts; choose a later end"
+        )
+    if settings.make_centres and settings.instance_object:
+        instance = bpy.data.objects.get(settings.instance_object)
+        if instance is None:
+            raise BadInputError(
+                f"'{source.name}': there is no object '{settings.instance_object}' to put on the centres"
+            )
+        if instance == source:
+            raise BadInputError(f"'{source.name}' cannot be put on its own centres; choose another object for them")
+
+
+CLASSES = (SADDLEBACK_OT_voronoi_2d,)

@@ -1,0 +1,182 @@
+"""Plane diagrams without Blender: planes, polygons with common corners, darkness, the sweep's radii, the cache."""
+
+import meshes_of_core as shapes
+import numpy as np
+import pytest
+
+import saddleback as sb
+from saddleback_blender.core import runs, voronoi_runs
+from saddleback_blender.core.cache import Cache
+from saddleback_blender.core.darkness import darkness, places_by_density, shrunk
+from saddleback_blender.core.errors import BadInputError
+from saddleback_blender.core.flat_cells import flat_cells
+from saddleback_blender.core.plane_frame import PlaneFrame, plane_of
+from saddleback_blender.core.requests import Surface, Voronoi2dRequest
+from saddleback_blender.core.settings import Voronoi2dSettings
+from tests import meshes
+
+SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
+FRAME = PlaneFrame(np.zeros(3), np.eye(3))
+
+
+def surface_of(arrays, name="Shape"):
+    return Surface(name, *arrays, len(arrays[0]))
+
+
+def voronoi_2d(surface, cache=None, given=None, **settings):
+    request = Voronoi2dRequest(
+        surface, Voronoi2dSettings(**settings), np.arange(len(surface.triangles), dtype=np.int32), **(given or {})
+    )
+    return voronoi_runs.voronoi_2d(request, runs.new_progress(), cache or Cache(2**30))
+
+
+def polygon_areas(cells):
+    flat = cells.vertices[cells.corners]
+    onward = np.arange(1, len(flat) + 1)
+    onward[cells.offsets[1:] - 1] = cells.offsets[:-1]
+    cross = flat[:, 0] * flat[onward, 1] - flat[:, 1] * flat[onward, 0]
+    return 0.5 * np.add.reduceat(cross, cells.offsets[:-1])
+
+
+def test_the_plane_of_a_turned_mesh():
+    vertices, triangles = meshes.grid(5, 7)
+    turn = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
+    surface = surface_of((vertices @ turn.T + (3, 4, 5), triangles))
+    frame = plane_of(surface)
+    np.testing.assert_allclose(frame.axes @ frame.axes.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(frame.axes) == pytest.approx(1) and abs(frame.axes[0] @ frame.axes[2]) < 1e-12
+    places = frame.to_plane(surface.vertices)
+    np.testing.assert_allclose(frame.to_world(places), surface.vertices, atol=1e-12)
+    a, b, c = (places[triangles[:, k]] for k in range(3))
+    assert ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0] > 0).all()
+
+
+def test_the_plane_of_a_level_mesh_is_the_worlds():
+    np.testing.assert_allclose(plane_of(surface_of(meshes.grid(4, 4))).axes, np.eye(3), atol=1e-15)
+
+
+@pytest.mark.parametrize("arrays", [meshes.saddle(), meshes.icosphere(1)], ids=["saddle", "sphere"])
+def test_what_is_not_flat(arrays):
+    with pytest.raises(BadInputError, match="'Shape' is not flat"):
+        plane_of(surface_of(arrays))
+
+
+@pytest.mark.parametrize(
+    "domain", [SQUARE, [SQUARE, [(0.4, 0.4), (0.4, 0.7), (0.6, 0.7), (0.6, 0.4)]]], ids=["square", "hole"]
+)
+def test_polygons_share_their_corners(domain):
+    sites = np.random.default_rng(1).random((300, 2))
+    clipped = sb.voronoi_2d(sites, domain=domain).clipped
+    cells = flat_cells(clipped, FRAME)
+    np.testing.assert_allclose(np.bincount(cells.polygon_cell, polygon_areas(cells)), clipped.areas, atol=1e-13)
+    holes = len(domain) == 2
+    # Euler: a disk, or a ring, cut into polygons; borders have one cell, all others two.
+    assert len(cells.vertices) - len(cells.edges) + len(cells.offsets) - 1 == (0 if holes else 1)
+    border = cells.edges[cells.edge_cells[:, 1] < 0]
+    length = np.linalg.norm(cells.vertices[border[:, 0]] - cells.vertices[border[:, 1]], axis=1).sum()
+    assert length == pytest.approx(5.0 if holes else 4.0) and not cells.has_holes
+    a, b = (cells.vertices[cells.edges[:, k], :2] for k in range(2))
+    middle, (left, right) = 0.5 * (a + b), cells.edge_cells.T
+    inner = right >= 0
+    far = [np.linalg.norm(middle[inner] - sites[side[inner]], axis=1) for side in (left, right)]
+    np.testing.assert_allclose(far[0], far[1], rtol=1e-9)
+    to_left = sites[left[inner]] - middle[inner]
+    along = (b - a)[inner]
+    assert (along[:, 0] * to_left[:, 1] - along[:, 1] * to_left[:, 0] > 0).all()
+
+
+def test_a_cell_around_a_hole_is_told():
+    hole = [(0.4, 0.4), (0.4, 0.6), (0.6, 0.6), (0.6, 0.4)]
+    cells = flat_cells(sb.voronoi_2d([(0.1, 0.1)], domain=[SQUARE, hole]).clipped, FRAME)
+    assert cells.has_holes and polygon_areas(cells).sum() == pytest.approx(0.96)
+
+
+def test_no_cells_at_all():
+    cells = flat_cells(sb.voronoi_2d(np.zeros((0, 2)), domain=SQUARE).clipped, FRAME)
+    assert len(cells.offsets) == 1 and len(cells.edges) == 0
+
+
+def test_darkness_is_missing_light():
+    grey = np.array([[[0, 0, 0, 1], [1, 1, 1, 1], [0.5, 0.5, 0.5, 1], [0, 0, 0, 0.25]]], np.float32)
+    np.testing.assert_allclose(darkness(grey, False, False), [[1, 0, 0.5, 0.25]], atol=1e-6)
+    np.testing.assert_allclose(darkness(grey, False, True), [[0, 1, 0.5, 0]], atol=1e-6)
+    assert darkness(grey, True, False)[0, 2] == pytest.approx(1 - 0.2140, abs=1e-3)
+
+
+def test_large_images_are_averaged():
+    pixels = np.zeros((2050, 3, 4))
+    pixels[:1026] = 1
+    small = shrunk(pixels)
+    assert small.shape == (683, 1, 4) and small.mean() == pytest.approx(0.5, abs=1e-3)
+
+
+def test_places_follow_a_density():
+    density = np.array([[0.0, 1.0], [0.0, 3.0]])
+    box = np.array([-1.0, 0.0]), np.array([1.0, 1.0])
+    places = places_by_density(density, *box, 4000, 7, lambda p: np.ones(len(p), bool))
+    assert places.shape == (4000, 2) and (places[:, 0] >= 0).all()
+    assert (places[:, 1] > 0.5).mean() == pytest.approx(0.75, abs=0.03)
+    again = places_by_density(density, *box, 4000, 7, lambda p: np.ones(len(p), bool))
+    assert again.tobytes() == places.tobytes()
+    assert (places_by_density(density, *box, 100, 7, lambda p: p[:, 1] < 0.2)[:, 1] < 0.2).all()
+
+
+def test_the_sweep_uncovers_what_the_circle_has_passed():
+    surface = shapes.grid(6)
+    result = voronoi_2d(surface, count=80, animate=True, frame_start=1, frame_end=40)
+    sweep, sites = result.sweep, result.cells.sites_position
+    centre = sweep.centre
+    nearest = np.linalg.norm(sweep.edge_vertices[:, None] - sites, axis=2).min(axis=1)
+    np.testing.assert_allclose(sweep.edge_radius, nearest + np.linalg.norm(sweep.edge_vertices - centre, axis=1))
+    assert sweep.rings.shape == (40, 512, 3) and sweep.last_radius == sweep.edge_radius.max()
+    for number in (9, 24, 39):
+        radius = sweep.last_radius * (number + 1) / 40
+        ring = sweep.rings[number]
+        near = np.linalg.norm(ring[:, None] - sites, axis=2).min(axis=1)
+        np.testing.assert_allclose(near + np.linalg.norm(ring - centre, axis=1), radius, rtol=1e-9)
+    steps = np.linalg.norm(np.diff(sweep.edge_vertices[sweep.edges], axis=1)[:, 0], axis=1)
+    assert steps.max() < 1.2 * np.ptp(surface.vertices, axis=0).max() / 150
+
+
+def test_one_site_has_a_sweep_too():
+    sweep = voronoi_2d(shapes.grid(3), count=1, animate=True).sweep
+    assert len(sweep.edges) == 0 and sweep.last_radius > 0 and np.isfinite(sweep.rings).all()
+
+
+def test_only_what_changed_is_computed():
+    cache, surface = Cache(2**30), surface_of(meshes.saddle(15))
+    voronoi_2d(surface, cache, space="DISK", count=30, iterations=2)
+    assert cache.builds == {"mesh": 1, "space": 1, "sites 2d": 1}
+    voronoi_2d(surface, cache, space="DISK", count=30, iterations=2, gap=0.1, edge_radius=0.5)
+    assert cache.builds == {"mesh": 1, "space": 1, "sites 2d": 1}
+    voronoi_2d(surface, cache, space="DISK", count=31, iterations=2)
+    assert cache.builds == {"mesh": 1, "space": 1, "sites 2d": 2}
+
+
+def test_cells_of_a_disk_cover_the_surface():
+    surface = surface_of(meshes.saddle(15))
+    result = voronoi_2d(surface, space="DISK", count=25, iterations=20)
+    assert result.flat is None and result.cells.cell_area.sum() == pytest.approx(sb.Mesh(*meshes.saddle(15)).area)
+    even = result.cells.cell_area
+    assert even.std() / even.mean() < 0.3
+    heights = result.cells.sites_position @ np.array([0, 0, 1])
+    on = result.cells.sites_position[:, 0] ** 2 - result.cells.sites_position[:, 1] ** 2
+    np.testing.assert_allclose(heights, on, atol=0.02)  # as near as the mesh is to x^2 - y^2
+
+
+def test_a_run_can_be_stopped():
+    progress = runs.new_progress()
+    progress.cancel()
+    request = Voronoi2dRequest(shapes.grid(5), Voronoi2dSettings(), np.arange(50, dtype=np.int32))
+    with pytest.raises(sb.Cancelled):
+        voronoi_runs.voronoi_2d(request, progress, Cache(2**30))
+
+
+def test_names_of_faces_are_blenders():
+    vertices, triangles = meshes.grid(2, 2)
+    uv = np.tile([(0, 0), (1, 0), (0, 1)], (2, 1)).astype(float)
+    request = Voronoi2dRequest(
+        surface_of((vertices, triangles)), Voronoi2dSettings(space="UV"), np.array([7, 9], np.int32), uv=uv
+    )
+    with pytest.raises(BadInputError, match="'Shape': faces 7 and 9 overlap in the map"):
+        voronoi_runs.voronoi_2d(request, runs.new_progress(), Cache(2**30))
