@@ -67,13 +67,15 @@ Index exact_width(const SaddleVertexGraph& graph) {
   return std::min(std::max(k_at_least, static_cast<Index>(2 * graph.mean_degree())), graph.mesh().vertex_count());
 }
 
-/// Points side by side in memory, as the nodes are.
-std::vector<Index> order_of_nodes(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points) {
-  std::vector<std::pair<Index, Index>> entries(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    entries[i] = {graph.node_of(graph.mesh().triangles()[points[i].face][0]), static_cast<Index>(i)};
+/// The points that are no vertices, in the order in which nodes lie in memory.
+std::vector<Index> inside_in_order(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points) {
+  std::vector<std::pair<Index, Index>> entries;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_vertex(graph.mesh(), points[i])) continue;
+    entries.emplace_back(graph.node_of(graph.mesh().triangles()[points[i].face][0]), static_cast<Index>(i));
+  }
   std::ranges::sort(entries);
-  std::vector<Index> order(points.size());
+  std::vector<Index> order(entries.size());
   std::ranges::transform(entries, order.begin(), &std::pair<Index, Index>::second);
   return order;
 }
@@ -159,12 +161,13 @@ FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> p
 
 void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles, int threads,
                   const JobStage& stage, const UseFan& use) {
+  const std::vector<Index> order = inside_in_order(graph, points);
+  if (order.empty()) return;
+  const auto count = static_cast<Index>(order.size()), blocks = (count + k_chunk - 1) / k_chunk;
   const double of_mesh = graph.is_exact() ? 0 : fans_a_wave_mesh_costs(graph);
-  const double before = of_mesh > 0 ? of_mesh / (of_mesh + static_cast<double>(points.size())) : 0;
+  const double before = of_mesh > 0 ? of_mesh / (of_mesh + count) : 0;
   FanTeam team(graph, points, threads, stage.part(0, before));
   const JobStage finding = stage.part(before, 1);
-  const std::vector<Index> order = order_of_nodes(graph, points);
-  const auto count = static_cast<Index>(points.size()), blocks = (count + k_chunk - 1) / k_chunk;
   struct Work {
     std::vector<SurfacePoint> points;
     DirectFans fans;

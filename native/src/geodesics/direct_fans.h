@@ -73,8 +73,8 @@ class FanTeam {
 
 /// Takes the fan of the point of an index. May be called by several threads at once.
 using UseFan = std::function<void(Index, std::span<const DirectArc>)>;
-/// Calls use(i, fan) once for every point, in no particular order; what it is called with is the same for any number of
-/// threads (0: all cores). \throw Cancelled.
+/// Calls use(i, fan) once for every point that is no vertex, in no particular order; what it is called with is the same
+/// for any number of threads (0: all cores). \throw Cancelled.
 void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles, int threads,
                   const JobStage& stage, const UseFan& use);
 

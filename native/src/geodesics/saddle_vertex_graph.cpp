@@ -49,8 +49,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh));
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   const JobStage finding = stage.part(0, 0.9);
-  auto found =
-      exact_ ? exact_arcs(search, finding) : disk_arcs(search, disk_rule(k_, accuracy_), finding);
+  auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, disk_rule(k_, accuracy_), finding);
   arcs_ = unite_with_reverses(codec, *kernel_, found, k_block, options.threads, stage.part(0.9, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }

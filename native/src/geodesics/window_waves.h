@@ -48,7 +48,7 @@ struct ApexRows {
 /// Vertices seen, a row a sighting.
 struct SightingRows {
   double *x, *y;
-  float *back_x, *back_y;  ///< from the vertex to the start of the half-edge that the window came through
+  float *back_x, *back_y;   ///< from the vertex to the start of the half-edge that the window came through
   double *from_x, *from_y;  ///< that start itself; null where directions are wanted to float precision only
   std::int32_t* slot;
   std::int32_t* label;  ///< the distance's bits, the lowest one set when the sighting makes no arc

@@ -73,8 +73,7 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, i
       fans_(sites.size()),
       places_(graph.mesh().vertex_count()),
       placed_(graph.mesh().vertex_count(), 0) {
-  for_each_fan(graph, sites, FanAngles::both, threads, stage.part(0, 0.3),
-               [&](Index site, std::span<const DirectArc> arcs) { make_fan(site, sites[site], arcs); });
+  make_fans(threads, stage.part(0, 0.3));
   label_vertices(stage);
   group_vertices();
   stage.update(0.8);
@@ -88,12 +87,21 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, i
   stage.update(1);
 }
 
-void SiteMaps::make_fan(Index site, const SurfacePoint& point, std::span<const DirectArc> arcs) {
-  Fan& fan = fans_[site];
-  fan.centre = vertex_at(mesh_, point);
-  if (fan.centre != k_none) return make_fan_at_vertex(fan);
-  fan.arcs.assign(arcs.begin(), arcs.end());
-  for (DirectArc& arc : fan.arcs) arc.length = graph_.arcs().codec().round(arc.length);
+void SiteMaps::make_fans(int threads, const JobStage& stage) {
+  for_each_fan(graph_, sites_, FanAngles::both, threads, stage, [&](Index site, std::span<const DirectArc> arcs) {
+    Fan& fan = fans_[site];
+    fan.arcs.assign(arcs.begin(), arcs.end());
+    for (DirectArc& arc : fan.arcs) arc.length = graph_.arcs().codec().round(arc.length);
+  });
+  std::vector<Index> at_vertices;
+  for (Index site = 0; site < site_count(); ++site) {
+    fans_[site].centre = vertex_at(mesh_, sites_[site]);
+    if (fans_[site].centre != k_none) at_vertices.push_back(site);
+  }
+  parallel_for(static_cast<Index>(at_vertices.size()), threads, 16, [&](Index i, int) {
+    stage.check();
+    make_fan_at_vertex(fans_[at_vertices[i]]);
+  });
 }
 
 void SiteMaps::make_fan_at_vertex(Fan& fan) {

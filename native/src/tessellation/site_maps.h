@@ -72,7 +72,7 @@ class SiteMaps {
     double beyond = 0;    ///< by how much of the edge's length the ray passes the edge's ends; below 0 past its start
   };
 
-  void make_fan(Index site, const SurfacePoint& point, std::span<const DirectArc> arcs);
+  void make_fans(int threads, const JobStage& stage);
   void make_fan_at_vertex(Fan& fan);
   void label_vertices(const JobStage& stage);
   void group_vertices();
