@@ -103,6 +103,8 @@ Parameters
 ----------
 polygon : (m, 2) float array or list of such
     A simple polygon, or an outline and its holes, in any direction.
+gap : float
+    How far neighbouring cells are apart; the polygon's own sides stay. A cell narrower than that has no loop.
 threads : int
     0: all cores.
 job : Job, optional
@@ -110,7 +112,7 @@ job : Job, optional
 Raises
 ------
 InputError
-    Fewer than three corners, loops that touch or cross, a hole outside the outline.
+    Fewer than three corners, loops that touch or cross, a hole outside the outline, a gap that is negative or not finite.
 Cancelled
     The job was cancelled.
 
@@ -210,13 +212,16 @@ void bind_voronoi_2d(py::module_& m) {
       .def_readonly("clipped", &Diagram::clipped, "ClippedCells within the domain given to `voronoi_2d`, or None.")
       .def(
           "clip",
-          [](const Diagram& d, const py::object& polygon, const py::object& threads, const py::object& job) {
+          [](const Diagram& d, const py::object& polygon, const py::object& gap, const py::object& threads,
+             const py::object& job) {
             const PlanarDomain domain = as_domain(polygon, "domain");
+            const double between = as_real(gap, "gap");
             const int count = as_integer(threads, "threads");
             Job* const token = as_job(job);
-            return without_gil([&] { return d.result.clip(domain, count, token); });
+            return without_gil([&] { return d.result.clip(domain, between, count, {token, "Clipping cells"}); });
           },
-          py::arg("polygon"), py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(), k_clip_doc)
+          py::arg("polygon"), py::kw_only(), py::arg("gap") = 0.0, py::arg("threads") = 0, py::arg("job") = py::none(),
+          k_clip_doc)
       .def(
           "locate",
           [](const Diagram& d, const py::object& points, const py::object& threads, const py::object& job) {

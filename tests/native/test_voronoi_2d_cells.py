@@ -134,3 +134,25 @@ def test_all_cells_at_once():
     for site, first in enumerate(diagram.site_of):
         cell = vertices[offsets[site] : offsets[site + 1]]
         assert cell.tolist() == (diagram.cell_vertices(site).tolist() if first == site else [])
+
+
+@pytest.mark.parametrize("domain", DOMAINS)
+def test_cells_a_gap_apart(domain):
+    """Every corner keeps half the gap from all bisectors of its cell; what is lost are strips along the edges."""
+    sites = np.random.default_rng(9).random((60, 2))
+    diagram, gap = sb.voronoi_2d(sites), 0.02
+    domain = DOMAINS[domain]
+    whole, apart = diagram.clip(domain), diagram.clip(domain, gap=gap)
+    assert diagram.clip(domain, gap=0.0).points.tobytes() == whole.points.tobytes()
+    site = np.repeat(apart.loop_sites, np.diff(apart.loop_offsets))
+    away = sites[site][:, None] - sites
+    length = np.linalg.norm(away, axis=2)
+    middle = 0.5 * (sites[site][:, None] + sites)
+    distance = ((apart.points[:, None] - middle) * away).sum(axis=2) / np.where(length > 0, length, np.inf)
+    assert (distance[length > 0] >= gap / 2 - 1e-12).all()
+    assert (apart.areas <= whole.areas).all()
+    lost = whole.areas - apart.areas
+    edges = np.linalg.norm(np.diff(whole.points, axis=0), axis=1).sum()
+    assert 0 < lost.sum() < edges * gap / 2 * 1.01
+    with pytest.raises(sb.InputError, match="gap"):
+        diagram.clip(domain, gap=-1.0)

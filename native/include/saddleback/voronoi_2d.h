@@ -67,8 +67,9 @@ struct Voronoi2d {
   std::vector<Vec2> centroids() const;
   /// The cells within a domain. O(n) plus, for cells at the domain's edges, O(corners of the domain). \throw Cancelled
   ClippedCells clip(const PlanarDomain& domain, int threads = 0, Job* job = nullptr) const;
-  /// The same as a part of other work.
-  ClippedCells clip(const PlanarDomain& domain, int threads, const JobStage& stage) const;
+  /// The same as a part of other work, each cell smaller by half the gap along its sides, but not along the domain's:
+  /// neighbours are `gap` apart. \throw InputError for a gap that is negative or not finite.
+  ClippedCells clip(const PlanarDomain& domain, double gap, int threads, const JobStage& stage) const;
   /// (m) nearest site of each point, exactly; of equally near ones the smallest index. O(m + n) expected.
   /// \throw InputError for a point that is not finite, and without sites. Cancelled
   std::vector<Index> locate(std::span<const Vec2> points, int threads = 0, Job* job = nullptr) const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saddleback/error.h"
 #include "saddleback/voronoi_2d.h"
 
 #include "support/parallel.h"
@@ -19,9 +20,10 @@ using Loop = std::vector<Vec2>;
 /// other's negatives, to the last bit, so that neighbours are cut at the same points.
 struct Side {
   Vec2 middle, along, across;
+  double distance = 0;  ///< that points must keep from the side, in the unit of `value`
   Side(const Vec2& mine, const Vec2& other)
       : middle(0.5 * mine + 0.5 * other), along(mine.y() - other.y(), other.x() - mine.x()), across(mine - other) {}
-  double value(const Vec2& p) const { return (p - middle).dot(across); }
+  double value(const Vec2& p) const { return (p - middle).dot(across) - distance; }
 };
 
 /// What a cut leaves of a loop: from where it comes in to where it goes out.
@@ -150,7 +152,9 @@ class EdgeMap {
   std::vector<Index> sums_;
 };
 
-std::vector<Loop> clip_cell(const Voronoi2d& diagram, Index site, const PlanarDomain& domain, const EdgeMap& map) {
+std::vector<Loop> clip_cell(const Voronoi2d& diagram, Index site, const PlanarDomain& domain, const EdgeMap& map,
+                            double gap) {
+  std::vector<Loop> loops(domain.loops().begin(), domain.loops().end());
   if (diagram.is_bounded(site)) {
     Vec2 low = diagram.sites[site], high = low;
     Loop whole;
@@ -161,17 +165,20 @@ std::vector<Loop> clip_cell(const Voronoi2d& diagram, Index site, const PlanarDo
     }
     switch (map.place(low, high)) {
       case EdgeMap::Place::inside:
-        return {whole};
+        if (gap == 0) return {whole};
+        loops.assign(1, whole);
+        break;
       case EdgeMap::Place::outside:
         return {};
       case EdgeMap::Place::at_edge:
         break;
     }
   }
-  std::vector<Loop> loops(domain.loops().begin(), domain.loops().end());
   for (const Index edge : diagram.cell_edges(site)) {
     const auto [left, right] = diagram.edge_sites[edge];
-    cut(loops, {diagram.sites[site], diagram.sites[left == site ? right : left]});
+    Side side(diagram.sites[site], diagram.sites[left == site ? right : left]);
+    side.distance = 0.5 * gap * side.across.norm();
+    cut(loops, side);
   }
   return loops;
 }
@@ -197,10 +204,11 @@ void add_moments(const std::vector<Loop>& loops, const Vec2& near, double& area,
 }  // namespace
 
 ClippedCells Voronoi2d::clip(const PlanarDomain& domain, int threads, Job* job) const {
-  return clip(domain, threads, JobStage(job, "Clipping cells"));
+  return clip(domain, 0, threads, JobStage(job, "Clipping cells"));
 }
 
-ClippedCells Voronoi2d::clip(const PlanarDomain& domain, int threads, const JobStage& stage) const {
+ClippedCells Voronoi2d::clip(const PlanarDomain& domain, double gap, int threads, const JobStage& stage) const {
+  if (!(gap >= 0) || std::isinf(gap)) throw InputError(message("gap: wanted a length of 0 or more, got ", gap));
   const Index count = static_cast<Index>(sites.size());
   const double side = 0.5 * std::sqrt(static_cast<double>(cell_sites.size()));
   const EdgeMap map(domain, std::clamp(static_cast<Index>(side), 1, 1024));
@@ -212,7 +220,7 @@ ClippedCells Voronoi2d::clip(const PlanarDomain& domain, int threads, const JobS
   parallel_for(count, threads, k_block, [&](Index site, int) {
     if (site % k_block == 0) stage.check();
     if (site_of[site] != site) return;
-    cells[site] = clip_cell(*this, site, domain, map);
+    cells[site] = clip_cell(*this, site, domain, map, gap);
     if (cells[site].empty()) return;
     add_moments(cells[site], cells[site][0][0], result.areas[site], result.centroids[site]);
   });
