@@ -8,11 +8,21 @@ namespace saddleback {
 namespace {
 
 /// An arc that only its target's end was told of, or told of better.
-struct MissingArc {
-  Index node;
-  bool replaces;  ///< a longer one of the same ends
-  std::uint64_t word;
-  bool operator<(const MissingArc& other) const { return node != other.node ? node < other.node : word < other.word; }
+class MissingArc {
+ public:
+  enum class Kind { added, replaces };  ///< what replaces another has the same ends and is shorter
+  MissingArc() = default;
+  MissingArc(Index node, Kind kind, std::uint64_t word) : node_(kind == Kind::added ? node : ~node), word_(word) {}
+  Index node() const { return replaces() ? ~node_ : node_; }
+  bool replaces() const { return node_ < 0; }
+  std::uint64_t word() const { return word_; }
+  bool operator<(const MissingArc& other) const {
+    return node() != other.node() ? node() < other.node() : word_ < other.word_;
+  }
+
+ private:
+  Index node_;
+  std::uint64_t word_;
 };
 
 class Union {
@@ -50,7 +60,8 @@ class Union {
         if (target < node) continue;
         const Place reverse = find(target, node);
         if (reverse.arc < 0) {
-          missing_[block_index].push_back({target, false, reversed(node, block.back_sectors[i], word)});
+          missing_[block_index].push_back(
+              {target, MissingArc::Kind::added, reversed(node, block.back_sectors[i], word)});
           continue;
         }
         paired_[reverse.block][reverse.arc] = 1;
@@ -58,9 +69,11 @@ class Union {
         const std::uint64_t back = other.words[reverse.arc];
         // The shorter one replaces its reverse: then that leaves in another direction.
         if (codec_.length_bits(word) < codec_.length_bits(back))
-          missing_[block_index].push_back({target, true, reversed(node, block.back_sectors[i], word)});
+          missing_[block_index].push_back(
+              {target, MissingArc::Kind::replaces, reversed(node, block.back_sectors[i], word)});
         if (codec_.length_bits(back) < codec_.length_bits(word))
-          missing_[block_index].push_back({node, true, reversed(target, other.back_sectors[reverse.arc], back)});
+          missing_[block_index].push_back(
+              {node, MissingArc::Kind::replaces, reversed(target, other.back_sectors[reverse.arc], back)});
       }
     }
   }
@@ -74,7 +87,8 @@ class Union {
       for (const std::int64_t end = i + block.counts[row]; i < end; ++i) {
         const Index target = codec_.target(block.words[i]);
         if (target > node || paired_[block_index][i]) continue;
-        missing_[block_index].push_back({target, false, reversed(node, block.back_sectors[i], block.words[i])});
+        missing_[block_index].push_back(
+            {target, MissingArc::Kind::added, reversed(node, block.back_sectors[i], block.words[i])});
       }
     }
   }
@@ -87,7 +101,7 @@ class Union {
     parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
       stage.check();
       for_each_row(b, [&](Index node, std::span<const std::uint64_t> own, std::span<const MissingArc> others) {
-        const auto added = std::ranges::count_if(others, [](const MissingArc& arc) { return !arc.replaces; });
+        const auto added = std::ranges::count_if(others, [](const MissingArc& arc) { return !arc.replaces(); });
         offsets[node + 1] = static_cast<std::int64_t>(own.size()) + added;
       });
     });
@@ -99,10 +113,10 @@ class Union {
         const auto row = words.begin() + offsets[node];
         auto end = std::copy(own.begin(), own.end(), row);
         for (const MissingArc& other : others) {
-          if (other.replaces) {
-            *std::find_if(row, end, same_target(other.word)) = other.word;
+          if (other.replaces()) {
+            *std::find_if(row, end, same_target(other.word())) = other.word();
           } else {
-            *end++ = other.word;
+            *end++ = other.word();
           }
         }
       });
@@ -140,12 +154,12 @@ class Union {
   void sort_missing(int threads, const JobStage& stage) {
     first_missing_.assign(found_.size() + 1, 0);
     for (const auto& list : missing_)
-      for (const MissingArc& arc : list) ++first_missing_[arc.node / block_size_ + 1];
+      for (const MissingArc& arc : list) ++first_missing_[arc.node() / block_size_ + 1];
     for (std::size_t b = 0; b < found_.size(); ++b) first_missing_[b + 1] += first_missing_[b];
     all_missing_.resize(first_missing_.back());
     std::vector<std::int64_t> next(first_missing_.begin(), first_missing_.end() - 1);
     for (auto& list : missing_) {
-      for (const MissingArc& arc : list) all_missing_[next[arc.node / block_size_]++] = arc;
+      for (const MissingArc& arc : list) all_missing_[next[arc.node() / block_size_]++] = arc;
       list = {};
     }
     parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
@@ -162,7 +176,7 @@ class Union {
     for (std::size_t row = 0; row < block.counts.size(); ++row) {
       const Index node = block.first_node + static_cast<Index>(row);
       const MissingArc* const begin = other;
-      while (other != last && other->node == node) ++other;
+      while (other != last && other->node() == node) ++other;
       use(node, std::span(block.words.data() + starts_[node], block.counts[row]), std::span(begin, other));
     }
   }

@@ -7,15 +7,16 @@
 #include "saddleback/job.h"
 
 #include "geodesics/window_waves.h"
+#include "support/returned_memory.h"
 
 namespace saddleback {
 
 /// Arcs out of consecutive nodes, as the windows found them.
 struct FoundArcs {
   Index first_node = 0;
-  std::vector<std::int32_t> counts;        ///< per node
-  std::vector<std::uint64_t> words;        ///< row after row, then k_row_padding more
-  std::vector<std::uint8_t> back_sectors;  ///< per word: direction back, at the target
+  std::vector<std::int32_t> counts;           ///< per node
+  ReturnedVector<std::uint64_t> words;        ///< row after row, then k_row_padding more
+  ReturnedVector<std::uint8_t> back_sectors;  ///< per word: direction back, at the target
 };
 
 /// The union of the found arcs and their reverses, the shorter of each pair. `found` holds the nodes in order, in
