@@ -76,17 +76,28 @@ py::object find_cells(const py::object& graph, const py::object& sites, const py
   return make_cells(without_gil([&] { return geodesic_voronoi(g, points, options, token); }), graph);
 }
 
+RelaxationMethod as_method(const std::string& name) {
+  if (name == "lbfgs") return RelaxationMethod::lbfgs;
+  if (name == "lloyd") return RelaxationMethod::lloyd;
+  throw InputError(message("method: wanted 'lbfgs' or 'lloyd', got '", name, "'"));
+}
+
 Relaxed relax(const py::object& graph, const py::object& sites, const py::object& count, const py::object& density,
               const std::string& method, const py::object& max_iterations, const py::object& tolerance,
-              const py::object& seed, const py::object& threads, const py::object& job) {
+              const py::object& seed, const py::object& fixed, bool return_when_cancelled, const py::object& threads,
+              const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
-  if (method != "lloyd") throw InputError(message("method: wanted 'lloyd', got '", method, "'"));
   ArrayIn<double> weights;
   if (!density.is_none()) weights = as_reals(density, "density", g.mesh().vertex_count());
+  ArrayIn<Index> held;
+  if (!fixed.is_none()) held = as_indices(fixed, "fixed");
   const CentroidalVoronoiOptions options{.density = weights.values,
+                                         .fixed = held.values,
+                                         .method = as_method(method),
                                          .max_iterations = as_integer(max_iterations, "max_iterations"),
                                          .tolerance = as_real(tolerance, "tolerance"),
+                                         .return_when_cancelled = return_when_cancelled,
                                          .threads = as_integer(threads, "threads")};
   const std::uint64_t number = as_seed(seed, "seed");
   Job* const token = as_job(job);
@@ -143,12 +154,16 @@ count : int, optional
 density : (V,) float array, optional
     Wanted number of cells per area at each vertex, in proportion; 0 or more. None: the same everywhere.
 method : str
-    "lloyd".
+    "lbfgs" (fewer iterations) or "lloyd" (each site to the centre of its cell).
 max_iterations : int
 tolerance : float
     Stop when the energy falls by less than this share of itself.
 seed : int
     Of the sampled start.
+fixed : (m,) int array, optional
+    Sites that stay where they are.
+return_when_cancelled : bool
+    When the job is cancelled during the iterations, return the best found so far instead of raising.
 threads : int
     0: all cores. The result does not depend on it.
 job : Job, optional
@@ -160,7 +175,7 @@ CentroidalVoronoi
 Raises
 ------
 InputError
-    Neither or both of sites and count; more cells than vertices or fewer than connected parts; a density of the wrong
+    Neither or both of sites and count; fewer cells than connected parts; a fixed site out of range; a density of the wrong
     length, with a negative or not finite value, or 0 everywhere; what `geodesic_voronoi` refuses.
 Cancelled
     The job was cancelled.
@@ -168,7 +183,8 @@ Cancelled
 Notes
 -----
 O(n k log k + arcs) per iteration. The energy is the integral of density^2 times squared distance and never rises.
-Q. Du, V. Faber, M. Gunzburger: Centroidal Voronoi Tessellations, SIAM Review 41(4), 1999.)";
+Q. Du, V. Faber, M. Gunzburger: Centroidal Voronoi Tessellations, SIAM Review 41(4), 1999. Y. Liu, W. Wang, B. Levy,
+F. Sun, D.-M. Yan, L. Lu, C. Yang: On centroidal Voronoi tessellation, ACM TOG 28(4), 2009.)";
 
 void bind_cells(py::module_& m) {
   py::class_<VoronoiEdge>(m, "VoronoiEdge", py::module_local(), "The boundary between two cells, or a part of it.")
@@ -282,15 +298,19 @@ void bind_tessellation(py::module_& m) {
           "converged", [](const Relaxed& r) { return r.result.converged; }, "False when max_iterations ended it.")
       .def_property_readonly(
           "stop_reason", [](const Relaxed& r) { return r.result.stop_reason; },
-          "\"tolerance\", \"no step lowers the energy\" or \"max_iterations\".")
+          "\"tolerance\", \"no step lowers the energy\", \"max_iterations\" or \"cancelled\".")
+      .def_property_readonly(
+          "normalised_energy", [](const Relaxed& r) { return r.result.normalised_energy; },
+          "Energy without a scale: near 1 for many nearly regular hexagons, larger for worse cells.")
       .def("__repr__", [](const Relaxed& r) {
         return message("<saddleback.CentroidalVoronoi of ", r.result.sites.size(), " cells, ", r.result.iterations,
                        " iterations>");
       });
   m.def("centroidal_voronoi", &relax, py::arg("graph"), py::arg("sites") = py::none(), py::arg("count") = py::none(),
-        py::arg("density") = py::none(), py::arg("method") = "lloyd", py::arg("max_iterations") = 100,
-        py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("threads") = 0,
-        py::arg("job") = py::none(), k_centroidal_doc);
+        py::arg("density") = py::none(), py::arg("method") = "lbfgs", py::arg("max_iterations") = 100,
+        py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("fixed") = py::none(),
+        py::arg("return_when_cancelled") = false, py::arg("threads") = 0, py::arg("job") = py::none(),
+        k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

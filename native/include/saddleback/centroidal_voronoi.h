@@ -8,11 +8,16 @@
 
 namespace saddleback {
 
+enum class RelaxationMethod { lbfgs, lloyd };
+
 struct CentroidalVoronoiOptions {
   std::span<const double> density;  ///< (V,) wanted cells per area, in proportion; empty: uniform
+  std::span<const Index> fixed;     ///< sites that stay where they are
+  RelaxationMethod method = RelaxationMethod::lbfgs;
   int max_iterations = 100;
-  double tolerance = 1e-6;  ///< stop when the energy falls by less than this share of itself
-  int threads = 0;          ///< 0: all cores; the result does not depend on it
+  double tolerance = 1e-6;             ///< stop when the energy falls by less than this share of itself
+  bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
+  int threads = 0;                     ///< 0: all cores; the result does not depend on it
 };
 
 struct CentroidalVoronoi {
@@ -21,21 +26,27 @@ struct CentroidalVoronoi {
   std::vector<double> energy;  ///< of the start and after each iteration; never rises
   int iterations = 0;
   bool converged = false;
-  std::string stop_reason;
+  std::string stop_reason;  ///< "tolerance", "no step lowers the energy", "max_iterations", "cancelled"
+  /// Energy without a scale, near 1 for many cells that are nearly regular hexagons: energy n / (2 G M^2) with
+  /// G = 5 / (36 sqrt 3) and M the integral of the density. 1 is the least possible in a plane without a border.
+  double normalised_energy = 0;
 };
 
 /// A start for `count` cells: sampled by density and seed, at least one site on every component.
 /// \throw InputError for count < 1 or fewer than components; for a density that `sample` refuses.
 SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const double> density, std::uint64_t seed);
 
-/// Moves the sites to the centres of their cells until they rest (Lloyd's method on the surface).
+/// Moves the sites until each rests at the centre of its cell.
 ///
 /// The energy is the integral of density^2 times squared distance to the nearest site: the square makes the number of
 /// cells per area follow the density (Du, Faber, Gunzburger 1999: cells of a CVT in the plane go with the square root
-/// of the weight). Each step goes along the exponential map to the weighted mean of the cell in the site's tangent
-/// plane; a step that would raise the energy is shortened, and the best sites found are returned. \throw InputError for
-/// a density of wrong length, with a negative, infinite or not-a-number value, or zero everywhere; for what
-/// geodesic_voronoi refuses; Cancelled. Per iteration O(sites k log k + arcs).
+/// of the weight). Lloyd's step goes along the exponential map to the weighted mean of the cell in the site's tangent
+/// plane; L-BFGS (Liu, Wang, Levy, Sun, Yan, Lu, Yang: On centroidal Voronoi tessellation, 2009) makes of several such
+/// steps a better one, on the product of the tangent planes. No step is accepted that would raise the energy. A site
+/// that coincides with another, and so has no cell, is put where the most energy is. \throw InputError for a density of
+/// wrong length, with a negative, infinite or not-a-number value, or zero everywhere; for a fixed site out of range;
+/// for what geodesic_voronoi refuses; Cancelled unless the best is to be returned. Per iteration O(sites k log k +
+/// arcs).
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);
 

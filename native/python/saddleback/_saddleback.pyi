@@ -373,17 +373,21 @@ class CentroidalVoronoi:
     def converged(self) -> bool: ...
     @property
     def stop_reason(self) -> str: ...
+    @property
+    def normalised_energy(self) -> float: ...
 
 def centroidal_voronoi(
     graph: SaddleVertexGraph,
     sites: _Points | None = None,
     count: SupportsIndex | None = None,
     density: ArrayLike | None = None,
-    method: Literal["lloyd"] = "lloyd",
+    method: Literal["lbfgs", "lloyd"] = "lbfgs",
     max_iterations: SupportsIndex = 100,
     tolerance: SupportsFloat = 1e-6,
     seed: SupportsIndex = 0,
     *,
+    fixed: ArrayLike | None = None,
+    return_when_cancelled: bool = False,
     threads: SupportsIndex = 0,
     job: Job | None = None,
 ) -> CentroidalVoronoi: ...

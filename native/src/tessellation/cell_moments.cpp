@@ -75,6 +75,7 @@ void integrate(const ClaimedFace& face, const std::array<QuadraturePoint, Count>
 /// Adds the integrals over the triangle a, b, c (barycentric coordinates in the face).
 void add_triangle(const ClaimedFace& face, const Vec3& a, const Vec3& b, const Vec3& c, CellMoments& sum) {
   const double area = face.shape.area * a.dot(b.cross(c));
+  sum.area += area;
   if (face.shape.uniform) {
     integrate(face, k_quadratic, area, a, b, c, sum);
   } else {
@@ -166,6 +167,7 @@ void SharedFace::add_many(const FaceShape& shape, const CellClaims& claims, Inde
 }
 
 CellMoments& operator+=(CellMoments& sum, const CellMoments& part) {
+  sum.area += part.area;
   sum.mass += part.mass;
   sum.moment += part.moment;
   sum.energy += part.energy;
@@ -182,6 +184,7 @@ void add_whole_face(const CellClaims& claims, Index face, const FaceWeights::Wei
     sum.energy += weights.corner[i] * seen.distance * seen.distance;
   }
   sum.energy -= weights.bulge;
+  sum.area += claims.mesh().face_area(face);
 }
 
 /// The faces in a fixed number of ranges, so that sums do not depend on the number of threads.

@@ -11,6 +11,7 @@ namespace saddleback {
 
 /// Integrals over a cell with weight density^2.
 struct CellMoments {
+  double area = 0;  ///< without the weight
   double mass = 0;
   Vec2 moment = Vec2::Zero();  ///< of the position in the site's tangent plane
   double energy = 0;           ///< of the squared distance to the site

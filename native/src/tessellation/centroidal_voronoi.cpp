@@ -6,16 +6,14 @@
 
 #include "saddleback/error.h"
 #include "saddleback/sample.h"
-#include "saddleback/trace.h"
 
 #include "tessellation/cell_moments.h"
 #include "tessellation/diagram.h"
+#include "tessellation/limited_memory.h"
+#include "tessellation/tangent_moves.h"
 
 namespace saddleback {
 namespace {
-
-// A step that raises the energy is halved this often before the sites count as resting.
-constexpr int k_most_halvings = 6;
 
 void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
   if (options.max_iterations < 0)
@@ -37,6 +35,13 @@ void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
   }
 }
 
+void check_fixed(const CentroidalVoronoiOptions& options, const SurfacePoints& sites) {
+  for (const Index site : options.fixed) {
+    if (site >= 0 && site < static_cast<Index>(sites.size())) continue;
+    throw InputError(message("fixed: wanted sites from 0 to ", sites.size() - 1, ", got ", site));
+  }
+}
+
 /// Sites with their cells and what is needed to move on.
 struct State {
   SurfacePoints sites;
@@ -45,39 +50,203 @@ struct State {
   double energy = 0;
 };
 
-State evaluate(const SaddleVertexGraph& graph, SurfacePoints sites, const FaceWeights& weights, int threads,
-               const JobStage& stage) {
+/// The sites on their way.
+class Relaxation {
+ public:
+  Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& sites, const CentroidalVoronoiOptions& options,
+             const JobStage& stage);
+  /// One step that lowers the energy; false when there is none. \throw Cancelled, the state as it was.
+  bool advance(const JobStage& stage);
+  const State& state() const { return state_; }
+  double mass() const;
+
+ private:
+  State evaluate(SurfacePoints sites, const JobStage& stage) const;
+  bool revive_empty_cells(const JobStage& stage);
+  SurfacePoint far_place(Index site) const;
+  bool advance_by(const TangentField& direction, const TangentField& gradient, const JobStage& stage);
+  TangentField gradient(const State& state) const;
+  TangentField lloyd_direction() const;
+  TangentField quasi_newton_direction(const TangentField& gradient) const;
+  void shorten(TangentField& direction) const;
+
+  const SaddleVertexGraph& graph_;
+  const CentroidalVoronoiOptions& options_;
+  const FaceWeights weights_;
+  std::vector<std::uint8_t> is_fixed_;
+  State state_;
+  LimitedMemory memory_;
+};
+
+Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& sites,
+                       const CentroidalVoronoiOptions& options, const JobStage& stage)
+    : graph_(graph),
+      options_(options),
+      weights_(graph.mesh(), options.density, options.threads),
+      is_fixed_(sites.size(), 0) {
+  for (const Index site : options.fixed) is_fixed_[site] = 1;
+  state_ = evaluate(sites, stage);
+  while (revive_empty_cells(stage)) {}
+}
+
+State Relaxation::evaluate(SurfacePoints sites, const JobStage& stage) const {
   State state;
   state.sites = std::move(sites);
-  state.claims = std::make_unique<CellClaims>(graph, state.sites, threads, stage);
-  state.moments = cell_moments(*state.claims, weights, threads, stage);
+  state.claims = std::make_unique<CellClaims>(graph_, state.sites, options_.threads, stage.part(0, 0.8));
+  state.moments = cell_moments(*state.claims, weights_, options_.threads, stage);
   for (const CellMoments& cell : state.moments) state.energy += cell.energy;
   return state;
 }
 
-/// The site moved by `share` of the way to its cell's centre. A cell without mass (no density, or empty) keeps its
-/// site.
-SurfacePoint moved(const Mesh& mesh, const SurfacePoint& site, const CellMoments& cell, double share) {
-  if (!(cell.mass > 0)) return site;
-  const Vec2 step = share * cell.moment / cell.mass;
-  const double length = step.norm();
-  if (!(length > 0) || !std::isfinite(length)) return site;
-  double angle = std::atan2(step.y(), step.x());
-  if (const Index vertex = vertex_at(mesh, site); vertex != k_none && !mesh.is_boundary(vertex)) {
-    angle =
-        (angle < 0 ? angle + 2 * M_PI : angle) * mesh.total_angle(vertex) / (2 * M_PI);  // the tangent plane is scaled
+double Relaxation::mass() const {
+  double sum = 0;
+  for (Index face = 0; face < graph_.mesh().face_count(); ++face) {
+    const double area = graph_.mesh().face_area(face);
+    const Triangle& t = graph_.mesh().triangles()[face];
+    if (options_.density.empty())
+      sum += area;
+    else
+      sum += area * (options_.density[t[0]] + options_.density[t[1]] + options_.density[t[2]]) / 3;
   }
-  try {
-    return trace_end(mesh, site, angle, length).point;
-  } catch (const InputError&) {  // round a spike thinner than rounding a curve turns without end: the site stays
-    return site;
+  return sum;
+}
+
+/// Puts sites without a cell into the cells with the most energy, one each. False when there is nothing to do.
+bool Relaxation::revive_empty_cells(const JobStage& stage) {
+  std::vector<Index> empty, rich;
+  for (Index i = 0; i < static_cast<Index>(state_.moments.size()); ++i) {
+    if (state_.moments[i].area > 0)
+      rich.push_back(i);
+    else if (!is_fixed_[i])
+      empty.push_back(i);
+  }
+  if (empty.empty()) return false;
+  std::sort(rich.begin(), rich.end(), [&](Index a, Index b) {
+    const double of_a = state_.moments[a].energy, of_b = state_.moments[b].energy;
+    return of_a != of_b ? of_a > of_b : a < b;
+  });
+  SurfacePoints sites = state_.sites;
+  for (std::size_t i = 0; i < std::min(empty.size(), rich.size()); ++i) sites[empty[i]] = far_place(rich[i]);
+  State next = evaluate(std::move(sites), stage);
+  if (!(next.energy < state_.energy)) return false;  // nothing is far enough to be told apart
+  state_ = std::move(next);
+  memory_.forget();
+  return true;
+}
+
+/// Far from the site, in its cell: the last of its vertices, else on the way to a corner of its face.
+SurfacePoint Relaxation::far_place(Index site) const {
+  const auto vertices = state_.claims->maps().vertices_of(site);
+  if (!vertices.empty() && vertex_at(graph_.mesh(), state_.sites[site]) != vertices.back()) {
+    return at_vertex(graph_.mesh(), vertices.back());
+  }
+  SurfacePoint place = state_.sites[site];
+  const int corner = place.barycentric[0] < place.barycentric[1] ? 0 : 1;
+  place.barycentric = 0.5 * (place.barycentric + Vec3::Unit(corner));
+  return place;
+}
+
+bool Relaxation::advance(const JobStage& stage) {
+  const TangentField slope = gradient(state_);
+  if (options_.method == RelaxationMethod::lbfgs && !memory_.empty()) {
+    if (advance_by(quasi_newton_direction(slope), slope, stage)) return true;
+    memory_.forget();
+  }
+  return advance_by(lloyd_direction(), slope, stage);
+}
+
+/// Takes the first of shorter and shorter steps that lowers the energy by a share of what its slope promises.
+bool Relaxation::advance_by(const TangentField& direction, const TangentField& slope, const JobStage& stage) {
+  constexpr double k_least_share = 1e-4;
+  constexpr int k_most_halvings = 6;
+  const double promise = dot(slope, direction);
+  if (!(promise < 0)) return false;
+  double length = 1;
+  for (int halving = 0; halving <= k_most_halvings; ++halving, length /= 2) {
+    TangentField steps = direction;
+    for (Vec2& step : steps) step *= length;
+    const Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads);
+    State next = evaluate(moved.sites, stage);
+    if (!(next.energy <= state_.energy + k_least_share * length * promise)) continue;
+    if (options_.method == RelaxationMethod::lbfgs) {
+      TangentField before = slope, change = gradient(next);
+      transport(moved, before);
+      for (std::size_t i = 0; i < change.size(); ++i) change[i] -= before[i];
+      memory_.add(moved, std::move(change));
+    }
+    state_ = std::move(next);
+    revive_empty_cells(stage);
+    return true;
+  }
+  return false;
+}
+
+/// Of the energy by the sites' places: minus twice the first moment. Fixed sites have none.
+TangentField Relaxation::gradient(const State& state) const {
+  TangentField field(state.sites.size(), Vec2::Zero());
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (!is_fixed_[i]) field[i] = -2 * state.moments[i].moment;
+  }
+  return field;
+}
+
+/// To the centre of each cell. A cell without mass (no density, or empty) keeps its site.
+TangentField Relaxation::lloyd_direction() const {
+  TangentField field(state_.sites.size(), Vec2::Zero());
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const CellMoments& cell = state_.moments[i];
+    if (!is_fixed_[i] && cell.mass > 0) field[i] = cell.moment / cell.mass;
+  }
+  return field;
+}
+
+TangentField Relaxation::quasi_newton_direction(const TangentField& slope) const {
+  std::vector<double> stiffness;
+  for (const CellMoments& cell : state_.moments) stiffness.push_back(2 * cell.mass);
+  TangentField field = memory_.direction(slope, stiffness);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (is_fixed_[i]) field[i].setZero();
+  }
+  shorten(field);
+  return field;
+}
+
+/// No site leaves its cell: twice the mean squared distance is the squared radius of a disk.
+void Relaxation::shorten(TangentField& direction) const {
+  for (std::size_t i = 0; i < direction.size(); ++i) {
+    const CellMoments& cell = state_.moments[i];
+    if (!(cell.mass > 0)) continue;
+    const double radius = std::sqrt(2 * std::max(cell.energy, 0.0) / cell.mass), length = direction[i].norm();
+    if (length > radius) direction[i] *= radius / length;
   }
 }
 
-SurfacePoints moved_sites(const Mesh& mesh, const State& state, double share) {
-  SurfacePoints sites = state.sites;
-  for (std::size_t i = 0; i < sites.size(); ++i) sites[i] = moved(mesh, state.sites[i], state.moments[i], share);
-  return sites;
+/// Small falls, one after the other, that end a run. A quasi-Newton step may be poor and the next one good.
+int patience(RelaxationMethod method) { return method == RelaxationMethod::lbfgs ? 3 : 1; }
+
+void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage,
+           CentroidalVoronoi& result) {
+  const double part = 1.0 / (options.max_iterations + 1);
+  int small_falls = 0;
+  while (result.iterations < options.max_iterations) {
+    const JobStage step =
+        stage.part((result.iterations + 1) * part, (result.iterations + 2) * part,
+                   message("Relaxing cells, step ", result.iterations + 1, " of ", options.max_iterations));
+    if (!relaxation.advance(step)) {
+      result.converged = true;
+      result.stop_reason = "no step lowers the energy";
+      return;
+    }
+    const double energy = relaxation.state().energy, fall = result.energy.back() - energy;
+    result.energy.push_back(energy);
+    ++result.iterations;
+    small_falls = fall <= options.tolerance * energy ? small_falls + 1 : 0;
+    if (small_falls < patience(options.method)) continue;
+    result.converged = true;
+    result.stop_reason = "tolerance";
+    return;
+  }
+  result.stop_reason = "max_iterations";
 }
 
 }  // namespace
@@ -93,44 +262,28 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options, Job* job) {
-  const Mesh& mesh = graph.mesh();
-  check_sites(mesh, sites);
-  check_options(mesh, options);
+  check_sites(graph.mesh(), sites);
+  check_options(graph.mesh(), options);
+  check_fixed(options, sites);
   const JobStage stage(job, "Finding cells");
   const double part = 1.0 / (options.max_iterations + 1);
-  const FaceWeights weights(mesh, options.density, options.threads);
+  Relaxation relaxation(graph, sites, options, stage.part(0, part));
   CentroidalVoronoi result;
-  result.stop_reason = "max_iterations";
-  State state = evaluate(graph, sites, weights, options.threads, stage.part(0, part));
-  result.energy.push_back(state.energy);
-  while (result.iterations < options.max_iterations) {
-    const JobStage step =
-        stage.part((result.iterations + 1) * part, (result.iterations + 2) * part,
-                   message("Relaxing cells, step ", result.iterations + 1, " of ", options.max_iterations));
-    double share = 1;
-    State next = evaluate(graph, moved_sites(mesh, state, share), weights, options.threads, step);
-    for (int halving = 0; next.energy > state.energy && halving < k_most_halvings; ++halving) {
-      share /= 2;
-      next = evaluate(graph, moved_sites(mesh, state, share), weights, options.threads, step);
-    }
-    if (next.energy > state.energy) {
-      result.converged = true;
-      result.stop_reason = "no step lowers the energy";
-      break;
-    }
-    const double fall = state.energy - next.energy;
-    state = std::move(next);
-    result.energy.push_back(state.energy);
-    ++result.iterations;
-    if (fall <= options.tolerance * state.energy) {
-      result.converged = true;
-      result.stop_reason = "tolerance";
-      break;
-    }
+  result.energy.push_back(relaxation.state().energy);
+  try {
+    relax(relaxation, options, stage, result);
+  } catch (const Cancelled&) {
+    if (!options.return_when_cancelled) throw;
+    result.stop_reason = "cancelled";
   }
-  result.sites = state.sites;
-  result.cells = make_diagram(CellComplex(*state.claims, options.threads, stage), state.sites, stage);
-  stage.update(1);
+  const State& best = relaxation.state();
+  const JobStage last = options.return_when_cancelled ? JobStage() : stage;
+  result.sites = best.sites;
+  result.cells = make_diagram(CellComplex(*best.claims, options.threads, last), best.sites, last);
+  constexpr double k_hexagon = 5 / (36 * 1.7320508075688772);
+  const double mass = relaxation.mass();
+  result.normalised_energy = best.energy * static_cast<double>(sites.size()) / (2 * k_hexagon * mass * mass);
+  if (!options.return_when_cancelled) stage.update(1);
   return result;
 }
 

@@ -1,0 +1,61 @@
+#include "tessellation/tangent_moves.h"
+
+#include <cmath>
+
+#include "saddleback/error.h"
+#include "saddleback/trace.h"
+
+#include "support/parallel.h"
+
+namespace saddleback {
+namespace {
+
+/// Radians of surface per radian of the tangent plane, which is scaled at vertices inside the mesh.
+double surface_scale(const Mesh& mesh, const SurfacePoint& point) {
+  const Index vertex = vertex_at(mesh, point);
+  return vertex == k_none || mesh.is_boundary(vertex) ? 1 : mesh.total_angle(vertex) / (2 * M_PI);
+}
+
+Vec2 rotated(const Vec2& v, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+void move_site(const Mesh& mesh, const SurfacePoint& site, const Vec2& step, Index i, Moved& moved) {
+  moved.sites[i] = site;
+  const double length = step.norm();
+  if (!(length > 0) || !std::isfinite(length)) return;
+  const double heading = std::atan2(step.y(), step.x()), scale = surface_scale(mesh, site);
+  const double angle = scale == 1 ? heading : (heading < 0 ? heading + 2 * M_PI : heading) * scale;
+  try {
+    const TraceEnd end = trace_end(mesh, site, angle, length);
+    moved.sites[i] = end.point;
+    const double arrival = angle_about(mesh, end.point, end.angle) / surface_scale(mesh, end.point);
+    moved.rotations[i] = arrival - heading;
+    moved.steps[i] = rotated(step * (end.length / length), moved.rotations[i]);
+  } catch (const InputError&) {
+    // The site stays.
+  }
+}
+
+}  // namespace
+
+Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads) {
+  Moved moved{SurfacePoints(sites.size()), TangentField(sites.size(), Vec2::Zero()),
+              std::vector<double>(sites.size(), 0.0)};
+  parallel_for(static_cast<Index>(sites.size()), threads, 64,
+               [&](Index i, int) { move_site(mesh, sites[i], steps[i], i, moved); });
+  return moved;
+}
+
+void transport(const Moved& moved, TangentField& field) {
+  for (std::size_t i = 0; i < field.size(); ++i) field[i] = rotated(field[i], moved.rotations[i]);
+}
+
+double dot(const TangentField& a, const TangentField& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+}  // namespace saddleback

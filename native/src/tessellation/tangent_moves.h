@@ -1,0 +1,30 @@
+#pragma once
+// Sites that move along geodesics, and tangent vectors that they carry along.
+
+#include <vector>
+
+#include "saddleback/surface_points.h"
+
+namespace saddleback {
+
+/// A vector in the tangent plane of each site (axes as SiteMaps).
+using TangentField = std::vector<Vec2>;
+
+/// Where sites came to rest, and what the way did to directions.
+struct Moved {
+  SurfacePoints sites;
+  TangentField steps;             ///< as made (a boundary may have stopped them), in the new tangent planes
+  std::vector<double> rotations;  ///< by which a vector carried along turns against the axes, radians
+};
+
+/// Moves every site along its step by the exponential map. A step of length 0, or one that cannot be traced (round a
+/// spike thinner than rounding a curve turns without end), leaves its site. Parallel transport along straightest
+/// geodesics keeps the angle to the geodesic. O(faces crossed).
+Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads);
+
+/// The field carried along.
+void transport(const Moved& moved, TangentField& field);
+
+double dot(const TangentField& a, const TangentField& b);
+
+}  // namespace saddleback
