@@ -3,6 +3,7 @@
 #include <span>
 
 #include "saddleback/centroidal_voronoi.h"
+#include "saddleback/dual_mesh.h"
 
 #include "points.h"
 
@@ -58,6 +59,64 @@ py::list edges(const Cells& cells) {
   }
   return result;
 }
+
+DualPolicy as_policy(const std::string& name) {
+  if (name == "strict") return DualPolicy::strict;
+  if (name == "repair") return DualPolicy::repair;
+  if (name == "fail") return DualPolicy::fail;
+  throw InputError(message("policy: wanted 'strict', 'repair' or 'fail', got '", name, "'"));
+}
+
+DualMesh dual(const Cells& cells, const std::string& policy, const py::object& threads, const py::object& job) {
+  const auto& graph = py::cast<const SaddleVertexGraph&>(cells.graph);
+  const DualPolicy chosen = as_policy(policy);
+  const int count = as_integer(threads, "threads");
+  Job* const token = as_job(job);
+  return without_gil([&] { return dual_mesh(graph, cells.diagram, chosen, count, token); });
+}
+
+py::tuple locate(const Cells& cells, const py::object& points) {
+  const SurfacePoints places = as_surface_points(points, cells.mesh(), "points");
+  std::vector<Index> cell(places.size());
+  std::vector<double> distance(places.size());
+  const Mesh& mesh = cells.mesh();
+  without_gil([&] {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const CellAt at = cells.diagram.locate(mesh, places[i]);
+      cell[i] = at.cell;
+      distance[i] = at.distance;
+    }
+  });
+  return py::make_tuple(to_array(std::move(cell)), to_array(std::move(distance)));
+}
+
+constexpr const char* k_dual_doc = R"(Make the dual mesh: the intrinsic Delaunay triangulation of the sites.
+
+Parameters
+----------
+policy : str
+    "repair": add sites where cells are too large for a triangulation of the surface (a cell that is no disk, two cells
+    that meet twice, ...), until there is one. "strict": keep the sites; triangles and edges may repeat corners, and
+    `issues` lists every violation. "fail": refuse where there is a violation.
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+DualMesh
+    Unpacks into vertices (n, 3), triangles (t, 3) and issues (list of DualIssue).
+
+Raises
+------
+InputError
+    The policy is to fail and the cells have no triangulation as their dual; or no number of sites mends them.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(cells + boundaries). H. Edelsbrunner, N. R. Shah: Triangulating topological spaces, 1997 (the closed-ball property).)";
 
 SurfacePoints corners(const Cells& cells, const py::object& cell) {
   return points_at(cells.diagram, cells.diagram.corners(as_integer(cell, "cell")));
@@ -264,6 +323,11 @@ void bind_cells(py::module_& m) {
           "SurfacePoints where three or more cells meet.")
       .def("corners", &corners, py::arg("cell"),
            "SurfacePoints around a cell: branch points and ends at the mesh's boundary, the cell on the left.")
+      .def("dual", &dual, py::arg("policy") = "repair", py::kw_only(), py::arg("threads") = 0,
+           py::arg("job") = py::none(), k_dual_doc)
+      .def("locate", &locate, py::arg("points"),
+           "The cells of points of the surface (vertices or SurfacePoints), (m,) int32, and the distances from their "
+           "sites, (m,) float64. Ties go to the smaller cell. O(cells that share a face) each.")
       .def(
           "split",
           [](const Cells& c) {

@@ -20,6 +20,7 @@ void bind_stepped_sweep(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
 void bind_tessellation(py::module_& m);
+void bind_dual_mesh(py::module_& m);
 void bind_voronoi_2d(py::module_& m);
 
 namespace {
@@ -95,6 +96,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_exact(m);
   bind_graph(m);
   bind_paths(m);
+  bind_dual_mesh(m);
   bind_tessellation(m);
   bind_voronoi_2d(m);
   bind_charts(m);

@@ -20,8 +20,21 @@ struct SplitMesh {
   std::vector<Index> vertex_origin;  ///< vertex of the original mesh, k_none for added ones
 };
 
+/// Where a point of the surface belongs.
+struct CellAt {
+  Index cell;
+  double distance;  ///< from the cell's site
+};
+
 /// Cells of the sites, their boundaries and areas.
 struct GeodesicVoronoi {
+  /// A site that may own a part of a shared face: its squared distances from the face's corners. Inside, squared
+  /// distances are what a site in the face's plane would have.
+  struct Claim {
+    Index cell;
+    std::array<double, 3> squared_distance;
+  };
+
   /// Part of a face that several cells share: a convex polygon.
   struct Piece {
     Index face, cell;
@@ -33,8 +46,9 @@ struct GeodesicVoronoi {
   std::vector<double> vertex_distance;  ///< (V,) from it
   std::vector<double> areas;            ///< (n,) they sum to the mesh's area
 
-  SurfacePoints points;         ///< where cell boundaries cross mesh edges or meet
-  std::vector<Vec3> positions;  ///< of the points
+  SurfacePoints points;                ///< where cell boundaries cross mesh edges or meet
+  std::vector<Vec3> positions;         ///< of the points
+  std::vector<double> point_distance;  ///< of the points, from the sites that meet there
   /// Boundaries between two cells as polylines of points; polyline i is [edge_offsets[i], edge_offsets[i+1]) of
   /// edge_points. Consecutive points share a face. A closed one repeats its first point.
   std::vector<Index> edge_points, edge_offsets;
@@ -46,9 +60,13 @@ struct GeodesicVoronoi {
   std::vector<Piece> pieces;            ///< of the shared faces
   std::vector<Index> piece_vertices;    ///< corners of the pieces: mesh vertices, or V + i for points[i]
   std::vector<Vec3> piece_barycentric;  ///< the same in their faces
+  std::vector<Claim> claims;            ///< on the shared faces, by face and cell
+  std::vector<Index> face_claims;       ///< (F + 1,) those on face f are [face_claims[f], face_claims[f + 1])
 
   /// Cuts the mesh along the boundaries. O(V + F).
   SplitMesh split(const Mesh& mesh) const;
+  /// The cell of a point of the surface, ties to the smaller, and its distance. O(claims on the face).
+  CellAt locate(const Mesh& mesh, const SurfacePoint& point) const;
   /// The points where boundaries meet around a cell (branch points, ends at the mesh's boundary), in order with the
   /// cell on the left; indices into `points`. \throw InputError for a cell out of range.
   std::vector<Index> corners(Index cell) const;
@@ -56,9 +74,9 @@ struct GeodesicVoronoi {
 
 /// Assigns every point of the surface to its nearest site. Bisectors are straight inside a face, exactly right where
 /// the geodesics to both sites cross no saddle vertex; cells smaller than a face and several sites in one face are
-/// found. \throw InputError for no sites, a site off the mesh, a component without a site; Cancelled. O(sites k log k + arcs + pieces). After Y.-J. Liu, Z. Chen, K. Tang: Construction of iso-contours,
-/// bisectors, and Voronoi diagrams on triangulated surfaces (TPAMI 2011), with candidates spread over edges instead of
-/// vertex labels alone.
+/// found. \throw InputError for no sites, a site off the mesh, a component without a site; Cancelled. O(sites k log k +
+/// arcs + pieces). After Y.-J. Liu, Z. Chen, K. Tang: Construction of iso-contours, bisectors, and Voronoi diagrams on
+/// triangulated surfaces (TPAMI 2011), with candidates spread over edges instead of vertex labels alone.
 GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                  const GeodesicVoronoiOptions& options = {}, Job* job = nullptr);
 

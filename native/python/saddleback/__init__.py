@@ -7,6 +7,8 @@ from saddleback._saddleback import (
     Chart,
     ClippedCells,
     DeviceError,
+    DualIssue,
+    DualMesh,
     Error,
     ExactField,
     GeodesicPath,
@@ -19,6 +21,7 @@ from saddleback._saddleback import (
     Mesh,
     MeshError,
     PolarCoordinates,
+    Quality,
     Relaxation2d,
     RepairReport,
     SaddleVertexGraph,
@@ -45,6 +48,7 @@ from saddleback._saddleback import (
     repair,
     sample,
     trace,
+    triangle_quality,
     voronoi_2d,
 )
 from saddleback.progress import progress_bar
@@ -56,6 +60,8 @@ __all__ = [
     "ClippedCells",
     "Device",
     "DeviceError",
+    "DualIssue",
+    "DualMesh",
     "Error",
     "ExactField",
     "GeodesicPath",
@@ -68,6 +74,7 @@ __all__ = [
     "Mesh",
     "MeshError",
     "PolarCoordinates",
+    "Quality",
     "Relaxation2d",
     "RepairReport",
     "SaddleVertexGraph",
@@ -97,5 +104,6 @@ __all__ = [
     "repair",
     "sample",
     "trace",
+    "triangle_quality",
     "voronoi_2d",
 ]

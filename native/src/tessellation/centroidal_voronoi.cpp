@@ -262,10 +262,14 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options, Job* job) {
+  return relax_sites(graph, sites, options, JobStage(job, "Finding cells"));
+}
+
+CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
+                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
   check_sites(graph.mesh(), sites);
   check_options(graph.mesh(), options);
   check_fixed(options, sites);
-  const JobStage stage(job, "Finding cells");
   const double part = 1.0 / (options.max_iterations + 1);
   Relaxation relaxation(graph, sites, options, stage.part(0, part));
   CentroidalVoronoi result;

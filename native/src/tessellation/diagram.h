@@ -1,6 +1,6 @@
 #pragma once
 
-#include "saddleback/geodesic_voronoi.h"
+#include "saddleback/centroidal_voronoi.h"
 
 #include "tessellation/cell_complex.h"
 
@@ -8,5 +8,9 @@ namespace saddleback {
 
 /// The public diagram of a cell complex of these sites. \throw Cancelled.
 GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
+
+/// centroidal_voronoi as a part of other work.
+CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
+                              const CentroidalVoronoiOptions& options, const JobStage& stage);
 
 }  // namespace saddleback

@@ -126,7 +126,50 @@ class Chains {
   GeodesicVoronoi& out_;
 };
 
+void copy_claims(const CellClaims& claims, GeodesicVoronoi& out) {
+  out.face_claims.assign(1, 0);
+  for (Index face = 0; face < claims.mesh().face_count(); ++face) {
+    if (const Index shared = claims.shared_index(face); shared != k_none) {
+      for (const FaceClaim& claim : claims.claims(shared)) {
+        out.claims.push_back(
+            {claim.site, {claim.squared_distance(0), claim.squared_distance(1), claim.squared_distance(2)}});
+      }
+    }
+    out.face_claims.push_back(static_cast<Index>(out.claims.size()));
+  }
+}
+
+/// By how much the squared distance to a point of a face is below the interpolation of its values at the corners.
+double bulge_at(const Mesh& mesh, const SurfacePoint& point) {
+  double bulge = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double side = mesh.length(3 * point.face + i);
+    bulge += point.barycentric[i] * point.barycentric[(i + 1) % 3] * side * side;
+  }
+  return bulge;
+}
+
 }  // namespace
+
+CellAt GeodesicVoronoi::locate(const Mesh& mesh, const SurfacePoint& point) const {
+  const auto at_point = [&](const std::array<double, 3>& squared) {
+    return squared[0] * point.barycentric[0] + squared[1] * point.barycentric[1] + squared[2] * point.barycentric[2];
+  };
+  CellAt result{face_cell[point.face], 0};
+  double least = std::numeric_limits<double>::infinity();
+  if (result.cell != k_none) {
+    const Triangle& t = mesh.triangles()[point.face];
+    std::array<double, 3> squared;
+    for (int i = 0; i < 3; ++i) squared[i] = vertex_distance[t[i]] * vertex_distance[t[i]];
+    least = at_point(squared);
+  }
+  for (Index i = face_claims[point.face]; i < face_claims[point.face + 1]; ++i) {
+    const double squared = at_point(claims[i].squared_distance);
+    if (squared < least) least = squared, result.cell = claims[i].cell;
+  }
+  result.distance = std::sqrt(std::max(0.0, least - bulge_at(mesh, point)));
+  return result;
+}
 
 GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                  const GeodesicVoronoiOptions& options, Job* job) {
@@ -159,6 +202,8 @@ GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& si
   }
   result.piece_vertices = complex.loop();
   result.piece_barycentric = complex.loop_barycentric();
+  copy_claims(complex.claims(), result);
+  for (const SurfacePoint& point : result.points) result.point_distance.push_back(result.locate(mesh, point).distance);
   return result;
 }
 
