@@ -1,6 +1,7 @@
 #include "tessellation/cell_claims.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "saddleback/error.h"
 
@@ -22,15 +23,18 @@ void check_components(const Mesh& mesh, const SurfacePoints& sites) {
                            "; put at least one site on every part"));
 }
 
-bool before(const FaceClaim& a, const FaceClaim& b) { return a.face != b.face ? a.face < b.face : a.site < b.site; }
+constexpr double k_unknown = -1;  ///< distance of a corner that is yet to be laid down
 
 EdgeLine line_along(const FaceClaim& claim, Index halfedge) {
   return {claim.site, claim.squared_distance(halfedge % 3), claim.squared_distance(Mesh::next(halfedge) % 3)};
 }
 
-/// The nearest of two sites at an edge's start and at its end, as lower_envelope tells them; `a` is the smaller site.
+/// The nearest of two sites at an edge's start and at its end, as lower_envelope tells them.
 std::array<Index, 2> winners(const EdgeLine& a, const EdgeLine& b) {
-  return {a.at_start <= b.at_start ? a.site : b.site, a.at_end <= b.at_end ? a.site : b.site};
+  const auto nearer = [&](double of_a, double of_b) {
+    return of_a != of_b ? (of_a < of_b ? a.site : b.site) : std::min(a.site, b.site);
+  };
+  return {nearer(a.at_start, b.at_start), nearer(a.at_end, b.at_end)};
 }
 
 }  // namespace
@@ -45,7 +49,6 @@ void check_sites(const Mesh& mesh, const SurfacePoints& sites) {
 struct CellClaims::Worker {
   explicit Worker(const SiteMaps& maps) : scratch(maps), known(k_known) {}
   SiteMaps::Scratch scratch;
-  std::vector<FaceClaim> claims;
   std::vector<Wish> wishes;
   std::vector<EdgeLine> lines;
   std::vector<EdgePiece> pieces;
@@ -53,14 +56,27 @@ struct CellClaims::Worker {
   /// A vertex beside a cell has several faces there: its last answers are kept.
   struct Known {
     Index vertex = k_none, site = k_none;
+    bool found = false;
     SiteVector vector;
   };
   static constexpr std::size_t k_known = 256;
   std::vector<Known> known;
-  const SiteVector& vector(const SiteMaps& maps, Index vertex, Index site) {
+  const Known& find(const SiteMaps& maps, Index site, Index vertex) {
     Known& entry = known[static_cast<std::size_t>(vertex) % k_known];
-    if (entry.vertex != vertex || entry.site != site) entry = {vertex, site, maps.from(site, vertex, scratch)};
-    return entry.vector;
+    if (entry.vertex == vertex && entry.site == site) return entry;
+    entry.vertex = vertex;
+    entry.site = site;
+    entry.found = maps.find(site, vertex, scratch, entry.vector);
+    return entry;
+  }
+};
+
+/// Corners that no path in the graph places: those of long faces that cells without vertices cross. The first face
+/// that lays them decides, for all.
+struct CellClaims::Laid {
+  std::unordered_map<std::uint64_t, SiteVector> vectors;
+  static std::uint64_t key(Index site, Index vertex) {
+    return static_cast<std::uint64_t>(site) << 32 | static_cast<std::uint32_t>(vertex);
   }
 };
 
@@ -84,6 +100,7 @@ void CellClaims::claim_by_corners(std::vector<Worker>& workers, int threads, con
     first_.push_back(first_.back() + (a != b && b != c && c != a ? 3 : 2));
   }
   claims_.resize(first_.back());
+  const Laid none;  // each label has a corner next to the others
   parallel_for(shared_count(), threads, 256, [&](Index shared, int thread) {
     stage.check();
     const Triangle& t = mesh().triangles()[faces_[shared]];
@@ -91,8 +108,8 @@ void CellClaims::claim_by_corners(std::vector<Worker>& workers, int threads, con
     std::sort(labels.begin(), labels.end());
     Index place = first_[shared];
     for (int i = 0; i < 3; ++i) {
-      if (i == 0 || labels[i] != labels[i - 1])
-        claims_[place++] = make_claim(faces_[shared], labels[i], workers[thread]);
+      if (i > 0 && labels[i] == labels[i - 1]) continue;
+      make_claim(faces_[shared], labels[i], none, workers[thread], claims_[place++]);
     }
   });
 }
@@ -100,20 +117,69 @@ void CellClaims::claim_by_corners(std::vector<Worker>& workers, int threads, con
 /// Claims of sites on the faces in which they lie.
 std::vector<CellClaims::Wish> CellClaims::wishes_of_sites(const SurfacePoints& sites) const {
   std::vector<Wish> wishes;
-  for (Index site = 0; site < site_count(); ++site) wish_for(sites[site].face, site, wishes);
+  for (Index site = 0; site < site_count(); ++site) wish_for({sites[site].face, site, k_none}, wishes);
   return wishes;
 }
 
-FaceClaim CellClaims::make_claim(Index face, Index site, Worker& worker) const {
+/// False where corners are left to be laid down.
+bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& worker, FaceClaim& claim) const {
   const Triangle& t = mesh().triangles()[face];
-  FaceClaim claim{face, site, {}};
-  for (int i = 0; i < 3; ++i) claim.corner[i] = worker.vector(maps_, t[i], site);
-  return claim;
+  claim = {face, site, {}};
+  bool complete = true;
+  for (int i = 0; i < 3; ++i) {
+    const Worker::Known& known = worker.find(maps_, site, t[i]);
+    claim.corner[i] = known.vector;
+    if (known.found) continue;
+    const auto found = laid.vectors.find(Laid::key(site, t[i]));
+    if (found != laid.vectors.end())
+      claim.corner[i] = found->second;
+    else
+      claim.corner[i].distance = k_unknown, complete = false;
+  }
+  return complete;
+}
+
+/// Completes a claim from the same site's on the face beyond the half-edge.
+void CellClaims::lay_corners(Index halfedge, Laid& laid, FaceClaim& claim) const {
+  const int start = halfedge % 3, end = Mesh::next(halfedge) % 3, apex = Mesh::prev(halfedge) % 3;
+  const Index twin = mesh().twin(halfedge);
+  visit_claims(Mesh::face_of(twin), [&](const FaceClaim& beyond) {
+    if (beyond.site != claim.site) return;
+    claim.corner[start] = beyond.corner[Mesh::next(twin) % 3];
+    claim.corner[end] = beyond.corner[twin % 3];
+  });
+  if (claim.corner[apex].distance != k_unknown) return;
+  const auto key = Laid::key(claim.site, mesh().apex(halfedge));
+  claim.corner[apex] =
+      laid.vectors.try_emplace(key, maps_.laid_beside(halfedge, claim.corner[start], claim.corner[end])).first->second;
+}
+
+/// Makes the claims that are wished for; each face and site once.
+void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid, std::vector<Worker>& workers, int threads) {
+  const auto count = static_cast<Index>(wishes.size());
+  std::vector<FaceClaim> granted(count);
+  std::vector<std::uint8_t> complete(count);
+  parallel_for(count, threads, 64, [&](Index i, int thread) {
+    complete[i] = make_claim(wishes[i].face, wishes[i].site, laid, workers[thread], granted[i]);
+  });
+  for (Index i = 0; i < count; ++i) {
+    if (!complete[i] && wishes[i].halfedge != k_none) lay_corners(wishes[i].halfedge, laid, granted[i]);
+  }
+  for (const FaceClaim& claim : granted) {
+    Index& index = late_index_[claim.face];
+    if (index == k_none) {
+      index = static_cast<Index>(late_.size());
+      late_.emplace_back();
+    }
+    late_[index].push_back(claim);
+  }
 }
 
 /// Claims beyond the edges of faces with new claims, until there are no new ones.
 void CellClaims::spread(const SurfacePoints& sites, std::vector<Worker>& workers, int threads, const JobStage& stage) {
   std::vector<Index> changed = faces_;
+  Laid laid;
+  late_index_.assign(mesh().face_count(), k_none);
   std::vector<Wish> wishes = wishes_of_sites(sites);
   while (!changed.empty() || !wishes.empty()) {
     parallel_for(static_cast<Index>(changed.size()), threads, 256, [&](Index i, int thread) {
@@ -125,13 +191,9 @@ void CellClaims::spread(const SurfacePoints& sites, std::vector<Worker>& workers
       worker.wishes.clear();
     }
     std::sort(wishes.begin(), wishes.end());
-    wishes.erase(std::unique(wishes.begin(), wishes.end()), wishes.end());
-    const auto known = static_cast<Index>(late_.size());
-    late_.resize(late_.size() + wishes.size());
-    parallel_for(static_cast<Index>(wishes.size()), threads, 64, [&](Index i, int thread) {
-      late_[known + i] = make_claim(wishes[i].face, wishes[i].site, workers[thread]);
-    });
-    std::inplace_merge(late_.begin(), late_.begin() + known, late_.end(), before);
+    const auto same = [](const Wish& a, const Wish& b) { return a.face == b.face && a.site == b.site; };
+    wishes.erase(std::unique(wishes.begin(), wishes.end(), same), wishes.end());
+    grant(wishes, laid, workers, threads);
     changed.clear();
     for (const Wish& wish : wishes) {
       if (changed.empty() || changed.back() != wish.face) changed.push_back(wish.face);
@@ -139,29 +201,29 @@ void CellClaims::spread(const SurfacePoints& sites, std::vector<Worker>& workers
     wishes.clear();
   }
   if (!late_.empty()) merge_late();
+  late_index_ = {};
 }
 
 /// Puts the late claims in their places among the others.
 void CellClaims::merge_late() {
-  std::vector<FaceClaim> all(claims_.size() + late_.size());
-  std::merge(claims_.begin(), claims_.end(), late_.begin(), late_.end(), all.begin(), before);
-  claims_ = std::move(all);
-  late_ = {};
-  faces_.clear();
-  first_.clear();
-  for (std::size_t i = 0; i < claims_.size(); ++i) {
-    if (i > 0 && claims_[i].face == claims_[i - 1].face) continue;
-    shared_index_[claims_[i].face] = shared_count();
-    faces_.push_back(claims_[i].face);
-    first_.push_back(static_cast<Index>(i));
+  std::vector<FaceClaim> all;
+  std::vector<Index> faces, first;
+  for (Index face = 0; face < mesh().face_count(); ++face) {
+    if (shared_index_[face] == k_none && late_index_[face] == k_none) continue;
+    faces.push_back(face);
+    first.push_back(static_cast<Index>(all.size()));
+    visit_claims(face, [&](const FaceClaim& claim) { all.push_back(claim); });
+    if (late_index_[face] != k_none) {
+      std::sort(all.begin() + first.back(), all.end(),
+                [](const FaceClaim& a, const FaceClaim& b) { return a.site < b.site; });
+    }
   }
-  first_.push_back(claim_count());
-}
-
-std::span<const FaceClaim> CellClaims::late_claims(Index face) const {
-  const auto [first, last] = std::equal_range(late_.begin(), late_.end(), FaceClaim{face, 0, {}},
-                                              [](const FaceClaim& a, const FaceClaim& b) { return a.face < b.face; });
-  return {first, last};
+  first.push_back(static_cast<Index>(all.size()));
+  claims_ = std::move(all);
+  faces_ = std::move(faces);
+  first_ = std::move(first);
+  for (Index i = 0; i < shared_count(); ++i) shared_index_[faces_[i]] = i;
+  late_ = {};
 }
 
 template <class Visit>
@@ -169,7 +231,8 @@ void CellClaims::visit_claims(Index face, Visit&& visit) const {
   if (shared_index_[face] != k_none) {
     for (const FaceClaim& claim : claims(shared_index_[face])) visit(claim);
   }
-  for (const FaceClaim& claim : late_claims(face)) visit(claim);
+  if (late_index_[face] == k_none) return;
+  for (const FaceClaim& claim : late_[late_index_[face]]) visit(claim);
 }
 
 void CellClaims::find_wishes(Index face, Worker& worker) const {
@@ -180,24 +243,24 @@ void CellClaims::find_wishes(Index face, Worker& worker) const {
     visit_claims(face, [&](const FaceClaim& claim) { worker.lines.push_back(line_along(claim, h)); });
     if (worker.lines.size() == 2) {
       for (const Index site : winners(worker.lines[0], worker.lines[1]))
-        wish_for(Mesh::face_of(twin), site, worker.wishes);
+        wish_for({Mesh::face_of(twin), site, twin}, worker.wishes);
       continue;
     }
     lower_envelope(worker.lines, worker.pieces);
-    for (const EdgePiece& piece : worker.pieces) wish_for(Mesh::face_of(twin), piece.site, worker.wishes);
+    for (const EdgePiece& piece : worker.pieces) wish_for({Mesh::face_of(twin), piece.site, twin}, worker.wishes);
   }
 }
 
 /// A claim on the face unless it is there; on a face that one cell owned so far, one of that cell, too.
-void CellClaims::wish_for(Index face, Index site, std::vector<Wish>& wishes) const {
+void CellClaims::wish_for(const Wish& wish, std::vector<Wish>& wishes) const {
   bool shared = false, known = false;
-  visit_claims(face, [&](const FaceClaim& claim) {
+  visit_claims(wish.face, [&](const FaceClaim& claim) {
     shared = true;
-    known = known || claim.site == site;
+    known = known || claim.site == wish.site;
   });
-  if (known || (!shared && face_site(face) == site)) return;
-  if (!shared) wishes.push_back({face, face_site(face)});
-  wishes.push_back({face, site});
+  if (known || (!shared && face_site(wish.face) == wish.site)) return;
+  if (!shared) wishes.push_back({wish.face, face_site(wish.face), k_none});
+  wishes.push_back(wish);
 }
 
 void CellClaims::lines_along(Index shared, Index halfedge, std::vector<EdgeLine>& lines) const {

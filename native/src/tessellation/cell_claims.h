@@ -58,23 +58,28 @@ class CellClaims {
   struct Worker;
   struct Wish {
     Index face, site;
+    Index halfedge;  ///< of the face, beyond which the site is nearest; k_none: it lies in the face
     auto operator<=>(const Wish&) const = default;
   };
+  struct Laid;
   void claim_by_corners(std::vector<Worker>& workers, int threads, const JobStage& stage);
   std::vector<Wish> wishes_of_sites(const SurfacePoints& sites) const;
   void spread(const SurfacePoints& sites, std::vector<Worker>& workers, int threads, const JobStage& stage);
   void merge_late();
-  FaceClaim make_claim(Index face, Index site, Worker& worker) const;
-  std::span<const FaceClaim> late_claims(Index face) const;
+  void grant(const std::vector<Wish>& wishes, Laid& laid, std::vector<Worker>& workers, int threads);
+  bool make_claim(Index face, Index site, const Laid& laid, Worker& worker, FaceClaim& claim) const;
+  void lay_corners(Index halfedge, Laid& laid, FaceClaim& claim) const;
   template <class Visit>
   void visit_claims(Index face, Visit&& visit) const;
   void find_wishes(Index face, Worker& worker) const;
-  void wish_for(Index face, Index site, std::vector<Wish>& wishes) const;
+  void wish_for(const Wish& wish, std::vector<Wish>& wishes) const;
 
   SiteMaps maps_;
   std::vector<Index> shared_index_, faces_, first_;
   std::vector<FaceClaim> claims_;
-  std::vector<FaceClaim> late_;  ///< found while claims spread, by face and site
+  // Found while claims spread:
+  std::vector<Index> late_index_;  ///< per face, into late_; k_none
+  std::vector<std::vector<FaceClaim>> late_;
 };
 
 }  // namespace saddleback

@@ -288,15 +288,41 @@ SiteVector SiteMaps::vector_of(const Place& place) const {
   return {place.distance * vector_of(places_[place.anchor]).log.normalized(), place.distance};
 }
 
-SiteVector SiteMaps::from(Index site, Index vertex, Scratch& scratch) const {
-  if (label_[vertex] == site) return own(vertex);
-  if (vertex == fans_[site].centre) return {};  // two sites on one vertex
-  if (const DirectArc* direct = fan_arc(site, vertex)) return vector_of(place_direct(*direct));
+bool SiteMaps::find(Index site, Index vertex, Scratch& scratch, SiteVector& vector) const {
   Place place;
-  if (place_beside(vertex, site, false, place) || place_beside(vertex, site, true, place)) return vector_of(place);
-  if (place_through_neighbour(vertex, site, scratch, place)) return vector_of(place);
-  const double distance = far_distance(vertex, site);
-  return {Vec2(distance, 0), distance};
+  if (label_[vertex] == site) {
+    place = places_[vertex];
+  } else if (vertex == fans_[site].centre) {  // two sites on one vertex
+  } else if (const DirectArc* direct = fan_arc(site, vertex)) {
+    place = place_direct(*direct);
+  } else if (in_own_face(vertex, site, vector)) {
+    return true;
+  } else if (!place_beside(vertex, site, false, place) && !place_beside(vertex, site, true, place) &&
+             !place_through_neighbour(vertex, site, scratch, place)) {
+    return false;
+  }
+  vector = vector_of(place);
+  return true;
+}
+
+/// The corners of its face a site sees straight, even where its fan leaves them out.
+bool SiteMaps::in_own_face(Index vertex, Index site, SiteVector& vector) const {
+  if (fans_[site].centre != k_none) return false;
+  const Triangle& t = mesh_.triangles()[sites_[site].face];
+  const auto corner = std::find(t.begin(), t.end(), vertex);
+  if (corner == t.end()) return false;
+  const FaceChart chart(mesh_, sites_[site].face);
+  vector.log = chart.corner[corner - t.begin()] - chart.to_plane(sites_[site].barycentric);
+  vector.distance = vector.log.norm();
+  return true;
+}
+
+SiteVector SiteMaps::laid_beside(Index halfedge, const SiteVector& from, const SiteVector& to) const {
+  Vec2 along = to.log - from.log;
+  along = along.norm() > 0 ? along.normalized() : Vec2(1, 0);
+  const Vec2& apex = graph_.unfolding().apex(halfedge);
+  const Vec2 log = from.log + apex.x() * along + apex.y() * Vec2(-along.y(), along.x());
+  return {log, log.norm()};
 }
 
 /// By the nearest way over a graph neighbour that the site owns.
@@ -314,20 +340,6 @@ bool SiteMaps::place_through_neighbour(Index vertex, Index site, Scratch& scratc
   if (through == k_none || through == fans_[site].centre) return false;
   place = place_after(vertex, through, scratch);
   return true;
-}
-
-/// Over any vertex that the site sees; where there is none, more than what could be nearest.
-double SiteMaps::far_distance(Index vertex, Index site) const {
-  const ArcRows& arcs = graph_.arcs();
-  const Index node = graph_.node_of(vertex);
-  double best = k_infinity;
-  for (const DirectArc& arc : fans_[site].arcs) {
-    const std::int64_t last = arcs.find(node, graph_.node_of(arc.vertex));
-    if (last >= 0) best = std::min(best, arc.length + arcs.length(last));
-  }
-  if (best < k_infinity) return best;
-  constexpr double k_far = 4;
-  return distance_[vertex] + k_far * (mesh_.position(vertex) - position(mesh_, sites_[site])).norm();
 }
 
 }  // namespace saddleback

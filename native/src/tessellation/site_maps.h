@@ -50,9 +50,12 @@ class SiteMaps {
     ArcUnfolder unfolder;
     UnfoldedArc unfolded;
   };
-  /// From any site near whose cell the vertex lies. Depends on the vertex and the site alone: faces that
-  /// share an edge get the same bits.
-  SiteVector from(Index site, Index vertex, Scratch& scratch) const;
+  /// From a site near whose cell the vertex lies. Depends on the vertex and the site alone: faces that share an edge
+  /// get the same bits. False where the vertex is neither seen straight from the site nor next to a vertex of its
+  /// label.
+  bool find(Index site, Index vertex, Scratch& scratch, SiteVector& vector) const;
+  /// Beyond an edge whose ends are known, the third corner of the half-edge's face laid in the plane.
+  SiteVector laid_beside(Index halfedge, const SiteVector& from, const SiteVector& to) const;
 
  private:
   struct Place {
@@ -87,7 +90,7 @@ class SiteMaps {
   bool see(Index halfedge, const Place& from, const Place& to, Sight& sight) const;
   Place place_by(const Sight& sight, Index halfedge, const Place& from, const Place& to) const;
   bool place_through_neighbour(Index vertex, Index site, Scratch& scratch, Place& place) const;
-  double far_distance(Index vertex, Index site) const;
+  bool in_own_face(Index vertex, Index site, SiteVector& vector) const;
   SiteVector vector_of(const Place& place) const;
   double anchor_distance(const Place& place) const {
     return place.anchor == k_none ? 0 : places_[place.anchor].distance;
