@@ -7,6 +7,13 @@
 namespace saddleback::bindings {
 namespace {
 
+// None where there are none.
+std::vector<double> as_weights(const py::object& value, std::size_t site_count) {
+  if (value.is_none()) return {};
+  const ArrayIn<double> in = as_reals(value, "weights", static_cast<Index>(site_count));
+  return std::vector<double>(in.values.begin(), in.values.end());
+}
+
 /// The diagram and, if the caller gave a domain, its cells in there.
 struct Diagram {
   Voronoi2d result;
@@ -19,15 +26,15 @@ Diagram find_diagram(const py::object& sites, const py::object& weights, const p
   if (device != "auto" && device != "cpu" && device != "cuda")
     throw InputError(message("device: wanted 'auto', 'cpu' or 'cuda', got '", device, "'"));
   if (device == "cuda") throw DeviceError("device: Voronoi diagrams of the plane run on the CPU only");
-  if (!weights.is_none()) throw InputError("weights: not supported yet");
   const std::vector<Vec2> points = as_points_2d(sites, "sites");
+  const std::vector<double> radii = as_weights(weights, points.size());
   std::optional<PlanarDomain> within;
   if (!domain.is_none()) within = as_domain(domain, "domain");
   const Voronoi2dOptions options{.circles = as_integer(circles, "circles"), .threads = as_integer(threads, "threads")};
   Job* const token = as_job(job);
   ClippedCells clipped;
   Voronoi2d diagram = without_gil([&] {
-    Voronoi2d result = voronoi_2d(points, options, token);
+    Voronoi2d result = radii.empty() ? voronoi_2d(points, options, token) : voronoi_2d(points, radii, options, token);
     if (within) clipped = result.clip(*within, options.threads, token);
     return result;
   });
@@ -63,18 +70,23 @@ Index as_site(const Voronoi2d& diagram, const py::object& site) {
   return i;
 }
 
-constexpr const char* k_doc = R"(Voronoi diagram of points of the plane, by sweep circles.
+constexpr const char* k_doc = R"(Voronoi diagram of points or disks of the plane.
 
-Which cells touch, and where more than three meet in one vertex, is exact; only coordinates are rounded.
+Which cells touch, and where more than three meet in one vertex, is exact; only coordinates are rounded. With weights a
+point x belongs to the site with the smallest |x - site| - weight: edges are branches of hyperbolas, two cells may share
+several edges, and a site whose disk lies in another's is hidden.
 
 Parameters
 ----------
 sites : (n, 2) float array
-    Any finite numbers in any order. Equal sites share one cell.
+    Any finite numbers in any order. Equal sites (of equal weight) share one cell.
+weights : (n,) float array, optional
+    Radii of the sites; negative ones too, since only differences matter.
 domain : (m, 2) float array or list of such, optional
     A simple polygon, or an outline and its holes: `clipped` then holds the cells within.
 circles : int
-    How many sweep circles share the work; 0: as many as are good. The result does not depend on it.
+    How many sweep circles, or parts of weighted sites, share the work; 0: as many as are good. The result does not
+    depend on it.
 threads : int
     0: all cores. The result does not depend on it.
 device : str
@@ -88,14 +100,15 @@ Voronoi2d
 Raises
 ------
 InputError
-    A coordinate that is not finite, coordinates so different in size that exact arithmetic cannot take them, a domain
+    A coordinate or weight that is not finite, a wrong number of weights, coordinates so different in size that exact arithmetic cannot take them, a domain
     that is not a simple polygon with holes.
 Cancelled
     The job was cancelled.
 
 Notes
 -----
-O(n log n) time, O(n) memory. H. Tong: the sweep circle that needs no transformation.)";
+O(n log n) time (with weights: expected, for evenly spread sites), O(n) memory. H. Tong: the sweep circle that needs
+no transformation.)";
 
 constexpr const char* k_clip_doc = R"(The cells within a simple polygon with holes: ClippedCells.
 
@@ -104,7 +117,11 @@ Parameters
 polygon : (m, 2) float array or list of such
     A simple polygon, or an outline and its holes, in any direction.
 gap : float
-    How far neighbouring cells are apart; the polygon's own sides stay. A cell narrower than that has no loop.
+    How far neighbouring cells are apart; the polygon's own sides stay. A cell narrower than that has no loop. Not with
+    weights.
+tolerance : float
+    How far polylines may be from curved edges; 0: a thousandth of a mean cell's width. Neighbours share their points,
+    so that areas, which are those of the polygons, sum to the domain's all the same.
 threads : int
     0: all cores.
 job : Job, optional
@@ -119,6 +136,30 @@ Cancelled
 Notes
 -----
 O(n), and O(m) for each cell at the polygon's edges.)";
+
+constexpr const char* k_polyline_doc = R"(Points along an edge, from its first to its second vertex.
+
+Parameters
+----------
+edge : int
+tolerance : float
+    How far the curve, a branch of a hyperbola where the weights differ, may be from the chords.
+extent : float
+    Where an infinite end is cut off: so much farther from the middle of the curve, the point between the two sites, than
+    the edge's vertex is, or than the middle itself if that comes later. 0: twice the distance of the sites.
+
+Returns
+-------
+(k, 2) float64 array, k = 2 for a straight edge
+
+Raises
+------
+InputError
+    An edge that does not exist, lengths that are not positive.
+
+Notes
+-----
+O(k).)";
 
 constexpr const char* k_locate_doc = R"(Nearest site of each point, exactly; of equally near ones the smallest index.
 
@@ -167,8 +208,13 @@ void bind_voronoi_2d(py::module_& m) {
       });
   py::class_<Diagram>(m, "Voronoi2d", py::module_local(), "Voronoi diagram of the plane; made by `voronoi_2d`.")
       .def_property_readonly("sites", &rows<&Voronoi2d::sites, double>, "(n, 2) float64: as given.")
+      .def_property_readonly("weights", &array<&Voronoi2d::weights>,
+                             "(n,) float64: as given, or (0,) if they are equal.")
       .def_property_readonly("site_of", &array<&Voronoi2d::site_of>,
                              "(n,) int32: smallest index of an equal site; only such sites have a cell.")
+      .def_property_readonly(
+          "hidden", &array<&Voronoi2d::hidden>,
+          "(h,) int32, ascending: sites without a cell, since their disk lies in that of a heavier one.")
       .def_property_readonly("vertices", &rows<&Voronoi2d::vertices, double>, "(V, 2) float64.")
       .def_property_readonly("edges", &rows<&Voronoi2d::edges, Index>,
                              "(E, 2) int32 vertices; -1 at infinity: (v, -1) is a ray, (-1, -1) a line.")
@@ -176,7 +222,8 @@ void bind_voronoi_2d(py::module_& m) {
                              "(E, 2) int32: the sites left and right of the edge.")
       .def_property_readonly(
           "edge_directions", [](const Diagram& d) { return to_array(d.result.edge_directions()); },
-          "(E, 2) float64 unit vectors from first to second vertex; of a ray outwards.")
+          "(E, 2) float64 unit vectors from first to second vertex; of a ray outwards, where a curved one goes at "
+          "last.")
       .def_property_readonly(
           "delaunay", [](const Diagram& d) { return to_array(without_gil([&] { return d.result.delaunay(); })); },
           "(T, 3) int32 sites, counter-clockwise: the Delaunay triangulation. Triangles about one vertex share its "
@@ -205,23 +252,31 @@ void bind_voronoi_2d(py::module_& m) {
           py::arg("site"), "(k,) int32: edges around a site's cell; edge k leads to vertex k of `cell_vertices`.")
       .def_property_readonly(
           "areas", [](const Diagram& d) { return to_array(d.result.areas()); },
-          "(n,) float64: areas of the cells, inf for open ones. Equal sites have the same cell.")
+          "(n,) float64: areas of the cells, inf for open ones, 0 for hidden sites. Equal sites have the same cell.")
       .def_property_readonly(
           "centroids", [](const Diagram& d) { return to_array(d.result.centroids()); },
           "(n, 2) float64: centres of mass of the cells, not a number for open ones.")
+      .def(
+          "edge_polyline",
+          [](const Diagram& d, const py::object& edge, const py::object& tolerance, const py::object& extent) {
+            return to_array(d.result.edge_polyline(as_integer(edge, "edge"), as_real(tolerance, "tolerance"),
+                                                   as_real(extent, "extent")));
+          },
+          py::arg("edge"), py::arg("tolerance"), py::arg("extent") = 0.0, k_polyline_doc)
       .def_readonly("clipped", &Diagram::clipped, "ClippedCells within the domain given to `voronoi_2d`, or None.")
       .def(
           "clip",
-          [](const Diagram& d, const py::object& polygon, const py::object& gap, const py::object& threads,
-             const py::object& job) {
+          [](const Diagram& d, const py::object& polygon, const py::object& gap, const py::object& tolerance,
+             const py::object& threads, const py::object& job) {
             const PlanarDomain domain = as_domain(polygon, "domain");
-            const double between = as_real(gap, "gap");
-            const int count = as_integer(threads, "threads");
+            const ClipOptions options{.gap = as_real(gap, "gap"),
+                                      .tolerance = as_real(tolerance, "tolerance"),
+                                      .threads = as_integer(threads, "threads")};
             Job* const token = as_job(job);
-            return without_gil([&] { return d.result.clip(domain, between, count, {token, "Clipping cells"}); });
+            return without_gil([&] { return d.result.clip(domain, options, {token, "Clipping cells"}); });
           },
-          py::arg("polygon"), py::kw_only(), py::arg("gap") = 0.0, py::arg("threads") = 0, py::arg("job") = py::none(),
-          k_clip_doc)
+          py::arg("polygon"), py::kw_only(), py::arg("gap") = 0.0, py::arg("tolerance") = 0.0, py::arg("threads") = 0,
+          py::arg("job") = py::none(), k_clip_doc)
       .def(
           "locate",
           [](const Diagram& d, const py::object& points, const py::object& threads, const py::object& job) {

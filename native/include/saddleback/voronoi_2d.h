@@ -33,11 +33,20 @@ struct ClippedCells {
   std::vector<Vec2> centroids;      ///< (n) not a number where the area is 0
 };
 
+struct ClipOptions {
+  double gap = 0;        ///< between neighbours: each cell is smaller by half of it, but not along the domain's sides
+  double tolerance = 0;  ///< of polylines along curved edges, the same for both cells, whose areas are those of the
+                         ///< polygons; 0: a thousandth of a mean cell's width
+  int threads = 0;       ///< 0: all cores
+};
+
 /// A diagram with exact topology: which cells touch, and where more than three meet in one vertex, is decided without
 /// any tolerance; only the vertices' coordinates are rounded. Numbering depends on the sites alone.
 struct Voronoi2d {
   LargeArray<Vec2> sites;                       ///< (n) as given
+  LargeArray<double> weights;                   ///< (n) as given, none if they are equal
   LargeArray<Index> site_of;                    ///< (n) smallest index of an equal site: only such have a cell
+  std::vector<Index> hidden;                    ///< ascending: sites that a heavier one leaves no cell
   LargeArray<Vec2> vertices;                    ///< (V)
   LargeArray<std::array<Index, 2>> edges;       ///< (E) vertices; -1 at infinity: (v, -1) is a ray, (-1, -1) a line
   LargeArray<std::array<Index, 2>> edge_sites;  ///< (E) the sites left and right of the edge, first to second vertex
@@ -56,8 +65,14 @@ struct Voronoi2d {
   /// Edges around a site's cell: edge k leads to vertex k of `cell_vertices`. O(1).
   std::span<const Index> cell_edges(Index site) const;
   bool is_bounded(Index site) const;
-  /// (E) unit vectors from first to second vertex; of a ray from its vertex outwards. O(E).
+  /// (E) unit vectors from first to second vertex; of a ray from its vertex outwards, where a curved one goes at last.
+  /// O(E).
   std::vector<Vec2> edge_directions() const;
+  /// Points along an edge from first to second vertex, whose chords are within a tolerance of it: two of a straight
+  /// one. An infinite end is cut off `extent` farther from the middle of the curve than the edge's vertex, or than the
+  /// middle where there is no vertex beyond it; 0: twice the distance of the sites. O(log of the length over the
+  /// tolerance), and O(points). \throw InputError for a wrong index or lengths that are not positive.
+  std::vector<Vec2> edge_polyline(Index edge, double tolerance, double extent = 0) const;
   /// (T) sites, counter-clockwise: the Delaunay triangulation. Where more than three sites lie on an empty circle, all
   /// triangles share the one with the smallest index. O(E).
   std::vector<Triangle> delaunay() const;
@@ -67,9 +82,9 @@ struct Voronoi2d {
   std::vector<Vec2> centroids() const;
   /// The cells within a domain. O(n) plus, for cells at the domain's edges, O(corners of the domain). \throw Cancelled
   ClippedCells clip(const PlanarDomain& domain, int threads = 0, Job* job = nullptr) const;
-  /// The same as a part of other work, each cell smaller by half the gap along its sides, but not along the domain's:
-  /// neighbours are `gap` apart. \throw InputError for a gap that is negative or not finite.
-  ClippedCells clip(const PlanarDomain& domain, double gap, int threads, const JobStage& stage) const;
+  /// The same as a part of other work. \throw InputError for lengths that are negative or not finite, and for a gap
+  /// between curved edges.
+  ClippedCells clip(const PlanarDomain& domain, const ClipOptions& options, const JobStage& stage) const;
   /// (m) nearest site of each point, exactly; of equally near ones the smallest index. O(m + n) expected.
   /// \throw InputError for a point that is not finite, and without sites. Cancelled
   std::vector<Index> locate(std::span<const Vec2> points, int threads = 0, Job* job = nullptr) const;
@@ -86,5 +101,13 @@ struct Voronoi2d {
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options = {}, Job* job = nullptr);
 /// The same as a part of other work.
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage);
+
+/// Additively weighted Voronoi diagram: of disks with the weights, which may be negative, as radii. A point belongs to
+/// the site with the smallest |x - p| - w, so that only differences of weights matter. Edges are branches of
+/// hyperbolas. A site is hidden when its disk lies in another's, touching it or not; then it has no cell. Two cells may
+/// share several edges, a cell may have two vertices, one or none. \throw InputError as above, and for a weight that is
+/// not finite or a wrong number of weights. Cancelled. O(n log n) time expected for evenly spread sites, O(n) memory.
+Voronoi2d voronoi_2d(std::span<const Vec2> sites, std::span<const double> weights, const Voronoi2dOptions& options = {},
+                     Job* job = nullptr);
 
 }  // namespace saddleback

@@ -486,7 +486,11 @@ class Voronoi2d:
     @property
     def sites(self) -> _Floats: ...
     @property
+    def weights(self) -> _Floats: ...
+    @property
     def site_of(self) -> _Indices: ...
+    @property
+    def hidden(self) -> _Indices: ...
     @property
     def vertices(self) -> _Floats: ...
     @property
@@ -505,8 +509,15 @@ class Voronoi2d:
     def clipped(self) -> ClippedCells | None: ...
     @property
     def cells(self) -> tuple[_Indices, _Indices]: ...
+    def edge_polyline(self, edge: SupportsIndex, tolerance: SupportsFloat, extent: SupportsFloat = 0.0) -> _Floats: ...
     def clip(
-        self, polygon: _Domain, *, gap: SupportsFloat = 0.0, threads: SupportsIndex = 0, job: Job | None = None
+        self,
+        polygon: _Domain,
+        *,
+        gap: SupportsFloat = 0.0,
+        tolerance: SupportsFloat = 0.0,
+        threads: SupportsIndex = 0,
+        job: Job | None = None,
     ) -> ClippedCells: ...
     def locate(self, points: ArrayLike, *, threads: SupportsIndex = 0, job: Job | None = None) -> _Indices: ...
     def cell_vertices(self, site: SupportsIndex) -> _Indices: ...
@@ -514,7 +525,7 @@ class Voronoi2d:
 
 def voronoi_2d(
     sites: ArrayLike,
-    weights: None = None,
+    weights: ArrayLike | None = None,
     domain: _Domain | None = None,
     circles: SupportsIndex = 0,
     threads: SupportsIndex = 0,

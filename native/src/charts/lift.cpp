@@ -237,6 +237,7 @@ std::vector<Index> sites_of_faces(const Chart& chart, const Voronoi2d& diagram, 
 
 LiftedVoronoi lift(const Chart& chart, const Voronoi2d& diagram, int threads, Job* job) {
   if (diagram.sites.empty()) throw InputError("diagram: it has no sites");
+  if (!diagram.weights.empty()) throw InputError("diagram: wanted one without weights, whose edges are straight");
   const JobStage stage(job, "Lifting the diagram");
   const Index face_count = chart.mesh().face_count();
   const std::vector<Index> face_site = sites_of_faces(chart, diagram, threads, stage);

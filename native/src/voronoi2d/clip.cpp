@@ -10,11 +10,15 @@
 #include "saddleback/voronoi_2d.h"
 
 #include "support/parallel.h"
+#include "voronoi2d/clip_weighted.h"
+#include "voronoi2d/domain_map.h"
+#include "voronoi2d/loops.h"
 
 namespace saddleback {
-namespace {
 
-using Loop = std::vector<Vec2>;
+using namespace voronoi2d;
+
+namespace {
 
 /// The side of a cell: points at least as near to `mine` as to `other`. The values for the cells on both sides are each
 /// other's negatives, to the last bit, so that neighbours are cut at the same points.
@@ -31,10 +35,6 @@ struct Chain {
   Loop points;
   double in, out;  ///< places along the side
 };
-
-void add_point(Loop& loop, const Vec2& point) {
-  if (loop.empty() || loop.back() != point) loop.push_back(point);
-}
 
 // The chains of a loop that has points on both sides.
 void cut_loop(const Loop& loop, const std::vector<double>& values, const Side& side, std::vector<Chain>& chains) {
@@ -95,64 +95,7 @@ void cut(std::vector<Loop>& loops, const Side& side) {
   loops = std::move(kept);
 }
 
-/// Squares over the domain's box, marked where an edge may pass.
-class EdgeMap {
- public:
-  EdgeMap(const PlanarDomain& domain, Index size) : domain_(domain), size_(size) {
-    for (const Vec2& p : domain.loops()[0]) {
-      lower_ = lower_.cwiseMin(p);
-      upper_ = upper_.cwiseMax(p);
-    }
-    scale_ = (upper_ - lower_).cwiseInverse() * size;
-    sums_.assign(static_cast<std::size_t>(size + 1) * (size + 1), 0);
-    for (const auto& loop : domain.loops())
-      for (std::size_t i = 0; i < loop.size(); ++i) mark(loop[i], loop[(i + 1) % loop.size()]);
-    for (Index y = 1; y <= size; ++y)
-      for (Index x = 1; x <= size; ++x) sum(x, y) += sum(x - 1, y) + sum(x, y - 1) - sum(x - 1, y - 1);
-  }
-
-  enum class Place { outside, inside, at_edge };
-  /// Where a box lies; `at_edge` when in doubt.
-  Place place(const Vec2& low, const Vec2& high) const {
-    if ((high.array() < lower_.array()).any() || (low.array() > upper_.array()).any()) return Place::outside;
-    if ((low.array() < lower_.array()).any() || (high.array() > upper_.array()).any()) return Place::at_edge;
-    const Index x = column(low.x()), y = row(low.y()), end_x = column(high.x()) + 1, end_y = row(high.y()) + 1;
-    if (sum(end_x, end_y) - sum(x, end_y) - sum(end_x, y) + sum(x, y) > 0) return Place::at_edge;
-    return domain_.contains(low) ? Place::inside : Place::outside;
-  }
-
- private:
-  Index column(double x) const { return std::clamp(static_cast<Index>((x - lower_.x()) * scale_.x()), 0, size_ - 1); }
-  Index row(double y) const { return std::clamp(static_cast<Index>((y - lower_.y()) * scale_.y()), 0, size_ - 1); }
-  Index& sum(Index x, Index y) { return sums_[static_cast<std::size_t>(y) * (size_ + 1) + x]; }
-  Index sum(Index x, Index y) const { return sums_[static_cast<std::size_t>(y) * (size_ + 1) + x]; }
-
-  // One square more on every side than the edge meets, for the sake of rounding.
-  void mark(Vec2 a, Vec2 b) {
-    if (a.y() > b.y()) std::swap(a, b);
-    const Index first = std::max(0, row(a.y()) - 1), last = std::min(size_ - 1, row(b.y()) + 1);
-    for (Index y = first; y <= last; ++y) {
-      const auto x_at = [&](Index line) {
-        const double share = (lower_.y() + line / scale_.y() - a.y()) / (b.y() - a.y());
-        return a.x() + (share > 0 ? std::min(share, 1.0) : 0.0) * (b.x() - a.x());
-      };
-      const bool is_level = row(a.y()) == row(b.y());
-      const double from = is_level ? a.x() : x_at(y - 1), to = is_level ? b.x() : x_at(y + 2);
-      const Index begin = std::max(0, column(std::min(from, to)) - 1),
-                  end = std::min(size_ - 1, column(std::max(from, to)) + 1);
-      for (Index x = begin; x <= end; ++x) sum(x + 1, y + 1) = 1;
-    }
-  }
-
-  const PlanarDomain& domain_;
-  Index size_;
-  Vec2 lower_ = Vec2::Constant(std::numeric_limits<double>::infinity());
-  Vec2 upper_ = -lower_;
-  Vec2 scale_;  ///< squares by length
-  std::vector<Index> sums_;
-};
-
-std::vector<Loop> clip_cell(const Voronoi2d& diagram, Index site, const PlanarDomain& domain, const EdgeMap& map,
+std::vector<Loop> clip_cell(const Voronoi2d& diagram, Index site, const PlanarDomain& domain, const DomainMap& map,
                             double gap) {
   std::vector<Loop> loops(domain.loops().begin(), domain.loops().end());
   if (diagram.is_bounded(site)) {
@@ -164,13 +107,13 @@ std::vector<Loop> clip_cell(const Voronoi2d& diagram, Index site, const PlanarDo
       high = high.cwiseMax(whole.back());
     }
     switch (map.place(low, high)) {
-      case EdgeMap::Place::inside:
+      case DomainMap::Place::inside:
         if (gap == 0) return {whole};
         loops.assign(1, whole);
         break;
-      case EdgeMap::Place::outside:
+      case DomainMap::Place::outside:
         return {};
-      case EdgeMap::Place::at_edge:
+      case DomainMap::Place::at_edge:
         break;
     }
   }
@@ -183,44 +126,31 @@ std::vector<Loop> clip_cell(const Voronoi2d& diagram, Index site, const PlanarDo
   return loops;
 }
 
-// Area and centre of mass of loops, counted from a point near them.
-void add_moments(const std::vector<Loop>& loops, const Vec2& near, double& area, Vec2& centroid) {
-  double twice_area = 0;
-  Vec2 moment(0, 0);
-  for (const Loop& loop : loops) {
-    Vec2 before = loop.back() - near;
-    for (const Vec2& point : loop) {
-      const Vec2 corner = point - near;
-      const double cross = before.x() * corner.y() - before.y() * corner.x();
-      twice_area += cross;
-      moment += cross * (before + corner);
-      before = corner;
-    }
-  }
-  area = 0.5 * twice_area;
-  centroid = near + moment / (3 * twice_area);
-}
-
 }  // namespace
 
 ClippedCells Voronoi2d::clip(const PlanarDomain& domain, int threads, Job* job) const {
-  return clip(domain, 0, threads, JobStage(job, "Clipping cells"));
+  return clip(domain, {.threads = threads}, JobStage(job, "Clipping cells"));
 }
 
-ClippedCells Voronoi2d::clip(const PlanarDomain& domain, double gap, int threads, const JobStage& stage) const {
+ClippedCells Voronoi2d::clip(const PlanarDomain& domain, const ClipOptions& options, const JobStage& stage) const {
+  const double gap = options.gap, tolerance = options.tolerance;
   if (!(gap >= 0) || std::isinf(gap)) throw InputError(message("gap: wanted a length of 0 or more, got ", gap));
+  if (gap > 0 && !weights.empty()) throw InputError("gap: wanted 0 for sites with weights, whose edges are curved");
+  if (!(tolerance >= 0)) throw InputError(message("tolerance: wanted a length of 0 or more, got ", tolerance));
   const Index count = static_cast<Index>(sites.size());
   const double side = 0.5 * std::sqrt(static_cast<double>(cell_sites.size()));
-  const EdgeMap map(domain, std::clamp(static_cast<Index>(side), 1, 1024));
+  const DomainMap map(domain, std::clamp(static_cast<Index>(side), 1, 1024));
+  const double mean_width = std::sqrt(domain.area() / std::max<double>(1, static_cast<double>(cell_sites.size())));
+  const CurvedCells curved(*this, domain, map, tolerance > 0 ? tolerance : 1e-3 * mean_width);
   std::vector<std::vector<Loop>> cells(count);
   ClippedCells result;
   result.areas.assign(count, 0);
   result.centroids.assign(count, Vec2::Constant(std::numeric_limits<double>::quiet_NaN()));
   constexpr Index k_block = 256;
-  parallel_for(count, threads, k_block, [&](Index site, int) {
+  parallel_for(count, options.threads, k_block, [&](Index site, int) {
     if (site % k_block == 0) stage.check();
-    if (site_of[site] != site) return;
-    cells[site] = clip_cell(*this, site, domain, map, gap);
+    if (site_of[site] != site || cell_places[site] == k_none) return;
+    cells[site] = weights.empty() ? clip_cell(*this, site, domain, map, gap) : curved.clip(site);
     if (cells[site].empty()) return;
     add_moments(cells[site], cells[site][0][0], result.areas[site], result.centroids[site]);
   });

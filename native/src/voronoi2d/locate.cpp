@@ -1,5 +1,5 @@
-// From cell to cell towards the point: a site that is not the nearest has a neighbour that is nearer. Each point starts
-// at a site next to it on a space-filling curve through sites and points alike.
+// From cell to cell towards the point: a site that is not the nearest has a neighbour that is nearer, with weights or
+// without. Each point starts at a site next to it on a space-filling curve through sites and points alike.
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include "saddleback/voronoi_2d.h"
 
 #include "predicates/predicates.h"
+#include "predicates/weighted_2d.h"
 #include "support/parallel.h"
 #include "voronoi2d/curve_order.h"
 
@@ -22,21 +23,47 @@ struct Scaled {
   predicates::Point2 operator()(const Vec2& v) const { return {v.x() * scale, v.y() * scale}; }
   predicates::Point2 site(Index i) const { return (*this)(diagram.sites[i]); }
 
-  /// The nearer of two sites, the smaller index if none is (exact).
-  bool is_nearer(const predicates::Point2& point, Index a, Index b) const {
-    const predicates::Sign sign = predicates::compare_distances(point, site(a), site(b));
-    return sign == predicates::Sign::negative || (sign == predicates::Sign::zero && a < b);
+  predicates::WeightedPoint2 weighted(Index i) const {
+    return {diagram.sites[i].x() * scale, diagram.sites[i].y() * scale, diagram.weights[i] * scale};
+  }
+
+  /// Negative if a is nearer than b (exact).
+  predicates::Sign compare(const predicates::Point2& point, Index a, Index b) const {
+    if (diagram.weights.empty()) return predicates::compare_distances(point, site(a), site(b));
+    return predicates::compare_weighted_distances(point, weighted(a), weighted(b));
+  }
+
+  template <class Visit>
+  void for_neighbours(Index site, Visit&& visit) const {
+    for (const Index edge : diagram.cell_edges(site)) {
+      const auto [left, right] = diagram.edge_sites[edge];
+      visit(left == site ? right : left);
+    }
   }
 
   Index nearest_from(const predicates::Point2& point, Index site) const {
     for (Index next = site;; site = next) {
-      for (const Index edge : diagram.cell_edges(site)) {
-        const auto [left, right] = diagram.edge_sites[edge];
-        const Index other = left == site ? right : left;
-        if (is_nearer(point, other, next)) next = other;
-      }
-      if (next == site) return site;
+      bool is_shared = false;
+      for_neighbours(site, [&](Index other) {
+        const predicates::Sign sign = compare(point, other, next);
+        if (sign == predicates::Sign::negative) next = other;
+        is_shared |= sign == predicates::Sign::zero;
+      });
+      if (next == site) return is_shared ? smallest_nearest(point, site) : site;
     }
+  }
+
+  /// Of all sites as near as one of the nearest the smallest index: they are neighbours of each other in turn.
+  Index smallest_nearest(const predicates::Point2& point, Index site) const {
+    std::vector<Index> nearest{site};
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const Index from = nearest[i];
+      for_neighbours(from, [&](Index other) {
+        const bool is_known = std::find(nearest.begin(), nearest.end(), other) != nearest.end();
+        if (!is_known && compare(point, other, site) == predicates::Sign::zero) nearest.push_back(other);
+      });
+    }
+    return *std::min_element(nearest.begin(), nearest.end());
   }
 };
 

@@ -47,7 +47,7 @@ struct State {
 State evaluate(std::vector<Vec2> sites, const PlanarDomain& domain, const RasterIntegral& integral, int threads,
                const JobStage& stage) {
   const Voronoi2d diagram = voronoi_2d(sites, {.threads = threads}, stage.part(0, 0.5));
-  const ClippedCells cells = diagram.clip(domain, 0, threads, stage.part(0.5, 0.8));
+  const ClippedCells cells = diagram.clip(domain, {.threads = threads}, stage.part(0.5, 0.8));
   const auto count = static_cast<Index>(cells.loop_sites.size());
   std::vector<RasterMoments> of_loops(count);
   parallel_for(count, threads, 64, [&](Index loop, int) {

@@ -9,6 +9,8 @@
 
 #include "saddleback/error.h"
 
+#include "voronoi2d/check_options.h"
+#include "voronoi2d/edge_curve.h"
 #include "voronoi2d/find_cells.h"
 #include "voronoi2d/site_order.h"
 
@@ -49,10 +51,7 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
 }
 
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage) {
-  if (options.circles < 0) throw InputError(message("circles: wanted 0 or more, got ", options.circles));
-  if (options.threads < 0) throw InputError(message("threads: wanted 0 or more, got ", options.threads));
-  constexpr std::size_t k_most = 300'000'000;  // six neighbours each are counted in 32 bits
-  if (sites.size() > k_most) throw InputError(message("sites: wanted up to ", k_most, ", got ", sites.size()));
+  check_options(options, sites.size());
   OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
   Cells cells;
   Numbering numbering = find_numbering(ordered, options, cells, stage.part(0.1, 0.95));
@@ -80,11 +79,13 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
 
 std::span<const Index> Voronoi2d::cell_vertices(Index site) const {
   const Index place = cell_places[site];
+  if (place == k_none) return {};
   return std::span(corner_vertices).subspan(cell_offsets[place], cell_offsets[place + 1] - cell_offsets[place]);
 }
 
 std::span<const Index> Voronoi2d::cell_edges(Index site) const {
   const Index place = cell_places[site];
+  if (place == k_none) return {};
   return std::span(side_edges).subspan(cell_offsets[place], cell_offsets[place + 1] - cell_offsets[place]);
 }
 
@@ -107,20 +108,6 @@ CellRows Voronoi2d::cells() const {
 bool Voronoi2d::is_bounded(Index site) const {
   const std::span<const Index> corners = cell_vertices(site);
   return !corners.empty() && std::find(corners.begin(), corners.end(), k_none) == corners.end();
-}
-
-std::vector<Vec2> Voronoi2d::edge_directions() const {
-  std::vector<Vec2> result;
-  result.reserve(edges.size());
-  for (const auto& [left, right] : edge_sites) {
-    const Vec2 &a = sites[left], &b = sites[right];
-    // Halves and a largest component of 1 keep squares among the doubles.
-    Vec2 across = 0.5 * b - 0.5 * a;
-    if (across.isZero(0)) across = b - a;
-    across /= across.cwiseAbs().maxCoeff();
-    result.push_back(Vec2(-across.y(), across.x()).normalized());
-  }
-  return result;
 }
 
 std::vector<Triangle> Voronoi2d::delaunay() const {
@@ -159,27 +146,30 @@ struct Moments {
   Vec2 centroid;
 };
 
-// Of a polygon, counted from a point inside, which keeps small cells far from the origin exact.
-template <class CornerAt>
-Moments moments_of(std::size_t count, const Vec2& inside, CornerAt&& corner_at) {
-  double twice_area = 0;
-  Vec2 first_moment(0, 0), before = corner_at(count - 1) - inside;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec2 corner = corner_at(i) - inside;
-    const double cross = before.x() * corner.y() - before.y() * corner.x();
-    twice_area += cross;
-    first_moment += cross * (before + corner);
-    before = corner;
-  }
-  return {0.5 * twice_area, inside + first_moment / (3 * twice_area)};
-}
-
 Moments cell_moments(const Voronoi2d& diagram, Index site) {
   constexpr double k_infinity = std::numeric_limits<double>::infinity(),
                    k_nan = std::numeric_limits<double>::quiet_NaN();
+  if (diagram.cell_places[site] == k_none) return {0, {k_nan, k_nan}};
   if (!diagram.is_bounded(site)) return {k_infinity, {k_nan, k_nan}};
-  const std::span<const Index> corners = diagram.cell_vertices(site);
-  return moments_of(corners.size(), diagram.sites[site], [&](std::size_t i) { return diagram.vertices[corners[i]]; });
+  // Counted from the site, which keeps small cells far from the origin exact.
+  const Vec2& inside = diagram.sites[site];
+  const std::span<const Index> corners = diagram.cell_vertices(site), sides = diagram.cell_edges(site);
+  double area = 0;
+  Vec2 moment(0, 0), before = diagram.vertices[corners.back()] - inside;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec2 corner = diagram.vertices[corners[i]] - inside;
+    const double half = 0.5 * (before.x() * corner.y() - before.y() * corner.x());
+    area += half;
+    moment += half / 3 * (before + corner);
+    if (!diagram.weights.empty()) {
+      const Bisector curve = bisector_beside(diagram, site, sides[i]);
+      const Bisector::Segment segment = curve.segment(curve.parameter(before), curve.parameter(corner));
+      area += segment.area;
+      moment += segment.moment;
+    }
+    before = corner;
+  }
+  return {area, inside + moment / area};
 }
 
 }  // namespace

@@ -1,0 +1,358 @@
+#include "voronoi2d/weighted_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace saddleback::voronoi2d {
+
+using predicates::Crossing;
+using predicates::Sign;
+using predicates::WeightedPoint2;
+
+namespace {
+
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+constexpr Index k_forgotten = -2;  ///< instead of the site of a rival
+constexpr double k_epsilon = predicates::detail::k_epsilon;
+
+}  // namespace
+
+void WeightedCell::open(std::span<const WeightedPoint2> points, Index site, std::span<const Index> ring) {
+  points_ = points;
+  site_ = site;
+  if (open_ring(ring)) return;
+  open_plane();
+  for (const Index other : ring) meet(other);
+}
+
+void WeightedCell::open_plane() {
+  rivals_.assign(1, {0, 0, 0, 0, 0, k_none});
+  begins_.clear();
+  has_fixed_ = true;
+  for (int fixed = 0; fixed < 3; ++fixed) begins_.push_back(fixed_begin(fixed, 0));
+  use_begins();
+}
+
+/// True if at least some of the ring are the whole envelope of these.
+bool WeightedCell::open_ring(std::span<const Index> ring) {
+  constexpr std::size_t k_few = 32;
+  if (ring.size() < 3 || ring.size() > k_few) return false;
+  rivals_.assign(1, {0, 0, 0, 0, 0, k_none});
+  for (const Index other : ring) rivals_.push_back(rival_of(other));
+  const Index size = static_cast<Index>(ring.size());
+  begins_.clear();
+  has_fixed_ = false;
+  for (Index i = 1; i <= size; ++i) begins_.push_back(begin_between(i == 1 ? size : i - 1, i));
+  if (!drop_hidden_arcs()) return false;
+  use_begins();
+  return is_envelope();
+}
+
+/// Whether an arc is certainly less than half a turn, and more than nothing.
+bool WeightedCell::is_narrow(Index arc) const {
+  const Begin &u = begins_[arc], &v = begins_[after(arc)];
+  return u.x * v.y - u.y * v.x > 4 * (u.blur + v.blur);
+}
+
+/// Takes out arcs that end before they begin.
+bool WeightedCell::drop_hidden_arcs() {
+  Index arc = 0;
+  for (Index good = 0; good < count();) {
+    if (is_narrow(arc)) {
+      ++good;
+      arc = after(arc);
+      continue;
+    }
+    if (count() <= 3) return false;
+    const Index last = begins_[before(arc)].rival, next = begins_[after(arc)].rival;
+    begins_[after(arc)] = begin_between(last, next);
+    rivals_[begins_[arc].rival].site = k_forgotten;
+    begins_.erase(begins_.begin() + arc);
+    arc = before(arc == count() ? 0 : arc);
+    good = 0;
+  }
+  return true;
+}
+
+/// Whether narrow arcs turn once, with a closed cell, and no rival rises above those of others. Next to its own arc a
+/// wave cannot: it would have to cross its neighbour a third time.
+bool WeightedCell::is_envelope() const {
+  Index turns = 0;
+  for (Index arc = 0; arc < count(); ++arc) turns += y_[arc] < 0 && y_[arc + 1] >= 0;
+  if (turns != 1 || rises_above(rivals_[0])) return false;
+  for (Index own = 0; own < count(); ++own) {
+    const Rival& rival = rivals_[begins_[own].rival];
+    compare(rival);
+    for (Index arc = 0; arc < count(); ++arc) {
+      if (arc != own && arc != after(own) && !(above_[arc] < -slack_[arc])) return false;
+      if (arc != own && arc != before(own) && arc != after(own) && may_rise_within(arc, rival)) return false;
+    }
+  }
+  return true;
+}
+
+WeightedCell::Rival WeightedCell::rival_of(Index other) const {
+  const WeightedPoint2& p = points_[other];
+  return rival_at(p.x, p.y, p.weight - points_[site_].weight, 0, other);
+}
+
+bool WeightedCell::has_met(Index other) const {
+  return std::any_of(rivals_.begin(), rivals_.end(), [&](const Rival& rival) { return rival.site == other; });
+}
+
+// N is off by at most 6 roundings of the sum of its terms: each difference has one, which counts twice in its square,
+// the square another, and the sums two.
+WeightedCell::Rival WeightedCell::rival_at(double x, double y, double weight_difference, double weight_doubt,
+                                           Index site) const {
+  const WeightedPoint2& here = points_[site_];
+  const double dx = x - here.x, dy = y - here.y, e = weight_difference;
+  const double terms = dx * dx + dy * dy + e * e, n = dx * dx + dy * dy - e * e;
+  const double off = 6 * k_epsilon * terms + 2 * std::fabs(e) * weight_doubt;
+  Rival result{dx / n, dy / n, e / n, 0, 0, site};
+  result.size = std::fabs(result.x) + std::fabs(result.y) + std::fabs(result.z);
+  result.doubt = off < 0.01 * n ? result.size * (4 * k_epsilon + 2 * off / n) + weight_doubt / n : k_infinity;
+  return result;
+}
+
+WeightedCell::Begin WeightedCell::fixed_begin(int fixed, Index rival) const {
+  const predicates::FixedDirection& u = predicates::k_fixed_directions[fixed];
+  const Rival& r = rivals_[rival];
+  Begin result{u.x / u.z, u.y / u.z, 0, 8 * k_epsilon, 0, rival, fixed};
+  result.height = r.x * result.x + r.y * result.y + r.z;
+  result.doubt = 2 * (r.doubt + r.size * result.blur);
+  return result;
+}
+
+// With m = q_after - q_before, the direction is (-m_z m - sqrt(s) m') / m^2, m' being m turned left and
+// s = m_x^2 + m_y^2 - m_z^2. If m is off by d, the direction is by 2 d / sqrt(s), as long as s is far from 0.
+WeightedCell::Begin WeightedCell::begin_between(Index before, Index after) const {
+  const Rival &a = rivals_[before], &b = rivals_[after];
+  const double x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
+  const double square = x * x + y * y, s = square - z * z;
+  const double off = a.doubt + b.doubt + k_epsilon * (a.size + b.size);
+  const double root = std::sqrt(std::max(s, 0.0)), share = 1 / square;
+  Begin result{(root * y - z * x) * share, (-root * x - z * y) * share, 0, k_infinity, k_infinity, after, k_none};
+  const Rival& smaller = a.size < b.size ? a : b;  // both say how high, this one more exactly
+  result.height = smaller.x * result.x + smaller.y * result.y + smaller.z;
+  if (s > 16 * off * (a.size + b.size)) {
+    result.blur = 8 * (off / root + k_epsilon);
+    result.doubt = 2 * (smaller.doubt + smaller.size * result.blur);
+  }
+  return result;
+}
+
+/// How far a rival is above the envelope at the begins, and by how much that may be off.
+void WeightedCell::compare(const Rival& rival) const {
+  const Index arcs = count();
+  for (Index k = 0; k <= arcs; ++k) {
+    above_[k] = rival.x * x_[k] + rival.y * y_[k] + (rival.z - height_[k]);
+    slack_[k] = 2 * (rival.size * blur_[k] + rival.doubt) + doubt_[k];
+  }
+}
+
+/// Whether a rival that has been compared, and is below an arc where it begins and ends, may be above between.
+///
+/// Between directions u and v less than half a turn apart a wave n.u + h below 0 at both is nowhere above if it is
+/// below at the corner of the tangents there: if n.u + n.v + 2 h < h (1 - u.v).
+bool WeightedCell::may_rise_within(Index arc, const Rival& rival) const {
+  return !(above_[arc] + above_[arc + 1] + 4 * (slack_[arc] + slack_[arc + 1]) <
+           std::min(0.0, rival.z - z_[arc]) * gap_[arc]);
+}
+
+/// False when a rival is certainly below the envelope everywhere.
+bool WeightedCell::rises_above(const Rival& rival) const {
+  compare(rival);
+  bool rises = false;
+  for (Index k = 0; k < count(); ++k) rises |= !(above_[k] < -slack_[k]) | may_rise_within(k, rival);
+  return rises;
+}
+
+bool WeightedCell::may_meet(double x, double y, double radius) const {
+  const double here = points_[site_].weight;
+  const Rival rival = rival_at(x, y, radius - here, 4 * k_epsilon * (std::fabs(radius) + std::fabs(here)), k_none);
+  if (!(rival.doubt < k_infinity)) return true;
+  return rises_above(rival);
+}
+
+Crossing WeightedCell::crossing(Index arc) const {
+  const Begin& begin = begins_[arc];
+  return {point(rivals_[begins_[before(arc)].rival]), point(rivals_[begin.rival]), begin.fixed};
+}
+
+int WeightedCell::sign_at(Index arc, const Rival& rival) const {
+  if (std::fabs(above_[arc]) > slack_[arc]) return above_[arc] > 0 ? 1 : -1;
+  return static_cast<int>(predicates::compare_at_crossing(points_[site_], crossing(arc), point(rival)));
+}
+
+/// Sign of the turn from an arc's begin to where `to` is farthest above `from`.
+int WeightedCell::turn_to(Index arc, const Rival& from, const Rival& to) const {
+  const Begin& begin = begins_[arc];
+  const double x = to.x - from.x, y = to.y - from.y;
+  const double turn = begin.x * y - begin.y * x, size = std::fabs(x) + std::fabs(y);
+  const double off =
+      2 * (size * (begin.blur + 4 * k_epsilon) + from.doubt + to.doubt + k_epsilon * (from.size + to.size));
+  if (std::fabs(turn) > off) return turn > 0 ? 1 : -1;
+  return static_cast<int>(predicates::turn_from_crossing(points_[site_], crossing(arc), point(from), point(to)));
+}
+
+/// Whether the direction where `to` is farthest above `from` is within an arc. Arcs are less than half a turn.
+bool WeightedCell::holds_top(Index arc, const Rival& from, const Rival& to) const {
+  return turn_to(arc, from, to) > 0 && turn_to(after(arc), from, to) < 0;
+}
+
+/// What becomes of an arc. Its own wave and the new one cross at two directions; the new one is above the other on one
+/// part of the circle, around the direction where it is farthest above, and below it on the rest.
+void WeightedCell::split(Index arc, Index rival) {
+  const Index own = begins_[arc].rival;
+  const Rival &mine = rivals_[own], &other = rivals_[rival];
+  const int first = signs_[arc], last = signs_[after(arc)];
+  const auto add = [&](Index piece, bool is_first) { pieces_.push_back({piece, is_first ? arc : k_none}); };
+  if (first <= 0 && last <= 0) {
+    if (!holds_top(arc, mine, other)) return add(own, true);
+    if (first < 0) add(own, true);
+    add(rival, first == 0);
+    if (last < 0) add(own, false);
+  } else if (first > 0 && last < 0) {
+    add(rival, true);
+    add(own, false);
+  } else if (first < 0) {
+    add(own, true);
+    add(rival, false);
+  } else {  // none is below: the arc's own wave is above in its middle, or nowhere
+    const bool stays = holds_top(arc, other, mine);
+    if (first > 0 || !stays) add(rival, true);
+    if (stays) add(own, first == 0);
+    if (stays && last > 0) add(rival, false);
+  }
+}
+
+/// From pieces to arcs: neighbouring ones of the same rival are one, except at the fixed directions.
+void WeightedCell::join_pieces() {
+  joined_.clear();
+  Index last = pieces_.back().rival;
+  for (const Piece& piece : pieces_) {
+    const int fixed = piece.begin == k_none ? k_none : begins_[piece.begin].fixed;
+    const Index before_begin = piece.begin == k_none ? k_none : begins_[before(piece.begin)].rival;
+    if (piece.begin != k_none && before_begin == last && begins_[piece.begin].rival == piece.rival) {
+      joined_.push_back(begins_[piece.begin]);
+    } else if (fixed != k_none) {
+      joined_.push_back(fixed_begin(fixed, piece.rival));
+    } else if (last != piece.rival) {
+      joined_.push_back(begin_between(last, piece.rival));
+    }
+    last = piece.rival;
+  }
+  begins_.swap(joined_);
+}
+
+void WeightedCell::use_begins() {
+  const std::size_t size = begins_.size() + 1;
+  for (auto* const array : {&x_, &y_, &height_, &blur_, &doubt_, &z_, &gap_, &above_, &slack_})
+    if (array->size() < size) array->resize(2 * size);
+  double lowest = k_infinity;
+  for (std::size_t k = 0; k < size; ++k) {
+    const Begin& begin = begins_[k < size - 1 ? k : 0];
+    x_[k] = begin.x, y_[k] = begin.y, height_[k] = begin.height, blur_[k] = begin.blur, doubt_[k] = begin.doubt;
+    z_[k] = rivals_[begin.rival].z;
+    lowest = std::min(lowest, begin.height - begin.doubt);
+  }
+  for (std::size_t k = 0; k + 1 < size; ++k)
+    gap_[k] = 1 - (x_[k] * x_[k + 1] + y_[k] * y_[k + 1]) + 4 * (blur_[k] + blur_[k + 1]);
+  far_ = lowest > 0 ? 1 / lowest : k_infinity;
+}
+
+void WeightedCell::meet(Index other) {
+  const Rival rival = rival_of(other);
+  if (!rises_above(rival)) return;
+  signs_.resize(begins_.size());
+  for (Index arc = 0; arc < count(); ++arc) signs_[arc] = sign_at(arc, rival);
+  const Index number = static_cast<Index>(rivals_.size());
+  rivals_.push_back(rival);
+  pieces_.clear();
+  for (Index arc = 0; arc < count(); ++arc) split(arc, number);
+  if (std::none_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) { return piece.rival == number; })) {
+    rivals_.pop_back();
+    return;
+  }
+  join_pieces();
+  use_begins();
+  if (!has_fixed_) narrow_arcs();
+}
+
+/// Starts again from the fixed directions where an arc may have become half a turn, or very short.
+void WeightedCell::narrow_arcs() {
+  Index arc = 0;
+  while (arc < count() && is_narrow(arc)) ++arc;
+  if (arc == count()) return;
+  const std::vector<Rival> rivals = rivals_;
+  open_plane();
+  for (const Rival& rival : rivals)
+    if (rival.site >= 0) meet(rival.site);
+}
+
+/// Whether the envelope is 0 where an arc ends.
+bool WeightedCell::is_open_after(Index arc) const {
+  const Begin& end = begins_[after(arc)];
+  if (rivals_[end.rival].site == k_none || rivals_[begins_[arc].rival].site == k_none) return true;
+  if (end.height > 2 * end.doubt) return false;
+  return predicates::compare_at_crossing(points_[site_], crossing(after(arc)), nullptr) != Sign::negative;
+}
+
+Vec2 WeightedCell::corner_after(Index arc) const {
+  constexpr double k_good = 0x1p-40;
+  const Begin& end = begins_[after(arc)];
+  const WeightedPoint2& here = points_[site_];
+  if (end.doubt < k_good * end.height && end.blur < k_good)
+    return {here.x + 0.5 * end.x / end.height, here.y + 0.5 * end.y / end.height};
+  Crossing where = crossing(after(arc));
+  if (where.fixed != k_none) where.fixed = k_none;  // three or more sites: two of them say where as well
+  const predicates::Point2 result = predicates::crossing_point(here, where);
+  return {result.x, result.y};
+}
+
+// The curve towards a neighbour begins and ends at infinity; the direction away from the neighbour is between its end
+// and its begin. Sides are counted from the arc there.
+void WeightedCell::number_repeated(std::span<const Index> arcs, std::span<Side> sides) const {
+  std::vector<Index> first(rivals_.size(), k_none);
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const Index rival = begins_[arcs[k]].rival;
+    if (first[rival] == k_none) {
+      first[rival] = static_cast<Index>(k);
+      continue;
+    }
+    if (sides[first[rival]].ordinals > 1) continue;
+    Index opposite = 0;
+    while (turn_to(opposite, rivals_[rival], rivals_[0]) < 0 ||
+           turn_to(after(opposite), rivals_[rival], rivals_[0]) >= 0)
+      ++opposite;
+    const std::size_t start = std::upper_bound(arcs.begin(), arcs.end(), opposite) - arcs.begin();
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      const std::size_t side = (start + i) % sides.size();
+      if (begins_[arcs[side]].rival == rival) found.push_back(side);
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      sides[found[i]].ordinal = static_cast<Index>(i);
+      sides[found[i]].ordinals = static_cast<Index>(found.size());
+    }
+  }
+}
+
+void WeightedCell::read(std::vector<Side>& sides) const {
+  sides.clear();
+  std::vector<Index> arcs;  // the last one of each side
+  for (Index arc = 0; arc < count(); ++arc) {
+    const Rival& rival = rivals_[begins_[arc].rival];
+    const bool goes_on = begins_[after(arc)].rival == begins_[arc].rival;
+    if (rival.site == k_none || goes_on) continue;
+    Side side{rival.site, is_open_after(arc)};
+    const Index next = rivals_[begins_[after(arc)].rival].site;
+    if (!side.is_open && site_ < rival.site && site_ < next) side.corner = corner_after(arc);
+    sides.push_back(side);
+    arcs.push_back(arc);
+  }
+  number_repeated(arcs, sides);
+}
+
+}  // namespace saddleback::voronoi2d

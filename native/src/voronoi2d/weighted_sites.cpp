@@ -1,0 +1,173 @@
+#include "voronoi2d/weighted_sites.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saddleback/error.h"
+
+#include "support/parallel.h"
+#include "voronoi2d/site_order.h"
+
+namespace saddleback::voronoi2d {
+
+using predicates::WeightedPoint2;
+
+namespace {
+
+void check_weights(std::span<const Vec2> sites, std::span<const double> weights) {
+  if (weights.size() != sites.size())
+    throw InputError(message("weights: wanted one for each of ", sites.size(), " sites, got ", weights.size()));
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (!std::isfinite(weights[i]))
+      throw InputError(message("weights: weight ", i, " is ", weights[i], ", wanted a finite number"));
+}
+
+void check_scaled(std::span<const double> weights, double scale) {
+  constexpr double k_largest = 0x1p500;  // squares stay among the doubles
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double scaled = weights[i] * scale;
+    if (!(std::fabs(scaled) <= k_largest) || scaled / scale != weights[i])
+      throw InputError(message("weights: weight ", i, " is ", weights[i],
+                               ", too different in size from the sites' coordinates to be told exactly"));
+  }
+}
+
+/// At each place the heaviest site, of equal ones the smallest index. `ordered` knows the places.
+struct Heaviest {
+  LargeArray<Index> original;   ///< by rank of the place
+  std::vector<bool> is_hidden;  ///< by index
+};
+
+Heaviest heaviest_by_place(const OrderedSites& ordered, std::span<const double> weights) {
+  const Index count = static_cast<Index>(weights.size());
+  Heaviest result{ordered.original, std::vector<bool>(count, false)};
+  LargeArray<Index> rank_of(count);
+  for (Index rank = 0; rank < ordered.count(); ++rank) rank_of[ordered.original[rank]] = rank;
+  for (Index i = 0; i < count; ++i) {
+    Index& best = result.original[rank_of[ordered.site_of[i]]];
+    if (weights[i] > weights[best]) best = i;
+  }
+  for (Index i = 0; i < count; ++i)
+    result.is_hidden[i] = weights[i] < weights[result.original[rank_of[ordered.site_of[i]]]];
+  return result;
+}
+
+// Of sites at one place with one weight the smallest index stands for all.
+LargeArray<Index> smallest_equal(const OrderedSites& ordered, std::span<const double> weights) {
+  const Index count = static_cast<Index>(weights.size());
+  LargeArray<Index> site_of(count);
+  std::vector<Index> shared;  // sites that are not alone at their place
+  std::vector<bool> is_shared(count, false);
+  for (Index i = 0; i < count; ++i)
+    if (ordered.site_of[i] != i) is_shared[ordered.site_of[i]] = true;
+  for (Index i = 0; i < count; ++i) {
+    site_of[i] = i;
+    if (is_shared[ordered.site_of[i]]) shared.push_back(i);
+  }
+  const auto same = [&](Index a, Index b) {
+    return ordered.site_of[a] == ordered.site_of[b] && weights[a] == weights[b];
+  };
+  std::sort(shared.begin(), shared.end(), [&](Index a, Index b) {
+    if (ordered.site_of[a] != ordered.site_of[b]) return ordered.site_of[a] < ordered.site_of[b];
+    return weights[a] != weights[b] ? weights[a] < weights[b] : a < b;
+  });
+  for (std::size_t k = 1; k < shared.size(); ++k)
+    if (same(shared[k - 1], shared[k])) site_of[shared[k]] = site_of[shared[k - 1]];
+  return site_of;
+}
+
+/// Whether the site of a rank is hidden by another. At one place there is one site.
+bool is_hidden(const LargeArray<WeightedPoint2>& points, const DiskTree& tree, Index rank) {
+  const WeightedPoint2& point = points[rank];
+  bool result = false;
+  tree.visit(
+      point.x, point.y,
+      [&](const DiskTree::Disk& disk) {
+        if (result || disk.radius <= point.weight) return false;
+        const double x = disk.x - point.x, y = disk.y - point.y, reach = disk.radius - point.weight;
+        return x * x + y * y <= reach * reach * (1 + 1e-12);
+      },
+      [&](Index begin, Index end) {
+        for (Index i = begin; i < end && !result; ++i)
+          result = points[i].weight > point.weight && predicates::hides(points[i], point);
+      });
+  return result;
+}
+
+}  // namespace
+
+WeightedSites order_weighted_sites(std::span<const Vec2> sites, std::span<const double> weights, int threads,
+                                   const JobStage& stage) {
+  check_weights(sites, weights);
+  const OrderedSites ordered = order_sites(sites, stage.part(0, 0.5));
+  check_scaled(weights, ordered.scale);
+  WeightedSites result;
+  result.scale = ordered.scale;
+  result.site_of = smallest_equal(ordered, weights);
+  Heaviest heaviest = heaviest_by_place(ordered, weights);
+
+  const Index count = ordered.count();
+  LargeArray<WeightedPoint2> points(count);
+  for (Index rank = 0; rank < count; ++rank)
+    points[rank] = {ordered.x[rank], ordered.y[rank], weights[heaviest.original[rank]] * result.scale};
+  const DiskTree tree(points);
+  std::vector<std::uint8_t> hidden(count, 0);
+  constexpr Index k_block = 1024;
+  parallel_for((count + k_block - 1) / k_block, threads, 1, [&](Index block, int) {
+    stage.check();
+    for (Index rank = block * k_block; rank < std::min(count, (block + 1) * k_block); ++rank)
+      hidden[rank] = is_hidden(points, tree, rank);
+  });
+  stage.update(0.9);
+  for (Index rank = 0; rank < count; ++rank) {
+    if (hidden[rank]) {
+      heaviest.is_hidden[heaviest.original[rank]] = true;
+    } else {
+      result.points.push_back(points[rank]);
+      result.places.push_back(ordered.places[rank]);
+      result.original.push_back(heaviest.original[rank]);
+    }
+  }
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    if (heaviest.is_hidden[i] || heaviest.is_hidden[result.site_of[i]]) result.hidden.push_back(static_cast<Index>(i));
+  stage.update(1);
+  return result;
+}
+
+DiskTree::DiskTree(std::span<const WeightedPoint2> points) : site_count_(static_cast<Index>(points.size())) {
+  constexpr double k_slack = 0x1p-49;  // of the radius, for its rounding
+  const auto disk_about = [&](Index begin, Index end, auto&& disk_at) {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (Index i = begin; i < end; ++i) {
+      const auto [x, y, radius] = disk_at(i);
+      low[0] = std::min(low[0], x), high[0] = std::max(high[0], x);
+      low[1] = std::min(low[1], y), high[1] = std::max(high[1], y);
+    }
+    Disk result{0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), -INFINITY};
+    for (Index i = begin; i < end; ++i) {
+      const auto [x, y, radius] = disk_at(i);
+      const double away = std::sqrt((x - result.x) * (x - result.x) + (y - result.y) * (y - result.y));
+      result.radius = std::max(result.radius, away + radius + k_slack * (away + std::fabs(radius)));
+    }
+    return result;
+  };
+  Index count = site_count_;
+  while (count > 0 && (levels_.empty() || count > k_fan)) {
+    std::vector<Disk> level;
+    for (Index begin = 0; begin < count; begin += k_fan) {
+      const Index end = std::min(count, begin + k_fan);
+      if (levels_.empty()) {
+        level.push_back(disk_about(begin, end, [&](Index i) {
+          return Disk{points[i].x, points[i].y, points[i].weight};
+        }));
+      } else {
+        level.push_back(disk_about(begin, end, [&](Index i) { return levels_.back()[i]; }));
+      }
+    }
+    levels_.push_back(std::move(level));
+    count = static_cast<Index>(levels_.back().size());
+  }
+}
+
+}  // namespace saddleback::voronoi2d

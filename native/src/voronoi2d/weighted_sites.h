@@ -1,0 +1,83 @@
+#pragma once
+// Weighted sites as all tiles see them: checked, without duplicates and hidden ones, along a space-filling curve, with
+// a tree of disks above them.
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/large_array.h"
+#include "saddleback/types.h"
+
+#include "predicates/weighted_2d.h"
+
+namespace saddleback::voronoi2d {
+
+/// By rank, which depends on the sites alone.
+struct WeightedSites {
+  LargeArray<predicates::WeightedPoint2> points;  ///< times `scale`
+  LargeArray<Index> original;                     ///< the smallest index of equal sites
+  LargeArray<std::uint32_t> places;               ///< on the curve
+  LargeArray<Index> site_of;                      ///< by index: the smallest index of an equal site
+  std::vector<Index> hidden;                      ///< indices, ascending: sites without a cell
+  double scale = 1;                               ///< a power of two
+
+  Index count() const { return static_cast<Index>(points.size()); }
+};
+
+/// \throw InputError naming the first wrong coordinate or weight. O(n log n). \throw Cancelled
+WeightedSites order_weighted_sites(std::span<const Vec2> sites, std::span<const double> weights, int threads,
+                                   const JobStage& stage);
+
+/// Disks about every eight sites in a row, about every eight of those, and so on. A disk stands for all that it
+/// contains: with its radius for weight it is nowhere farther than any of them.
+class DiskTree {
+ public:
+  static constexpr Index k_fan = 8;
+  struct Disk {
+    double x, y, radius;
+  };
+
+  DiskTree() = default;
+  explicit DiskTree(std::span<const predicates::WeightedPoint2> points);
+
+  /// Calls found(begin, end) for rows of sites, as long as enters(disk) says so for all disks about them. Of each eight
+  /// disks the one with its centre nearest to a point comes first. O(disks entered).
+  template <class Enters, class Found>
+  void visit(double x, double y, Enters&& enters, Found&& found) const {
+    if (!levels_.empty()) visit(static_cast<Index>(levels_.size()) - 1, 0, x, y, enters, found);
+  }
+
+ private:
+  template <class Enters, class Found>
+  void visit(Index level, Index first, double x, double y, Enters&& enters, Found&& found) const {
+    const std::vector<Disk>& disks = levels_[level];
+    const Index end = std::min(static_cast<Index>(disks.size()), first + k_fan);
+    const auto away = [&](const Disk& d) { return (d.x - x) * (d.x - x) + (d.y - y) * (d.y - y); };
+    Index nearest = first;
+    double least = away(disks[first]);
+    for (Index i = first + 1; i < end; ++i) {
+      const double distance = away(disks[i]);
+      nearest = distance < least ? i : nearest;
+      least = std::min(distance, least);
+    }
+    const auto enter = [&](Index i) {
+      if (!enters(disks[i])) return;
+      if (level > 0) {
+        visit(level - 1, k_fan * i, x, y, enters, found);
+      } else {
+        found(k_fan * i, std::min(site_count_, k_fan * (i + 1)));
+      }
+    };
+    enter(nearest);
+    for (Index i = first; i < end; ++i)
+      if (i != nearest) enter(i);
+  }
+
+  std::vector<std::vector<Disk>> levels_;  ///< from small to large
+  Index site_count_ = 0;
+};
+
+}  // namespace saddleback::voronoi2d
