@@ -7,9 +7,11 @@ import pytest
 import saddleback as sb
 from saddleback_blender.core import runs, voronoi_runs
 from saddleback_blender.core.cache import Cache
+from saddleback_blender.core.cell_mesh import CellShape
 from saddleback_blender.core.darkness import darkness, places_by_density, shrunk
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.flat_cells import flat_cells
+from saddleback_blender.core.flat_solid import raised_cells
 from saddleback_blender.core.plane_frame import PlaneFrame, plane_of
 from saddleback_blender.core.requests import Surface, Voronoi2dRequest
 from saddleback_blender.core.settings import Voronoi2dSettings
@@ -89,6 +91,40 @@ def test_a_cell_around_a_hole_is_told():
     hole = [(0.4, 0.4), (0.4, 0.6), (0.6, 0.6), (0.6, 0.4)]
     cells = flat_cells(sb.voronoi_2d([(0.1, 0.1)], domain=[SQUARE, hole]).clipped, FRAME)
     assert cells.has_holes and polygon_areas(cells).sum() == pytest.approx(0.96)
+
+
+def volume_and_edges(polygons):
+    """Volume of each cell by fans of its polygons, and how often each directed edge is met from the other side."""
+    volumes, edges = np.zeros(polygons.polygon_cell.max() + 1), {}
+    for number, cell in enumerate(polygons.polygon_cell):
+        loop = polygons.corners[polygons.offsets[number] : polygons.offsets[number + 1]]
+        points = polygons.vertices[loop]
+        for k in range(1, len(loop) - 1):
+            volumes[cell] += np.linalg.det(points[[0, k, k + 1]]) / 6
+        for a, b in zip(loop, np.roll(loop, -1), strict=True):
+            edges[int(a), int(b)] = edges.get((int(a), int(b)), 0) + 1
+    return volumes, edges
+
+
+NOTCHED = [(0, 0), (2, 0), (2, 1), (1.2, 0.4), (0.7, 1.6), (0, 1)]
+
+
+@pytest.mark.parametrize("domain", [SQUARE, NOTCHED], ids=["square", "notched"])
+@pytest.mark.parametrize("inset", [0.0, 0.02, 0.2])
+def test_raised_cells_are_closed_solids(domain, inset):
+    sites = np.random.default_rng(4).random((40, 2))
+    diagram, shape = sb.voronoi_2d(sites), CellShape(0.01, inset, 0.1, True)
+    base = diagram.clip(domain, gap=0.01)
+    plateau = diagram.clip(domain, gap=0.01 + 2 * inset) if inset else None
+    volumes, edges = volume_and_edges(raised_cells(base, plateau, FRAME, shape))
+    assert set(edges.values()) == {1} and all((b, a) in edges for a, b in edges)
+    feet = base.areas[: len(volumes)]
+    if not inset:
+        np.testing.assert_allclose(volumes, 0.1 * feet, atol=1e-12)
+        return
+    tops = plateau.areas[: len(volumes)]
+    assert (volumes <= 0.1 * feet + 1e-12).all() and (volumes >= 0.1 * tops - 1e-12).all()
+    assert (volumes[feet > 0] > 0).all()
 
 
 def test_no_cells_at_all():

@@ -11,7 +11,7 @@ from mathutils import Matrix
 from .. import compat, nodes
 from ..core.cell_colors import cell_colors
 from ..core.cell_mesh import CellMesh, CellShape, build_cell_mesh
-from ..core.results import CellsResult, FlatCells
+from ..core.results import CellPolygons, CellsResult, Indices
 from ..core.settings import TessellateSettings, Voronoi2dSettings
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
@@ -42,17 +42,24 @@ def write_cells(
     return item
 
 
-def write_flat_cells(
-    context: bpy.types.Context, source: bpy.types.Object, cells: FlatCells, count: int, role: str
+def write_polygons(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    cells: CellPolygons,
+    count: int,
+    neighbours: Indices,
+    vanished: int,
+    role: str,
 ) -> bpy.types.Object:
-    """Makes or replaces the source's cells object: one polygon a cell, or one for each part that the border leaves."""
+    """Makes or replaces the source's cells object from polygons; `neighbours` (e, 2) get colours unlike each other."""
     place = level_place(source)
     mesh = _new_mesh(to_place(place, cells.vertices))
     compat.write_polygons(mesh, cells.corners, cells.offsets)
-    colors = cell_colors(count, cells.edge_cells)
+    colors = cell_colors(count, neighbours)
+    mesh.polygons.foreach_set("use_smooth", np.zeros(len(mesh.polygons), bool))
     _mark_cells(mesh, cells.polygon_cell, np.diff(cells.offsets), colors)
     item = _shown(context, source, role, mesh, place)
-    item[VANISHED] = 0
+    item[VANISHED] = vanished
     return item
 
 

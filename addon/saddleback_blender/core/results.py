@@ -52,25 +52,25 @@ class CellsResult:
 
 
 @dataclass(frozen=True)
-class FlatCells:
-    """Cells of the plane within a flat mesh, as polygons that share their vertices.
-
-    Polygon i runs through corners[offsets[i]:offsets[i + 1]], counter-clockwise seen against the normal. A cell that
-    the domain cuts apart has several polygons.
-    """
+class CellPolygons:
+    """Cells as polygons: polygon i runs through corners[offsets[i]:offsets[i + 1]], counter-clockwise from outside."""
 
     vertices: Reals  # (n, 3)
     corners: Indices
     offsets: Indices  # (p + 1,)
     polygon_cell: Indices  # (p,)
+
+
+@dataclass(frozen=True)
+class FlatCells(CellPolygons):
+    """Cells of the plane within a flat mesh, whose polygons share their vertices.
+
+    A cell that the domain cuts apart has several polygons.
+    """
+
     edges: Indices  # (e, 2)
     edge_cells: Indices  # (e, 2) the cells on the left and on the right; -1 beyond the border
     has_holes: bool  # some cell lies around a hole: its polygons are the outline and, clockwise, the hole
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of the arrays."""
-        return _nbytes(self)
 
 
 @dataclass(frozen=True)
@@ -88,14 +88,16 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Voronoi2dResult:
-    """A diagram of the plane on a flat mesh (`flat`) or on a surface; `cells` has what it always has.
+    """A diagram of the plane on a flat mesh, with `flat` and `polygons`, or on a surface, with edges and pieces.
 
-    On a flat mesh the edges and pieces of `cells` are empty unless its shape asks for them.
+    On a flat mesh `cells` has no edges, and pieces only where polygons cannot show a cell that lies around a hole.
     """
 
     cells: CellsResult
-    flat: FlatCells | None
-    sweep: Sweep | None
+    flat: FlatCells | None = None
+    polygons: CellPolygons | None = None  # the cells in the shape that was asked for
+    vanished: int = 0  # cells of `polygons` that are narrower than the gap
+    sweep: Sweep | None = None
 
 
 @dataclass(frozen=True)

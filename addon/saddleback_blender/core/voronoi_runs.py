@@ -10,13 +10,15 @@ import numpy as np
 from . import cache as cache_module
 from . import native
 from .cache import Cache
+from .cell_mesh import CellShape
 from .darkness import places_by_density
 from .errors import BadInputError
 from .flat_cells import flat_cells
+from .flat_solid import raised_cells
 from .normals import normals_at
 from .progress import Progress
 from .requests import Voronoi2dRequest, digest
-from .results import CellsResult, FlatCells, Indices, Reals, Voronoi2dResult
+from .results import CellPolygons, CellsResult, FlatCells, Indices, Reals, Voronoi2dResult
 from .spaces import Space, space_of
 from .surface_places import compact_points
 from .sweep import sweep_over
@@ -40,7 +42,7 @@ def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | Non
     with progress.stage(0.8, "finding the cells") as job:
         diagram = native.load().voronoi_2d(sites.places, weights=request.weights, threads=request.threads, job=job)
     if space.frame is None:
-        result = Voronoi2dResult(_lifted(request, space, sites, diagram, progress), None, None)
+        result = Voronoi2dResult(_lifted(request, space, sites, diagram, progress))
     else:
         result = _flat(request, space, sites, diagram, progress)
     progress.check()
@@ -186,23 +188,34 @@ def _flat(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any, 
     with progress.stage(0.9, "cutting the cells out") as job:
         clipped = diagram.clip(space.loops, threads=request.threads, job=job)
     flat = flat_cells(clipped, space.frame)
-    if needs_pieces(request, flat):
+    cells = _bare_cells(space, sites, np.asarray(clipped.areas))
+    polygons: CellPolygons | None = None
+    vanished = 0
+    if settings.make_cells and flat.has_holes and request.weights is None:
         cells = _lifted(request, space, sites, diagram, progress)
-    else:
-        cells = _bare_cells(space, sites, np.asarray(clipped.areas))
+    elif settings.make_cells:
+        polygons, vanished = _shaped(request, space, diagram, flat)
     sweep = None
     if settings.animate:
         frames = settings.frame_end - settings.frame_start + 1
         with progress.stage(0.98, "following the sweep"):
             sweep = sweep_over(sites.places, request.weights, flat, space.frame, frames, progress)
-    return Voronoi2dResult(cells, flat, sweep)
+    return Voronoi2dResult(cells, flat, polygons, vanished, sweep)
 
 
-def needs_pieces(request: Voronoi2dRequest, flat: FlatCells) -> bool:
-    """Whether the polygons of a flat diagram cannot show its cells: raised, parted, or around a hole."""
-    settings = request.settings
-    shaped = settings.gap > 0 or settings.inset > 0 or settings.thickness > 0
-    return settings.make_cells and (shaped or (flat.has_holes and request.weights is None))
+def _shaped(request: Voronoi2dRequest, space: Space, diagram: Any, flat: FlatCells) -> tuple[CellPolygons, int]:
+    """The cells with their gap, thickness and rim; and how many the gap leaves nothing of."""
+    settings, threads = request.settings, request.threads
+    shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
+    if not shape.cuts and shape.thickness == 0:
+        return flat, 0
+    assert space.frame is not None
+    base = diagram.clip(space.loops, gap=shape.gap, threads=threads)
+    vanished = len(np.unique(flat.polygon_cell)) - len(np.unique(base.loop_sites))
+    if shape.thickness == 0:  # a rim needs a height
+        return flat_cells(base, space.frame), vanished
+    plateau = diagram.clip(space.loops, gap=2 * shape.rim_end, threads=threads) if shape.inset > 0 else None
+    return raised_cells(base, plateau, space.frame, shape), vanished
 
 
 def _bare_cells(space: Space, sites: _Sites, areas: Reals) -> CellsResult:

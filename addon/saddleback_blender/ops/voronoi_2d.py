@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import prefs
 from ..bridge.mesh_in import mesh_of, read_surface, read_triangle_polygons
-from ..bridge.out_cells import vanished_cells, write_cells, write_flat_cells
+from ..bridge.out_cells import vanished_cells, write_cells, write_polygons
 from ..bridge.out_centres import write_centres
 from ..bridge.out_collection import find_output, remove_output
 from ..bridge.out_edges import write_edges, write_network
@@ -93,8 +93,9 @@ def _write_cells(
 ) -> None:
     if not settings.make_cells:
         remove_output(source, CELLS_ROLE)
-    elif result.flat is not None and not len(result.cells.split_triangles):
-        write_flat_cells(context, source, result.flat, result.cells.count, CELLS_ROLE)
+    elif result.flat is not None and result.polygons is not None:
+        neighbours = result.flat.edge_cells
+        write_polygons(context, source, result.polygons, result.cells.count, neighbours, result.vanished, CELLS_ROLE)
     else:
         write_cells(context, source, result.cells, settings, CELLS_ROLE)
 
