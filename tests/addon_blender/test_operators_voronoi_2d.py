@@ -125,6 +125,37 @@ def test_sites_from_vertices():
     assert item.saddleback.voronoi_2d.sites_object == other
 
 
+def test_heavier_sites_have_larger_cells():
+    item = grid(n=2)
+    places = [(0.25, 0.25, 0), (0.75, 0.25, 0), (0.25, 0.75, 0), (0.75, 0.75, 0), (0.5, 0.5, 0)]
+    dots = add_object("Dots", places, [], active=False)
+    bpy.ops.saddleback.voronoi_2d(sites_source="OBJECT", sites_object="Dots")
+    plain = np.bincount(*faces(find_output(item, CELLS)))
+    values = np.array([0, 0, 0, 0, 0.1], np.float32)
+    dots.data.attributes.new("size", "FLOAT", "POINT").data.foreach_set("value", values)
+    bpy.ops.saddleback.voronoi_2d(weights_name="size")
+    cells, areas = faces(find_output(item, CELLS))
+    heavy = np.bincount(cells, areas)
+    assert heavy.sum() == pytest.approx(1, rel=1e-5) and heavy[4] > 1.5 * plain[4]
+    mesh = find_output(item, CELLS).data  # neighbours share the points of their curved edges
+    assert len(mesh.vertices) - len(mesh.edges) + len(mesh.polygons) == 1
+    values[4] = 0.5  # its disk holds the others
+    dots.data.attributes["size"].data.foreach_set("value", values)
+    dots.data.update()
+    bpy.ops.saddleback.voronoi_2d()
+    assert set(faces(find_output(item, CELLS))[0]) == {4} and "1 cell, 4 sites without one" in jobs.state.line
+
+
+def test_weights_around_a_hole():
+    item = frame_with_hole()
+    dots = add_object("Dots", [(0.5, 1.5, 0), (0.4, 1.5, 0)], [], active=False)
+    dots.data.attributes.new("size", "FLOAT", "POINT").data.foreach_set("value", np.array([0.5, 0], np.float32))
+    arguments = {"sites_source": "OBJECT", "sites_object": "Dots", "weights_name": "size"}
+    refused("a cell lies around a hole", **arguments)
+    bpy.ops.saddleback.voronoi_2d(**arguments, make_cells=False)
+    assert find_output(item, EDGES) is not None
+
+
 def test_an_image_draws_sites():
     item = grid(n=2)
     tones = np.ones((8, 8))

@@ -191,7 +191,12 @@ def _flat(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any, 
     cells = _bare_cells(space, sites, np.asarray(clipped.areas))
     polygons: CellPolygons | None = None
     vanished = 0
-    if settings.make_cells and flat.has_holes and request.weights is None:
+    if settings.make_cells and flat.has_holes and request.weights is not None:
+        raise BadInputError(
+            f"'{request.surface.name}': a cell lies around a hole, which works with sites of equal weight only; "
+            "add sites near the hole, or switch Cells off"
+        )
+    if settings.make_cells and flat.has_holes:
         cells = _lifted(request, space, sites, diagram, progress)
     elif settings.make_cells:
         polygons, vanished = _shaped(request, space, diagram, flat)
