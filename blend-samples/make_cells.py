@@ -57,7 +57,7 @@ def tessellate(subject: bpy.types.Object, paint: models.Paint, count: int) -> No
     settings = {
         "count": count,
         "seed": 7,
-        "iterations": 20,
+        "iterations": 12,
         "k": min(40, len(subject.data.vertices)),
         "density_source": paint.source,
         "density_name": paint.name,

@@ -23,6 +23,10 @@ SITES_SOURCES = (
     ("SELECTED", "Selected Vertices", "One cell for each vertex selected in Edit Mode"),
     ("OBJECT", "Object", "One cell for each vertex of another object, brought to the nearest point of the surface"),
 )
+METHODS = (
+    ("LBFGS", "L-BFGS", "Each step learns from those before it: even cells in a third of the steps"),
+    ("LLOYD", "Lloyd", "Each step moves every site to the middle of its cell"),
+)
 DENSITY_SOURCES = (
     ("UNIFORM", "Uniform", "Cells of equal size everywhere"),
     ("VERTEX_GROUP", "Vertex Group", "Painted weights"),
@@ -139,11 +143,12 @@ TESSELLATE: dict[str, Any] = {
     "iterations": IntProperty(
         name="Iterations",
         description="Steps that make the cells even; 0 leaves the sites where chance put them",
-        default=30,
+        default=20,
         min=0,
         soft_max=200,
         options={"SKIP_SAVE"},
     ),
+    "method": _choice("Method", "How the sites find their places", METHODS, "LBFGS"),
     "sites_source": _choice("Sites", "Where the cells' centres come from", SITES_SOURCES, "COUNT"),
     "sites_object": _name("Sites Object", "The object whose vertices become sites"),
     "relax_sites": _switch("Relax Sites", "Move the chosen sites to even the cells out", False),

@@ -88,6 +88,18 @@ def test_no_iterations_leaves_the_sites_to_chance_and_seed(cache):
     np.testing.assert_array_equal(again.sites_position, first.sites_position)
 
 
+def test_the_quick_method_is_the_default_and_gets_lower_in_as_many_steps(cache):
+    surface = shapes.grid(20)
+    quick, lloyd = (
+        tessellate(surface, cache, count=30, iterations=12, **method) for method in ({}, {"method": "LLOYD"})
+    )
+    assert cache.builds["cells"] == 2 and quick.energy[0] == lloyd.energy[0]
+    assert quick.energy[-1] < lloyd.energy[-1]
+    tessellate(surface, cache, count=30, iterations=0)
+    tessellate(surface, cache, count=30, iterations=0, method="LLOYD")
+    assert cache.builds["cells"] == 3  # without steps there is no method
+
+
 def test_equal_density_draws_equal_numbers_of_cells_and_ramps_do_not(cache):
     surface = shapes.grid(30)
     ramp = 1 + 7 * surface.vertices[:, 0]

@@ -51,6 +51,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         settings.count if sites is None else sites,
         settings.seed if sites is None else 0,
         iterations,
+        settings.method if iterations else "",
         density if sites is None or iterations else None,
     )
     key = (choice.name(surface), what)
@@ -163,8 +164,8 @@ def _solve(
         choice = {"count": settings.count} if points is None else {"sites": points}
         with progress.stage(0.9, "evening out the cells") as job:
             cvt = sb.centroidal_voronoi(
-                graph, density=density, max_iterations=iterations, seed=settings.seed, threads=request.threads, job=job,
-                **choice,
+                graph, density=density, method=settings.method.lower(), max_iterations=iterations, seed=settings.seed,
+                threads=request.threads, job=job, **choice,
             )  # fmt: skip
         cells = cvt.cells
         energy, done, reason = np.asarray(cvt.energy, np.float64), int(cvt.iterations), str(cvt.stop_reason)

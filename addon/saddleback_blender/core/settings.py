@@ -11,7 +11,8 @@ class TessellateSettings:
 
     count: int = 200
     seed: int = 0
-    iterations: int = 30
+    method: str = "LBFGS"  # LBFGS, LLOYD
+    iterations: int = 20
     sites_source: str = "COUNT"  # COUNT, SELECTED, OBJECT
     sites_object: str = ""
     relax_sites: bool = False  # move chosen sites too (those of COUNT always move)

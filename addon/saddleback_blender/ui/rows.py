@@ -27,6 +27,7 @@ def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
     column = layout.column()
     column.active = settings.sites_source == "COUNT" or settings.relax_sites
     column.prop(settings, "iterations")
+    column.prop(settings, "method")
 
 
 def draw_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
