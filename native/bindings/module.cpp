@@ -9,6 +9,7 @@ namespace saddleback::bindings {
 
 void bind_charts(py::module_& m);
 void bind_exact(py::module_& m);
+void bind_fields(py::module_& m);
 void bind_job(py::module_& m);
 void bind_mesh(py::module_& m);
 void bind_paths(py::module_& m);
@@ -97,6 +98,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_graph(m);
   bind_paths(m);
   bind_dual_mesh(m);
+  bind_fields(m);
   bind_tessellation(m);
   bind_voronoi_2d(m);
   bind_charts(m);

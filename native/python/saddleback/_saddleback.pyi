@@ -1,7 +1,7 @@
 """Types of the compiled part; its docstrings tell shapes, units, errors and sources."""
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Literal, SupportsFloat, SupportsIndex, TypeAlias, final
 
 import numpy as np
@@ -618,3 +618,59 @@ def relax_2d(
     threads: SupportsIndex = 0,
     job: Job | None = None,
 ) -> Relaxation2d: ...
+
+_Alignment: TypeAlias = Literal["none", "curvature", "boundary"]
+_Curve: TypeAlias = Stroke | SurfaceCurve | GeodesicPath | ArrayLike | SurfacePoints
+
+@final
+class Stroke:
+    def __init__(self, curve: SurfaceCurve, hard: bool = False, weight: SupportsFloat = 1.0) -> None: ...
+    @property
+    def hard(self) -> bool: ...
+    @property
+    def weight(self) -> float: ...
+
+@final
+class DirectionField:
+    @property
+    def symmetry(self) -> int: ...
+    @property
+    def vectors(self) -> _Floats: ...
+    @property
+    def angles(self) -> _Floats: ...
+    @property
+    def turns(self) -> _Floats: ...
+    @property
+    def singularities(self) -> dict[int, float]: ...
+    @property
+    def loop_indices(self) -> _Floats: ...
+    @property
+    def largest_turn(self) -> float: ...
+    def directions(self, points: _Points) -> _Floats: ...
+    def turned(self, angle: SupportsFloat) -> DirectionField: ...
+
+@final
+class DirectionFieldEditor:
+    def __init__(self, mesh: Mesh, symmetry: SupportsIndex = 1) -> None: ...
+    def field(
+        self,
+        singularities: Mapping[int, SupportsFloat] | None = None,
+        strokes: Iterable[_Curve] = (),
+        align: _Alignment = "none",
+        *,
+        loop_indices: Mapping[int, SupportsFloat] | None = None,
+        align_weight: SupportsFloat = 1.0,
+        job: Job | None = None,
+    ) -> DirectionField: ...
+
+def direction_field(
+    mesh: Mesh,
+    symmetry: SupportsIndex = 1,
+    singularities: Mapping[int, SupportsFloat] | None = None,
+    strokes: Iterable[_Curve] = (),
+    align: _Alignment = "none",
+    *,
+    loop_indices: Mapping[int, SupportsFloat] | None = None,
+    align_weight: SupportsFloat = 1.0,
+    job: Job | None = None,
+) -> DirectionField: ...

@@ -1,0 +1,237 @@
+// Two ways to a field. With given singularities: a trivial connection, integrated over a tree of faces, then turned by a
+// single-valued angle per face so as to follow strokes. Without: powers of directions, which are linear.
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "saddleback/direction_field.h"
+#include "saddleback/error.h"
+
+#include "prescribed_indices.h"
+#include "shape_operator.h"
+#include "smooth_powers.h"
+#include "stroke_targets.h"
+#include "untangle_turns.h"
+
+namespace saddleback {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double k_turn = 2 * std::numbers::pi;
+/// Of turnings onto strokes: closed for any accuracy, so that what rounding in single precision gives at once is enough.
+constexpr MultigridSolver<double>::Accuracy k_stroke_accuracy{.residual = 1e-8};
+constexpr MultigridSolver<Complex>::Accuracy k_power_accuracy{.residual = 1e-7};
+/// How often the branches of curvature directions are chosen anew after the field has turned onto them.
+constexpr int k_curvature_rounds = 3;
+
+void check_options(const DirectionFieldOptions& options, int symmetry) {
+  if (options.align == FieldAlignment::curvature && symmetry == 1)
+    throw InputError("align: curvature has no head and tail, take symmetry 2 or 4");
+  if (!(options.align_weight > 0) || !std::isfinite(options.align_weight))
+    throw InputError(message("align_weight is ", options.align_weight, ", but must be positive and finite"));
+  if (!options.singularities && !options.loop_units.empty())
+    throw InputError("loop_indices: only together with singularities");
+}
+
+/// Angles that the field has when it turns so from the smallest face of each component, and the turns again such that
+/// they fit these to rounding.
+std::vector<double> integrate(const Mesh& mesh, const SurfaceConnection& connection, const DualLoops& tree,
+                              int symmetry, std::vector<double>& turns) {
+  std::vector<double> angles(mesh.face_count(), 0.0);
+  for (const Index f : tree.order) {
+    const Index h = tree.entered_by[f];
+    if (h != k_none)
+      angles[f] = std::remainder(angles[Mesh::face_of(h)] + connection.transport[h] + turns[h], k_turn);
+  }
+  const double quantum = k_turn / symmetry;
+  for (const Index h : inner_edges(mesh)) {
+    const Index f = Mesh::face_of(h), g = Mesh::face_of(mesh.twin(h));
+    turns[h] += std::remainder(angles[g] - angles[f] - connection.transport[h] - turns[h], quantum);
+    turns[mesh.twin(h)] = -turns[h];
+  }
+  return angles;
+}
+
+/// Powers of directions that curvature asks for, their sizes the stiffness that they deserve.
+std::vector<Complex> curvature_powers(const Mesh& mesh, int symmetry, double weight) {
+  const std::vector<FaceBending> bending = bending_of_faces(mesh, shape_operator(mesh));
+  std::vector<Complex> result(mesh.face_count());
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const Complex& difference = bending[f].difference;
+    result[f] = weight * mesh.face_area(f) *
+                (symmetry == 2 ? -bending[f].sum * difference : times(difference, difference));
+  }
+  return result;
+}
+
+}  // namespace
+
+struct DirectionFieldEditor::Kept {
+  Kept(const Mesh& its_mesh, int its_symmetry)
+      : mesh(its_mesh),
+        symmetry(its_symmetry),
+        connection(surface_connection(its_mesh)),
+        filled(its_mesh),
+        loops(dual_loops(its_mesh, filled)) {}
+
+  const Mesh& mesh;
+  const int symmetry;
+  const SurfaceConnection connection;
+  const FilledSurface filled;
+  const DualLoops loops;
+  std::unique_ptr<TrivialConnection> trivial;
+  // The last trivial connection and what strokes turned it by.
+  std::vector<Index> units;
+  std::vector<double> angles, turns, shift;
+
+  DirectionField designed(const DirectionFieldOptions& options, const JobStage& stage);
+  DirectionField automatic(const DirectionFieldOptions& options, const JobStage& stage);
+
+ private:
+  void connect(const DirectionFieldOptions& options, const JobStage& stage);
+  std::vector<double> turn_onto_curvature(FaceSprings<double> springs, std::vector<double> shift, double weight,
+                                          const std::vector<GraphEdge<double>>& graph, const JobStage& stage) const;
+  std::vector<double> best_constants(const std::vector<Complex>& wanted) const;
+};
+
+void DirectionFieldEditor::Kept::connect(const DirectionFieldOptions& options, const JobStage& stage) {
+  if (!trivial) trivial = std::make_unique<TrivialConnection>(mesh, connection, filled, loops, stage.part(0, 0.2));
+  std::vector<Index> wanted = prescribed_units(mesh, filled, symmetry, options, *trivial, stage.part(0.2, 0.3));
+  if (wanted == units) return;
+  units.clear();
+  turns = trivial->turns(wanted, symmetry, stage.part(0.3, 1));
+  angles = integrate(mesh, connection, loops, symmetry, turns);
+  shift.clear();
+  units = std::move(wanted);
+}
+
+/// Per face, the one angle of its component by which the field best fits those powers.
+std::vector<double> DirectionFieldEditor::Kept::best_constants(const std::vector<Complex>& wanted) const {
+  std::vector<Complex> sums(mesh.component_count());
+  for (Index f = 0; f < mesh.face_count(); ++f)
+    sums[mesh.component_of(mesh.triangles()[f][0])] += times(wanted[f], std::polar(1.0, -symmetry * angles[f]));
+  std::vector<double> result(mesh.face_count());
+  for (Index f = 0; f < mesh.face_count(); ++f)
+    result[f] = std::arg(sums[mesh.component_of(mesh.triangles()[f][0])]) / symmetry;
+  return result;
+}
+
+std::vector<double> DirectionFieldEditor::Kept::turn_onto_curvature(FaceSprings<double> springs,
+                                                                    std::vector<double> turned, double weight,
+                                                                    const std::vector<GraphEdge<double>>& graph,
+                                                                    const JobStage& stage) const {
+  const std::vector<Complex> wanted = curvature_powers(mesh, symmetry, weight);
+  if (turned.empty()) turned = best_constants(wanted);
+  for (int round = 0; round < k_curvature_rounds; ++round) {
+    FaceSprings<double> both = springs;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      const double stiffness = std::abs(wanted[f]);
+      if (both.stiffness[f] == k_fixed || stiffness == 0) continue;
+      const double angle = std::arg(wanted[f]) / symmetry - angles[f];
+      const double target = turned[f] + std::remainder(angle - turned[f], k_turn / symmetry);
+      both.target[f] = (both.stiffness[f] * both.target[f] + stiffness * target) / (both.stiffness[f] + stiffness);
+      both.stiffness[f] += stiffness;
+    }
+    const JobStage part = stage.part(static_cast<double>(round) / k_curvature_rounds,
+                                     static_cast<double>(round + 1) / k_curvature_rounds);
+    turned = relax_springs(mesh, graph, both, std::move(turned), k_stroke_accuracy, part);
+  }
+  return turned;
+}
+
+DirectionField DirectionFieldEditor::Kept::designed(const DirectionFieldOptions& options, const JobStage& stage) {
+  const bool along_boundary = options.align == FieldAlignment::boundary;
+  const bool along_curvature = options.align == FieldAlignment::curvature;
+  const std::vector<StrokeFaces> strokes = stroke_faces(mesh, symmetry, options.strokes, along_boundary);
+  connect(options, stage.part(0, 0.4));
+
+  std::vector<double> turned_angles = angles, turned_turns = turns;
+  std::vector<bool> fixed(mesh.face_count(), false);
+  if (!strokes.empty() || along_curvature) {
+    const FaceSprings<double> springs = turning_springs(mesh, symmetry, angles, strokes);
+    const std::vector<GraphEdge<double>> graph = face_graph(mesh, connection);
+    std::vector<double> turned;
+    if (!strokes.empty())
+      turned = shift = relax_springs(mesh, graph, springs, shift, k_stroke_accuracy, stage.part(0.4, 0.7));
+    if (along_curvature)
+      turned = turn_onto_curvature(springs, std::move(turned), options.align_weight, graph, stage.part(0.7, 1));
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      turned_angles[f] += turned[f];
+      fixed[f] = springs.stiffness[f] == k_fixed;
+      for (Index h = 3 * f; h < 3 * f + 3; ++h)
+        if (mesh.twin(h) != k_none) turned_turns[h] += turned[Mesh::face_of(mesh.twin(h))] - turned[f];
+    }
+  }
+  untangle_turns(mesh, symmetry, fixed, turned_angles, turned_turns);
+  for (double& angle : turned_angles) angle = std::remainder(angle, k_turn);
+  return {mesh, symmetry, std::move(turned_angles), std::move(turned_turns)};
+}
+
+DirectionField DirectionFieldEditor::Kept::automatic(const DirectionFieldOptions& options, const JobStage& stage) {
+  const std::vector<StrokeFaces> strokes =
+      stroke_faces(mesh, symmetry, options.strokes, options.align == FieldAlignment::boundary);
+  FaceSprings<Complex> springs = power_springs(mesh, symmetry, strokes);
+  if (options.align == FieldAlignment::curvature) {
+    const std::vector<Complex> wanted = curvature_powers(mesh, symmetry, options.align_weight);
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      const double stiffness = std::abs(wanted[f]), both = stiffness + springs.stiffness[f];
+      if (stiffness == 0 || both == k_fixed) continue;
+      springs.target[f] = (springs.stiffness[f] * springs.target[f] + wanted[f]) / both;
+      springs.stiffness[f] = both;
+    }
+  }
+  std::vector<bool> is_drawn(mesh.component_count(), false);
+  const auto component = [&](Index f) { return mesh.component_of(mesh.triangles()[f][0]); };
+  for (Index f = 0; f < mesh.face_count(); ++f)
+    if (springs.stiffness[f] > 0) is_drawn[component(f)] = true;
+
+  const auto graph = face_graph(mesh, connection, symmetry);
+  const bool any_drawn = std::find(is_drawn.begin(), is_drawn.end(), true) != is_drawn.end();
+  const bool any_free = std::find(is_drawn.begin(), is_drawn.end(), false) != is_drawn.end();
+  std::vector<Complex> powers;
+  if (any_drawn) powers = relax_springs(mesh, graph, springs, {}, k_power_accuracy, stage.part(0, any_free ? 0.4 : 1));
+  if (any_free) {
+    std::vector<double> none(mesh.halfedge_count(), 0.0);
+    std::vector<Complex> start(mesh.face_count());
+    const std::vector<double> parallel = integrate(mesh, connection, loops, symmetry, none);
+    for (Index f = 0; f < mesh.face_count(); ++f) start[f] = std::polar(1.0, symmetry * parallel[f]);
+    std::vector<Complex> smooth = smoothest_powers(mesh, graph, std::move(start), stage.part(any_drawn ? 0.4 : 0, 1));
+    std::vector<Complex> unit(mesh.component_count(), Complex(0));  // turns the first face's angle to 0
+    for (Index f = 0; f < mesh.face_count(); ++f)
+      if (unit[component(f)] == Complex(0)) unit[component(f)] = std::polar(1.0, -std::arg(smooth[f]));
+    if (!any_drawn) powers.resize(mesh.face_count());
+    for (Index f = 0; f < mesh.face_count(); ++f)
+      if (!is_drawn[component(f)]) powers[f] = times(unit[component(f)], smooth[f]);
+  }
+  std::vector<double> own(mesh.face_count()), turned(mesh.halfedge_count(), 0.0);
+  for (Index f = 0; f < mesh.face_count(); ++f) own[f] = std::arg(powers[f]) / symmetry;
+  for (const Index h : inner_edges(mesh)) {
+    const Index f = Mesh::face_of(h), g = Mesh::face_of(mesh.twin(h));
+    turned[h] = std::remainder(own[g] - own[f] - connection.transport[h], k_turn / symmetry);
+    turned[mesh.twin(h)] = -turned[h];
+  }
+  return {mesh, symmetry, std::move(own), std::move(turned)};
+}
+
+DirectionFieldEditor::DirectionFieldEditor(const Mesh& mesh, int symmetry) {
+  if (symmetry != 1 && symmetry != 2 && symmetry != 4)
+    throw InputError(message("symmetry is ", symmetry, ", but must be 1 (vectors), 2 (lines) or 4 (crosses)"));
+  kept_ = std::make_unique<Kept>(mesh, symmetry);
+}
+DirectionFieldEditor::~DirectionFieldEditor() = default;
+DirectionFieldEditor::DirectionFieldEditor(DirectionFieldEditor&&) noexcept = default;
+DirectionFieldEditor& DirectionFieldEditor::operator=(DirectionFieldEditor&&) noexcept = default;
+
+DirectionField DirectionFieldEditor::field(const DirectionFieldOptions& options, Job* job) {
+  const JobStage stage(job, "Turning directions");
+  check_options(options, kept_->symmetry);
+  return options.singularities ? kept_->designed(options, stage) : kept_->automatic(options, stage);
+}
+
+DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options, Job* job) {
+  return DirectionFieldEditor(mesh, symmetry).field(options, job);
+}
+
+}  // namespace saddleback
