@@ -95,10 +95,9 @@ std::vector<std::pair<Index, Index>> as_units(const py::object& value, int symme
 Stroke as_stroke(const py::handle& value, const Mesh& mesh, const std::string& argument) {
   if (py::isinstance<Stroke>(value)) return py::cast<const Stroke&>(value);
   if (py::isinstance<SurfaceCurve>(value)) return {py::cast<const SurfaceCurve&>(value)};
-  SurfacePoints points =
-      py::isinstance<GeodesicPath>(value)
-          ? py::cast<const GeodesicPath&>(value).surface
-          : as_surface_points(py::reinterpret_borrow<py::object>(value), mesh, argument.c_str());
+  SurfacePoints points = py::isinstance<GeodesicPath>(value)
+                             ? py::cast<const GeodesicPath&>(value).surface
+                             : as_surface_points(py::reinterpret_borrow<py::object>(value), mesh, argument.c_str());
   return {SurfaceCurve(mesh, std::move(points), false, argument.c_str())};
 }
 
@@ -118,8 +117,8 @@ FieldAlignment as_alignment(const py::object& value) {
   if (name == "none") return FieldAlignment::none;
   if (name == "curvature") return FieldAlignment::curvature;
   if (name == "boundary") return FieldAlignment::boundary;
-  throw InputError(message("align: wanted \"none\", \"curvature\" or \"boundary\", got ",
-                           py::cast<std::string>(py::repr(value))));
+  throw InputError(
+      message("align: wanted \"none\", \"curvature\" or \"boundary\", got ", py::cast<std::string>(py::repr(value))));
 }
 
 DirectionFieldOptions as_options(const Mesh& mesh, int symmetry, const py::object& singularities,
@@ -134,8 +133,7 @@ DirectionFieldOptions as_options(const Mesh& mesh, int symmetry, const py::objec
   const auto loop_count = static_cast<Index>(mesh.boundary_loops().size());
   for (const auto& [loop, units] : as_units(loop_indices, symmetry, "loop_indices", "boundary loop")) {
     if (loop < 0 || loop >= loop_count)
-      throw InputError(
-          message("loop_indices: boundary loop ", loop, " is out of range, the mesh has ", loop_count));
+      throw InputError(message("loop_indices: boundary loop ", loop, " is out of range, the mesh has ", loop_count));
     options.loop_units.resize(loop_count);
     options.loop_units[loop] = units;
   }
@@ -157,8 +155,8 @@ struct Editor {
 
 py::object edit(Editor& self, const py::object& singularities, const py::object& strokes, const py::object& align,
                 const py::object& loop_indices, const py::object& align_weight, const py::object& job) {
-  const DirectionFieldOptions options = as_options(as_mesh(self.mesh, "mesh"), self.symmetry, singularities, strokes,
-                                                   align, loop_indices, align_weight);
+  const DirectionFieldOptions options =
+      as_options(as_mesh(self.mesh, "mesh"), self.symmetry, singularities, strokes, align, loop_indices, align_weight);
   Job* const token = as_job(job);
   py::object result = py::cast(without_gil([&] {
     const std::lock_guard lock(self.mutex);
@@ -208,7 +206,8 @@ void bind_direction_field(py::module_& m) {
           [](const py::object& self) {
             return view_of(py::cast<const DirectionField&>(self).turns(), self).attr("reshape")(-1, 3);
           },
-          "(F, 3) float64: by how much the field turns where it crosses edge i (corner i to i + 1) of the face outwards, "
+          "(F, 3) float64: by how much the field turns where it crosses edge i (corner i to i + 1) of the face "
+          "outwards, "
           "radians, besides the transport that keeps directions straight; 0 on the boundary.")
       .def_property_readonly("singularities", &singularities_of,
                              "{vertex: index} of the interior vertices whose index is not 0.")

@@ -1,8 +1,9 @@
 // A field as it is kept: its singularities, and its value between the centres of faces.
 //
-// On every edge the field is linear between two values at its ends, which both faces share. About a vertex the values on
-// the edges follow a model that turns evenly with the angle, as often as the vertex' index says; what the turns of the
-// faces say beside that is evened out. Inside a face the values of the edges are blended by barycentric coordinates.
+// On every edge the field is linear between two values at its ends, which both faces share. About a vertex the values
+// on the edges follow a model that turns evenly with the angle, as often as the vertex' index says; what the turns of
+// the faces say beside that is evened out. Inside a face the values of the edges are blended by barycentric
+// coordinates.
 
 #include "saddleback/direction_field.h"
 
@@ -50,9 +51,9 @@ Index DirectionField::units_at(Index vertex) const {
 
 void DirectionField::measure_fan(Index vertex, std::vector<double>& differences) {
   // How much the model turns, relative to the edges, per angle about the vertex.
-  const double turn = mesh_->is_boundary(vertex)
-                          ? -1
-                          : (static_cast<double>(units_at(vertex)) / symmetry_ - 1) * k_turn / mesh_->total_angle(vertex);
+  const double turn = mesh_->is_boundary(vertex) ? -1
+                                                 : (static_cast<double>(units_at(vertex)) / symmetry_ - 1) * k_turn /
+                                                       mesh_->total_angle(vertex);
   differences.assign(1, 0.0);
   const Index first = mesh_->first_halfedge(vertex);
   double mean = 0, weights = 0;

@@ -1,5 +1,5 @@
-// Two ways to a field. With given singularities: a trivial connection, integrated over a tree of faces, then turned by a
-// single-valued angle per face so as to follow strokes. Without: powers of directions, which are linear.
+// Two ways to a field. With given singularities: a trivial connection, integrated over a tree of faces, then turned by
+// a single-valued angle per face so as to follow strokes. Without: powers of directions, which are linear.
 
 #include <cmath>
 #include <complex>
@@ -20,9 +20,9 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double k_turn = 2 * std::numbers::pi;
-/// Of turnings onto strokes: closed for any accuracy, so that what rounding in single precision gives at once is enough.
-constexpr MultigridSolver<double>::Accuracy k_stroke_accuracy{.residual = 1e-8};
-constexpr MultigridSolver<Complex>::Accuracy k_power_accuracy{.residual = 1e-7};
+/// Whatever the accuracy, fields close and fixed faces are met exactly; this is how smooth they are in between.
+constexpr MultigridSolver<double>::Accuracy k_stroke_accuracy{.residual = 1e-7};
+constexpr MultigridSolver<Complex>::Accuracy k_power_accuracy{.residual = 1e-6};
 /// How often the branches of curvature directions are chosen anew after the field has turned onto them.
 constexpr int k_curvature_rounds = 3;
 
@@ -42,8 +42,7 @@ std::vector<double> integrate(const Mesh& mesh, const SurfaceConnection& connect
   std::vector<double> angles(mesh.face_count(), 0.0);
   for (const Index f : tree.order) {
     const Index h = tree.entered_by[f];
-    if (h != k_none)
-      angles[f] = std::remainder(angles[Mesh::face_of(h)] + connection.transport[h] + turns[h], k_turn);
+    if (h != k_none) angles[f] = std::remainder(angles[Mesh::face_of(h)] + connection.transport[h] + turns[h], k_turn);
   }
   const double quantum = k_turn / symmetry;
   for (const Index h : inner_edges(mesh)) {
@@ -60,8 +59,8 @@ std::vector<Complex> curvature_powers(const Mesh& mesh, int symmetry, double wei
   std::vector<Complex> result(mesh.face_count());
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Complex& difference = bending[f].difference;
-    result[f] = weight * mesh.face_area(f) *
-                (symmetry == 2 ? -bending[f].sum * difference : times(difference, difference));
+    result[f] =
+        weight * mesh.face_area(f) * (symmetry == 2 ? -bending[f].sum * difference : times(difference, difference));
   }
   return result;
 }
@@ -84,15 +83,15 @@ struct DirectionFieldEditor::Kept {
   std::unique_ptr<TrivialConnection> trivial;
   // The last trivial connection and what strokes turned it by.
   std::vector<Index> units;
-  std::vector<double> angles, turns, shift;
+  std::vector<double> angles, turns, shift;  // shift: over vertices
 
   DirectionField designed(const DirectionFieldOptions& options, const JobStage& stage);
   DirectionField automatic(const DirectionFieldOptions& options, const JobStage& stage);
 
  private:
   void connect(const DirectionFieldOptions& options, const JobStage& stage);
-  std::vector<double> turn_onto_curvature(FaceSprings<double> springs, std::vector<double> shift, double weight,
-                                          const std::vector<GraphEdge<double>>& graph, const JobStage& stage) const;
+  std::vector<double> turn_onto_curvature(const FaceSprings<double>& springs, std::vector<double> turned, double weight,
+                                          const JobStage& stage) const;
   std::vector<double> best_constants(const std::vector<Complex>& wanted) const;
 };
 
@@ -118,11 +117,11 @@ std::vector<double> DirectionFieldEditor::Kept::best_constants(const std::vector
   return result;
 }
 
-std::vector<double> DirectionFieldEditor::Kept::turn_onto_curvature(FaceSprings<double> springs,
+std::vector<double> DirectionFieldEditor::Kept::turn_onto_curvature(const FaceSprings<double>& springs,
                                                                     std::vector<double> turned, double weight,
-                                                                    const std::vector<GraphEdge<double>>& graph,
                                                                     const JobStage& stage) const {
   const std::vector<Complex> wanted = curvature_powers(mesh, symmetry, weight);
+  std::vector<double> vertices;
   if (turned.empty()) turned = best_constants(wanted);
   for (int round = 0; round < k_curvature_rounds; ++round) {
     FaceSprings<double> both = springs;
@@ -136,7 +135,7 @@ std::vector<double> DirectionFieldEditor::Kept::turn_onto_curvature(FaceSprings<
     }
     const JobStage part = stage.part(static_cast<double>(round) / k_curvature_rounds,
                                      static_cast<double>(round + 1) / k_curvature_rounds);
-    turned = relax_springs(mesh, graph, both, std::move(turned), k_stroke_accuracy, part);
+    turned = relax_angles(mesh, connection, both, vertices, k_stroke_accuracy, part);
   }
   return turned;
 }
@@ -151,12 +150,11 @@ DirectionField DirectionFieldEditor::Kept::designed(const DirectionFieldOptions&
   std::vector<bool> fixed(mesh.face_count(), false);
   if (!strokes.empty() || along_curvature) {
     const FaceSprings<double> springs = turning_springs(mesh, symmetry, angles, strokes);
-    const std::vector<GraphEdge<double>> graph = face_graph(mesh, connection);
     std::vector<double> turned;
     if (!strokes.empty())
-      turned = shift = relax_springs(mesh, graph, springs, shift, k_stroke_accuracy, stage.part(0.4, 0.7));
+      turned = relax_angles(mesh, connection, springs, shift, k_stroke_accuracy, stage.part(0.4, 0.7));
     if (along_curvature)
-      turned = turn_onto_curvature(springs, std::move(turned), options.align_weight, graph, stage.part(0.7, 1));
+      turned = turn_onto_curvature(springs, std::move(turned), options.align_weight, stage.part(0.7, 1));
     for (Index f = 0; f < mesh.face_count(); ++f) {
       turned_angles[f] += turned[f];
       fixed[f] = springs.stiffness[f] == k_fixed;
@@ -187,11 +185,11 @@ DirectionField DirectionFieldEditor::Kept::automatic(const DirectionFieldOptions
   for (Index f = 0; f < mesh.face_count(); ++f)
     if (springs.stiffness[f] > 0) is_drawn[component(f)] = true;
 
-  const auto graph = face_graph(mesh, connection, symmetry);
+  const auto graph = power_graph(mesh, connection, symmetry);
   const bool any_drawn = std::find(is_drawn.begin(), is_drawn.end(), true) != is_drawn.end();
   const bool any_free = std::find(is_drawn.begin(), is_drawn.end(), false) != is_drawn.end();
   std::vector<Complex> powers;
-  if (any_drawn) powers = relax_springs(mesh, graph, springs, {}, k_power_accuracy, stage.part(0, any_free ? 0.4 : 1));
+  if (any_drawn) powers = relax_powers(mesh, graph, springs, k_power_accuracy, stage.part(0, any_free ? 0.4 : 1));
   if (any_free) {
     std::vector<double> none(mesh.halfedge_count(), 0.0);
     std::vector<Complex> start(mesh.face_count());

@@ -5,77 +5,158 @@
 #include "filled_surface.h"
 
 namespace saddleback {
+namespace {
 
-std::vector<GraphEdge<double>> face_graph(const Mesh& mesh, const SurfaceConnection& connection) {
-  std::vector<GraphEdge<double>> result;
-  result.reserve(mesh.edge_count());
-  for (const Index h : inner_edges(mesh))
-    result.push_back({Mesh::face_of(h), Mesh::face_of(mesh.twin(h)), 1 / connection.weight[h]});
+using Complex = std::complex<double>;
+
+Index component(const Mesh& mesh, Index face) { return mesh.component_of(mesh.triangles()[face][0]); }
+
+template <class Scalar>
+std::vector<bool> held_components(const Mesh& mesh, const FaceSprings<Scalar>& springs) {
+  std::vector<bool> result(mesh.component_count(), false);
+  for (Index f = 0; f < mesh.face_count(); ++f)
+    if (springs.stiffness[f] > 0) result[component(mesh, f)] = true;
   return result;
 }
 
-std::vector<GraphEdge<std::complex<double>>> face_graph(const Mesh& mesh, const SurfaceConnection& connection,
-                                                        int symmetry) {
-  std::vector<GraphEdge<std::complex<double>>> result;
+/// What the faces of each vertex ask of it; fixed where one of them is.
+struct VertexSprings {
+  std::vector<double> stiffness, target;
+};
+VertexSprings springs_of_vertices(const Mesh& mesh, const FaceSprings<double>& springs) {
+  VertexSprings result{std::vector<double>(mesh.vertex_count(), 0.0), std::vector<double>(mesh.vertex_count(), 0.0)};
+  std::vector<int> fixed(mesh.vertex_count(), 0);
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (springs.stiffness[f] != k_fixed) continue;
+    for (const Index v : mesh.triangles()[f]) result.target[v] += (springs.target[f] - result.target[v]) / ++fixed[v];
+  }
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (springs.stiffness[f] == 0 || springs.stiffness[f] == k_fixed) continue;
+    for (const Index v : mesh.triangles()[f]) {
+      if (fixed[v] > 0) continue;
+      result.stiffness[v] += springs.stiffness[f] / 3;
+      result.target[v] += (springs.target[f] - result.target[v]) * (springs.stiffness[f] / 3) / result.stiffness[v];
+    }
+  }
+  for (Index v = 0; v < mesh.vertex_count(); ++v)
+    if (fixed[v] > 0) result.stiffness[v] = k_fixed;
+  return result;
+}
+
+/// A graph in which some nodes are fixed: what ties others to them becomes springs.
+template <class Scalar>
+struct SpringSystem {
+  GraphMatrix<Scalar> matrix;
+  std::vector<Scalar> right;
+};
+template <class Scalar>
+SpringSystem<Scalar> spring_system(const std::vector<GraphEdge<Scalar>>& graph, const std::vector<double>& stiffness,
+                                   const std::vector<Scalar>& target) {
+  const auto count = static_cast<Index>(stiffness.size());
+  std::vector<GraphEdge<Scalar>> free;
+  free.reserve(graph.size());
+  std::vector<double> diagonal(count);
+  SpringSystem<Scalar> result{{}, std::vector<Scalar>(count)};
+  for (Index i = 0; i < count; ++i) {
+    diagonal[i] = stiffness[i] == k_fixed ? 1 : stiffness[i];
+    result.right[i] = diagonal[i] * target[i];
+  }
+  for (const auto& edge : graph) {
+    const bool fixed_a = stiffness[edge.a] == k_fixed, fixed_b = stiffness[edge.b] == k_fixed;
+    if (!fixed_a && !fixed_b) {
+      free.push_back(edge);
+    } else if (!fixed_a) {
+      diagonal[edge.a] += std::abs(edge.weight);
+      result.right[edge.a] += times(edge.weight, target[edge.b]);
+    } else if (!fixed_b) {
+      diagonal[edge.b] += std::abs(edge.weight);
+      result.right[edge.b] += times(conjugate(edge.weight), target[edge.a]);
+    }
+  }
+  result.matrix = graph_laplacian(count, free);
+  for (Index i = 0; i < count; ++i) result.matrix.diagonal[i] += diagonal[i];
+  return result;
+}
+
+/// Smooths out what the mean of vertices leaves from face to face: damped Jacobi rounds, which know no order of faces.
+void relax_faces(const Mesh& mesh, const SurfaceConnection& connection, const FaceSprings<double>& springs,
+                 std::vector<double>& values, const JobStage& stage) {
+  constexpr int k_rounds = 4;
+  constexpr double k_damping = 2.0 / 3;
+  std::vector<double> next = values;
+  for (int round = 0; round < k_rounds; ++round) {
+    stage.check();
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      if (springs.stiffness[f] == k_fixed) continue;
+      double sum = springs.stiffness[f] * springs.target[f], weight = springs.stiffness[f];
+      for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+        if (mesh.twin(h) == k_none) continue;
+        sum += values[Mesh::face_of(mesh.twin(h))] / connection.weight[h];
+        weight += 1 / connection.weight[h];
+      }
+      if (weight > 0) next[f] = values[f] + k_damping * (sum / weight - values[f]);
+    }
+    values.swap(next);
+  }
+}
+
+}  // namespace
+
+PowerGraph power_graph(const Mesh& mesh, const SurfaceConnection& connection, int symmetry) {
+  PowerGraph result;
   result.reserve(mesh.edge_count());
   for (const Index h : inner_edges(mesh)) {
-    const auto carried = std::polar(1 / connection.weight[h], -symmetry * connection.transport[h]);
+    const Complex carried = std::polar(1 / connection.weight[h], -symmetry * connection.transport[h]);
     result.push_back({Mesh::face_of(h), Mesh::face_of(mesh.twin(h)), carried});
   }
   return result;
 }
 
-template <class Scalar>
-std::vector<Scalar> relax_springs(const Mesh& mesh, const std::vector<GraphEdge<Scalar>>& graph,
-                                  const FaceSprings<Scalar>& springs, std::vector<Scalar> guess,
-                                  const typename MultigridSolver<Scalar>::Accuracy& accuracy, const JobStage& stage) {
-  // Fixed faces are taken out of the graph: what ties others to them becomes a spring.
-  const auto is_fixed = [&](Index f) { return springs.stiffness[f] == k_fixed; };
-  std::vector<GraphEdge<Scalar>> free;
-  free.reserve(graph.size());
-  std::vector<double> stiffness(mesh.face_count(), 0.0);
-  std::vector<Scalar> right(mesh.face_count(), Scalar(0));
-  for (const auto& edge : graph) {
-    if (!is_fixed(edge.a) && !is_fixed(edge.b)) {
-      free.push_back(edge);
-    } else if (!is_fixed(edge.a)) {
-      stiffness[edge.a] += std::abs(edge.weight);
-      right[edge.a] += times(edge.weight, springs.target[edge.b]);
-    } else if (!is_fixed(edge.b)) {
-      stiffness[edge.b] += std::abs(edge.weight);
-      right[edge.b] += times(conjugate(edge.weight), springs.target[edge.a]);
-    }
-  }
-  std::vector<bool> is_held(mesh.component_count(), false);
-  for (Index f = 0; f < mesh.face_count(); ++f)
-    if (springs.stiffness[f] > 0) is_held[mesh.component_of(mesh.triangles()[f][0])] = true;
+std::vector<Complex> relax_powers(const Mesh& mesh, const PowerGraph& graph, const FaceSprings<Complex>& springs,
+                                  const MultigridSolver<Complex>::Accuracy& accuracy, const JobStage& stage) {
+  std::vector<double> stiffness = springs.stiffness;
+  std::vector<bool> is_held = held_components(mesh, springs);
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Index component = mesh.component_of(mesh.triangles()[f][0]);
-    if (is_fixed(f)) {
-      stiffness[f] = 1;
-      right[f] = springs.target[f];
-    } else if (springs.stiffness[f] > 0) {
-      stiffness[f] += springs.stiffness[f];
-      right[f] += springs.stiffness[f] * springs.target[f];
-    } else if (!is_held[component]) {
-      is_held[component] = true;
-      stiffness[f] += 1;
-    }
+    if (is_held[component(mesh, f)]) continue;
+    is_held[component(mesh, f)] = true;
+    stiffness[f] = 1;
   }
-  GraphMatrix<Scalar> matrix = graph_laplacian(mesh.face_count(), free);
-  for (Index f = 0; f < mesh.face_count(); ++f) matrix.diagonal[f] += stiffness[f];
-  const MultigridSolver<Scalar> solver(std::move(matrix), stage.part(0, 0.2));
-  std::vector<Scalar> result = solver.solve(right, std::move(guess), accuracy, stage.part(0.2, 1));
+  SpringSystem<Complex> system = spring_system(graph, stiffness, springs.target);
+  const MultigridSolver<Complex> solver(std::move(system.matrix), stage.part(0, 0.2));
+  std::vector<Complex> result = solver.solve(system.right, {}, accuracy, stage.part(0.2, 1));
   for (Index f = 0; f < mesh.face_count(); ++f)
-    if (is_fixed(f)) result[f] = springs.target[f];
+    if (springs.stiffness[f] == k_fixed) result[f] = springs.target[f];
   return result;
 }
 
-template std::vector<double> relax_springs(const Mesh&, const std::vector<GraphEdge<double>>&,
-                                           const FaceSprings<double>&, std::vector<double>,
-                                           const MultigridSolver<double>::Accuracy&, const JobStage&);
-template std::vector<std::complex<double>> relax_springs(
-    const Mesh&, const std::vector<GraphEdge<std::complex<double>>>&, const FaceSprings<std::complex<double>>&,
-    std::vector<std::complex<double>>, const MultigridSolver<std::complex<double>>::Accuracy&, const JobStage&);
+std::vector<double> relax_angles(const Mesh& mesh, const SurfaceConnection& connection,
+                                 const FaceSprings<double>& springs, std::vector<double>& vertices,
+                                 const MultigridSolver<double>::Accuracy& accuracy, const JobStage& stage) {
+  VertexSprings own = springs_of_vertices(mesh, springs);
+  std::vector<bool> is_held = held_components(mesh, springs);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (is_held[mesh.component_of(v)]) continue;
+    is_held[mesh.component_of(v)] = true;
+    own.stiffness[v] = 1;
+  }
+  std::vector<GraphEdge<double>> graph;
+  graph.reserve(mesh.edge_count());
+  for (const Index h : mesh.edge_halfedges()) {
+    const double share = mesh.twin(h) == k_none ? 0.5 : 1;
+    graph.push_back({mesh.from(h), mesh.to(h), share * connection.weight[h]});
+  }
+  SpringSystem<double> system = spring_system(graph, own.stiffness, own.target);
+  const MultigridSolver<double> solver(std::move(system.matrix), stage.part(0, 0.2));
+  vertices = solver.solve(system.right, std::move(vertices), accuracy, stage.part(0.2, 0.9));
+
+  std::vector<double> result(mesh.face_count());
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const Triangle& t = mesh.triangles()[f];
+    const bool is_fixed = springs.stiffness[f] == k_fixed;
+    result[f] = is_fixed ? springs.target[f] : (vertices[t[0]] + vertices[t[1]] + vertices[t[2]]) / 3;
+  }
+  relax_faces(mesh, connection, springs, result, stage.part(0.9, 1));
+  return result;
+}
 
 }  // namespace saddleback

@@ -10,7 +10,8 @@
 
 namespace saddleback {
 
-/// Nodes are the interior vertices and, in place of its vertices, each boundary loop. Boundary edges are no edges of it.
+/// Nodes are the interior vertices and, in place of its vertices, each boundary loop. Boundary edges are no edges of
+/// it.
 struct FilledSurface {
   struct Component {
     Index genus = 0;
@@ -22,10 +23,10 @@ struct FilledSurface {
   explicit FilledSurface(const Mesh& mesh);
 
   Index node_count = 0;
-  std::vector<Index> node_of;        ///< per vertex; those of one loop share a node
-  std::vector<Index> loop_nodes;     ///< per boundary loop
-  std::vector<double> curvature;     ///< per node, radians: angle defect; of a loop that of the hole filled
-  std::vector<Index> component_of;   ///< per node
+  std::vector<Index> node_of;       ///< per vertex; those of one loop share a node
+  std::vector<Index> loop_nodes;    ///< per boundary loop
+  std::vector<double> curvature;    ///< per node, radians: angle defect; of a loop that of the hole filled
+  std::vector<Index> component_of;  ///< per node
   std::vector<Component> components;
 
   /// "component 2 (genus 1, 0 boundary loops)".

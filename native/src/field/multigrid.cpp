@@ -126,17 +126,6 @@ void append_step(Aggregates<Scalar>& first, const Aggregates<Scalar>& second) {
   first.count = second.count;
 }
 
-template <class Small, class Scalar>
-GraphMatrix<Small> narrowed(const GraphMatrix<Scalar>& matrix) {
-  GraphMatrix<Small> result;
-  result.begins = matrix.begins;
-  result.columns = matrix.columns;
-  result.values.reserve(matrix.values.size());
-  for (const Scalar& value : matrix.values) result.values.push_back(Small(value));
-  result.diagonal.assign(matrix.diagonal.begin(), matrix.diagonal.end());
-  return result;
-}
-
 template <class Scalar>
 Scalar dot(const std::vector<Scalar>& a, const std::vector<Scalar>& b) {
   Scalar sum(0);
@@ -157,21 +146,6 @@ void add(std::vector<Scalar>& a, Scalar factor, const std::vector<Scalar>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) a[i] += times(factor, b[i]);
 }
 
-/// Gauss-Seidel in both orders, from zero forward and back again.
-template <class Scalar>
-void smooth_from_zero(const GraphMatrix<Scalar>& matrix, const std::vector<Scalar>& right, std::vector<Scalar>& x) {
-  for (Index i = 0; i < matrix.size(); ++i) {
-    Scalar sum = right[i];
-    for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k)
-      if (matrix.columns[k] < i) sum -= times(matrix.values[k], x[matrix.columns[k]]);
-    x[i] = sum / matrix.diagonal[i];
-  }
-}
-template <class Scalar>
-void smooth_back(const GraphMatrix<Scalar>& matrix, const std::vector<Scalar>& right, std::vector<Scalar>& x) {
-  for (Index i = matrix.size() - 1; i >= 0; --i) x[i] = (right[i] - row_sum(matrix, i, x)) / matrix.diagonal[i];
-}
-
 }  // namespace
 
 template <class Scalar>
@@ -181,11 +155,32 @@ MultigridSolver<Scalar>::MultigridSolver(GraphMatrix<Scalar> matrix, const JobSt
 }
 
 template <class Scalar>
+auto MultigridSolver<Scalar>::make_level(const GraphMatrix<Scalar>& matrix) -> Level {
+  Level level;
+  level.matrix.begins = matrix.begins;
+  level.matrix.columns.resize(matrix.columns.size());
+  level.matrix.values.resize(matrix.columns.size());
+  level.matrix.diagonal.assign(matrix.diagonal.begin(), matrix.diagonal.end());
+  level.middles.reserve(matrix.size());
+  for (Index i = 0; i < matrix.size(); ++i) {
+    Index low = matrix.begins[i], high = matrix.begins[i + 1];
+    for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) {
+      const Index to = matrix.columns[k] < i ? low++ : --high;
+      level.matrix.columns[to] = matrix.columns[k];
+      level.matrix.values[to] = Small(matrix.values[k]);
+    }
+    level.middles.push_back(low);
+    level.inverse_diagonal.push_back(Small(static_cast<float>(1 / matrix.diagonal[i])));
+  }
+  return level;
+}
+
+template <class Scalar>
 void MultigridSolver<Scalar>::coarsen(const JobStage& stage) {
   GraphMatrix<Scalar> owned;
   const GraphMatrix<Scalar>* matrix = &matrix_;
   while (true) {
-    levels_.push_back({narrowed<Small>(*matrix), {}, {}});
+    levels_.push_back(make_level(*matrix));
     stage.check();
     if (matrix->size() <= k_coarsest) break;
     Aggregates<Scalar> aggregates = pair_up(*matrix, stage);
@@ -215,12 +210,14 @@ void MultigridSolver<Scalar>::factor_coarsest(const GraphMatrix<Scalar>& matrix)
   coarsest_.assign(inverse.data(), inverse.data() + inverse.size());
 }
 
+/// Gauss-Seidel forward from zero, the correction of the next level, Gauss-Seidel back.
 template <class Scalar>
-void MultigridSolver<Scalar>::cycle(std::size_t level, const SmallVector& right, SmallVector& solution,
-                                    std::vector<Vectors>& work, const JobStage& stage) const {
+void MultigridSolver<Scalar>::cycle(std::size_t level, const SmallVector& right, SmallVector& solution, Workspace& work,
+                                    const JobStage& stage) const {
   stage.check();
   const Level& here = levels_[level];
-  const Index size = here.matrix.size();
+  const GraphMatrix<Small>& matrix = here.matrix;
+  const Index size = matrix.size();
   solution.resize(size);
   if (level + 1 == levels_.size()) {
     for (Index i = 0; i < size; ++i) {
@@ -230,24 +227,33 @@ void MultigridSolver<Scalar>::cycle(std::size_t level, const SmallVector& right,
     }
     return;
   }
-  smooth_from_zero(here.matrix, right, solution);
-  Vectors& coarse = work[level + 1];
+  for (Index i = 0; i < size; ++i) {
+    Small sum = right[i];
+    for (Index k = matrix.begins[i]; k < here.middles[i]; ++k)
+      sum -= times(matrix.values[k], solution[matrix.columns[k]]);
+    solution[i] = times(sum, here.inverse_diagonal[i]);
+  }
+  Vectors& coarse = work.levels_[level + 1];
   coarse.right.assign(levels_[level + 1].matrix.size(), Small(0));
   for (Index i = 0; i < size; ++i) {
     if (here.aggregate[i] < 0) continue;
-    const Small residual = right[i] - here.matrix.diagonal[i] * solution[i] - row_sum(here.matrix, i, solution);
+    // Of the residual only what lies beyond the diagonal is left.
+    Small residual(0);
+    for (Index k = here.middles[i]; k < matrix.begins[i + 1]; ++k)
+      residual -= times(matrix.values[k], solution[matrix.columns[k]]);
     coarse.right[here.aggregate[i]] += times(conjugate(here.phase[i]), residual);
   }
   solve_level(level + 1, work, stage);
   for (Index i = 0; i < size; ++i)
     if (here.aggregate[i] >= 0) solution[i] += times(here.phase[i], coarse.solution[here.aggregate[i]]);
-  smooth_back(here.matrix, right, solution);
+  for (Index i = size - 1; i >= 0; --i)
+    solution[i] = times(right[i] - row_sum(matrix, i, solution), here.inverse_diagonal[i]);
 }
 
 /// The K-cycle: one or two steps of conjugate gradients, each with a cycle of this level as its preconditioner.
 template <class Scalar>
-void MultigridSolver<Scalar>::solve_level(std::size_t level, std::vector<Vectors>& work, const JobStage& stage) const {
-  Vectors& v = work[level];
+void MultigridSolver<Scalar>::solve_level(std::size_t level, Workspace& work, const JobStage& stage) const {
+  Vectors& v = work.levels_[level];
   if (level + 1 == levels_.size()) return cycle(level, v.right, v.solution, work, stage);
   const GraphMatrix<Small>& matrix = levels_[level].matrix;
   cycle(level, v.right, v.first, work, stage);
@@ -276,48 +282,55 @@ void MultigridSolver<Scalar>::solve_level(std::size_t level, std::vector<Vectors
 
 template <class Scalar>
 void MultigridSolver<Scalar>::precondition(const std::vector<Scalar>& right, std::vector<Scalar>& result,
-                                           const JobStage& stage) const {
+                                           Workspace& work, const JobStage& stage) const {
   const double size = std::sqrt(squared_norm(right));
   const double scale = size > 0 ? 1 / size : 1;  // single precision has room around 1
-  std::vector<Vectors> work(levels_.size());
-  SmallVector small(right.size()), solution;
-  for (std::size_t i = 0; i < right.size(); ++i) small[i] = Small(right[i] * scale);
-  cycle(0, small, solution, work, stage);
+  work.levels_.resize(levels_.size());
+  work.right_.resize(right.size());
+  for (std::size_t i = 0; i < right.size(); ++i) work.right_[i] = Small(right[i] * scale);
+  cycle(0, work.right_, work.solution_, work, stage);
   result.resize(right.size());
-  for (std::size_t i = 0; i < right.size(); ++i) result[i] = Scalar(solution[i]) / scale;
+  for (std::size_t i = 0; i < right.size(); ++i) result[i] = Scalar(work.solution_[i]) / scale;
 }
 
 template <class Scalar>
 std::vector<Scalar> MultigridSolver<Scalar>::solve(const std::vector<Scalar>& right, std::vector<Scalar> guess,
                                                    const Accuracy& accuracy, const JobStage& stage) const {
-  std::vector<Scalar> x = std::move(guess), residual = right, image, step, direction, old;
+  const Index size = matrix_.size();
+  std::vector<Scalar> x = std::move(guess), residual = right, step, image(size, Scalar(0)), direction = image;
   if (x.empty()) {
-    x.assign(right.size(), Scalar(0));
+    x.assign(size, Scalar(0));
   } else {
-    multiply(matrix_, x, image);
-    add(residual, Scalar(-1), image);
+    for (Index i = 0; i < size; ++i) residual[i] -= matrix_.diagonal[i] * x[i] + row_sum(matrix_, i, x);
   }
-  const double enough = accuracy.residual * accuracy.residual * squared_norm(right);
-  double norm = squared_norm(residual), previous = 0;
-  const double first = norm;
-  for (int i = 0; i < accuracy.iterations && norm > enough; ++i) {
+  Workspace work;
+  const double enough = accuracy.residual * accuracy.residual * squared_norm(right), first = squared_norm(residual);
+  double norm = first, energy = 1;
+  for (int iteration = 0; iteration < accuracy.iterations && norm > enough; ++iteration) {
     if (first > enough) stage.update(std::log(first / norm) / std::log(first / enough));
-    precondition(residual, step, stage);
-    if (i > 0) {
-      // Flexible: the preconditioner is not the same linear map each time.
-      Scalar gained = dot(step, residual) - dot(step, old);
-      add(step, Scalar(conjugate(gained)) / previous, direction);
+    precondition(residual, step, work, stage);
+    // Flexible: the preconditioner is not the same linear map each time, so that directions are made conjugate to the
+    // last one in so many words.
+    Scalar shared(0), gain(0);
+    for (Index i = 0; i < size; ++i) {
+      shared += times(conjugate(image[i]), step[i]);
+      gain += times(conjugate(step[i]), residual[i]);
     }
-    direction.swap(step);
-    multiply(matrix_, direction, image);
-    const double energy = std::real(dot(direction, image));
+    shared /= energy;
+    for (Index i = 0; i < size; ++i) direction[i] = step[i] - times(shared, direction[i]);
+    energy = 0;
+    for (Index i = 0; i < size; ++i) {
+      image[i] = matrix_.diagonal[i] * direction[i] + row_sum(matrix_, i, direction);
+      energy += std::real(times(conjugate(direction[i]), image[i]));
+    }
     if (!(energy > 0)) break;
-    const Scalar length = dot(direction, residual) / energy;
-    previous = std::real(dot(direction, residual));
-    add(x, length, direction);
-    old = residual;
-    add(residual, -length, image);
-    norm = squared_norm(residual);
+    const Scalar length = gain / energy;
+    norm = 0;
+    for (Index i = 0; i < size; ++i) {
+      x[i] += times(length, direction[i]);
+      residual[i] -= times(length, image[i]);
+      norm += std::norm(residual[i]);
+    }
   }
   return x;
 }

@@ -30,8 +30,11 @@ class MultigridSolver {
   std::vector<Scalar> solve(const std::vector<Scalar>& right, std::vector<Scalar> guess, const Accuracy& accuracy,
                             const JobStage& stage) const;
 
+  /// Room for cycles, used again from one to the next.
+  class Workspace;
   /// One cycle: about the solution for that right side, of which only the direction counts.
-  void precondition(const std::vector<Scalar>& right, std::vector<Scalar>& result, const JobStage& stage) const;
+  void precondition(const std::vector<Scalar>& right, std::vector<Scalar>& result, Workspace& work,
+                    const JobStage& stage) const;
 
  private:
   template <class T>
@@ -46,7 +49,9 @@ class MultigridSolver {
   using SmallVector = std::vector<Small>;
 
   struct Level {
-    GraphMatrix<Small> matrix;
+    GraphMatrix<Small> matrix;   ///< in each row the columns before the diagonal come first
+    std::vector<Index> middles;  ///< where in each row the columns after the diagonal begin
+    SmallVector inverse_diagonal;
     std::vector<Index> aggregate;  ///< node of the next level; k_none for those that smoothing alone solves
     SmallVector phase;             ///< of the interpolation from there
   };
@@ -54,15 +59,27 @@ class MultigridSolver {
     SmallVector right, solution, residual, first, first_image, second, second_image;
   };
 
+  static Level make_level(const GraphMatrix<Scalar>& matrix);
   void coarsen(const JobStage& stage);
   void factor_coarsest(const GraphMatrix<Scalar>& matrix);
-  void cycle(std::size_t level, const SmallVector& right, SmallVector& solution, std::vector<Vectors>& work,
+  void cycle(std::size_t level, const SmallVector& right, SmallVector& solution, Workspace& work,
              const JobStage& stage) const;
-  void solve_level(std::size_t level, std::vector<Vectors>& work, const JobStage& stage) const;
+  void solve_level(std::size_t level, Workspace& work, const JobStage& stage) const;
 
   GraphMatrix<Scalar> matrix_;
   std::vector<Level> levels_;     ///< the last one is solved directly
   std::vector<Scalar> coarsest_;  ///< its inverse, dense, row by row
+};
+
+template <class Scalar>
+class MultigridSolver<Scalar>::Workspace {
+ public:
+  Workspace() = default;
+
+ private:
+  friend class MultigridSolver<Scalar>;
+  std::vector<Vectors> levels_;
+  SmallVector right_, solution_;
 };
 
 extern template class MultigridSolver<double>;

@@ -84,8 +84,8 @@ std::vector<Index> prescribed_units(const Mesh& mesh, const FilledSurface& fille
                                     const DirectionFieldOptions& options, const TrivialConnection& connection,
                                     const JobStage& stage) {
   if (options.loop_units.size() > filled.loop_nodes.size())
-    throw InputError(message("loop_indices: index ", options.loop_units.size() - 1,
-                             " is out of range, the mesh has ", filled.loop_nodes.size(), " boundary loops"));
+    throw InputError(message("loop_indices: index ", options.loop_units.size() - 1, " is out of range, the mesh has ",
+                             filled.loop_nodes.size(), " boundary loops"));
   std::vector<Index> units = units_of_vertices(mesh, filled, *options.singularities);
   const std::vector<Index> free = free_loops(filled, symmetry, options, units);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double k_turn = 2 * std::numbers::pi;
 /// Stiffness of a soft stroke of weight 1 that runs right through a face, against about 1.7 to each neighbour: fields
 /// meet such strokes to within a degree or two.
-constexpr double k_stroke_stiffness = 10;
+constexpr double k_stroke_stiffness = 30;
 /// Two hard strokes that differ by less in a face agree: rounding of curves drawn twice.
 constexpr double k_agreement = 1e-6;
 
@@ -53,7 +53,8 @@ StrokeFaces faces_of(const Mesh& mesh, const Stroke& stroke, int symmetry) {
   StrokeFaces result = faces.take();
   for (StrokeFace& face : result) {
     const double size = std::sqrt(2 * mesh.face_area(face.face));
-    face.stiffness = stroke.is_hard ? k_fixed : k_stroke_stiffness * stroke.weight * std::min(1.0, face.stiffness / size);
+    face.stiffness =
+        stroke.is_hard ? k_fixed : k_stroke_stiffness * stroke.weight * std::min(1.0, face.stiffness / size);
   }
   return result;
 }

@@ -20,7 +20,8 @@ struct StrokeFace {
 using StrokeFaces = std::vector<StrokeFace>;
 
 /// One list a stroke and, when `along_boundary`, one a boundary loop after them.
-/// \throw InputError for a stroke of another mesh, weights that are not positive and finite, hard strokes that disagree.
+/// \throw InputError for a stroke of another mesh, weights that are not positive and finite, hard strokes that
+/// disagree.
 std::vector<StrokeFaces> stroke_faces(const Mesh& mesh, int symmetry, std::span<const Stroke> strokes,
                                       bool along_boundary);
 

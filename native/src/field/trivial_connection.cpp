@@ -10,7 +10,7 @@ namespace saddleback {
 namespace {
 
 constexpr double k_turn = 2 * std::numbers::pi;
-constexpr MultigridSolver<double>::Accuracy k_accuracy{.residual = 1e-9};
+constexpr MultigridSolver<double>::Accuracy k_accuracy{.residual = 1e-7};
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
@@ -54,8 +54,8 @@ void choose_branches(Vector& residual, const Matrix& inverse, double quantum) {
 
 }  // namespace
 
-TrivialConnection::TrivialConnection(const Mesh& mesh, const SurfaceConnection& connection,
-                                     const FilledSurface& filled, const DualLoops& loops, const JobStage& stage)
+TrivialConnection::TrivialConnection(const Mesh& mesh, const SurfaceConnection& connection, const FilledSurface& filled,
+                                     const DualLoops& loops, const JobStage& stage)
     : mesh_(mesh),
       connection_(connection),
       filled_(filled),
@@ -132,7 +132,8 @@ void TrivialConnection::add_harmonic_part(std::vector<double>& turns, int symmet
   const Vector shares = inverse * lacking;
   std::vector<double> potential(filled_.node_count, 0.0);
   for (Eigen::Index i = 0; i < count; ++i) {
-    for (Index node = 0; node < filled_.node_count; ++node) potential[node] += shares[i] * harmonic_potentials_[i][node];
+    for (Index node = 0; node < filled_.node_count; ++node)
+      potential[node] += shares[i] * harmonic_potentials_[i][node];
     for (const Index h : loops_.loops[i]) {
       turns[h] += connection_.weight[h] * shares[i];
       turns[mesh_.twin(h)] -= connection_.weight[h] * shares[i];

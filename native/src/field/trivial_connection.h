@@ -12,22 +12,24 @@
 
 namespace saddleback {
 
-/// Trivial connections in the Hodge form (Crane, Desbrun and Schroeder, Trivial connections on discrete surfaces, 2010):
-/// the smallest turning, in the sense of the dual edges' weights, with given indices. Its part from singularities is one
-/// Poisson problem over nodes; that from handles a combination of harmonic forms, made when first needed and kept.
+/// Trivial connections in the Hodge form (Crane, Desbrun and Schroeder, Trivial connections on discrete surfaces,
+/// 2010): the smallest turning, in the sense of the dual edges' weights, with given indices. Its part from
+/// singularities is one Poisson problem over nodes; that from handles a combination of harmonic forms, made when first
+/// needed and kept.
 class TrivialConnection {
  public:
   /// The arguments must outlive this. O(F). \throw Cancelled.
   TrivialConnection(const Mesh& mesh, const SurfaceConnection& connection, const FilledSurface& filled,
                     const DualLoops& loops, const JobStage& stage);
 
-  /// Per half-edge, what a field turns by (besides the transport) where it crosses from its face to the twin's, opposite
-  /// for the twin. `units`: of each node of the filled surface the index times the symmetry; around handles the turning
-  /// is the smallest that closes. \pre units sum to symmetry (2 - 2 genus) in each component. \throw Cancelled.
+  /// Per half-edge, what a field turns by (besides the transport) where it crosses from its face to the twin's,
+  /// opposite for the twin. `units`: of each node of the filled surface the index times the symmetry; around handles
+  /// the turning is the smallest that closes. \pre units sum to symmetry (2 - 2 genus) in each component. \throw
+  /// Cancelled.
   std::vector<double> turns(std::span<const Index> units, int symmetry, const JobStage& stage);
 
-  /// The same, but for units of the nodes in `free`: they may be any reals that sum to what is missing in the component.
-  /// Gives those reals, the ones of least turning.
+  /// The same, but for units of the nodes in `free`: they may be any reals that sum to what is missing in the
+  /// component. Gives those reals, the ones of least turning.
   std::vector<double> best_units(std::span<const Index> units, const std::vector<Index>& free, int symmetry,
                                  const JobStage& stage) const;
 

@@ -10,7 +10,7 @@ namespace saddleback {
 
 void untangle_turns(const Mesh& mesh, int symmetry, const std::vector<bool>& fixed, std::vector<double>& angles,
                     std::vector<double>& turns) {
-  constexpr double k_share = 0.9;           // of what directions can tell
+  constexpr double k_share = 0.9;        // of what directions can tell
   constexpr std::size_t k_visits = 400;  // for each sharp edge at the start; most need a few
   const double limit = k_share * std::numbers::pi / symmetry;
   std::deque<Index> waiting;
