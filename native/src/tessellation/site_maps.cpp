@@ -251,15 +251,27 @@ bool SiteMaps::place_own(Index vertex, Index site, Place& place) const {
 }
 
 /// An end of an edge as the site sees it; the site's own or, where `deep`, any that can be placed beside its own.
-bool SiteMaps::end_of_edge(Index vertex, Index site, bool deep, Place& place) const {
-  if (label_[vertex] != site) return deep && place_beside(vertex, site, false, place);
+bool SiteMaps::end_of_edge(Index vertex, Index site, Scratch* deep, Place& place) const {
+  if (label_[vertex] != site) return deep && beside_own(vertex, site, *deep, place);
   place = places_[vertex];
   return placed_[vertex] != 0;
 }
 
+/// Beyond edges of the site's own vertices; remembered.
+bool SiteMaps::beside_own(Index vertex, Index site, Scratch& scratch, Place& place) const {
+  Scratch::Beside& entry = scratch.beside[static_cast<std::size_t>(vertex) % Scratch::k_beside];
+  if (entry.vertex != vertex || entry.site != site) {
+    entry.vertex = vertex;
+    entry.site = site;
+    entry.found = place_beside(vertex, site, nullptr, entry.place);
+  }
+  place = entry.place;
+  return entry.found;
+}
+
 /// Places a vertex beyond the edge across which the site is seen best: between the edge's ends if there is one, else
 /// least beside them; among equals the shortest way.
-bool SiteMaps::place_beside(Index vertex, Index site, bool deep, Place& place) const {
+bool SiteMaps::place_beside(Index vertex, Index site, Scratch* deep, Place& place) const {
   Sight best;
   Index best_edge = k_none;
   Place best_from, best_to;
@@ -297,7 +309,7 @@ bool SiteMaps::find(Index site, Index vertex, Scratch& scratch, SiteVector& vect
     place = place_direct(*direct);
   } else if (in_own_face(vertex, site, vector)) {
     return true;
-  } else if (!place_beside(vertex, site, false, place) && !place_beside(vertex, site, true, place) &&
+  } else if (!beside_own(vertex, site, scratch, place) && !place_beside(vertex, site, &scratch, place) &&
              !place_through_neighbour(vertex, site, scratch, place)) {
     return false;
   }

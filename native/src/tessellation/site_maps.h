@@ -29,6 +29,13 @@ struct SiteVector {
 /// The plane's axes are those of the site's FaceChart or, for a site that is a vertex, of its first half-edge, with
 /// angles scaled to 2 pi when it is not on the boundary.
 class SiteMaps {
+  struct Place {
+    Vec2 at = Vec2::Zero();  ///< from the anchor, in its plane
+    double distance = 0;     ///< from the site
+    double back = 0;         ///< direction to the anchor, surface angle at the vertex
+    Index anchor = k_none;   ///< vertex from which it is seen straight on; k_none: the site
+  };
+
  public:
   /// \throw Cancelled. O(sites k log k + arcs).
   SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, const JobStage& stage);
@@ -46,9 +53,18 @@ class SiteMaps {
 
   /// Memory of a caller that asks for more; one a thread.
   struct Scratch {
-    explicit Scratch(const SiteMaps& maps) : unfolder(maps.graph_.unfolding()) {}
+    explicit Scratch(const SiteMaps& maps) : unfolder(maps.graph_.unfolding()), beside(k_beside) {}
     ArcUnfolder unfolder;
     UnfoldedArc unfolded;
+
+    /// A vertex beside a cell is asked for by several faces: the last answers are kept.
+    struct Beside {
+      Index vertex = k_none, site = k_none;
+      bool found = false;
+      Place place;
+    };
+    static constexpr std::size_t k_beside = 1024;
+    std::vector<Beside> beside;
   };
   /// From a site near whose cell the vertex lies. Depends on the vertex and the site alone: faces that share an edge
   /// get the same bits. False where the vertex is neither seen straight from the site nor next to a vertex of its
@@ -58,12 +74,6 @@ class SiteMaps {
   SiteVector laid_beside(Index halfedge, const SiteVector& from, const SiteVector& to) const;
 
  private:
-  struct Place {
-    Vec2 at = Vec2::Zero();  ///< from the anchor, in its plane
-    double distance = 0;     ///< from the site
-    double back = 0;         ///< direction to the anchor, surface angle at the vertex
-    Index anchor = k_none;   ///< vertex from which it is seen straight on; k_none: the site
-  };
   struct Fan {
     std::vector<DirectArc> arcs;  ///< sorted by vertex; lengths rounded as the graph's, start angles scaled
     Index centre = k_none;        ///< the vertex that the site is
@@ -85,8 +95,9 @@ class SiteMaps {
   Place place_direct(const DirectArc& arc) const;
   Place place_after(Index vertex, Index previous, Scratch& scratch) const;
   bool place_own(Index vertex, Index site, Place& place) const;
-  bool place_beside(Index vertex, Index site, bool deep, Place& place) const;
-  bool end_of_edge(Index vertex, Index site, bool deep, Place& place) const;
+  bool place_beside(Index vertex, Index site, Scratch* deep, Place& place) const;
+  bool beside_own(Index vertex, Index site, Scratch& scratch, Place& place) const;
+  bool end_of_edge(Index vertex, Index site, Scratch* deep, Place& place) const;
   bool see(Index halfedge, const Place& from, const Place& to, Sight& sight) const;
   Place place_by(const Sight& sight, Index halfedge, const Place& from, const Place& to) const;
   bool place_through_neighbour(Index vertex, Index site, Scratch& scratch, Place& place) const;
