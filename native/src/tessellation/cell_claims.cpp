@@ -80,8 +80,11 @@ struct CellClaims::Laid {
   }
 };
 
-CellClaims::CellClaims(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, const JobStage& stage)
-    : maps_(graph, sites, threads, stage.part(0, 0.7)), shared_index_(graph.mesh().face_count(), k_none), first_{0} {
+CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
+                       int threads, const JobStage& stage)
+    : maps_(graph, rings, sites, threads, stage.part(0, 0.7)),
+      shared_index_(graph.mesh().face_count(), k_none),
+      first_{0} {
   std::vector<Worker> workers(thread_count(threads), Worker(maps_));
   claim_by_corners(workers, threads, stage);
   stage.update(0.85);

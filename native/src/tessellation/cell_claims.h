@@ -27,8 +27,9 @@ struct FaceClaim {
 /// vertex, are found: a cell is connected, and its site's own face begins the walk.
 class CellClaims {
  public:
-  /// The sites must have passed check_sites and outlive the claims. \throw Cancelled.
-  CellClaims(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, const JobStage& stage);
+  /// The sites must have passed check_sites; the graph and its rings must outlive the claims. \throw Cancelled.
+  CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites, int threads,
+             const JobStage& stage);
 
   const Mesh& mesh() const { return maps_.mesh(); }
   const SiteMaps& maps() const { return maps_; }

@@ -72,6 +72,7 @@ class Relaxation {
 
   const SaddleVertexGraph& graph_;
   const CentroidalVoronoiOptions& options_;
+  const VertexRings rings_;
   const FaceWeights weights_;
   std::vector<std::uint8_t> is_fixed_;
   State state_;
@@ -82,6 +83,7 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
                        const CentroidalVoronoiOptions& options, const JobStage& stage)
     : graph_(graph),
       options_(options),
+      rings_(graph, options.threads),
       weights_(graph.mesh(), options.density, options.threads),
       is_fixed_(sites.size(), 0) {
   for (const Index site : options.fixed) is_fixed_[site] = 1;
@@ -92,7 +94,7 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
 State Relaxation::evaluate(SurfacePoints sites, const JobStage& stage) const {
   State state;
   state.sites = std::move(sites);
-  state.claims = std::make_unique<CellClaims>(graph_, state.sites, options_.threads, stage.part(0, 0.8));
+  state.claims = std::make_unique<CellClaims>(graph_, rings_, state.sites, options_.threads, stage.part(0, 0.8));
   state.moments = cell_moments(*state.claims, weights_, options_.threads, stage);
   for (const CellMoments& cell : state.moments) state.energy += cell.energy;
   return state;
@@ -136,9 +138,9 @@ bool Relaxation::revive_empty_cells(const JobStage& stage) {
 
 /// Far from the site, in its cell: the last of its vertices, else on the way to a corner of its face.
 SurfacePoint Relaxation::far_place(Index site) const {
-  const auto vertices = state_.claims->maps().vertices_of(site);
-  if (!vertices.empty() && vertex_at(graph_.mesh(), state_.sites[site]) != vertices.back()) {
-    return at_vertex(graph_.mesh(), vertices.back());
+  const Index farthest = state_.claims->maps().farthest_vertex(site);
+  if (farthest != k_none && vertex_at(graph_.mesh(), state_.sites[site]) != farthest) {
+    return at_vertex(graph_.mesh(), farthest);
   }
   SurfacePoint place = state_.sites[site];
   const int corner = place.barycentric[0] < place.barycentric[1] ? 0 : 1;

@@ -176,7 +176,8 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
   const Mesh& mesh = graph.mesh();
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells");
-  const CellClaims claims(graph, sites, options.threads, stage.part(0, 0.7));
+  const VertexRings rings(graph, options.threads);
+  const CellClaims claims(graph, rings, sites, options.threads, stage.part(0.05, 0.7));
   return make_diagram(CellComplex(claims, options.threads, stage.part(0.7, 0.9)), sites, stage);
 }
 

@@ -8,6 +8,7 @@
 
 #include "geodesics/arc_unfolding.h"
 #include "geodesics/window_propagation.h"
+#include "tessellation/vertex_rings.h"
 
 namespace saddleback {
 
@@ -33,23 +34,22 @@ class SiteMaps {
     Vec2 at = Vec2::Zero();  ///< from the anchor, in its plane
     double distance = 0;     ///< from the site
     double back = 0;         ///< direction to the anchor, surface angle at the vertex
-    Index anchor = k_none;   ///< vertex from which it is seen straight on; k_none: the site
+    Index anchor = k_none;   ///< node from which it is seen straight on; k_none: the site
   };
 
  public:
   /// \throw Cancelled. O(sites k log k + arcs).
-  SiteMaps(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, const JobStage& stage);
+  SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites, int threads,
+           const JobStage& stage);
 
   const Mesh& mesh() const { return mesh_; }
   Index site_count() const { return static_cast<Index>(fans_.size()); }
   /// Nearest site by the graph; ties: the smaller.
-  Index label(Index vertex) const { return label_[vertex]; }
-  /// The vertices of a label, by distance.
-  std::span<const Index> vertices_of(Index site) const {
-    return {&vertices_[first_vertex_[site]], &vertices_[first_vertex_[site + 1]]};
-  }
+  Index label(Index vertex) const { return label_[graph_.node_of(vertex)]; }
+  /// The last of the vertices of a label, by distance; k_none where there is none.
+  Index farthest_vertex(Index site) const;
   /// From the site of its label.
-  SiteVector own(Index vertex) const { return vector_of(places_[vertex]); }
+  SiteVector own(Index vertex) const { return vector_of(places_[graph_.node_of(vertex)]); }
 
   /// Memory of a caller that asks for more; one a thread.
   struct Scratch {
@@ -59,7 +59,7 @@ class SiteMaps {
 
     /// A vertex beside a cell is asked for by several faces: the last answers are kept.
     struct Beside {
-      Index vertex = k_none, site = k_none;
+      Index node = k_none, site = k_none;
       bool found = false;
       Place place;
     };
@@ -74,9 +74,11 @@ class SiteMaps {
   SiteVector laid_beside(Index halfedge, const SiteVector& from, const SiteVector& to) const;
 
  private:
+  // Vertices are the graph's nodes from here on.
+  using Wedge = VertexRings::Wedge;
   struct Fan {
-    std::vector<DirectArc> arcs;  ///< sorted by vertex; lengths rounded as the graph's, start angles scaled
-    Index centre = k_none;        ///< the vertex that the site is
+    std::vector<DirectArc> arcs;  ///< sorted by node; lengths rounded as the graph's, start angles scaled
+    Index centre = k_none;        ///< the node that the site is
   };
   /// The anchor of an edge's ends, both placed from it, seen across the edge from the third corner.
   struct Sight {
@@ -87,21 +89,22 @@ class SiteMaps {
 
   void make_fans(int threads, const JobStage& stage);
   void make_fan_at_vertex(Fan& fan);
-  void label_vertices(const JobStage& stage);
-  void group_vertices();
+  void label_nodes(const JobStage& stage);
+  void group_nodes();
   std::vector<Index> sites_along_curve() const;
   void place_cell(Index site, Scratch& scratch);
-  const DirectArc* fan_arc(Index site, Index vertex) const;
+  const DirectArc* fan_arc(Index site, Index node) const;
   Place place_direct(const DirectArc& arc) const;
-  Place place_after(Index vertex, Index previous, Scratch& scratch) const;
-  bool place_own(Index vertex, Index site, Place& place) const;
-  bool place_beside(Index vertex, Index site, Scratch* deep, Place& place) const;
-  bool beside_own(Index vertex, Index site, Scratch& scratch, Place& place) const;
-  bool end_of_edge(Index vertex, Index site, Scratch* deep, Place& place) const;
-  bool see(Index halfedge, const Place& from, const Place& to, Sight& sight) const;
-  Place place_by(const Sight& sight, Index halfedge, const Place& from, const Place& to) const;
-  bool place_through_neighbour(Index vertex, Index site, Scratch& scratch, Place& place) const;
-  bool in_own_face(Index vertex, Index site, SiteVector& vector) const;
+  Index node_before(Index node) const;
+  Place place_after(Index node, Index previous, Scratch& scratch) const;
+  bool place_own(Index node, Index site, Place& place) const;
+  bool place_beside(Index node, Index site, Scratch* deep, Place& place) const;
+  bool beside_own(Index node, Index site, Scratch& scratch, Place& place) const;
+  bool end_of_edge(Index node, Index site, Scratch* deep, Place& place) const;
+  static bool see(const Wedge& wedge, const Place& from, const Place& to, Sight& sight);
+  Place place_by(const Sight& sight, const Wedge& wedge, const Place& from, const Place& to) const;
+  bool place_through_neighbour(Index node, Index site, Scratch& scratch, Place& place) const;
+  bool in_own_face(Index node, Index site, SiteVector& vector) const;
   SiteVector vector_of(const Place& place) const;
   double anchor_distance(const Place& place) const {
     return place.anchor == k_none ? 0 : places_[place.anchor].distance;
@@ -110,12 +113,13 @@ class SiteMaps {
 
   const SaddleVertexGraph& graph_;
   const Mesh& mesh_;
+  const VertexRings& rings_;
   const SurfacePoints sites_;
   double slack_;  ///< how far below the graph's a distance may be, relative
   std::vector<Fan> fans_;
   std::vector<Index> label_;
-  std::vector<double> distance_;  ///< in the graph
-  std::vector<Index> vertices_, first_vertex_;
+  std::vector<double> distance_;           ///< in the graph
+  std::vector<Index> nodes_, first_node_;  ///< by label
   std::vector<Place> places_;
   std::vector<std::uint8_t> placed_;
 };
