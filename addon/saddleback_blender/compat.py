@@ -117,6 +117,12 @@ def shade_smooth_by_angle(mesh: bpy.types.Mesh, angle: float) -> None:
         mesh.auto_smooth_angle = angle
 
 
+def copy_auto_smooth(source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
+    """Gives a mesh the angle at which another is creased; from 4.1 on creases are edges, and there is no angle."""
+    if hasattr(mesh, "use_auto_smooth"):
+        mesh.use_auto_smooth, mesh.auto_smooth_angle = source.use_auto_smooth, source.auto_smooth_angle
+
+
 def show_color(mesh: bpy.types.Mesh, name: str) -> None:
     """Makes a colour attribute the one that is shown and rendered."""
     index = mesh.color_attributes.find(name)

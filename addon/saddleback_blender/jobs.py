@@ -66,6 +66,7 @@ class State:
         self.task: Task | None = None
         self.needs_repair = ""
         self.line = ""
+        self.figures: list[str] = []
 
 
 state = State()
@@ -92,6 +93,9 @@ WINDOW_MANAGER_PROPERTIES = {
     ),
     "saddleback_line": StringProperty(
         name="Last Run", description="What the last run made", get=lambda _: state.line
+    ),
+    "saddleback_figures": StringProperty(
+        name="Figures", description="How even the last run's cells are", get=lambda _: "\n".join(state.figures)
     ),
 }  # fmt: skip
 

@@ -41,6 +41,10 @@ CHANNELS = (
     ("B", "Blue", "Linear blue"),
     ("A", "Alpha", "Alpha"),
 )
+DUAL_POLICIES = (
+    ("REPAIR", "Repair", "Add vertices where cells are too large, until the mesh has the surface's holes and handles"),
+    ("STRICT", "Strict", "One vertex a cell; where cells are too large the mesh has faults, which are told"),
+)
 EDGE_KINDS = (
     ("MESH", "Mesh", "A mesh of edges, made into tubes by a modifier"),
     ("CURVE", "Curve", "A curve object with a bevel"),
@@ -186,6 +190,8 @@ TESSELLATE: dict[str, Any] = {
         soft_max=10.0,
         options={"SKIP_SAVE"},
     ),
+    "make_dual": _switch("Dual Mesh", "Make a triangle mesh with one vertex for each cell: a remesh", False),
+    "dual_policy": _choice("Policy", "What to do where cells are too large for a mesh", DUAL_POLICIES, "REPAIR"),
     "cell_attribute": _name("Cell Attribute", "Where each vertex's cell is written", "saddleback_cell"),
     "distance_attribute": _name("Distance Attribute", "Where distances are written", "saddleback_distance"),
     "density_attribute": _name("Density Attribute", "Where the density used is written", "saddleback_density"),

@@ -113,7 +113,7 @@ def test_each_object_gets_its_own_loose_vertices_from_one_cached_solve(cache):
     bare, loose = shapes.grid(8), shapes.grid(8, loose=4)
     assert bare.key == loose.key
     first, second = tessellate(bare, cache), tessellate(loose, cache)
-    assert cache.builds == {"mesh": 1, "graph": 1, "cells": 1}
+    assert cache.builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1}
     np.testing.assert_array_equal(first.vertex_cell, second.vertex_cell[4:])
 
 

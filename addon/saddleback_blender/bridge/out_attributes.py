@@ -18,6 +18,7 @@ KINDS: dict[tuple[str, tuple[int, ...]], tuple[str, str, type[np.generic]]] = {
     ("f", ()): ("FLOAT", "value", np.float32),
     ("i", ()): ("INT", "value", np.int32),
     ("b", ()): ("BOOLEAN", "value", np.bool_),
+    ("f", (2,)): ("FLOAT2", "vector", np.float32),
     ("f", (3,)): ("FLOAT_VECTOR", "vector", np.float32),
     ("f", (4,)): ("FLOAT_COLOR", "color", np.float32),
 }

@@ -14,6 +14,28 @@ Indices = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
+class Figures:
+    """How even cells are, as numbers; those of triangles are of the dual mesh, means over all of its triangles."""
+
+    triangle_quality: float  # 1 = equilateral, 0 = without area
+    least_angle: float  # radians
+    irregular: float  # share of vertices that have not six neighbours (four at a border)
+    energy: float | None  # times the least that is possible in a plane; None where nothing was relaxed
+
+
+@dataclass(frozen=True)
+class Dual:
+    """The triangulation of n sites: one vertex a cell, one edge where two cells meet, one triangle where three do."""
+
+    vertices: Reals  # (n, 3) on the surface
+    triangles: Indices  # (t, 3) counter-clockwise; none twice, and no corner twice in one
+    faces: Indices  # (n,) of the surface, where the vertices are
+    barycentric: Reals  # (n, 3)
+    added: int  # so many vertices at the end are no sites of the cells, but put there to make the mesh whole
+    issues: tuple[str, ...]  # where cells are too large to be triangulated, for a person to read
+
+
+@dataclass(frozen=True)
 class CellsResult:
     """Geodesic cells of a mesh of V vertices.
 
@@ -39,6 +61,8 @@ class CellsResult:
     energy: Reals  # (k,) of each iteration, empty where nothing was relaxed
     iterations: int
     stop_reason: str
+    dual: Dual | None = None  # where it was wanted
+    figures: Figures | None = None  # None where the sites have no triangle
 
     @property
     def count(self) -> int:

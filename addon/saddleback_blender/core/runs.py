@@ -11,13 +11,14 @@ from . import cache as cache_module
 from . import native
 from .cache import Cache
 from .curve_points import curves_on_surface, points_on_surface
+from .duals import dual_of, figures_of
 from .errors import BadInputError
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .level_lines import LevelLines, isoline_levels, level_lines
 from .normals import normals_at
 from .progress import Progress
 from .requests import DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
-from .results import CellsResult, DistanceResult, Indices, Reals, RepairResult
+from .results import CellsResult, DistanceResult, Dual, Indices, Reals, RepairResult
 from .settings import DistanceSettings
 from .surface_places import compact_points, surface_points
 
@@ -71,6 +72,15 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
             split_cell=split.triangle_cell,
             split_origin=_blender_numbers(surface, split.vertex_origin),
         )
+    policy = settings.dual_policy if settings.make_dual else "STRICT"
+
+    def triangulate() -> Dual:
+        return dual_of(solved.cells, policy, request.threads, progress)
+
+    dual = cache.get(("dual", *key, policy), triangulate, lambda made: 2 * made.vertices.nbytes)
+    result = replace(result, figures=figures_of(dual, solved.normalised_energy))
+    if settings.make_dual:
+        result = replace(result, dual=dual)
     progress.check()
     return result
 
@@ -146,6 +156,7 @@ class _Solved:
     energy: Reals
     iterations: int
     stop_reason: str
+    normalised_energy: float | None  # None where nothing was relaxed
 
 
 def _solve(
@@ -159,7 +170,7 @@ def _solve(
 ) -> _Solved:
     sb, settings = native.load(), request.settings
     points = None if sites is None else surface_points(mesh, sites)
-    energy, done, reason = np.empty(0), 0, "sites kept"
+    energy, done, reason, normalised = np.empty(0), 0, "sites kept", None
     if points is None or iterations:
         choice = {"count": settings.count} if points is None else {"sites": points}
         with progress.stage(0.9, "evening out the cells") as job:
@@ -169,6 +180,7 @@ def _solve(
             )  # fmt: skip
         cells = cvt.cells
         energy, done, reason = np.asarray(cvt.energy, np.float64), int(cvt.iterations), str(cvt.stop_reason)
+        normalised = float(cvt.normalised_energy)
     else:
         with progress.stage(0.9, "finding the cells") as job:
             cells = sb.geodesic_voronoi(graph, points, threads=request.threads, job=job)
@@ -177,7 +189,7 @@ def _solve(
     vertices, triangles = mesh.vertices, mesh.triangles
     positions = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
     normals = normals_at(vertices, triangles, faces, barycentric)
-    return _Solved(cells, positions, normals, energy, done, reason)
+    return _Solved(cells, positions, normals, energy, done, reason, normalised)
 
 
 def _result(request: TessellateRequest, solved: _Solved) -> CellsResult:

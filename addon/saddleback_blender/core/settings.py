@@ -36,6 +36,8 @@ class TessellateSettings:
     make_centres: bool = False
     instance_object: str = ""
     instance_scale: float = 1.0
+    make_dual: bool = False
+    dual_policy: str = "REPAIR"  # REPAIR, STRICT
     cell_attribute: str = "saddleback_cell"
     distance_attribute: str = "saddleback_distance"
     density_attribute: str = "saddleback_density"

@@ -50,6 +50,14 @@ class SurfaceOperator:
         """Writes the result into Blender; returns one line that tells it."""
         raise NotImplementedError
 
+    def notes(self, result: Any) -> list[str]:
+        """Sentences to warn with after a run."""
+        return []
+
+    def figures(self, result: Any) -> list[str]:
+        """Lines of numbers that the panel shows after a run."""
+        return []
+
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Computes and writes before it returns: scripts and the redo panel."""
         try:
@@ -127,7 +135,8 @@ class SurfaceOperator:
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
-        for note in progress.notes:
+        jobs.state.figures = self.figures(result)
+        for note in [*progress.notes, *self.notes(result)]:
             self.report({"WARNING"}, note)
         self.report({"INFO"}, jobs.state.line)
         return {"FINISHED"}

@@ -38,6 +38,7 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = ""
+        jobs.state.figures = []
         self.report({"INFO"}, f"'{source.name}': {removed} outputs removed" if removed else "Nothing to clear")
         return {"FINISHED"} if removed else {"CANCELLED"}
 

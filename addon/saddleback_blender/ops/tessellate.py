@@ -16,12 +16,14 @@ from ..bridge.out_attributes import write_vertex_attributes
 from ..bridge.out_cells import CELLS_ROLE, vanished_cells, write_cells
 from ..bridge.out_centres import CENTRES_ROLE, write_centres
 from ..bridge.out_collection import find_output, remove_output
+from ..bridge.out_dual import DUAL_ROLE, write_dual
 from ..bridge.out_edges import EDGES_ROLE, write_edges
 from ..bridge.output_surface import check_attribute_names, output_surface
 from ..bridge.sites import read_sites
 from ..bridge.source import shared_mesh_warning
 from ..core import runs
 from ..core.errors import BadInputError
+from ..core.figures import faults_of, lines_of
 from ..core.progress import Progress
 from ..core.requests import TessellateRequest
 from ..core.results import CellsResult
@@ -75,6 +77,7 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
             (settings.make_edges, write_edges, EDGES_ROLE),
             (settings.make_cells, write_cells, CELLS_ROLE),
             (settings.make_centres, write_centres, CENTRES_ROLE),
+            (settings.make_dual, write_dual, DUAL_ROLE),
         )
         for wanted, write, role in outputs:
             if wanted:
@@ -84,7 +87,15 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
         keep_settings(settings, source.saddleback.tessellate)
         if warning:
             self.report({"WARNING"}, warning)
-        return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(source)}"
+        return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(source)}{_added(result)}"
+
+    def notes(self, result: CellsResult) -> list[str]:
+        """Where cells are too large for the mesh that was asked for."""
+        return [] if result.dual is None else faults_of(result.dual)
+
+    def figures(self, result: CellsResult) -> list[str]:
+        """How even the cells are."""
+        return lines_of(result.figures)
 
 
 def _steps(result: CellsResult) -> str:
@@ -93,6 +104,13 @@ def _steps(result: CellsResult) -> str:
     energy = f", energy {result.energy[-1]:.4g}" if len(result.energy) else ""
     steps = "iteration" if result.iterations == 1 else "iterations"
     return f", {result.iterations} {steps}{ENDS.get(result.stop_reason, '')}{energy}"
+
+
+def _added(result: CellsResult) -> str:
+    """How many vertices the dual mesh has beyond one a cell."""
+    if result.dual is None or not result.dual.added:
+        return ""
+    return f", {result.dual.added} vertices added to the dual mesh"
 
 
 def _lost(source: bpy.types.Object) -> str:

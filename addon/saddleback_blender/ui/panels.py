@@ -87,6 +87,8 @@ def _draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, item: bp
         row.operator("saddleback.repair", text="Repair Mesh", icon="TOOL_SETTINGS")
     elif manager.saddleback_line:
         draw_text(layout, context, manager.saddleback_line, "CHECKMARK")
+        for line in manager.saddleback_figures.splitlines():
+            draw_text(layout, context, line, "BLANK1")
 
 
 def _draw_button(layout: bpy.types.UILayout, context: bpy.types.Context, operator: str, icon: str) -> None:
@@ -174,6 +176,18 @@ class SADDLEBACK_PT_centres(SaddlebackOutputPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         rows.draw_centres(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+
+
+class SADDLEBACK_PT_dual(SaddlebackOutputPanel, bpy.types.Panel):
+    """The triangle mesh of the sites."""
+
+    bl_label = "Dual Mesh"
+    bl_options = {"DEFAULT_CLOSED"}
+    switch = "make_dual"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_dual(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
 
 
 class SADDLEBACK_PT_attributes(SaddlebackSubPanel, bpy.types.Panel):
@@ -361,6 +375,7 @@ CLASSES = (
     SADDLEBACK_PT_edges,
     SADDLEBACK_PT_cells,
     SADDLEBACK_PT_centres,
+    SADDLEBACK_PT_dual,
     SADDLEBACK_PT_attributes,
     SADDLEBACK_PT_distance,
     SADDLEBACK_PT_isolines,

@@ -72,6 +72,12 @@ def draw_centres(layout: bpy.types.UILayout, settings: Any) -> None:
     column.prop(settings, "instance_scale", text="Scale")
 
 
+def draw_dual(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The remesh."""
+    layout.active = settings.make_dual
+    layout.prop(settings, "dual_policy", text="Policy")
+
+
 def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:
     """Names of what is written on the mesh itself."""
     layout.prop(settings, "cell_attribute", text="Cell")

@@ -1,0 +1,118 @@
+"""What an artist put on a mesh, read at points of its surface: groups, UV maps, attributes, shading, materials."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.carried import Anchors
+from ..core.results import Dual
+from .mesh_in import read_triangles
+from .out_attributes import KINDS, recorded
+
+# Read type -> the element's property, its length and the exact type that Blender copies in one go.
+READ = {
+    "FLOAT": ("value", 1, np.float32),
+    "INT": ("value", 1, np.int32),
+    "INT8": ("value", 1, np.int8),
+    "BOOLEAN": ("value", 1, np.bool_),
+    "FLOAT2": ("vector", 2, np.float32),
+    "FLOAT_VECTOR": ("vector", 3, np.float32),
+    "FLOAT_COLOR": ("color", 4, np.float32),
+    "BYTE_COLOR": ("color", 4, np.float32),
+}
+# What Blender itself keeps as attributes, and what has a place of its own below.
+NOT_CARRIED = ("position", "material_index", "sharp_face", "sharp_edge", "custom_normal")
+
+
+@dataclass(frozen=True)
+class Carried:
+    """At n points: number attributes, UV places, weights by group name as (points, weights); and of their polygons."""
+
+    attributes: dict[str, NDArray[Any]]
+    uv_maps: dict[str, NDArray[np.float32]]  # (n, 2)
+    groups: dict[str, tuple[NDArray[np.int32], NDArray[np.float64]]]
+    smooth: NDArray[np.bool_]  # (n,)
+    material: NDArray[np.int32]  # (n,)
+
+
+def read_carried(source: bpy.types.Object, mesh: bpy.types.Mesh, dual: Dual) -> Carried:
+    """Reads what `mesh`, the source's own or evaluated one, has at the dual's vertices."""
+    anchors = _anchors(source, mesh, dual)
+    return Carried(
+        attributes=_attributes(source, mesh, anchors),
+        uv_maps={layer.name: anchors.values(_uv(layer), "CORNER") for layer in mesh.uv_layers},
+        groups=_groups(source, mesh, anchors),
+        smooth=_of_polygons(mesh, "use_smooth", np.bool_)[anchors.polygons],
+        material=_of_polygons(mesh, "material_index", np.int32)[anchors.polygons],
+    )
+
+
+def _anchors(source: bpy.types.Object, mesh: bpy.types.Mesh, dual: Dual) -> Anchors:
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    loops, polygons = np.empty(3 * count, np.int32), np.empty(count, np.int32)
+    mesh.loop_triangles.foreach_get("loops", loops)
+    mesh.loop_triangles.foreach_get("polygon_index", polygons)
+    # The surface of a mirrored object has its triangles the other way round.
+    order = [2, 1, 0] if source.matrix_world.determinant() < 0 else [0, 1, 2]
+    return Anchors(
+        vertices=read_triangles(mesh)[dual.faces][:, order],
+        corners=loops.reshape(-1, 3)[dual.faces][:, order],
+        polygons=polygons[dual.faces],
+        weights=dual.barycentric,
+    )
+
+
+def _attributes(source: bpy.types.Object, mesh: bpy.types.Mesh, anchors: Anchors) -> dict[str, NDArray[Any]]:
+    """All numbers but our own results. Edges have no value at a point of the surface."""
+    skipped = {*NOT_CARRIED, *recorded(source.data), *mesh.uv_layers.keys(), *source.vertex_groups.keys()}
+    found = {}
+    for attribute in mesh.attributes:
+        name, kind = attribute.name, attribute.data_type
+        if kind not in READ or attribute.domain == "EDGE" or name in skipped or name.startswith("."):
+            continue
+        element, width, dtype = READ[kind]
+        values: NDArray[Any] = np.empty(len(attribute.data) * width, dtype)
+        attribute.data.foreach_get(element, values)
+        values = values if width == 1 else values.reshape(-1, width)
+        values = anchors.values(values, attribute.domain)
+        if (values.dtype.kind, values.shape[1:]) in KINDS:
+            found[name] = values
+    return found
+
+
+def _uv(layer: Any) -> NDArray[np.float32]:
+    values = np.empty(2 * len(layer.data), np.float32)
+    layer.data.foreach_get("uv", values)
+    return values.reshape(-1, 2)
+
+
+def _groups(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, anchors: Anchors
+) -> dict[str, tuple[NDArray[np.int32], NDArray[np.float64]]]:
+    """Weights are read of the few vertices beside the points only: Blender hands them out one by one."""
+    names = {group.index: group.name for group in source.vertex_groups}
+    if not names:
+        return {}
+    sums: dict[int, dict[int, float]] = {index: defaultdict(float) for index in names}
+    for point, (around, weights) in enumerate(zip(anchors.vertices, anchors.weights, strict=True)):
+        for vertex, weight in zip(around.tolist(), weights.tolist(), strict=True):
+            for element in mesh.vertices[vertex].groups:
+                if element.group in sums and weight > 0.0:
+                    sums[element.group][point] += weight * element.weight
+    return {
+        names[index]: (np.fromiter(found, np.int32, len(found)), np.fromiter(found.values(), float, len(found)))
+        for index, found in sums.items()
+    }
+
+
+def _of_polygons(mesh: bpy.types.Mesh, name: str, dtype: type[Any]) -> NDArray[Any]:
+    values: NDArray[Any] = np.empty(len(mesh.polygons), dtype)
+    mesh.polygons.foreach_get(name, values)
+    return values

@@ -1,0 +1,33 @@
+"""What a run tells about its cells, in words."""
+
+from __future__ import annotations
+
+import math
+
+from .results import Dual, Figures
+
+# Faults told one by one; of more only the number.
+MOST_TOLD = 3
+
+
+def lines_of(figures: Figures | None) -> list[str]:
+    """Lines for the panel."""
+    if figures is None:
+        return []
+    lines = [
+        f"Triangles of the sites: quality {figures.triangle_quality:.3f}, "
+        f"least angle {math.degrees(figures.least_angle):.1f}\N{DEGREE SIGN}, {100 * figures.irregular:.0f} % irregular"
+    ]
+    if figures.energy is not None:
+        lines.append(f"Energy: {figures.energy:.3f} of the least possible")
+    return lines
+
+
+def faults_of(dual: Dual) -> list[str]:
+    """One sentence where the mesh has faults."""
+    if not dual.issues:
+        return []
+    told = "; ".join(dual.issues[:MOST_TOLD])
+    rest = len(dual.issues) - MOST_TOLD
+    more = f"; and {rest} more" if rest > 0 else ""
+    return [f"The dual mesh has faults where cells are too large ({told}{more}): ask for more cells, or choose Repair"]
