@@ -41,7 +41,7 @@ def _count_draw(_panel, context):
 
 def in_order(screen):
     """The scenarios; later ones go on where earlier ones ended."""
-    plays = (opened, repaired, tessellated, undone, adjusted, escaped, refused)
+    plays = (opened, repaired, tessellated, undone, adjusted, escaped, divided, refused)
     return {play.__name__: (lambda play=play: play(screen)) for play in plays}
 
 
@@ -219,6 +219,33 @@ def repaired(screen):
     place = yield from screen.find_button("bpy.ops.saddleback.tessellate")
     yield from screen.click_until(place, lambda: CELL in bpy.data.objects["Faulty"].data.attributes)
     return {"line": manager().saddleback_line}
+
+
+def divided(screen):
+    """The panels of plane diagrams draw every choice, and a run goes through the window."""
+    ticks = np.linspace(-1.0, 1.0, 5)
+    places = np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)
+    quads = [(r * 5 + c, r * 5 + c + 1, r * 5 + c + 6, r * 5 + c + 5) for r in range(4) for c in range(4)]
+    sheet = add_object("Sheet", np.column_stack([places, np.zeros(25)]), quads)
+    settings = sheet.saddleback.voronoi_2d
+    settings.animate = settings.make_centres = True
+    choices = [("UV", "IMAGE"), ("DISK", "SELECTED"), ("OUTLINE", "OBJECT"), ("OUTLINE", "COUNT")]
+    for settings.space, settings.sites_source in choices:
+        for panel in ("voronoi_2d", "plane_edges", "plane_cells", "plane_centres", "sweep"):
+            with screen.override():
+                bpy.ops.wm.call_panel(name=f"SADDLEBACK_PT_{panel}", keep_open=False)
+            yield 4 * FRAME
+            if panel == "voronoi_2d":
+                yield from screen.shoot(f"plane-{settings.sites_source}")
+            yield from leave_popup(screen)
+    with screen.override():
+        bpy.ops.saddleback.voronoi_2d("INVOKE_DEFAULT")
+    yield from wait_until(lambda: not manager().saddleback_running, "the diagram to be made")
+    yield 4 * FRAME
+    yield from screen.shoot("divided")
+    sheet = bpy.data.objects["Sheet"]
+    made = sorted(item["saddleback_role"] for item in bpy.data.objects if item.parent == sheet)
+    return {"line": manager().saddleback_line, "roles": made}
 
 
 def refused(screen):

@@ -117,5 +117,13 @@ def test_a_faulty_mesh_is_repaired_by_one_click(report):
     assert "'Faulty'" in seen(report, "repaired")["line"]
 
 
+def test_plane_diagrams_are_made_through_the_window(report):
+    result = seen(report, "divided")
+    assert "'Sheet': 200 cells" in result["line"]
+    assert result["roles"] == [
+        "beach curve", "growing edges", "sweep circle", "voronoi cells", "voronoi centres", "voronoi edges",
+    ]  # fmt: skip
+
+
 def test_the_tab_says_what_to_do_without_a_mesh(report):
     assert seen(report, "refused")["drawn"] > 0

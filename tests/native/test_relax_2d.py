@@ -50,12 +50,12 @@ def test_the_energy_never_rises_and_cells_become_even(domain, shape):
     rng = np.random.default_rng(2)
     sites = rng.random((150, 2))
     density = None if shape is None else 0.2 + rng.random(shape)
-    done = sb.relax_2d(sites, domain, density, max_iterations=60, tolerance=0)
+    done = sb.relax_2d(sites, domain, density, max_iterations=25, tolerance=0)
     assert (np.diff(done.energy) <= 0).all() and len(done.energy) == done.iterations + 1
-    assert done.energy[-1] < 0.75 * done.energy[0]
+    assert done.energy[-1] < 0.8 * done.energy[0]
     if shape is None:
         cells = sb.voronoi_2d(done.sites, domain=domain).clipped
-        assert np.nanmax(np.linalg.norm(cells.centroids - done.sites, axis=1)) < 0.05
+        assert np.nanmax(np.linalg.norm(cells.centroids - done.sites, axis=1)) < 0.1
         before = sb.voronoi_2d(sites, domain=domain).clipped.areas
         assert cells.areas.std() < 0.5 * before.std()
 

@@ -38,7 +38,7 @@ def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | Non
         request.uv, request.is_mirrored, request.sites, request.weights, request.darkness,
     )  # fmt: skip
     key = ("sites 2d", request.surface.key, what)
-    sites = cache.get(key, lambda: _relaxed(request, space, _sites(request, space), progress), lambda s: s.nbytes)
+    sites = cache.get(key, lambda: _placed(request, space, progress), lambda s: s.nbytes)
     with progress.stage(0.8, "finding the cells") as job:
         diagram = native.load().voronoi_2d(sites.places, weights=request.weights, threads=request.threads, job=job)
     if space.frame is None:
@@ -98,14 +98,20 @@ def _check(request: Voronoi2dRequest) -> None:
         raise BadInputError(f"'{name}': cells of sites with weights have no gap, bevel or thickness; set them to 0")
 
 
-def _sites(request: Voronoi2dRequest, space: Space) -> _Sites:
+def _placed(request: Voronoi2dRequest, space: Space, progress: Progress) -> _Sites:
+    density = _darkness(request, space) if request.darkness is not None else None
+    return _relaxed(request, space, _sites(request, space, density), density, progress)
+
+
+def _sites(request: Voronoi2dRequest, space: Space, density: Reals | None) -> _Sites:
     """Where the sites are at first."""
     sb, settings, surface = native.load(), request.settings, request.surface
     if settings.sites_source == "COUNT":
         return _Sites.at(space, sb.sample(space.mesh, settings.count, seed=settings.seed))
     if request.sites is None:
+        assert density is not None
         places = places_by_density(
-            _darkness(request, space), *space.box, settings.count, settings.seed,
+            density, *space.box, settings.count, settings.seed,
             lambda tried: space.chart.locate(tried)[1],
         )  # fmt: skip
         return _Sites(places, np.zeros(len(places), np.int32), np.zeros((len(places), 3))).moved(space, places)
@@ -133,14 +139,15 @@ def _darkness(request: Voronoi2dRequest, space: Space) -> Reals:
     return covered
 
 
-def _relaxed(request: Voronoi2dRequest, space: Space, sites: _Sites, progress: Progress) -> _Sites:
+def _relaxed(
+    request: Voronoi2dRequest, space: Space, sites: _Sites, density: Reals | None, progress: Progress
+) -> _Sites:
     """The sites after the wanted steps. A step that would take a site off the surface is not taken."""
     settings = request.settings
     if not settings.iterations:
         return sites
-    if space.frame is None and request.darkness is None:
+    if space.frame is None and density is None:
         return _relaxed_on_surface(request, space, sites, progress)
-    density = _darkness(request, space) if request.darkness is not None else None
     with progress.stage(0.7, "relaxing the sites") as job:
         relaxed = native.load().relax_2d(
             sites.places, space.loops, density, max_iterations=settings.iterations, tolerance=0.0,
@@ -153,9 +160,9 @@ def _relaxed_on_surface(request: Voronoi2dRequest, space: Space, sites: _Sites, 
     """Cells of equal area on the surface, not in its map: centres of mass by area on the surface."""
     sb, begin, steps = native.load(), progress.fraction, request.settings.iterations
     for number in range(steps):
-        with progress.stage(begin + (0.7 - begin) * (number + 1) / steps, "relaxing the sites"):
-            diagram = sb.voronoi_2d(sites.places, threads=request.threads)
-            centroids = space.chart.lift(diagram, threads=request.threads).centroids
+        with progress.stage(begin + (0.7 - begin) * (number + 1) / steps, "relaxing the sites") as job:
+            diagram = sb.voronoi_2d(sites.places, threads=request.threads, job=job)
+            centroids = space.chart.lift(diagram, threads=request.threads, job=job).centroids
             sites = sites.moved(space, np.where(np.isfinite(centroids), centroids, sites.places))
     return sites
 
@@ -199,7 +206,8 @@ def _flat(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any, 
     if settings.make_cells and flat.has_holes:
         cells = _lifted(request, space, sites, diagram, progress)
     elif settings.make_cells:
-        polygons, vanished = _shaped(request, space, diagram, flat)
+        with progress.stage(0.95, "shaping the cells") as job:
+            polygons, vanished = _shaped(request, space, diagram, flat, job)
     sweep = None
     if settings.animate:
         frames = settings.frame_end - settings.frame_start + 1
@@ -208,18 +216,20 @@ def _flat(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any, 
     return Voronoi2dResult(cells, flat, polygons, vanished, sweep)
 
 
-def _shaped(request: Voronoi2dRequest, space: Space, diagram: Any, flat: FlatCells) -> tuple[CellPolygons, int]:
+def _shaped(
+    request: Voronoi2dRequest, space: Space, diagram: Any, flat: FlatCells, job: Any
+) -> tuple[CellPolygons, int]:
     """The cells with their gap, thickness and rim; and how many the gap leaves nothing of."""
     settings, threads = request.settings, request.threads
     shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
     if not shape.cuts and shape.thickness == 0:
         return flat, 0
     assert space.frame is not None
-    base = diagram.clip(space.loops, gap=shape.gap, threads=threads)
+    base = diagram.clip(space.loops, gap=shape.gap, threads=threads, job=job)
     vanished = len(np.unique(flat.polygon_cell)) - len(np.unique(base.loop_sites))
     if shape.thickness == 0:  # a rim needs a height
         return flat_cells(base, space.frame), vanished
-    plateau = diagram.clip(space.loops, gap=2 * shape.rim_end, threads=threads) if shape.inset > 0 else None
+    plateau = diagram.clip(space.loops, gap=2 * shape.rim_end, threads=threads, job=job) if shape.inset > 0 else None
     return raised_cells(base, plateau, space.frame, shape), vanished
 
 
