@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "saddleback/direction_field.h"
+#include "saddleback/streamline.h"
 #include "saddleback/trace.h"
 
 #include "points.h"
@@ -66,6 +67,30 @@ begin from the last answer, so that two ways to the same strokes differ by round
 Args:
     mesh: the mesh, kept alive.
     symmetry: 1, 2 or 4.
+)";
+
+constexpr const char* k_streamline_doc = R"(Follows a direction field: the centre line of a long shape, a hair, a seam.
+
+The field is integrated as it is inside faces, not only from edge to edge: fourth-order steps of at most a quarter of a
+face.
+
+Args:
+    mesh: the field's mesh.
+    field: a DirectionField.
+    start: one surface point, or a vertex index.
+    length: mesh units, > 0.
+    both: half of the length on either side of the start, instead of all of it ahead.
+    heading: (3,) vector; of the field's directions at the start the nearest one is followed. None: the first one.
+    max_curvature: the most by which the curve bends, radians per mesh unit. Where the field turns faster the curve lags
+        behind, so that shapes that reach up to 1 / max_curvature to either side do not fold.
+
+Returns:
+    Streamline: a GeodesicPath that knows why it ends. It has one point where the start is a singular vertex, or lies on
+    the boundary where the field leaves the surface.
+
+Raises:
+    InputError: a field of another mesh, a point off the mesh, a length or curvature that is not positive, a curve over
+        more than a million faces.
 )";
 
 constexpr double k_most_units = 1e6;
@@ -245,12 +270,57 @@ void bind_strokes(py::module_& m) {
       .def_readonly("weight", &Stroke::weight, "Of a soft stroke.");
 }
 
+/// A curve that knows why it ends.
+struct StreamlinePath : GeodesicPath {
+  std::size_t start = 0;
+  StreamlineEnd begin_reason{}, end_reason{};
+};
+
+const char* name_of(StreamlineEnd reason) {
+  if (reason == StreamlineEnd::length) return "length";
+  return reason == StreamlineEnd::boundary ? "boundary" : "singularity";
+}
+
+StreamlinePath follow(const py::object& mesh_object, const py::object& field_object, const py::object& start,
+                      const py::object& length, bool both, const py::object& heading, const py::object& max_curvature) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  if (!py::isinstance<DirectionField>(field_object)) throw InputError("field: wanted a DirectionField");
+  const auto& field = py::cast<const DirectionField&>(field_object);
+  if (&field.mesh() != &mesh) throw InputError("field: it belongs to another mesh");
+  const SurfacePoint point = as_surface_point(start, mesh, "start");
+  StreamlineOptions options;
+  options.length = as_real(length, "length");
+  options.both = both;
+  if (!heading.is_none()) options.heading = as_vec3(heading, "heading");
+  options.max_curvature = as_real(max_curvature, "max_curvature");
+  return without_gil([&] {
+    Streamline line = streamline(field, point, options);
+    return StreamlinePath{std::move(line.path), line.start, line.begin_reason, line.end_reason};
+  });
+}
+
+void bind_streamline(py::module_& m) {
+  py::class_<StreamlinePath, GeodesicPath>(m, "Streamline", py::module_local(),
+                                           "A curve along a direction field and why it ends.")
+      .def_readonly("start", &StreamlinePath::start, "Index of the point that it was started from.")
+      .def_property_readonly(
+          "begin_reason", [](const StreamlinePath& line) { return name_of(line.begin_reason); },
+          "Why it goes no farther back: \"length\", \"boundary\" or \"singularity\".")
+      .def_property_readonly(
+          "end_reason", [](const StreamlinePath& line) { return name_of(line.end_reason); },
+          "Why it goes no farther ahead.");
+  m.def("streamline", &follow, py::arg("mesh"), py::arg("field"), py::arg("start"), py::arg("length"),
+        py::arg("both") = false, py::kw_only(), py::arg("heading") = py::none(),
+        py::arg("max_curvature") = std::numeric_limits<double>::infinity(), k_streamline_doc);
+}
+
 }  // namespace
 
 /// After bind_surface and bind_paths, whose classes it takes.
 void bind_fields(py::module_& m) {
   bind_direction_field(m);
   bind_strokes(m);
+  bind_streamline(m);
   py::class_<Editor>(m, "DirectionFieldEditor", py::module_local(), k_editor_doc)
       .def(py::init([](const py::object& mesh, const py::object& symmetry) {
              return std::make_unique<Editor>(mesh, as_integer(symmetry, "symmetry"));

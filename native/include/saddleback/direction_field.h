@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "saddleback/job.h"
@@ -50,6 +50,12 @@ class DirectionField {
   /// only the vertices are left out, about which it turns evenly (there a mean is given). Exactly the face's own angle
   /// at its centre. O(1).
   double angle_at(const SurfacePoint& point) const;
+
+  /// The field at the begin of a half-edge, seen along it and along the edge before it in its face: angles in the chart
+  /// of the face, between which it is linear about the vertex.
+  std::pair<double, double> about_corner(Index h) const {
+    return {angles_[h / 3] + along_[h], angles_[h / 3] + before_[h]};
+  }
 
   /// The same field turned by a constant angle, radians counter-clockwise.
   DirectionField turned(double angle) const;

@@ -674,3 +674,23 @@ def direction_field(
     align_weight: SupportsFloat = 1.0,
     job: Job | None = None,
 ) -> DirectionField: ...
+
+@final
+class Streamline(GeodesicPath):
+    @property
+    def start(self) -> int: ...
+    @property
+    def begin_reason(self) -> Literal["length", "boundary", "singularity"]: ...
+    @property
+    def end_reason(self) -> Literal["length", "boundary", "singularity"]: ...
+
+def streamline(
+    mesh: Mesh,
+    field: DirectionField,
+    start: _Points,
+    length: SupportsFloat,
+    both: bool = False,
+    *,
+    heading: ArrayLike | None = None,
+    max_curvature: SupportsFloat = ...,
+) -> Streamline: ...

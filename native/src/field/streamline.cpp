@@ -1,0 +1,315 @@
+// A walk from face to face with the position in the chart of the face. The field has no value at vertices themselves:
+// a curve that would meet one passes beside it, nearer than anything that counts.
+
+#include "saddleback/streamline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "saddleback/error.h"
+
+#include "surface_connection.h"
+
+namespace saddleback {
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+constexpr std::int64_t k_max_faces = 1'000'000;
+constexpr double k_step = 0.25;            // of a face's size
+constexpr double k_beside = 1e-9;          // share of an edge by which curves keep off its ends
+constexpr double k_inward = 1e-6;          // share of a step by which it leaves the edge that it starts on
+constexpr double k_at_singularity = 0.02;  // share of the edges about it within which a curve has come to a vertex
+constexpr double k_bend = 0.1;             // radians a step, of curves whose bending is limited
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+Vec2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+class Walk {
+ public:
+  /// `backwards`: against the field's directions.
+  Walk(const DirectionField& field, const StreamlineOptions& options, double length, bool backwards)
+      : field_(field),
+        mesh_(field.mesh()),
+        length_(length),
+        max_curvature_(options.max_curvature),
+        quantum_(2 * k_pi / field.symmetry()),
+        offset_(backwards ? k_pi : 0) {}
+
+  /// From inside a face, along the direction nearest to that angle of its chart.
+  StreamlineEnd from_face(const SurfacePoint& start, double heading) {
+    record(start);
+    enter(start.face, k_none);
+    place_ = chart_->to_plane(start.barycentric);
+    heading_ = direction(place_, heading);
+    return run();
+  }
+
+  /// From a vertex along that half-edge's corner, at that angle from the half-edge.
+  StreamlineEnd from_vertex(const SurfacePoint& start, Index h, double angle) {
+    record(start);
+    enter(Mesh::face_of(h), k_none);
+    heading_ = chart_angle(mesh_, h) + angle;
+    const double size = std::min(mesh_.length(h), mesh_.length(Mesh::prev(h)));
+    place_ = chart_->corner[h % 3] + k_beside * size * unit(heading_);
+    return run();
+  }
+
+  GeodesicPath take_path() { return std::move(path_); }
+
+ private:
+  void record(const SurfacePoint& point) {
+    const Vec3 xyz = position(mesh_, point);
+    if (!path_.points.empty()) path_.length += (xyz - path_.points.back()).norm();
+    path_.points.push_back(xyz);
+    path_.surface.push_back(point);
+  }
+
+  /// `edge`: the half-edge of the face that the place lies on, or none.
+  void enter(Index face, Index edge) {
+    face_ = face;
+    edge_ = edge;
+    chart_.emplace(mesh_, face);
+    step_ = k_step * std::sqrt(2 * mesh_.face_area(face));
+    singular_ = false;
+    for (const Index v : mesh_.triangles()[face]) singular_ = singular_ || field_.units_at(v) != 0;
+  }
+
+  SurfacePoint point_at(const Vec2& place) const {
+    return {face_, normalised_barycentric(chart_->to_barycentric(place))};
+  }
+
+  /// Of the field's directions the one nearest to `near`.
+  double direction(const Vec2& place, double near) const {
+    const double angle = field_.angle_at(point_at(place)) + offset_;
+    return angle - quantum_ * std::round((angle - near) / quantum_);
+  }
+
+  StreamlineEnd run() {
+    std::int64_t faces = 0;
+    while (true) {
+      if (const Index v = vertex_reached(); v != k_none) {
+        Vec3 corner = Vec3::Zero();
+        for (int i = 0; i < 3; ++i) corner[i] = mesh_.triangles()[face_][i] == v ? 1 : 0;
+        record({face_, corner});
+        return StreamlineEnd::singularity;
+      }
+      const double left = length_ - travelled_;
+      if (left <= 0) return StreamlineEnd::length;
+      double length = std::min(left, step_here());
+      Vec2 move = inward(step(length), length);
+      Exit exit = find_exit(move);
+      if (exit.share < 1) {  // once more, only so far as the edge
+        length = std::max(length * exit.share, k_inward * step_);
+        move = inward(step(length), length);
+        exit = find_exit(move);
+      }
+      const double size = move.norm();
+      if (exit.share > 1.05 || travelled_ + size * exit.share >= length_) {
+        const double share = left <= size ? left / size : 1;
+        place_ += share * move;
+        travelled_ = left <= size ? length_ : travelled_ + share * size;
+        heading_ = next_heading_;
+        edge_ = k_none;
+        record(point_at(place_));
+        continue;
+      }
+      travelled_ += size * exit.share;
+      heading_ = next_heading_;
+      if (!cross_edge(exit, move)) return StreamlineEnd::boundary;
+      if (++faces > k_max_faces)
+        throw InputError(message("length ", length_, " is too long to follow: after ", faces - 1,
+                                 " faces the curve is ", travelled_, " long"));
+    }
+  }
+
+  double step_here() const {
+    double step = std::isfinite(max_curvature_) ? std::min(step_, k_bend / max_curvature_) : step_;
+    if (!singular_) return step;
+    for (int i = 0; i < 3; ++i)
+      if (field_.units_at(mesh_.triangles()[face_][i]) != 0)
+        step = std::min(step, k_step * (place_ - chart_->corner[i]).norm());
+    return step;
+  }
+
+  /// The singular corner that the place is at.
+  Index vertex_reached() const {
+    if (!singular_) return k_none;
+    for (int i = 0; i < 3; ++i) {
+      const Index h = 3 * face_ + i;
+      const double reach = k_at_singularity * std::min(mesh_.length(h), mesh_.length(Mesh::prev(h)));
+      if (field_.units_at(mesh_.from(h)) != 0 && (place_ - chart_->corner[i]).norm() < reach) return mesh_.from(h);
+    }
+    return k_none;
+  }
+
+  /// Where the curve gets to in that length if the face went on; sets the heading there.
+  Vec2 step(double length) {
+    if (std::isfinite(max_curvature_)) {
+      const double wanted = direction(place_ + 0.5 * length * unit(heading_), heading_) - heading_;
+      const double turn = std::clamp(wanted, -max_curvature_ * length, max_curvature_ * length);
+      next_heading_ = heading_ + turn;
+      return length * unit(heading_ + 0.5 * turn);
+    }
+    const double a = direction(place_, heading_);
+    const double b = direction(place_ + 0.5 * length * unit(a), a);
+    const double c = direction(place_ + 0.5 * length * unit(b), b);
+    const double d = direction(place_ + length * unit(c), c);
+    next_heading_ = d;
+    return length / 6 * (unit(a) + 2 * unit(b) + 2 * unit(c) + unit(d));
+  }
+
+  /// A step that starts on an edge leads into the face: where the field runs along the edge rounding must not decide.
+  Vec2 inward(const Vec2& move, double length) const {
+    if (edge_ == k_none) return move;
+    const Vec2 along = (chart_->corner[(edge_ % 3 + 1) % 3] - chart_->corner[edge_ % 3]).normalized();
+    const Vec2 into(-along.y(), along.x());
+    const double depth = move.dot(into);
+    return depth >= k_inward * length ? move : move + (k_inward * length - depth) * into;
+  }
+
+  struct Exit {
+    int edge = 0;
+    double share = std::numeric_limits<double>::infinity();  ///< of the move
+  };
+  Exit find_exit(const Vec2& move) const {
+    Exit result;
+    for (int i = 0; i < 3; ++i) {
+      if (3 * face_ + i == edge_) continue;
+      const Vec2 edge = chart_->corner[(i + 1) % 3] - chart_->corner[i];
+      const double outward = -cross(edge, move), depth = cross(edge, place_ - chart_->corner[i]);
+      if (outward <= 0) continue;
+      const double share = std::max(0.0, depth / outward);
+      if (share < result.share) result = {i, share};
+    }
+    return result;
+  }
+
+  bool cross_edge(const Exit& exit, const Vec2& move) {
+    const int i = exit.edge, j = (i + 1) % 3;
+    const Vec2 edge = chart_->corner[j] - chart_->corner[i];
+    const double along = std::clamp((place_ + exit.share * move - chart_->corner[i]).dot(edge) / edge.squaredNorm(),
+                                    k_beside, 1 - k_beside);
+    Vec3 b = Vec3::Zero();
+    b[i] = 1 - along;
+    b[j] = along;
+    record({face_, b});
+    const Index h = 3 * face_ + i, twin = mesh_.twin(h);
+    if (twin == k_none) return false;
+    heading_ += chart_angle(mesh_, twin) + k_pi - chart_angle(mesh_, h);
+    enter(Mesh::face_of(twin), twin);
+    place_ = along * chart_->corner[twin % 3] + (1 - along) * chart_->corner[(twin % 3 + 1) % 3];
+    return true;
+  }
+
+  const DirectionField& field_;
+  const Mesh& mesh_;
+  const double length_, max_curvature_, quantum_, offset_;
+  GeodesicPath path_;
+  Index face_ = 0, edge_ = k_none;
+  std::optional<FaceChart> chart_;
+  Vec2 place_ = Vec2::Zero();
+  double heading_ = 0, next_heading_ = 0, step_ = 0, travelled_ = 0;
+  bool singular_ = false;
+};
+
+/// A direction in which the field leaves a vertex: at an angle from a half-edge, inside its corner.
+struct Departure {
+  Index halfedge = k_none;
+  double angle = 0;
+  Vec3 direction = Vec3::Zero();
+};
+
+/// The first one, or that nearest to the heading.
+Departure departure(const DirectionField& field, Index vertex, double offset, const Vec3* heading) {
+  const Mesh& mesh = field.mesh();
+  const double quantum = 2 * k_pi / field.symmetry();
+  Departure best;
+  double best_cosine = -2;
+  const Index first = mesh.first_halfedge(vertex);
+  Index h = first;
+  do {
+    const double corner = mesh.corner_angle(h);
+    // About the vertex the field is linear in the angle: where is it that angle itself?
+    const auto [begin, end] = field.about_corner(h);
+    const double at_begin = begin + offset - chart_angle(mesh, h), slope = (end - begin) / corner;
+    for (double k = std::floor((-at_begin - 2 * k_pi) / quantum); std::abs(1 - slope) > 1e-9; ++k) {
+      const double angle = (at_begin + k * quantum) / (1 - slope);
+      if (at_begin + k * quantum > 4 * k_pi) break;
+      if (angle < -1e-12 || angle > corner + 1e-12) continue;
+      const Vec3 direction = direction_in_space(mesh, Mesh::face_of(h), chart_angle(mesh, h) + angle);
+      const double cosine = heading ? direction.dot(*heading) : -1;
+      if (cosine <= best_cosine) continue;
+      best = {h, std::clamp(angle, 0.0, corner), direction};
+      best_cosine = cosine;
+    }
+    h = mesh.rotate(h);
+  } while (h != k_none && h != first);
+  return best;
+}
+
+void check(const DirectionField& field, const SurfacePoint& start, const StreamlineOptions& options) {
+  check_surface_point(field.mesh(), start, "start");
+  if (!(options.length > 0) || !std::isfinite(options.length))
+    throw InputError(message("length is ", options.length, ", but must be positive and finite"));
+  if (!(options.max_curvature > 0))
+    throw InputError(message("max_curvature is ", options.max_curvature, ", but must be positive"));
+  if (options.heading && !(options.heading->allFinite() && options.heading->norm() > 0))
+    throw InputError("heading: a direction must be finite and not zero");
+}
+
+struct Side {
+  GeodesicPath path;
+  StreamlineEnd reason;
+};
+Side one_side(const DirectionField& field, const SurfacePoint& start, const StreamlineOptions& options, double length,
+              bool backwards) {
+  Walk walk(field, options, length, backwards);
+  const Index vertex = vertex_at(field.mesh(), start);
+  StreamlineEnd reason{};
+  if (vertex == k_none) {
+    const double angle = options.heading ? start_angle(field.mesh(), start, *options.heading) : field.angle_at(start);
+    reason = walk.from_face(start, backwards ? angle + k_pi : angle);
+  } else {
+    const bool is_singular = field.units_at(vertex) != 0;
+    Departure out;
+    if (!is_singular) out = departure(field, vertex, 0, options.heading ? &*options.heading : nullptr);
+    if (!is_singular && backwards) {
+      const Vec3 back = options.heading ? Vec3(-*options.heading) : Vec3(-out.direction);
+      out = departure(field, vertex, k_pi, &back);
+    }
+    if (out.halfedge == k_none) {
+      const GeodesicPath alone{{position(field.mesh(), start)}, {start}, 0};
+      return {alone, is_singular ? StreamlineEnd::singularity : StreamlineEnd::boundary};
+    }
+    reason = walk.from_vertex(start, out.halfedge, out.angle);
+  }
+  return {walk.take_path(), reason};
+}
+
+}  // namespace
+
+Streamline streamline(const DirectionField& field, const SurfacePoint& start, const StreamlineOptions& options) {
+  check(field, start, options);
+  SurfacePoint from = start;
+  from.barycentric = normalised_barycentric(start.barycentric);
+  const double length = options.both ? 0.5 * options.length : options.length;
+  Streamline result;
+  Side ahead = one_side(field, from, options, length, false);
+  result.path = std::move(ahead.path);
+  result.end_reason = ahead.reason;
+  if (!options.both) return result;
+  Side behind = one_side(field, from, options, length, true);
+  result.begin_reason = behind.reason;
+  result.start = behind.path.points.size() - 1;
+  std::reverse(behind.path.points.begin(), behind.path.points.end());
+  std::reverse(behind.path.surface.begin(), behind.path.surface.end());
+  behind.path.points.insert(behind.path.points.end(), result.path.points.begin() + 1, result.path.points.end());
+  behind.path.surface.insert(behind.path.surface.end(), result.path.surface.begin() + 1, result.path.surface.end());
+  behind.path.length += result.path.length;
+  result.path = std::move(behind.path);
+  return result;
+}
+
+}  // namespace saddleback
