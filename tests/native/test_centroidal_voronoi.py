@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import threading
+import time
+
 import numpy as np
 import pytest
 
@@ -12,10 +15,11 @@ from tests.native.cancelling import check_progress_and_cancel
 CONNECTED = [c for c in meshes.good() if len(c.vertices) >= 100]
 
 
+@pytest.mark.parametrize("method", ["lbfgs", "lloyd"])
 @pytest.mark.parametrize("case", CONNECTED, ids=str)
-def test_the_energy_never_rises(case: meshes.Case) -> None:
+def test_the_energy_never_rises(case: meshes.Case, method: str) -> None:
     graph = sb.SaddleVertexGraph(case.mesh, k=min(40, len(case.vertices)))
-    relaxed = sb.centroidal_voronoi(graph, count=20, max_iterations=15, seed=3)
+    relaxed = sb.centroidal_voronoi(graph, count=20, max_iterations=15, seed=3, method=method)
     assert len(relaxed.energy) == relaxed.iterations + 1
     assert (np.diff(relaxed.energy) <= 0).all()
     assert relaxed.energy[-1] < relaxed.energy[0]
@@ -31,6 +35,62 @@ def test_the_plane_comes_near_the_honeycomb() -> None:
     assert relaxed.energy[-1] * 100 / (2 * 5 / (36 * np.sqrt(3))) < 1.05
     areas = relaxed.cells.areas
     assert areas.std() / areas.mean() < 0.15
+
+
+def test_lbfgs_comes_as_far_in_a_third_of_the_steps() -> None:
+    mesh = sb.Mesh(*meshes.torus(72, 30))
+    graph = sb.SaddleVertexGraph(mesh, k=60)
+    slow = sb.centroidal_voronoi(graph, count=120, max_iterations=60, tolerance=0, method="lloyd")
+    fast = sb.centroidal_voronoi(graph, count=120, max_iterations=20, tolerance=0, method="lbfgs")
+    assert fast.energy[-1] <= slow.energy[-1]
+    assert 1 < fast.normalised_energy < 1.04
+    assert fast.normalised_energy == pytest.approx(
+        fast.energy[-1] * 120 / (2 * 5 / (36 * np.sqrt(3)) * mesh.area**2), rel=1e-12
+    )
+
+
+def test_fixed_sites_stay() -> None:
+    mesh = sb.Mesh(*meshes.grid(30, 30))
+    graph = sb.SaddleVertexGraph(mesh, k=60)
+    start = sb.sample(mesh, 40, seed=1)
+    relaxed = sb.centroidal_voronoi(graph, sites=start, fixed=[3, 17], max_iterations=10)
+    before, after = start.positions(mesh), relaxed.sites.positions(mesh)
+    moved = np.linalg.norm(after - before, axis=1)
+    assert (moved[[3, 17]] == 0).all()
+    assert (np.delete(moved, [3, 17]) > 0).all()
+    assert (np.diff(relaxed.energy) <= 0).all()
+
+
+def test_sites_in_one_place_part() -> None:
+    """Coincident sites have no cell; put elsewhere, each has one."""
+    mesh = sb.Mesh(*meshes.torus(40, 16))
+    graph = sb.SaddleVertexGraph(mesh, k=40)
+    relaxed = sb.centroidal_voronoi(graph, sites=[5] * 12 + [300, 301], max_iterations=12)
+    areas = relaxed.cells.areas
+    assert (areas > 0.2 * areas.mean()).all()
+
+
+def test_cancelled_with_what_there_is() -> None:
+    mesh = sb.Mesh(*meshes.grid(80, 80))
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    job = sb.Job()
+
+    def stop() -> None:
+        while job.fraction < 0.01:
+            time.sleep(0.001)
+        job.cancel()
+
+    watcher = threading.Thread(target=stop)
+    watcher.start()
+    relaxed = sb.centroidal_voronoi(
+        graph, count=100, max_iterations=2000, tolerance=0, return_when_cancelled=True, job=job
+    )
+    watcher.join()
+    assert relaxed.stop_reason == "cancelled"
+    assert not relaxed.converged
+    assert 0 < relaxed.iterations < 2000
+    assert len(relaxed.energy) == relaxed.iterations + 1
+    assert relaxed.cells.areas.sum() == pytest.approx(mesh.area, rel=1e-9)
 
 
 def test_the_energy_is_the_integral_of_the_squared_distance() -> None:
@@ -150,6 +210,8 @@ def test_progress_rises_and_cancel_is_quick() -> None:
         ({"count": 2, "tolerance": -1.0}, "tolerance"),
         ({"count": 2, "tolerance": np.nan}, "tolerance"),
         ({"count": 2, "seed": -1}, "seed"),
+        ({"count": 2, "fixed": [2]}, "fixed: wanted sites from 0 to 1, got 2"),
+        ({"count": 2, "fixed": [-1]}, "fixed"),
     ],
 )
 def test_bad_arguments(arguments: dict[str, object], words: str) -> None:

@@ -174,6 +174,22 @@ def test_of_two_sites_in_one_place_the_smaller_has_the_cell() -> None:
     assert cells.areas[3] == 0
 
 
+@pytest.mark.parametrize("case", [c for c in meshes.good() if c.components == 1], ids=str)
+def test_points_lie_in_the_cell_that_holds_their_piece(case: meshes.Case) -> None:
+    """Where the split mesh says a point is, there it is located; at vertices the distances are the same."""
+    count = min(25, len(case.vertices))
+    cells = sb.geodesic_voronoi(graph_of(case), random_points(case.mesh, count, seed=9))
+    split = cells.split()
+    middles = split.vertices[split.triangles].mean(axis=1)
+    large = triangle_areas(split.vertices, split.triangles) > 1e-6 * case.mesh.area / len(case.triangles)
+    cell, distance = cells.locate(sb.project(case.mesh, middles[large]))
+    wrong = cell != split.triangle_cell[large]
+    assert wrong.mean() < 0.002  # a middle may project to the other side of a fold
+    assert np.isfinite(distance).all()
+    cell, distance = cells.locate(np.arange(len(case.vertices)))
+    np.testing.assert_allclose(distance, cells.vertex_distance, rtol=1e-7, atol=1e-9)
+
+
 def test_corners_go_round_the_cell() -> None:
     mesh = sb.Mesh(*meshes.grid(15, 15))
     sites = random_points(mesh, 30, seed=5)

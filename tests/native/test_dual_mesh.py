@@ -1,0 +1,175 @@
+"""The dual of cells: a triangulation of the surface, or the truth about why not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests import meshes
+
+
+def relaxed_cells(mesh: sb.Mesh, count: int, iterations: int = 10) -> sb.GeodesicVoronoi:
+    graph = sb.SaddleVertexGraph(mesh, k=min(60, len(mesh.vertices)))
+    return sb.centroidal_voronoi(graph, count=count, max_iterations=iterations, seed=2).cells
+
+
+def characteristic(mesh: sb.Mesh) -> int:
+    return len(mesh.vertices) - mesh.edge_count + len(mesh.triangles)
+
+
+def check_triangulation(mesh: sb.Mesh, dual: sb.DualMesh) -> None:
+    """As a mesh it is accepted, and it has the topology of the surface, part by part."""
+    assert dual.issues == []
+    assert dual.euler_characteristic == characteristic(mesh)
+    made = sb.Mesh(dual.vertices, dual.triangles)
+    assert characteristic(made) == characteristic(mesh)
+    assert made.components.max() == mesh.components.max()
+    assert made.genus == mesh.genus
+    assert len(made.boundary_loops) == len(mesh.boundary_loops)
+    np.testing.assert_allclose(dual.sites.positions(mesh), dual.vertices, atol=1e-12)
+    chords = np.linalg.norm(np.diff(dual.vertices[dual.edges], axis=1)[:, 0], axis=1)
+    assert (dual.edge_lengths >= chords * (1 - 1e-9)).all()
+
+
+@pytest.mark.parametrize(
+    "arrays",
+    [meshes.icosphere(4), meshes.torus(72, 30), meshes.double_torus(), meshes.two_components()],
+    ids=["sphere", "torus", "double torus", "two parts"],
+)
+@pytest.mark.parametrize("count", [4, 150])
+def test_repair_makes_a_triangulation(arrays: meshes.Arrays, count: int) -> None:
+    vertices, triangles = arrays
+    while len(triangles) < 3000:
+        vertices, triangles = meshes.subdivide(vertices, triangles)
+    mesh = sb.Mesh(vertices, triangles)
+    cells = relaxed_cells(mesh, count)
+    dual = cells.dual()
+    check_triangulation(mesh, dual)
+    assert dual.added == len(dual.vertices) - count
+    np.testing.assert_array_equal(dual.vertices[:count], cells.sites.positions(mesh))  # what was there has not moved
+
+
+@pytest.mark.parametrize("count", [30, 200])
+def test_a_plane_with_a_border(count: int) -> None:
+    mesh = sb.Mesh(*meshes.grid(40, 40))
+    dual = relaxed_cells(mesh, count).dual()
+    check_triangulation(mesh, dual)
+
+
+def test_the_sphere_by_many_cells_needs_no_repair() -> None:
+    mesh = sb.Mesh(*meshes.icosphere(4))
+    cells = relaxed_cells(mesh, 100)
+    vertices, triangles, issues = cells.dual("strict")
+    assert issues == []
+    assert len(vertices) == 100
+    assert len(triangles) == 2 * 100 - 4
+    # Counter-clockwise seen from outside.
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    assert (np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c) > 0).all()
+    np.testing.assert_array_equal(cells.dual("fail").triangles, triangles)
+
+
+def test_in_the_plane_it_is_delaunays_triangulation() -> None:
+    scipy_spatial = pytest.importorskip("scipy.spatial")
+    mesh = sb.Mesh(*meshes.grid(30, 30))
+    points = np.random.default_rng(5).uniform(0.02, 0.98, (80, 2))
+    sites = sb.project(mesh, np.column_stack([points, np.zeros(80)]))
+    graph = sb.SaddleVertexGraph(mesh, k=900)
+    dual = sb.geodesic_voronoi(graph, sites).dual("strict")
+    delaunay = scipy_spatial.Delaunay(points)
+    centres = scipy_spatial.Voronoi(points).vertices
+    inside = {
+        tuple(sorted(t))
+        for t, x in zip(delaunay.simplices.tolist(), circumcentres(points[delaunay.simplices]), strict=True)
+        if (x > 0.001).all() and (x < 0.999).all()
+    }
+    assert len(centres) > 0
+    made = {tuple(sorted(t)) for t in dual.triangles.tolist()}
+    assert inside <= made
+    # Flat: a geodesic is the chord, wherever the bisector is met inside the square.
+    chords = np.linalg.norm(points[dual.edges[:, 0]] - points[dual.edges[:, 1]], axis=1)
+    np.testing.assert_allclose(dual.edge_lengths, chords, rtol=1e-5)
+
+
+def circumcentres(corners: np.ndarray) -> np.ndarray:
+    a, b, c = (corners[:, i] for i in range(3))
+    d = 2 * np.linalg.det(np.stack([b - a, c - a], axis=1))
+    b2, c2 = ((b - a) ** 2).sum(axis=1), ((c - a) ** 2).sum(axis=1)
+    u = np.stack([(c - a)[:, 1] * b2 - (b - a)[:, 1] * c2, (b - a)[:, 0] * c2 - (c - a)[:, 0] * b2], axis=1)
+    return a + u / d[:, None]
+
+
+def test_strict_tells_what_is_wrong() -> None:
+    """Two sites on a torus: two annuli that meet along two circles."""
+    vertices, triangles = meshes.torus(60, 16)
+    mesh = sb.Mesh(vertices, triangles)
+    opposite = [int(np.argmax(vertices[:, 0])), int(np.argmin(vertices[:, 0]))]
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=60), opposite)
+    dual = cells.dual("strict")
+    assert sorted(issue.kind for issue in dual.issues) == ["closed_boundary"] * 2 + ["not_a_disk"] * 2
+    assert {issue.other for issue in dual.issues if issue.kind == "closed_boundary"} == {1}
+    assert "closed curve" in str(dual.issues[-1])
+    assert len(dual.triangles) == 0
+    with pytest.raises(sb.InputError, match=r"cell 0 is not a disk.*policy='repair'"):
+        cells.dual("fail")
+    check_triangulation(mesh, cells.dual("repair"))
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_very_few_cells(count: int) -> None:
+    mesh = sb.Mesh(*meshes.icosphere(3))
+    cells = relaxed_cells(mesh, count, iterations=3)
+    assert len(cells.dual("strict").issues) > 0
+    check_triangulation(mesh, cells.dual())
+
+
+def test_an_unknown_policy() -> None:
+    cells = relaxed_cells(sb.Mesh(*meshes.icosphere(2)), 20)
+    with pytest.raises(sb.InputError, match="policy: wanted 'strict', 'repair' or 'fail', got 'guess'"):
+        cells.dual("guess")  # type: ignore[arg-type]
+
+
+def test_the_same_for_any_number_of_threads() -> None:
+    cells = relaxed_cells(sb.Mesh(*meshes.torus(60, 24)), 6)
+    one, eight = cells.dual(threads=1), cells.dual(threads=8)
+    assert one.added > 0
+    assert one.vertices.tobytes() == eight.vertices.tobytes()
+    assert one.triangles.tobytes() == eight.triangles.tobytes()
+    assert one.edge_lengths.tobytes() == eight.edge_lengths.tobytes()
+
+
+def test_quality_of_known_triangles() -> None:
+    """An equilateral triangle, half a square, and one without area."""
+    root = np.sqrt(3)
+    vertices = np.array([(0, 0, 0), (2, 0, 0), (1, root, 0), (0, 2, 0), (4, 0, 0)], dtype=float)
+    quality = sb.triangle_quality(vertices, [(0, 1, 2), (0, 1, 3), (0, 1, 4)])
+    side = 2 * np.sqrt(2)
+    half = 6 * 2 / (root * (2 + 2 + side) / 2 * side)
+    np.testing.assert_allclose(quality.quality, [1, half, 0], atol=1e-15)
+    np.testing.assert_allclose(quality.least_angle, np.radians([60, 45, 0]), atol=1e-15)
+    np.testing.assert_allclose(quality.greatest_angle, np.radians([60, 90, 180]), atol=1e-15)
+    assert quality.min_quality == 0
+    assert quality.mean_quality == pytest.approx((1 + half) / 3)
+    assert quality.mean_angle == pytest.approx(np.radians(35))
+
+
+def test_valences() -> None:
+    ico = sb.triangle_quality(*meshes.icosphere(1))
+    assert np.bincount(ico.valence).tolist() == [0, 0, 0, 0, 0, 12, 30]
+    assert ico.irregular == pytest.approx(12 / 42)
+    plane = sb.triangle_quality(*meshes.grid(6, 6))  # on the border 4, but 2 or 3 at the corners
+    assert plane.irregular == pytest.approx(4 / 36)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "triangles", "words"),
+    [
+        (np.zeros((3, 3)), [(0, 1, 3)], "triangle 0 names vertex 3"),
+        (np.zeros((3, 3)), [(0, 1, -1)], "-1"),
+        (np.full((3, 3), np.nan), [(0, 1, 2)], "vertex 0"),
+    ],
+)
+def test_quality_of_bad_input(vertices: np.ndarray, triangles: list[tuple[int, int, int]], words: str) -> None:
+    with pytest.raises(sb.InputError, match=words):
+        sb.triangle_quality(vertices, triangles)
