@@ -19,7 +19,6 @@ Parameters
 mesh : Mesh
     One part with one border and no handles.
 job : Job, optional
-    Looked at between the steps of the work.
 
 Returns
 -------

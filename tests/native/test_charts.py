@@ -303,3 +303,9 @@ def test_lifting_can_be_cancelled():
     chart = sb.Chart(sb.Mesh(vertices, triangles), vertices[:, :2])
     diagram = sb.voronoi_2d(np.random.default_rng(0).random((200_000, 2)))
     check_progress_and_cancel(lambda job: chart.lift(diagram, job=job), 0.3)
+
+
+def test_maps_can_be_cancelled():
+    vertices, triangles = meshes.grid(450, 450, jitter=0.2)
+    mesh = sb.Mesh(vertices, triangles)
+    check_progress_and_cancel(lambda job: sb.harmonic_map(mesh, job=job), 0.3)

@@ -14,7 +14,7 @@ namespace saddleback {
 /// Delaunay, so that no face flips (W. Tutte, How to draw a graph, 1963; M. Floater, One-to-one piecewise linear
 /// mappings over triangulations, 2003). That is checked exactly for every face.
 /// \throw InputError for a mesh that is not a disk (one part, one border, no handles) and for one so long or so deep
-/// that faces vanish in the rounding of doubles, naming the first; Cancelled, between the two halves of the work.
+/// that faces vanish in the rounding of doubles, naming the first; Cancelled.
 /// O(V log V) memory, O(V^1.5) time.
 std::vector<Vec2> harmonic_map(const Mesh& mesh, Job* job = nullptr);
 

@@ -1,11 +1,11 @@
 #include "saddleback/disk_map.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "saddleback/error.h"
 
+#include "charts/sparse_cholesky.h"
 #include "charts/turn.h"
 
 namespace saddleback {
@@ -26,7 +26,7 @@ void check_disk(const Mesh& mesh) {
 
 double cotangent(double angle) { return std::cos(angle) / std::sin(angle); }
 
-/// Of the edge of a half-edge, from the angles opposite to it.
+/// Of the edge of a half-edge, from the angles opposite to it; the same for both half-edges.
 double weight(const Mesh& mesh, Index h) {
   double sum = cotangent(mesh.corner_angle(Mesh::prev(h)));
   if (mesh.twin(h) != k_none) sum += cotangent(mesh.corner_angle(Mesh::prev(mesh.twin(h))));
@@ -46,38 +46,58 @@ void place_border(const Mesh& mesh, std::vector<Vec2>& places) {
   }
 }
 
-void place_inner_vertices(const Mesh& mesh, std::vector<Vec2>& places, const JobStage& stage) {
+/// Each inner vertex at the mean of its neighbours: one equation each, and what border vertices bring to the right
+/// side.
+struct Equations {
+  std::vector<Index> vertices;  ///< the inner ones
+  charts::SymmetricMatrix matrix;
+  std::vector<Vec2> right;
+};
+
+Equations set_up(const Mesh& mesh, const std::vector<Vec2>& places) {
+  Equations result;
   std::vector<Index> row(mesh.vertex_count(), k_none);
-  Index count = 0;
-  for (Index v = 0; v < mesh.vertex_count(); ++v)
-    if (!mesh.is_boundary(v)) row[v] = count++;
-  if (count == 0) return;
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(count, 2);
-  for (const Index h : mesh.edge_halfedges()) {
-    const Index a = mesh.from(h), b = mesh.to(h);
-    const double w = weight(mesh, h);
-    for (const auto& [v, other] : {std::pair(a, b), std::pair(b, a)}) {
-      if (row[v] == k_none) continue;
-      entries.emplace_back(row[v], row[v], w);
-      if (row[other] == k_none) {
-        right.row(row[v]) += w * places[other];
-      } else if (row[other] < row[v]) {
-        entries.emplace_back(row[v], row[other], -w);
-      }
-    }
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.is_boundary(v)) continue;
+    row[v] = static_cast<Index>(result.vertices.size());
+    result.vertices.push_back(v);
   }
-  Eigen::SparseMatrix<double> matrix(count, count);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  stage.update(0.1);
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
-  solver.analyzePattern(matrix);
-  stage.update(0.4);
-  solver.factorize(matrix);
-  stage.update(0.9);
-  const Eigen::MatrixX2d solution = solver.solve(right);
-  for (Index v = 0; v < mesh.vertex_count(); ++v)
-    if (row[v] != k_none) places[v] = solution.row(row[v]);
+  result.matrix.offsets.push_back(0);
+  for (const Index v : result.vertices) {
+    double sum = 0;
+    Vec2 from_border(0, 0);
+    const Index first = mesh.first_halfedge(v);
+    Index h = first;
+    do {
+      const Index other = mesh.to(h);
+      const double w = weight(mesh, h);
+      sum += w;
+      if (row[other] == k_none) {
+        from_border += w * places[other];
+      } else {
+        result.matrix.columns.push_back(row[other]);
+        result.matrix.values.push_back(-w);
+      }
+      h = mesh.rotate(h);
+    } while (h != first);
+    result.matrix.offsets.push_back(static_cast<Index>(result.matrix.columns.size()));
+    result.matrix.diagonal.push_back(sum);
+    result.right.push_back(from_border);
+  }
+  return result;
+}
+
+void place_inner_vertices(const Mesh& mesh, std::vector<Vec2>& places, const JobStage& stage) {
+  const Equations equations = set_up(mesh, places);
+  if (equations.vertices.empty()) return;
+  std::vector<Vec3> where;
+  for (const Index v : equations.vertices) where.push_back(mesh.position(v));
+  stage.update(0.02);
+  std::vector<Index> order = charts::dissection_order(equations.matrix, where);
+  stage.update(0.05);
+  const charts::SparseCholesky factors(equations.matrix, std::move(order), stage.part(0.05, 0.97));
+  const std::vector<Vec2> solution = factors.solve(equations.right);
+  for (std::size_t i = 0; i < solution.size(); ++i) places[equations.vertices[i]] = solution[i];
 }
 
 }  // namespace

@@ -1,0 +1,149 @@
+#include "charts/sparse_cholesky.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace saddleback::charts {
+namespace {
+
+constexpr Index k_small = 32;  // so few unknowns are not worth cutting in half
+
+/// Unknowns [begin, end) of the list that go to the rows before `row_end`.
+struct Part {
+  Index begin, end, row_end;
+};
+
+int longest_axis(std::span<const Index> unknowns, std::span<const Vec3> places) {
+  Vec3 low = places[unknowns[0]], high = low;
+  for (const Index i : unknowns) {
+    low = low.cwiseMin(places[i]);
+    high = high.cwiseMax(places[i]);
+  }
+  Eigen::Index axis;
+  (high - low).maxCoeff(&axis);
+  return static_cast<int>(axis);
+}
+
+}  // namespace
+
+std::vector<Index> dissection_order(const SymmetricMatrix& matrix, std::span<const Vec3> places) {
+  const Index size = matrix.size();
+  std::vector<Index> order(size), list(size);
+  std::iota(list.begin(), list.end(), 0);
+  std::vector<std::uint8_t> is_beyond(size, 0);
+  std::vector<Part> parts{{0, size, size}};
+  while (!parts.empty()) {
+    const auto [begin, end, row_end] = parts.back();
+    parts.pop_back();
+    const Index count = end - begin;
+    if (count <= k_small) {
+      std::copy(list.begin() + begin, list.begin() + end, order.begin() + (row_end - count));
+      continue;
+    }
+    const int axis = longest_axis(std::span(list).subspan(begin, count), places);
+    const Index middle = begin + count / 2;
+    std::nth_element(list.begin() + begin, list.begin() + middle, list.begin() + end, [&](Index a, Index b) {
+      return places[a][axis] < places[b][axis] || (places[a][axis] == places[b][axis] && a < b);
+    });
+    for (Index i = middle; i < end; ++i) is_beyond[list[i]] = 1;
+    const auto is_inner = [&](Index unknown) {
+      const std::span<const Index> row = matrix.row(unknown);
+      return std::none_of(row.begin(), row.end(), [&](Index other) { return is_beyond[other] != 0; });
+    };
+    const auto separator =
+        static_cast<Index>(std::partition(list.begin() + begin, list.begin() + middle, is_inner) - list.begin());
+    for (Index i = middle; i < end; ++i) is_beyond[list[i]] = 0;
+    const Index between = middle - separator;
+    std::copy(list.begin() + separator, list.begin() + middle, order.begin() + (row_end - between));
+    parts.push_back({begin, separator, row_end - between - (end - middle)});
+    parts.push_back({middle, end, row_end - between});
+  }
+  return order;
+}
+
+SparseCholesky::SparseCholesky(const SymmetricMatrix& matrix, std::vector<Index> order, const JobStage& stage)
+    : order_(std::move(order)), place_(matrix.size()), parent_(matrix.size(), k_none), pivots_(matrix.size()) {
+  const Index size = matrix.size();
+  for (Index row = 0; row < size; ++row) place_[order_[row]] = row;
+  count_entries(matrix);
+  rows_.resize(offsets_.back());
+  values_.resize(offsets_.back());
+  std::vector<std::int64_t> ends(offsets_.begin(), offsets_.end() - 1);
+  std::vector<double> work(size, 0);
+  std::vector<Index> path, pattern(size), flags(size, k_none);
+  constexpr std::int64_t k_look = 1 << 20;  // multiplications between looks: about a millisecond
+  std::int64_t done = 0, looked = 0, all = 1;
+  for (Index column = 0; column < size; ++column) {
+    const std::int64_t count = offsets_[column + 1] - offsets_[column];
+    all += count * (count - 1) / 2;
+  }
+  for (Index row = 0; row < size; ++row) {
+    const Index unknown = order_[row];
+    Index first = size;  // pattern[first..] is the row's, in an order in which columns may be eliminated
+    flags[row] = row;
+    for (Index e = matrix.offsets[unknown]; e < matrix.offsets[unknown + 1]; ++e) {
+      Index column = place_[matrix.columns[e]];
+      if (column >= row) continue;
+      work[column] += matrix.values[e];
+      path.clear();
+      for (; flags[column] != row; column = parent_[column]) {
+        path.push_back(column);
+        flags[column] = row;
+      }
+      first -= static_cast<Index>(path.size());
+      std::copy(path.begin(), path.end(), pattern.begin() + first);
+    }
+    double pivot = matrix.diagonal[unknown];
+    for (Index i = first; i < size; ++i) {
+      const Index column = pattern[i];
+      const double value = work[column];
+      work[column] = 0;
+      for (std::int64_t e = offsets_[column]; e < ends[column]; ++e) work[rows_[e]] -= values_[e] * value;
+      done += ends[column] - offsets_[column];
+      const double factor = value / pivots_[column];
+      pivot -= factor * value;
+      rows_[ends[column]] = row;
+      values_[ends[column]++] = factor;
+    }
+    pivots_[row] = pivot;
+    if (done - looked < k_look) continue;
+    looked = done;
+    stage.update(static_cast<double>(done) / static_cast<double>(all));
+  }
+  stage.update(1);
+}
+
+/// The elimination tree, and where the columns of L begin.
+void SparseCholesky::count_entries(const SymmetricMatrix& matrix) {
+  const Index size = matrix.size();
+  std::vector<Index> flags(size, k_none);
+  std::vector<std::int64_t> counts(size, 0);
+  for (Index row = 0; row < size; ++row) {
+    flags[row] = row;
+    for (const Index other : matrix.row(order_[row])) {
+      for (Index column = place_[other]; column < row && flags[column] != row; column = parent_[column]) {
+        if (parent_[column] == k_none) parent_[column] = row;
+        ++counts[column];
+        flags[column] = row;
+      }
+    }
+  }
+  offsets_.assign(1, 0);
+  for (const std::int64_t count : counts) offsets_.push_back(offsets_.back() + count);
+}
+
+std::vector<Vec2> SparseCholesky::solve(std::span<const Vec2> right) const {
+  const auto size = static_cast<Index>(right.size());
+  std::vector<Vec2> work(size), result(size);
+  for (Index row = 0; row < size; ++row) work[row] = right[order_[row]];
+  for (Index column = 0; column < size; ++column)
+    for (std::int64_t e = offsets_[column]; e < offsets_[column + 1]; ++e) work[rows_[e]] -= values_[e] * work[column];
+  for (Index column = size - 1; column >= 0; --column) {
+    work[column] /= pivots_[column];
+    for (std::int64_t e = offsets_[column]; e < offsets_[column + 1]; ++e) work[column] -= values_[e] * work[rows_[e]];
+  }
+  for (Index row = 0; row < size; ++row) result[order_[row]] = work[row];
+  return result;
+}
+
+}  // namespace saddleback::charts
