@@ -1,9 +1,11 @@
-// Direction fields.
+// Direction fields, curves along them, values spread over a surface.
 
 #include <cmath>
 #include <mutex>
 
+#include "saddleback/curvature.h"
 #include "saddleback/direction_field.h"
+#include "saddleback/spread_values.h"
 #include "saddleback/streamline.h"
 #include "saddleback/trace.h"
 
@@ -91,6 +93,40 @@ Returns:
 Raises:
     InputError: a field of another mesh, a point off the mesh, a length or curvature that is not positive, a curve over
         more than a million faces.
+)";
+
+constexpr const char* k_spread_doc =
+    R"(Values for every vertex from a few places where they are known, as a painted density.
+
+They meet the given ones and never leave their range. Components without a place have the mean of all values.
+
+Args:
+    mesh: a mesh.
+    places: (n,) vertices or a SurfacePoints.
+    values: (n,) reals.
+    method: "biharmonic", smooth through the places (two linear systems a place: for up to a few dozens); "harmonic", with
+        cusps at the places and flat between them (one system for any number; in a face, its corners have the value).
+    job: progress and cancellation.
+
+Returns:
+    (V,) float64.
+
+Raises:
+    InputError: no place, one off the mesh, another number of values than places, a value that is not finite.
+    Cancelled: the job was.
+
+Notes:
+    After Botsch and Kobbelt, An intuitive framework for real-time freeform modeling (2004), with one constraint a place.
+)";
+
+constexpr const char* k_curvature_doc = R"(How the surface bends at each vertex.
+
+From the change of vertex normals over each face, averaged about vertices (Rusinkiewicz, Estimating curvatures and their
+derivatives on triangle meshes, 2004). O(F).
+
+Returns:
+    smallest, largest (V,) float64: principal curvatures, 1 / mesh units, positive where the surface bends away from its
+    normal as a sphere does; direction (V, 3) float64: of the largest one, a unit vector up to its sign.
 )";
 
 constexpr double k_most_units = 1e6;
@@ -314,6 +350,26 @@ void bind_streamline(py::module_& m) {
         py::arg("max_curvature") = std::numeric_limits<double>::infinity(), k_streamline_doc);
 }
 
+py::array spread(const py::object& mesh_object, const py::object& places, const py::object& values,
+                 const py::object& method, const py::object& job) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  const SurfacePoints points = as_surface_points(places, mesh, "places");
+  const ArrayIn<double> known = as_reals(values, "values");
+  const std::string name = py::isinstance<py::str>(method) ? py::cast<std::string>(method) : "";
+  if (name != "harmonic" && name != "biharmonic")
+    throw InputError(
+        message("method: wanted \"biharmonic\" or \"harmonic\", got ", py::cast<std::string>(py::repr(method))));
+  const SpreadOptions options{name == "harmonic" ? SpreadMethod::harmonic : SpreadMethod::biharmonic, as_job(job)};
+  return to_array(without_gil([&] { return spread_values(mesh, points, known.values, options); }));
+}
+
+py::tuple curvatures_of(const py::object& mesh_object) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  PrincipalCurvatures found = without_gil([&] { return principal_curvatures(mesh); });
+  return py::make_tuple(to_array(std::move(found.smallest)), to_array(std::move(found.largest)),
+                        to_array(std::move(found.direction)));
+}
+
 }  // namespace
 
 /// After bind_surface and bind_paths, whose classes it takes.
@@ -321,6 +377,9 @@ void bind_fields(py::module_& m) {
   bind_direction_field(m);
   bind_strokes(m);
   bind_streamline(m);
+  m.def("spread_values", &spread, py::arg("mesh"), py::arg("places"), py::arg("values"),
+        py::arg("method") = "biharmonic", py::kw_only(), py::arg("job") = py::none(), k_spread_doc);
+  m.def("principal_curvatures", &curvatures_of, py::arg("mesh"), k_curvature_doc);
   py::class_<Editor>(m, "DirectionFieldEditor", py::module_local(), k_editor_doc)
       .def(py::init([](const py::object& mesh, const py::object& symmetry) {
              return std::make_unique<Editor>(mesh, as_integer(symmetry, "symmetry"));

@@ -694,3 +694,12 @@ def streamline(
     heading: ArrayLike | None = None,
     max_curvature: SupportsFloat = ...,
 ) -> Streamline: ...
+def spread_values(
+    mesh: Mesh,
+    places: _Points,
+    values: ArrayLike,
+    method: Literal["biharmonic", "harmonic"] = "biharmonic",
+    *,
+    job: Job | None = None,
+) -> _Floats: ...
+def principal_curvatures(mesh: Mesh) -> tuple[_Floats, _Floats, _Floats]: ...

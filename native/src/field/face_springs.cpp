@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "filled_surface.h"
+#include "spring_system.h"
 
 namespace saddleback {
 namespace {
@@ -43,41 +44,6 @@ VertexSprings springs_of_vertices(const Mesh& mesh, const FaceSprings<double>& s
   return result;
 }
 
-/// A graph in which some nodes are fixed: what ties others to them becomes springs.
-template <class Scalar>
-struct SpringSystem {
-  GraphMatrix<Scalar> matrix;
-  std::vector<Scalar> right;
-};
-template <class Scalar>
-SpringSystem<Scalar> spring_system(const std::vector<GraphEdge<Scalar>>& graph, const std::vector<double>& stiffness,
-                                   const std::vector<Scalar>& target) {
-  const auto count = static_cast<Index>(stiffness.size());
-  std::vector<GraphEdge<Scalar>> free;
-  free.reserve(graph.size());
-  std::vector<double> diagonal(count);
-  SpringSystem<Scalar> result{{}, std::vector<Scalar>(count)};
-  for (Index i = 0; i < count; ++i) {
-    diagonal[i] = stiffness[i] == k_fixed ? 1 : stiffness[i];
-    result.right[i] = diagonal[i] * target[i];
-  }
-  for (const auto& edge : graph) {
-    const bool fixed_a = stiffness[edge.a] == k_fixed, fixed_b = stiffness[edge.b] == k_fixed;
-    if (!fixed_a && !fixed_b) {
-      free.push_back(edge);
-    } else if (!fixed_a) {
-      diagonal[edge.a] += std::abs(edge.weight);
-      result.right[edge.a] += times(edge.weight, target[edge.b]);
-    } else if (!fixed_b) {
-      diagonal[edge.b] += std::abs(edge.weight);
-      result.right[edge.b] += times(conjugate(edge.weight), target[edge.a]);
-    }
-  }
-  result.matrix = graph_laplacian(count, free);
-  for (Index i = 0; i < count; ++i) result.matrix.diagonal[i] += diagonal[i];
-  return result;
-}
-
 /// Smooths out what the mean of vertices leaves from face to face: damped Jacobi rounds, which know no order of faces.
 void relax_faces(const Mesh& mesh, const SurfaceConnection& connection, const FaceSprings<double>& springs,
                  std::vector<double>& values, const JobStage& stage) {
@@ -101,6 +67,16 @@ void relax_faces(const Mesh& mesh, const SurfaceConnection& connection, const Fa
 }
 
 }  // namespace
+
+std::vector<GraphEdge<double>> vertex_graph(const Mesh& mesh, const SurfaceConnection& connection) {
+  std::vector<GraphEdge<double>> result;
+  result.reserve(mesh.edge_count());
+  for (const Index h : mesh.edge_halfedges()) {
+    const double share = mesh.twin(h) == k_none ? 0.5 : 1;
+    result.push_back({mesh.from(h), mesh.to(h), share * connection.weight[h]});
+  }
+  return result;
+}
 
 PowerGraph power_graph(const Mesh& mesh, const SurfaceConnection& connection, int symmetry) {
   PowerGraph result;
@@ -139,13 +115,7 @@ std::vector<double> relax_angles(const Mesh& mesh, const SurfaceConnection& conn
     is_held[mesh.component_of(v)] = true;
     own.stiffness[v] = 1;
   }
-  std::vector<GraphEdge<double>> graph;
-  graph.reserve(mesh.edge_count());
-  for (const Index h : mesh.edge_halfedges()) {
-    const double share = mesh.twin(h) == k_none ? 0.5 : 1;
-    graph.push_back({mesh.from(h), mesh.to(h), share * connection.weight[h]});
-  }
-  SpringSystem<double> system = spring_system(graph, own.stiffness, own.target);
+  SpringSystem<double> system = spring_system(vertex_graph(mesh, connection), own.stiffness, own.target);
   const MultigridSolver<double> solver(std::move(system.matrix), stage.part(0, 0.2));
   vertices = solver.solve(system.right, std::move(vertices), accuracy, stage.part(0.2, 0.9));
 

@@ -2,17 +2,15 @@
 // Values of faces that vary as little as possible and are drawn to given ones: linear systems.
 
 #include <complex>
-#include <limits>
 #include <vector>
 
 #include "multigrid.h"
+#include "spring_system.h"
 #include "surface_connection.h"
 
 namespace saddleback {
 
 using PowerGraph = std::vector<GraphEdge<std::complex<double>>>;
-
-inline constexpr double k_fixed = std::numeric_limits<double>::infinity();
 
 /// What draws the value of each face: stiffness 0 for nothing, k_fixed for exactly.
 template <class Scalar>
@@ -21,6 +19,9 @@ struct FaceSprings {
   std::vector<double> stiffness;
   std::vector<Scalar> target;
 };
+
+/// The edges between vertices, tied by the weight.
+std::vector<GraphEdge<double>> vertex_graph(const Mesh& mesh, const SurfaceConnection& connection);
 
 /// The edges of the dual graph for powers of directions: neighbours are tied by the inverse of the weight, as the
 /// energy of turning has it, and carried across `symmetry` times.

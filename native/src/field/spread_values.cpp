@@ -1,0 +1,171 @@
+#include "saddleback/spread_values.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "saddleback/error.h"
+
+#include "face_springs.h"
+#include "support/parallel.h"
+
+namespace saddleback {
+namespace {
+
+constexpr MultigridSolver<double>::Accuracy k_accuracy{.residual = 1e-8};
+
+void check(const Mesh& mesh, const SurfacePoints& places, std::span<const double> values) {
+  if (places.empty()) throw InputError("places: wanted at least one point");
+  check_surface_points(mesh, places, "places");
+  if (values.size() != places.size())
+    throw InputError(message("values: wanted one for each of the ", places.size(), " places, got ", values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw InputError(message("values: value ", values[i], " at [", i, "] is not finite"));
+}
+
+Index component_of(const Mesh& mesh, const SurfacePoint& place) {
+  return mesh.component_of(mesh.triangles()[place.face][0]);
+}
+
+/// Components in which there is no place are held at the mean in one vertex.
+struct Held {
+  std::vector<double> stiffness, target;
+};
+Held held_vertices(const Mesh& mesh, const SurfacePoints& places, double mean) {
+  Held result{std::vector<double>(mesh.vertex_count(), 0.0), std::vector<double>(mesh.vertex_count(), 0.0)};
+  std::vector<bool> has_place(mesh.component_count(), false);
+  for (const SurfacePoint& place : places) has_place[component_of(mesh, place)] = true;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (has_place[mesh.component_of(v)]) continue;
+    has_place[mesh.component_of(v)] = true;
+    result.stiffness[v] = k_fixed;
+    result.target[v] = mean;
+  }
+  return result;
+}
+
+std::vector<double> spread_harmonic(const Mesh& mesh, const SurfacePoints& places, std::span<const double> values,
+                                    double mean, const JobStage& stage) {
+  Held held = held_vertices(mesh, places, mean);
+  std::vector<double> weight(mesh.vertex_count(), 0.0);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const double share = places[i].barycentric[k];
+      if (share <= 0) continue;
+      const Index v = mesh.triangles()[places[i].face][k];
+      weight[v] += share;
+      held.stiffness[v] = k_fixed;
+      held.target[v] += (values[i] - held.target[v]) * share / weight[v];
+    }
+  }
+  SpringSystem<double> system =
+      spring_system(vertex_graph(mesh, surface_connection(mesh)), held.stiffness, held.target);
+  const MultigridSolver<double> solver(std::move(system.matrix), stage.part(0, 0.2));
+  return solver.solve(system.right, {}, k_accuracy, stage.part(0.2, 1));
+}
+
+/// Splines as sums of what one place alone bends the surface's values by. In each component these are
+/// Laplacian^-1 area Laplacian^-1 of the place, and their factors sum to zero beside a constant.
+class Splines {
+ public:
+  Splines(const Mesh& mesh, const SurfacePoints& places, const JobStage& stage)
+      : mesh_(mesh), places_(places), areas_(mesh.vertex_count(), 0.0), component_areas_(mesh.component_count(), 0.0) {
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      for (const Index v : mesh.triangles()[f]) areas_[v] += mesh.face_area(f) / 3;
+      component_areas_[mesh.component_of(mesh.triangles()[f][0])] += mesh.face_area(f);
+    }
+    GraphMatrix<double> laplacian = graph_laplacian(mesh.vertex_count(), vertex_graph(mesh, surface_connection(mesh)));
+    std::vector<bool> is_held(mesh.component_count(), false);
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+      if (!is_held[mesh.component_of(v)]) laplacian.diagonal[v] += 1;
+      is_held[mesh.component_of(v)] = true;
+    }
+    const MultigridSolver<double> solver(std::move(laplacian), stage.part(0, 0.1));
+    const auto count = static_cast<Index>(places.size());
+    bends_.resize(count);
+    std::atomic<Index> done{0};
+    parallel_for(count, 0, 1, [&](Index i, int) {
+      const double begin = 0.1 + 0.9 * static_cast<double>(done) / count, half = 0.45 / count;
+      bends_[i] = bend_of(i, solver, stage.part(begin, begin + half), stage.part(begin + half, begin + 2 * half));
+      ++done;
+    });
+  }
+
+  std::vector<double> through(std::span<const double> values, double mean) const {
+    const auto count = static_cast<Eigen::Index>(places_.size());
+    const auto components = static_cast<Eigen::Index>(mesh_.component_count());
+    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(count + components, count + components);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(count + components);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::Index component = count + component_of(mesh_, places_[i]);
+      for (Eigen::Index j = 0; j < count; ++j) system(i, j) = at(bends_[j], i);
+      system(i, component) = system(component, i) = 1;
+      right[i] = values[i];
+    }
+    // Places that say the same give way a little and meet at a mean.
+    constexpr double k_give = 1e-9;
+    const double size = system.topLeftCorner(count, count).diagonal().cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 0; i < count; ++i) system(i, i) += k_give * size;
+    for (Eigen::Index c = count; c < count + components; ++c) {
+      if (system.row(c).isZero()) system(c, c) = 1, right[c] = mean;
+    }
+    const Eigen::VectorXd factors = system.fullPivLu().solve(right);
+    std::vector<double> result(mesh_.vertex_count());
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      result[v] = factors[count + mesh_.component_of(v)];
+      for (Eigen::Index i = 0; i < count; ++i) result[v] += factors[i] * bends_[i][v];
+    }
+    return result;
+  }
+
+ private:
+  double at(const std::vector<double>& values, Eigen::Index place) const {
+    const SurfacePoint& point = places_[place];
+    const Triangle& t = mesh_.triangles()[point.face];
+    return point.barycentric[0] * values[t[0]] + point.barycentric[1] * values[t[1]] +
+           point.barycentric[2] * values[t[2]];
+  }
+
+  std::vector<double> bend_of(Index place, const MultigridSolver<double>& solver, const JobStage& first,
+                              const JobStage& second) const {
+    const SurfacePoint& point = places_[place];
+    const Index component = component_of(mesh_, point);
+    std::vector<double> right(mesh_.vertex_count(), 0.0);
+    for (Index v = 0; v < mesh_.vertex_count(); ++v)
+      if (mesh_.component_of(v) == component) right[v] = -areas_[v] / component_areas_[component];
+    for (int k = 0; k < 3; ++k) right[mesh_.triangles()[point.face][k]] += point.barycentric[k];
+    std::vector<double> once = solver.solve(right, {}, k_accuracy, first);
+    double mean = 0;
+    for (Index v = 0; v < mesh_.vertex_count(); ++v)
+      if (mesh_.component_of(v) == component) mean += areas_[v] * once[v] / component_areas_[component];
+    for (Index v = 0; v < mesh_.vertex_count(); ++v)
+      right[v] = mesh_.component_of(v) == component ? areas_[v] * (once[v] - mean) : 0;
+    return solver.solve(right, {}, k_accuracy, second);
+  }
+
+  const Mesh& mesh_;
+  const SurfacePoints& places_;
+  std::vector<double> areas_, component_areas_;
+  std::vector<std::vector<double>> bends_;
+};
+
+}  // namespace
+
+std::vector<double> spread_values(const Mesh& mesh, const SurfacePoints& places, std::span<const double> values,
+                                  const SpreadOptions& options) {
+  check(mesh, places, values);
+  const JobStage stage(options.job, "Spreading values");
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const double low = *least, high = *most;
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  std::vector<double> result = options.method == SpreadMethod::harmonic
+                                   ? spread_harmonic(mesh, places, values, mean, stage)
+                                   : Splines(mesh, places, stage).through(values, mean);
+  for (double& value : result) value = std::clamp(value, low, high);
+  return result;
+}
+
+}  // namespace saddleback
