@@ -78,16 +78,24 @@ bool WeightedCell::drop_hidden_arcs() {
 /// Whether narrow arcs turn once, with a closed cell, and no rival rises above those of others. Next to its own arc a
 /// wave cannot: it would have to cross its neighbour a third time.
 bool WeightedCell::is_envelope() const {
+  const Index arcs = count();
   Index turns = 0;
-  for (Index arc = 0; arc < count(); ++arc) turns += y_[arc] < 0 && y_[arc + 1] >= 0;
-  if (turns != 1 || rises_above(rivals_[0])) return false;
-  for (Index own = 0; own < count(); ++own) {
-    const Rival& rival = rivals_[begins_[own].rival];
-    compare(rival);
-    for (Index arc = 0; arc < count(); ++arc) {
-      if (arc != own && arc != after(own) && !(above_[arc] < -slack_[arc])) return false;
-      if (arc != own && arc != before(own) && arc != after(own) && may_rise_within(arc, rival)) return false;
+  for (Index arc = 0; arc < arcs; ++arc) turns += y_[arc] < 0 && y_[arc + 1] >= 0;
+  if (turns != 1 || !is_below(rivals_[0])) return false;
+  for (Index own = 0; own < arcs; ++own) {
+    const Rival& r = rivals_[begins_[own].rival];
+    const double slack = most_slack(r);
+    bool rises = false;
+    double before = 0;
+    for (Index step = 2; step < arcs; ++step) {
+      const Index k = own + step < arcs ? own + step : own + step - arcs;
+      const double above = r.x * x_[k] + r.y * y_[k] + (r.z - height_[k]);
+      rises |= !(above < -slack);
+      const Index last = k == 0 ? arcs - 1 : k - 1;
+      if (step > 2) rises |= !(before + above + 8 * slack < std::min(0.0, r.z - z_[last]) * gap_[last]);
+      before = above;
     }
+    if (rises) return false;
   }
   return true;
 }
@@ -142,37 +150,37 @@ WeightedCell::Begin WeightedCell::begin_between(Index before, Index after) const
   return result;
 }
 
-/// How far a rival is above the envelope at the begins, and by how much that may be off.
-void WeightedCell::compare(const Rival& rival) const {
-  const Index arcs = count();
-  for (Index k = 0; k <= arcs; ++k) {
-    above_[k] = rival.x * x_[k] + rival.y * y_[k] + (rival.z - height_[k]);
-    slack_[k] = 2 * (rival.size * blur_[k] + rival.doubt) + doubt_[k];
-  }
-}
-
-/// Whether a rival that has been compared, and is below an arc where it begins and ends, may be above between.
+/// Whether a rival is certainly below the envelope everywhere.
 ///
 /// Between directions u and v less than half a turn apart a wave n.u + h below 0 at both is nowhere above if it is
 /// below at the corner of the tangents there: if n.u + n.v + 2 h < h (1 - u.v).
-bool WeightedCell::may_rise_within(Index arc, const Rival& rival) const {
-  return !(above_[arc] + above_[arc + 1] + 4 * (slack_[arc] + slack_[arc + 1]) <
-           std::min(0.0, rival.z - z_[arc]) * gap_[arc]);
+bool WeightedCell::is_below(const Rival& r) const {
+  const double slack = most_slack(r);
+  const Index arcs = count();
+  double top = -k_infinity;
+  for (Index k = 0; k < arcs; ++k) top = std::max(top, r.x * x_[k] + r.y * y_[k] + (r.z - height_[k]));
+  if (!(top < -slack)) return false;
+  if (2 * top + 8 * slack < std::min(0.0, r.z - z_most_) * gap_most_) return true;
+  compare(r);
+  bool rises = false;
+  for (Index k = 0; k < arcs; ++k)
+    rises |= !(above_[k] + above_[k + 1] + 8 * slack < std::min(0.0, r.z - z_[k]) * gap_[k]);
+  return !rises;
 }
 
-/// False when a rival is certainly below the envelope everywhere.
-bool WeightedCell::rises_above(const Rival& rival) const {
-  compare(rival);
-  bool rises = false;
-  for (Index k = 0; k < count(); ++k) rises |= !(above_[k] < -slack_[k]) | may_rise_within(k, rival);
-  return rises;
+/// How far a rival is above the envelope at the begins, and by how much that may be off.
+void WeightedCell::compare(const Rival& rival) const {
+  for (Index k = 0; k <= count(); ++k) {
+    above_[k] = rival.x * x_[k] + rival.y * y_[k] + (rival.z - height_[k]);
+    slack_[k] = 2 * (rival.size * blur_[k] + rival.doubt) + doubt_[k];
+  }
 }
 
 bool WeightedCell::may_meet(double x, double y, double radius) const {
   const double here = points_[site_].weight;
   const Rival rival = rival_at(x, y, radius - here, 4 * k_epsilon * (std::fabs(radius) + std::fabs(here)), k_none);
   if (!(rival.doubt < k_infinity)) return true;
-  return rises_above(rival);
+  return !is_below(rival);
 }
 
 Crossing WeightedCell::crossing(Index arc) const {
@@ -251,20 +259,29 @@ void WeightedCell::use_begins() {
   for (auto* const array : {&x_, &y_, &height_, &blur_, &doubt_, &z_, &gap_, &above_, &slack_})
     if (array->size() < size) array->resize(2 * size);
   double lowest = k_infinity;
+  blur_most_ = doubt_most_ = 0;
+  z_most_ = -k_infinity;
   for (std::size_t k = 0; k < size; ++k) {
     const Begin& begin = begins_[k < size - 1 ? k : 0];
     x_[k] = begin.x, y_[k] = begin.y, height_[k] = begin.height, blur_[k] = begin.blur, doubt_[k] = begin.doubt;
     z_[k] = rivals_[begin.rival].z;
     lowest = std::min(lowest, begin.height - begin.doubt);
+    z_most_ = std::max(z_most_, z_[k]);
+    blur_most_ = std::max(blur_most_, begin.blur);
+    doubt_most_ = std::max(doubt_most_, begin.doubt);
   }
-  for (std::size_t k = 0; k + 1 < size; ++k)
+  gap_most_ = 0;
+  for (std::size_t k = 0; k + 1 < size; ++k) {
     gap_[k] = 1 - (x_[k] * x_[k + 1] + y_[k] * y_[k + 1]) + 4 * (blur_[k] + blur_[k + 1]);
+    gap_most_ = std::max(gap_most_, gap_[k]);
+  }
   far_ = lowest > 0 ? 1 / lowest : k_infinity;
 }
 
 void WeightedCell::meet(Index other) {
   const Rival rival = rival_of(other);
-  if (!rises_above(rival)) return;
+  if (is_below(rival)) return;
+  compare(rival);
   signs_.resize(begins_.size());
   for (Index arc = 0; arc < count(); ++arc) signs_[arc] = sign_at(arc, rival);
   const Index number = static_cast<Index>(rivals_.size());
@@ -300,7 +317,7 @@ bool WeightedCell::is_open_after(Index arc) const {
 }
 
 Vec2 WeightedCell::corner_after(Index arc) const {
-  constexpr double k_good = 0x1p-40;
+  constexpr double k_good = 0x1p-36;
   const Begin& end = begins_[after(arc)];
   const WeightedPoint2& here = points_[site_];
   if (end.doubt < k_good * end.height && end.blur < k_good)
@@ -313,8 +330,10 @@ Vec2 WeightedCell::corner_after(Index arc) const {
 
 // The curve towards a neighbour begins and ends at infinity; the direction away from the neighbour is between its end
 // and its begin. Sides are counted from the arc there.
-void WeightedCell::number_repeated(std::span<const Index> arcs, std::span<Side> sides) const {
-  std::vector<Index> first(rivals_.size(), k_none);
+void WeightedCell::number_repeated(std::span<Side> sides) const {
+  const std::vector<Index>& arcs = ends_;
+  std::vector<Index>& first = first_;
+  first.assign(rivals_.size(), k_none);
   for (std::size_t k = 0; k < sides.size(); ++k) {
     const Index rival = begins_[arcs[k]].rival;
     if (first[rival] == k_none) {
@@ -341,7 +360,7 @@ void WeightedCell::number_repeated(std::span<const Index> arcs, std::span<Side> 
 
 void WeightedCell::read(std::vector<Side>& sides) const {
   sides.clear();
-  std::vector<Index> arcs;  // the last one of each side
+  ends_.clear();
   for (Index arc = 0; arc < count(); ++arc) {
     const Rival& rival = rivals_[begins_[arc].rival];
     const bool goes_on = begins_[after(arc)].rival == begins_[arc].rival;
@@ -350,9 +369,9 @@ void WeightedCell::read(std::vector<Side>& sides) const {
     const Index next = rivals_[begins_[after(arc)].rival].site;
     if (!side.is_open && site_ < rival.site && site_ < next) side.corner = corner_after(arc);
     sides.push_back(side);
-    arcs.push_back(arc);
+    ends_.push_back(arc);
   }
-  number_repeated(arcs, sides);
+  number_repeated(sides);
 }
 
 }  // namespace saddleback::voronoi2d

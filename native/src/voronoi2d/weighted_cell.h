@@ -75,9 +75,9 @@ class WeightedCell {
   Rival rival_at(double x, double y, double weight_difference, double weight_doubt, Index site) const;
   Begin begin_between(Index before, Index after) const;
   Begin fixed_begin(int fixed, Index rival) const;
+  double most_slack(const Rival& rival) const { return 2 * (rival.size * blur_most_ + rival.doubt) + doubt_most_; }
+  bool is_below(const Rival& rival) const;
   void compare(const Rival& rival) const;
-  bool may_rise_within(Index arc, const Rival& rival) const;
-  bool rises_above(const Rival& rival) const;
   int sign_at(Index arc, const Rival& rival) const;
   int turn_to(Index arc, const Rival& from, const Rival& to) const;
   bool holds_top(Index arc, const Rival& from, const Rival& to) const;
@@ -88,7 +88,7 @@ class WeightedCell {
   predicates::Crossing crossing(Index arc) const;
   bool is_open_after(Index arc) const;
   Vec2 corner_after(Index arc) const;
-  void number_repeated(std::span<const Index> arcs, std::span<Side> sides) const;
+  void number_repeated(std::span<Side> sides) const;
   const predicates::WeightedPoint2* point(const Rival& rival) const {
     return rival.site == k_none ? nullptr : &points_[rival.site];
   }
@@ -107,8 +107,10 @@ class WeightedCell {
   std::vector<int> signs_;
   // By begin, the first once more at the end, one array each for vector units.
   std::vector<double> x_, y_, height_, blur_, doubt_, z_;
+  double blur_most_ = 0, doubt_most_ = 0, z_most_ = 0, gap_most_ = 0;
   std::vector<double> gap_;                    ///< 1 less the cosine of the arc behind, or a little more
   mutable std::vector<double> above_, slack_;  ///< of the latest rival
+  mutable std::vector<Index> ends_, first_;    ///< by side: its last arc; by rival: its first side
 };
 
 }  // namespace saddleback::voronoi2d

@@ -82,14 +82,14 @@ bool is_hidden(const LargeArray<WeightedPoint2>& points, const DiskTree& tree, I
   const WeightedPoint2& point = points[rank];
   bool result = false;
   tree.visit(
-      point.x, point.y,
       [&](const DiskTree::Disk& disk) {
         if (result || disk.radius <= point.weight) return false;
         const double x = disk.x - point.x, y = disk.y - point.y, reach = disk.radius - point.weight;
         return x * x + y * y <= reach * reach * (1 + 1e-12);
       },
-      [&](Index begin, Index end) {
-        for (Index i = begin; i < end && !result; ++i)
+      [&](Index row) {
+        const Index end = std::min(static_cast<Index>(points.size()), (row + 1) * DiskTree::k_fan);
+        for (Index i = row * DiskTree::k_fan; i < end && !result; ++i)
           result = points[i].weight > point.weight && predicates::hides(points[i], point);
       });
   return result;

@@ -43,37 +43,49 @@ class DiskTree {
   DiskTree() = default;
   explicit DiskTree(std::span<const predicates::WeightedPoint2> points);
 
-  /// Calls found(begin, end) for rows of sites, as long as enters(disk) says so for all disks about them. Of each eight
-  /// disks the one with its centre nearest to a point comes first. O(disks entered).
+  /// Calls found(row) for rows of sites, [k_fan row, k_fan (row + 1)), as long as enters(disk) says so for all disks
+  /// about them. O(disks entered).
   template <class Enters, class Found>
-  void visit(double x, double y, Enters&& enters, Found&& found) const {
-    if (!levels_.empty()) visit(static_cast<Index>(levels_.size()) - 1, 0, x, y, enters, found);
+  void visit(Enters&& enters, Found&& found) const {
+    visit(
+        top(), 0, [](Index, Index first, Index) { return first; }, enters, found);
+  }
+  /// The same; of each eight disks the one with its centre nearest to a point comes first.
+  template <class Enters, class Found>
+  void visit_from(double x, double y, Enters&& enters, Found&& found) const {
+    const auto nearest = [&](Index level, Index first, Index end) {
+      const auto away = [&](const Disk& d) { return (d.x - x) * (d.x - x) + (d.y - y) * (d.y - y); };
+      return static_cast<Index>(std::min_element(levels_[level].begin() + first, levels_[level].begin() + end,
+                                                 [&](const Disk& a, const Disk& b) { return away(a) < away(b); }) -
+                                levels_[level].begin());
+    };
+    visit(top(), 0, nearest, enters, found);
   }
 
+  std::span<const Disk> rows() const { return levels_.front(); }
+  /// A few disks about all.
+  std::span<const Disk> widest() const { return levels_.back(); }
+
  private:
-  template <class Enters, class Found>
-  void visit(Index level, Index first, double x, double y, Enters&& enters, Found&& found) const {
+  Index top() const { return static_cast<Index>(levels_.size()) - 1; }
+
+  template <class Chosen, class Enters, class Found>
+  void visit(Index level, Index first, Chosen&& chosen, Enters&& enters, Found&& found) const {
+    if (level < 0) return;
     const std::vector<Disk>& disks = levels_[level];
     const Index end = std::min(static_cast<Index>(disks.size()), first + k_fan);
-    const auto away = [&](const Disk& d) { return (d.x - x) * (d.x - x) + (d.y - y) * (d.y - y); };
-    Index nearest = first;
-    double least = away(disks[first]);
-    for (Index i = first + 1; i < end; ++i) {
-      const double distance = away(disks[i]);
-      nearest = distance < least ? i : nearest;
-      least = std::min(distance, least);
-    }
     const auto enter = [&](Index i) {
       if (!enters(disks[i])) return;
       if (level > 0) {
-        visit(level - 1, k_fan * i, x, y, enters, found);
+        visit(level - 1, k_fan * i, chosen, enters, found);
       } else {
-        found(k_fan * i, std::min(site_count_, k_fan * (i + 1)));
+        found(i);
       }
     };
-    enter(nearest);
+    const Index foremost = chosen(level, first, end);
+    enter(foremost);
     for (Index i = first; i < end; ++i)
-      if (i != nearest) enter(i);
+      if (i != foremost) enter(i);
   }
 
   std::vector<std::vector<Disk>> levels_;  ///< from small to large

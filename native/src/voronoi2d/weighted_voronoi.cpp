@@ -46,33 +46,85 @@ void append(const std::vector<Side>& sides, Index site, CellLists& out) {
   }
 }
 
-/// Neighbours in the diagram without weights are a good guess. Then all sites that may matter.
-void find_cell(const WeightedSites& sites, const DiskTree& tree, Index site, std::span<const Index> guess,
-               WeightedCell& cell) {
-  const std::span<const predicates::WeightedPoint2> points(sites.points);
-  const predicates::WeightedPoint2& here = points[site];
-  cell.open(points, site, guess);
-  const auto may_matter = [&](double x, double y, double weight) {
-    constexpr double k_slack = 1e-12;
-    const double dx = x - here.x, dy = y - here.y;
-    const double reach = cell.far() + (weight - here.weight) + k_slack * (std::fabs(weight) + std::fabs(here.weight));
-    return reach > 0 && dx * dx + dy * dy < reach * reach * (1 + k_slack);
-  };
-  Index entered = 0;
-  constexpr Index k_few = 16;  // so many disks are looked into faster than asked about
-  tree.visit(
-      here.x, here.y,
-      [&](const DiskTree::Disk& disk) {
-        if (!may_matter(disk.x, disk.y, disk.radius)) return false;
-        return ++entered < k_few || cell.may_meet(disk.x, disk.y, disk.radius);
-      },
-      [&](Index begin, Index end) {
-        for (Index other = begin; other < end; ++other)
-          if (may_matter(points[other].x, points[other].y, points[other].weight) && other != site &&
-              !cell.has_met(other))
-            cell.meet(other);
-      });
-}
+/// Finds cells, a block of sites in a row after the other.
+class CellFinder {
+ public:
+  static constexpr Index k_block = 64;
+
+  CellFinder(const WeightedSites& sites, const DiskTree& tree) : points_(sites.points), tree_(tree) {
+    double heaviest = 0;
+    for (const DiskTree::Disk& disk : tree.widest()) heaviest = std::max(heaviest, std::fabs(disk.radius));
+    for (const predicates::WeightedPoint2& point : points_) heaviest = std::max(heaviest, std::fabs(point.weight));
+    slack_ = k_slack * heaviest;
+  }
+
+  /// Collects the rows of sites that matter to the sites of a block, if their cells are not larger than usual.
+  void open_block(Index begin, Index end) {
+    double low[2] = {points_[begin].x, points_[begin].y}, high[2] = {low[0], low[1]}, lightest = points_[begin].weight;
+    for (Index i = begin; i < end; ++i) {
+      low[0] = std::min(low[0], points_[i].x), high[0] = std::max(high[0], points_[i].x);
+      low[1] = std::min(low[1], points_[i].y), high[1] = std::max(high[1], points_[i].y);
+      lightest = std::min(lightest, points_[i].weight);
+    }
+    const double width = high[0] - low[0], height = high[1] - low[1], x = 0.5 * (low[0] + high[0]),
+                 y = 0.5 * (low[1] + high[1]);
+    constexpr double k_usual = 4;  // mean distances: a cell's farthest point, twice
+    usual_far_ = k_usual * std::sqrt(width / (end - begin) * height);
+    const double around = 0.5 * std::sqrt(width * width + height * height) + usual_far_;
+    rows_.clear();
+    tree_.visit(
+        [&](const DiskTree::Disk& disk) {
+          return is_within(disk.x - x, disk.y - y, around + slack_ + (disk.radius - lightest));
+        },
+        [&](Index row) { rows_.push_back(row); });
+  }
+
+  /// Neighbours in the diagram without weights are a good guess. Then all sites that may matter.
+  void find(Index site, std::span<const Index> guess, WeightedCell& cell) const {
+    const predicates::WeightedPoint2& here = points_[site];
+    cell.open(points_, site, guess);
+    double reach = cell.far() + slack_;
+    const auto may_matter = [&](double x, double y, double weight) {
+      return is_within(x - here.x, y - here.y, reach + (weight - here.weight));
+    };
+    const auto meet_row = [&](Index row) {
+      const Index end = std::min(static_cast<Index>(points_.size()), (row + 1) * DiskTree::k_fan);
+      for (Index other = row * DiskTree::k_fan; other < end; ++other) {
+        const predicates::WeightedPoint2& point = points_[other];
+        if (!may_matter(point.x, point.y, point.weight) || other == site || cell.has_met(other)) continue;
+        cell.meet(other);
+        reach = cell.far() + slack_;
+      }
+    };
+    if (cell.far() < usual_far_) {
+      const std::span<const DiskTree::Disk> disks = tree_.rows();
+      for (const Index row : rows_)
+        if (may_matter(disks[row].x, disks[row].y, disks[row].radius)) meet_row(row);
+      return;
+    }
+    Index entered = 0;
+    constexpr Index k_few = 16;  // so many disks are looked into faster than asked about
+    tree_.visit_from(
+        here.x, here.y,
+        [&](const DiskTree::Disk& disk) {
+          if (!may_matter(disk.x, disk.y, disk.radius)) return false;
+          return ++entered < k_few || cell.may_meet(disk.x, disk.y, disk.radius);
+        },
+        meet_row);
+  }
+
+ private:
+  static constexpr double k_slack = 1e-12;  // far more than the rounding of a few operations
+
+  static bool is_within(double x, double y, double reach) {
+    return reach > 0 && x * x + y * y < reach * reach * (1 + k_slack);
+  }
+  std::span<const predicates::WeightedPoint2> points_;
+  const DiskTree& tree_;
+  double slack_ = 0;  ///< more than the rounding of a difference of weights
+  double usual_far_ = 0;
+  std::vector<Index> rows_;
+};
 
 /// Neighbours without weights. A few may be wrong.
 voronoi2d::Cells guess_cells(const WeightedSites& sites, int threads, const JobStage& stage) {
@@ -125,18 +177,22 @@ WeightedCells find_cells(const WeightedSites& sites, const Voronoi2dOptions& opt
   const voronoi2d::Cells guess = guess_cells(sites, options.threads, stage.part(0, 0.3));
   std::vector<CellLists> tiles(tile_count);
   struct Worker {
-    WeightedCell cell;
-    std::vector<Side> sides;
+    CellFinder finder;
+    WeightedCell cell{};
+    std::vector<Side> sides{};
   };
-  std::vector<Worker> workers(thread_count(options.threads));
+  std::vector<Worker> workers(thread_count(options.threads), Worker{CellFinder(sites, tree)});
   std::atomic<Index> done{0};
   parallel_for(tile_count, options.threads, 1, [&](Index tile, int thread) {
     const auto bound = [&](Index i) { return static_cast<Index>(static_cast<std::int64_t>(count) * i / tile_count); };
     Worker& worker = workers[thread];
+    CellFinder& finder = worker.finder;
     for (Index site = bound(tile); site < bound(tile + 1); ++site) {
       if (site % 16 == 0) stage.check();
+      if (site == bound(tile) || site % CellFinder::k_block == 0)
+        finder.open_block(site, std::min(bound(tile + 1), (site / CellFinder::k_block + 1) * CellFinder::k_block));
       const Index first = guess.offsets[site], last = guess.offsets[site + 1];
-      find_cell(sites, tree, site, std::span(guess.neighbours).subspan(first, last - first), worker.cell);
+      finder.find(site, std::span(guess.neighbours).subspan(first, last - first), worker.cell);
       worker.cell.read(worker.sides);
       append(worker.sides, site, tiles[tile]);
       if (++done % k_tile == 0) stage.update(0.3 + 0.65 * done / count);
