@@ -20,10 +20,19 @@ def calls() -> dict[str, Call]:
     mesh = sb.Mesh(*meshes.icosphere(6))
     graph = sb.SaddleVertexGraph(mesh)
     many, some = sb.sample(mesh, 2000), sb.sample(mesh, 300, seed=1)
+    vertices = np.arange(0, mesh.vertex_count, 4, dtype=np.int32)
+    small = sb.Mesh(*meshes.torus(40, 16))
     return {
+        "exact_distances": lambda job: sb.exact_distances(mesh, [0], job=job),
         "exact_nearest": lambda job: sb.exact_nearest(mesh, many, job=job),
+        "exact_nearest_few": lambda job: sb.exact_nearest(mesh, some, job=job),
+        "nearest": lambda job: graph.nearest(many, job=job),
+        "build": lambda job: sb.SaddleVertexGraph(mesh, threads=1, job=job),
+        "build_exact": lambda job: sb.SaddleVertexGraph(small, exact=True, threads=1, job=job),
         "distances_to": lambda job: graph.distances_to(some, many, job=job),
         "paths": lambda job: graph.paths(some, many, threads=1, job=job),
+        "paths_few": lambda job: graph.paths(some, some, threads=1, job=job),
+        "paths_to_vertices": lambda job: graph.paths([0], vertices, threads=1, job=job),
         "log_map": lambda job: graph.log_map(0, 1.0, job=job),
         "polar_coordinates": lambda job: sb.polar_coordinates(graph, graph.path(0, 1000), 0.5, job=job),
     }
@@ -63,7 +72,23 @@ def furthest_off(call: Call) -> float:
 
 
 @pytest.mark.skipif(not hasattr(time, "pthread_getcpuclockid"), reason="no clock of another thread's work here")
-@pytest.mark.parametrize("name", ["exact_nearest", "distances_to", "paths", "log_map", "polar_coordinates"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "exact_distances",
+        "exact_nearest",
+        "exact_nearest_few",
+        "nearest",
+        "build",
+        "build_exact",
+        "distances_to",
+        "paths",
+        "paths_few",
+        "paths_to_vertices",
+        "log_map",
+        "polar_coordinates",
+    ],
+)
 def test_progress_is_near_the_share_of_the_time(long_calls: dict[str, Call], name: str) -> None:
     # Wanted is 0.1; a core shared with other work is uneven, and the best of a few runs is what the code does.
     assert min(furthest_off(long_calls[name]) for _ in range(3)) < 0.25

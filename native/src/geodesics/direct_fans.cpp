@@ -15,7 +15,7 @@ namespace saddleback {
 namespace {
 
 // Of the time that one fan takes, for each vertex of the mesh.
-constexpr double k_wave_mesh_cost = 1.0 / 60;
+constexpr double k_fan_mesh_cost = 1.0 / 60;
 // Points a thread takes at a time.
 constexpr Index k_chunk = 8 * k_batch;
 // In mean edges: a corner nearer than this has no direction in single precision, where its square is as good as zero.
@@ -44,21 +44,11 @@ FaceSource face_source(const SaddleVertexGraph& graph, const WaveMesh& waves, co
   return source;
 }
 
-/// The half-edge out of a vertex whose face goes on to another one.
-Index halfedge_before(const Mesh& mesh, Index vertex, Index second) {
-  Index h = mesh.first_halfedge(vertex);
-  while (mesh.to(Mesh::next(h)) != second) h = mesh.rotate(h);
-  return h;
-}
-
 /// Direction, at the vertex of a sighting, back to the source.
-double end_angle(const SaddleVertexGraph& graph, const WaveMesh& waves, const SightingRows& rows, std::int32_t i) {
-  const Mesh& mesh = graph.mesh();
-  const Index vertex = graph.vertex_of(rows.slot[i] / k_batch);
-  const Index side = halfedge_before(mesh, vertex, graph.vertex_of(waves.target(rows.edge[i] / k_batch)));
+double end_angle(const FanMesh& mesh, const SightingRows& rows, std::int32_t i) {
   const Vec2 place(rows.x[i], rows.y[i]), along = Vec2(rows.from_x[i], rows.from_y[i]) - place;
   const double angle = std::atan2(cross(along, -place), along.dot(-place));
-  return graph.unfolding().polar(side) + std::clamp(angle, 0.0, mesh.corner_angle(side));
+  return mesh.apex_direction(rows.edge[i] / k_batch) + std::max(angle, 0.0);
 }
 
 /// The exact graph's fans are no wider than rows of arcs need be: 32 vertices at least, twice as many as a vertex sees.
@@ -112,12 +102,12 @@ bool DirectFanFinder::see(const SaddleVertexGraph& graph, std::span<const Surfac
                           const JobStage& stage) {
   if (batch.empty()) return true;
   if (!waves_) {
-    mesh_ = &graph.query_cache().wave_mesh(graph, 1, stage);
-    waves_ = std::make_unique<DiskFinder>(*mesh_, graph.kernel(), disk_rule(graph.k(), graph.accuracy()));
+    mesh_ = &graph.query_cache().fan_mesh(graph, 1, stage);
+    waves_ = std::make_unique<DiskFinder>(mesh_->waves(), graph.kernel(), disk_rule(graph.k(), graph.accuracy()));
   }
   waves_->begin(DiskFinder::Sources::points);
   int lane = 0;
-  for (const std::size_t i : batch) waves_->add_point(lane++, face_source(graph, *mesh_, points[i]));
+  for (const std::size_t i : batch) waves_->add_point(lane++, face_source(graph, mesh_->waves(), points[i]));
   return waves_->run(stage);
 }
 
@@ -127,10 +117,10 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, FanA
   row_.clear();
   for (const std::int32_t i : waves_->choose(lane)) {
     const Vec2 place(rows.x[i], rows.y[i]);
-    DirectArc arc{graph.vertex_of(rows.slot[i] / k_batch), place.norm() * mesh_->unit(), 0, 0};
+    DirectArc arc{graph.vertex_of(rows.slot[i] / k_batch), place.norm() * mesh_->waves().unit(), 0, 0};
     if (angles == FanAngles::both) {
       arc.start_angle = std::atan2(place.y(), place.x());
-      arc.end_angle = end_angle(graph, *mesh_, rows, i);
+      arc.end_angle = end_angle(*mesh_, rows, i);
     }
     row_.push_back(arc);
   }
@@ -146,15 +136,15 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, const SurfaceP
   arcs.insert(arcs.end(), row_.begin(), row_.end());
 }
 
-double fans_a_wave_mesh_costs(const SaddleVertexGraph& graph) {
-  return graph.query_cache().has_wave_mesh() ? 0 : k_wave_mesh_cost * graph.mesh().vertex_count();
+double fans_a_fan_mesh_costs(const SaddleVertexGraph& graph) {
+  return graph.query_cache().has_fan_mesh() ? 0 : k_fan_mesh_cost * graph.mesh().vertex_count();
 }
 
 FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
                  const JobStage& stage) {
   if (!graph.is_exact() &&
       std::ranges::any_of(points, [&](const SurfacePoint& point) { return !is_vertex(graph.mesh(), point); }))
-    graph.query_cache().wave_mesh(graph, threads, stage);
+    graph.query_cache().fan_mesh(graph, threads, stage);
   for (int thread = 0; thread < thread_count(threads); ++thread)
     finders_.push_back(graph.query_cache().fan_finders.lease());
 }
@@ -164,7 +154,7 @@ void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
   const std::vector<Index> order = inside_in_order(graph, points);
   if (order.empty()) return;
   const auto count = static_cast<Index>(order.size()), blocks = (count + k_chunk - 1) / k_chunk;
-  const double of_mesh = graph.is_exact() ? 0 : fans_a_wave_mesh_costs(graph);
+  const double of_mesh = graph.is_exact() ? 0 : fans_a_fan_mesh_costs(graph);
   const double before = of_mesh > 0 ? of_mesh / (of_mesh + count) : 0;
   FanTeam team(graph, points, threads, stage.part(0, before));
   const JobStage finding = stage.part(before, 1);

@@ -50,7 +50,7 @@ class DirectFanFinder {
   void append_arcs(const SaddleVertexGraph& graph, int lane, FanAngles angles, std::vector<DirectArc>& arcs);
   void append_arcs(const SaddleVertexGraph& graph, const SurfacePoint& point, std::vector<DirectArc>& arcs);
 
-  const WaveMesh* mesh_ = nullptr;
+  const FanMesh* mesh_ = nullptr;
   std::unique_ptr<DiskFinder> waves_;
   std::unique_ptr<WindowPropagator> propagator_;  ///< for the exact graph
   std::vector<std::size_t> batch_;
@@ -58,7 +58,7 @@ class DirectFanFinder {
 };
 
 /// How many fans could be found in the time that the first ones wait for what all need; 0 when that is there.
-double fans_a_wave_mesh_costs(const SaddleVertexGraph& graph);
+double fans_a_fan_mesh_costs(const SaddleVertexGraph& graph);
 
 /// Finders for the threads of one call, and what they share.
 class FanTeam {

@@ -276,7 +276,7 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   const JobStage stage(job, "Finding paths");
   // A path takes as long as some hundred vertices of the field, more where it passes more, a shortened one ten times
   // that.
-  const double of_path = (options.shorten ? 12 : 1.3) * std::sqrt(graph.mesh().vertex_count());
+  const double of_path = (options.shorten ? 12 : 0.8) * std::sqrt(graph.mesh().vertex_count());
   const double of_paths = of_path * static_cast<double>(targets.size());
   const double of_field = graph.mesh().vertex_count() + cost_of_fans(graph, sources);
   const double share = of_field / (of_field + of_paths + cost_of_fans(graph, targets));
@@ -291,7 +291,8 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   FanTeam team(graph, targets, options.threads, stage.part(0, 0));
   const NearbySources nearby(graph, sources, field.point_fans);
   std::atomic<Index> done{0};
-  const double written = options.shorten ? 0.98 : 0.85;  // the rest of the time goes into one list of all points
+  // The rest of the time goes into one list of all points: the more of them, the more memory is touched first there.
+  const double joining = (options.shorten ? 0.02 : 0.15) * std::min(1.0, count / 5e3), written = 1 - joining;
   const JobStage following = stage.part(share, 1), writing = following.part(0, written);
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);

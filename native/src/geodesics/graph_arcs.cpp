@@ -120,10 +120,11 @@ std::vector<FoundArcs> exact_arcs(const ArcSearch& search, const JobStage& stage
   std::vector<std::vector<DirectArc>> rows(propagators.size());
   propagators[0] = std::make_unique<WindowPropagator>(search.unfolding);
   check_memory(search, *propagators[0], stage);
+  std::atomic<Index> done{0};  // rows: a block of them takes long
   return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread) {
     if (!propagators[thread]) propagators[thread] = std::make_unique<WindowPropagator>(search.unfolding);
     for (Index i = 0; i < count; ++i) {
-      stage.check();
+      stage.update(static_cast<double>(done++) / static_cast<double>(search.vertices.size()));
       const Index vertex = search.vertices[found.first_node + i];
       propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread]);
       append_row(search, vertex, rows[thread], found);

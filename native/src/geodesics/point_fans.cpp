@@ -113,7 +113,7 @@ double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points,
   const auto inside = std::ranges::count_if(
       points, [&](const SurfacePoint& point) { return vertex_at(graph.mesh(), point) == k_none; });
   if (graph.is_exact()) return k_cost_of_exact_point * static_cast<double>(inside);
-  const double of_mesh = inside > 0 && first == FirstFans::maybe ? fans_a_wave_mesh_costs(graph) : 0;
+  const double of_mesh = inside > 0 && first == FirstFans::maybe ? fans_a_fan_mesh_costs(graph) : 0;
   return k_cost_of_point * (static_cast<double>(inside) + of_mesh);
 }
 

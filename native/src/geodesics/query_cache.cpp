@@ -24,12 +24,12 @@ const Landmarks& QueryCache::landmarks(const SaddleVertexGraph& graph, const Job
   return *landmarks_;
 }
 
-const WaveMesh& QueryCache::wave_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage) {
-  const auto lock = wait_for(wave_mesh_mutex_, stage);
-  if (!wave_mesh_)
-    wave_mesh_ = std::make_unique<WaveMesh>(graph.unfolding(), graph.nodes(), graph.vertices(), threads, stage);
-  has_wave_mesh_ = true;
-  return *wave_mesh_;
+const FanMesh& QueryCache::fan_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage) {
+  const auto lock = wait_for(fan_mesh_mutex_, stage);
+  if (!fan_mesh_)
+    fan_mesh_ = std::make_unique<FanMesh>(graph.unfolding(), graph.nodes(), graph.vertices(), threads, stage);
+  has_fan_mesh_ = true;
+  return *fan_mesh_;
 }
 
 std::shared_ptr<QueryCache> make_query_cache() { return std::make_shared<QueryCache>(); }

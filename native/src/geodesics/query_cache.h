@@ -24,14 +24,14 @@ struct QueryCache {
   /// Found by the first who asks; others wait. \throw Cancelled.
   const Landmarks& landmarks(const SaddleVertexGraph& graph, const JobStage& stage);
   /// The same for what fans of points are found with.
-  const WaveMesh& wave_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage);
-  bool has_wave_mesh() const { return has_wave_mesh_; }
+  const FanMesh& fan_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage);
+  bool has_fan_mesh() const { return has_fan_mesh_; }
 
  private:
-  std::timed_mutex landmarks_mutex_, wave_mesh_mutex_;
+  std::timed_mutex landmarks_mutex_, fan_mesh_mutex_;
   std::unique_ptr<Landmarks> landmarks_;
-  std::unique_ptr<WaveMesh> wave_mesh_;
-  std::atomic<bool> has_wave_mesh_{false};
+  std::unique_ptr<FanMesh> fan_mesh_;
+  std::atomic<bool> has_fan_mesh_{false};
 };
 
 }  // namespace saddleback

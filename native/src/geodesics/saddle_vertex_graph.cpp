@@ -48,9 +48,11 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   order_nodes(options.threads);
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh));
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
-  const JobStage finding = stage.part(0, 0.9);
+  // Joining takes the rest, and next to nothing beside exact disks.
+  const double found_at = exact_ ? 0.99 : 0.9;
+  const JobStage finding = stage.part(0, found_at);
   auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, disk_rule(k_, accuracy_), finding);
-  arcs_ = unite_with_reverses(codec, *kernel_, found, k_block, options.threads, stage.part(0.9, 1));
+  arcs_ = unite_with_reverses(codec, *kernel_, found, k_block, options.threads, stage.part(found_at, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 

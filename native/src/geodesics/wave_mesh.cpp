@@ -65,6 +65,18 @@ Index WaveMesh::edge_between(Index from, Index to) const {
   return edge < end(from) ? edge : k_none;
 }
 
+FanMesh::FanMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+                 const JobStage& stage)
+    : waves_(unfolding, nodes, vertices, threads, stage.part(0, 0.8)),
+      apex_directions_(static_cast<std::size_t>(unfolding.mesh().halfedge_count())) {
+  parallel_for(waves_.node_count(), threads, k_chunk, [&](Index node, int) {
+    stage.check();
+    Index e = waves_.begin(node);
+    for_each_out(unfolding.mesh(), vertices[node],
+                 [&](Index h) { apex_directions_[e++] = unfolding.polar(Mesh::prev(h)); });
+  });
+}
+
 WaveSectors::WaveSectors(const WaveMesh& waves, const Unfolding& unfolding, std::span<const Index> vertices,
                          int sectors, int threads, const JobStage& stage) {
   const Mesh& mesh = unfolding.mesh();

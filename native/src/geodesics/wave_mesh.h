@@ -44,6 +44,21 @@ class WaveMesh {
   double unit_ = 1;
 };
 
+/// What the arcs of points are found with, and their directions back.
+class FanMesh {
+ public:
+  /// As WaveMesh. \throw Cancelled.
+  FanMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+          const JobStage& stage);
+  const WaveMesh& waves() const { return waves_; }
+  /// Surface angle, at the apex of an edge's face, of the way from there to the edge's origin.
+  double apex_direction(Index edge) const { return apex_directions_[edge]; }
+
+ private:
+  WaveMesh waves_;
+  std::vector<double> apex_directions_;
+};
+
 /// Directions of a WaveMesh's edges, counted in sectors of the full angle about their vertex.
 class WaveSectors {
  public:
