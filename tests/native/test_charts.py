@@ -10,6 +10,7 @@ import pytest
 import saddleback as sb
 from saddleback._saddleback import predicates
 from tests import meshes
+from tests.native import plane_sites
 from tests.native.cancelling import check_progress_and_cancel
 
 
@@ -169,6 +170,45 @@ def test_edges_on_mesh_edges_and_through_vertices(size):
     assert len(lengths) == 2 * size * (size - 1)
     np.testing.assert_allclose(lengths, 1 / size)
     np.testing.assert_allclose(lifted.areas, 1 / size**2)
+
+
+def hard_sites(kind: str, vertices: np.ndarray, triangles: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Sites whose edges run along mesh edges, through vertices, and meet on them."""
+    if kind == "vertices":
+        return vertices[rng.permutation(len(vertices))[:40]]
+    if kind == "on edges":
+        ends, share = triangles[rng.integers(len(triangles), size=40)], rng.choice([0, 0.25, 0.5])
+        return (1 - share) * vertices[ends[:, 0]] + share * vertices[ends[:, 1]]
+    sites = plane_sites.KINDS[kind](60, rng)
+    if kind in ("circle", "regular_polygon"):
+        return 0.5 + 0.25 * sites
+    return sites / np.abs(sites).max()
+
+
+def clipped_edge_length(clipped: sb.ClippedCells) -> float:
+    """Of all edges in the unit square, each told by both its cells."""
+    onward = np.arange(1, len(clipped.points) + 1)
+    onward[clipped.loop_offsets[1:] - 1] = clipped.loop_offsets[:-1]
+    a, b = clipped.points, clipped.points[onward]
+    on_border = [(abs(a[:, k] - side) < 1e-13) & (abs(b[:, k] - side) < 1e-13) for k in (0, 1) for side in (0, 1)]
+    return 0.5 * np.linalg.norm(b - a, axis=1)[~np.any(on_border, axis=0)].sum()
+
+
+@pytest.mark.parametrize(
+    "kind", ["vertices", "on edges", "grid", "small_integers", "collinear", "circle", "regular_polygon", "duplicates"]
+)
+def test_every_edge_is_there_whatever_it_runs_along(kind):
+    rng = np.random.default_rng(6)
+    for size in (2, 3, 5, 9):
+        for jitter in (0.0, 0.2):
+            vertices, triangles = meshes.grid(size, size, jitter=jitter, seed=size)
+            diagram = sb.voronoi_2d(hard_sites(kind, vertices[:, :2], triangles, rng))
+            clipped = diagram.clip([(0, 0), (1, 0), (1, 1), (0, 1)])
+            lifted = sb.Chart(sb.Mesh(vertices, triangles), vertices[:, :2]).lift(diagram)
+            np.testing.assert_allclose(lifted.areas, clipped.areas, atol=1e-13)
+            steps = np.linalg.norm(np.diff(lifted.edge_points, axis=0), axis=1)
+            steps[lifted.edge_offsets[1:-1] - 1] = 0
+            assert steps.sum() == pytest.approx(clipped_edge_length(clipped), abs=1e-10)
 
 
 def test_one_site_owns_everything():

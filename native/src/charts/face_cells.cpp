@@ -10,11 +10,13 @@
 namespace saddleback::charts {
 namespace {
 
-// What subtracting, halving and multiplying coordinates can be wrong by, with a little room.
-constexpr double k_rounding = 0x1p-50;
+// Places nearer than this part of their coordinates are one: far below what single precision shows, far above what
+// rounding does to vertices of the diagram. So an edge along a mesh edge lies on it, and what meets there meets in one
+// point.
+constexpr double k_same_place = 0x1p-40;
 
 /// Points nearer to `mine` than to `other` have a positive value; for the cell beyond it is the same with the other
-/// sign, to the last bit. Zero within rounding: a corner that cannot be told from one on the side is on it, for both.
+/// sign, to the last bit. Zero on the bisector, for both.
 struct Bisector {
   Vec2 middle, across;
   double size;
@@ -22,7 +24,7 @@ struct Bisector {
       : middle(0.5 * mine + 0.5 * other), across(mine - other), size(mine.cwiseAbs().sum() + other.cwiseAbs().sum()) {}
   double value(const Vec2& p) const {
     const double value = (p - middle).dot(across);
-    const double rounding = k_rounding * (size + p.cwiseAbs().sum()) * across.cwiseAbs().maxCoeff();
+    const double rounding = k_same_place * (size + p.cwiseAbs().sum()) * across.cwiseAbs().maxCoeff();
     return std::abs(value) <= rounding ? 0 : value;
   }
 };
@@ -35,8 +37,7 @@ class CellClip {
   CellClip(const Chart& chart, const Voronoi2d& diagram, Index face, Index site)
       : chart_(chart), diagram_(diagram), site_(site), cell_edges_(diagram.cell_edges(site)) {
     for (Index h = 3 * face; h < 3 * face + 3; ++h)
-      loop_.push_back({{CornerKey::Kind::vertex, chart.mesh().from(h), k_none}, chart.corners()[h], h, k_none});
-    for (Corner& corner : loop_) corner.line = corner.halfedge;
+      loop_.push_back({{CornerKey::Kind::vertex, chart.mesh().from(h), k_none}, chart.corners()[h], k_none, h});
   }
 
   /// What is left of the face; fewer than three corners where nothing is.
@@ -45,8 +46,7 @@ class CellClip {
     std::vector<PieceCorner> corners;
     for (const Corner& corner : loop_) {
       const bool is_side = corner.line < 0;
-      const Index halfedge = corner.key.kind == CornerKey::Kind::crossing ? corner.halfedge : k_none;
-      const PieceCorner next{corner.key, corner.place, halfedge, is_side ? cell_edges_[~corner.line] : k_none,
+      const PieceCorner next{corner.key, corner.place, corner.halfedge, is_side ? cell_edges_[~corner.line] : k_none,
                              is_side ? k_none : corner.line};
       if (!corners.empty() && corners.back().key == next.key) corners.pop_back();  // a side of no length goes
       corners.push_back(next);
@@ -59,7 +59,7 @@ class CellClip {
   struct Corner {
     CornerKey key;
     Vec2 place;
-    Index halfedge;  ///< that a crossing lies on
+    Index halfedge;  ///< of the face that the corner lies on; k_none for vertices, and inside
     Index line;      ///< what follows: a half-edge h of the face, or ~k for side k of the cell
   };
 
@@ -107,7 +107,15 @@ class CellClip {
     const Bisector side(diagram_.sites[left], diagram_.sites[right]);
     const double at_a = side.value(a), at_b = side.value(b);
     const double share = std::clamp(at_a / (at_a - at_b), 0.0, 1.0);
-    return {{CornerKey::Kind::crossing, edge_key(chart_, h), edge}, a + share * (b - a), h, 0};
+    const Vec2 place = a + share * (b - a);
+    for (const Index vertex :
+         diagram_.edges[edge]) {  // where edges meet on the mesh edge all of them end in one corner
+      if (vertex == k_none) continue;
+      const Vec2& end = diagram_.vertices[vertex];
+      const double same = k_same_place * (end.cwiseAbs().sum() + place.cwiseAbs().sum());
+      if ((end - place).cwiseAbs().maxCoeff() <= same) return {{CornerKey::Kind::branch, vertex, k_none}, place, h, 0};
+    }
+    return {{CornerKey::Kind::crossing, edge_key(chart_, h), edge}, place, h, 0};
   }
 
   const Chart& chart_;

@@ -20,7 +20,7 @@ struct CornerKey {
 struct PieceCorner {
   CornerKey key;
   Vec2 place;
-  Index halfedge;  ///< crossing: of the face; else k_none
+  Index halfedge;  ///< of the face that the corner lies on; k_none for mesh vertices, and inside
   Index side;      ///< the diagram's edge that follows the corner, k_none where a side of the face does
   Index line;      ///< else the half-edge
 };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <unordered_map>
 
 #include "saddleback/error.h"
@@ -29,7 +30,7 @@ Vec3 barycentric_of(const Chart& chart, Index face, const PieceCorner& corner) {
     const Triangle& t = chart.mesh().triangles()[face];
     return Vec3::Unit(std::find(t.begin(), t.end(), corner.key.a) - t.begin());
   }
-  if (corner.key.kind == CornerKey::Kind::branch) return point_at(chart, face, corner.place).barycentric;
+  if (corner.halfedge == k_none) return point_at(chart, face, corner.place).barycentric;
   const Vec2 &a = chart.corners()[corner.halfedge], &b = chart.corners()[Mesh::next(corner.halfedge)];
   const double share = std::clamp((corner.place - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
   Vec3 result = Vec3::Zero();
@@ -53,8 +54,6 @@ class Builder {
       if (!pieces.empty()) site = pieces[0].site;
       out_.face_cell[face] = site;
       const Vec2* corner = &chart_.corners()[3 * face];
-      for (Index h = 3 * face; h < 3 * face + 3; ++h)
-        add_edge_side(h, chart_.mesh().from(h), chart_.mesh().to(h), site);
       add_area(site, chart_.mesh().face_area(face), (corner[0] + corner[1] + corner[2]) / 3);
       return;
     }
@@ -80,10 +79,12 @@ class Builder {
     bool is_left;  ///< of the cell on the edge's left
     Index from, to;
   };
-  /// A side of a piece, or of a whole face, along a mesh edge.
+  /// A side of a piece, or of a whole face, along a mesh edge, in the direction of the half-edge that speaks for it.
   struct EdgeSide {
-    Index halfedge, from, to, site;  ///< `halfedge` speaks for the mesh edge
-    std::array<Index, 3> place() const { return {halfedge, std::min(from, to), std::max(from, to)}; }
+    Index halfedge;
+    bool is_right;  ///< of the face on the other side
+    double begin, end;
+    Index from, to, site;
   };
 
   void add_area(Index site, double area, const Vec2& middle) {
@@ -104,7 +105,8 @@ class Builder {
     for (Index i = 0; i < count; ++i) {
       const Index edge = piece.corners[i].side, from = vertex[i], to = vertex[(i + 1) % count];
       if (edge == k_none) {
-        add_edge_side(piece.corners[i].line, from, to, piece.site);
+        add_edge_side(piece.corners[i].line, piece.corners[i].place, piece.corners[(i + 1) % count].place, from, to,
+                      piece.site);
       } else if (diagram_.edge_sites[edge][0] == piece.site) {
         face_sides_.push_back({edge, true, from, to});
       } else {
@@ -119,30 +121,55 @@ class Builder {
     }
   }
 
-  void add_edge_side(Index h, Index from, Index to, Index site) {
-    if (chart_.is_joined(h)) edge_sides_.push_back({std::min(h, chart_.mesh().twin(h)), from, to, site});
+  void add_edge_side(Index h, const Vec2& begin, const Vec2& end, Index from, Index to, Index site) {
+    if (!chart_.is_joined(h)) return;
+    const Index twin = chart_.mesh().twin(h), speaker = std::min(h, twin);
+    const Vec2 &a = chart_.corners()[speaker], along = chart_.corners()[Mesh::next(speaker)] - a;
+    EdgeSide side{speaker, h != speaker, (begin - a).dot(along), (end - a).dot(along), from, to, site};
+    if (side.is_right) {
+      std::swap(side.begin, side.end);
+      std::swap(side.from, side.to);
+    }
+    edge_sides_.push_back(side);
   }
 
-  /// An edge of the diagram that lies on a mesh edge crosses no face: it is where the faces' cells differ.
+  /// An edge of the diagram that lies on a mesh edge crosses no face: it is where the cells on both sides differ.
   void find_edges_along_mesh_edges() {
     const Mesh& mesh = chart_.mesh();
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       const Index cell = out_.face_cell[Mesh::face_of(h)];
       if (cell == k_none || !chart_.is_joined(h) || out_.face_cell[Mesh::face_of(mesh.twin(h))] == cell) continue;
-      add_edge_side(h, mesh.from(h), mesh.to(h), cell);
+      add_edge_side(h, chart_.corners()[h], chart_.corners()[Mesh::next(h)], mesh.from(h), mesh.to(h), cell);
     }
     std::sort(edge_sides_.begin(), edge_sides_.end(), [](const EdgeSide& a, const EdgeSide& b) {
-      return std::pair(a.place(), a.from) < std::pair(b.place(), b.from);
+      return std::tie(a.halfedge, a.is_right, a.begin, a.end) < std::tie(b.halfedge, b.is_right, b.begin, b.end);
     });
-    for (std::size_t i = 0; i + 1 < edge_sides_.size(); ++i) {
-      const EdgeSide &a = edge_sides_[i], &b = edge_sides_[i + 1];
-      if (a.place() != b.place() || a.from == b.from || a.site == b.site) continue;
-      for (const Index edge : diagram_.cell_edges(a.site)) {
-        const auto [left, right] = diagram_.edge_sites[edge];
-        if ((left == a.site ? right : left) != b.site) continue;
-        const EdgeSide& side = left == a.site ? a : b;
-        add_segment(edge, side.from, side.to);
-      }
+    for (std::size_t begin = 0, end = 0; begin < edge_sides_.size(); begin = end) {
+      std::size_t right = begin;
+      while (end < edge_sides_.size() && edge_sides_[end].halfedge == edge_sides_[begin].halfedge)
+        right += !edge_sides_[end++].is_right;
+      compare_sides(begin, right, end);
+    }
+  }
+
+  /// Sides [left, right) of one face and [right, end) of the other, each in order along the mesh edge.
+  void compare_sides(std::size_t left, std::size_t right, std::size_t end) {
+    for (std::size_t i = left, j = right; i < right && j < end;) {
+      const EdgeSide &a = edge_sides_[i], &b = edge_sides_[j];
+      const Index from = a.begin >= b.begin ? a.from : b.from, to = a.end <= b.end ? a.to : b.to;
+      if (a.site != b.site && from != to && std::max(a.begin, b.begin) < std::min(a.end, b.end))
+        add_edge_between(a.site, b.site, from, to);
+      const bool leaves_both = a.to == b.to;
+      if (leaves_both || a.end <= b.end) ++i;
+      if (leaves_both || b.end <= a.end) ++j;
+    }
+  }
+
+  void add_edge_between(Index left, Index right, Index from, Index to) {
+    for (const Index edge : diagram_.cell_edges(left)) {
+      const std::array<Index, 2>& sites = diagram_.edge_sites[edge];
+      if (sites == std::array{left, right}) add_segment(edge, from, to);
+      if (sites == std::array{right, left}) add_segment(edge, to, from);
     }
   }
 
