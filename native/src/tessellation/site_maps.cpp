@@ -223,9 +223,10 @@ SiteMaps::Place SiteMaps::place_after(Index node, Index previous, Scratch& scrat
   return {at, anchor_distance(before) + at.norm(), scratch.unfolded.end_angle + angle_between(step, at), before.anchor};
 }
 
-/// False where the lengths make no triangle, or the ray passes an end that is not nearly flat.
+/// False where the anchor is on the corner's own side of the edge, where the lengths make no triangle, or where the ray
+/// passes an end that is not nearly flat.
 bool SiteMaps::see(const Wedge& wedge, const Place& from, const Place& to, Sight& sight) {
-  if (from.anchor != to.anchor) return false;
+  if (from.anchor != to.anchor || cross(from.at, to.at) >= 0) return false;
   const double length = wedge.length, a = from.at.squaredNorm(), b = to.at.squaredNorm();
   // The edge runs along the x axis, the corner above, the anchor below.
   const double x = (a - b + length * length) / (2 * length), y = a - x * x;
