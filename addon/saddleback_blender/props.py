@@ -192,6 +192,13 @@ TESSELLATE: dict[str, Any] = {
     ),
     "make_dual": _switch("Dual Mesh", "Make a triangle mesh with one vertex for each cell: a remesh", False),
     "dual_policy": _choice("Policy", "What to do where cells are too large for a mesh", DUAL_POLICIES, "REPAIR"),
+    "make_shell": _switch(
+        "Lamp Shell", "Make the lines between cells into one closed solid that can be printed", False
+    ),
+    "rib_width": _length("Rib Width", "How wide the ribs of the lamp shell are, along the surface", 0.03, least=1e-6),
+    "rib_thickness": _length(
+        "Rib Thickness", "How thick the lamp shell is, half of it to either side of the surface", 0.03, least=1e-6
+    ),
     "cell_attribute": _name("Cell Attribute", "Where each vertex's cell is written", "saddleback_cell"),
     "distance_attribute": _name("Distance Attribute", "Where distances are written", "saddleback_distance"),
     "density_attribute": _name("Density Attribute", "Where the density used is written", "saddleback_density"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .results import Dual, Figures
+from .results import Dual, Figures, LampShell
 
 # Faults told one by one; of more only the number.
 MOST_TOLD = 3
@@ -31,3 +31,15 @@ def faults_of(dual: Dual) -> list[str]:
     rest = len(dual.issues) - MOST_TOLD
     more = f"; and {rest} more" if rest > 0 else ""
     return [f"The dual mesh has faults where cells are too large ({told}{more}): ask for more cells, or choose Repair"]
+
+
+def shell_faults_of(shell: LampShell) -> list[str]:
+    """Sentences about what a printer would stumble over."""
+    faults = []
+    if shell.pieces > 1:
+        faults.append(f"The lamp shell is in {shell.pieces} pieces: ask for more cells, or separate parts first")
+    if shell.crossing:
+        faults.append(
+            f"{shell.crossing} faces of the lamp shell pass through others: make it thinner, or repair the mesh"
+        )
+    return faults

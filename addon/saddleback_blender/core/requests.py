@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
@@ -79,6 +80,9 @@ def digest(*parts: object) -> str:
     return hashed.hexdigest()
 
 
+# Given vertices (n, 3) and triangles (m, 3): pairs (k, 2) of triangles that pass through each other.
+FindCrossings = Callable[[Reals, Indices], Indices]
+
 Points = NDArray[np.int32] | Reals  # vertices of the Blender mesh (n,), or places in the world (n, 3)
 
 
@@ -100,6 +104,7 @@ class TessellateRequest:
     sites: Points | None = None  # None: place `settings.count`
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only
+    find_crossings: FindCrossings | None = None  # for the lamp shell, which is not made without it
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,22 @@ class Dual:
 
 
 @dataclass(frozen=True)
+class LampShell:
+    """The ribs between cells as a solid: every edge has two triangles, all of them seen from outside."""
+
+    vertices: Reals  # (n, 3)
+    triangles: Indices  # (t, 3)
+    pieces: int  # so many that hang together
+    thinner: float  # share of the surface's vertices where there was no room for the whole thickness
+    crossing: int  # triangles that still pass through others; not 0 only where the surface itself does
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays."""
+        return _nbytes(self)
+
+
+@dataclass(frozen=True)
 class CellsResult:
     """Geodesic cells of a mesh of V vertices.
 
@@ -62,6 +78,7 @@ class CellsResult:
     iterations: int
     stop_reason: str
     dual: Dual | None = None  # where it was wanted
+    shell: LampShell | None = None  # where it was wanted
     figures: Figures | None = None  # None where the sites have no triangle
 
     @property

@@ -18,8 +18,10 @@ from .level_lines import LevelLines, isoline_levels, level_lines
 from .normals import normals_at
 from .progress import Progress
 from .requests import DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
-from .results import CellsResult, DistanceResult, Dual, Indices, Reals, RepairResult
+from .results import CellsResult, DistanceResult, Dual, Indices, LampShell, Reals, RepairResult
+from .rib_surface import rib_surface
 from .settings import DistanceSettings
+from .shell_solid import thicken
 from .surface_places import compact_points, surface_points
 
 
@@ -81,6 +83,8 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
     result = replace(result, figures=figures_of(dual, solved.normalised_energy))
     if settings.make_dual:
         result = replace(result, dual=dual)
+    if settings.make_shell and request.find_crossings is not None:
+        result = replace(result, shell=_shell(request, mesh, solved, key, progress, cache))
     progress.check()
     return result
 
@@ -213,6 +217,21 @@ def _result(request: TessellateRequest, solved: _Solved) -> CellsResult:
         iterations=solved.iterations,
         stop_reason=solved.stop_reason,
     )
+
+
+def _shell(
+    request: TessellateRequest, mesh: Any, solved: _Solved, key: tuple[str, ...], progress: Progress, cache: Cache
+) -> LampShell:
+    settings, find_crossings = request.settings, request.find_crossings
+    assert find_crossings is not None
+
+    def build() -> LampShell:
+        with progress.stage(0.99, "making the lamp shell"):
+            ribs = rib_surface(request.surface.name, mesh, solved.cells, settings.rib_width, progress)
+            return thicken(ribs, settings.rib_thickness, find_crossings, progress)
+
+    lengths = digest(settings.rib_width, settings.rib_thickness)
+    return cache.get(("shell", *key, lengths), build, lambda shell: shell.nbytes)
 
 
 def _blender_numbers(surface: Surface, origin: Indices) -> Indices:

@@ -38,6 +38,9 @@ class TessellateSettings:
     instance_scale: float = 1.0
     make_dual: bool = False
     dual_policy: str = "REPAIR"  # REPAIR, STRICT
+    make_shell: bool = False
+    rib_width: float = 0.03
+    rib_thickness: float = 0.03
     cell_attribute: str = "saddleback_cell"
     distance_attribute: str = "saddleback_distance"
     density_attribute: str = "saddleback_density"

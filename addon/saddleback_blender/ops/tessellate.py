@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from .. import prefs
+from ..bridge.crossings import find_crossings
 from ..bridge.density import read_density
 from ..bridge.mesh_in import mesh_of, read_surface
 from ..bridge.out_attributes import write_vertex_attributes
@@ -18,12 +19,13 @@ from ..bridge.out_centres import CENTRES_ROLE, write_centres
 from ..bridge.out_collection import find_output, remove_output
 from ..bridge.out_dual import DUAL_ROLE, write_dual
 from ..bridge.out_edges import EDGES_ROLE, write_edges
+from ..bridge.out_shell import SHELL_ROLE, write_shell
 from ..bridge.output_surface import check_attribute_names, output_surface
 from ..bridge.sites import read_sites
 from ..bridge.source import shared_mesh_warning
 from ..core import runs
 from ..core.errors import BadInputError
-from ..core.figures import faults_of, lines_of
+from ..core.figures import faults_of, lines_of, shell_faults_of
 from ..core.progress import Progress
 from ..core.requests import TessellateRequest
 from ..core.results import CellsResult
@@ -58,6 +60,7 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
                 sites=read_sites(context, source, mesh, settings),
                 threads=prefs.threads(context),
                 disk=prefs.disk_cache(context, settings.cache_on_disk),
+                find_crossings=find_crossings,
             )
         return partial(runs.tessellate, request)
 
@@ -78,6 +81,7 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
             (settings.make_cells, write_cells, CELLS_ROLE),
             (settings.make_centres, write_centres, CENTRES_ROLE),
             (settings.make_dual, write_dual, DUAL_ROLE),
+            (settings.make_shell, write_shell, SHELL_ROLE),
         )
         for wanted, write, role in outputs:
             if wanted:
@@ -90,8 +94,9 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
         return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(source)}{_added(result)}"
 
     def notes(self, result: CellsResult) -> list[str]:
-        """Where cells are too large for the mesh that was asked for."""
-        return [] if result.dual is None else faults_of(result.dual)
+        """What is wrong with the meshes that were made."""
+        dual = [] if result.dual is None else faults_of(result.dual)
+        return dual if result.shell is None else [*dual, *shell_faults_of(result.shell)]
 
     def figures(self, result: CellsResult) -> list[str]:
         """How even the cells are."""

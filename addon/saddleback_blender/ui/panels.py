@@ -190,6 +190,18 @@ class SADDLEBACK_PT_dual(SaddlebackOutputPanel, bpy.types.Panel):
         rows.draw_dual(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
 
 
+class SADDLEBACK_PT_shell(SaddlebackOutputPanel, bpy.types.Panel):
+    """Ribs between the cells, to be printed."""
+
+    bl_label = "Lamp Shell"
+    bl_options = {"DEFAULT_CLOSED"}
+    switch = "make_shell"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_shell(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+
+
 class SADDLEBACK_PT_attributes(SaddlebackSubPanel, bpy.types.Panel):
     """Names of what is written on the mesh."""
 
@@ -376,6 +388,7 @@ CLASSES = (
     SADDLEBACK_PT_cells,
     SADDLEBACK_PT_centres,
     SADDLEBACK_PT_dual,
+    SADDLEBACK_PT_shell,
     SADDLEBACK_PT_attributes,
     SADDLEBACK_PT_distance,
     SADDLEBACK_PT_isolines,

@@ -78,6 +78,13 @@ def draw_dual(layout: bpy.types.UILayout, settings: Any) -> None:
     layout.prop(settings, "dual_policy", text="Policy")
 
 
+def draw_shell(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The printable ribs."""
+    layout.active = settings.make_shell
+    layout.prop(settings, "rib_width", text="Width")
+    layout.prop(settings, "rib_thickness", text="Thickness")
+
+
 def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:
     """Names of what is written on the mesh itself."""
     layout.prop(settings, "cell_attribute", text="Cell")

@@ -1,0 +1,119 @@
+"""The ribs between cells and the solid made of them, without the search for crossings, which Blender lends."""
+
+import meshes_of_core as shapes
+import numpy as np
+import pytest
+
+import saddleback as sb
+from saddleback_blender.core import runs
+from saddleback_blender.core.errors import BadInputError
+from saddleback_blender.core.figures import shell_faults_of
+from saddleback_blender.core.requests import Surface, TessellateRequest
+from saddleback_blender.core.results import LampShell
+from saddleback_blender.core.rib_surface import rib_surface
+from saddleback_blender.core.settings import TessellateSettings
+from saddleback_blender.core.shell_solid import thicken
+from tests import synthetic_cells
+from tests.synthetic_cells import triangle_areas
+
+NONE = np.empty((0, 2), np.int32)
+
+
+def square_cells(n=8):
+    """The unit square, with sites that make the line x = 1/2 the only one between cells."""
+    surface = shapes.grid(n)
+    mesh = sb.Mesh(surface.vertices, surface.triangles)
+    graph = sb.SaddleVertexGraph(mesh, k=min(40, len(surface.vertices)))
+    sites = sb.project(mesh, np.array([[0.25, 0.5, 0.0], [0.75, 0.5, 0.0]]))
+    return mesh, sb.geodesic_voronoi(graph, sites)
+
+
+def ribs_of(mesh, cells, width):
+    return rib_surface("Shape", mesh, cells, width, runs.new_progress())
+
+
+def areas(ribs):
+    whole = triangle_areas(ribs.vertices, ribs.triangles)
+    return whole[ribs.is_rib].sum(), whole.sum()
+
+
+@pytest.mark.parametrize("n", [2, 8, 40])
+@pytest.mark.parametrize("width", [0.02, 0.1])
+def test_ribs_are_as_wide_as_asked_however_coarse_the_mesh_is(n, width):
+    rib, whole = areas(ribs_of(*square_cells(n), width))
+    # The border's rib is half as wide, since the rest would lie outside. Straight cuts across a corner take a little.
+    frame = 1 - (1 - width) ** 2
+    assert whole == pytest.approx(1, rel=1e-12)
+    assert rib == pytest.approx(frame + width * (1 - width), abs=8 * width**2 / 4)
+
+
+def test_edges_near_ribs_are_no_longer_than_half_a_rib_and_far_ones_stay():
+    mesh, cells = square_cells(4)
+    ribs = ribs_of(mesh, cells, 0.04)
+    sides = ribs.vertices[ribs.triangles] - np.roll(ribs.vertices[ribs.triangles], -1, axis=1)
+    longest = np.linalg.norm(sides, axis=2).max(axis=1)
+    assert longest[ribs.is_rib].max() <= 0.02 + 1e-12
+    assert longest.max() > 0.05
+
+
+def test_the_solid_is_closed_oriented_and_has_the_volume_of_the_ribs():
+    mesh, cells = square_cells()
+    ribs = ribs_of(mesh, cells, 0.1)
+    shell = thicken(ribs, 0.05, lambda vertices, triangles: NONE, runs.new_progress())
+    edges = np.stack([shell.triangles, np.roll(shell.triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+    ways, uses = np.unique(edges, axis=0, return_counts=True)
+    assert (uses == 1).all() and np.array_equal(ways, np.unique(edges[:, ::-1], axis=0))
+    a, b, c = (shell.vertices[shell.triangles[:, i]] for i in range(3))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+    assert volume == pytest.approx(0.05 * areas(ribs)[0], rel=1e-9)
+    assert (shell.pieces, shell.thinner, shell.crossing) == (1, 0.0, 0)
+
+
+def test_a_place_that_crosses_becomes_thinner_and_no_other():
+    mesh, cells = square_cells()
+    ribs = ribs_of(mesh, cells, 0.1)
+    asked = []
+
+    def crossings(vertices, triangles):
+        asked.append(vertices)
+        return NONE if len(asked) == 3 else np.array([[0, 1]], np.int32)
+
+    shell = thicken(ribs, 0.05, crossings, runs.new_progress())
+    height = np.unique(np.round(np.abs(shell.vertices[:, 2]), 9))
+    assert 0 < shell.thinner < 0.05 and shell.crossing == 0
+    np.testing.assert_allclose(height, [0.025 * 0.36, 0.025], atol=1e-9)
+
+
+def test_what_cannot_be_mended_is_told():
+    mesh, cells = square_cells()
+    always = np.array([[0, 1]], np.int32)
+    shell = thicken(ribs_of(mesh, cells, 0.1), 0.05, lambda vertices, triangles: always, runs.new_progress())
+    assert shell.crossing == 2 and np.isfinite(shell.vertices).all()
+    (told,) = shell_faults_of(shell)
+    assert "2 faces of the lamp shell pass through others" in told
+
+
+def test_pieces_are_counted():
+    vertices, triangles = synthetic_cells.sphere(3)
+    both = Surface(
+        "Two", np.concatenate([vertices, vertices + 5]), np.concatenate([triangles, triangles + len(vertices)]),
+        2 * len(vertices),
+    )  # fmt: skip
+    settings = TessellateSettings(count=20, iterations=2, k=30, make_shell=True, rib_width=0.2, rib_thickness=0.1)
+    request = TessellateRequest(both, settings, find_crossings=lambda vertices, triangles: NONE)
+    shell = runs.tessellate(request, runs.new_progress()).shell
+    assert shell.pieces == 2 and "2 pieces" in shell_faults_of(shell)[0]
+
+
+def test_without_lines_or_with_ribs_like_hairs_there_is_a_sentence():
+    vertices, triangles = synthetic_cells.sphere(2)
+    mesh = sb.Mesh(vertices, triangles)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=30), np.array([0], np.int32))
+    with pytest.raises(BadInputError, match="'Shape': there are no lines between cells"):
+        ribs_of(mesh, cells, 0.1)
+    with pytest.raises(BadInputError, match="'Shape': ribs of width 1e-06 are too narrow"):
+        ribs_of(*square_cells(), 1e-6)
+
+
+def test_a_sound_shell_has_nothing_to_tell():
+    assert shell_faults_of(LampShell(np.empty((0, 3)), np.empty((0, 3), np.int32), 1, 0.1, 0)) == []
