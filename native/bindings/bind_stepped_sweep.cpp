@@ -2,7 +2,7 @@
 
 #include "saddleback/stepped_sweep.h"
 
-#include "convert.h"
+#include "planar.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -12,19 +12,28 @@ using Edge = SteppedSweep::Edge;
 using Arc = SteppedSweep::Arc;
 
 SteppedSweep make(const py::object& sites, const py::object& centre, const py::object& weights) {
-  if (!weights.is_none()) throw InputError("weights: not supported yet");
-  const ArrayIn<double> in = as_points2(sites, "sites");
+  const std::vector<Vec2> points = as_points_2d(sites, "sites");
+  const std::vector<double> radii = as_weights(weights, points.size());
   const ArrayIn<double> middle = as_reals(centre, "centre", 2);
-  std::vector<Vec2> points(in.count);
-  for (Index i = 0; i < in.count; ++i) points[i] = {in.values[2 * i], in.values[2 * i + 1]};
-  return {points, {middle.values[0], middle.values[1]}};
+  return without_gil([&] { return SteppedSweep(points, {middle.values[0], middle.values[1]}, radii); });
+}
+
+SweepCircles make_circles(const py::object& sites, const py::object& centres, const py::object& weights) {
+  const std::vector<Vec2> points = as_points_2d(sites, "sites"), middles = as_points_2d(centres, "centres");
+  const std::vector<double> radii = as_weights(weights, points.size());
+  return without_gil([&] { return SweepCircles(points, middles, radii); });
+}
+
+Index as_circle(const SweepCircles& sweep, const py::object& circle) {
+  const Index k = as_integer(circle, "circle");
+  if (k < 0 || k >= sweep.count()) throw InputError(message("circle: wanted 0 to ", sweep.count() - 1, ", got ", k));
+  return k;
 }
 
 py::array point_array(const Vec2& point) { return to_array(std::vector<double>{point.x(), point.y()}); }
 
 // Columns of the edges: ends, sites, whether finished.
-py::tuple edge_arrays(const SteppedSweep& sweep) {
-  const std::vector<Edge> edges = sweep.edges();
+py::tuple edge_arrays(const std::vector<Edge>& edges) {
   const py::ssize_t count = static_cast<py::ssize_t>(edges.size());
   py::array_t<double> ends(std::vector<py::ssize_t>{count, 2, 2});
   py::array_t<Index> sites(std::vector<py::ssize_t>{count, 2});
@@ -40,16 +49,32 @@ py::tuple edge_arrays(const SteppedSweep& sweep) {
   return py::make_tuple(ends, sites, finished);
 }
 
+py::list arc_list(const std::vector<Arc>& arcs) {
+  py::list result;
+  for (const Arc& arc : arcs) result.append(py::make_tuple(arc.site, arc.begin, arc.end));
+  return result;
+}
+
+py::list line_list(std::vector<std::vector<Vec2>> lines) {
+  py::list result;
+  for (std::vector<Vec2>& line : lines) result.append(to_array(std::move(line)));
+  return result;
+}
+
 constexpr const char* k_doc = R"(A sweep circle, one event at a time, to be looked at.
 
 The same step computes `voronoi_2d`, from centres of its own choice. Positions are rounded, and so is the order of nearly
-simultaneous events.
+simultaneous events. With weights the events are told from the diagram; hidden sites have none, and a vertex of many
+cells is one event.
 
 Parameters
 ----------
 sites : (n, 2) float array
 centre : (2,) float array
     Anywhere: among the sites, outside, on one of them.
+weights : (n,) float array, optional
+    Radii of the sites. The circle touches a site sooner by its weight, at a radius below 0 when its disk holds the
+    centre.
 
 Raises
 ------
@@ -59,6 +84,30 @@ InputError
 Notes
 -----
 O(n log n) to make, O(1) expected for a step.)";
+
+constexpr const char* k_circles_doc = R"(Sweep circles that grow together, to be looked at.
+
+Each grows about its own centre until it has closed the cells of the sites nearest to it; one with an open cell among
+these goes on to the last vertex.
+
+Parameters
+----------
+sites : (n, 2) float array
+centres : (m, 2) float array
+weights : (n,) float array, optional
+    Radii of the sites.
+
+Raises
+------
+InputError
+    No centre, a coordinate that is not finite; what `voronoi_2d` refuses.
+
+Notes
+-----
+O(m n log n) to make, O(m) for a step.)";
+
+constexpr const char* k_edges_doc =
+    "(E, 2, 2) float64 ends, (E, 2) int32 sites, (E,) bool finished: the others grow at their end, or at both.";
 
 }  // namespace
 
@@ -70,7 +119,8 @@ void bind_stepped_sweep(py::module_& m) {
       .def_readonly("radius", &Event::radius, "Radius of the circle.")
       .def_property_readonly(
           "sites", [](const Event& e) { return to_array(std::vector<Index>(e.sites)); },
-          "(1,) int32 the site touched, or (3,) those about the vertex, counter-clockwise.")
+          "(1,) int32 the site touched, or those about the vertex, counter-clockwise: (3,), with weights or several "
+          "circles also more.")
       .def_property_readonly(
           "point", [](const Event& e) { return point_array(e.point); }, "(2,) float64: the site, or the vertex.")
       .def("__repr__", [](const Event& e) {
@@ -92,12 +142,7 @@ void bind_stepped_sweep(py::module_& m) {
       .def_property_readonly(
           "centre", [](const SteppedSweep& s) { return point_array(s.centre()); }, "(2,) float64.")
       .def_property_readonly(
-          "arcs",
-          [](const SteppedSweep& s) {
-            py::list result;
-            for (const Arc& arc : s.arcs()) result.append(py::make_tuple(arc.site, arc.begin, arc.end));
-            return result;
-          },
+          "arcs", [](const SteppedSweep& s) { return arc_list(s.arcs()); },
           "List of (site, begin, end): ellipse arcs and their directions from the centre, radians, counter-clockwise.")
       .def(
           "beach_curve",
@@ -106,10 +151,69 @@ void bind_stepped_sweep(py::module_& m) {
           },
           py::arg("samples"), "(samples, 2) float64: points in directions equally far apart; none before the start.")
       .def_property_readonly(
-          "edges", &edge_arrays,
-          "(E, 2, 2) float64 ends, (E, 2) int32 sites, (E,) bool finished: the others grow at their end, or at both.")
+          "edges", [](const SteppedSweep& s) { return edge_arrays(s.edges()); }, k_edges_doc)
+      .def(
+          "edge_polylines",
+          [](const SteppedSweep& s, const py::object& tolerance) {
+            return line_list(s.edge_polylines(as_real(tolerance, "tolerance")));
+          },
+          py::arg("tolerance"), "List of (k, 2) float64: points along each of `edges`, chords within a tolerance.")
       .def("__repr__",
            [](const SteppedSweep& s) { return message("<saddleback.SweepCircle, radius ", s.radius(), ">"); });
+  py::class_<SweepCircles>(m, "SweepCircles", py::module_local(), k_circles_doc)
+      .def(py::init(&make_circles), py::arg("sites"), py::arg("centres"), py::arg("weights") = py::none())
+      .def(
+          "step",
+          [](SweepCircles& s) -> py::object {
+            std::optional<SweepCircles::Event> next = s.step();
+            return next ? py::object(py::make_tuple(next->circle, std::move(next->event))) : py::none();
+          },
+          "Go on to the next event of any circle: (circle, event); None after the last.")
+      .def(
+          "grow", [](SweepCircles& s, const py::object& radius) { s.grow(as_real(radius, "radius")); },
+          py::arg("radius"), "Grow all circles to a radius, through all events; a smaller radius changes nothing.")
+      .def_property_readonly(
+          "centres",
+          [](const SweepCircles& s) { return to_array(std::vector(s.centres().begin(), s.centres().end())); },
+          "(m, 2) float64.")
+      .def_property_readonly(
+          "radii",
+          [](const SweepCircles& s) {
+            std::vector<double> radii;
+            for (Index k = 0; k < s.count(); ++k) radii.push_back(s.radius(k));
+            return to_array(std::move(radii));
+          },
+          "(m,) float64: where each circle is, or stopped; -inf for one to which no site is nearest.")
+      .def_property_readonly(
+          "done",
+          [](const SweepCircles& s) {
+            py::array_t<bool> done(s.count());
+            for (Index k = 0; k < s.count(); ++k) done.mutable_at(k) = s.is_done(k);
+            return done;
+          },
+          "(m,) bool: circles that have closed their cells.")
+      .def(
+          "arcs",
+          [](const SweepCircles& s, const py::object& circle) { return arc_list(s.arcs(as_circle(s, circle))); },
+          py::arg("circle"), "List of (site, begin, end), as of a SweepCircle.")
+      .def(
+          "beach_curve",
+          [](const SweepCircles& s, const py::object& circle, const py::object& samples) {
+            return to_array(s.beach_curve(as_circle(s, circle), as_integer(samples, "samples")));
+          },
+          py::arg("circle"), py::arg("samples"), "(samples, 2) float64, as of a SweepCircle.")
+      .def(
+          "edges",
+          [](const SweepCircles& s, const py::object& circle) { return edge_arrays(s.edges(as_circle(s, circle))); },
+          py::arg("circle"), k_edges_doc)
+      .def(
+          "edge_polylines",
+          [](const SweepCircles& s, const py::object& circle, const py::object& tolerance) {
+            return line_list(s.edge_polylines(as_circle(s, circle), as_real(tolerance, "tolerance")));
+          },
+          py::arg("circle"), py::arg("tolerance"), "List of (k, 2) float64: points along each of `edges`.")
+      .def("__repr__",
+           [](const SweepCircles& s) { return message("<saddleback.SweepCircles, ", s.count(), " of them>"); });
 }
 
 }  // namespace saddleback::bindings

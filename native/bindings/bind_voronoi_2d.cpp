@@ -7,13 +7,6 @@
 namespace saddleback::bindings {
 namespace {
 
-// None where there are none.
-std::vector<double> as_weights(const py::object& value, std::size_t site_count) {
-  if (value.is_none()) return {};
-  const ArrayIn<double> in = as_reals(value, "weights", static_cast<Index>(site_count));
-  return std::vector<double>(in.values.begin(), in.values.end());
-}
-
 /// The diagram and, if the caller gave a domain, its cells in there.
 struct Diagram {
   Voronoi2d result;

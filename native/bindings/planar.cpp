@@ -9,6 +9,12 @@ std::vector<Vec2> as_points_2d(const py::object& value, const char* name) {
   return sites;
 }
 
+std::vector<double> as_weights(const py::object& value, std::size_t site_count) {
+  if (value.is_none()) return {};
+  const ArrayIn<double> in = as_reals(value, "weights", static_cast<Index>(site_count));
+  return std::vector<double>(in.values.begin(), in.values.end());
+}
+
 PlanarDomain as_domain(const py::object& value, const char* name) {
   std::vector<std::vector<Vec2>> loops;
   const bool is_list = py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value);

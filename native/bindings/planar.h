@@ -13,6 +13,9 @@ namespace saddleback::bindings {
 /// An (n, 2) array.
 std::vector<Vec2> as_points_2d(const py::object& value, const char* name);
 
+/// An (n,) array, or None for none.
+std::vector<double> as_weights(const py::object& value, std::size_t site_count);
+
 /// An (m, 2) array, or a sequence of such: the outline and its holes.
 PlanarDomain as_domain(const py::object& value, const char* name);
 

@@ -1,5 +1,5 @@
 #pragma once
-// One sweep circle of the plane, event by event, to be looked at.
+// Sweep circles of the plane, event by event, to be looked at.
 
 #include <memory>
 #include <optional>
@@ -10,14 +10,19 @@
 
 namespace saddleback {
 
+namespace voronoi2d {
+class DiagramSweep;
+}
+
 /// The step that computes Voronoi diagrams, one event at a time and from any centre. Positions are rounded and so is
-/// the order of nearly simultaneous events; `voronoi_2d` gives the exact diagram.
+/// the order of nearly simultaneous events; `voronoi_2d` gives the exact diagram. With weights the events are told from
+/// that diagram; hidden sites have none, and a vertex of many cells is one event.
 class SteppedSweep {
  public:
   struct Event {
     bool is_touch;             ///< a site is touched; else an arc vanishes
-    double radius;             ///< of the circle
-    std::vector<Index> sites;  ///< the one touched, or the three whose vertex is found
+    double radius;             ///< of the circle; less than 0 for a site whose disk holds the centre
+    std::vector<Index> sites;  ///< the one touched, or the three (with weights: or more) whose vertex is found
     Vec2 point;                ///< the site, or the vertex
   };
   struct Arc {
@@ -30,8 +35,8 @@ class SteppedSweep {
     bool is_finished;  ///< else it still grows, at its end or at both
   };
 
-  /// \throw InputError as voronoi_2d does. O(n log n).
-  SteppedSweep(std::span<const Vec2> sites, const Vec2& centre);
+  /// With weights one for each site, or none. \throw InputError as voronoi_2d does. O(n log n).
+  SteppedSweep(std::span<const Vec2> sites, const Vec2& centre, std::span<const double> weights = {});
   ~SteppedSweep();  // NOLINT(performance-trivially-destructible): State is known in the .cpp only
   SteppedSweep(SteppedSweep&&) noexcept;
   SteppedSweep& operator=(SteppedSweep&&) noexcept;
@@ -49,6 +54,44 @@ class SteppedSweep {
   std::vector<Vec2> beach_curve(Index samples) const;
   /// Edges within the beach curve. O(sites touched).
   std::vector<Edge> edges() const;
+  /// Points along each of `edges`, whose chords are within a tolerance of it. O(sites touched + points).
+  std::vector<std::vector<Vec2>> edge_polylines(double tolerance) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Sweep circles that grow together, each about its centre, until it has closed the cells of the sites nearest to it;
+/// one with an open cell among these goes on to the last vertex.
+class SweepCircles {
+ public:
+  struct Event {
+    Index circle;
+    SteppedSweep::Event event;
+  };
+
+  /// \throw InputError as voronoi_2d does, and for no centre or one that is not finite. O(n log n) for each centre.
+  SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centres, std::span<const double> weights = {});
+  ~SweepCircles();  // NOLINT(performance-trivially-destructible): State is known in the .cpp only
+  SweepCircles(SweepCircles&&) noexcept;
+  SweepCircles& operator=(SweepCircles&&) noexcept;
+
+  /// Goes on to the next event of any circle; none after the last. O(centres).
+  std::optional<Event> step();
+  /// Grows all circles to a radius, through all events on the way; a smaller radius changes nothing.
+  void grow(double radius);
+
+  Index count() const;
+  std::span<const Vec2> centres() const;
+  /// That of all circles, or where this one stopped; minus infinity for one to which no site is nearest.
+  double radius(Index circle) const;
+  bool is_done(Index circle) const;
+  /// As those of SteppedSweep.
+  std::vector<SteppedSweep::Arc> arcs(Index circle) const;
+  std::vector<Vec2> beach_curve(Index circle, Index samples) const;
+  std::vector<SteppedSweep::Edge> edges(Index circle) const;
+  std::vector<std::vector<Vec2>> edge_polylines(Index circle, double tolerance) const;
 
  private:
   struct State;

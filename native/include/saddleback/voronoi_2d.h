@@ -88,8 +88,6 @@ struct Voronoi2d {
   /// (m) nearest site of each point, exactly; of equally near ones the smallest index. O(m + n) expected.
   /// \throw InputError for a point that is not finite, and without sites. Cancelled
   std::vector<Index> locate(std::span<const Vec2> points, int threads = 0, Job* job = nullptr) const;
-
- private:
   /// Sites of the cells that meet at a vertex, counter-clockwise, from the left of an edge that ends there.
   void sites_around(Index vertex, Index edge, std::vector<Index>& around) const;
 };

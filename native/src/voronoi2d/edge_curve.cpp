@@ -12,11 +12,6 @@ double weight_between(const Voronoi2d& diagram, Index left, Index right) {
   return diagram.weights.empty() ? 0 : diagram.weights[left] - diagram.weights[right];
 }
 
-Bisector bisector_of(const Voronoi2d& diagram, Index edge) {
-  const auto [left, right] = diagram.edge_sites[edge];
-  return {diagram.sites[left], diagram.sites[right], weight_between(diagram, left, right)};
-}
-
 // Halves and a largest component of 1 keep squares among the doubles.
 Vec2 direction_between(const Vec2& a, const Vec2& b) {
   Vec2 way = 0.5 * b - 0.5 * a;
@@ -27,6 +22,11 @@ Vec2 direction_between(const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
+Bisector edge_bisector(const Voronoi2d& diagram, Index edge) {
+  const auto [left, right] = diagram.edge_sites[edge];
+  return {diagram.sites[left], diagram.sites[right], weight_between(diagram, left, right)};
+}
+
 Bisector bisector_beside(const Voronoi2d& diagram, Index site, Index edge) {
   const auto [left, right] = diagram.edge_sites[edge];
   const Index other = left == site ? right : left;
@@ -34,7 +34,7 @@ Bisector bisector_beside(const Voronoi2d& diagram, Index site, Index edge) {
 }
 
 void add_edge_points(const Voronoi2d& diagram, Index edge, double tolerance, double extent, std::vector<Vec2>& points) {
-  const Bisector curve = bisector_of(diagram, edge);
+  const Bisector curve = edge_bisector(diagram, edge);
   const auto [first, second] = diagram.edges[edge];
   const double from =
       first == k_none ? curve.parameter_beyond(0, false, extent) : curve.parameter(diagram.vertices[first]);
@@ -57,7 +57,7 @@ std::vector<Vec2> Voronoi2d::edge_directions() const {
     const auto [first, second] = edges[edge];
     const bool is_curved = !weights.empty();
     if (is_curved && first != k_none && second == k_none) {
-      result.push_back(bisector_of(*this, static_cast<Index>(edge)).end_direction(true));
+      result.push_back(edge_bisector(*this, static_cast<Index>(edge)).end_direction(true));
     } else if (is_curved && first != k_none && vertices[first] != vertices[second]) {
       result.push_back(direction_between(vertices[first], vertices[second]));
     } else {

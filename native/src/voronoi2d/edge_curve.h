@@ -7,6 +7,9 @@
 
 namespace saddleback::voronoi2d {
 
+/// The curve of an edge, from its first to its second vertex.
+Bisector edge_bisector(const Voronoi2d& diagram, Index edge);
+
 /// The curve of one of a cell's edges, counter-clockwise about its site, in coordinates that count from the site.
 Bisector bisector_beside(const Voronoi2d& diagram, Index site, Index edge);
 

@@ -13,6 +13,7 @@
 #include "saddleback/job.h"
 
 #include "voronoi2d/circumcentre.h"
+#include "voronoi2d/diagram_sweep.h"
 #include "voronoi2d/planar_mesh.h"
 #include "voronoi2d/site_order.h"
 #include "voronoi2d/sweep_step.h"
@@ -21,7 +22,21 @@ namespace saddleback {
 
 using namespace voronoi2d;
 
+namespace {
+
+/// The sweep of weighted sites.
+struct WeightedSweep {
+  Voronoi2d diagram;
+  DiagramSweep sweep;
+  std::size_t next = 0;  ///< event
+  WeightedSweep(std::span<const Vec2> sites, const Vec2& centre, std::span<const double> weights)
+      : diagram(weighted_diagram(sites, weights)), sweep(diagram, centre) {}
+};
+
+}  // namespace
+
 struct SteppedSweep::State {
+  std::unique_ptr<WeightedSweep> weighted;  ///< then only `centre` and `radius` are used of the rest
   OrderedSites ordered;
   std::vector<double> x, y, radii;  ///< from near to far
   std::vector<Index> original;
@@ -101,12 +116,19 @@ void SteppedSweep::State::start_sweep() {
            .twins = twins.data()};
 }
 
-SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& centre) : state_(std::make_unique<State>()) {
+SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& centre, std::span<const double> weights)
+    : state_(std::make_unique<State>()) {
   if (!centre.allFinite())
     throw InputError(message("centre: wanted finite numbers, got (", centre.x(), ", ", centre.y(), ")"));
   State& s = *state_;
-  s.ordered = order_sites(sites, {});
   s.centre = centre;
+  if (!weights.empty()) {
+    s.weighted = std::make_unique<WeightedSweep>(sites, centre, weights);
+    const auto& events = s.weighted->sweep.events();
+    if (!events.empty()) s.radius = std::min(0.0, events[0].radius);
+    return;
+  }
+  s.ordered = order_sites(sites, {});
   s.sweep.centre_x = centre.x() * s.ordered.scale;
   s.sweep.centre_y = centre.y() * s.ordered.scale;
   s.sort_sites({s.sweep.centre_x, s.sweep.centre_y});
@@ -122,6 +144,13 @@ const Vec2& SteppedSweep::centre() const { return state_->centre; }
 
 std::optional<SteppedSweep::Event> SteppedSweep::step() {
   State& s = *state_;
+  if (s.weighted) {
+    const auto& events = s.weighted->sweep.events();
+    if (s.weighted->next == events.size()) return std::nullopt;
+    const Event& event = events[s.weighted->next++];
+    s.radius = std::max(s.radius, event.radius);
+    return event;
+  }
   const Index count = static_cast<Index>(s.x.size());
   const bool is_started = s.touched >= std::max<Index>(1, s.nearest < 3 ? 1 : s.nearest);
   const double next_touch = s.touched < count ? s.radii[s.touched] : k_latest;
@@ -153,6 +182,13 @@ void SteppedSweep::grow(double radius) {
   if (!std::isfinite(radius) || radius < 0)
     throw InputError(message("radius: wanted a finite number, 0 or more, got ", radius));
   State& s = *state_;
+  if (s.weighted) {
+    const auto& events = s.weighted->sweep.events();
+    std::size_t& next = s.weighted->next;
+    while (next < events.size() && events[next].radius <= radius) ++next;
+    s.radius = std::max(s.radius, radius);
+    return;
+  }
   const double scaled = radius * s.ordered.scale;
   while (true) {
     const bool may_vanish = s.touched > 0 && (s.nearest < 3 || s.touched >= s.nearest);
@@ -192,6 +228,7 @@ double SteppedSweep::State::breakpoint(const voronoi2d::Arc& arc) const {
 
 std::vector<SteppedSweep::Arc> SteppedSweep::arcs() const {
   const State& s = *state_;
+  if (s.weighted) return s.weighted->sweep.arcs(s.radius);
   constexpr double k_turn = 2 * std::numbers::pi;
   std::vector<Arc> result;
   s.for_each_arc([&](const voronoi2d::Arc& arc) {
@@ -210,6 +247,7 @@ std::vector<SteppedSweep::Arc> SteppedSweep::arcs() const {
 std::vector<Vec2> SteppedSweep::beach_curve(Index samples) const {
   if (samples < 1) throw InputError(message("samples: wanted 1 or more, got ", samples));
   const State& s = *state_;
+  if (s.weighted) return s.weighted->sweep.beach_curve(s.radius, samples);
   std::vector<Index> sites;
   s.for_each_arc([&](const voronoi2d::Arc& arc) { sites.push_back(arc.site); });
   std::vector<Vec2> result;
@@ -235,6 +273,7 @@ Vec2 SteppedSweep::State::vertex(Index triangle) const {
 
 std::vector<SteppedSweep::Edge> SteppedSweep::edges() const {
   const State& s = *state_;
+  if (s.weighted) return s.weighted->sweep.edges(s.radius);
   std::vector<Edge> result;
   for (Index half = 0; half < 4 * s.sweep.triangle_count; ++half) {
     if ((half & 3) == 3 || s.twins[half] < half) continue;
@@ -257,6 +296,14 @@ std::vector<SteppedSweep::Edge> SteppedSweep::edges() const {
       result.push_back({tip(s.sweep.arcs[~arc.edge]), tip(arc), pair, false});
     }
   });
+  return result;
+}
+
+std::vector<std::vector<Vec2>> SteppedSweep::edge_polylines(double tolerance) const {
+  if (!(tolerance > 0)) throw InputError(message("tolerance: wanted a positive length, got ", tolerance));
+  if (state_->weighted) return state_->weighted->sweep.polylines(state_->radius, tolerance);
+  std::vector<std::vector<Vec2>> result;
+  for (const Edge& edge : edges()) result.push_back({edge.begin, edge.end});
   return result;
 }
 

@@ -1,0 +1,114 @@
+// Several circles over one diagram.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saddleback/error.h"
+#include "saddleback/stepped_sweep.h"
+#include "saddleback/voronoi_2d.h"
+
+#include "voronoi2d/diagram_sweep.h"
+
+namespace saddleback {
+
+using voronoi2d::DiagramSweep;
+
+struct SweepCircles::State {
+  struct Circle {
+    DiagramSweep sweep;
+    double stop;           ///< radius
+    std::size_t next = 0;  ///< event
+    bool is_done() const { return next == sweep.events().size() || sweep.events()[next].radius > stop; }
+    double next_radius() const { return sweep.events()[next].radius; }
+  };
+
+  Voronoi2d diagram;
+  std::vector<Vec2> centres;
+  std::vector<Circle> circles;
+  double radius = 0;
+
+  void add_circles();
+  Index soonest() const;
+  double radius_of(const Circle& circle) const { return std::min(radius, circle.stop); }
+};
+
+void SweepCircles::State::add_circles() {
+  for (const Vec2& centre : centres)
+    circles.push_back({DiagramSweep(diagram, centre), -std::numeric_limits<double>::infinity()});
+  for (const Index site : diagram.cell_sites) {
+    const auto distance = [&](const Vec2& centre) { return (centre - diagram.sites[site]).squaredNorm(); };
+    const auto nearest = std::min_element(centres.begin(), centres.end(),
+                                          [&](const Vec2& a, const Vec2& b) { return distance(a) < distance(b); });
+    Circle& circle = circles[nearest - centres.begin()];
+    circle.stop = std::max(circle.stop, circle.sweep.last_radius(site));
+  }
+  for (const Circle& circle : circles)
+    if (!circle.is_done()) radius = std::min(radius, circle.next_radius());
+}
+
+/// The circle with the next event, or k_none.
+Index SweepCircles::State::soonest() const {
+  Index best = k_none;
+  for (std::size_t k = 0; k < circles.size(); ++k)
+    if (!circles[k].is_done() && (best == k_none || circles[k].next_radius() < circles[best].next_radius()))
+      best = static_cast<Index>(k);
+  return best;
+}
+
+SweepCircles::SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centres, std::span<const double> weights)
+    : state_(std::make_unique<State>()) {
+  if (centres.empty()) throw InputError("centres: wanted one or more, got none");
+  for (std::size_t k = 0; k < centres.size(); ++k)
+    if (!centres[k].allFinite())
+      throw InputError(
+          message("centres: centre ", k, " is (", centres[k].x(), ", ", centres[k].y(), "), wanted finite numbers"));
+  state_->diagram = voronoi2d::weighted_diagram(sites, weights);
+  state_->centres.assign(centres.begin(), centres.end());
+  state_->add_circles();
+}
+
+SweepCircles::~SweepCircles() = default;
+SweepCircles::SweepCircles(SweepCircles&&) noexcept = default;
+SweepCircles& SweepCircles::operator=(SweepCircles&&) noexcept = default;
+
+std::optional<SweepCircles::Event> SweepCircles::step() {
+  const Index soonest = state_->soonest();
+  if (soonest == k_none) return std::nullopt;
+  State::Circle& circle = state_->circles[soonest];
+  const SteppedSweep::Event& event = circle.sweep.events()[circle.next++];
+  state_->radius = std::max(state_->radius, event.radius);
+  return Event{soonest, event};
+}
+
+void SweepCircles::grow(double radius) {
+  if (!std::isfinite(radius)) throw InputError(message("radius: wanted a finite number, got ", radius));
+  for (State::Circle& circle : state_->circles)
+    while (!circle.is_done() && circle.next_radius() <= radius) ++circle.next;
+  state_->radius = std::max(state_->radius, radius);
+}
+
+Index SweepCircles::count() const { return static_cast<Index>(state_->circles.size()); }
+std::span<const Vec2> SweepCircles::centres() const { return state_->centres; }
+double SweepCircles::radius(Index circle) const { return state_->radius_of(state_->circles[circle]); }
+bool SweepCircles::is_done(Index circle) const { return state_->circles[circle].is_done(); }
+
+std::vector<SteppedSweep::Arc> SweepCircles::arcs(Index circle) const {
+  return state_->circles[circle].sweep.arcs(radius(circle));
+}
+
+std::vector<Vec2> SweepCircles::beach_curve(Index circle, Index samples) const {
+  if (samples < 1) throw InputError(message("samples: wanted 1 or more, got ", samples));
+  return state_->circles[circle].sweep.beach_curve(radius(circle), samples);
+}
+
+std::vector<SteppedSweep::Edge> SweepCircles::edges(Index circle) const {
+  return state_->circles[circle].sweep.edges(radius(circle));
+}
+
+std::vector<std::vector<Vec2>> SweepCircles::edge_polylines(Index circle, double tolerance) const {
+  if (!(tolerance > 0)) throw InputError(message("tolerance: wanted a positive length, got ", tolerance));
+  return state_->circles[circle].sweep.polylines(radius(circle), tolerance);
+}
+
+}  // namespace saddleback
