@@ -27,7 +27,8 @@ class DirectionField {
  public:
   /// `angles`: per face, radians in its FaceChart. `turns`: per half-edge, by how much the field turns besides the
   /// Levi-Civita transport where it crosses from its face to the twin's, opposite for the twin, 0 on the boundary.
-  DirectionField(const Mesh& mesh, int symmetry, std::vector<double> angles, std::vector<double> turns);
+  DirectionField(const Mesh& mesh, int symmetry, std::vector<double> angles, std::vector<double> turns,
+                 const JobStage& stage = {});
 
   const Mesh& mesh() const { return *mesh_; }
   int symmetry() const { return symmetry_; }

@@ -20,14 +20,17 @@ constexpr double k_turn = 2 * std::numbers::pi;
 
 }  // namespace
 
-DirectionField::DirectionField(const Mesh& mesh, int symmetry, std::vector<double> angles, std::vector<double> turns)
+DirectionField::DirectionField(const Mesh& mesh, int symmetry, std::vector<double> angles, std::vector<double> turns,
+                               const JobStage& stage)
     : mesh_(&mesh),
       symmetry_(symmetry),
       angles_(std::move(angles)),
       turns_(std::move(turns)),
       along_(mesh.halfedge_count()),
       before_(mesh.halfedge_count()) {
+  stage.check();
   const FilledSurface filled(mesh);
+  stage.check();
   std::vector<double> sums = filled.curvature;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (mesh.twin(h) == k_none) continue;
@@ -40,7 +43,10 @@ DirectionField::DirectionField(const Mesh& mesh, int symmetry, std::vector<doubl
       singularities_.push_back({v, units_of(filled.node_of[v])});
   for (const Index node : filled.loop_nodes) loop_units_.push_back(units_of(node) - symmetry);
   std::vector<double> differences;
-  for (Index v = 0; v < mesh.vertex_count(); ++v) measure_fan(v, differences);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (v % 16384 == 0) stage.check();
+    measure_fan(v, differences);
+  }
 }
 
 Index DirectionField::units_at(Index vertex) const {

@@ -54,8 +54,9 @@ std::vector<double> integrate(const Mesh& mesh, const SurfaceConnection& connect
 }
 
 /// Powers of directions that curvature asks for, their sizes the stiffness that they deserve.
-std::vector<Complex> curvature_powers(const Mesh& mesh, int symmetry, double weight) {
-  const std::vector<FaceBending> bending = bending_of_faces(mesh, shape_operator(mesh));
+std::vector<Complex> curvature_powers(const Mesh& mesh, int symmetry, double weight, const JobStage& stage) {
+  const std::vector<FaceBending> bending = bending_of_faces(mesh, shape_operator(mesh, stage));
+  stage.check();
   std::vector<Complex> result(mesh.face_count());
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Complex& difference = bending[f].difference;
@@ -68,23 +69,19 @@ std::vector<Complex> curvature_powers(const Mesh& mesh, int symmetry, double wei
 }  // namespace
 
 struct DirectionFieldEditor::Kept {
-  Kept(const Mesh& its_mesh, int its_symmetry)
-      : mesh(its_mesh),
-        symmetry(its_symmetry),
-        connection(surface_connection(its_mesh)),
-        filled(its_mesh),
-        loops(dual_loops(its_mesh, filled)) {}
+  Kept(const Mesh& its_mesh, int its_symmetry) : mesh(its_mesh), symmetry(its_symmetry) {}
 
   const Mesh& mesh;
   const int symmetry;
-  const SurfaceConnection connection;
-  const FilledSurface filled;
-  const DualLoops loops;
+  SurfaceConnection connection;
+  std::unique_ptr<FilledSurface> filled;  // made, as connection and loops, by the first call
+  DualLoops loops;
   std::unique_ptr<TrivialConnection> trivial;
   // The last trivial connection and what strokes turned it by.
   std::vector<Index> units;
   std::vector<double> angles, turns, shift;  // shift: over vertices
 
+  void prepare(const JobStage& stage);
   DirectionField designed(const DirectionFieldOptions& options, const JobStage& stage);
   DirectionField automatic(const DirectionFieldOptions& options, const JobStage& stage);
 
@@ -95,12 +92,23 @@ struct DirectionFieldEditor::Kept {
   std::vector<double> best_constants(const std::vector<Complex>& wanted) const;
 };
 
+void DirectionFieldEditor::Kept::prepare(const JobStage& stage) {
+  if (filled) return;
+  connection = surface_connection(mesh, stage);
+  auto made = std::make_unique<FilledSurface>(mesh);
+  stage.check();
+  loops = dual_loops(mesh, *made);
+  stage.check();
+  filled = std::move(made);
+}
+
 void DirectionFieldEditor::Kept::connect(const DirectionFieldOptions& options, const JobStage& stage) {
-  if (!trivial) trivial = std::make_unique<TrivialConnection>(mesh, connection, filled, loops, stage.part(0, 0.2));
-  std::vector<Index> wanted = prescribed_units(mesh, filled, symmetry, options, *trivial, stage.part(0.2, 0.3));
+  if (!trivial) trivial = std::make_unique<TrivialConnection>(mesh, connection, *filled, loops, stage.part(0, 0.2));
+  std::vector<Index> wanted = prescribed_units(mesh, *filled, symmetry, options, *trivial, stage.part(0.2, 0.3));
   if (wanted == units) return;
   units.clear();
   turns = trivial->turns(wanted, symmetry, stage.part(0.3, 1));
+  stage.check();
   angles = integrate(mesh, connection, loops, symmetry, turns);
   shift.clear();
   units = std::move(wanted);
@@ -120,7 +128,7 @@ std::vector<double> DirectionFieldEditor::Kept::best_constants(const std::vector
 std::vector<double> DirectionFieldEditor::Kept::turn_onto_curvature(const FaceSprings<double>& springs,
                                                                     std::vector<double> turned, double weight,
                                                                     const JobStage& stage) const {
-  const std::vector<Complex> wanted = curvature_powers(mesh, symmetry, weight);
+  const std::vector<Complex> wanted = curvature_powers(mesh, symmetry, weight, stage);
   std::vector<double> vertices;
   if (turned.empty()) turned = best_constants(wanted);
   for (int round = 0; round < k_curvature_rounds; ++round) {
@@ -144,17 +152,19 @@ DirectionField DirectionFieldEditor::Kept::designed(const DirectionFieldOptions&
   const bool along_boundary = options.align == FieldAlignment::boundary;
   const bool along_curvature = options.align == FieldAlignment::curvature;
   const std::vector<StrokeFaces> strokes = stroke_faces(mesh, symmetry, options.strokes, along_boundary);
-  connect(options, stage.part(0, 0.4));
+  connect(options, stage.part(0, 0.6));
 
   std::vector<double> turned_angles = angles, turned_turns = turns;
   std::vector<bool> fixed(mesh.face_count(), false);
   if (!strokes.empty() || along_curvature) {
     const FaceSprings<double> springs = turning_springs(mesh, symmetry, angles, strokes);
+    stage.check();
     std::vector<double> turned;
     if (!strokes.empty())
-      turned = relax_angles(mesh, connection, springs, shift, k_stroke_accuracy, stage.part(0.4, 0.7));
+      turned = relax_angles(mesh, connection, springs, shift, k_stroke_accuracy,
+                            stage.part(0.6, along_curvature ? 0.75 : 0.95));
     if (along_curvature)
-      turned = turn_onto_curvature(springs, std::move(turned), options.align_weight, stage.part(0.7, 1));
+      turned = turn_onto_curvature(springs, std::move(turned), options.align_weight, stage.part(0.75, 0.95));
     for (Index f = 0; f < mesh.face_count(); ++f) {
       turned_angles[f] += turned[f];
       fixed[f] = springs.stiffness[f] == k_fixed;
@@ -162,9 +172,10 @@ DirectionField DirectionFieldEditor::Kept::designed(const DirectionFieldOptions&
         if (mesh.twin(h) != k_none) turned_turns[h] += turned[Mesh::face_of(mesh.twin(h))] - turned[f];
     }
   }
+  stage.check();
   untangle_turns(mesh, symmetry, fixed, turned_angles, turned_turns);
   for (double& angle : turned_angles) angle = std::remainder(angle, k_turn);
-  return {mesh, symmetry, std::move(turned_angles), std::move(turned_turns)};
+  return {mesh, symmetry, std::move(turned_angles), std::move(turned_turns), stage};
 }
 
 DirectionField DirectionFieldEditor::Kept::automatic(const DirectionFieldOptions& options, const JobStage& stage) {
@@ -172,7 +183,7 @@ DirectionField DirectionFieldEditor::Kept::automatic(const DirectionFieldOptions
       stroke_faces(mesh, symmetry, options.strokes, options.align == FieldAlignment::boundary);
   FaceSprings<Complex> springs = power_springs(mesh, symmetry, strokes);
   if (options.align == FieldAlignment::curvature) {
-    const std::vector<Complex> wanted = curvature_powers(mesh, symmetry, options.align_weight);
+    const std::vector<Complex> wanted = curvature_powers(mesh, symmetry, options.align_weight, stage);
     for (Index f = 0; f < mesh.face_count(); ++f) {
       const double stiffness = std::abs(wanted[f]), both = stiffness + springs.stiffness[f];
       if (stiffness == 0 || both == k_fixed) continue;
@@ -210,7 +221,7 @@ DirectionField DirectionFieldEditor::Kept::automatic(const DirectionFieldOptions
     turned[h] = std::remainder(own[g] - own[f] - connection.transport[h], k_turn / symmetry);
     turned[mesh.twin(h)] = -turned[h];
   }
-  return {mesh, symmetry, std::move(own), std::move(turned)};
+  return {mesh, symmetry, std::move(own), std::move(turned), stage};
 }
 
 DirectionFieldEditor::DirectionFieldEditor(const Mesh& mesh, int symmetry) {
@@ -225,6 +236,7 @@ DirectionFieldEditor& DirectionFieldEditor::operator=(DirectionFieldEditor&&) no
 DirectionField DirectionFieldEditor::field(const DirectionFieldOptions& options, Job* job) {
   const JobStage stage(job, "Turning directions");
   check_options(options, kept_->symmetry);
+  kept_->prepare(stage);
   return options.singularities ? kept_->designed(options, stage) : kept_->automatic(options, stage);
 }
 

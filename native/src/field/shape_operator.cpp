@@ -61,10 +61,11 @@ Mat3 tangential(const Mat3& value, const Vec3& normal) {
 
 }  // namespace
 
-ShapeOperator shape_operator(const Mesh& mesh) {
+ShapeOperator shape_operator(const Mesh& mesh, const JobStage& stage) {
   ShapeOperator result{vertex_normals(mesh), std::vector<Mat3>(mesh.vertex_count(), Mat3::Zero())};
   std::vector<double> areas(mesh.vertex_count(), 0.0);
   for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (f % 16384 == 0) stage.check();
     const auto axes = face_axes(mesh, f);
     const Mat3 value = axes * operator_of_face(mesh, f, axes, result.normals) * axes.transpose();
     for (const Index v : mesh.triangles()[f]) {

@@ -4,6 +4,7 @@
 #include <complex>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/mesh.h"
 
 namespace saddleback {
@@ -14,7 +15,8 @@ struct ShapeOperator {
   std::vector<Vec3> normals;    ///< per vertex, unit
   std::vector<Mat3> operators;  ///< per vertex, symmetric, in space; zero along the normal
 };
-ShapeOperator shape_operator(const Mesh& mesh);
+/// \throw Cancelled.
+ShapeOperator shape_operator(const Mesh& mesh, const JobStage& stage = {});
 
 /// Of a face, the mean of its corners' operators in its plane.
 struct FaceBending {

@@ -62,7 +62,7 @@ std::vector<double> spread_harmonic(const Mesh& mesh, const SurfacePoints& place
     }
   }
   SpringSystem<double> system =
-      spring_system(vertex_graph(mesh, surface_connection(mesh)), held.stiffness, held.target);
+      spring_system(vertex_graph(mesh, surface_connection(mesh, stage)), held.stiffness, held.target);
   const MultigridSolver<double> solver(std::move(system.matrix), stage.part(0, 0.2));
   return solver.solve(system.right, {}, k_accuracy, stage.part(0.2, 1));
 }
@@ -77,7 +77,8 @@ class Splines {
       for (const Index v : mesh.triangles()[f]) areas_[v] += mesh.face_area(f) / 3;
       component_areas_[mesh.component_of(mesh.triangles()[f][0])] += mesh.face_area(f);
     }
-    GraphMatrix<double> laplacian = graph_laplacian(mesh.vertex_count(), vertex_graph(mesh, surface_connection(mesh)));
+    GraphMatrix<double> laplacian =
+        graph_laplacian(mesh.vertex_count(), vertex_graph(mesh, surface_connection(mesh, stage)));
     std::vector<bool> is_held(mesh.component_count(), false);
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
       if (!is_held[mesh.component_of(v)]) laplacian.diagonal[v] += 1;

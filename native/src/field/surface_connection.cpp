@@ -22,10 +22,11 @@ double chart_angle(const Mesh& mesh, Index h) {
   return h % 3 == 1 ? std::numbers::pi - mesh.corner_angle(first + 1) : std::numbers::pi + mesh.corner_angle(first);
 }
 
-SurfaceConnection surface_connection(const Mesh& mesh) {
+SurfaceConnection surface_connection(const Mesh& mesh, const JobStage& stage) {
   SurfaceConnection result{std::vector<double>(mesh.halfedge_count(), 0.0),
                            std::vector<double>(mesh.halfedge_count(), 1.0)};
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (h % 65536 == 0) stage.check();
     const Index twin = mesh.twin(h);
     if (twin == k_none || twin < h) continue;
     const double turn = chart_angle(mesh, twin) + std::numbers::pi - chart_angle(mesh, h);

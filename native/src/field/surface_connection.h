@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/mesh.h"
 
 namespace saddleback {
@@ -22,7 +23,7 @@ struct SurfaceConnection {
 /// Slivers and obtuse pairs would make single edges take all turning, or none; well-shaped meshes never come near.
 inline constexpr double k_weight_range = 50;
 
-/// O(F).
-SurfaceConnection surface_connection(const Mesh& mesh);
+/// O(F). \throw Cancelled.
+SurfaceConnection surface_connection(const Mesh& mesh, const JobStage& stage = {});
 
 }  // namespace saddleback
