@@ -74,27 +74,42 @@ std::vector<Index> inside_in_order(const SaddleVertexGraph& graph, std::span<con
 
 void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles,
                            DirectFans& fans, const JobStage& stage) {
+  if (graph.is_exact()) return find_exactly(graph, points, fans, stage);
   for (std::size_t i = 0; i < points.size();) {
     batch_.clear();
     std::size_t end = i;
     for (; end < points.size() && batch_.size() < k_batch; ++end)
       if (!is_vertex(graph.mesh(), points[end])) batch_.push_back(end);
-    const bool together = !graph.is_exact() && see(graph, points, batch_, stage);
+    const bool together = see(graph, points, batch_, stage);
     for (int lane = 0; i < end; ++i) {
-      stage.check();
       if (lane < std::ssize(batch_) && batch_[lane] == i) {
-        if (graph.is_exact()) {
-          append_arcs(graph, points[i], fans.arcs);
-        } else {
-          // So many windows that all were stopped: alone each may need fewer.
-          if (!together) see(graph, points, Batch(batch_).subspan(lane, 1), stage);
-          append_arcs(graph, together ? lane : 0, angles, fans.arcs);
-        }
+        // So many windows that all were stopped: alone each may need fewer.
+        if (!together) see(graph, points, Batch(batch_).subspan(lane, 1), stage);
+        append_arcs(graph, together ? lane : 0, angles, fans.arcs);
         ++lane;
       }
       fans.offsets.push_back(std::ssize(fans.arcs));
     }
   }
+}
+
+/// One by one, in order of distance.
+void DirectFanFinder::find_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
+                                   DirectFans& fans, const JobStage& stage) {
+  if (!propagator_) propagator_ = std::make_unique<WindowPropagator>(graph.unfolding());
+  for (const SurfacePoint& point : points) {
+    stage.check();
+    if (!is_vertex(graph.mesh(), point)) {
+      propagator_->from_point(point, exact_width(graph), row_);
+      append_row(fans.arcs);
+    }
+    fans.offsets.push_back(std::ssize(fans.arcs));
+  }
+}
+
+void DirectFanFinder::append_row(std::vector<DirectArc>& arcs) {
+  std::ranges::sort(row_, {}, &DirectArc::vertex);
+  arcs.insert(arcs.end(), row_.begin(), row_.end());
 }
 
 /// Whether all windows of a batch ran to their end.
@@ -124,16 +139,7 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, FanA
     }
     row_.push_back(arc);
   }
-  std::ranges::sort(row_, {}, &DirectArc::vertex);
-  arcs.insert(arcs.end(), row_.begin(), row_.end());
-}
-
-void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, const SurfacePoint& point,
-                                  std::vector<DirectArc>& arcs) {
-  if (!propagator_) propagator_ = std::make_unique<WindowPropagator>(graph.unfolding());
-  propagator_->from_point(point, exact_width(graph), row_);
-  std::ranges::sort(row_, {}, &DirectArc::vertex);
-  arcs.insert(arcs.end(), row_.begin(), row_.end());
+  append_row(arcs);
 }
 
 double fans_a_fan_mesh_costs(const SaddleVertexGraph& graph) {

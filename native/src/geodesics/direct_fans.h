@@ -48,7 +48,9 @@ class DirectFanFinder {
   using Batch = std::span<const std::size_t>;
   bool see(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, Batch batch, const JobStage& stage);
   void append_arcs(const SaddleVertexGraph& graph, int lane, FanAngles angles, std::vector<DirectArc>& arcs);
-  void append_arcs(const SaddleVertexGraph& graph, const SurfacePoint& point, std::vector<DirectArc>& arcs);
+  void append_row(std::vector<DirectArc>& arcs);
+  void find_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, DirectFans& fans,
+                    const JobStage& stage);
 
   const FanMesh* mesh_ = nullptr;
   std::unique_ptr<DiskFinder> waves_;

@@ -35,8 +35,7 @@ DiskFinder::DiskFinder(const WaveMesh& mesh, const WaveKernel& kernel, const Dis
     : mesh_(mesh), kernel_(kernel), rule_(rule) {
   const std::size_t slots = static_cast<std::size_t>(mesh.node_count()) * k_batch;
   labels_.assign(slots + k_row_padding, k_unreached);
-  arc_labels_.assign(slots, k_unreached);
-  best_.resize(slots);
+  arcs_.assign(slots, {k_unreached, 0});
 }
 
 void DiskFinder::begin(Sources sources) {
@@ -165,10 +164,7 @@ void DiskFinder::lower_labels(int from, int to) {
   const SightingRows rows = sightings();
   for (int i = from; i < to; ++i) {
     const std::int32_t slot = rows.slot[i], label = rows.label[i];
-    if (makes_arc(label) && label < arc_labels_[slot]) {
-      arc_labels_[slot] = label;
-      best_[slot] = i;
-    }
+    if (makes_arc(label) && label < arcs_[slot].label) arcs_[slot] = {label, i};
     if (label >= labels_[slot]) continue;
     if (labels_[slot] == k_unreached) touched_[slot % k_batch].push_back(slot);
     labels_[slot] = label;
@@ -180,7 +176,7 @@ void DiskFinder::lower_labels(int from, int to) {
 /// shortest by more than the tolerance, so that longer arcs serve nothing.
 bool DiskFinder::is_kept(std::int32_t slot) const {
   const double slack = 1 + std::max(rule_.tolerance, k_rounding);
-  const float reach = distance_of(arc_labels_[slot]);
+  const float reach = distance_of(arcs_[slot].label);
   return reach < k_infinity && reach <= slack * distance_of(labels_[slot]) && reach <= limits_[slot % k_batch];
 }
 
@@ -188,7 +184,7 @@ std::span<const std::int32_t> DiskFinder::choose(int lane) {
   const SightingRows rows = sightings();
   chosen_.clear();
   for (const std::int32_t slot : touched_[lane])
-    if (is_kept(slot)) chosen_.push_back(best_[slot]);
+    if (is_kept(slot)) chosen_.push_back(arcs_[slot].sighting);
   // Edges stay even where something shorter, but no arc, was found.
   for (int i = 0; i < sighting_count_ && is_link(rows.root[i]); ++i)
     if (rows.slot[i] % k_batch == lane && !is_kept(rows.slot[i])) chosen_.push_back(i);
@@ -200,7 +196,10 @@ std::span<const std::int32_t> DiskFinder::choose(int lane) {
 void DiskFinder::clear() {
   changed_.clear();
   for (auto& slots : touched_) {
-    for (const std::int32_t slot : slots) labels_[slot] = arc_labels_[slot] = k_unreached;
+    for (const std::int32_t slot : slots) {
+      labels_[slot] = k_unreached;
+      arcs_[slot].label = k_unreached;
+    }
     slots.clear();
   }
 }

@@ -66,6 +66,10 @@ class DiskFinder {
     int left_count = 0, right_count = 0;
     int size() const { return left_count + right_count; }
   };
+  struct BestArc {
+    std::int32_t label;     ///< as labels_, of the shortest arc
+    std::int32_t sighting;  ///< that makes it
+  };
   /// A side of the source's face, seen from it from right to left.
   struct FirstWindow {
     Vec2 right, left;
@@ -92,9 +96,8 @@ class DiskFinder {
   const WaveKernel& kernel_;
   DiskRule rule_;
   Sources sources_ = Sources::nodes;
-  std::vector<std::int32_t> labels_;      ///< per slot: bits of the distance, the lowest one set when it makes no arc
-  std::vector<std::int32_t> arc_labels_;  ///< the same of the shortest arc
-  std::vector<std::int32_t> best_;        ///< the sighting of that arc
+  std::vector<std::int32_t> labels_;  ///< per slot: bits of the distance, the lowest one set when it makes no arc
+  std::vector<BestArc> arcs_;         ///< per slot
   std::array<std::vector<std::int32_t>, k_batch> touched_;  ///< slots with labels, per lane
   std::array<Generation, 2> generations_;
   Generation* now_ = generations_.data();
