@@ -174,6 +174,23 @@ def test_the_sweep_uncovers_what_the_circle_has_passed():
     assert steps.max() < 1.2 * np.ptp(surface.vertices, axis=0).max() / 150
 
 
+def test_heavier_sites_are_met_earlier():
+    rng = np.random.default_rng(3)
+    sites = np.column_stack([rng.random((50, 2)), np.zeros(50)])
+    weights = 0.05 * rng.random(50)
+    given = {"sites": sites, "weights": weights}
+    sweep = voronoi_2d(shapes.grid(6), given=given, sites_source="OBJECT", animate=True, frame_end=30).sweep
+    near = (np.linalg.norm(sweep.edge_vertices[:, None] - sites, axis=2) - weights).min(axis=1)
+    passed = near + np.linalg.norm(sweep.edge_vertices - sweep.centre, axis=1)
+    # Between the corners of their polylines curved edges lie beside them.
+    np.testing.assert_allclose(sweep.edge_radius, passed, atol=2e-3)
+    ring = sweep.rings[19]
+    near = (np.linalg.norm(ring[:, None] - sites, axis=2) - weights).min(axis=1)
+    np.testing.assert_allclose(
+        near + np.linalg.norm(ring - sweep.centre, axis=1), 20 / 30 * sweep.last_radius, rtol=1e-9
+    )
+
+
 def test_one_site_has_a_sweep_too():
     sweep = voronoi_2d(shapes.grid(3), count=1, animate=True).sweep
     assert len(sweep.edges) == 0 and sweep.last_radius > 0 and np.isfinite(sweep.rings).all()
