@@ -147,7 +147,7 @@ TESSELLATE: dict[str, Any] = {
     "iterations": IntProperty(
         name="Iterations",
         description="Steps that make the cells even; 0 leaves the sites where chance put them",
-        default=20,
+        default=15,
         min=0,
         soft_max=200,
         options={"SKIP_SAVE"},
@@ -180,6 +180,7 @@ TESSELLATE: dict[str, Any] = {
     "inset": _length("Bevel", "Width of the sloping rim of each cell; it rises by the thickness", 0.0),
     "thickness": _length("Thickness", "How far the cells stand out of the surface", 0.0),
     "underside": _switch("Closed Below", "Close each cell from below, as a 3D printer needs it", False),
+    "local_uv": _switch("Local UV", "Give each cell of the mesh a UV map of its own, for materials that repeat", False),
     "make_centres": _switch("Centres", "Make an object of points at the cells' centres", False),
     "instance_object": _name("Instance", "The object to put on every centre"),
     "instance_scale": FloatProperty(
@@ -202,6 +203,10 @@ TESSELLATE: dict[str, Any] = {
     "cell_attribute": _name("Cell Attribute", "Where each vertex's cell is written", "saddleback_cell"),
     "distance_attribute": _name("Distance Attribute", "Where distances are written", "saddleback_distance"),
     "density_attribute": _name("Density Attribute", "Where the density used is written", "saddleback_density"),
+    "write_edge_distance": _switch("Distance to Edge", "Write how far each vertex is from the edge of its cell", False),
+    "edge_distance_attribute": _name(
+        "Edge Distance Attribute", "Where distances to the cells' edges are written", "saddleback_edge_distance"
+    ),
 }
 
 DISTANCE: dict[str, Any] = {

@@ -281,3 +281,21 @@ def test_the_panel_state_stores_nothing_in_the_file():
     jobs.state.needs_repair = "Sphere"
     assert manager.saddleback_needs_repair == "Sphere"
     assert not [key for key in list(manager.keys()) if key.startswith("saddleback")]
+
+
+def test_distance_to_the_edge_and_local_uv_are_written_where_wanted():
+    item = sphere()
+    bpy.ops.saddleback.tessellate(**QUICK)
+    assert "saddleback_edge_distance" not in item.data.attributes
+    bpy.ops.saddleback.tessellate(**QUICK, write_edge_distance=True, make_cells=True, local_uv=True)
+    to_edge, to_site = attribute(item, "saddleback_edge_distance"), attribute(item, "saddleback_distance")
+    assert to_edge.min() >= 0 and to_edge.max() > 0.2
+    near, far = to_site < 0.2, to_edge < 0.05
+    assert to_edge[near].mean() > 2 * to_edge[~near].mean() and to_site[far].mean() > to_site[~far].mean()
+    mesh = next(child for child in item.children if child["saddleback_role"] == "cells").data
+    places = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers["saddleback_local"].data.foreach_get("uv", places)
+    away = np.linalg.norm(places.reshape(-1, 2) - 0.5, axis=1)
+    assert away.max() == pytest.approx(0.5, abs=1e-5) and away.min() < 0.1
+    with pytest.raises(RuntimeError, match="two attributes are to be called 'saddleback_cell'"):
+        bpy.ops.saddleback.tessellate(**QUICK, write_edge_distance=True, edge_distance_attribute="saddleback_cell")

@@ -167,3 +167,11 @@ def test_cancel_ends_a_run_within_a_tenth_of_a_second(cache):
     thread.join()
     assert time.perf_counter() - asked < 0.1 and raised
     assert "cells" not in cache.builds
+
+
+def test_distance_to_the_edge_is_the_distance_to_the_bisector(cache):
+    surface = shapes.grid(10, loose=2)
+    result = tessellate(surface, cache, sites=np.array([[0.25, 0.5, 0], [0.75, 0.5, 0]]), write_edge_distance=True)
+    np.testing.assert_allclose(result.edge_distance[2:], abs(surface.vertices[:, 0] - 0.5), atol=1e-9)
+    assert np.isinf(result.edge_distance[:2]).all() and cache.builds["edge distance"] == 1
+    assert tessellate(surface, cache).edge_distance is None

@@ -11,6 +11,7 @@ from mathutils import Matrix
 from .. import compat, nodes
 from ..core.cell_colors import cell_colors
 from ..core.cell_mesh import CellMesh, CellShape, build_cell_mesh
+from ..core.local_places import local_uv
 from ..core.results import CellPolygons, CellsResult, Indices
 from ..core.settings import TessellateSettings, Voronoi2dSettings
 from .out_attributes import set_attribute
@@ -18,6 +19,7 @@ from .out_collection import level_place, replace_object, to_place
 
 CELLS_ROLE = "cells"
 CELL_ATTRIBUTE = "saddleback_cell"
+LOCAL_UV = "saddleback_local"
 # On the object: how many cells its gap left nothing of.
 VANISHED = "saddleback_vanished_cells"
 # A plateau's edge is steeper than this, and a mesh fine enough for cells bends less from face to face.
@@ -37,6 +39,11 @@ def write_cells(
     colors = cell_colors(len(result.sites_position), result.edge_cells)
     place = level_place(source)
     mesh = _mesh(to_place(place, cells.vertices), cells, colors)
+    if isinstance(settings, TessellateSettings) and settings.local_uv:
+        places = local_uv(
+            cells.vertices, cells.triangles, cells.triangle_cell, result.sites_position, result.sites_normal
+        )
+        mesh.uv_layers.new(name=LOCAL_UV).data.foreach_set("uv", places.astype(np.float32).ravel())
     item = _shown(context, source, role, mesh, place)
     item[VANISHED] = len(cells.vanished)
     return item

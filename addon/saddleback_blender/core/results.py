@@ -77,6 +77,7 @@ class CellsResult:
     energy: Reals  # (k,) of each iteration, empty where nothing was relaxed
     iterations: int
     stop_reason: str
+    edge_distance: Reals | None = None  # (V,) world units to the edge of the vertex's cell, inf = none; where wanted
     dual: Dual | None = None  # where it was wanted
     shell: LampShell | None = None  # where it was wanted
     figures: Figures | None = None  # None where the sites have no triangle

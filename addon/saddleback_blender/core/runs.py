@@ -9,6 +9,7 @@ import numpy as np
 
 from . import cache as cache_module
 from . import native
+from .boundary_distance import boundary_distance, find_boundary
 from .cache import Cache
 from .curve_points import curves_on_surface, points_on_surface
 from .duals import dual_of, figures_of
@@ -64,9 +65,14 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
 
     solved = cache.get(("cells", *key), solve, _solved_bytes)
     result = _result(request, solved)
-    if settings.make_cells:
+    if settings.make_cells or settings.write_edge_distance:
         with progress.stage(0.98, "cutting the cells out"):
             split = cache.get(("split", *key), solved.cells.split, _split_bytes)
+    if settings.write_edge_distance:
+        with progress.stage(0.985, "measuring the way to the edges"):
+            found = cache.get(("edge distance", *key), lambda: _edge_distance(surface, split), lambda a: a.nbytes)
+        result = replace(result, edge_distance=surface.spread(found, np.inf))
+    if settings.make_cells:
         result = replace(
             result,
             split_vertices=split.vertices,
@@ -232,6 +238,17 @@ def _shell(
 
     lengths = digest(settings.rib_width, settings.rib_thickness)
     return cache.get(("shell", *key, lengths), build, lambda shell: shell.nbytes)
+
+
+def _edge_distance(surface: Surface, split: Any) -> Reals:
+    """Distance (n,) of the surface's vertices to the nearest line between their cell and another."""
+    triangles, cell = np.asarray(split.triangles), np.asarray(split.triangle_cell)
+    boundary = find_boundary(len(split.vertices), triangles, cell)
+    all_of_them = boundary_distance(np.asarray(split.vertices), triangles, cell, boundary, np.inf)
+    origin = np.asarray(split.vertex_origin)
+    found = np.full(len(surface.vertices), np.inf)
+    found[origin[origin >= 0]] = all_of_them[origin >= 0]
+    return found
 
 
 def _blender_numbers(surface: Surface, origin: Indices) -> Indices:

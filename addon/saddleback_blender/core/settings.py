@@ -12,7 +12,7 @@ class TessellateSettings:
     count: int = 200
     seed: int = 0
     method: str = "LBFGS"  # LBFGS, LLOYD
-    iterations: int = 20
+    iterations: int = 15
     sites_source: str = "COUNT"  # COUNT, SELECTED, OBJECT
     sites_object: str = ""
     relax_sites: bool = False  # move chosen sites too (those of COUNT always move)
@@ -33,6 +33,7 @@ class TessellateSettings:
     inset: float = 0.0
     thickness: float = 0.0
     underside: bool = False
+    local_uv: bool = False
     make_centres: bool = False
     instance_object: str = ""
     instance_scale: float = 1.0
@@ -44,6 +45,8 @@ class TessellateSettings:
     cell_attribute: str = "saddleback_cell"
     distance_attribute: str = "saddleback_distance"
     density_attribute: str = "saddleback_density"
+    write_edge_distance: bool = False
+    edge_distance_attribute: str = "saddleback_edge_distance"
 
 
 @dataclass(frozen=True)

@@ -75,6 +75,8 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
         }
         if result.vertex_density is not None:
             values[settings.density_attribute] = result.vertex_density.astype(np.float32)
+        if result.edge_distance is not None:
+            values[settings.edge_distance_attribute] = result.edge_distance.astype(np.float32)
         write_vertex_attributes(surface, values)
         outputs = (
             (settings.make_edges, write_edges, EDGES_ROLE),
@@ -135,9 +137,10 @@ def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:
                 f"'{source.name}': the result would overwrite its density '{settings.density_name}'; "
                 "choose another name for the attributes that are written"
             )
-    check_attribute_names(
-        source, names, {"cell_attribute": "INT", "distance_attribute": "FLOAT", "density_attribute": "FLOAT"}
-    )
+    if settings.write_edge_distance:
+        names["edge_distance_attribute"] = settings.edge_distance_attribute
+    types = {name: "INT" if name == "cell_attribute" else "FLOAT" for name in names}
+    check_attribute_names(source, names, types)
     if settings.make_centres and settings.instance_object:
         instance = bpy.data.objects.get(settings.instance_object)
         if instance is None:

@@ -61,6 +61,8 @@ def draw_cells(layout: bpy.types.UILayout, settings: Any) -> None:
     column.active = settings.thickness > 0.0
     column.prop(settings, "inset")
     column.prop(settings, "underside")
+    if hasattr(settings, "local_uv"):  # cells of the plane have none
+        layout.prop(settings, "local_uv")
 
 
 def draw_centres(layout: bpy.types.UILayout, settings: Any) -> None:
@@ -92,6 +94,10 @@ def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:
     column = layout.column()
     column.active = settings.density_source != "UNIFORM"
     column.prop(settings, "density_attribute", text="Density")
+    layout.prop(settings, "write_edge_distance")
+    column = layout.column()
+    column.active = settings.write_edge_distance
+    column.prop(settings, "edge_distance_attribute", text="To Edge")
 
 
 def draw_quality(layout: bpy.types.UILayout, settings: Any) -> None:
