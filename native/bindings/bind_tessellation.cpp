@@ -141,10 +141,16 @@ RelaxationMethod as_method(const std::string& name) {
   throw InputError(message("method: wanted 'lbfgs' or 'lloyd', got '", name, "'"));
 }
 
+RelaxationStart as_start(const std::string& name) {
+  if (name == "coarse_to_fine") return RelaxationStart::coarse_to_fine;
+  if (name == "sample") return RelaxationStart::sample;
+  throw InputError(message("start: wanted 'coarse_to_fine' or 'sample', got '", name, "'"));
+}
+
 Relaxed relax(const py::object& graph, const py::object& sites, const py::object& count, const py::object& density,
               const std::string& method, const py::object& max_iterations, const py::object& tolerance,
-              const py::object& seed, const py::object& fixed, bool return_when_cancelled, const py::object& threads,
-              const py::object& job) {
+              const py::object& seed, const std::string& start, const py::object& fixed, bool return_when_cancelled,
+              const py::object& threads, const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   ArrayIn<double> weights;
@@ -160,12 +166,14 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
                                          .threads = as_integer(threads, "threads")};
   const std::uint64_t number = as_seed(seed, "seed");
   Job* const token = as_job(job);
-  SurfacePoints start;
-  if (!sites.is_none()) start = as_surface_points(sites, g.mesh(), "sites");
+  const RelaxationStart source = as_start(start);
+  SurfacePoints given;
+  if (!sites.is_none()) given = as_surface_points(sites, g.mesh(), "sites");
   const Index wanted = count.is_none() ? 0 : as_integer(count, "count");
+  const bool has_count = !count.is_none();
   CentroidalVoronoi result = without_gil([&] {
-    if (!count.is_none()) start = initial_sites(g.mesh(), wanted, weights.values, number);
-    return centroidal_voronoi(g, start, options, token);
+    return has_count ? centroidal_voronoi(g, wanted, source, number, options, token)
+                     : centroidal_voronoi(g, given, options, token);
   });
   py::object cells = make_cells(std::move(result.cells), graph);
   return {std::move(result), std::move(cells)};
@@ -209,7 +217,7 @@ graph : SaddleVertexGraph
 sites : (n,) int array or SurfacePoints, optional
     Where to start. Either this or `count`.
 count : int, optional
-    Number of cells; the start is then sampled by density and seed, at least one site on every connected part.
+    Number of cells, at least one on every connected part; see `start`.
 density : (V,) float array, optional
     Wanted number of cells per area at each vertex, in proportion; 0 or more. None: the same everywhere.
 method : str
@@ -219,6 +227,10 @@ tolerance : float
     Stop when the energy falls by less than this share of itself.
 seed : int
     Of the sampled start.
+start : str
+    Where the sites of `count` come from. "coarse_to_fine": relaxed cells of a quarter of the number, with one more on
+    each boundary between two of them, and so on down; few irregular cells remain. "sample": by density and seed. The
+    same without iterations.
 fixed : (m,) int array, optional
     Sites that stay where they are.
 return_when_cancelled : bool
@@ -372,9 +384,9 @@ void bind_tessellation(py::module_& m) {
       });
   m.def("centroidal_voronoi", &relax, py::arg("graph"), py::arg("sites") = py::none(), py::arg("count") = py::none(),
         py::arg("density") = py::none(), py::arg("method") = "lbfgs", py::arg("max_iterations") = 100,
-        py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("fixed") = py::none(),
-        py::arg("return_when_cancelled") = false, py::arg("threads") = 0, py::arg("job") = py::none(),
-        k_centroidal_doc);
+        py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("start") = "coarse_to_fine",
+        py::arg("fixed") = py::none(), py::arg("return_when_cancelled") = false, py::arg("threads") = 0,
+        py::arg("job") = py::none(), k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

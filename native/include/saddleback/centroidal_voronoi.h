@@ -10,6 +10,10 @@ namespace saddleback {
 
 enum class RelaxationMethod { lbfgs, lloyd };
 
+/// Where sites come from when only their number is given: relaxed cells of a quarter of the number, with a site more on
+/// each boundary between two of them (few irregular cells remain), or a sample by density and seed.
+enum class RelaxationStart { coarse_to_fine, sample };
+
 struct CentroidalVoronoiOptions {
   std::span<const double> density;  ///< (V,) wanted cells per area, in proportion; empty: uniform
   std::span<const Index> fixed;     ///< sites that stay where they are
@@ -49,5 +53,11 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 /// arcs).
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);
+
+/// The same for a number of cells. Without iterations the sites are the sample's. \throw InputError also as
+/// `initial_sites`.
+CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
+                                     std::uint64_t seed, const CentroidalVoronoiOptions& options = {},
+                                     Job* job = nullptr);
 
 }  // namespace saddleback

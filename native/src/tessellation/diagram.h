@@ -13,4 +13,9 @@ GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& si
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                               const CentroidalVoronoiOptions& options, const JobStage& stage);
 
+/// A start for `count` cells from relaxed cells of a quarter of the number, and so on down. \throw as initial_sites;
+/// Cancelled.
+SurfacePoints coarse_to_fine_sites(const SaddleVertexGraph& graph, Index count, const CentroidalVoronoiOptions& options,
+                                   std::uint64_t seed, const JobStage& stage);
+
 }  // namespace saddleback

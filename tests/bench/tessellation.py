@@ -1,0 +1,141 @@
+"""Even cells and their dual meshes: `python -m tests.bench tessellation [--cells N] [MESH...]`.
+
+Per mesh: CPU seconds an iteration and in all, vertices out, Euler characteristic (of the mesh in brackets), quality of
+the dual mesh, greatest distance from the mesh's vertices in % of its diagonal. Peers that are installed run on the same
+input: pyacvd (clusters of a subdivided mesh), pymeshlab (geodesic Voronoi relaxation of vertices), MeshLib (remesher).
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+import saddleback as sb
+from tests import meshes
+
+Arrays = meshes.Arrays
+LONG = 400  # iterations at most
+
+HEADER = f"{'method':<34} {'s/iteration':>11} {'seconds':>8} {'V out':>6} {'chi':>9} {'Q mean':>7} {'Q min':>6}"
+HEADER += f" {'angle':>6} {'least':>6} {'irregular':>9} {'Hausdorff':>9}"
+
+
+def characteristic(triangles: np.ndarray) -> int:
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    return len(np.unique(triangles)) - len(np.unique(edges, axis=0)) + len(triangles)
+
+
+def deviation(mesh: sb.Mesh, vertices: np.ndarray, triangles: np.ndarray) -> float:
+    """Greatest distance from the mesh's vertices to the dual mesh, in % of the diagonal."""
+    try:
+        made = sb.Mesh(vertices, triangles)
+    except sb.MeshError:
+        return np.nan
+    nearest = sb.project(made, mesh.vertices).positions(made)
+    diagonal = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
+    return float(100 * np.linalg.norm(nearest - mesh.vertices, axis=1).max() / diagonal)
+
+
+def row(name: str, mesh: sb.Mesh, seconds: float, iterations: int, vertices: np.ndarray, triangles: np.ndarray) -> str:
+    quality = sb.triangle_quality(vertices, triangles)
+    own = len(mesh.vertices) - mesh.edge_count + len(mesh.triangles)
+    per_iteration = f"{seconds / iterations:.3f}" if iterations else "-"
+    return (
+        f"{name:<34} {per_iteration:>11} {seconds:>8.2f} {len(np.unique(triangles)):>6}"
+        f" {characteristic(triangles):>4} ({own:>2}) {quality.mean_quality:>7.4f} {quality.min_quality:>6.3f}"
+        f" {np.degrees(quality.mean_angle):>6.2f} {np.degrees(quality.min_angle):>6.1f}"
+        f" {100 * quality.irregular:>8.1f}% {deviation(mesh, vertices, triangles):>9.2f}"
+    )
+
+
+def ours(mesh: sb.Mesh, cells: int) -> Iterator[str]:
+    start = time.process_time()
+    graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3, threads=1)
+    built = time.process_time() - start
+    yield f"{'graph':<34} {'-':>11} {built:>8.2f}"
+    for method, iterations in (("lloyd", 20), ("lbfgs", 20), ("lbfgs", LONG)):
+        start = time.process_time()
+        relaxed = sb.centroidal_voronoi(
+            graph, count=cells, method=method, max_iterations=iterations, tolerance=1e-7, seed=1, threads=1
+        )
+        seconds = time.process_time() - start
+        vertices, triangles, issues = relaxed.cells.dual("strict")
+        name = f"{method}, {relaxed.iterations} iterations, E {relaxed.normalised_energy:.4f}"
+        yield row(name, mesh, seconds, relaxed.iterations + 1, vertices, triangles)
+        if issues:
+            yield f"  {len(issues)} issues, first: {issues[0]}"
+
+
+def pyacvd_cells(mesh: sb.Mesh, cells: int) -> Arrays:
+    import pyacvd
+    import pyvista
+
+    clustering = pyacvd.Clustering(pyvista.make_tri_mesh(mesh.vertices, mesh.triangles))
+    if len(mesh.vertices) < 50 * cells:
+        clustering.subdivide(2)
+    clustering.cluster(cells)
+    made = clustering.create_mesh()
+    return np.asarray(made.points, dtype=float), made.faces.reshape(-1, 4)[:, 1:].astype(np.int32)
+
+
+def pymeshlab_cells(mesh: sb.Mesh, cells: int) -> Arrays:
+    import pymeshlab
+
+    meshes_ = pymeshlab.MeshSet(verbose=False)
+    meshes_.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.triangles))
+    meshes_.generate_sampling_voronoi(samplenum=cells, iternum=10, distancetype="Euclidean")
+    made = meshes_.current_mesh()
+    return made.vertex_matrix(), made.face_matrix().astype(np.int32)
+
+
+def meshlib_cells(mesh: sb.Mesh, cells: int) -> Arrays:
+    from meshlib import mrmeshnumpy, mrmeshpy
+
+    other = mrmeshnumpy.meshFromFacesVerts(mesh.triangles, mesh.vertices)
+    settings = mrmeshpy.RemeshSettings()
+    settings.targetEdgeLen = float(np.sqrt(2 / np.sqrt(3) * mesh.area / cells))
+    mrmeshpy.remesh(other, settings)
+    other.pack()
+    return mrmeshnumpy.getNumpyVerts(other), mrmeshnumpy.getNumpyFaces(other.topology)
+
+
+PEERS: dict[str, Callable[[sb.Mesh, int], Arrays]] = {
+    "pyacvd": pyacvd_cells,
+    "pymeshlab": pymeshlab_cells,
+    "meshlib": meshlib_cells,
+}
+
+
+def peers(mesh: sb.Mesh, cells: int) -> Iterator[str]:
+    for name, method in PEERS.items():
+        if importlib.util.find_spec(name) is None:
+            yield f"{name:<34} not installed"
+            continue
+        start = time.process_time()
+        try:
+            vertices, triangles = method(mesh, cells)
+        except Exception as error:  # noqa: BLE001  (a peer that fails is a result)
+            yield f"{name:<34} failed: {str(error)[:80]}"
+            continue
+        yield row(name, mesh, time.process_time() - start, 0, vertices, triangles)
+
+
+def main(arguments: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="python -m tests.bench tessellation")
+    parser.add_argument("--cells", type=int, default=500)
+    parser.add_argument("meshes", nargs="*", type=Path)
+    options = parser.parse_args(arguments)
+    inputs = {path.stem: path for path in options.meshes}
+    named = {name: sb.read_mesh(path) for name, path in inputs.items()} or {
+        "torus": sb.Mesh(*meshes.torus(160, 64)),
+    }
+    for name, mesh in named.items():
+        print(f"{name}: {len(mesh.vertices)} vertices, {options.cells} cells\n{HEADER}")
+        for line in (*ours(mesh, options.cells), *peers(mesh, options.cells)):
+            print(line, flush=True)
+    return 0
