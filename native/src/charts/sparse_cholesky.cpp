@@ -68,49 +68,63 @@ SparseCholesky::SparseCholesky(const SymmetricMatrix& matrix, std::vector<Index>
   count_entries(matrix);
   rows_.resize(offsets_.back());
   values_.resize(offsets_.back());
-  std::vector<std::int64_t> ends(offsets_.begin(), offsets_.end() - 1);
-  std::vector<double> work(size, 0);
-  std::vector<Index> path, pattern(size), flags(size, k_none);
-  constexpr std::int64_t k_look = 1 << 20;  // multiplications between looks: about a millisecond
-  std::int64_t done = 0, looked = 0, all = 1;
+  ends_.assign(offsets_.begin(), offsets_.end() - 1);
+  work_.assign(size, 0);
+  pattern_.resize(size);
+  flags_.assign(size, k_none);
+  std::int64_t done = 0, looked = 0, all = 1;  // multiplications
   for (Index column = 0; column < size; ++column) {
     const std::int64_t count = offsets_[column + 1] - offsets_[column];
     all += count * (count - 1) / 2;
   }
+  constexpr std::int64_t k_look = 1 << 20;  // between looks at the job: about a millisecond
   for (Index row = 0; row < size; ++row) {
-    const Index unknown = order_[row];
-    Index first = size;  // pattern[first..] is the row's, in an order in which columns may be eliminated
-    flags[row] = row;
-    for (Index e = matrix.offsets[unknown]; e < matrix.offsets[unknown + 1]; ++e) {
-      Index column = place_[matrix.columns[e]];
-      if (column >= row) continue;
-      work[column] += matrix.values[e];
-      path.clear();
-      for (; flags[column] != row; column = parent_[column]) {
-        path.push_back(column);
-        flags[column] = row;
-      }
-      first -= static_cast<Index>(path.size());
-      std::copy(path.begin(), path.end(), pattern.begin() + first);
-    }
-    double pivot = matrix.diagonal[unknown];
-    for (Index i = first; i < size; ++i) {
-      const Index column = pattern[i];
-      const double value = work[column];
-      work[column] = 0;
-      for (std::int64_t e = offsets_[column]; e < ends[column]; ++e) work[rows_[e]] -= values_[e] * value;
-      done += ends[column] - offsets_[column];
-      const double factor = value / pivots_[column];
-      pivot -= factor * value;
-      rows_[ends[column]] = row;
-      values_[ends[column]++] = factor;
-    }
-    pivots_[row] = pivot;
+    done += eliminate(matrix, row);
     if (done - looked < k_look) continue;
     looked = done;
     stage.update(static_cast<double>(done) / static_cast<double>(all));
   }
   stage.update(1);
+}
+
+/// Puts the row's entries left of the diagonal into work_; returns where its columns begin in pattern_, which ends with
+/// the last of them, in an order in which they may be eliminated.
+Index SparseCholesky::spread(const SymmetricMatrix& matrix, Index row) {
+  const Index unknown = order_[row];
+  Index first = matrix.size();
+  flags_[row] = row;
+  for (Index e = matrix.offsets[unknown]; e < matrix.offsets[unknown + 1]; ++e) {
+    Index column = place_[matrix.columns[e]];
+    if (column >= row) continue;
+    work_[column] += matrix.values[e];
+    path_.clear();
+    for (; flags_[column] != row; column = parent_[column]) {
+      path_.push_back(column);
+      flags_[column] = row;
+    }
+    first -= static_cast<Index>(path_.size());
+    std::copy(path_.begin(), path_.end(), pattern_.begin() + first);
+  }
+  return first;
+}
+
+/// Finds a row of L and its pivot; returns the number of multiplications.
+std::int64_t SparseCholesky::eliminate(const SymmetricMatrix& matrix, Index row) {
+  double pivot = matrix.diagonal[order_[row]];
+  std::int64_t done = 0;
+  for (Index i = spread(matrix, row); i < matrix.size(); ++i) {
+    const Index column = pattern_[i];
+    const double value = work_[column];
+    work_[column] = 0;
+    for (std::int64_t e = offsets_[column]; e < ends_[column]; ++e) work_[rows_[e]] -= values_[e] * value;
+    done += ends_[column] - offsets_[column];
+    const double factor = value / pivots_[column];
+    pivot -= factor * value;
+    rows_[ends_[column]] = row;
+    values_[ends_[column]++] = factor;
+  }
+  pivots_[row] = pivot;
+  return done;
 }
 
 /// The elimination tree, and where the columns of L begin.

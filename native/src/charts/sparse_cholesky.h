@@ -38,12 +38,18 @@ class SparseCholesky {
 
  private:
   void count_entries(const SymmetricMatrix& matrix);
+  Index spread(const SymmetricMatrix& matrix, Index row);
+  std::int64_t eliminate(const SymmetricMatrix& matrix, Index row);
 
   std::vector<Index> order_, place_;  ///< unknown of each row, row of each unknown
   std::vector<Index> parent_;         ///< elimination tree
   std::vector<std::int64_t> offsets_;
   std::vector<Index> rows_;
   std::vector<double> values_, pivots_;
+  // While factors are found:
+  std::vector<std::int64_t> ends_;  ///< of the columns so far
+  std::vector<double> work_;        ///< the row at hand
+  std::vector<Index> pattern_, path_, flags_;
 };
 
 }  // namespace saddleback::charts
