@@ -87,7 +87,7 @@ def ramp_material(
 
 def tessellate(**settings: object) -> None:
     """The operator, with what all pictures share."""
-    shared = {"count": 900, "seed": 7, "iterations": 20, "k": 40, "edge_radius": 0.006}
+    shared = {"count": 900, "seed": 7, "iterations": 15, "k": 40, "edge_radius": 0.006}
     bpy.ops.saddleback.tessellate(**(shared | settings))
 
 
@@ -141,6 +141,28 @@ def centres(body: bpy.types.Object) -> None:
     tessellate(make_edges=False, make_centres=True, instance_object=stud.name, instance_scale=0.75,
                density_source="VERTEX_GROUP", density_name=PAINT)  # fmt: skip
     body.data.materials.append(studio.principled("Clay", (0.10, 0.16, 0.20), Roughness=0.5))
+
+
+def dual(body: bpy.types.Object) -> None:
+    """Picture: the dual mesh, with its edges drawn."""
+    tessellate(make_edges=False, make_dual=True)
+    mesh = output(body, "dual")
+    mesh.data.polygons.foreach_set("use_smooth", np.zeros(len(mesh.data.polygons), bool))
+    mesh.data.materials.clear()
+    mesh.data.materials.append(studio.principled("Clay", (0.62, 0.50, 0.40), Roughness=0.6))
+    wires = mesh.modifiers.new("Wires", "WIREFRAME")
+    wires.use_replace, wires.thickness, wires.material_offset = False, 0.006, 1
+    mesh.data.materials.append(studio.principled("Wires", (0.03, 0.03, 0.04), Roughness=0.5))
+    body.hide_render = True
+
+
+def shell(body: bpy.types.Object) -> None:
+    """Picture: the lamp shell alone."""
+    tessellate(make_edges=False, make_shell=True, count=350, rib_width=0.022, rib_thickness=0.02)
+    solid = output(body, "shell").data
+    solid.materials.clear()
+    solid.materials.append(studio.principled("Print", (0.42, 0.10, 0.05), Roughness=0.45))
+    body.hide_render = True
 
 
 def distance(body: bpy.types.Object) -> None:

@@ -28,13 +28,29 @@ DOMAIN_ELEMENTS = {"POINT": "vertices", "EDGE": "edges", "FACE": "polygons", "CO
 def write_vertex_attributes(item: bpy.types.Object, values: dict[str, NDArray[Any]]) -> None:
     """Writes arrays (V,) or (V,3) as vertex attributes of the object's mesh and remembers that they are ours.
 
-    An attribute of the same name is written over; one of another type or domain is replaced.
+    An attribute of the same name is written over; one of another type or domain is replaced. Where nothing differs
+    nothing is written, so that Blender need not evaluate the object anew.
     """
     mesh = item.data
-    for name, array in values.items():
+    changed = {name: array for name, array in values.items() if not _holds(mesh, name, array)}
+    for name, array in changed.items():
         set_attribute(mesh, name, "POINT", array)
     record(mesh, values)
-    mesh.update_tag()
+    if changed:
+        mesh.update_tag()
+
+
+def _holds(mesh: bpy.types.Mesh, name: str, values: NDArray[Any]) -> bool:
+    """Whether the mesh has this vertex attribute with just these values."""
+    kind, element, dtype = KINDS[values.dtype.kind, values.shape[1:]]
+    attribute = mesh.attributes.get(name)
+    if attribute is None or (attribute.data_type, attribute.domain) != (kind, "POINT"):
+        return False
+    if len(attribute.data) != len(values):
+        return False
+    now = np.empty(values.size, dtype)
+    attribute.data.foreach_get(element, now)
+    return bool(np.array_equal(now, np.ascontiguousarray(values, dtype).ravel()))
 
 
 def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[Any]) -> bpy.types.Attribute:
@@ -58,7 +74,9 @@ def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[
 
 def record(mesh: bpy.types.Mesh, names: Any) -> None:
     """Adds names to the mesh's list."""
-    mesh[RECORD] = "\n".join(sorted({*recorded(mesh), *names}))
+    names = "\n".join(sorted({*recorded(mesh), *names}))
+    if mesh.get(RECORD) != names:
+        mesh[RECORD] = names
 
 
 def recorded(mesh: bpy.types.Mesh) -> list[str]:
