@@ -103,11 +103,11 @@ void DirectionFieldEditor::Kept::prepare(const JobStage& stage) {
 }
 
 void DirectionFieldEditor::Kept::connect(const DirectionFieldOptions& options, const JobStage& stage) {
-  if (!trivial) trivial = std::make_unique<TrivialConnection>(mesh, connection, *filled, loops, stage.part(0, 0.2));
-  std::vector<Index> wanted = prescribed_units(mesh, *filled, symmetry, options, *trivial, stage.part(0.2, 0.3));
+  if (!trivial) trivial = std::make_unique<TrivialConnection>(mesh, connection, *filled, loops, stage.part(0, 0.1));
+  std::vector<Index> wanted = prescribed_units(mesh, *filled, symmetry, options, *trivial, stage.part(0.1, 0.15));
   if (wanted == units) return;
   units.clear();
-  turns = trivial->turns(wanted, symmetry, stage.part(0.3, 1));
+  turns = trivial->turns(wanted, symmetry, stage.part(0.15, 1));
   stage.check();
   angles = integrate(mesh, connection, loops, symmetry, turns);
   shift.clear();
@@ -196,7 +196,7 @@ DirectionField DirectionFieldEditor::Kept::automatic(const DirectionFieldOptions
   for (Index f = 0; f < mesh.face_count(); ++f)
     if (springs.stiffness[f] > 0) is_drawn[component(f)] = true;
 
-  const auto graph = power_graph(mesh, connection, symmetry);
+  const auto graph = power_graph(mesh, connection, symmetry, stage);
   const bool any_drawn = std::find(is_drawn.begin(), is_drawn.end(), true) != is_drawn.end();
   const bool any_free = std::find(is_drawn.begin(), is_drawn.end(), false) != is_drawn.end();
   std::vector<Complex> powers;

@@ -78,10 +78,11 @@ std::vector<GraphEdge<double>> vertex_graph(const Mesh& mesh, const SurfaceConne
   return result;
 }
 
-PowerGraph power_graph(const Mesh& mesh, const SurfaceConnection& connection, int symmetry) {
+PowerGraph power_graph(const Mesh& mesh, const SurfaceConnection& connection, int symmetry, const JobStage& stage) {
   PowerGraph result;
   result.reserve(mesh.edge_count());
   for (const Index h : inner_edges(mesh)) {
+    if (result.size() % 32768 == 0) stage.check();
     const Complex carried = std::polar(1 / connection.weight[h], -symmetry * connection.transport[h]);
     result.push_back({Mesh::face_of(h), Mesh::face_of(mesh.twin(h)), carried});
   }

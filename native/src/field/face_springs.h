@@ -25,7 +25,7 @@ std::vector<GraphEdge<double>> vertex_graph(const Mesh& mesh, const SurfaceConne
 
 /// The edges of the dual graph for powers of directions: neighbours are tied by the inverse of the weight, as the
 /// energy of turning has it, and carried across `symmetry` times.
-PowerGraph power_graph(const Mesh& mesh, const SurfaceConnection& connection, int symmetry);
+PowerGraph power_graph(const Mesh& mesh, const SurfaceConnection& connection, int symmetry, const JobStage& stage);
 
 /// The equilibrium of powers. Components without springs are held at 0 in their smallest face.
 std::vector<std::complex<double>> relax_powers(const Mesh& mesh, const PowerGraph& graph,

@@ -155,7 +155,7 @@ MultigridSolver<Scalar>::MultigridSolver(GraphMatrix<Scalar> matrix, const JobSt
 }
 
 template <class Scalar>
-auto MultigridSolver<Scalar>::make_level(const GraphMatrix<Scalar>& matrix) -> Level {
+auto MultigridSolver<Scalar>::make_level(const GraphMatrix<Scalar>& matrix, const JobStage& stage) -> Level {
   Level level;
   level.matrix.begins = matrix.begins;
   level.matrix.columns.resize(matrix.columns.size());
@@ -163,6 +163,7 @@ auto MultigridSolver<Scalar>::make_level(const GraphMatrix<Scalar>& matrix) -> L
   level.matrix.diagonal.assign(matrix.diagonal.begin(), matrix.diagonal.end());
   level.middles.reserve(matrix.size());
   for (Index i = 0; i < matrix.size(); ++i) {
+    if (i % k_nodes_a_check == 0) stage.check();
     Index low = matrix.begins[i], high = matrix.begins[i + 1];
     for (Index k = matrix.begins[i]; k < matrix.begins[i + 1]; ++k) {
       const Index to = matrix.columns[k] < i ? low++ : --high;
@@ -180,8 +181,7 @@ void MultigridSolver<Scalar>::coarsen(const JobStage& stage) {
   GraphMatrix<Scalar> owned;
   const GraphMatrix<Scalar>* matrix = &matrix_;
   while (true) {
-    levels_.push_back(make_level(*matrix));
-    stage.check();
+    levels_.push_back(make_level(*matrix, stage));
     if (matrix->size() <= k_coarsest) break;
     Aggregates<Scalar> aggregates = pair_up(*matrix, stage);
     GraphMatrix<Scalar> coarse = galerkin(*matrix, aggregates, stage);
@@ -332,6 +332,7 @@ std::vector<Scalar> MultigridSolver<Scalar>::solve(const std::vector<Scalar>& ri
       norm += std::norm(residual[i]);
     }
   }
+  stage.update(1);
   return x;
 }
 

@@ -59,7 +59,7 @@ class MultigridSolver {
     SmallVector right, solution, residual, first, first_image, second, second_image;
   };
 
-  static Level make_level(const GraphMatrix<Scalar>& matrix);
+  static Level make_level(const GraphMatrix<Scalar>& matrix, const JobStage& stage);
   void coarsen(const JobStage& stage);
   void factor_coarsest(const GraphMatrix<Scalar>& matrix);
   void cycle(std::size_t level, const SmallVector& right, SmallVector& solution, Workspace& work,
