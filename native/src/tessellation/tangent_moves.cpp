@@ -34,7 +34,7 @@ void move_site(const Mesh& mesh, const SurfacePoint& site, const Vec2& step, Ind
     moved.rotations[i] = arrival - heading;
     moved.steps[i] = rotated(step * (end.length / length), moved.rotations[i]);
   } catch (const InputError&) {
-    // The site stays.
+    moved.sites[i] = site;  // the curve would turn without end
   }
 }
 
