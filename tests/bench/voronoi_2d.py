@@ -2,7 +2,8 @@
 
 Processor nanoseconds per site, medians over fresh sites in every repetition (the same ones again would train the
 branch predictor), beside CGAL's, Boost.Polygon's and SciPy's in the same run; numbers of vertices and edges against
-CGAL's; then nanoseconds by the kind of sites, and the growth of memory. CGAL and Boost need a compiler and their
+CGAL's; then nanoseconds by the kind of sites, and the growth of memory; then the same for weighted sites beside CGAL's
+Apollonius graph, hidden sites and all. CGAL and Boost need a compiler and their
 headers (Debian: g++, libcgal-dev); without them their columns stay empty.
 """
 
@@ -28,11 +29,11 @@ import plane_sites
 KINDS = ("uniform", "clusters", "circle", "grid", "nearly_collinear", "duplicates")
 
 
-def build_peers(folder: Path) -> Path | None:
+def build_peers(folder: Path, name: str = "voronoi_2d_peers") -> Path | None:
     """Compile the peers; None when that is not possible here."""
     compiler = shutil.which("g++")
-    program = folder / "voronoi_2d_peers"
-    source = Path(__file__).with_name("voronoi_2d_peers.cpp")
+    program = folder / name
+    source = Path(__file__).with_name(f"{name}.cpp")
     if compiler is None or not Path("/usr/include/CGAL/Delaunay_triangulation_2.h").exists():
         return None
     command = [compiler, "-O3", "-march=native", "-DNDEBUG", "-std=c++17", source, "-o", program, "-lgmp", "-lmpfr"]
@@ -81,6 +82,42 @@ def compare(kind: str, n: int, threads: int, peers: Path | None, *, with_scipy: 
     return {name: 1e9 * float(np.median(values)) / n for name, values in times.items()}
 
 
+def compare_weighted(n: int, share: float, threads: int, peers: Path | None) -> dict[str, float]:
+    """Median nanoseconds per site, radii up to a share of the mean distance. Stops when CGAL's counts differ."""
+    times: dict[str, list[float]] = {}
+    for seed in range(min(5, repetitions(n))):
+        rng = np.random.default_rng(1000 * n + seed)
+        sites, weights = rng.random((n, 2)), rng.random(n) * share / n**0.5
+        cpu_start, start = time.process_time(), time.perf_counter()
+        diagram = sb.voronoi_2d(sites, weights, threads=threads)
+        times.setdefault("cpu", []).append(time.process_time() - cpu_start)
+        times.setdefault("wall", []).append(time.perf_counter() - start)
+        times.setdefault("points", []).append(measured(lambda sites=sites: sb.voronoi_2d(sites, threads=threads)))
+        if peers is not None:
+            found = run_peers(peers, np.column_stack([sites, weights]))["cgal"]
+            hidden = len(diagram.hidden)
+            counts = [n - hidden, hidden, len(diagram.vertices), len(diagram.edges)]
+            if counts != found[1:]:
+                raise SystemExit(f"weighted, {n}, {share}, seed {seed}: {counts}, CGAL has {found[1:]}")
+            times.setdefault("cgal", []).append(found[0])
+    return {name: 1e9 * float(np.median(values)) / n for name, values in times.items()}
+
+
+def wrong_places(n: int, queries: int) -> int:
+    """How many points `locate` gives to a site that another is nearer than, by brute force."""
+    rng = np.random.default_rng(n)
+    sites, weights = rng.random((n, 2)), rng.random(n) / n**0.5
+    points = 1.4 * rng.random((queries, 2)) - 0.2
+    found = sb.voronoi_2d(sites, weights).locate(points)
+    wrong = 0
+    for begin in range(0, queries, 1000):
+        rows = slice(begin, begin + 1000)
+        distances = np.hypot(*(points[rows, None] - sites).transpose(2, 0, 1)) - weights
+        given = distances[np.arange(len(distances)), found[rows]]
+        wrong += np.count_nonzero(given > distances.min(axis=1) + 1e-14)
+    return wrong
+
+
 def peak_memory(n: int) -> float:
     """MB that a diagram takes above its sites, at most, in a process of its own."""
     code = (
@@ -97,7 +134,8 @@ def peak_memory(n: int) -> float:
 
 
 def print_row(label: str, times: dict[str, float]) -> None:
-    cells = (f"{times[name]:9.0f}" if name in times else " " * 9 for name in ("cpu", "wall", "cgal", "boost", "scipy"))
+    names = ("cpu", "wall", "cgal", "points") if "points" in times else ("cpu", "wall", "cgal", "boost", "scipy")
+    cells = (f"{times[name]:9.0f}" if name in times else " " * 9 for name in names)
     print(f"{label:24s}{''.join(cells)}", flush=True)
 
 
@@ -114,5 +152,12 @@ def main(arguments: list[str]) -> int:
             n *= 10
         for kind in KINDS:
             print_row(f"{kind}, {largest:,d}", compare(kind, largest, threads, peers, with_scipy=False))
+        peers = build_peers(Path(folder), "voronoi_2d_weighted_peers")
+        print(f"{'weighted':24s}{'cpu':>9s}{'wall':>9s}{'cgal':>9s}{'points':>9s}")
+        for n in (1000, 10**4, 10**5):
+            for share in (0.2, 1.0):
+                if n <= largest:
+                    print_row(f"{n:,d}, radii {share}", compare_weighted(n, share, threads, peers))
+    print(f"weighted: {wrong_places(2000, 10**6)} of a million points at a wrong site")
     print(f"peak memory above the sites, {largest:,d}: {peak_memory(largest):.0f} MB")
     return 0

@@ -180,7 +180,7 @@ Sign turn_from_crossing(const WeightedPoint2& site, const Crossing& crossing, co
 
 // At the crossing f_a = f_b = s, or D_a.u = N_a s - e_a and D_b.u = N_b s - e_b. Solved for u this is linear in s, and
 // u^2 = 1 a quadratic equation, whose coefficients are exact before they are rounded.
-Point2 crossing_point(const WeightedPoint2& site, const Crossing& crossing) {
+CrossingPlace crossing_place(const WeightedPoint2& site, const Crossing& crossing) {
   AllSeen<ExactNumber> seen = exactly_seen(site, {crossing.before, crossing.after, nullptr, nullptr});
   auto &a = seen[0], &b = seen[1];
   const double scale = std::ldexp(1, -std::ilogb(std::max(largest_of(a), largest_of(b))));
@@ -198,8 +198,7 @@ Point2 crossing_point(const WeightedPoint2& site, const Crossing& crossing) {
   // or with - where the sites turn the other way. Whichever way adds two numbers of one sign is free from cancellation.
   const double turned = det.sign() * std::sqrt(std::max(0.0, (q * q - p * r).to_double())), to_q = -q.to_double();
   const double s = to_q * turned >= 0 ? (to_q + turned) / p.to_double() : r.to_double() / (to_q - turned);
-  const double distance = 1 / (2 * s * scale);
-  return {site.x + u * distance, site.y + v * distance};
+  return {u, v, s * scale};
 }
 
 }  // namespace saddleback::predicates

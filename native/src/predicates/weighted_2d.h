@@ -43,7 +43,10 @@ Sign compare_at_crossing(const WeightedPoint2& site, const Crossing& crossing, c
 Sign turn_from_crossing(const WeightedPoint2& site, const Crossing& crossing, const WeightedPoint2* a,
                         const WeightedPoint2* b);
 
-/// Where a crossing lies at which f is above 0, up to a few roundings however flat the three sites lie.
-Point2 crossing_point(const WeightedPoint2& site, const Crossing& crossing);
+/// A crossing to the last few digits, however flat the sites lie: the direction, and f there, which is not below 0.
+struct CrossingPlace {
+  double x, y, height;
+};
+CrossingPlace crossing_place(const WeightedPoint2& site, const Crossing& crossing);
 
 }  // namespace saddleback::predicates

@@ -147,6 +147,14 @@ WeightedCell::Begin WeightedCell::begin_between(Index before, Index after) const
     result.blur = 8 * (off / root + k_epsilon);
     result.doubt = 2 * (smaller.doubt + smaller.size * result.blur);
   }
+  // Nearly tangent sites: without some digits every comparison there would have to be exact.
+  constexpr double k_blurred = 0x1p-30, k_doubtful = 0.25;
+  if (!(result.blur < k_blurred && (smaller.size == 0 || result.doubt < k_doubtful * std::fabs(result.height)))) {
+    const predicates::CrossingPlace place = predicates::crossing_place(points_[site_], {point(a), point(b)});
+    result.x = place.x, result.y = place.y, result.height = place.height;
+    result.blur = 64 * k_epsilon;
+    result.doubt = 64 * k_epsilon * std::fabs(place.height);
+  }
   return result;
 }
 
@@ -278,10 +286,44 @@ void WeightedCell::use_begins() {
   far_ = lowest > 0 ? 1 / lowest : k_infinity;
 }
 
+/// What most rivals do: cut off neighbouring corners and the sides between, and nothing else. False when that is not
+/// certain in doubles; then nothing has changed.
+bool WeightedCell::cut_corners(const Rival& rival) {
+  if (has_fixed_) return false;
+  const Index arcs = count();
+  Index cut = 0, last = k_none;  // corners cut off, the last of them
+  for (Index k = 0; k < arcs; ++k) {
+    const bool is_above = above_[k] > 0, stays_above = above_[k + 1] > 0;
+    if (!(std::fabs(above_[k]) > slack_[k])) return false;
+    cut += is_above;
+    if (is_above != stays_above) {
+      if (is_above && last != k_none) return false;
+      if (is_above) last = k;
+      continue;
+    }
+    // The tangents' corner says that the waves do not cross within the arc: see is_below.
+    const double h = rival.z - z_[k], sum = above_[k] + above_[k + 1], slack = 4 * (slack_[k] + slack_[k + 1]);
+    if (is_above ? !(sum - slack > std::max(0.0, h) * gap_[k]) : !(sum + slack < std::min(0.0, h) * gap_[k]))
+      return false;
+  }
+  if (last == k_none) return false;
+  const Index number = static_cast<Index>(rivals_.size());
+  rivals_.push_back(rival);
+  joined_.clear();
+  joined_.push_back(begin_between(number, begins_[last].rival));
+  for (Index step = 1, k = last; step <= arcs - cut; ++step) joined_.push_back(begins_[k = after(k)]);
+  joined_.push_back(begin_between(joined_.back().rival, number));
+  begins_.swap(joined_);
+  use_begins();
+  narrow_arcs();
+  return true;
+}
+
 void WeightedCell::meet(Index other) {
   const Rival rival = rival_of(other);
   if (is_below(rival)) return;
   compare(rival);
+  if (cut_corners(rival)) return;
   signs_.resize(begins_.size());
   for (Index arc = 0; arc < count(); ++arc) signs_[arc] = sign_at(arc, rival);
   const Index number = static_cast<Index>(rivals_.size());
@@ -316,16 +358,17 @@ bool WeightedCell::is_open_after(Index arc) const {
   return predicates::compare_at_crossing(points_[site_], crossing(after(arc)), nullptr) != Sign::negative;
 }
 
+/// Computed from the two sites beside it, so that it does not depend on what the cell met in which order.
 Vec2 WeightedCell::corner_after(Index arc) const {
   constexpr double k_good = 0x1p-36;
-  const Begin& end = begins_[after(arc)];
   const WeightedPoint2& here = points_[site_];
+  const Begin& last = begins_[after(arc)];
+  const Begin end = last.fixed == k_none ? last : begin_between(begins_[arc].rival, last.rival);
   if (end.doubt < k_good * end.height && end.blur < k_good)
     return {here.x + 0.5 * end.x / end.height, here.y + 0.5 * end.y / end.height};
-  Crossing where = crossing(after(arc));
-  if (where.fixed != k_none) where.fixed = k_none;  // three or more sites: two of them say where as well
-  const predicates::Point2 result = predicates::crossing_point(here, where);
-  return {result.x, result.y};
+  const predicates::CrossingPlace place =
+      predicates::crossing_place(here, {point(rivals_[begins_[arc].rival]), point(rivals_[last.rival])});
+  return {here.x + 0.5 * place.x / place.height, here.y + 0.5 * place.y / place.height};
 }
 
 // The curve towards a neighbour begins and ends at infinity; the direction away from the neighbour is between its end
@@ -372,6 +415,10 @@ void WeightedCell::read(std::vector<Side>& sides) const {
     ends_.push_back(arc);
   }
   number_repeated(sides);
+  const auto first = std::min_element(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return a.neighbour != b.neighbour ? a.neighbour < b.neighbour : a.ordinal < b.ordinal;
+  });
+  std::rotate(sides.begin(), first, sides.end());
 }
 
 }  // namespace saddleback::voronoi2d

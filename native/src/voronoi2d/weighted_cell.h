@@ -42,7 +42,7 @@ class WeightedCell {
     Index ordinals = 1;  ///< how many of them there are
     Vec2 corner{0, 0};   ///< where this site is the lowest of the three about the corner
   };
-  /// The finished cell; none when it is the whole plane. O(arcs).
+  /// The finished cell, the lowest neighbour first; none when it is the whole plane. O(arcs).
   void read(std::vector<Side>& sides) const;
 
  private:
@@ -81,6 +81,7 @@ class WeightedCell {
   int sign_at(Index arc, const Rival& rival) const;
   int turn_to(Index arc, const Rival& from, const Rival& to) const;
   bool holds_top(Index arc, const Rival& from, const Rival& to) const;
+  bool cut_corners(const Rival& rival);
   void split(Index arc, Index rival);
   void join_pieces();
   void narrow_arcs();

@@ -1,4 +1,4 @@
-// Additively weighted Voronoi diagrams by CGAL, for comparison: `weighted_voronoi_2d_peers FILE`, the file holding
+// Additively weighted Voronoi diagrams by CGAL, for comparison: `voronoi_2d_weighted_peers FILE`, the file holding
 // triples of doubles: x, y, weight. Prints one line:
 //   cgal SECONDS VISIBLE HIDDEN VERTICES EDGES
 // Seconds of processor time for the Apollonius graph.
