@@ -61,6 +61,14 @@ def test_components_without_a_place_have_the_mean(method: str) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_many_components(method: str) -> None:
+    mesh = sb.Mesh(*meshes.soup())
+    spread = sb.spread_values(mesh, [0, 3, 4], [1, 5, 7], method)
+    np.testing.assert_allclose(spread[[0, 3, 4]], [1, 5, 7], atol=1e-4)
+    assert np.abs(spread[mesh.components > 1] - 13 / 3).max() < 1e-6
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_values_do_not_depend_on_scale_and_place(method: str) -> None:
     vertices, triangles = meshes.torus(40, 16)
     first = sb.spread_values(sb.Mesh(vertices, triangles), [3, 200, 500], [1, 2, 5], method)

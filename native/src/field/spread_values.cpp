@@ -95,29 +95,31 @@ class Splines {
     });
   }
 
+  /// Components without a place get the mean.
   std::vector<double> through(std::span<const double> values, double mean) const {
     const auto count = static_cast<Eigen::Index>(places_.size());
-    const auto components = static_cast<Eigen::Index>(mesh_.component_count());
-    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(count + components, count + components);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(count + components);
+    std::vector<Eigen::Index> column(mesh_.component_count(), -1);  // of each component's constant
+    Eigen::Index size = count;
+    for (const SurfacePoint& place : places_)
+      if (Eigen::Index& own = column[component_of(mesh_, place)]; own < 0) own = size++;
+    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(size, size);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const Eigen::Index component = count + component_of(mesh_, places_[i]);
+      const Eigen::Index constant = column[component_of(mesh_, places_[i])];
       for (Eigen::Index j = 0; j < count; ++j) system(i, j) = at(bends_[j], i);
-      system(i, component) = system(component, i) = 1;
+      system(i, constant) = system(constant, i) = 1;
       right[i] = values[i];
     }
     // Places that say the same give way a little and meet at a mean.
     constexpr double k_give = 1e-9;
-    const double size = system.topLeftCorner(count, count).diagonal().cwiseAbs().maxCoeff();
-    for (Eigen::Index i = 0; i < count; ++i) system(i, i) += k_give * size;
-    for (Eigen::Index c = count; c < count + components; ++c) {
-      if (system.row(c).isZero()) system(c, c) = 1, right[c] = mean;
-    }
+    const double scale = system.topLeftCorner(count, count).diagonal().cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 0; i < count; ++i) system(i, i) += k_give * scale;
     const Eigen::VectorXd factors = system.fullPivLu().solve(right);
     std::vector<double> result(mesh_.vertex_count());
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      result[v] = factors[count + mesh_.component_of(v)];
-      for (Eigen::Index i = 0; i < count; ++i) result[v] += factors[i] * bends_[i][v];
+      const Eigen::Index constant = column[mesh_.component_of(v)];
+      result[v] = constant < 0 ? mean : factors[constant];
+      for (Eigen::Index i = 0; constant >= 0 && i < count; ++i) result[v] += factors[i] * bends_[i][v];
     }
     return result;
   }
