@@ -326,6 +326,8 @@ bool SiteMaps::find(Index site, Index vertex, Scratch& scratch, SiteVector& vect
     place = place_direct(*direct);
   } else if (in_own_face(node, site, vector)) {
     return true;
+  } else if (first_node_[site] == first_node_[site + 1]) {
+    return false;  // nothing of its own to be next to
   } else if (!beside_own(node, site, scratch, place) && !place_beside(node, site, &scratch, place) &&
              !place_through_neighbour(node, site, scratch, place)) {
     return false;
