@@ -142,9 +142,10 @@ RelaxationMethod as_method(const std::string& name) {
 }
 
 RelaxationStart as_start(const std::string& name) {
+  if (name == "auto") return RelaxationStart::automatic;
   if (name == "coarse_to_fine") return RelaxationStart::coarse_to_fine;
   if (name == "sample") return RelaxationStart::sample;
-  throw InputError(message("start: wanted 'coarse_to_fine' or 'sample', got '", name, "'"));
+  throw InputError(message("start: wanted 'auto', 'coarse_to_fine' or 'sample', got '", name, "'"));
 }
 
 Relaxed relax(const py::object& graph, const py::object& sites, const py::object& count, const py::object& density,
@@ -230,7 +231,7 @@ seed : int
 start : str
     Where the sites of `count` come from. "coarse_to_fine": relaxed cells of a quarter of the number, with one more on
     each boundary between two of them, and so on down; few irregular cells remain. "sample": by density and seed. The
-    same without iterations.
+    same without iterations. "auto": from coarse cells when max_iterations is 50 or more.
 fixed : (m,) int array, optional
     Sites that stay where they are.
 return_when_cancelled : bool
@@ -384,7 +385,7 @@ void bind_tessellation(py::module_& m) {
       });
   m.def("centroidal_voronoi", &relax, py::arg("graph"), py::arg("sites") = py::none(), py::arg("count") = py::none(),
         py::arg("density") = py::none(), py::arg("method") = "lbfgs", py::arg("max_iterations") = 100,
-        py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("start") = "coarse_to_fine",
+        py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("start") = "auto",
         py::arg("fixed") = py::none(), py::arg("return_when_cancelled") = false, py::arg("threads") = 0,
         py::arg("job") = py::none(), k_centroidal_doc);
 }

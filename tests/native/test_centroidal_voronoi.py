@@ -225,7 +225,7 @@ def test_progress_rises_and_cancel_is_quick() -> None:
         ({"count": 2, "seed": -1}, "seed"),
         ({"count": 2, "fixed": [2]}, "fixed: wanted sites from 0 to 1, got 2"),
         ({"count": 2, "fixed": [-1]}, "fixed"),
-        ({"count": 2, "start": "guess"}, "start: wanted 'coarse_to_fine' or 'sample', got 'guess'"),
+        ({"count": 2, "start": "guess"}, "start: wanted 'auto', 'coarse_to_fine' or 'sample', got 'guess'"),
     ],
 )
 def test_bad_arguments(arguments: dict[str, object], words: str) -> None:

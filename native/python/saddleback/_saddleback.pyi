@@ -451,7 +451,7 @@ def centroidal_voronoi(
     tolerance: SupportsFloat = 1e-6,
     seed: SupportsIndex = 0,
     *,
-    start: Literal["coarse_to_fine", "sample"] = "coarse_to_fine",
+    start: Literal["auto", "coarse_to_fine", "sample"] = "auto",
     fixed: ArrayLike | None = None,
     return_when_cancelled: bool = False,
     threads: SupportsIndex = 0,

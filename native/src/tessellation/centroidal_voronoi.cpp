@@ -270,10 +270,13 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
                                      std::uint64_t seed, const CentroidalVoronoiOptions& options, Job* job) {
   constexpr double k_start = 0.4;  // coarse cells take nearly as long as fine ones, but few iterations
+  constexpr int k_long_run = 50;
   check_options(graph.mesh(), options);
   const JobStage stage(job, "Finding cells");
   const SurfacePoints sites = initial_sites(graph.mesh(), count, options.density, seed);
-  if (start == RelaxationStart::sample || options.max_iterations == 0) return relax_sites(graph, sites, options, stage);
+  const bool coarse = start == RelaxationStart::automatic ? options.max_iterations >= k_long_run
+                                                          : start == RelaxationStart::coarse_to_fine;
+  if (!coarse || options.max_iterations == 0) return relax_sites(graph, sites, options, stage);
   return relax_sites(graph, coarse_to_fine_sites(graph, count, options, seed, stage.part(0, k_start)), options,
                      stage.part(k_start, 1));
 }

@@ -7,6 +7,7 @@
 #include "saddleback/sample.h"
 #include "saddleback/surface_curve.h"
 
+#include "tessellation/cell_topology.h"
 #include "tessellation/diagram.h"
 
 namespace saddleback {
@@ -14,7 +15,7 @@ namespace {
 
 // Fewer cells than this are relaxed from a sample: their irregular vertices are few and find their places.
 constexpr Index k_coarsest = 60;
-constexpr int k_most_coarse_iterations = 40;
+constexpr int k_most_coarse_iterations = 40, k_first_iterations = 5;
 constexpr double k_coarse_tolerance = 1e-5;
 
 Index euler_characteristic(const Mesh& mesh) { return mesh.vertex_count() - mesh.edge_count() + mesh.face_count(); }
@@ -65,7 +66,12 @@ SurfacePoints start(const SaddleVertexGraph& graph, Index count, const Centroida
   rough.tolerance = std::max(options.tolerance, k_coarse_tolerance);
   rough.return_when_cancelled = false;
   const SurfacePoints sites = start(graph, coarse, options, seed, stage.part(0, 0.5));
-  const CentroidalVoronoi relaxed = relax_sites(graph, sites, rough, stage.part(0.5, 1));
+  // Round thin parts coarse cells meet themselves or each other twice; what is between them says nothing there.
+  CentroidalVoronoiOptions first = rough;
+  first.max_iterations = std::min(rough.max_iterations, k_first_iterations);
+  CentroidalVoronoi relaxed = relax_sites(graph, sites, first, stage.part(0.5, 0.6));
+  if (!find_dual_issues(mesh, relaxed.cells).empty()) return initial_sites(mesh, count, options.density, seed);
+  relaxed = relax_sites(graph, relaxed.sites, rough, stage.part(0.6, 1));
   return refined(mesh, relaxed.cells, count, options, seed);
 }
 
