@@ -137,13 +137,14 @@ def angles_to_strokes(mesh: sb.Mesh, field: sb.DirectionField, curves: list[sb.S
 
 
 def apart(mesh: sb.Mesh, curves: list[sb.SurfaceCurve]) -> list[sb.SurfaceCurve]:
-    """The curves that share no face with an earlier one: no field can follow two at once."""
+    """The curves that share no face with an earlier one, or come back to one: no field can follow two at once."""
     taken: set[int] = set()
     chosen = []
     for curve in curves:
         positions = curve.points.positions(mesh)
-        faces = set(sb.project(mesh, (positions[:-1] + positions[1:]) / 2).faces.tolist())
-        if not faces & taken:
+        along = sb.project(mesh, (positions[:-1] + positions[1:]) / 2).faces
+        faces = set(along.tolist())
+        if not faces & taken and len(faces) == 1 + np.count_nonzero(np.diff(along)):
             chosen.append(curve)
         taken |= faces
     return chosen

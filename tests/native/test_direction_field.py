@@ -388,6 +388,8 @@ def test_bad_input_is_told() -> None:
     stroke = sb.SurfaceCurve(mesh, [7, 8])
     crossing = sb.SurfaceCurve(mesh, sb.trace(mesh, sb.SurfacePoints([12], [[0.4, 0.3, 0.3]]), 1.0, 0.1).surface)
     along = sb.SurfaceCurve(mesh, sb.trace(mesh, sb.SurfacePoints([12], [[0.3, 0.4, 0.3]]), 2.0, 0.1).surface)
+    back_and_forth = [[0.2, 0.6, 0.2], [0.5, 0, 0.5], [0.2, 0.2, 0.6], [0.8, 0.2, 0], [0.1, 0.8, 0.1]]
+    itself = sb.SurfaceCurve(mesh, sb.SurfacePoints([12, 12, 13, 13, 12], back_and_forth))
     for message, call in {
         "symmetry is 3, but must be": lambda: sb.direction_field(mesh, 3),
         "vertex 99 is out of range, the mesh has 36 vertices": lambda: sb.direction_field(mesh, 1, {99: 1}),
@@ -410,6 +412,7 @@ def test_bad_input_is_told() -> None:
         "hard strokes 0 and 1 cross in face 12": lambda: sb.direction_field(
             mesh, 1, {}, [sb.Stroke(crossing, True), sb.Stroke(along, True)]
         ),
+        "hard stroke 0 crosses itself in face 12": lambda: sb.direction_field(mesh, 1, {}, [sb.Stroke(itself, True)]),
         "curve: wanted a SurfaceCurve": lambda: sb.Stroke([7, 8]),
         "mesh: wanted a Mesh": lambda: sb.direction_field(3),
     }.items():

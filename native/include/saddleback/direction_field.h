@@ -115,7 +115,8 @@ class DirectionFieldEditor {
   /// face of a component is 0.
   /// \throw InputError for a vertex out of range, on the boundary or named twice; indices that do not sum to the Euler
   /// characteristic of their component (naming it and what is missing); a stroke of another mesh or a weight that is
-  /// not positive and finite; hard strokes that disagree in a face; curvature for symmetry 1. Cancelled. About O(F).
+  /// not positive and finite; hard strokes that disagree in a face, with others or themselves; curvature for
+  /// symmetry 1. Cancelled. About O(F).
   DirectionField field(const DirectionFieldOptions& options = {}, Job* job = nullptr);
 
  private:

@@ -34,6 +34,11 @@ class FacesOfStroke {
     known.stiffness += length;
     known.angle += std::remainder(angle - known.angle, quantum_) * length / known.stiffness;
   }
+  /// Whether it has been in the face before, along another direction.
+  bool disagrees(Index face, double angle) const {
+    const auto at = place_.find(face);
+    return at != place_.end() && std::abs(std::remainder(angle - faces_[at->second].angle, quantum_)) > k_agreement;
+  }
   /// With lengths in place of stiffness.
   StrokeFaces take() { return std::move(faces_); }
 
@@ -43,12 +48,18 @@ class FacesOfStroke {
   std::map<Index, std::size_t> place_;
 };
 
-StrokeFaces faces_of(const Mesh& mesh, const Stroke& stroke, int symmetry) {
+StrokeFaces faces_of(const Mesh& mesh, const Stroke& stroke, std::size_t number, int symmetry) {
   FacesOfStroke faces(k_turn / symmetry);
+  Index last = k_none;
   for (const CurveSegment& segment : stroke.curve.segments()) {
     const FaceChart chart(mesh, segment.face);
     const Vec2 along = chart.to_plane(segment.end) - chart.to_plane(segment.begin);
-    faces.add(segment.face, std::atan2(along.y(), along.x()), segment.length);
+    const double angle = std::atan2(along.y(), along.x());
+    if (stroke.is_hard && segment.face != last && faces.disagrees(segment.face, angle))
+      throw InputError(message("strokes: the hard stroke ", number, " crosses itself in face ", segment.face,
+                               ", where it wants different directions; make it soft"));
+    last = segment.face;
+    faces.add(segment.face, angle, segment.length);
   }
   StrokeFaces result = faces.take();
   for (StrokeFace& face : result) {
@@ -198,7 +209,7 @@ std::vector<StrokeFaces> stroke_faces(const Mesh& mesh, int symmetry, std::span<
                                       bool along_boundary) {
   check_strokes(mesh, strokes);
   std::vector<StrokeFaces> result;
-  for (const Stroke& stroke : strokes) result.push_back(faces_of(mesh, stroke, symmetry));
+  for (const Stroke& stroke : strokes) result.push_back(faces_of(mesh, stroke, result.size(), symmetry));
   check_hard_strokes(result, symmetry);
   if (along_boundary)
     for (const std::vector<Index>& loop : mesh.boundary_loops()) result.push_back(faces_of_loop(mesh, loop, symmetry));
