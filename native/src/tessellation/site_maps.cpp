@@ -326,14 +326,18 @@ bool SiteMaps::find(Index site, Index vertex, Scratch& scratch, SiteVector& vect
     place = place_direct(*direct);
   } else if (in_own_face(node, site, vector)) {
     return true;
-  } else if (first_node_[site] == first_node_[site + 1]) {
-    return false;  // nothing of its own to be next to
-  } else if (!beside_own(node, site, scratch, place) && !place_beside(node, site, &scratch, place) &&
-             !place_through_neighbour(node, site, scratch, place)) {
+  } else if (!place_by_cell(node, site, scratch, place)) {
     return false;
   }
   vector = vector_of(place);
   return true;
+}
+
+/// Next to vertices of the site's own cell, if it has any.
+bool SiteMaps::place_by_cell(Index node, Index site, Scratch& scratch, Place& place) const {
+  if (first_node_[site] == first_node_[site + 1]) return false;
+  return beside_own(node, site, scratch, place) || place_beside(node, site, &scratch, place) ||
+         place_through_neighbour(node, site, scratch, place);
 }
 
 /// The corners of its face a site sees straight, even where its fan leaves them out.

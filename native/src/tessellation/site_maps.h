@@ -103,6 +103,7 @@ class SiteMaps {
   bool end_of_edge(Index node, Index site, Scratch* deep, Place& place) const;
   static bool see(const Wedge& wedge, const Place& from, const Place& to, Sight& sight);
   Place place_by(const Sight& sight, const Wedge& wedge, const Place& from, const Place& to) const;
+  bool place_by_cell(Index node, Index site, Scratch& scratch, Place& place) const;
   bool place_through_neighbour(Index node, Index site, Scratch& scratch, Place& place) const;
   bool in_own_face(Index node, Index site, SiteVector& vector) const;
   SiteVector vector_of(const Place& place) const;
