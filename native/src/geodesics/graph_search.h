@@ -36,6 +36,9 @@ class GraphSearch {
   void write_sources(const SaddleVertexGraph& graph, std::span<Index> vertices) const;
   /// Vertices before, k_none straight from a source. Where several would do, which one it is may depend on the method.
   void write_predecessors(const SaddleVertexGraph& graph, std::span<Index> vertices) const;
+  /// The same in the order of the nodes; with no limit, and all reached.
+  std::span<const double> node_distances() const { return distances_; }
+  std::span<const Index> node_sources() const { return sources_; }
   /// Of a vertex.
   double distance(const SaddleVertexGraph& graph, Index vertex) const;
 

@@ -92,16 +92,33 @@ CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings,
   stage.update(1);
 }
 
+/// Faces whose corners differ in their labels, each with the number of labels.
+void CellClaims::find_mixed_faces(int threads) {
+  struct Mixed {
+    Index face, labels;
+  };
+  constexpr Index k_stretch = 16384;
+  const Index count = mesh().face_count(), stretches = (count + k_stretch - 1) / k_stretch;
+  std::vector<std::vector<Mixed>> found(stretches);
+  parallel_for(stretches, threads, 1, [&](Index stretch, int) {
+    for (Index face = stretch * k_stretch; face < std::min(count, (stretch + 1) * k_stretch); ++face) {
+      const Triangle& t = mesh().triangles()[face];
+      const Index a = maps_.label(t[0]), b = maps_.label(t[1]), c = maps_.label(t[2]);
+      if (a != b || b != c) found[stretch].push_back({face, a != b && b != c && c != a ? 3 : 2});
+    }
+  });
+  for (const std::vector<Mixed>& stretch : found) {
+    for (const Mixed& mixed : stretch) {
+      shared_index_[mixed.face] = shared_count();
+      faces_.push_back(mixed.face);
+      first_.push_back(first_.back() + mixed.labels);
+    }
+  }
+}
+
 /// Each label of a face's corners claims it where they differ.
 void CellClaims::claim_by_corners(std::vector<Worker>& workers, int threads, const JobStage& stage) {
-  for (Index face = 0; face < mesh().face_count(); ++face) {
-    const Triangle& t = mesh().triangles()[face];
-    const Index a = maps_.label(t[0]), b = maps_.label(t[1]), c = maps_.label(t[2]);
-    if (a == b && b == c) continue;
-    shared_index_[face] = shared_count();
-    faces_.push_back(face);
-    first_.push_back(first_.back() + (a != b && b != c && c != a ? 3 : 2));
-  }
+  find_mixed_faces(threads);
   claims_.resize(first_.back());
   const Laid none;  // each label has a corner next to the others
   parallel_for(shared_count(), threads, 256, [&](Index shared, int thread) {

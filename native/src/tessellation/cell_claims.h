@@ -63,6 +63,7 @@ class CellClaims {
     auto operator<=>(const Wish&) const = default;
   };
   struct Laid;
+  void find_mixed_faces(int threads);
   void claim_by_corners(std::vector<Worker>& workers, int threads, const JobStage& stage);
   std::vector<Wish> wishes_of_sites(const SurfacePoints& sites) const;
   void spread(const SurfacePoints& sites, std::vector<Worker>& workers, int threads, const JobStage& stage);

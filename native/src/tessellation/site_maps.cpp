@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "geodesics/direct_fans.h"
-#include "geodesics/label_propagation.h"
+#include "geodesics/query_cache.h"
 #include "support/parallel.h"
 
 namespace saddleback {
@@ -124,13 +124,10 @@ void SiteMaps::label_nodes(const JobStage& stage) {
     if (fan.centre != k_none) seeds.push_back({graph_.vertex_of(fan.centre), site, 0});
     for (const DirectArc& arc : fan.arcs) seeds.push_back({graph_.vertex_of(arc.vertex), site, arc.length});
   }
-  const LabelField field = propagate_labels(graph_, seeds, {}, false, stage.part(0.3, 0.8));
-  label_.resize(field.source.size());
-  distance_.resize(field.source.size());
-  for (Index node = 0; node < mesh_.vertex_count(); ++node) {
-    label_[node] = field.source[graph_.vertex_of(node)];
-    distance_[node] = field.distance[graph_.vertex_of(node)];
-  }
+  const auto search = graph_.query_cache().field_searches.lease();
+  search->run(graph_, seeds, {}, SearchLabels::sources, stage.part(0.3, 0.8));
+  label_.assign(search->node_sources().begin(), search->node_sources().end());
+  distance_.assign(search->node_distances().begin(), search->node_distances().end());
 }
 
 void SiteMaps::group_nodes() {
