@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import threading
-import time
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 from tests.native.exact import exact_distances, random_points, with_vertex_at
 from tests.native.surface_angles import worst_bend
 
@@ -395,22 +393,4 @@ def test_bad_targets() -> None:
 def test_progress_rises_and_cancel_is_quick() -> None:
     mesh = sb.Mesh(*meshes.icosphere(6))
     for share in (0.05, 0.5):
-        job, seen, ended = sb.Job(), [], []
-
-        def measure(job: sb.Job = job, ended: list[float] = ended) -> None:
-            try:
-                sb.exact_distances(mesh, [0], job=job)
-            except sb.Cancelled:
-                ended.append(time.perf_counter())
-
-        worker = threading.Thread(target=measure)
-        worker.start()
-        while job.fraction < share and worker.is_alive():
-            seen.append(job.fraction)
-            time.sleep(0.005)
-        asked = time.perf_counter()
-        job.cancel()
-        worker.join()
-        assert seen == sorted(seen)
-        assert ended
-        assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
+        check_progress_and_cancel(lambda job: sb.exact_distances(mesh, [0], job=job), share)

@@ -22,21 +22,4 @@ LabelField propagate_labels(const SaddleVertexGraph& graph, std::span<const Seed
   return field;
 }
 
-Index previous_vertex(const SaddleVertexGraph& graph, std::span<const double> distance, std::span<const Index> source,
-                      Index vertex, std::int64_t* arc) {
-  const ArcRows& arcs = graph.arcs();
-  const Index node = graph.node_of(vertex);
-  std::int64_t best = -1;
-  for (std::int64_t i = arcs.first(node); i < arcs.first(node + 1); ++i) {
-    const Index before = graph.vertex_of(arcs.target(i));
-    if (distance[before] + arcs.length(i) != distance[vertex]) continue;
-    if (!source.empty() && source[before] != source[vertex]) continue;
-    if (best >= 0 && arcs.length(i) < arcs.length(best)) continue;
-    if (best >= 0 && arcs.length(i) == arcs.length(best) && arcs.target(i) > arcs.target(best)) continue;
-    best = i;
-  }
-  if (arc) *arc = best;
-  return best >= 0 ? graph.vertex_of(arcs.target(best)) : k_none;
-}
-
 }  // namespace saddleback

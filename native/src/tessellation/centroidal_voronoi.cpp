@@ -35,6 +35,14 @@ void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
   }
 }
 
+void check_count(const Mesh& mesh, Index count) {
+  if (count < 1) throw InputError(message("count: wanted at least 1 cell, got ", count));
+  if (count < mesh.component_count()) {
+    throw InputError(message("count: ", count, " cells cannot cover the mesh's ", mesh.component_count(),
+                             " separate parts; ask for more cells or join the parts"));
+  }
+}
+
 void check_fixed(const CentroidalVoronoiOptions& options, const SurfacePoints& sites) {
   for (const Index site : options.fixed) {
     if (site >= 0 && site < static_cast<Index>(sites.size())) continue;
@@ -254,11 +262,7 @@ void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, cons
 }  // namespace
 
 SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const double> density, std::uint64_t seed) {
-  if (count < 1) throw InputError(message("count: wanted at least 1 cell, got ", count));
-  if (count < mesh.component_count()) {
-    throw InputError(message("count: ", count, " cells cannot cover the mesh's ", mesh.component_count(),
-                             " separate parts; ask for more cells or join the parts"));
-  }
+  check_count(mesh, count);
   return sample(mesh, {.count = count, .density = density, .seed = seed, .one_per_component = true});
 }
 
@@ -272,11 +276,13 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count
   constexpr double k_start = 0.4;  // coarse cells take nearly as long as fine ones, but few iterations
   constexpr int k_long_run = 50;
   check_options(graph.mesh(), options);
+  check_count(graph.mesh(), count);
   const JobStage stage(job, "Finding cells");
-  const SurfacePoints sites = initial_sites(graph.mesh(), count, options.density, seed);
   const bool coarse = start == RelaxationStart::automatic ? options.max_iterations >= k_long_run
                                                           : start == RelaxationStart::coarse_to_fine;
-  if (!coarse || options.max_iterations == 0) return relax_sites(graph, sites, options, stage);
+  if (!coarse || options.max_iterations == 0) {
+    return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage);
+  }
   return relax_sites(graph, coarse_to_fine_sites(graph, count, options, seed, stage.part(0, k_start)), options,
                      stage.part(k_start, 1));
 }
