@@ -13,10 +13,12 @@ void bind_fields(py::module_& m);
 void bind_job(py::module_& m);
 void bind_mesh(py::module_& m);
 void bind_paths(py::module_& m);
+void bind_placements(py::module_& m);
 void bind_predicates(py::module_& m);
 void bind_read_mesh(py::module_& m);
 void bind_relax_2d(py::module_& m);
 void bind_repair(py::module_& m);
+void bind_shapes(py::module_& m);
 void bind_stepped_sweep(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
@@ -103,4 +105,6 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_voronoi_2d(m);
   bind_charts(m);
   bind_relax_2d(m);
+  bind_shapes(m);
+  bind_placements(m);
 }

@@ -1,0 +1,77 @@
+#pragma once
+// What is laid on a surface: a flat outline of one or several parts, with or without holes.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+/// A region of the plane about the origin, which is what lies at the centre of a placement; its x axis is what points
+/// along the field. Immutable.
+class Shape {
+ public:
+  using Loop = std::vector<Vec2>;  ///< corners, the last joined to the first
+  using Part = std::vector<Loop>;  ///< an outline, then its holes
+
+  /// Loops may run either way and repeat their first corner at the end. Parts may lie in each other's holes, but do not
+  /// touch.
+  /// \throw InputError naming part, loop and corner: no part, fewer than three corners, a coordinate that is not finite
+  /// or beyond 1e30, loops that touch or cross themselves or each other, no area, a hole outside of its outline, a part
+  /// within another. O(m log m) expected for m corners.
+  explicit Shape(std::vector<Part> parts);
+  /// One part without holes.
+  explicit Shape(Loop outline);
+
+  /// All loops, part by part: outlines counter-clockwise, holes clockwise, so that the shape is on the left.
+  std::span<const Loop> loops() const { return loops_; }
+  /// Per part the index of its outline among the loops, and at the end the number of loops.
+  std::span<const Index> part_begins() const { return part_begins_; }
+  Index part_count() const { return static_cast<Index>(part_begins_.size()) - 1; }
+  Index corner_count() const;
+
+  /// Distance of the farthest corner from the origin.
+  double circumradius() const { return circumradius_; }
+  /// Radius of the largest disk about the origin that lies within; 0 when the origin does not.
+  double inradius() const { return inradius_; }
+  double area() const { return area_; }
+  /// Whether half a turn about the origin changes nothing (corners within 1e-9 of the circumradius).
+  bool has_half_turn() const { return has_half_turn_; }
+  /// Exact; the outline itself counts as either. O(m).
+  bool contains(const Vec2& point) const;
+
+  /// The shape with y negated.
+  Shape mirrored() const;
+  /// Moved so that the smallest circle around it is about the origin, and scaled to a circumradius of `radius`.
+  Shape centred(double radius = 1) const;
+
+ private:
+  void check() const;
+  void measure();
+
+  std::vector<Loop> loops_;
+  std::vector<Index> part_begins_;
+  double circumradius_ = 0, inradius_ = 0, area_ = 0;
+  bool has_half_turn_ = false;
+};
+
+/// Shapes of circumradius 1 about their centre. \throw InputError for what makes no shape.
+namespace shapes {
+/// A regular polygon, its first corner on the x axis. corners >= 3.
+Shape disk(Index corners = 64);
+/// points >= 2 tips on the circle, the corners between them at the radius `inner` in (0, 1), one tip on the x axis.
+/// 0.381966 makes five points a pentagram.
+Shape star(Index points = 5, double inner = 0.381966011250105);
+/// A rhombus along the x axis, `aspect` (>= 1) times as long as wide.
+Shape needle(double aspect = 10);
+/// Two circular arcs that meet in tips on the x axis, `aspect` (> 1) times as long as wide; corners (>= 4) in all.
+Shape leaf(double aspect = 2.5, Index corners = 40);
+/// A disk of the radius `round` in (0, 1) drawn out to a tip on the x axis; its other end touches the circle.
+Shape drop(double round = 0.6, Index corners = 40);
+/// A disk less a disk of the radius `inner` in (0, 1] that is moved by `shift` along the x axis; open towards x.
+Shape crescent(double inner = 0.8, double shift = 0.4, Index corners = 48);
+}  // namespace shapes
+
+}  // namespace saddleback

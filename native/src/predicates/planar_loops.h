@@ -1,0 +1,31 @@
+#pragma once
+// Closed polygons of the plane, decided exactly: whether they touch, which side a point is on.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "saddleback/types.h"
+
+namespace saddleback::predicates {
+
+using Loop = std::vector<Vec2>;  ///< corners, the last joined to the first
+
+/// Positive when counter-clockwise; counted from the first corner, not exact.
+double twice_area(const Loop& loop);
+
+/// Exact: whether a ray to the right crosses the loop an odd number of times. O(m).
+bool is_inside(const Loop& loop, const Vec2& point);
+
+/// Exact: whether two closed segments have a point in common.
+bool segments_touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+
+/// The first two edges that have more in common than a corner that joins them.
+struct LoopMeeting {
+  Index loop, corner;  ///< the edge after this corner
+  Index other_loop, other_corner;
+};
+/// Exact. O(m log m) expected for m corners in all.
+std::optional<LoopMeeting> first_meeting(std::span<const Loop> loops);
+
+}  // namespace saddleback::predicates
