@@ -1,0 +1,105 @@
+#pragma once
+// A plane laid on the surface: flat coordinates of the vertices about a point or along a curve.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saddleback/surface_curve.h"
+
+namespace saddleback {
+
+/// Why a piece of the plane could not be laid on the surface.
+enum class MapFailure : std::uint8_t {
+  none,
+  boundary,   ///< it leaves the surface
+  fold,       ///< the surface would be covered twice, or turned over
+  stretched,  ///< somewhere it is longer or shorter than the limits allow
+};
+
+/// By how much lengths may change from the plane to the surface: bounds of the singular values of the map.
+struct MapLimits {
+  double smallest = 0.5, largest = 2;
+};
+
+/// Where the plane is laid and which part of it is wanted.
+struct PlaneBox {
+  Vec2 low, high;  ///< contains the origin
+};
+
+/// Flat coordinates of the vertices near a place, linear inside each face: so the plane is laid on the surface by a
+/// continuous map that is straight in every face, and whose folding and stretch are known face by face. Lengths are
+/// mesh units. About a point the coordinates are those of the exponential map (length and direction of the shortest
+/// way from the centre), along a curve Fermi's (arc length of the foot, signed distance): each vertex has them from an
+/// edge that is nearer, through which it sees the source when the faces are unfolded (Melvaer and Reimers, Geodesic
+/// polar coordinates on polygonal meshes, 2012); a vertex that sees it through no edge (behind a saddle) is laid out
+/// beside its neighbours instead. Exact where the surface can be unrolled.
+///
+/// Made once for a mesh, which must outlive it, and used again and again in the same memory. One thread at a time.
+class ShapeMap {
+ public:
+  explicit ShapeMap(const Mesh& mesh);
+
+  /// The exponential map: the centre at the origin, the x axis at `angle` in the FaceChart of centre.face. At a vertex
+  /// angles are scaled so that its total angle becomes 2 pi. O(n log n) for the n vertices within the box.
+  void about_point(const SurfacePoint& centre, double angle, const PlaneBox& box);
+
+  /// Along a curve of the same mesh, whose point at arc length `origin` becomes the origin, the x axis along it. Where
+  /// the curve is shorter than the box the plane is laid on straight beyond its ends. O(n log n + segments).
+  void along_curve(const SurfaceCurve& curve, double origin, const PlaneBox& box);
+
+  const Mesh& mesh() const { return *mesh_; }
+  /// A face on which the origin lies.
+  Index centre_face() const { return centre_face_; }
+
+  bool has(Index vertex) const { return nodes_[vertex].stamp == stamp_; }
+  /// Of a vertex that has some.
+  const Vec2& coordinates(Index vertex) const { return nodes_[vertex].place; }
+  /// All vertices that have coordinates, in no particular order.
+  std::span<const Index> vertices() const { return reached_; }
+
+  /// Lays out the corners of a face that have no coordinates yet beside those that have. At least two must have some.
+  void complete(Index face);
+
+ private:
+  enum class State : std::uint8_t {
+    laid_out,  ///< beside its neighbours, waits for something better
+    seen,      ///< through an edge
+    source,    ///< at or beside the centre or curve
+    settled,
+  };
+  struct Node {
+    Vec2 place;
+    double distance;  ///< from the source
+    std::uint32_t stamp;
+    State state;
+  };
+  struct Entry {
+    double distance;
+    Index vertex;
+    bool operator<(const Entry& other) const {
+      return distance != other.distance ? distance > other.distance : vertex > other.vertex;
+    }
+  };
+
+  void begin();
+  void seed_face(const SurfacePoint& centre, double angle);
+  void seed_star(const SurfacePoint& centre, Index vertex, double angle);
+  void seed_segment(const CurveSegment& segment, double start);
+  Node& reach(Index vertex);
+  void put(Index vertex, const Vec2& place, State state);
+  void march(const PlaneBox& box);
+  void settle(Index vertex, const PlaneBox& box);
+  void look_through(Index from, Index to, Index apex);
+  double distance_of(const Vec2& place) const { return along_curve_ ? std::abs(place.y()) : place.norm(); }
+
+  const Mesh* mesh_;
+  std::vector<Node> nodes_;
+  std::vector<Index> reached_;
+  std::vector<Entry> queue_;
+  std::uint32_t stamp_ = 0;
+  Index centre_face_ = 0;
+  bool along_curve_ = false;
+};
+
+}  // namespace saddleback

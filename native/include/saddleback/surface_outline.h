@@ -1,0 +1,90 @@
+#pragma once
+// Outlines of shapes on the surface: closed chains of straight pieces, each within one face.
+
+#include "saddleback/placement.h"
+#include "saddleback/shape_map.h"
+
+namespace saddleback {
+
+/// A straight piece of an outline inside one face, the shape on its left. Points are given by the weights of the face's
+/// corners 1 and 2. On an edge these are exact (the third weight is 1 minus them without rounding), equal in both
+/// faces, and never at an end; elsewhere all three weights are positive.
+struct OutlinePiece {
+  Index face;
+  Index corner;  ///< of the given outline, counted through all loops: the piece is of the edge that begins there
+  Index exit;    ///< half-edge of `face` that the piece ends on, k_none when it ends at a corner of the outline
+  Vec2 begin, end;
+};
+
+/// What one shape covers.
+struct SurfaceOutline {
+  std::vector<OutlinePiece> pieces;      ///< loop by loop, in order
+  std::vector<std::size_t> loop_begins;  ///< and at the end the number of pieces
+  std::vector<Index> faces;              ///< that the shape touches, once each
+  std::vector<Index> inside;             ///< vertices within the shape
+  double smallest = 1, largest = 1;      ///< singular values of the map in these faces
+};
+
+/// The surface point of an end of a piece.
+inline SurfacePoint outline_point(Index face, const Vec2& weights) {
+  return {face, {1 - weights.x() - weights.y(), weights.x(), weights.y()}};
+}
+
+/// Lays outlines on a mesh, which must outlive it, again and again in the same memory. One thread at a time.
+class OutlineMapper {
+ public:
+  using Loop = std::vector<Vec2>;
+
+  explicit OutlineMapper(const Mesh& mesh);
+
+  /// Maps by the exponential map about placement.centre. `loops` are simple and disjoint, outlines counter-clockwise
+  /// and holes clockwise, as a Shape gives them. When the answer is `none` the map is injective on the shape: all faces
+  /// that it touches are laid out upright, the outline closes, and no other face maps into it. Otherwise `outline` has
+  /// no meaning. Nothing is checked about the arguments. O(n log n + c m) for n vertices within the shape's box, c
+  /// corners and m vertices in or about the shape.
+  MapFailure map(std::span<const Loop> loops, const Placement& placement, SurfaceOutline& outline,
+                 const MapLimits& limits = {});
+
+  /// The same along a curve through the centre, at the arc length `origin` of which the shape's plane has its own; the
+  /// shape's x axis bends with the curve and placement.angle does not count.
+  MapFailure map_along(std::span<const Loop> loops, const Placement& placement, const SurfaceCurve& curve,
+                       double origin, SurfaceOutline& outline, const MapLimits& limits = {});
+
+  /// The plane as it was laid last, in mesh units and not mirrored.
+  const ShapeMap& plane() const { return plane_; }
+  ShapeMap& plane() { return plane_; }
+
+ private:
+  PlaneBox lay_corners(std::span<const Loop> loops, const Placement& placement);
+  MapFailure cut(SurfaceOutline& outline, const MapLimits& limits);
+  void cut_loop(std::size_t begin, std::size_t end);
+  void find_face(const Vec2& corner);
+  void walk(const Vec2& a, const Vec2& b, Index corner);
+  Index exit_of(const Vec2& a, const Vec2& b) const;
+  double cross_weight(Index h, const Vec2& a, const Vec2& b) const;
+  bool is_in_face(const Vec2& corner) const;
+  Vec2 weights_in_face(const Vec2& corner) const;
+  void enter(Index face);
+  void find_inside();
+  bool is_inside(const Vec2& vertex) const;
+  void complete_star(Index vertex);
+  void check_crossings();
+  bool has_inside(Index vertex) const { return inside_stamps_[vertex] == stamp_; }
+  const Vec2& place(Index vertex) const { return plane_.coordinates(vertex); }
+
+  const Mesh* mesh_;
+  ShapeMap plane_;
+  std::vector<Vec2> corners_;
+  std::vector<Index> given_;  ///< per corner: number of the given edge that begins there
+  std::vector<std::size_t> begins_;
+  std::vector<std::uint32_t> face_stamps_, inside_stamps_;
+  std::vector<Index> crossed_;  ///< edges, by their smaller half-edge
+  std::uint32_t stamp_ = 0;
+  SurfaceOutline* outline_ = nullptr;
+  MapLimits limits_;
+  PlaneBox box_;
+  Index face_ = 0;
+  Vec2 weights_ = Vec2::Zero();  ///< of where the walk is
+};
+
+}  // namespace saddleback

@@ -1,0 +1,180 @@
+// Coordinates spread from the source outwards, nearest vertex first, as Dijkstra's algorithm does; a vertex gets its
+// own from the two ends of an edge that are settled, by unfolding the triangle on it (sight.h).
+
+#include "saddleback/shape_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "saddleback/trace.h"
+
+#include "shape_mapping/sight.h"
+
+namespace saddleback {
+namespace {
+
+Vec2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+/// Both ends beyond the same side of the box: what is seen through the edge is no part of what is wanted.
+bool is_beyond(const PlaneBox& box, const Vec2& a, const Vec2& b) {
+  return (a.x() < box.low.x() && b.x() < box.low.x()) || (a.x() > box.high.x() && b.x() > box.high.x()) ||
+         (a.y() < box.low.y() && b.y() < box.low.y()) || (a.y() > box.high.y() && b.y() > box.high.y());
+}
+
+}  // namespace
+
+ShapeMap::ShapeMap(const Mesh& mesh)
+    : mesh_(&mesh), nodes_(static_cast<std::size_t>(mesh.vertex_count()), {Vec2::Zero(), 0, 0, State::laid_out}) {}
+
+void ShapeMap::begin() {
+  if (++stamp_ == 0) {  // after 2^32 maps the old stamps would come again
+    for (Node& node : nodes_) node.stamp = 0;
+    stamp_ = 1;
+  }
+  reached_.clear();
+  queue_.clear();
+}
+
+void ShapeMap::about_point(const SurfacePoint& centre, double angle, const PlaneBox& box) {
+  begin();
+  along_curve_ = false;
+  centre_face_ = centre.face;
+  const Index vertex = vertex_at(*mesh_, centre);
+  if (vertex == k_none)
+    seed_face(centre, angle);
+  else
+    seed_star(centre, vertex, angle);
+  march(box);
+}
+
+void ShapeMap::seed_face(const SurfacePoint& centre, double angle) {
+  const FaceChart chart(*mesh_, centre.face);
+  const Vec2 place = chart.to_plane(centre.barycentric), x = unit(angle);
+  for (int i = 0; i < 3; ++i) {
+    const Vec2 arm = chart.corner[i] - place;
+    put(mesh_->from(3 * centre.face + i), {x.dot(arm), cross(x, arm)}, State::source);
+  }
+}
+
+void ShapeMap::seed_star(const SurfacePoint& centre, Index vertex, double angle) {
+  const double start = angle_about(*mesh_, centre, angle);
+  const double scale = mesh_->is_boundary(vertex) ? 1 : 2 * std::numbers::pi / mesh_->total_angle(vertex);
+  put(vertex, Vec2::Zero(), State::source);
+  const Index first = mesh_->first_halfedge(vertex);
+  Index h = first;
+  double fan = 0;
+  do {
+    put(mesh_->to(h), mesh_->length(h) * unit((fan - start) * scale), State::source);
+    fan += mesh_->corner_angle(h);
+    const Index following = mesh_->rotate(h);
+    if (following == k_none)
+      put(mesh_->apex(h), mesh_->length(Mesh::prev(h)) * unit((fan - start) * scale), State::source);
+    h = following;
+  } while (h != k_none && h != first);
+}
+
+void ShapeMap::along_curve(const SurfaceCurve& curve, double origin, const PlaneBox& box) {
+  begin();
+  along_curve_ = true;
+  centre_face_ = curve.segments().front().face;
+  for (const CurveSegment& segment : curve.segments()) {
+    const double start = segment.start - origin;
+    if (start <= 0) centre_face_ = segment.face;
+    if (start <= box.high.x() && start + segment.length >= box.low.x()) seed_segment(segment, start);
+  }
+  for (const Index vertex : reached_) {
+    Node& node = nodes_[vertex];
+    node.distance = distance_of(node.place);
+    queue_.push_back({node.distance, vertex});
+  }
+  std::make_heap(queue_.begin(), queue_.end());
+  march(box);
+}
+
+/// Corners of the faces that the curve crosses take their foot on the nearest segment, run on straight where it falls
+/// beside: by how much is kept as the distance until all segments have been seen.
+void ShapeMap::seed_segment(const CurveSegment& segment, double start) {
+  const FaceChart chart(*mesh_, segment.face);
+  const Vec2 begin = chart.to_plane(segment.begin);
+  const Vec2 along = (chart.to_plane(segment.end) - begin) / segment.length;
+  for (int i = 0; i < 3; ++i) {
+    const Vec2 arm = chart.corner[i] - begin;
+    const double foot = along.dot(arm), miss = std::max({0.0, -foot, foot - segment.length});
+    const Index vertex = mesh_->from(3 * segment.face + i);
+    const bool is_new = !has(vertex);
+    Node& node = reach(vertex);
+    if (is_new || miss < node.distance) node = {{start + foot, cross(along, arm)}, miss, stamp_, State::source};
+  }
+}
+
+ShapeMap::Node& ShapeMap::reach(Index vertex) {
+  Node& node = nodes_[vertex];
+  if (node.stamp != stamp_) {
+    node.stamp = stamp_;
+    reached_.push_back(vertex);
+  }
+  return node;
+}
+
+void ShapeMap::put(Index vertex, const Vec2& place, State state) {
+  const double distance = distance_of(place);
+  reach(vertex) = {place, distance, stamp_, state};
+  queue_.push_back({distance, vertex});
+  std::push_heap(queue_.begin(), queue_.end());
+}
+
+void ShapeMap::march(const PlaneBox& box) {
+  while (!queue_.empty()) {
+    const Entry entry = queue_.front();
+    std::pop_heap(queue_.begin(), queue_.end());
+    queue_.pop_back();
+    const Node& node = nodes_[entry.vertex];
+    if (node.state != State::settled && node.distance == entry.distance) settle(entry.vertex, box);
+  }
+}
+
+/// Looks through every edge of the vertex's faces that has now both ends settled.
+void ShapeMap::settle(Index vertex, const PlaneBox& box) {
+  nodes_[vertex].state = State::settled;
+  const Vec2 place = nodes_[vertex].place;
+  const auto is_open = [&](Index other) {
+    return has(other) && nodes_[other].state >= State::source && !is_beyond(box, place, nodes_[other].place);
+  };
+  const Index first = mesh_->first_halfedge(vertex);
+  Index h = first;
+  do {
+    const Index next = mesh_->to(h), apex = mesh_->apex(h);
+    if (is_open(next)) look_through(vertex, next, apex);
+    if (is_open(apex)) look_through(apex, vertex, next);
+    h = mesh_->rotate(h);
+  } while (h != k_none && h != first);
+}
+
+void ShapeMap::look_through(Index from, Index to, Index apex) {
+  if (has(apex) && nodes_[apex].state >= State::source) return;
+  const UnfoldedTriangle triangle(mesh_->position(from), mesh_->position(to), mesh_->position(apex));
+  const Vec2 &a = nodes_[from].place, &b = nodes_[to].place;
+  const Sight sight = along_curve_ ? sight_of_line(triangle, a, b) : sight_of_point(triangle, a, b);
+  if (has(apex)) {
+    const Node& node = nodes_[apex];
+    const bool is_first = sight.is_seen && node.state == State::laid_out;
+    const bool is_rival = sight.is_seen == (node.state == State::seen);
+    if (!is_first && !(is_rival && distance_of(sight.place) < node.distance)) return;
+  }
+  put(apex, sight.place, sight.is_seen ? State::seen : State::laid_out);
+}
+
+void ShapeMap::complete(Index face) {
+  for (int i = 0; i < 3; ++i) {
+    const Index h = 3 * face + i;
+    const Index from = mesh_->from(h), to = mesh_->to(h), apex = mesh_->apex(h);
+    if (has(apex) || !has(from) || !has(to)) continue;
+    const UnfoldedTriangle triangle(mesh_->position(from), mesh_->position(to), mesh_->position(apex));
+    const Vec2 &a = nodes_[from].place, &b = nodes_[to].place;
+    const Vec2 place = (along_curve_ ? sight_of_line(triangle, a, b) : sight_of_point(triangle, a, b)).place;
+    reach(apex) = {place, distance_of(place), stamp_, State::laid_out};
+  }
+}
+
+}  // namespace saddleback

@@ -1,0 +1,72 @@
+#pragma once
+// Coordinates of a triangle's apex from those of its edge.
+
+#include <cmath>
+
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+/// A triangle unfolded: its edge from the origin along the x axis, the apex above it.
+struct UnfoldedTriangle {
+  double edge;
+  Vec2 apex;
+  UnfoldedTriangle(const Vec3& from, const Vec3& to, const Vec3& top) {
+    const Vec3 u = to - from, v = top - from;
+    edge = u.norm();
+    apex = Vec2(u.dot(v), u.cross(v).norm()) / edge;
+  }
+};
+
+/// Where the apex comes to lie when the triangle is laid beside the places of its edge's ends.
+inline Vec2 beside(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) {
+  const Vec2 along = (to - from) / triangle.edge;
+  return from + triangle.apex.x() * along + triangle.apex.y() * Vec2(-along.y(), along.x());
+}
+
+struct Sight {
+  Vec2 place;
+  bool is_seen;
+};
+
+/// By how much a line of sight may miss the edge, relative to it: rounding where it passes an end.
+inline constexpr double k_sight = 1e-9;
+
+inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// The source is the origin of the plane: it is put where its distances from both ends say, and the apex in the same
+/// place between the directions of the two ends as seen from there.
+inline Sight sight_of_point(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) {
+  const double d2_from = from.squaredNorm(), d2_to = to.squaredNorm(), e = triangle.edge;
+  const double x = (d2_from - d2_to + e * e) / (2 * e), y2 = d2_from - x * x;
+  const Vec2 aside = beside(triangle, from, to);
+  if (!(y2 >= -k_sight * d2_from)) return {aside, false};
+  const double y = std::sqrt(std::max(0.0, y2));
+  const Vec2 to_apex(triangle.apex.x() - x, triangle.apex.y() + y);
+  const double hit = x + to_apex.x() * (y / to_apex.y());
+  if (hit < -k_sight * e || hit > (1 + k_sight) * e) return {aside, false};
+  // The ends and the apex as seen from the source. Where the edge is seen under a wide angle the mean of directions
+  // would not be that of the apex; there the surface is nearly flat, or the mesh far too coarse for the shape.
+  const Vec2 to_from(-x, y), to_to(e - x, y);
+  const bool is_wide = to_from.dot(to_to) < 0.5 * std::sqrt(d2_from * d2_to);
+  const Vec2 direction = is_wide ? aside : Vec2(cross(to_to, to_apex) * from + cross(to_apex, to_from) * to);
+  const double length = direction.norm();
+  if (!(length > 0)) return {aside, false};
+  return {direction * (to_apex.norm() / length), true};
+}
+
+/// The source is the x axis: distance grows evenly across the triangle, and the foot stays where it is along the way.
+inline Sight sight_of_line(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) {
+  const double side = from.y() + to.y() < 0 ? -1 : 1, e = triangle.edge;
+  const Vec2 aside = beside(triangle, from, to);
+  const double d_from = side * from.y(), d_to = side * to.y(), slope = (d_to - d_from) / e;
+  if (d_from < 0 || d_to < 0 || !(std::abs(slope) < 1)) return {aside, false};
+  const double rise = std::sqrt(1 - slope * slope);
+  const double hit = triangle.apex.x() - slope * (triangle.apex.y() / rise);
+  if (hit < -k_sight * e || hit > (1 + k_sight) * e) return {aside, false};
+  const double share = hit / e;
+  const double distance = d_from + slope * triangle.apex.x() + rise * triangle.apex.y();
+  return {Vec2((1 - share) * from.x() + share * to.x(), side * distance), true};
+}
+
+}  // namespace saddleback

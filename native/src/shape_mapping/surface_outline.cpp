@@ -1,0 +1,277 @@
+// The outline is a polygon of the plane and the faces are laid out in the same plane, so its pieces are found by
+// walking from face to face along its edges. Which edge the walk leaves a face by, and which vertices are inside, is
+// decided by exact predicates that agree with each other (sides.h).
+//
+// That the map covers the shape once follows from three checks. All faces that the shape touches are upright: so the
+// map from the surface to the plane is locally one to one there. The walk along each loop comes back to where it began.
+// And the edges that have one end inside are exactly those that the walk crossed an odd number of times: a second sheet
+// over the shape, or a branch point, would have a rim that the walk has not seen.
+
+#include "saddleback/surface_outline.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shape_mapping/face_weights.h"
+#include "shape_mapping/sides.h"
+#include "shape_mapping/sight.h"
+
+namespace saddleback {
+namespace {
+
+/// Ends the mapping from anywhere in it.
+struct Failed {
+  MapFailure reason;
+};
+
+/// A walk over more faces than this is lost: outlines are at most as long as a few rounds of their box.
+constexpr std::size_t k_most_pieces = 1'000'000;
+
+/// Squares of the singular values of the map from the plane to a face.
+struct Stretch {
+  double smallest, largest;
+};
+Stretch stretch_of(const Vec3& e1, const Vec3& e2, const Vec2& u1, const Vec2& u2) {
+  const double area = cross(u1, u2), g11 = e1.squaredNorm(), g12 = e1.dot(e2), g22 = e2.squaredNorm();
+  const double scale = 1 / (area * area);
+  const double half = 0.5 * scale * (g11 * u2.squaredNorm() - 2 * g12 * u1.dot(u2) + g22 * u1.squaredNorm());
+  const double product = scale * e1.cross(e2).squaredNorm();
+  const double root = std::sqrt(std::max(0.0, half * half - product));
+  return {product / (half + root), half + root};
+}
+
+}  // namespace
+
+OutlineMapper::OutlineMapper(const Mesh& mesh)
+    : mesh_(&mesh),
+      plane_(mesh),
+      face_stamps_(static_cast<std::size_t>(mesh.face_count()), 0),
+      inside_stamps_(static_cast<std::size_t>(mesh.vertex_count()), 0) {}
+
+MapFailure OutlineMapper::map(std::span<const Loop> loops, const Placement& placement, SurfaceOutline& outline,
+                              const MapLimits& limits) {
+  plane_.about_point(placement.centre, placement.angle, lay_corners(loops, placement));
+  return cut(outline, limits);
+}
+
+MapFailure OutlineMapper::map_along(std::span<const Loop> loops, const Placement& placement, const SurfaceCurve& curve,
+                                    double origin, SurfaceOutline& outline, const MapLimits& limits) {
+  plane_.along_curve(curve, origin, lay_corners(loops, placement));
+  return cut(outline, limits);
+}
+
+/// Scales and mirrors; loops of a mirrored shape run the other way round, so that it stays on their left.
+PlaneBox OutlineMapper::lay_corners(std::span<const Loop> loops, const Placement& placement) {
+  corners_.clear();
+  given_.clear();
+  begins_.clear();
+  box_ = {Vec2::Zero(), Vec2::Zero()};
+  Index first = 0;
+  for (const Loop& loop : loops) {
+    begins_.push_back(corners_.size());
+    const auto count = static_cast<Index>(loop.size());
+    for (Index i = 0; i < count; ++i) {
+      const Index source = placement.mirrored ? count - 1 - i : i;
+      Vec2 corner = placement.scale * loop[source];
+      if (placement.mirrored) corner.y() = -corner.y();
+      corners_.push_back(corner);
+      given_.push_back(first + (placement.mirrored ? (source + count - 1) % count : i));
+      box_.low = box_.low.cwiseMin(corner);
+      box_.high = box_.high.cwiseMax(corner);
+    }
+    first += count;
+  }
+  begins_.push_back(corners_.size());
+  return box_;
+}
+
+MapFailure OutlineMapper::cut(SurfaceOutline& outline, const MapLimits& limits) {
+  if (++stamp_ == 0) {
+    std::fill(face_stamps_.begin(), face_stamps_.end(), 0);
+    std::fill(inside_stamps_.begin(), inside_stamps_.end(), 0);
+    stamp_ = 1;
+  }
+  outline_ = &outline;
+  limits_ = limits;
+  outline.pieces.clear();
+  outline.loop_begins.clear();
+  outline.faces.clear();
+  outline.inside.clear();
+  outline.smallest = std::numeric_limits<double>::infinity();
+  outline.largest = 0;
+  crossed_.clear();
+  face_ = plane_.centre_face();
+  plane_.complete(face_);
+  try {
+    for (std::size_t i = 0; i + 1 < begins_.size(); ++i) cut_loop(begins_[i], begins_[i + 1]);
+    outline.loop_begins.push_back(outline.pieces.size());
+    find_inside();
+    check_crossings();
+  } catch (const Failed& failed) {
+    return failed.reason;
+  }
+  return MapFailure::none;
+}
+
+void OutlineMapper::cut_loop(std::size_t begin, std::size_t end) {
+  outline_->loop_begins.push_back(outline_->pieces.size());
+  find_face(corners_[begin]);
+  enter(face_);
+  const Index first_face = face_;
+  weights_ = weights_in_face(corners_[begin]);
+  for (std::size_t i = begin; i < end; ++i) walk(corners_[i], corners_[i + 1 < end ? i + 1 : begin], given_[i]);
+  if (face_ != first_face) throw Failed{MapFailure::fold};
+}
+
+/// Crosses any edge that the corner is beyond, a different one first each time: that ends in every flat layout.
+void OutlineMapper::find_face(const Vec2& corner) {
+  MapFailure obstacle = MapFailure::fold;
+  for (std::size_t step = 0; step < k_most_pieces; ++step) {
+    if (is_in_face(corner)) return;
+    Index onward = k_none;
+    for (std::size_t i = 0; i < 3 && onward == k_none; ++i) {
+      const Index h = 3 * face_ + static_cast<Index>((i + step) % 3);
+      if (is_corner_left(place(mesh_->from(h)), place(mesh_->to(h)), corner)) continue;
+      onward = mesh_->twin(h);
+      if (onward == k_none) obstacle = MapFailure::boundary;
+    }
+    if (onward == k_none) break;
+    face_ = Mesh::face_of(onward);
+    plane_.complete(face_);
+    const Index h = 3 * face_;
+    if (!is_upright(place(mesh_->from(h)), place(mesh_->to(h)), place(mesh_->apex(h)))) break;
+  }
+  throw Failed{obstacle};
+}
+
+bool OutlineMapper::is_in_face(const Vec2& corner) const {
+  for (Index h = 3 * face_; h < 3 * face_ + 3; ++h)
+    if (!is_corner_left(place(mesh_->from(h)), place(mesh_->to(h)), corner)) return false;
+  return true;
+}
+
+Vec2 OutlineMapper::weights_in_face(const Vec2& corner) const {
+  const Vec2& origin = place(mesh_->from(3 * face_));
+  const Vec2 u = place(mesh_->to(3 * face_)) - origin, v = place(mesh_->apex(3 * face_)) - origin;
+  const Vec2 arm = corner - origin;
+  const double area = cross(u, v);
+  return inner_weights(cross(arm, v) / area, cross(u, arm) / area);
+}
+
+/// The half-edge by which the line from a, in the face, to b leaves the face.
+Index OutlineMapper::exit_of(const Vec2& a, const Vec2& b) const {
+  bool is_left[3];
+  for (int i = 0; i < 3; ++i) is_left[i] = is_vertex_left(a, b, place(mesh_->from(3 * face_ + i)));
+  for (int i = 0; i < 3; ++i)
+    if (!is_left[i] && is_left[(i + 1) % 3]) return 3 * face_ + i;
+  throw Failed{MapFailure::fold};
+}
+
+/// Writes down the pieces from a, where the walk is, to b.
+void OutlineMapper::walk(const Vec2& a, const Vec2& b, Index corner) {
+  Index h = is_in_face(b) ? k_none : exit_of(a, b);
+  while (h != k_none) {
+    const Index twin = mesh_->twin(h);
+    const double weight = edge_weight(cross_weight(h, a, b));
+    const Vec2 exit = on_edge(h % 3, weight);
+    outline_->pieces.push_back({face_, corner, h, weights_, exit});
+    if (twin == k_none) throw Failed{MapFailure::boundary};
+    if (outline_->pieces.size() > k_most_pieces) throw Failed{MapFailure::fold};
+    crossed_.push_back(std::min(h, twin));
+    weights_ = on_edge(twin % 3, 1 - weight);
+    face_ = Mesh::face_of(twin);
+    enter(face_);
+    h = is_vertex_left(a, b, place(mesh_->apex(twin))) ? Mesh::next(twin) : Mesh::prev(twin);
+    if (is_corner_left(place(mesh_->from(h)), place(mesh_->to(h)), b)) h = k_none;
+  }
+  const Vec2 end = weights_in_face(b);
+  outline_->pieces.push_back({face_, corner, k_none, weights_, end});
+  weights_ = end;
+}
+
+/// Where the line from a to b crosses an edge, as the share of its end.
+double OutlineMapper::cross_weight(Index h, const Vec2& a, const Vec2& b) const {
+  const Vec2 along = b - a;
+  const double right = std::abs(cross(along, place(mesh_->from(h)) - a));
+  const double left = std::abs(cross(along, place(mesh_->to(h)) - a));
+  return right + left > 0 ? right / (right + left) : 0.5;
+}
+
+/// The shape touches this face: all of it must be laid out well.
+void OutlineMapper::enter(Index face) {
+  if (face_stamps_[face] == stamp_) return;
+  face_stamps_[face] = stamp_;
+  plane_.complete(face);
+  const Index i = mesh_->from(3 * face), j = mesh_->to(3 * face), k = mesh_->apex(3 * face);
+  const Vec2 &a = place(i), &b = place(j), &c = place(k);
+  if (!is_upright(a, b, c)) throw Failed{MapFailure::fold};
+  const Vec3& origin = mesh_->position(i);
+  const Stretch stretch = stretch_of(mesh_->position(j) - origin, mesh_->position(k) - origin, b - a, c - a);
+  const double smallest = std::sqrt(stretch.smallest), largest = std::sqrt(stretch.largest);
+  if (!(smallest >= limits_.smallest && largest <= limits_.largest)) throw Failed{MapFailure::stretched};
+  outline_->smallest = std::min(outline_->smallest, smallest);
+  outline_->largest = std::max(outline_->largest, largest);
+  outline_->faces.push_back(face);
+}
+
+/// Vertices that are laid into the shape. Their stars are completed, which may lay out more.
+void OutlineMapper::find_inside() {
+  for (std::size_t i = 0; i < plane_.vertices().size(); ++i) {
+    const Index vertex = plane_.vertices()[i];
+    const Vec2& at = place(vertex);
+    if ((at.array() < box_.low.array()).any() || (at.array() > box_.high.array()).any() || !is_inside(at)) continue;
+    if (mesh_->is_boundary(vertex)) throw Failed{MapFailure::boundary};
+    inside_stamps_[vertex] = stamp_;
+    outline_->inside.push_back(vertex);
+    complete_star(vertex);
+  }
+}
+
+/// Counts the edges of the outline that the ray to the right of the vertex meets.
+bool OutlineMapper::is_inside(const Vec2& vertex) const {
+  bool inside = false;
+  for (std::size_t loop = 0; loop + 1 < begins_.size(); ++loop) {
+    Vec2 a = corners_[begins_[loop + 1] - 1];
+    for (std::size_t i = begins_[loop]; i < begins_[loop + 1]; ++i) {
+      const Vec2& b = corners_[i];
+      const bool from_below = is_vertex_above(a, vertex), to_below = is_vertex_above(b, vertex);
+      if (from_below != to_below && is_vertex_left(a, b, vertex) == from_below) inside = !inside;
+      a = b;
+    }
+  }
+  return inside;
+}
+
+void OutlineMapper::complete_star(Index vertex) {
+  Index h = mesh_->first_halfedge(vertex);
+  while (!plane_.has(mesh_->to(h))) h = mesh_->rotate(h);
+  const Index first = h;
+  do {
+    enter(Mesh::face_of(h));
+    h = mesh_->rotate(h);
+  } while (h != first);
+}
+
+void OutlineMapper::check_crossings() {
+  std::sort(crossed_.begin(), crossed_.end());
+  std::size_t odd = 0, mixed = 0;
+  for (std::size_t i = 0; i < crossed_.size();) {
+    const Index h = crossed_[i];
+    std::size_t count = 0;
+    for (; i < crossed_.size() && crossed_[i] == h; ++i) ++count;
+    if (count % 2 == 0) continue;
+    ++odd;
+    if (has_inside(mesh_->from(h)) == has_inside(mesh_->to(h))) throw Failed{MapFailure::fold};
+  }
+  for (const Index vertex : outline_->inside) {
+    const Index first = mesh_->first_halfedge(vertex);
+    Index h = first;
+    do {
+      if (!has_inside(mesh_->to(h))) ++mixed;
+      h = mesh_->rotate(h);
+    } while (h != first);
+  }
+  if (mixed != odd) throw Failed{MapFailure::fold};
+}
+
+}  // namespace saddleback
