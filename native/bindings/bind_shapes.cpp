@@ -87,6 +87,38 @@ py::array contains(const Shape& shape, const py::object& points) {
   return to_array(std::move(inside)).attr("astype")("bool");
 }
 
+constexpr const char* k_mask_doc = R"(The parts of an image where it is over one half.
+
+Outlines by marching squares, simplified outwards only: the shape covers all of what they enclose. The image's right is
+x, up is y.
+
+Args:
+    image: (rows, columns) from top to bottom: booleans, reals 0 to 1, or uint8 0 to 255; with a last axis of 4 channels
+        the alpha counts.
+    max_corners: at least 8.
+    centred: about the smallest circle, of circumradius 1; or else in pixels, the first pixel's centre at the origin.
+
+Raises:
+    InputError: another shape of array, a value that is not finite; no clear mask: nothing or everything over one half, or
+        more parts and holes than there are corners for.
+)";
+
+Shape from_mask(const py::object& image, const py::object& max_corners, bool centred) {
+  py::array array = py::array::ensure(image);
+  if (array && array.ndim() == 3 && array.shape(2) == 4) array = array[py::make_tuple(py::ellipsis(), 3)];
+  const bool is_bytes = array && array.dtype().kind() == 'u' && array.itemsize() == 1;
+  const auto values = array ? py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array)
+                            : py::array_t<double, py::array::c_style | py::array::forcecast>();
+  if (!array || !values || values.ndim() != 2 || array.dtype().kind() == 'c')
+    throw InputError("image: wanted a (rows, columns) or (rows, columns, 4) array of reals");
+  std::vector<double> copy(values.data(), values.data() + values.size());
+  if (is_bytes)
+    for (double& value : copy) value /= 255;
+  const MaskImage mask{copy, static_cast<Index>(values.shape(0)), static_cast<Index>(values.shape(1))};
+  const Index most = as_integer(max_corners, "max_corners");
+  return without_gil([&] { return shape_from_mask(mask, most, centred); });
+}
+
 void bind_presets(py::class_<Shape>& shape) {
   shape
       .def_static(
@@ -130,6 +162,8 @@ void bind_presets(py::class_<Shape>& shape) {
 void bind_shapes(py::module_& m) {
   py::class_<Shape> shape(m, "Shape", py::module_local(), k_shape_doc);
   shape.def(py::init(&make_shape))
+      .def_static("from_mask", &from_mask, py::arg("image"), py::arg("max_corners") = 128, py::arg("centred") = true,
+                  k_mask_doc)
       .def_property_readonly("loops", &loops_of,
                              "Lists of (n, 2) float64: outlines counter-clockwise, holes clockwise, part by part.")
       .def_property_readonly("parts", &parts_of, "The loops as the constructor takes them: per part outline and holes.")

@@ -137,6 +137,74 @@ def test_presets_out_of_range_are_refused(call) -> None:
         call()
 
 
+def blob(seed: int, size: int) -> np.ndarray:
+    """Smooth random values, over one half in 40 % of the image, with parts and holes."""
+    rng = np.random.default_rng(seed)
+    ys, xs = np.mgrid[0:size, 0:size] / size * 2 * np.pi
+    waves = sum(
+        a * np.cos(i * xs + j * ys + p)
+        for i in range(4)
+        for j in range(4)
+        for a, p in [(rng.normal() / (1 + i + j), rng.uniform(0, 6))]
+    )
+    return 1 / (1 + np.exp(-2 * (waves - np.quantile(waves, 0.6))))
+
+
+def test_a_mask_of_a_square_becomes_a_square() -> None:
+    mask = np.zeros((40, 60), bool)
+    mask[10:30, 20:40] = True
+    shape = sb.Shape.from_mask(mask)
+    assert len(shape.loops) == 1 and len(shape.loops[0]) <= 8 and shape.circumradius == pytest.approx(1)
+    pixels = sb.Shape.from_mask(mask, centred=False)
+    low, high = pixels.loops[0].min(axis=0), pixels.loops[0].max(axis=0)
+    assert low == pytest.approx([19.5, -29.5]) and high == pytest.approx([39.5, -9.5])
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("corners", [48, 128])
+def test_a_mask_is_covered_and_not_by_much(seed, corners) -> None:
+    image = blob(seed, 90)
+    try:
+        shape = sb.Shape.from_mask(image, corners, centred=False)
+    except sb.InputError as error:
+        assert corners == 48 and "no clear mask" in str(error)
+        return
+    assert sum(map(len, shape.loops)) <= corners
+    rows, columns = np.mgrid[0 : image.shape[0], 0 : image.shape[1]]
+    covered = shape.contains(np.stack([columns.ravel(), -rows.ravel()], axis=1).astype(float)).reshape(image.shape)
+    assert covered[image > 0.5].all()
+    assert covered.mean() < (image > 0.5).mean() + (0.005 if corners == 128 else 0.2)
+
+
+def test_masks_keep_holes_and_parts_and_take_alpha_and_bytes() -> None:
+    ys, xs = np.mgrid[-50:51, -50:51]
+    ring = np.hypot(xs, ys)
+    mask = ((ring < 45) & (ring > 30)) | (ring < 12)
+    shape = sb.Shape.from_mask(mask)
+    assert [len(part) for part in shape.parts] == [2, 1]
+    assert shape.area == pytest.approx(np.pi * (45**2 - 30**2 + 12**2) / 45**2, rel=0.05)
+    rgba = np.zeros((*mask.shape, 4), np.uint8)
+    rgba[..., 3] = 255 * mask
+    assert sb.Shape.from_mask(rgba).area == shape.area == sb.Shape.from_mask(255 * mask.astype(np.uint8)).area
+
+
+@pytest.mark.parametrize(
+    ("image", "words"),
+    [
+        (np.zeros((5, 5)), "no clear mask, no pixel"),
+        (np.ones((5, 5)), "no clear mask, every pixel"),
+        (np.random.default_rng(0).integers(0, 2, (60, 60)), "no clear mask, it has [0-9]+ parts"),
+        (np.full((5, 5), np.nan), "not finite"),
+        (np.zeros(5), "image: wanted"),
+        (np.zeros((3, 3, 3)), "image: wanted"),
+        (np.zeros((0, 5)), "image has 0"),
+    ],
+)
+def test_images_without_a_clear_mask_are_refused(image, words) -> None:
+    with pytest.raises(sb.InputError, match=words):
+        sb.Shape.from_mask(image)
+
+
 def test_placements_keep_what_they_are_given() -> None:
     points = sb.SurfacePoints([0, 1], [[1, 0, 0], [0.2, 0.3, 0.5]])
     placements = sb.Placements([0, 1], points, [0.1, 0.2], [1.0, 2.0], [True, False])

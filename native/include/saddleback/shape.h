@@ -74,4 +74,18 @@ Shape drop(double round = 0.6, Index corners = 40);
 Shape crescent(double inner = 0.8, double shift = 0.4, Index corners = 48);
 }  // namespace shapes
 
+/// An image of a mask: rows from top to bottom, values 0 (outside) to 1 (inside).
+struct MaskImage {
+  std::span<const double> values;
+  Index rows = 0, columns = 0;
+};
+
+/// The parts of an image where it is over one half, outlines by marching squares, simplified outwards only (the shape
+/// covers all of what the outlines enclose). The image's right is x, up is y; centred, of circumradius 1, or else in
+/// pixels with the first pixel's centre at the origin.
+/// \throw InputError: fewer values than rows times columns, a value that is not finite, max_corners < 8; no clear mask:
+/// nothing or everything over one half, or more parts and holes than there are corners for. About O(pixels + m^2) for
+/// outlines of m corners (Lorensen and Cline, Marching cubes, 1987, in the plane).
+Shape shape_from_mask(const MaskImage& image, Index max_corners = 128, bool centred = true);
+
 }  // namespace saddleback

@@ -1,0 +1,14 @@
+#pragma once
+// Where an image passes one half.
+
+#include <vector>
+
+#include "saddleback/shape.h"
+
+namespace saddleback::distribution {
+
+/// Closed outlines with the inside on their left, in pixels: pixel centres at (column, -row), zeros around the image.
+/// No two touch. Marching squares (Lorensen and Cline, Marching cubes, 1987, in the plane). O(pixels).
+std::vector<Shape::Loop> mask_outlines(const MaskImage& image);
+
+}  // namespace saddleback::distribution

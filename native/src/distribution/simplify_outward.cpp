@@ -1,0 +1,198 @@
+#include "simplify_outward.h"
+
+#include <queue>
+#include <tuple>
+
+#include "predicates/planar_loops.h"
+#include "predicates/predicates.h"
+
+namespace saddleback::distribution {
+namespace {
+
+using predicates::Sign;
+
+Sign turn(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return predicates::orient_2d({a.x(), a.y()}, {b.x(), b.y()}, {c.x(), c.y()});
+}
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+struct Corner {
+  Vec2 place;
+  Index before, after, loop;
+  Index version = 0;  ///< counts changes of it or its neighbours
+  bool is_alive = true;
+};
+
+/// One way to take a corner away, at the corner `at`.
+struct Change {
+  double area;
+  Index at, version;
+  enum Kind : std::uint8_t { cut, extend, fill } kind;
+  bool operator>(const Change& other) const { return std::tie(area, at) > std::tie(other.area, other.at); }
+};
+
+class Simplifier {
+ public:
+  explicit Simplifier(const std::vector<Shape::Loop>& loops) {
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+      const auto begin = static_cast<Index>(corners_.size()), count = static_cast<Index>(loops[l].size());
+      for (Index i = 0; i < count; ++i)
+        corners_.push_back(
+            {loops[l][i], begin + (i + count - 1) % count, begin + (i + 1) % count, static_cast<Index>(l)});
+      sizes_.push_back(count);
+      is_hole_.push_back(predicates::twice_area(loops[l]) < 0);
+    }
+    alive_ = static_cast<Index>(corners_.size());
+    for (Index i = 0; i < alive_; ++i) propose(i);
+  }
+
+  void run(Index max_corners, double free_area) {
+    while (!changes_.empty() && (alive_ > max_corners || changes_.top().area <= free_area)) {
+      const Change change = changes_.top();
+      changes_.pop();
+      if (!corners_[change.at].is_alive || corners_[change.at].version != change.version) continue;
+      if (change.kind == Change::fill) {
+        fill(change.at);
+      } else if (change.kind == Change::cut) {
+        cut(change.at);
+      } else {
+        extend(change.at);
+      }
+    }
+  }
+
+  std::vector<Shape::Loop> loops() const {
+    std::vector<Shape::Loop> result;
+    std::vector<Index> first(sizes_.size(), k_none);
+    for (Index i = 0; i < static_cast<Index>(corners_.size()); ++i)
+      if (corners_[i].is_alive && first[corners_[i].loop] == k_none) first[corners_[i].loop] = i;
+    for (const Index start : first) {
+      if (start == k_none) continue;
+      result.emplace_back();
+      Index i = start;
+      do result.back().push_back(corners_[i].place);
+      while ((i = corners_[i].after) != start);
+    }
+    return result;
+  }
+
+ private:
+  const Vec2& place(Index i) const { return corners_[i].place; }
+
+  /// Where the edges before and after the edge from b would meet.
+  Vec2 meeting(Index b) const {
+    const Index c = corners_[b].after;
+    const Vec2 u = place(b) - place(corners_[b].before), v = place(corners_[c].after) - place(c);
+    return place(b) + u * (cross(place(c) - place(b), v) / cross(u, v));
+  }
+
+  /// What can be done about the corner b, or about the edge that begins there.
+  void propose(Index b) {
+    const Index a = corners_[b].before, c = corners_[b].after, d = corners_[c].after;
+    const Index version = corners_[b].version;
+    if (sizes_[corners_[b].loop] == 3) {
+      if (is_hole_[corners_[b].loop])
+        changes_.push({0.5 * std::abs(cross(place(b) - place(a), place(c) - place(a))), b, version, Change::fill});
+      return;
+    }
+    const Sign at_b = turn(place(a), place(b), place(c));
+    if (at_b != Sign::positive) {
+      changes_.push({0.5 * std::abs(cross(place(b) - place(a), place(c) - place(a))), b, version, Change::cut});
+      return;
+    }
+    if (turn(place(b), place(c), place(d)) != Sign::positive) return;
+    if (cross(place(b) - place(a), place(d) - place(c)) <= 0) return;
+    const Vec2 p = meeting(b);
+    changes_.push({0.5 * std::abs(cross(p - place(b), place(c) - place(b))), b, version, Change::extend});
+  }
+
+  void renew(Index i) {
+    ++corners_[i].version;
+    propose(i);
+  }
+
+  void remove(Index i) {
+    Corner& corner = corners_[i];
+    corners_[corner.before].after = corner.after;
+    corners_[corner.after].before = corner.before;
+    corner.is_alive = false;
+    --alive_;
+    --sizes_[corner.loop];
+  }
+
+  /// Whether a triangle holds nothing of the loops but the corners named, and no edge touches its side from p to q but
+  /// those that end there or at the corner `at`, which goes.
+  bool is_free(const Vec2 (&triangle)[3], const Vec2& p, const Vec2& q, Index at, Index also) const {
+    const Vec2 low = triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]);
+    const Vec2 high = triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2]);
+    const bool flip = turn(triangle[0], triangle[1], triangle[2]) == Sign::negative;
+    for (Index i = 0; i < static_cast<Index>(corners_.size()); ++i) {
+      if (!corners_[i].is_alive) continue;
+      const Vec2 &s = place(i), &e = place(corners_[i].after);
+      if ((s.array() < low.array() && e.array() < low.array()).any()) continue;
+      if ((s.array() > high.array() && e.array() > high.array()).any()) continue;
+      const bool goes = i == at || i == also;
+      if (!goes && s != p && s != q) {
+        bool inside = true;
+        for (int k = 0; k < 3 && inside; ++k) {
+          const Sign side = turn(triangle[k], triangle[(k + 1) % 3], s);
+          inside = side == Sign::zero || (side == Sign::negative) == flip;
+        }
+        if (inside) return false;
+      }
+      const bool ends_here =
+          goes || corners_[i].after == at || corners_[i].after == also || s == p || s == q || e == p || e == q;
+      if (!ends_here && predicates::segments_touch(s, e, p, q)) return false;
+    }
+    return true;
+  }
+
+  void cut(Index b) {
+    const Index a = corners_[b].before, c = corners_[b].after;
+    const bool is_flat = turn(place(a), place(b), place(c)) == Sign::zero;
+    if (!is_flat && !is_free({place(a), place(b), place(c)}, place(a), place(c), b, b)) return;
+    remove(b);
+    renew(corners_[a].before);
+    renew(a);
+    renew(c);
+  }
+
+  void extend(Index b) {
+    const Index a = corners_[b].before, c = corners_[b].after, d = corners_[c].after;
+    const Vec2 p = meeting(b);
+    if (!p.allFinite() || turn(place(b), p, place(c)) != Sign::positive) return;
+    if (!is_free({place(b), p, place(c)}, place(a), p, b, c)) return;
+    if (!is_free({place(b), p, place(c)}, p, place(d), b, c)) return;
+    corners_[b].place = p;
+    remove(c);
+    renew(corners_[a].before);
+    renew(a);
+    renew(b);
+    renew(d);
+  }
+
+  /// Nothing lies in a hole of three corners whose loop would not have stopped it from getting so small.
+  void fill(Index b) {
+    const Index a = corners_[b].before, c = corners_[b].after;
+    if (!is_free({place(a), place(b), place(c)}, place(a), place(c), b, b)) return;
+    for (const Index i : {a, b, c}) corners_[i].is_alive = false;
+    alive_ -= 3;
+  }
+
+  std::vector<Corner> corners_;
+  std::vector<Index> sizes_;
+  std::vector<bool> is_hole_;
+  Index alive_ = 0;
+  std::priority_queue<Change, std::vector<Change>, std::greater<>> changes_;
+};
+
+}  // namespace
+
+void simplify_outward(std::vector<Shape::Loop>& loops, Index max_corners, double free_area) {
+  Simplifier simplifier(loops);
+  simplifier.run(max_corners, free_area);
+  loops = simplifier.loops();
+}
+
+}  // namespace saddleback::distribution
