@@ -61,6 +61,23 @@ Notes:
     About O(F): a multigrid solve over vertices for singularities, one for each handle twice, one over faces for strokes.
 )";
 
+constexpr const char* k_of_vectors_doc = R"(The field that has given directions: combed hair, a painted flow.
+
+Args:
+    mesh: the mesh, kept alive by the field.
+    vectors: (F, 3) reals, one for each face; their part within the face counts, their length does not.
+    symmetry: 1, 2 or 4: how many directions at equal angles count as the same.
+
+Returns:
+    DirectionField: from face to face it turns the nearer way, by at most pi / symmetry.
+
+Raises:
+    InputError: another shape or symmetry, a vector that is not finite or has no direction within its face.
+
+Notes:
+    O(F).
+)";
+
 constexpr const char* k_editor_doc = R"(Makes fields of one mesh one after another.
 
 Factors, loops around handles and harmonic forms are made once; singularities that stay are not solved for again; strokes
@@ -234,6 +251,18 @@ py::object field_of(const py::object& mesh, const py::object& symmetry, const py
   return edit(editor, singularities, strokes, align, loop_indices, align_weight, job);
 }
 
+py::object field_from_vectors(const py::object& mesh_object, const py::object& vectors, const py::object& symmetry) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  const ArrayIn<double> rows = as_points3(vectors, "vectors");
+  const int wanted = as_integer(symmetry, "symmetry");
+  std::vector<Vec3> directions(rows.values.size() / 3);
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    directions[i] = {rows.values[3 * i], rows.values[3 * i + 1], rows.values[3 * i + 2]};
+  py::object result = py::cast(without_gil([&] { return field_of_vectors(mesh, wanted, directions); }));
+  py::detail::keep_alive_impl(result, mesh_object);
+  return result;
+}
+
 py::dict singularities_of(const DirectionField& field) {
   py::dict result;
   for (const Singularity& s : field.singularities())
@@ -254,6 +283,8 @@ py::array directions_at(const DirectionField& field, const py::object& points) {
 
 void bind_direction_field(py::module_& m) {
   py::class_<DirectionField>(m, "DirectionField", py::module_local(), k_field_doc)
+      .def_static("from_vectors", &field_from_vectors, py::arg("mesh"), py::arg("vectors"), py::arg("symmetry") = 1,
+                  k_of_vectors_doc)
       .def_property_readonly("symmetry", &DirectionField::symmetry, "1: vectors, 2: lines, 4: crosses.")
       .def_property_readonly(
           "vectors", [](const DirectionField& field) { return to_array(field.vectors()); },

@@ -420,3 +420,34 @@ def test_progress_and_cancel() -> None:
     mesh = sb.Mesh(*meshes.torus(700, 250))
     check_progress_and_cancel(lambda job: sb.direction_field(mesh, 1, {5: 1, 9000: -1}, job=job), 0.3)
     check_progress_and_cancel(lambda job: sb.direction_field(mesh, 4, job=job), 0.5)
+
+
+@pytest.mark.parametrize("symmetry", SYMMETRIES)
+def test_a_field_is_the_same_from_its_own_vectors(symmetry: int) -> None:
+    mesh = fine(meshes.icosphere(3))
+    field = sb.direction_field(mesh, symmetry)
+    again = sb.DirectionField.from_vectors(mesh, 3 * field.vectors + mesh_normals(mesh), symmetry)
+    assert again.singularities == field.singularities
+    np.testing.assert_allclose(again.vectors, field.vectors, atol=1e-9)
+    np.testing.assert_allclose(again.turns, field.turns, atol=1e-9)
+
+
+def test_vectors_that_are_no_directions_are_refused() -> None:
+    mesh = sb.Mesh(*meshes.icosphere(2))
+    vectors = sb.direction_field(mesh, 1).vectors.copy()
+    with pytest.raises(sb.InputError, match="symmetry is 3"):
+        sb.DirectionField.from_vectors(mesh, vectors, 3)
+    with pytest.raises(sb.InputError, match=f"each of the {mesh.face_count} faces, got 7"):
+        sb.DirectionField.from_vectors(mesh, vectors[:7])
+    vectors[5] = mesh_normals(mesh)[5]
+    with pytest.raises(sb.InputError, match="face 5 has no direction"):
+        sb.DirectionField.from_vectors(mesh, vectors)
+    vectors[4] = np.nan
+    with pytest.raises(sb.InputError, match=r"vectors"):
+        sb.DirectionField.from_vectors(mesh, vectors)
+
+
+def mesh_normals(mesh: sb.Mesh) -> Floats:
+    a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)

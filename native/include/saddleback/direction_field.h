@@ -124,6 +124,12 @@ class DirectionFieldEditor {
   std::unique_ptr<Kept> kept_;
 };
 
+/// The field that has these directions: (F,) vectors in space, of which the part within each face counts, and no more
+/// than their symmetry. From face to face it turns by less than half of 1 / symmetry, the nearer way.
+/// \throw InputError for another symmetry than 1, 2 and 4, another number of vectors, one that is not finite or has no
+/// part within its face. O(F).
+DirectionField field_of_vectors(const Mesh& mesh, int symmetry, std::span<const Vec3> vectors);
+
 /// One field, as by an editor that is used once.
 DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options = {},
                                Job* job = nullptr);

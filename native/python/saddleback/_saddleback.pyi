@@ -650,6 +650,8 @@ class Stroke:
 
 @final
 class DirectionField:
+    @staticmethod
+    def from_vectors(mesh: Mesh, vectors: ArrayLike, symmetry: SupportsIndex = 1) -> DirectionField: ...
     @property
     def symmetry(self) -> int: ...
     @property

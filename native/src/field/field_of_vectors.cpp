@@ -1,0 +1,51 @@
+// A field from directions that somebody else made: combed hair, a flow painted on faces.
+
+#include <cmath>
+#include <numbers>
+
+#include "saddleback/direction_field.h"
+#include "saddleback/error.h"
+
+#include "surface_connection.h"
+
+namespace saddleback {
+namespace {
+
+// Less of a vector's length than this is rounding of a vector that stands on its face.
+constexpr double k_least_part = 1e-9;
+
+/// The part of a vector within a face as an angle in the face's chart.
+double angle_within(const Mesh& mesh, Index face, const Vec3& vector) {
+  const Vec3 along = direction_in_space(mesh, face, 0);
+  const Vec3 across = direction_in_space(mesh, face, std::numbers::pi / 2);
+  const double x = vector.dot(along), y = vector.dot(across);
+  if (!vector.allFinite()) throw InputError(message("vectors: the one of face ", face, " is not finite"));
+  if (!(std::hypot(x, y) > k_least_part * vector.norm()))
+    throw InputError(message("vectors: the one of face ", face, " has no direction within the face"));
+  return std::atan2(y, x);
+}
+
+}  // namespace
+
+DirectionField field_of_vectors(const Mesh& mesh, int symmetry, std::span<const Vec3> vectors) {
+  if (symmetry != 1 && symmetry != 2 && symmetry != 4)
+    throw InputError(message("symmetry is ", symmetry, ", but must be 1, 2 or 4"));
+  if (vectors.size() != static_cast<std::size_t>(mesh.face_count()))
+    throw InputError(
+        message("vectors: wanted one for each of the ", mesh.face_count(), " faces, got ", vectors.size()));
+  std::vector<double> angles(vectors.size());
+  for (Index f = 0; f < mesh.face_count(); ++f) angles[f] = angle_within(mesh, f, vectors[f]);
+
+  const SurfaceConnection connection = surface_connection(mesh);
+  std::vector<double> turns(mesh.halfedge_count(), 0.0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index twin = mesh.twin(h);
+    if (twin == k_none || twin < h) continue;
+    const double difference = angles[twin / 3] - angles[h / 3] - connection.transport[h];
+    turns[h] = std::remainder(difference, 2 * std::numbers::pi / symmetry);
+    turns[twin] = -turns[h];
+  }
+  return {mesh, symmetry, std::move(angles), std::move(turns)};
+}
+
+}  // namespace saddleback
