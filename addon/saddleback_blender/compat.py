@@ -197,6 +197,68 @@ def in_order_of_selection(mesh: bpy.types.Mesh, vertices: NDArray[np.int32]) -> 
     return np.array(history, np.int32) if is_known else vertices
 
 
+def annotation_strokes(scene: bpy.types.Scene) -> list[tuple[str, NDArray[np.float32]]]:
+    """What was drawn in the scene with the annotation tool and is shown now: layer, places (n, 3) in the world.
+
+    The scene's annotation is called so from 5.0 on, grease pencil before. Strokes that lie on the screen are left out.
+    """
+    data = scene.annotation if hasattr(scene, "annotation") else scene.grease_pencil
+    found = []
+    for layer in data.layers if data is not None else ():
+        if layer.annotation_hide or not len(layer.frames):
+            continue
+        frame = layer.active_frame or layer.frames[-1]
+        drawn = [stroke for stroke in frame.strokes if getattr(stroke, "display_mode", "3DSPACE") == "3DSPACE"]
+        found += [(layer.info, _stroke_places(stroke)) for stroke in drawn]
+    return found
+
+
+def grease_pencil_strokes(item: bpy.types.Object) -> list[tuple[str, NDArray[np.float32], bool]]:
+    """The strokes of a grease pencil object that are shown now: layer, places (n, 3) in its space, whether closed.
+
+    Up to 4.2 strokes have points of their own; from 4.3 on a drawing has attributes like a curve.
+    """
+    found = []
+    for layer in item.data.layers:
+        if layer.hide or not len(layer.frames):
+            continue
+        if hasattr(layer, "info"):
+            frame, matrix = layer.active_frame or layer.frames[-1], np.array(layer.matrix_layer)
+            strokes = [(_stroke_places(stroke), bool(stroke.use_cyclic)) for stroke in frame.strokes]
+        else:
+            frame, matrix = layer.current_frame() or layer.frames[-1], np.array(layer.matrix_local)
+            strokes = _drawing_strokes(frame.drawing)
+        name = layer.info if hasattr(layer, "info") else layer.name
+        found += [(name, places @ matrix[:3, :3].T + matrix[:3, 3], closed) for places, closed in strokes]
+    return found
+
+
+def is_grease_pencil(item: bpy.types.Object) -> bool:
+    """Whether an object holds grease pencil strokes, of the older or the newer kind."""
+    return item.type in ("GPENCIL", "GREASEPENCIL")
+
+
+def _stroke_places(stroke: Any) -> NDArray[np.float32]:
+    places = np.empty(3 * len(stroke.points), np.float32)
+    stroke.points.foreach_get("co", places)
+    return places.reshape(-1, 3)
+
+
+def _drawing_strokes(drawing: Any) -> list[tuple[NDArray[np.float32], bool]]:
+    offsets = np.empty(len(drawing.curve_offsets), np.int32)
+    drawing.curve_offsets.foreach_get("value", offsets)
+    if len(offsets) < 2:
+        return []
+    places = np.empty(3 * offsets[-1], np.float32)
+    drawing.attributes["position"].data.foreach_get("vector", places)
+    closed = np.zeros(len(offsets) - 1, bool)
+    cyclic = drawing.attributes.get("cyclic")
+    if cyclic is not None:
+        cyclic.data.foreach_get("value", closed)
+    parts = np.split(places.reshape(-1, 3), offsets[1:-1])
+    return [(part, bool(is_closed)) for part, is_closed in zip(parts, closed, strict=True)]
+
+
 def make_keys_linear(item: bpy.types.Object) -> None:
     """Straight lines between the keyframes of an object. From 4.4 on an action's curves belong to slots."""
     data = item.animation_data

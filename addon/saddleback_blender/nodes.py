@@ -12,6 +12,7 @@ MARK = "saddleback_made"  # custom property: which of the things below a data-bl
 
 TUBES, INSTANCES, SWEEP = "tubes", "instances", "sweep"
 CELLS, EDGES, PATHS = "cells", "edges", "paths"
+ARROWS, SOURCES, SADDLES = "arrows", "field sources", "field saddles"
 
 SIZE_ATTRIBUTE = "saddleback_size"
 ROTATION_ATTRIBUTE = "saddleback_rotation"
@@ -286,6 +287,24 @@ def paths_material() -> bpy.types.Material:
     shader.inputs["Base Color"].default_value = bright
     shader.inputs["Roughness"].default_value = 0.4
     material.diffuse_color = bright
+    return material
+
+
+def field_materials() -> list[bpy.types.Material]:
+    """Of a field's arrows, of its singularities with a positive index, of those with a negative one."""
+    looks = (
+        ("Saddleback Arrows", ARROWS, (0.012, 0.02, 0.05, 1.0)),
+        ("Saddleback Sources", SOURCES, (0.85, 0.13, 0.06, 1.0)),
+        ("Saddleback Saddles", SADDLES, (0.04, 0.2, 0.8, 1.0)),
+    )
+    return [_find_material(kind) or _new_colored(name, kind, color) for name, kind, color in looks]
+
+
+def _new_colored(name: str, kind: str, color: tuple[float, ...]) -> bpy.types.Material:
+    material, shader = new_material(name, kind)
+    shader.inputs["Base Color"].default_value = color
+    shader.inputs["Roughness"].default_value = 0.45
+    material.diffuse_color = color
     return material
 
 

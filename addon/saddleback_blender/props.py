@@ -8,14 +8,29 @@ from typing import Any, TypeVar
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
-from .core.settings import DistanceSettings, PathSettings, RepairSettings, TessellateSettings, Voronoi2dSettings
+from .core.settings import (
+    DirectionFieldSettings,
+    DistanceSettings,
+    PathSettings,
+    RepairSettings,
+    TessellateSettings,
+    Voronoi2dSettings,
+)
 
-Settings = TypeVar("Settings", TessellateSettings, DistanceSettings, PathSettings, Voronoi2dSettings, RepairSettings)
+Settings = TypeVar(
+    "Settings",
+    TessellateSettings,
+    DistanceSettings,
+    PathSettings,
+    Voronoi2dSettings,
+    DirectionFieldSettings,
+    RepairSettings,
+)
 
 # An operator names objects by strings, so that scripts and presets can; the object itself keeps pointers, which survive
 # renaming. These names are pointers on the object and strings on the operator.
-OBJECT_NAMES = ("sites_object", "instance_object", "sources_object")
-COLLECTION_NAMES = ("sources_collection", "points_collection")
+OBJECT_NAMES = ("sites_object", "instance_object", "sources_object", "strokes_object")
+COLLECTION_NAMES = ("sources_collection", "points_collection", "strokes_collection", "singularities_collection")
 IMAGE_NAMES = ("image_name",)
 
 SITES_SOURCES = (
@@ -80,6 +95,30 @@ PLANE_SITES = (
     SITES_SOURCES[1],
     SITES_SOURCES[2],
     ("IMAGE", "Image", "Place this many sites by how dark an image is: stippling"),
+)
+SYMMETRIES = (
+    ("1", "Vectors", "One direction everywhere, with a head and a tail: scales, feathers, hair"),
+    ("2", "Lines", "A direction and its opposite alike: planks, grain, fibers"),
+    ("4", "Crosses", "Four directions at right angles alike: tiles, bricks, quads"),
+)
+ALIGNMENTS = (
+    ("NONE", "None", "As smooth as strokes and singularities allow"),
+    ("CURVATURE", "Curvature", "Lines along the least bent direction, crosses along both principal ones"),
+    ("BOUNDARY", "Border", "Along every border of the surface"),
+)
+STROKES = (
+    ("NONE", "None", "No strokes"),
+    ("ANNOTATIONS", "Annotations", "What is drawn on the surface with the Annotate tool"),
+    ("OBJECT", "Object", "The strokes of one curve or grease pencil object"),
+    ("COLLECTION", "Collection", "The curves and grease pencils of a collection, or those parented to the object"),
+)
+SINGULARITIES = (
+    ("AUTO", "Automatic", "The field is singular where it is smoothest so"),
+    ("EMPTIES", "Empties", "Where empties are: the index is their property 'index' or a number in their name"),
+)
+DOMAINS = (
+    ("POINT", "Vertex", "One direction for each vertex"),
+    ("FACE", "Face", "One direction for each face"),
 )
 QUALITIES = (
     ("FAST", "Fast", "Distances at most 2 % too long"),
@@ -293,6 +332,52 @@ VORONOI_2D: dict[str, Any] = {
     ),
 }
 
+DIRECTION_FIELD: dict[str, Any] = {
+    "symmetry": _choice("Kind", "What the field is made of", SYMMETRIES, "1"),
+    "align": _choice("Align", "What the field follows besides strokes", ALIGNMENTS, "NONE"),
+    "align_weight": FloatProperty(
+        name="Weight", description="How much the curvature counts against smoothness", default=1.0, min=1e-3,
+        soft_max=100.0, options={"SKIP_SAVE"},
+    ),
+    "strokes": _choice("Strokes", "What is drawn for the field to follow", STROKES, "NONE"),
+    "strokes_object": _name("Strokes Object", "The curve or grease pencil object whose strokes the field follows"),
+    "strokes_collection": _name("Collection", "Its strokes are followed; empty means those parented to the object"),
+    "hard_strokes": _switch(
+        "Exact", "Follow strokes exactly; without it only those with 'hard' in their layer's or object's name", False
+    ),
+    "stroke_weight": FloatProperty(
+        name="Strength", description="How much strokes count against smoothness", default=1.0, min=1e-3, soft_max=100.0,
+        options={"SKIP_SAVE"},
+    ),
+    "stroke_reach": _length(
+        "Reach", "What of a stroke is farther from the surface is left out; 0 means a twentieth of its extent", 0.0
+    ),
+    "singularities": _choice("Singularities", "Where the field turns about a point", SINGULARITIES, "AUTO"),
+    "singularities_collection": _name(
+        "Empties", "The collection of the empties; empty means those parented to the object"
+    ),
+    "turn": FloatProperty(
+        name="Turn", description="Turns the whole field, counter-clockwise seen from outside", default=0.0,
+        subtype="ANGLE", soft_min=-3.1416, soft_max=3.1416, options={"SKIP_SAVE"},
+    ),
+    "use_modifiers": _use_modifiers(),
+    "domain": _choice("On", "What the attribute is written on", DOMAINS, "POINT"),
+    "direction_attribute": _name("Attribute", "Where directions are written", "saddleback_direction"),
+    "make_arrows": _switch("Arrows", "Make an object of arrows that shows the field and its singularities", True),
+    "arrow_count": IntProperty(
+        name="Count", description="About so many arrows", default=1500, min=1, max=100000, soft_max=10000,
+        options={"SKIP_SAVE"},
+    ),
+    "arrow_length": _length("Length", "Length of the arrows; 0 means by their number", 0.0),
+    "make_streamlines": _switch("Streamlines", "Make a curve object of lines along the field", False),
+    "streamline_spacing": _length(
+        "Spacing", "Distance between lines; 0 means a fiftieth of the surface's extent", 0.0
+    ),
+    "streamline_length": _length("Longest", "Length of the longest lines; 0 means thirty times their distance", 0.0),
+    "streamline_radius": _length("Radius", "Half the thickness of the lines", 0.005),
+    "seed": TESSELLATE["seed"],
+}  # fmt: skip
+
 REPAIR: dict[str, Any] = {
     "weld_distance": _length("Weld Distance", "Join vertices closer than this; 0 joins those at the same place", 0.0),
 }
@@ -302,6 +387,7 @@ PROPERTIES = {
     "distance": DISTANCE,
     "path": PATH,
     "voronoi_2d": VORONOI_2D,
+    "direction_field": DIRECTION_FIELD,
     "repair": REPAIR,
 }
 
@@ -348,6 +434,12 @@ class SaddlebackVoronoi2dProps(bpy.types.PropertyGroup):
     __annotations__ = _kept(VORONOI_2D)
 
 
+class SaddlebackDirectionFieldProps(bpy.types.PropertyGroup):
+    """Settings of `saddleback.direction_field`."""
+
+    __annotations__ = _kept(DIRECTION_FIELD)
+
+
 class SaddlebackRepairProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.repair`."""
 
@@ -362,6 +454,7 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
         "distance": PointerProperty(type=SaddlebackDistanceProps),
         "path": PointerProperty(type=SaddlebackPathProps),
         "voronoi_2d": PointerProperty(type=SaddlebackVoronoi2dProps),
+        "direction_field": PointerProperty(type=SaddlebackDirectionFieldProps),
         "repair": PointerProperty(type=SaddlebackRepairProps),
     }
 
@@ -371,6 +464,7 @@ CLASSES = (
     SaddlebackDistanceProps,
     SaddlebackPathProps,
     SaddlebackVoronoi2dProps,
+    SaddlebackDirectionFieldProps,
     SaddlebackRepairProps,
     SaddlebackObjectProps,
 )

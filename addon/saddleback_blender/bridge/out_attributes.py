@@ -26,25 +26,30 @@ DOMAIN_ELEMENTS = {"POINT": "vertices", "EDGE": "edges", "FACE": "polygons", "CO
 
 
 def write_vertex_attributes(item: bpy.types.Object, values: dict[str, NDArray[Any]]) -> None:
-    """Writes arrays (V,) or (V,3) as vertex attributes of the object's mesh and remembers that they are ours.
+    """Writes arrays (V,) or (V, c) as vertex attributes of the object's mesh and remembers that they are ours."""
+    write_attributes(item, "POINT", values)
+
+
+def write_attributes(item: bpy.types.Object, domain: str, values: dict[str, NDArray[Any]]) -> None:
+    """Writes arrays (n,) or (n, c) as attributes of n elements of the object's mesh and remembers that they are ours.
 
     An attribute of the same name is written over; one of another type or domain is replaced. Where nothing differs
     nothing is written, so that Blender need not evaluate the object anew.
     """
     mesh = item.data
-    changed = {name: array for name, array in values.items() if not _holds(mesh, name, array)}
+    changed = {name: array for name, array in values.items() if not _holds(mesh, name, domain, array)}
     for name, array in changed.items():
-        set_attribute(mesh, name, "POINT", array)
+        set_attribute(mesh, name, domain, array)
     record(mesh, values)
     if changed:
         mesh.update_tag()
 
 
-def _holds(mesh: bpy.types.Mesh, name: str, values: NDArray[Any]) -> bool:
-    """Whether the mesh has this vertex attribute with just these values."""
+def _holds(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[Any]) -> bool:
+    """Whether the mesh has this attribute with just these values."""
     kind, element, dtype = KINDS[values.dtype.kind, values.shape[1:]]
     attribute = mesh.attributes.get(name)
-    if attribute is None or (attribute.data_type, attribute.domain) != (kind, "POINT"):
+    if attribute is None or (attribute.data_type, attribute.domain) != (kind, domain):
         return False
     if len(attribute.data) != len(values):
         return False

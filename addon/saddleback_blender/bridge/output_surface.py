@@ -28,7 +28,9 @@ def output_surface(context: bpy.types.Context, source: bpy.types.Object, use_mod
     return replace_object(context, source, SURFACE_ROLE, mesh)
 
 
-def check_attribute_names(source: bpy.types.Object, names: dict[str, str], types: dict[str, str]) -> None:
+def check_attribute_names(
+    source: bpy.types.Object, names: dict[str, str], types: dict[str, str], domain: str = "POINT"
+) -> None:
     """Refuses names that would overwrite something else.
 
     `names`: property -> attribute to be written; `types`: property -> its data type.
@@ -49,7 +51,7 @@ def check_attribute_names(source: bpy.types.Object, names: dict[str, str], types
         if (
             old is not None
             and name not in recorded(source.data)
-            and (old.domain != "POINT" or old.data_type != types[prop])
+            and (old.domain != domain or old.data_type != types[prop])
         ):
             raise BadInputError(
                 f"'{source.name}' has another kind of attribute '{name}': choose another name for the {label}"

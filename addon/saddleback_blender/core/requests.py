@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from typing import TypeVar
 
@@ -13,7 +14,13 @@ from numpy.typing import NDArray
 
 from .disk_cache import DiskCache
 from .results import Indices, Reals
-from .settings import DistanceSettings, PathSettings, TessellateSettings, Voronoi2dSettings
+from .settings import (
+    DirectionFieldSettings,
+    DistanceSettings,
+    PathSettings,
+    TessellateSettings,
+    Voronoi2dSettings,
+)
 
 Number = TypeVar("Number", bound=np.generic)
 
@@ -95,6 +102,23 @@ class Polyline:
 
 
 @dataclass(frozen=True)
+class StrokeLine(Polyline):
+    """A curve that a field shall follow; a hard one is met exactly."""
+
+    hard: bool
+    label: str  # whose it is, for messages
+
+
+@dataclass(frozen=True)
+class SingularPlace:
+    """A place in the world about which a field shall turn; an index of None is one unit of the field's symmetry."""
+
+    place: Reals  # (3,)
+    index: Fraction | None
+    name: str  # of the empty, for messages
+
+
+@dataclass(frozen=True)
 class TessellateRequest:
     """One tessellation. `density` (V,) and `sites` speak of the Blender mesh's vertices."""
 
@@ -127,6 +151,17 @@ class PathRequest:
     points: Points
     threads: int = 0
     disk: DiskCache | None = None
+
+
+@dataclass(frozen=True)
+class DirectionFieldRequest:
+    """One field of directions."""
+
+    surface: Surface
+    settings: DirectionFieldSettings
+    strokes: tuple[StrokeLine, ...] = ()
+    singularities: tuple[SingularPlace, ...] | None = None  # None: the field chooses them
+    polygons: Indices | None = None  # (F,) polygon that each triangle is part of; of the domain FACE
 
 
 @dataclass(frozen=True)

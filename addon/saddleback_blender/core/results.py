@@ -175,6 +175,32 @@ class PathsResult:
 
 
 @dataclass(frozen=True)
+class SurfaceArrows:
+    """n places on a surface with a direction (n, 3) and a normal (n, 3), both of unit length."""
+
+    points: Reals  # (n, 3)
+    directions: Reals
+    normals: Reals
+    length: float  # to draw them with
+
+
+@dataclass(frozen=True)
+class FieldResult:
+    """A field of directions in the world, and what shows it."""
+
+    symmetry: int
+    domain: str  # POINT, FACE
+    directions: Reals  # (V, 3) or (polygons, 3) unit length; zero where there is no surface
+    singular_points: Reals  # (k, 3)
+    singular_normals: Reals  # (k, 3)
+    singular_indices: Reals  # (k,)
+    largest_turn: float  # radians from face to face
+    stroke_count: int
+    arrows: SurfaceArrows | None = None  # where they were wanted
+    streamlines: PathsResult | None = None  # where they were wanted
+
+
+@dataclass(frozen=True)
 class RepairResult:
     """A repaired surface: what became of the vertices and triangles of the one given, and how much was changed."""
 

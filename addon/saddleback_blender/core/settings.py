@@ -122,6 +122,35 @@ class Voronoi2dSettings:
 
 
 @dataclass(frozen=True)
+class DirectionFieldSettings:
+    """All properties of `saddleback.direction_field`; lengths are world units, "" is no object or collection."""
+
+    symmetry: str = "1"  # 1 = vectors, 2 = lines, 4 = crosses
+    align: str = "NONE"  # NONE, CURVATURE, BOUNDARY
+    align_weight: float = 1.0
+    strokes: str = "NONE"  # NONE, ANNOTATIONS, OBJECT, COLLECTION
+    strokes_object: str = ""
+    strokes_collection: str = ""  # "" = those parented to the object
+    hard_strokes: bool = False  # all of them, not only those with "hard" in their name
+    stroke_weight: float = 1.0  # of soft ones
+    stroke_reach: float = 0.0  # what of a stroke is farther from the surface is left out; 0 = by the surface's extent
+    singularities: str = "AUTO"  # AUTO, EMPTIES
+    singularities_collection: str = ""  # "" = those parented to the object
+    turn: float = 0.0  # radians, counter-clockwise
+    use_modifiers: bool = False
+    domain: str = "POINT"  # POINT, FACE
+    direction_attribute: str = "saddleback_direction"
+    make_arrows: bool = True
+    arrow_count: int = 1500
+    arrow_length: float = 0.0  # 0 = by their number
+    make_streamlines: bool = False
+    streamline_spacing: float = 0.0  # 0 = by the surface's extent
+    streamline_length: float = 0.0  # 0 = by the spacing
+    streamline_radius: float = 0.005
+    seed: int = 0
+
+
+@dataclass(frozen=True)
 class RepairSettings:
     """All properties of `saddleback.repair`."""
 

@@ -4,9 +4,17 @@ from __future__ import annotations
 
 import bpy
 
-from . import clear, distance, path, repair, tessellate, voronoi_2d
+from . import clear, direction_field, distance, path, repair, tessellate, voronoi_2d
 
-CLASSES = (*distance.CLASSES, *path.CLASSES, *tessellate.CLASSES, *voronoi_2d.CLASSES, *repair.CLASSES, *clear.CLASSES)
+CLASSES = (
+    *distance.CLASSES,
+    *path.CLASSES,
+    *tessellate.CLASSES,
+    *voronoi_2d.CLASSES,
+    *direction_field.CLASSES,
+    *repair.CLASSES,
+    *clear.CLASSES,
+)
 
 
 def register() -> None:

@@ -361,6 +361,58 @@ class SADDLEBACK_PT_sweep(SaddlebackPlaneOutputPanel, bpy.types.Panel):
         rows.draw_sweep(self.split_layout(context), context.view_layer.objects.active.saddleback.voronoi_2d)
 
 
+class SADDLEBACK_PT_direction_field(SaddlebackSubPanel, bpy.types.Panel):
+    """Which way things point."""
+
+    bl_label = "Direction Field"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = context.view_layer.objects.active.saddleback.direction_field
+        layout = self.split_layout(context)
+        _draw_button(layout, context, "saddleback.direction_field", "FORCE_WIND")
+        rows.draw_field(layout.column(), settings)
+        layout.prop(settings, "use_modifiers")
+        layout.prop(settings, "direction_attribute")
+        layout.prop(settings, "domain")
+
+
+class SaddlebackFieldOutputPanel(SaddlebackSubPanel):
+    """Mixin: a panel whose header switches a view of the field on."""
+
+    bl_parent_id = "SADDLEBACK_PT_direction_field"
+    switch: str
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draws the switch."""
+        self.layout.enabled = not context.window_manager.saddleback_running
+        self.layout.prop(context.view_layer.objects.active.saddleback.direction_field, self.switch, text="")
+
+
+class SADDLEBACK_PT_arrows(SaddlebackFieldOutputPanel, bpy.types.Panel):
+    """Arrows along the field."""
+
+    bl_label = "Arrows"
+    switch = "make_arrows"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_arrows(self.split_layout(context), context.view_layer.objects.active.saddleback.direction_field)
+
+
+class SADDLEBACK_PT_streamlines(SaddlebackFieldOutputPanel, bpy.types.Panel):
+    """Lines along the field."""
+
+    bl_label = "Streamlines"
+    bl_options = {"DEFAULT_CLOSED"}
+    switch = "make_streamlines"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        rows.draw_streamlines(self.split_layout(context), context.view_layer.objects.active.saddleback.direction_field)
+
+
 class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
     """Faults of the mesh."""
 
@@ -399,5 +451,8 @@ CLASSES = (
     SADDLEBACK_PT_plane_cells,
     SADDLEBACK_PT_plane_centres,
     SADDLEBACK_PT_sweep,
+    SADDLEBACK_PT_direction_field,
+    SADDLEBACK_PT_arrows,
+    SADDLEBACK_PT_streamlines,
     SADDLEBACK_PT_repair,
 )

@@ -140,6 +140,44 @@ def draw_sweep(layout: bpy.types.UILayout, settings: Any) -> None:
     column.prop(settings, "frame_end")
 
 
+def draw_field(layout: bpy.types.UILayout, settings: Any) -> None:
+    """What a field is made of and what it follows."""
+    layout.prop(settings, "symmetry")
+    layout.prop(settings, "align")
+    if settings.align == "CURVATURE":
+        layout.prop(settings, "align_weight")
+    layout.prop(settings, "strokes")
+    if settings.strokes == "OBJECT":
+        draw_object(layout, settings, "strokes_object")
+    elif settings.strokes == "COLLECTION":
+        draw_collection(layout, settings, "strokes_collection")
+    if settings.strokes != "NONE":
+        layout.prop(settings, "hard_strokes")
+        row = layout.row()
+        row.active = not settings.hard_strokes
+        row.prop(settings, "stroke_weight")
+        layout.prop(settings, "stroke_reach")
+    layout.prop(settings, "singularities")
+    if settings.singularities == "EMPTIES":
+        draw_collection(layout, settings, "singularities_collection")
+    layout.prop(settings, "turn")
+
+
+def draw_arrows(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The view of a field."""
+    layout.active = settings.make_arrows
+    layout.prop(settings, "arrow_count")
+    layout.prop(settings, "arrow_length")
+
+
+def draw_streamlines(layout: bpy.types.UILayout, settings: Any) -> None:
+    """Lines along a field."""
+    layout.active = settings.make_streamlines
+    layout.prop(settings, "streamline_spacing")
+    layout.prop(settings, "streamline_length")
+    layout.prop(settings, "streamline_radius")
+
+
 def draw_distance_sources(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
     """Where distances are measured from, and how far."""
     layout.prop(settings, "sources")

@@ -1,0 +1,86 @@
+"""Strokes that a field shall follow: annotations, grease pencil, curves -> lines in the world."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from .. import compat
+from ..core.errors import BadInputError
+from ..core.requests import StrokeLine
+from ..core.settings import DirectionFieldSettings
+from .curves_in import polylines_of
+from .mesh_in import to_world
+from .out_collection import SOURCE
+
+HARD = "hard"  # in the name of a layer or object: its strokes are met exactly
+
+
+def read_strokes(
+    context: bpy.types.Context, source: bpy.types.Object, settings: DirectionFieldSettings
+) -> tuple[StrokeLine, ...]:
+    """The chosen strokes of two points or more. Raises BadInputError where there are none."""
+    if settings.strokes == "NONE":
+        return ()
+    if settings.strokes == "ANNOTATIONS":
+        lines, remedy = _of_annotations(context.scene), "no annotation is drawn in this scene; draw strokes on the mesh"
+    elif settings.strokes == "OBJECT":
+        lines, remedy = _of_object(source, settings.strokes_object)
+    else:
+        lines, remedy = _of_collection(source, settings.strokes_collection)
+    lines = [line for line in lines if len(line.points) > 1]
+    if not lines:
+        raise BadInputError(f"'{source.name}': {remedy}")
+    for line in lines:
+        if not np.isfinite(line.points).all():
+            raise BadInputError(f"'{source.name}': {line.label} has a point that is not at a finite place; move it")
+    return tuple(lines)
+
+
+def _of_annotations(scene: bpy.types.Scene) -> list[StrokeLine]:
+    return [
+        StrokeLine(places.astype(np.float64), False, _is_hard(layer), f"a stroke of annotation layer '{layer}'")
+        for layer, places in compat.annotation_strokes(scene)
+    ]
+
+
+def _of_object(source: bpy.types.Object, name: str) -> tuple[list[StrokeLine], str]:
+    item = bpy.data.objects.get(name) if name else None
+    if item is None:
+        missing = f"there is no object '{name}'" if name else "no object is chosen"
+        raise BadInputError(f"'{source.name}': {missing} to take strokes from; choose a curve or grease pencil")
+    if not _has_strokes(item):
+        raise BadInputError(f"'{source.name}': '{name}' has no strokes; choose a curve or grease pencil object")
+    return _lines_of(item), f"'{name}' has no stroke of two points; draw one"
+
+
+def _of_collection(source: bpy.types.Object, name: str) -> tuple[list[StrokeLine], str]:
+    if name:
+        group = bpy.data.collections.get(name)
+        if group is None:
+            raise BadInputError(f"'{source.name}': there is no collection '{name}' to take strokes from; choose one")
+        candidates, where = list(group.all_objects), f"in collection '{name}'"
+    else:
+        candidates, where = list(source.children), f"parented to '{source.name}'"
+    # What we made ourselves, streamlines and the like, is no stroke.
+    items = sorted((item for item in candidates if _has_strokes(item) and SOURCE not in item), key=lambda i: i.name)
+    return [line for item in items for line in _lines_of(item)], f"no stroke is {where}; draw a curve on the mesh"
+
+
+def _has_strokes(item: bpy.types.Object) -> bool:
+    return item.type == "CURVE" or compat.is_grease_pencil(item)
+
+
+def _lines_of(item: bpy.types.Object) -> list[StrokeLine]:
+    label = f"a stroke of '{item.name}'"
+    if item.type == "CURVE":
+        hard = _is_hard(item.name)
+        return [StrokeLine(line.points, line.closed, hard, label) for line in polylines_of(item)]
+    return [
+        StrokeLine(to_world(item, places), closed, _is_hard(item.name) or _is_hard(layer), label)
+        for layer, places, closed in compat.grease_pencil_strokes(item)
+    ]
+
+
+def _is_hard(name: str) -> bool:
+    return HARD in name.lower()

@@ -1,0 +1,68 @@
+"""Drawn lines -> strokes that a field of directions can follow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from . import native
+from .curve_points import LEAP, places_along
+from .errors import BadInputError
+from .requests import DirectionFieldRequest
+from .results import Reals
+from .surface_walk import joined
+
+STEPS_PER_EDGE = 2.0  # places along a line, to the mean edge of the mesh
+REACH = 0.05  # of the surface's extent: the farthest that a line may be from it
+# A hand trembles by a pixel or two: each place becomes the mean of its neighbours so often.
+SMOOTHING_ROUNDS = 4
+
+
+def strokes_of(request: DirectionFieldRequest, mesh: Any) -> tuple[list[Any], list[str]]:
+    """The library's strokes, and whose each is. Raises BadInputError where no line comes near the surface."""
+    if not request.strokes:
+        return [], []
+    sb, settings = native.load(), request.settings
+    reach = settings.stroke_reach or REACH * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    step = float(mesh.mean_edge_length) / STEPS_PER_EDGE
+    lines = [_smoothed(places_along(line, step), line.closed) for line in request.strokes]
+    ends = np.cumsum([0, *(len(line) for line in lines)])
+    places = np.concatenate(lines)
+    points = sb.project(mesh, places)
+    faces, barycentric = points.faces, points.barycentric
+    near = np.linalg.norm(points.positions(mesh) - places, axis=1) <= reach
+    strokes, labels = [], []
+    for line, begin, end in zip(request.strokes, ends[:-1], ends[1:], strict=True):
+        hard = line.hard or settings.hard_strokes
+        for first, last in _runs(near[begin:end]):
+            part = slice(begin + first, begin + last)
+            for piece in joined(mesh, faces[part], barycentric[part], LEAP * step):
+                curve = sb.SurfaceCurve(mesh, piece)
+                strokes.append(sb.Stroke(curve, hard=hard, weight=settings.stroke_weight))
+                labels.append(line.label)
+    if not strokes:
+        raise BadInputError(
+            f"'{request.surface.name}': no stroke comes within {reach:.3g} of the surface; draw on it "
+            "(placement Surface), or allow a larger reach"
+        )
+    return strokes, labels
+
+
+def _smoothed(places: Reals, closed: bool) -> Reals:
+    """The same places without the tremble; the ends of an open line stay."""
+    if len(places) < 3:
+        return places
+    for _ in range(SMOOTHING_ROUNDS):
+        before, after = np.roll(places, 1, axis=0), np.roll(places, -1, axis=0)
+        means = 0.5 * places + 0.25 * (before + after)
+        if not closed:
+            means[0], means[-1] = places[0], places[-1]
+        places = means
+    return np.concatenate([places, places[:1]]) if closed else places
+
+
+def _runs(kept: np.ndarray) -> list[tuple[int, int]]:
+    """Begin and end of each row of True."""
+    steps = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]]).astype(np.int8)))
+    return [(int(a), int(b)) for a, b in steps.reshape(-1, 2)]

@@ -1,0 +1,94 @@
+"""`saddleback.direction_field`: which way things shall point, all over the surface."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+import bpy
+import numpy as np
+
+from ..bridge.mesh_in import mesh_of, read_surface, read_triangle_polygons
+from ..bridge.out_collection import remove_output
+from ..bridge.out_field import ARROWS_ROLE, STREAMLINES_ROLE, write_arrows, write_directions, write_streamlines
+from ..bridge.output_surface import check_attribute_names, output_surface
+from ..bridge.singularities_in import read_singularities
+from ..bridge.source import shared_mesh_warning
+from ..bridge.strokes_in import read_strokes
+from ..core import field_runs
+from ..core.progress import Progress
+from ..core.requests import DirectionFieldRequest
+from ..core.results import FieldResult
+from ..core.settings import DirectionFieldSettings
+from ..props import DIRECTION_FIELD, keep_settings, settings_of
+from .base import SurfaceOperator
+
+KINDS = {1: "vectors", 2: "lines", 4: "crosses"}
+
+
+class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
+    """Makes a field."""
+
+    bl_idname = "saddleback.direction_field"
+    bl_label = "Direction Field"
+    bl_description = "Comb the surface of the active object: directions that follow strokes and turn where you say"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = dict(DIRECTION_FIELD)
+
+    settings_name = "direction_field"
+
+    def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], FieldResult]:
+        """Reads everything from Blender."""
+        settings = settings_of(self, DirectionFieldSettings)
+        names = {"direction_attribute": settings.direction_attribute}
+        check_attribute_names(source, names, {"direction_attribute": "FLOAT_VECTOR"}, settings.domain)
+        with mesh_of(context, source, settings.use_modifiers) as mesh:
+            request = DirectionFieldRequest(
+                surface=read_surface(source, mesh),
+                settings=settings,
+                strokes=read_strokes(context, source, settings),
+                singularities=read_singularities(source, settings),
+                polygons=read_triangle_polygons(mesh) if settings.domain == "FACE" else None,
+            )
+        return partial(field_runs.direction_field, request)
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, result: FieldResult) -> str:
+        """Writes the result into Blender."""
+        settings = settings_of(self, DirectionFieldSettings)
+        warning = shared_mesh_warning(source)
+        surface = output_surface(context, source, settings.use_modifiers)
+        write_directions(source, surface, settings.direction_attribute, result)
+        if result.arrows is not None:
+            write_arrows(context, source, result)
+        else:
+            remove_output(source, ARROWS_ROLE)
+        if result.streamlines is not None:
+            write_streamlines(context, source, result, settings.streamline_radius)
+        else:
+            remove_output(source, STREAMLINES_ROLE)
+        keep_settings(settings, source.saddleback.direction_field)
+        if warning:
+            self.report({"WARNING"}, warning)
+        return f"'{source.name}': {KINDS[result.symmetry]}, {_told(result)}"
+
+    def notes(self, result: FieldResult) -> list[str]:
+        """Says where faces are too large for the field."""
+        if result.largest_turn < math.pi / result.symmetry:
+            return []
+        return ["The field turns faster than the faces can show; subdivide the mesh where it is singular"]
+
+
+def _told(result: FieldResult) -> str:
+    indices = result.singular_indices
+    if not len(indices):
+        singular = "no singularities"
+    else:
+        many = "singularity" if len(indices) == 1 else "singularities"
+        singular = f"{len(indices)} {many} of index sum {np.sum(indices):.4g}"
+    if not result.stroke_count:
+        return singular
+    return f"{singular}, along {result.stroke_count} stroke{'s' if result.stroke_count > 1 else ''}"
+
+
+CLASSES = (SADDLEBACK_OT_direction_field,)
