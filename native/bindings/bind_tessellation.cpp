@@ -126,13 +126,16 @@ py::object make_cells(GeodesicVoronoi&& diagram, const py::object& graph) {
   return py::cast(Cells{std::move(diagram), graph});
 }
 
-py::object find_cells(const py::object& graph, const py::object& sites, const py::object& threads,
+py::object find_cells(const py::object& graph, const py::object& sites, bool exact, const py::object& threads,
                       const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   const SurfacePoints points = as_surface_points(sites, g.mesh(), "sites");
   const GeodesicVoronoiOptions options{.threads = as_integer(threads, "threads")};
   Job* const token = as_job(job);
-  return make_cells(without_gil([&] { return geodesic_voronoi(g, points, options, token); }), graph);
+  const auto find = [&] {
+    return exact ? exact_voronoi(g.mesh(), points, token) : geodesic_voronoi(g, points, options, token);
+  };
+  return make_cells(without_gil(find), graph);
 }
 
 RelaxationMethod as_method(const std::string& name) {
@@ -190,6 +193,10 @@ Parameters
 graph : SaddleVertexGraph
 sites : (n,) int array or SurfacePoints
     Vertices, or points anywhere on the surface.
+exact : bool
+    By exact distances instead of the graph's, as a reference: bisectors are hyperbolas where they should be, and no
+    point lies in a cell whose site is farther than another by more than 1e-7 of a cell's size. Many times slower, and on
+    one core.
 threads : int
     0: all cores. The result does not depend on it.
 job : Job, optional
@@ -351,8 +358,8 @@ void bind_cells(py::module_& m) {
       .def("__repr__", [](const Cells& c) {
         return message("<saddleback.GeodesicVoronoi of ", c.diagram.sites.size(), " cells>");
       });
-  m.def("geodesic_voronoi", &find_cells, py::arg("graph"), py::arg("sites"), py::kw_only(), py::arg("threads") = 0,
-        py::arg("job") = py::none(), k_voronoi_doc);
+  m.def("geodesic_voronoi", &find_cells, py::arg("graph"), py::arg("sites"), py::kw_only(), py::arg("exact") = false,
+        py::arg("threads") = 0, py::arg("job") = py::none(), k_voronoi_doc);
 }
 
 }  // namespace

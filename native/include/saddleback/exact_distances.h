@@ -34,6 +34,8 @@ class ExactField {
  public:
   /// The mesh must outlive the field. Errors as exact_distances.
   ExactField(const Mesh& mesh, const SurfacePoints& sources, Job* job = nullptr);
+  /// The same as a part of other work.
+  ExactField(const Mesh& mesh, const SurfacePoints& sources, const JobStage& stage);
   ~ExactField();
   ExactField(ExactField&&) noexcept;
 
@@ -44,6 +46,17 @@ class ExactField {
   /// Distance of each point, infinity where no source reaches. O(windows about its face) each. \throw InputError for a
   /// point off the mesh; Cancelled.
   std::vector<double> distance_to(const SurfacePoints& points, Job* job = nullptr) const;
+
+  struct Sight {
+    Index source;
+    double distance;
+  };
+  /// The nearest source of a point and its distance; k_none and infinity where none reaches. O(windows about its face).
+  Sight nearest_at(const SurfacePoint& point) const;
+  /// The sources whose windows reach a point's face, by number, with the lengths of the shortest ways to the point
+  /// that those windows know: of the nearest source its distance, of others no less than that. O(windows about its
+  /// face).
+  void sights_at(const SurfacePoint& point, std::vector<Sight>& sights) const;
 
   /// The shortest path from the nearest source to a point: straight in faces, bent only at saddle and boundary
   /// vertices, as long as the distance. O(faces crossed). \throw InputError for a point off the mesh or that no source

@@ -2,8 +2,10 @@
 // Geodesic Voronoi cells on a surface.
 
 #include <array>
+#include <memory>
 #include <vector>
 
+#include "saddleback/exact_distances.h"
 #include "saddleback/saddle_vertex_graph.h"
 
 namespace saddleback {
@@ -35,7 +37,7 @@ struct GeodesicVoronoi {
     std::array<double, 3> squared_distance;
   };
 
-  /// Part of a face that several cells share: a convex polygon.
+  /// Part of a divided face: a convex polygon.
   struct Piece {
     Index face, cell;
     Index first, count;  ///< in piece_vertices
@@ -46,7 +48,9 @@ struct GeodesicVoronoi {
   std::vector<double> vertex_distance;  ///< (V,) from it
   std::vector<double> areas;            ///< (n,) they sum to the mesh's area
 
-  SurfacePoints points;                ///< where cell boundaries cross mesh edges or meet
+  /// Where cell boundaries cross mesh edges or meet; of exact cells also where they are bent, and where faces are
+  /// divided.
+  SurfacePoints points;
   std::vector<Vec3> positions;         ///< of the points
   std::vector<double> point_distance;  ///< of the points, from the sites that meet there
   /// Boundaries between two cells as polylines of points; polyline i is [edge_offsets[i], edge_offsets[i+1]) of
@@ -56,12 +60,13 @@ struct GeodesicVoronoi {
   std::vector<std::uint8_t> edge_closed;
   std::vector<Index> branch_points;  ///< points where three or more cells meet
 
-  std::vector<Index> face_cell;         ///< (F,) the cell that owns a face whole, k_none where several share it
-  std::vector<Piece> pieces;            ///< of the shared faces
-  std::vector<Index> piece_vertices;    ///< corners of the pieces: mesh vertices, or V + i for points[i]
-  std::vector<Vec3> piece_barycentric;  ///< the same in their faces
-  std::vector<Claim> claims;            ///< on the shared faces, by face and cell
-  std::vector<Index> face_claims;       ///< (F + 1,) those on face f are [face_claims[f], face_claims[f + 1])
+  std::vector<Index> face_cell;                   ///< (F,) the cell that owns a face whole, k_none where it is divided
+  std::vector<Piece> pieces;                      ///< of the divided faces
+  std::vector<Index> piece_vertices;              ///< corners of the pieces: mesh vertices, or V + i for points[i]
+  std::vector<Vec3> piece_barycentric;            ///< the same in their faces
+  std::vector<Claim> claims;                      ///< on the shared faces, by face and cell
+  std::vector<Index> face_claims;                 ///< (F + 1,) those on face f are [face_claims[f], face_claims[f + 1])
+  std::shared_ptr<const ExactField> exact_field;  ///< of exact cells, in place of claims
 
   /// Cuts the mesh along the boundaries. O(V + F).
   SplitMesh split(const Mesh& mesh) const;
@@ -79,5 +84,11 @@ struct GeodesicVoronoi {
 /// triangulated surfaces (TPAMI 2011), with candidates spread over edges instead of vertex labels alone.
 GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                  const GeodesicVoronoiOptions& options = {}, Job* job = nullptr);
+
+/// The same by exact distances, as a reference: no graph, and slow. Bisectors are divided so finely that at no point of
+/// a cell another site is nearer by more than 1e-7 of the size of a cell (the square root of the area per site);
+/// `locate` is exact up to rounding. Two ways to a site that are equally long may be told apart by rounding. \throw as
+/// geodesic_voronoi. About O(V^1.5 + points) time.
+GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job = nullptr);
 
 }  // namespace saddleback

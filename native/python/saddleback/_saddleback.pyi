@@ -421,7 +421,12 @@ class Quality:
 
 def triangle_quality(vertices: ArrayLike, triangles: ArrayLike) -> Quality: ...
 def geodesic_voronoi(
-    graph: SaddleVertexGraph, sites: _Points, *, threads: SupportsIndex = 0, job: Job | None = None
+    graph: SaddleVertexGraph,
+    sites: _Points,
+    *,
+    exact: bool = False,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
 ) -> GeodesicVoronoi: ...
 
 @final

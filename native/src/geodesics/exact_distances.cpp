@@ -1,5 +1,6 @@
 #include "saddleback/exact_distances.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -95,9 +96,12 @@ struct ExactField::Parts {
   const std::vector<Index> nearest;
 };
 
-ExactField::ExactField(const Mesh& mesh, const SurfacePoints& sources, Job* job) {
+ExactField::ExactField(const Mesh& mesh, const SurfacePoints& sources, Job* job)
+    : ExactField(mesh, sources, JobStage(job, k_text)) {}
+
+ExactField::ExactField(const Mesh& mesh, const SurfacePoints& sources, const JobStage& stage) {
   check(mesh, sources, k_infinity);
-  parts_ = std::make_unique<Parts>(mesh, sources, JobStage(job, k_text));
+  parts_ = std::make_unique<Parts>(mesh, sources, stage);
 }
 
 ExactField::~ExactField() = default;
@@ -124,6 +128,26 @@ std::vector<double> ExactField::distance_to(const SurfacePoints& points, Job* jo
     result.push_back(parts_->tracer.approach(point).distance);
   }
   return result;
+}
+
+ExactField::Sight ExactField::nearest_at(const SurfacePoint& point) const {
+  const Approach approach = parts_->tracer.approach(point);
+  if (!std::isfinite(approach.distance)) return {k_none, approach.distance};
+  return {parts_->propagation.owner(approach.root), approach.distance};
+}
+
+void ExactField::sights_at(const SurfacePoint& point, std::vector<Sight>& sights) const {
+  sights.clear();
+  parts_->tracer.visit_ways(point, [&](double distance, Index root) {
+    if (!std::isfinite(distance)) return;
+    const Index source = parts_->propagation.owner(root);
+    const auto known = std::ranges::find(sights, source, &Sight::source);
+    if (known == sights.end())
+      sights.push_back({source, distance});
+    else
+      known->distance = std::min(known->distance, distance);
+  });
+  std::ranges::sort(sights, {}, &Sight::source);
 }
 
 GeodesicPath ExactField::path(const SurfacePoint& target) const { return std::move(paths({target}).front()); }

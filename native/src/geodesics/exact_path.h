@@ -23,6 +23,10 @@ class ExactTracer {
 
   /// O(windows on the face's edges).
   Approach approach(const SurfacePoint& point) const;
+  /// Visits (distance, root) of every way to a point of a face: from sources in it, from its corners, through its
+  /// edges. A corner is taken as a point of the face like any other.
+  template <class Visit>
+  void visit_ways(const SurfacePoint& point, Visit&& visit) const;
   /// From its source to `target`, which some source must reach. O(windows on the edges crossed).
   GeodesicPath path(const SurfacePoint& target) const;
 
@@ -37,5 +41,20 @@ class ExactTracer {
   const ExactPropagation& propagation_;
   const KeptWindows& windows_;
 };
+
+template <class Visit>
+void ExactTracer::visit_ways(const SurfacePoint& point, Visit&& visit) const {
+  const Index first = 3 * surface_.face_of(point.face);
+  for (const SourceInFace& source : surface_.sources_in(first / 3)) {
+    visit((surface_.in_frame(first, point.barycentric) - surface_.in_frame(first, source.barycentric)).norm(),
+          surface_.vertex_count() + source.source);
+  }
+  for (Index h = first; h < first + 3; ++h) {
+    const Vec2 place = surface_.in_frame(h, point.barycentric);
+    const Index corner = surface_.frame(h).from;
+    visit(propagation_.distance(corner) + place.norm(), corner);
+    windows_.visit(h, place, [&](const SightLine& way) { visit(way.distance, way.root); });
+  }
+}
 
 }  // namespace saddleback

@@ -32,10 +32,16 @@ class KeptWindows {
 
   /// Shortens `best` if a window of the half-edge leads to the point (in the half-edge's frame) on a shorter way.
   void improve(Index halfedge, const Vec2& point, SightLine& best) const;
+  /// Visits every window of the half-edge as the way through it to the point (in the half-edge's frame).
+  template <class Visit>
+  void visit(Index halfedge, const Vec2& point, Visit&& visit) const {
+    for (std::int64_t i = begins_[halfedge]; i < begins_[halfedge + 1]; ++i) visit(way_through(i, halfedge, point));
+  }
   std::size_t nbytes() const;
 
  private:
   bool is_needless(const Window& window) const;
+  SightLine way_through(std::int64_t i, Index halfedge, const Vec2& point) const;
   double root_distance(Index root) const;
 
   const ExactSurface& surface_;

@@ -82,9 +82,8 @@ struct CellClaims::Laid {
 
 CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
                        int threads, const JobStage& stage)
-    : maps_(graph, rings, sites, threads, stage.part(0, 0.7)),
-      shared_index_(graph.mesh().face_count(), k_none),
-      first_{0} {
+    : FaceClaims(graph.mesh(), static_cast<Index>(sites.size())),
+      maps_(graph, rings, sites, threads, stage.part(0, 0.7)) {
   std::vector<Worker> workers(thread_count(threads), Worker(maps_));
   claim_by_corners(workers, threads, stage);
   stage.update(0.85);
@@ -283,7 +282,7 @@ void CellClaims::wish_for(const Wish& wish, std::vector<Wish>& wishes) const {
   wishes.push_back(wish);
 }
 
-void CellClaims::lines_along(Index shared, Index halfedge, std::vector<EdgeLine>& lines) const {
+void FaceClaims::lines_along(Index shared, Index halfedge, std::vector<EdgeLine>& lines) const {
   lines.clear();
   for (const FaceClaim& claim : claims(shared)) lines.push_back(line_along(claim, halfedge));
 }

@@ -21,19 +21,17 @@ struct FaceClaim {
 };
 
 /// The claims on every face that several sites may share; the other faces belong to one cell.
-///
-/// Claims on a face start with the labels of its corners and the sites that lie in it; a site that is nearest on a part
-/// of an edge claims the face beyond, too, until nothing changes. Thus cells smaller than a face, or without any
-/// vertex, are found: a cell is connected, and its site's own face begins the walk.
-class CellClaims {
+class FaceClaims {
  public:
-  /// The sites must have passed check_sites; the graph and its rings must outlive the claims. \throw Cancelled.
-  CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites, int threads,
-             const JobStage& stage);
+  FaceClaims(const Mesh& mesh, Index site_count)
+      : mesh_(mesh), site_count_(site_count), shared_index_(mesh.face_count(), k_none), first_{0} {}
+  virtual ~FaceClaims() = default;
 
-  const Mesh& mesh() const { return maps_.mesh(); }
-  const SiteMaps& maps() const { return maps_; }
-  Index site_count() const { return maps_.site_count(); }
+  const Mesh& mesh() const { return mesh_; }
+  Index site_count() const { return site_count_; }
+  /// The site nearest to a vertex (ties: the smaller) and its distance. A face whose corners' labels differ is shared.
+  virtual Index label(Index vertex) const = 0;
+  virtual double distance(Index vertex) const = 0;
 
   /// The shared faces, in increasing order.
   Index shared_count() const { return static_cast<Index>(faces_.size()); }
@@ -49,11 +47,33 @@ class CellClaims {
   Index shared_index(Index face) const { return shared_index_[face]; }
   /// The cell that owns a face whole, k_none for shared ones.
   Index face_site(Index face) const {
-    return shared_index_[face] == k_none ? maps_.label(mesh().triangles()[face][0]) : k_none;
+    return shared_index_[face] == k_none ? label(mesh().triangles()[face][0]) : k_none;
   }
 
   /// The claims' squared distances along a half-edge of a shared face, by site.
   void lines_along(Index shared, Index halfedge, std::vector<EdgeLine>& lines) const;
+
+ protected:
+  const Mesh& mesh_;
+  const Index site_count_;
+  std::vector<Index> shared_index_, faces_, first_;
+  std::vector<FaceClaim> claims_;
+};
+
+/// Claims by the labels and distances of the graph.
+///
+/// Claims on a face start with the labels of its corners and the sites that lie in it; a site that is nearest on a part
+/// of an edge claims the face beyond, too, until nothing changes. Thus cells smaller than a face, or without any
+/// vertex, are found: a cell is connected, and its site's own face begins the walk.
+class CellClaims final : public FaceClaims {
+ public:
+  /// The sites must have passed check_sites; the graph and its rings must outlive the claims. \throw Cancelled.
+  CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites, int threads,
+             const JobStage& stage);
+
+  const SiteMaps& maps() const { return maps_; }
+  Index label(Index vertex) const override { return maps_.label(vertex); }
+  double distance(Index vertex) const override { return maps_.own(vertex).distance; }
 
  private:
   struct Worker;
@@ -77,8 +97,6 @@ class CellClaims {
   void wish_for(const Wish& wish, std::vector<Wish>& wishes) const;
 
   SiteMaps maps_;
-  std::vector<Index> shared_index_, faces_, first_;
-  std::vector<FaceClaim> claims_;
   // Found while claims spread:
   std::vector<Index> late_index_;  ///< per face, into late_; k_none
   std::vector<std::vector<FaceClaim>> late_;

@@ -13,7 +13,7 @@ void reverse(std::vector<EdgeLine>& lines) {
 
 }  // namespace
 
-CellComplex::CellComplex(const CellClaims& claims, int threads, const JobStage& stage)
+CellComplex::CellComplex(const FaceClaims& claims, int threads, const JobStage& stage)
     : claims_(claims), mesh_(claims.mesh()) {
   break_edges();
   stage.update(0.3);
@@ -143,8 +143,8 @@ void CellComplex::label_vertices() {
   vertex_site_.resize(mesh_.vertex_count());
   vertex_distance_.resize(mesh_.vertex_count());
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    vertex_site_[v] = claims_.maps().label(v);
-    vertex_distance_[v] = claims_.maps().own(v).distance;
+    vertex_site_[v] = claims_.label(v);
+    vertex_distance_[v] = claims_.distance(v);
   }
   for (Index shared = 0; shared < claims_.shared_count(); ++shared) {
     const Triangle& t = mesh_.triangles()[claims_.face(shared)];

@@ -19,10 +19,10 @@ class CellComplex {
   };
 
   /// The claims must outlive the complex. \throw Cancelled.
-  CellComplex(const CellClaims& claims, int threads, const JobStage& stage);
+  CellComplex(const FaceClaims& claims, int threads, const JobStage& stage);
 
   const Mesh& mesh() const { return mesh_; }
-  const CellClaims& claims() const { return claims_; }
+  const FaceClaims& claims() const { return claims_; }
   Index site_count() const { return claims_.site_count(); }
   /// The cell of a face that one cell owns whole, else k_none.
   Index face_site(Index face) const { return claims_.face_site(face); }
@@ -50,7 +50,7 @@ class CellComplex {
   void label_vertices();
   Index edge_halfedge(Index h) const;
 
-  const CellClaims& claims_;
+  const FaceClaims& claims_;
   const Mesh& mesh_;
   std::vector<Index> edge_index_;  ///< per half-edge, into edges_
   std::vector<EdgeBreaks> edges_;

@@ -6,6 +6,9 @@
 
 namespace saddleback {
 
+/// The cells of a complex of these sites, their boundaries and areas, without what `locate` asks. \throw Cancelled.
+GeodesicVoronoi subdivision(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
+
 /// The public diagram of a cell complex of these sites. \throw Cancelled.
 GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
 

@@ -126,7 +126,7 @@ class Chains {
   GeodesicVoronoi& out_;
 };
 
-void copy_claims(const CellClaims& claims, GeodesicVoronoi& out) {
+void copy_claims(const FaceClaims& claims, GeodesicVoronoi& out) {
   out.face_claims.assign(1, 0);
   for (Index face = 0; face < claims.mesh().face_count(); ++face) {
     if (const Index shared = claims.shared_index(face); shared != k_none) {
@@ -152,6 +152,10 @@ double bulge_at(const Mesh& mesh, const SurfacePoint& point) {
 }  // namespace
 
 CellAt GeodesicVoronoi::locate(const Mesh& mesh, const SurfacePoint& point) const {
+  if (exact_field) {
+    const ExactField::Sight sight = exact_field->nearest_at(point);
+    return {sight.source, sight.distance};
+  }
   const auto at_point = [&](const std::array<double, 3>& squared) {
     return squared[0] * point.barycentric[0] + squared[1] * point.barycentric[1] + squared[2] * point.barycentric[2];
   };
@@ -182,6 +186,14 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
 }
 
 GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {
+  GeodesicVoronoi result = subdivision(complex, sites, stage);
+  copy_claims(complex.claims(), result);
+  for (const SurfacePoint& point : result.points)
+    result.point_distance.push_back(result.locate(complex.mesh(), point).distance);
+  return result;
+}
+
+GeodesicVoronoi subdivision(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {
   const Mesh& mesh = complex.mesh();
   GeodesicVoronoi result;
   result.sites = sites;
@@ -203,8 +215,6 @@ GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& si
   }
   result.piece_vertices = complex.loop();
   result.piece_barycentric = complex.loop_barycentric();
-  copy_claims(complex.claims(), result);
-  for (const SurfacePoint& point : result.points) result.point_distance.push_back(result.locate(mesh, point).distance);
   return result;
 }
 

@@ -1,0 +1,179 @@
+#include "tessellation/exact_claims.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace saddleback {
+namespace {
+
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+
+/// Whether another claim is nearer at all corners: then it is in the whole part.
+bool is_beaten(const FaceClaim& claim, const std::vector<FaceClaim>& claims) {
+  return std::ranges::any_of(claims, [&](const FaceClaim& other) {
+    for (int i = 0; i < 3; ++i)
+      if (!(other.corner[i].distance < claim.corner[i].distance)) return false;
+    return true;
+  });
+}
+
+const ExactField::Sight* find_sight(const std::vector<ExactField::Sight>& sights, Index source) {
+  const auto found = std::ranges::lower_bound(sights, source, {}, &ExactField::Sight::source);
+  return found != sights.end() && found->source == source ? &*found : nullptr;
+}
+
+/// What the squared distances at the corners say in between, as for a point in the plane.
+double distance_at(const FaceRefinement::Part& part, const FaceClaim& claim, const Vec3& x) {
+  double squared = 0;
+  for (int i = 0; i < 3; ++i)
+    squared += x[i] * claim.squared_distance(i) - x[i] * x[(i + 1) % 3] * part.length[i] * part.length[i];
+  return std::sqrt(std::max(0.0, squared));
+}
+
+}  // namespace
+
+ExactParts::ExactParts(const ExactField& field, double tolerance, const JobStage& stage)
+    : field_(field), tolerance_(tolerance), refinement_(field.mesh()) {
+  look_at_mesh_vertices(stage.part(0, 0.3));
+  const Index faces = field.mesh().face_count();
+  std::vector<Index> pending, changed;
+  for (Index face = 0; face < faces; ++face) {
+    if (face % 256 == 0) stage.update(0.3 + 0.7 * face / faces);
+    pending.push_back(face);
+    while (!pending.empty()) {
+      stage.check();
+      const Index part = pending.back();
+      pending.pop_back();
+      if (is_right(refinement_.parts()[part])) continue;
+      changed.clear();
+      refinement_.halve(part, changed);
+      look_at_added();
+      pending.insert(pending.end(), changed.begin(), changed.end());
+    }
+  }
+  order_.resize(refinement_.parts().size());
+  std::iota(order_.begin(), order_.end(), 0);
+  std::ranges::stable_sort(order_, {}, [&](Index part) { return refinement_.parts()[part].face; });
+}
+
+void ExactParts::add_sights(const SurfacePoint& place, Sights& sights) const {
+  Sights found;
+  field_.sights_at(place, found);
+  if (sights.empty()) return sights.swap(found);
+  for (const ExactField::Sight& sight : found) {
+    const auto known = std::ranges::lower_bound(sights, sight.source, {}, &ExactField::Sight::source);
+    if (known == sights.end() || known->source != sight.source)
+      sights.insert(known, sight);
+    else
+      known->distance = std::min(known->distance, sight.distance);
+  }
+}
+
+void ExactParts::set_nearest(Index vertex) {
+  nearest_[vertex] = {k_none, k_infinity};
+  for (const ExactField::Sight& sight : sights_[vertex])
+    if (sight.distance < nearest_[vertex].distance) nearest_[vertex] = sight;
+}
+
+void ExactParts::look_at_mesh_vertices(const JobStage& stage) {
+  const Mesh& mesh = field_.mesh();
+  sights_.resize(mesh.vertex_count());
+  nearest_.resize(mesh.vertex_count());
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    if (face % 256 == 0) stage.update(static_cast<double>(face) / mesh.face_count());
+    for (int i = 0; i < 3; ++i) add_sights({face, Vec3::Unit(i)}, sights_[mesh.triangles()[face][i]]);
+  }
+  for (Index vertex = 0; vertex < mesh.vertex_count(); ++vertex) set_nearest(vertex);
+}
+
+void ExactParts::look_at_added() {
+  for (auto vertex = static_cast<Index>(sights_.size()); vertex < refinement_.vertex_count(); ++vertex) {
+    const FaceRefinement::Added& added = refinement_.added()[vertex - field_.mesh().vertex_count()];
+    Sights& sights = sights_.emplace_back();
+    for (int i = 0; i < added.faces; ++i) add_sights(added.at[i], sights);
+    nearest_.emplace_back();
+    set_nearest(vertex);
+  }
+}
+
+/// A distance changes by no more than the way between two points: a site that is far behind at a corner owns nothing.
+void ExactParts::find_claims(const FaceRefinement::Part& part, std::vector<FaceClaim>& claims) const {
+  claims.clear();
+  for (const Index corner : part.corner) {
+    for (const ExactField::Sight& sight : sights_[corner]) {
+      if (std::ranges::find(claims, sight.source, &FaceClaim::site) != claims.end()) continue;
+      FaceClaim claim{part.face, sight.source, {}};
+      std::array<double, 3> distance;
+      for (int i = 0; i < 3; ++i) {
+        const ExactField::Sight* const known = find_sight(sights_[part.corner[i]], sight.source);
+        distance[i] = known ? known->distance : k_infinity;
+      }
+      bool may_own = true;
+      for (int i = 0; i < 3; ++i) {
+        const double to_next = part.length[i], to_last = part.length[(i + 2) % 3];
+        claim.corner[i].distance =
+            std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
+        const double lead = claim.corner[i].distance - nearest_[part.corner[i]].distance;
+        may_own = may_own && lead <= 2 * std::max(to_next, to_last);
+      }
+      if (may_own) claims.push_back(claim);
+    }
+  }
+  std::ranges::sort(claims, {}, &FaceClaim::site);
+}
+
+/// Looks at the middles of the edges and of the part. Sites that own something there must be right; of others it is
+/// enough that they are behind by more than they are wrong.
+bool ExactParts::is_right(const FaceRefinement::Part& part) const {
+  if (std::ranges::max(part.length) <= tolerance_ / 2) return true;
+  std::vector<FaceClaim> claims;
+  find_claims(part, claims);
+  if (claims.size() == 1) return true;
+  std::vector<std::uint8_t> is_rival;
+  for (const FaceClaim& claim : claims) is_rival.push_back(!is_beaten(claim, claims));
+  const bool contested = std::ranges::count(is_rival, 1) > 1;
+  const std::array<Vec3, 4> samples{Vec3(0.5, 0.5, 0), Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(1, 1, 1) / 3};
+  Sights sights;
+  std::vector<double> expected(claims.size());
+  for (const Vec3& x : samples) {
+    field_.sights_at({part.face, x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2]}, sights);
+    double first = k_infinity, second = k_infinity;
+    for (std::size_t i = 0; i < claims.size(); ++i) {
+      expected[i] = distance_at(part, claims[i], x);
+      if (expected[i] < first)
+        second = std::exchange(first, expected[i]);
+      else
+        second = std::min(second, expected[i]);
+    }
+    for (std::size_t i = 0; i < claims.size(); ++i) {
+      const ExactField::Sight* const sight = find_sight(sights, claims[i].site);
+      if (!sight) continue;
+      const double gap = is_rival[i] ? (contested ? 0 : second - first) : expected[i] - first;
+      if (std::abs(sight->distance - expected[i]) > std::max(tolerance_, gap / 2)) return false;
+    }
+  }
+  return true;
+}
+
+ExactClaims::ExactClaims(const ExactParts& parts, const Mesh& mesh, Index site_count)
+    : FaceClaims(mesh, site_count), parts_(parts) {
+  std::vector<FaceClaim> claims;
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    const FaceRefinement::Part& part = parts.refinement().parts()[parts.order()[face]];
+    parts.find_claims(part, claims);
+    const std::vector<FaceClaim> all = claims;
+    std::erase_if(claims, [&](const FaceClaim& claim) { return is_beaten(claim, all); });
+    if (claims.size() == 1) continue;
+    shared_index_[face] = shared_count();
+    faces_.push_back(face);
+    for (FaceClaim& claim : claims) {
+      claim.face = face;
+      claims_.push_back(claim);
+    }
+    first_.push_back(claim_count());
+  }
+}
+
+}  // namespace saddleback

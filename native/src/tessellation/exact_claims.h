@@ -1,0 +1,54 @@
+#pragma once
+// Claims by exact distances, on faces divided so finely that squared distances are what one plane would say.
+
+#include "saddleback/exact_distances.h"
+
+#include "tessellation/cell_claims.h"
+#include "tessellation/face_refinement.h"
+
+namespace saddleback {
+
+/// Divides faces where several sites are nearest until, in every part, the squared distance of each of them is that of
+/// a point in the part's plane to within a tolerance: behind saddle vertices, where bisectors are hyperbolas, and where
+/// geodesics to a site go round a vertex on two sides.
+class ExactParts {
+ public:
+  /// `tolerance`: of distances, mesh units. The field must outlive the parts. \throw Cancelled.
+  ExactParts(const ExactField& field, double tolerance, const JobStage& stage);
+
+  const FaceRefinement& refinement() const { return refinement_; }
+  /// By face of the mesh.
+  const std::vector<Index>& order() const { return order_; }
+  const ExactField::Sight& nearest(Index vertex) const { return nearest_[vertex]; }
+  /// The sites that may own something of a part, by site.
+  void find_claims(const FaceRefinement::Part& part, std::vector<FaceClaim>& claims) const;
+
+ private:
+  using Sights = std::vector<ExactField::Sight>;
+  void look_at_mesh_vertices(const JobStage& stage);
+  void look_at_added();
+  void add_sights(const SurfacePoint& place, Sights& sights) const;
+  void set_nearest(Index vertex);
+  bool is_right(const FaceRefinement::Part& part) const;
+
+  const ExactField& field_;
+  const double tolerance_;
+  FaceRefinement refinement_;
+  std::vector<Sights> sights_;  ///< by vertex, each by site
+  std::vector<ExactField::Sight> nearest_;
+  std::vector<Index> order_;
+};
+
+/// The same as claims on a mesh whose faces are the parts, in their order.
+class ExactClaims final : public FaceClaims {
+ public:
+  /// Both must outlive the claims.
+  ExactClaims(const ExactParts& parts, const Mesh& mesh, Index site_count);
+  Index label(Index vertex) const override { return parts_.nearest(vertex).source; }
+  double distance(Index vertex) const override { return parts_.nearest(vertex).distance; }
+
+ private:
+  const ExactParts& parts_;
+};
+
+}  // namespace saddleback

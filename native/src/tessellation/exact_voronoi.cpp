@@ -1,0 +1,118 @@
+// The diagram by exact distances: found on the faces' parts, then told in the mesh's own faces.
+
+#include <cmath>
+
+#include "tessellation/diagram.h"
+#include "tessellation/exact_claims.h"
+
+namespace saddleback {
+namespace {
+
+// Of distances, relative to the size of a cell: where straight bits stand for hyperbolas.
+constexpr double k_tolerance = 3e-8;
+
+Mesh mesh_of(const ExactParts& parts, const JobStage& stage) {
+  const FaceRefinement& refinement = parts.refinement();
+  const Mesh& mesh = refinement.mesh();
+  std::vector<double> xyz;
+  const auto add = [&](const Vec3& place) { xyz.insert(xyz.end(), {place.x(), place.y(), place.z()}); };
+  for (const Vec3& place : mesh.positions()) add(place);
+  for (const FaceRefinement::Added& added : refinement.added()) add(position(mesh, added.at[0]));
+  std::vector<Index> triangles;
+  for (const Index part : parts.order()) {
+    const auto& corner = refinement.parts()[part].corner;
+    triangles.insert(triangles.end(), corner.begin(), corner.end());
+  }
+  return {xyz, triangles, stage};
+}
+
+/// From points and pieces of the parts to those of the faces. Added vertices of the parts come last among the points.
+class InFaces {
+ public:
+  InFaces(const ExactParts& parts, GeodesicVoronoi& diagram)
+      : parts_(parts),
+        mesh_(parts.refinement().mesh()),
+        diagram_(diagram),
+        on_boundaries_(static_cast<Index>(diagram.points.size())) {}
+
+  void tell() {
+    for (SurfacePoint& point : diagram_.points) point = in_face(part(point.face), point.barycentric);
+    for (const FaceRefinement::Added& added : parts_.refinement().added()) {
+      diagram_.points.push_back(added.at[0]);
+      diagram_.positions.push_back(position(mesh_, added.at[0]));
+    }
+    diagram_.vertex_cell.resize(mesh_.vertex_count());
+    diagram_.vertex_distance.resize(mesh_.vertex_count());
+    std::vector<Index> part_cell(mesh_.face_count(), k_none);
+    part_cell.swap(diagram_.face_cell);
+    const GeodesicVoronoi found = diagram_;
+    diagram_.pieces.clear();
+    diagram_.piece_vertices.clear();
+    diagram_.piece_barycentric.clear();
+    auto piece = found.pieces.begin();
+    const auto count = static_cast<Index>(parts_.order().size());
+    for (Index i = 0; i < count; ++i) {
+      const FaceRefinement::Part& at = part(i);
+      for (; piece != found.pieces.end() && piece->face == i; ++piece) add_piece(at, *piece, found);
+      if (part_cell[i] == k_none) continue;
+      const bool is_whole = (i == 0 || part(i - 1).face != at.face) && (i + 1 == count || part(i + 1).face != at.face);
+      if (is_whole)
+        diagram_.face_cell[at.face] = part_cell[i];
+      else
+        add_whole(at, part_cell[i]);
+    }
+  }
+
+ private:
+  const FaceRefinement::Part& part(Index i) const { return parts_.refinement().parts()[parts_.order()[i]]; }
+  static SurfacePoint in_face(const FaceRefinement::Part& part, const Vec3& x) {
+    return {part.face, x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2]};
+  }
+  /// In the parts: the mesh's vertices, the added ones, the points. In the faces: the points before the added ones.
+  Index vertex_of(Index vertex) const {
+    const Index of_mesh = mesh_.vertex_count(), of_parts = parts_.refinement().vertex_count();
+    if (vertex < of_mesh) return vertex;
+    return vertex < of_parts ? vertex + on_boundaries_ : vertex - of_parts + of_mesh;
+  }
+  void begin_piece(Index face, Index cell, Index count) {
+    diagram_.pieces.push_back({face, cell, static_cast<Index>(diagram_.piece_vertices.size()), count});
+  }
+  void add_corner(Index vertex, const Vec3& barycentric) {
+    diagram_.piece_vertices.push_back(vertex_of(vertex));
+    diagram_.piece_barycentric.push_back(barycentric);
+  }
+  void add_piece(const FaceRefinement::Part& at, const GeodesicVoronoi::Piece& piece, const GeodesicVoronoi& found) {
+    begin_piece(at.face, piece.cell, piece.count);
+    for (Index i = piece.first; i < piece.first + piece.count; ++i)
+      add_corner(found.piece_vertices[i], in_face(at, found.piece_barycentric[i]).barycentric);
+  }
+  void add_whole(const FaceRefinement::Part& at, Index cell) {
+    begin_piece(at.face, cell, 3);
+    for (int i = 0; i < 3; ++i) add_corner(at.corner[i], at.place[i]);
+  }
+
+  const ExactParts& parts_;
+  const Mesh& mesh_;
+  GeodesicVoronoi& diagram_;
+  const Index on_boundaries_;
+};
+
+}  // namespace
+
+GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job) {
+  check_sites(mesh, sites);
+  const JobStage stage(job, "Finding cells by exact distances");
+  auto field = std::make_shared<const ExactField>(mesh, sites, stage.part(0, 0.3));
+  const double size = std::sqrt(mesh.area() / static_cast<double>(sites.size()));
+  const ExactParts parts(*field, k_tolerance * size, stage.part(0.3, 0.8));
+  const Mesh divided = mesh_of(parts, stage.part(0.8, 0.85));
+  const ExactClaims claims(parts, divided, static_cast<Index>(sites.size()));
+  GeodesicVoronoi diagram = subdivision(CellComplex(claims, 1, stage.part(0.85, 0.95)), sites, stage);
+  InFaces(parts, diagram).tell();
+  for (const SurfacePoint& point : diagram.points) diagram.point_distance.push_back(field->nearest_at(point).distance);
+  diagram.exact_field = std::move(field);
+  stage.update(1);
+  return diagram;
+}
+
+}  // namespace saddleback

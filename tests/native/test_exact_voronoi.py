@@ -1,0 +1,224 @@
+"""Cells by exact distances: against closed forms, and against fields of every site alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
+from tests.native.cell_checks import check, lag, points_of_cells
+from tests.native.exact import random_points
+
+Chart = Callable[[np.ndarray], np.ndarray]  # from places in space to what the closed form is told
+Distance = Callable[[np.ndarray, np.ndarray], np.ndarray]  # from one of those to several
+
+
+def exact_cells(mesh: sb.Mesh, sites: sb.SurfacePoints) -> sb.GeodesicVoronoi:
+    return sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3), sites, exact=True)
+
+
+def sites_at(mesh: sb.Mesh, places: list[tuple[float, float, float]]) -> sb.SurfacePoints:
+    return sb.project(mesh, places)
+
+
+def boundaries(cells: sb.GeodesicVoronoi) -> tuple[np.ndarray, np.ndarray]:
+    """Points of the boundaries with the middles between them, and the two cells of each."""
+    places = [np.concatenate([edge.points, (edge.points[1:] + edge.points[:-1]) / 2]) for edge in cells.edges]
+    sides = [np.tile(edge.cells, (len(p), 1)) for edge, p in zip(cells.edges, places, strict=True)]
+    return np.concatenate(places), np.concatenate(sides)
+
+
+def check_bisectors(mesh: sb.Mesh, cells: sb.GeodesicVoronoi, chart: Chart, distance: Distance) -> np.ndarray:
+    """Boundaries are as far from both sites, and no farther than from any other: 1e-6. Returns them in the chart."""
+    check(mesh, cells)
+    places, sides = boundaries(cells)
+    charted = chart(places)
+    table = np.array([distance(site, charted) for site in chart(cells.sites.positions(mesh))])
+    rows = np.arange(len(places))
+    for side in (0, 1):
+        np.testing.assert_allclose(table[sides[:, side], rows], table.min(axis=0), rtol=0, atol=1e-6)
+    return charted
+
+
+SMALL = [c for c in meshes.good() if c.components == 1 and len(c.vertices) <= 700]
+
+
+@pytest.mark.parametrize("case", SMALL, ids=str)
+def test_no_other_site_is_nearer(case: meshes.Case) -> None:
+    cells = exact_cells(case.mesh, random_points(case.mesh, min(7, len(case.triangles)), seed=6))
+    check(case.mesh, cells)
+    for by_area in (True, False):
+        assert lag(case.mesh, cells, *points_of_cells(cells, 4000, 1, by_area)).max() <= 1e-7
+
+
+@pytest.mark.parametrize("arrays", [meshes.tetrahedron(), meshes.cube(), meshes.grid(5, 5, 0.3)])
+def test_more_sites_than_triangles(arrays: meshes.Arrays) -> None:
+    mesh = sb.Mesh(*arrays)
+    cells = exact_cells(mesh, random_points(mesh, 3 * len(mesh.triangles), seed=2))
+    check(mesh, cells)
+    assert (cells.areas > 0).all()
+    for by_area in (True, False):
+        assert lag(mesh, cells, *points_of_cells(cells, 4000, 1, by_area)).max() <= 1e-7
+
+
+def sees(place: np.ndarray, others: np.ndarray, low: float, high: float) -> np.ndarray:
+    """Whether straight lines pass beside the open square from low to high."""
+    step = others - place
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.stack([(low + 1e-9 - place) / step, (high - 1e-9 - place) / step])
+    outside = (step == 0) & ((place <= low + 1e-9) | (place >= high - 1e-9))
+    enter = np.where(step == 0, np.where(outside, np.inf, -np.inf), ends.min(axis=0)).max(axis=1)
+    leave = np.where(step == 0, np.inf, ends.max(axis=0)).min(axis=1)
+    return np.asarray((enter >= leave) | (leave <= 0) | (enter >= 1))
+
+
+def test_hyperbolas_behind_an_obstacle() -> None:
+    """The plane with a square hole: ways lead straight or over corners of the hole."""
+    size, low, high = 13, 4 / 12, 8 / 12
+    vertices, triangles = meshes.grid(size, size)
+    middles = vertices[triangles].mean(axis=1)[:, :2]
+    keep = ((middles < low) | (middles > high)).any(axis=1)
+    mesh = sb.Mesh(*meshes.without_unused(vertices, triangles[keep]))
+    corners = np.array([(low, low), (high, low), (high, high), (low, high)])
+    side = high - low
+    along = side * np.array([[0, 1, 2, 1], [1, 0, 1, 2], [2, 1, 0, 1], [1, 2, 1, 0]])
+
+    def over_corners(site: np.ndarray) -> np.ndarray:
+        straight = np.where(sees(site, corners, low, high), np.linalg.norm(corners - site, axis=1), np.inf)
+        return np.asarray((straight[:, None] + along).min(axis=0))
+
+    def distance(site: np.ndarray, places: np.ndarray) -> np.ndarray:
+        best = np.where(sees(site, places, low, high), np.linalg.norm(places - site, axis=1), np.inf)
+        for corner, before in zip(corners, over_corners(site), strict=True):
+            seen = sees(corner, places, low, high)
+            best = np.minimum(best, np.where(seen, before + np.linalg.norm(places - corner, axis=1), np.inf))
+        return best
+
+    cells = exact_cells(mesh, sites_at(mesh, [(0.2, 0.52, 0), (0.61, 0.9, 0), (0.95, 0.3, 0)]))
+    places = check_bisectors(mesh, cells, lambda xyz: xyz[:, :2], distance)
+    a, b = cells.sites.positions(mesh)[:2, :2]
+    behind = sees(b, places, low, high) & ~sees(a, places, low, high)
+    on_both = np.abs(distance(a, places) - distance(b, places)) < 1e-6
+    assert (behind & on_both).sum() > 20
+    bent = places[behind & on_both]
+    assert np.linalg.svd(bent - bent.mean(axis=0))[1][1] > 1e-3  # no straight line
+
+
+@pytest.mark.parametrize("turn", [0.0, np.pi, 2.1])
+def test_the_tube(turn: float) -> None:
+    """Two sites on a prism; rolled out, a strip that repeats. At the same angle their bisector is a closed curve."""
+    around, radius = 24, 1.0
+    mesh = sb.Mesh(*meshes.cylinder(around, 9, radius, 2.0))
+    step, apothem = 2 * np.pi / around, radius * np.cos(np.pi / around)
+    width = 2 * radius * np.sin(np.pi / around)
+
+    def chart(xyz: np.ndarray) -> np.ndarray:
+        angle = np.arctan2(xyz[:, 1], xyz[:, 0]) % (2 * np.pi)
+        side = np.minimum(np.floor(angle / step), around - 1)
+        return np.column_stack([width * (side + 0.5) + apothem * np.tan(angle - step * (side + 0.5)), xyz[:, 2]])
+
+    def distance(site: np.ndarray, places: np.ndarray) -> np.ndarray:
+        along = np.abs(places[:, 0] - site[0])
+        return np.hypot(np.minimum(along, around * width - along), places[:, 1] - site[1])
+
+    middle = mesh.vertices[:, 2].mean()
+    places = [(np.cos(a), np.sin(a), middle + z) for a, z in ((0.3, -0.31), (0.3 + turn, 0.37))]
+    cells = exact_cells(mesh, sites_at(mesh, places))
+    check_bisectors(mesh, cells, chart, distance)
+    if turn == 0:
+        assert cells.edge_closed.tolist() == [True]
+        heights = cells.edge_points[:, 2]
+        np.testing.assert_allclose(heights, cells.sites.positions(mesh)[:, 2].mean(), atol=1e-6)
+
+
+def fan(sides: int, total: float) -> meshes.Arrays:
+    """Isosceles triangles about the origin, in all `total` radians there; each divided into 16."""
+    corner, turn = total / sides, 2 * np.pi / sides
+    # Rim points at height +-h (or all at h where the angle is below 2 pi): their scalar products give the corner.
+    zigzag = total > 2 * np.pi
+    squared = (np.cos(turn) - np.cos(corner)) / (1 + np.cos(corner))
+    if not zigzag:
+        squared = (np.cos(corner) - np.cos(turn)) / (1 - np.cos(corner))
+    height = np.sqrt(squared) * np.where(zigzag, (-1.0) ** np.arange(sides), np.full(sides, -1.0))
+    angle = turn * np.arange(sides)
+    rim = np.column_stack([np.cos(angle), np.sin(angle), height]) / np.sqrt(1 + squared)
+    triangles = [(0, 1 + i, 1 + (i + 1) % sides) for i in range(sides)]
+    arrays = np.vstack([np.zeros((1, 3)), rim]), np.array(triangles, dtype=np.int32)
+    return meshes.subdivide(*meshes.subdivide(*arrays))
+
+
+@pytest.mark.parametrize(("total", "sides"), [(4.0, 12), (2 * np.pi * 1.4, 16)], ids=["cone", "saddle"])
+def test_about_an_apex(total: float, sides: int) -> None:
+    """A cone, and an apex with more than a full turn: there shortest ways bend and bisectors are hyperbolas."""
+    mesh = sb.Mesh(*fan(sides, total))
+    rim = mesh.vertices[1 : 1 + sides]
+    corner = total / sides
+
+    def chart(xyz: np.ndarray) -> np.ndarray:
+        """Distance from the apex, and the angle there."""
+        at = np.floor(np.arctan2(xyz[:, 1], xyz[:, 0]) % (2 * np.pi) / (2 * np.pi / sides)).astype(int) % sides
+        basis = np.stack([rim[at], rim[(at + 1) % sides]], axis=2)
+        shares = np.array([np.linalg.lstsq(b, p, rcond=None)[0] for b, p in zip(basis, xyz, strict=True)])
+        inside = np.arctan2(shares[:, 1] * np.sin(corner), shares[:, 0] + shares[:, 1] * np.cos(corner))
+        return np.column_stack([np.linalg.norm(xyz, axis=1), corner * at + inside])
+
+    def distance(site: np.ndarray, places: np.ndarray) -> np.ndarray:
+        turn = np.abs(places[:, 1] - site[1])
+        turn = np.minimum(np.minimum(turn, total - turn), np.pi)
+        return np.sqrt(site[0] ** 2 + places[:, 0] ** 2 - 2 * site[0] * places[:, 0] * np.cos(turn))
+
+    angles = np.array([0.35, 2.2, 3.6]) * (1.0 if total < 6 else 1.2)
+    sites = sites_at(mesh, [(r * np.cos(a), r * np.sin(a), 0) for r, a in zip((0.7, 0.45, 0.3), angles, strict=True)])
+    cells = exact_cells(mesh, sites)
+    charted = check_bisectors(mesh, cells, chart, distance)
+    if total < 6:
+        return
+    straight = np.array([np.abs(charted[:, 1] - site[1]) % total for site in chart(cells.sites.positions(mesh))])
+    straight = np.minimum(straight, total - straight) < np.pi
+    assert (straight.any(axis=0) & ~straight.all(axis=0)).sum() > 20
+
+
+def test_mirrored_sites_on_a_sphere() -> None:
+    mesh = sb.Mesh(*meshes.icosphere(2))
+    x, y = mesh.vertices.T[:2]
+    site = int(np.argmax(x - 0.3 * y))
+    mirrored = int(np.argmin(np.linalg.norm(mesh.vertices - mesh.vertices[site] * [-1, 1, 1], axis=1)))
+    cells = exact_cells(mesh, sb.SurfacePoints(*corner_points(mesh, [site, mirrored])))
+    check(mesh, cells)
+    assert cells.edge_closed.tolist() == [True]
+    places, _ = boundaries(cells)
+    np.testing.assert_allclose(places[:, 0], 0, atol=1e-6)
+    np.testing.assert_allclose(cells.areas, mesh.area / 2, rtol=1e-6)
+
+
+def corner_points(mesh: sb.Mesh, vertices: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    faces, corners = zip(*(np.argwhere(mesh.triangles == v)[0] for v in vertices), strict=True)
+    return np.array(faces, dtype=np.int32), np.eye(3)[list(corners)]
+
+
+def test_the_graph_comes_near() -> None:
+    """Within its accuracy, and with straight bisectors inside faces."""
+    mesh = sb.Mesh(*meshes.torus(60, 24))
+    sites = random_points(mesh, 9, seed=3)
+    near = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, accuracy=5e-3), sites)
+    exact = exact_cells(mesh, sites)
+    np.testing.assert_allclose(near.areas, exact.areas, rtol=0.03)
+    np.testing.assert_allclose(near.vertex_distance, exact.vertex_distance, rtol=0.01, atol=1e-9)
+    pairs = [sorted(map(tuple, np.sort(cells.edge_cells, axis=1))) for cells in (near, exact)]
+    assert pairs[0] == pairs[1]
+
+
+def test_progress_rises_and_cancel_is_quick() -> None:
+    mesh = sb.Mesh(*meshes.torus(90, 40))
+    graph, sites = sb.SaddleVertexGraph(mesh, k=3), random_points(mesh, 20, seed=1)
+    check_progress_and_cancel(lambda job: sb.geodesic_voronoi(graph, sites, exact=True, job=job), 0.05)
+
+
+def test_no_site_on_a_part() -> None:
+    mesh = sb.Mesh(*meshes.two_components())
+    with pytest.raises(sb.InputError, match="no site"):
+        exact_cells(mesh, random_points(mesh, 1))
