@@ -174,6 +174,18 @@ void bind_shapes(py::module_& m) {
       .def_property_readonly("has_half_turn", &Shape::has_half_turn,
                              "Whether half a turn about the origin changes nothing.")
       .def("contains", &contains, py::arg("points"), "(n,) bool for (n, 2) points of the plane.")
+      .def(
+          "moved",
+          [](const Shape& self, const py::object& scale, const py::object& angle, const py::object& shift) {
+            const ArrayIn<double> by = as_reals(shift, "shift", 2);
+            return self.moved(as_real(scale, "scale"), as_real(angle, "angle"), {by.values[0], by.values[1]});
+          },
+          py::arg("scale") = 1.0, py::arg("angle") = 0.0, py::arg("shift") = py::make_tuple(0.0, 0.0),
+          "Scaled, then turned counter-clockwise (radians), then shifted.")
+      .def(
+          "overlaps",
+          [](const Shape& self, const py::object& other) { return self.overlaps(as_shape(other, "other")); },
+          py::arg("other"), "Whether the two have a common point, outlines included; exact.")
       .def("mirrored", &Shape::mirrored, "The shape with y negated.")
       .def(
           "centred",

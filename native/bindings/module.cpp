@@ -18,6 +18,7 @@ void bind_predicates(py::module_& m);
 void bind_read_mesh(py::module_& m);
 void bind_relax_2d(py::module_& m);
 void bind_repair(py::module_& m);
+void bind_safe_distance(py::module_& m);
 void bind_shapes(py::module_& m);
 void bind_stepped_sweep(py::module_& m);
 void bind_surface(py::module_& m);
@@ -107,4 +108,5 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_relax_2d(m);
   bind_shapes(m);
   bind_placements(m);
+  bind_safe_distance(m);
 }

@@ -44,10 +44,17 @@ class Shape {
 
   /// The shape with y negated.
   Shape mirrored() const;
+  /// Scaled, then turned counter-clockwise, then shifted. \throw InputError for a scale that is not positive, or what
+  /// leaves the range of coordinates.
+  Shape moved(double scale, double angle, const Vec2& shift) const;
+  /// Exact: whether the two have a common point, outlines included. O(m n) for m and n corners.
+  bool overlaps(const Shape& other) const;
   /// Moved so that the smallest circle around it is about the origin, and scaled to a circumradius of `radius`.
   Shape centred(double radius = 1) const;
 
  private:
+  template <class Move>
+  Shape with_corners(Move move) const;
   void check() const;
   void measure();
 

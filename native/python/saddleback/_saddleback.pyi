@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Literal, SupportsFloat, SupportsIndex, TypeAlias, final
+from typing import Literal, SupportsFloat, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -761,8 +761,30 @@ class Shape:
     @property
     def has_half_turn(self) -> bool: ...
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]: ...
+    def moved(self, scale: SupportsFloat = 1.0, angle: SupportsFloat = 0.0, shift: ArrayLike = ...) -> Shape: ...
+    def overlaps(self, other: Shape) -> bool: ...
     def mirrored(self) -> Shape: ...
     def centred(self, radius: SupportsFloat = 1.0) -> Shape: ...
+
+_Reals: TypeAlias = SupportsFloat | ArrayLike
+
+@final
+class SafeDistanceTable:
+    def __init__(self, a: Shape, b: Shape) -> None: ...
+    @overload
+    def distance(
+        self,
+        alpha: SupportsFloat,
+        beta: SupportsFloat,
+        scale_a: SupportsFloat = 1.0,
+        scale_b: SupportsFloat = 1.0,
+    ) -> float: ...
+    @overload
+    def distance(
+        self, alpha: _Reals, beta: _Reals, scale_a: _Reals = 1.0, scale_b: _Reals = 1.0
+    ) -> float | _Floats: ...
+    @property
+    def nbytes(self) -> int: ...
 
 @final
 class Placements:

@@ -145,19 +145,50 @@ Shape Shape::mirrored() const {
   return result;
 }
 
+/// The shape with every corner sent elsewhere.
+template <class Move>
+Shape Shape::with_corners(Move move) const {
+  std::vector<Part> parts;
+  for (Index part = 0; part < part_count(); ++part) {
+    parts.emplace_back(loops_.begin() + part_begins_[part], loops_.begin() + part_begins_[part + 1]);
+    for (Loop& loop : parts.back())
+      for (Vec2& corner : loop) corner = move(corner);
+  }
+  return Shape(std::move(parts));
+}
+
 Shape Shape::centred(double radius) const {
   if (!(radius > 0) || !std::isfinite(radius))
     throw InputError(message("radius is ", radius, ", but must be positive and finite"));
   std::vector<Vec2> corners;
   for (const Loop& loop : loops_) corners.insert(corners.end(), loop.begin(), loop.end());
   const distribution::Circle circle = distribution::enclosing_circle(corners);
-  std::vector<Part> parts;
-  for (Index part = 0; part < part_count(); ++part) {
-    parts.emplace_back(loops_.begin() + part_begins_[part], loops_.begin() + part_begins_[part + 1]);
-    for (Loop& loop : parts.back())
-      for (Vec2& corner : loop) corner = (corner - circle.centre) * (radius / circle.radius);
-  }
-  return Shape(std::move(parts));
+  return with_corners([&](const Vec2& corner) -> Vec2 { return (corner - circle.centre) * (radius / circle.radius); });
+}
+
+Shape Shape::moved(double scale, double angle, const Vec2& shift) const {
+  if (!(scale > 0) || !std::isfinite(scale) || !std::isfinite(angle))
+    throw InputError(message("scale ", scale, " and angle ", angle, " must be finite, the scale positive"));
+  const double c = std::cos(angle), s = std::sin(angle);
+  return with_corners([&](const Vec2& corner) -> Vec2 {
+    return shift + scale * Vec2(c * corner.x() - s * corner.y(), s * corner.x() + c * corner.y());
+  });
+}
+
+bool Shape::overlaps(const Shape& other) const {
+  for (const Loop& loop : loops_)
+    for (const Loop& others : other.loops_)
+      for (std::size_t i = 0; i < loop.size(); ++i)
+        for (std::size_t j = 0; j < others.size(); ++j)
+          if (predicates::segments_touch(loop[i], loop[(i + 1) % loop.size()], others[j],
+                                         others[(j + 1) % others.size()]))
+            return true;
+  const auto holds_part_of = [](const Shape& outer, const Shape& inner) {
+    for (Index part = 0; part < inner.part_count(); ++part)
+      if (outer.contains(inner.loops_[inner.part_begins_[part]][0])) return true;
+    return false;
+  };
+  return holds_part_of(*this, other) || holds_part_of(other, *this);
 }
 
 }  // namespace saddleback
