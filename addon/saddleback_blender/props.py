@@ -29,9 +29,15 @@ Settings = TypeVar(
 
 # An operator names objects by strings, so that scripts and presets can; the object itself keeps pointers, which survive
 # renaming. These names are pointers on the object and strings on the operator.
-OBJECT_NAMES = ("sites_object", "instance_object", "sources_object", "strokes_object")
-COLLECTION_NAMES = ("sources_collection", "points_collection", "strokes_collection", "singularities_collection")
-IMAGE_NAMES = ("image_name",)
+OBJECT_NAMES = ("sites_object", "instance_object", "sources_object", "strokes_object", "density_object")
+COLLECTION_NAMES = (
+    "sources_collection",
+    "points_collection",
+    "strokes_collection",
+    "singularities_collection",
+    "density_collection",
+)
+IMAGE_NAMES = ("image_name", "density_image")
 
 SITES_SOURCES = (
     ("COUNT", "Count", "Place this many sites, by the density"),
@@ -48,6 +54,10 @@ DENSITY_SOURCES = (
     ("ATTRIBUTE", "Attribute", "A number attribute of vertices, edges, faces or face corners"),
     ("COLOR", "Color Attribute", "Painted colors"),
     ("MASK", "Sculpt Mask", "The sculpt mask"),
+    ("IMAGE", "Image", "An image seen through a UV map"),
+    ("CURVATURE", "Curvature", "High where the surface bends much"),
+    ("DISTANCE", "Distance to Curves", "High at curves, falling with the distance from them"),
+    ("SPREAD", "Spread", "The weights of a few painted vertices, spread smoothly over all of the surface"),
 )
 CHANNELS = (
     ("LUMINANCE", "Luminance", "Brightness of the linear color (Rec. 709)"),
@@ -176,6 +186,29 @@ def _choice(label: str, description: str, items: tuple[tuple[str, str, str], ...
     return EnumProperty(name=label, description=description, items=items, default=default, options={"SKIP_SAVE"})
 
 
+DENSITY: dict[str, Any] = {
+    "density_source": _choice("Density", "What says where cells and shapes are small", DENSITY_SOURCES, "UNIFORM"),
+    "density_name": _name("Density Name", "The vertex group, attribute or UV map; empty means the active one"),
+    "density_channel": _choice("Channel", "Which part of the color counts", CHANNELS, "LUMINANCE"),
+    "density_image": _name("Density Image", "The density is high where the image is light"),
+    "density_object": _name("Density Curve", "The density is high at this curve; empty means those of the collection"),
+    "density_collection": _name("Collection", "Its curves are used; empty means those parented to the object"),
+    "density_reach": _length("Reach", "How far from a curve the density falls; 0 means a tenth of the extent", 0.0),
+    "density_beyond": FloatProperty(
+        name="Beyond", description="The density far from curves, when it is 1 at them", default=0.1, min=0.0,
+        max=100.0, soft_max=1.0, options={"SKIP_SAVE"},
+    ),
+    "density_invert": _switch("Invert", "High where little is painted, and low where much is", False),
+    "density_contrast": FloatProperty(
+        name="Contrast",
+        description="Exponent of the density: 1 makes cells per area proportional to the paint, 0 ignores the paint",
+        default=1.0,
+        min=0.0,
+        max=8.0,
+        options={"SKIP_SAVE"},
+    ),
+}  # fmt: skip
+
 TESSELLATE: dict[str, Any] = {
     "count": IntProperty(
         name="Count", description="Number of cells", default=200, min=1, soft_max=20000, options={"SKIP_SAVE"}
@@ -195,18 +228,7 @@ TESSELLATE: dict[str, Any] = {
     "sites_source": _choice("Sites", "Where the cells' centres come from", SITES_SOURCES, "COUNT"),
     "sites_object": _name("Sites Object", "The object whose vertices become sites"),
     "relax_sites": _switch("Relax Sites", "Move the chosen sites to even the cells out", False),
-    "density_source": _choice("Density", "What says where cells are small", DENSITY_SOURCES, "UNIFORM"),
-    "density_name": _name("Density Name", "The vertex group or attribute; empty means the active one"),
-    "density_channel": _choice("Channel", "Which part of the color counts", CHANNELS, "LUMINANCE"),
-    "density_invert": _switch("Invert", "Small cells where little is painted", False),
-    "density_contrast": FloatProperty(
-        name="Contrast",
-        description="Exponent of the density: 1 makes cells per area proportional to the paint, 0 ignores the paint",
-        default=1.0,
-        min=0.0,
-        max=8.0,
-        options={"SKIP_SAVE"},
-    ),
+    **DENSITY,
     "quality": _quality(),
     "k": _detail(),
     "cache_on_disk": _on_disk(),

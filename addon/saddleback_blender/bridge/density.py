@@ -10,8 +10,11 @@ from .. import compat
 from ..core import density as density_maths
 from ..core.density import DensityError
 from ..core.errors import BadInputError
-from ..core.results import Reals
-from ..core.settings import TessellateSettings
+from ..core.image_colors import colors_at
+from ..core.requests import CurvatureDensity, Density, DistanceDensity, SpreadDensity
+from ..core.settings import DensitySettings
+from .curves_in import read_curves
+from .images_in import read_pixels
 
 # How each number type of attribute is read: the property's name and the exact type that Blender copies in one go.
 NUMBER_TYPES = {
@@ -22,19 +25,27 @@ NUMBER_TYPES = {
 }
 
 
-def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: TessellateSettings) -> Reals | None:
-    """(V,) density of all vertices of `mesh` (the object's own or evaluated one); None for uniform.
+def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DensitySettings) -> Density | None:
+    """(V,) density of all vertices of `mesh` (the object's own or evaluated one), or what it is made from.
 
-    Raises BadInputError naming the object and what is missing or wrong.
+    None for uniform. Raises BadInputError naming the object and what is missing or wrong.
     """
     if settings.density_source == "UNIFORM":
         return None
+    if settings.density_source == "CURVATURE":
+        return CurvatureDensity()
+    if settings.density_source == "DISTANCE":
+        return DistanceDensity(read_curves(source, settings.density_object, settings.density_collection))
+    if settings.density_source == "SPREAD":
+        return read_spread(source, mesh, settings.density_name)
     upper: float | None = 1.0
     if settings.density_source == "VERTEX_GROUP":
         values, label = read_vertex_group(source, mesh, settings.density_name)
     elif settings.density_source == "ATTRIBUTE":
         values, label = read_attribute(source, mesh, settings.density_name)
         upper = None
+    elif settings.density_source == "IMAGE":
+        values, label = read_image(source, mesh, settings)
     elif settings.density_source == "COLOR":
         values, label = read_color(source, mesh, settings.density_name, settings.density_channel)
     else:
@@ -47,6 +58,22 @@ def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: Tesse
 
 def read_vertex_group(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[NDArray[np.float64], str]:
     """(V,) weights, 0 for vertices outside the group, and its name for messages. About 0.7 s a million vertices."""
+    vertices, weights, label = _read_members(source, mesh, name)
+    values = np.zeros(len(mesh.vertices))
+    values[vertices] = weights
+    return values, label
+
+
+def read_spread(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> SpreadDensity:
+    """The vertices of a group with their weights, those of weight 0 among them."""
+    vertices, weights, label = _read_members(source, mesh, name)
+    if not vertices:
+        raise BadInputError(f"'{source.name}': no vertex is in {label}; paint a few places")
+    return SpreadDensity(np.array(vertices, np.int32), np.array(weights, np.float64), label)
+
+
+def _read_members(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[list[int], list[float], str]:
+    """The vertices of a group, their weights, and the group's name for messages."""
     group = source.vertex_groups.get(name) if name else source.vertex_groups.active
     if group is None:
         missing = f"no vertex group '{name}'" if name else "no vertex group"
@@ -59,9 +86,7 @@ def read_vertex_group(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str)
             if element.group == index:
                 vertices.append(number)
                 weights.append(element.weight)
-    values = np.zeros(len(mesh.vertices))
-    values[vertices] = weights
-    return values, f"vertex group '{group.name}'"
+    return vertices, weights, f"vertex group '{group.name}'"
 
 
 def read_attribute(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[NDArray[np.float64], str]:
@@ -105,6 +130,27 @@ def read_mask(source: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[NDArray[n
     if values is None:
         raise BadInputError(f"'{source.name}' has no sculpt mask; paint one in Sculpt Mode or choose another density")
     return values.astype(np.float64), "the sculpt mask"
+
+
+def read_image(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DensitySettings
+) -> tuple[NDArray[np.float64], str]:
+    """(V,) one channel of an image seen through a UV map, averaged to the vertices, and its name for messages."""
+    name = settings.density_image
+    image = bpy.data.images.get(name) if name else None
+    if image is None:
+        missing = f"there is no image '{name}'" if name else "there is no image chosen"
+        raise BadInputError(f"'{source.name}': {missing} for the density; choose one")
+    layer = mesh.uv_layers.get(settings.density_name) if settings.density_name else mesh.uv_layers.active
+    if layer is None:
+        missing = f"no UV map '{settings.density_name}'" if settings.density_name else "no UV map"
+        raise BadInputError(f"'{source.name}' has {missing} to see image '{name}' through; unwrap it (UV > Unwrap)")
+    places = np.empty(2 * len(mesh.loops), np.float32)
+    layer.data.foreach_get("uv", places)
+    pixels, is_encoded = read_pixels(source, image)
+    colors = colors_at(pixels, places.reshape(-1, 2).astype(np.float64), is_encoded)
+    values = density_maths.channel(colors, settings.density_channel)
+    return to_vertices(mesh, values, "CORNER"), f"image '{name}'"
 
 
 def to_vertices(mesh: bpy.types.Mesh, values: NDArray[np.generic], domain: str) -> NDArray[np.float64]:

@@ -84,6 +84,15 @@ def record(mesh: bpy.types.Mesh, names: Any) -> None:
         mesh[RECORD] = names
 
 
+def forget(mesh: bpy.types.Mesh, name: str) -> None:
+    """Takes a name off the mesh's list: the attribute is the artist's from now on."""
+    names = [other for other in recorded(mesh) if other != name]
+    if names:
+        mesh[RECORD] = "\n".join(names)
+    elif RECORD in mesh:
+        del mesh[RECORD]
+
+
 def recorded(mesh: bpy.types.Mesh) -> list[str]:
     """The attributes that we wrote, whether or not they still exist."""
     return str(mesh.get(RECORD, "")).split("\n") if mesh.get(RECORD) else []

@@ -12,6 +12,7 @@ from ..core.requests import Points
 from ..core.results import Reals
 from ..core.settings import Voronoi2dSettings
 from .density import NUMBER_TYPES
+from .images_in import read_pixels
 from .mesh_in import mesh_of
 from .sites import object_points, selected_vertices
 
@@ -85,19 +86,5 @@ def read_darkness(source: bpy.types.Object, settings: Voronoi2dSettings) -> Real
     if image is None:
         missing = f"there is no image '{name}'" if name else "there is no image chosen"
         raise BadInputError(f"'{source.name}': {missing} to place sites by; choose one")
-    width, height = image.size
-    if not (width and height):
-        raise BadInputError(f"'{source.name}': image '{name}' has no pixels; check that its file is there")
-    pixels = np.empty(width * height * image.channels, np.float32)
-    image.pixels.foreach_get(pixels)
-    is_encoded = not image.is_float and image.colorspace_settings.name == "sRGB"
-    return darkness.darkness(_rgba(pixels.reshape(height, width, -1)), is_encoded, settings.image_invert)
-
-
-def _rgba(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Four channels from one (grey), three or four."""
-    channels = pixels.shape[2]
-    if channels == 4:
-        return pixels
-    colors = pixels if channels == 3 else np.repeat(pixels[:, :, :1], 3, axis=2)
-    return np.concatenate([colors, np.ones((*pixels.shape[:2], 1), np.float32)], axis=2)
+    pixels, is_encoded = read_pixels(source, image)
+    return darkness.darkness(pixels, is_encoded, settings.image_invert)

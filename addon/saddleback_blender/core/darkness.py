@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from .image_colors import to_linear
 from .results import Reals
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # Rec. 709, of linear light
@@ -21,8 +22,7 @@ def darkness(pixels: NDArray[np.float32], is_encoded: bool, invert: bool) -> Rea
     """
     colors = shrunk(np.clip(pixels.astype(np.float64), 0.0, 1.0))
     if is_encoded:
-        rgb = colors[:, :, :3]
-        colors[:, :, :3] = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        colors[:, :, :3] = to_linear(colors[:, :, :3])
     light = colors[:, :, :3] @ LUMINANCE
     dark: Reals = np.clip(light if invert else 1.0 - light, 0.0, 1.0) * colors[:, :, 3]
     return dark

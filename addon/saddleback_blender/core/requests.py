@@ -119,12 +119,37 @@ class SingularPlace:
 
 
 @dataclass(frozen=True)
+class CurvatureDensity:
+    """High where the surface bends much."""
+
+
+@dataclass(frozen=True)
+class DistanceDensity:
+    """High at curves."""
+
+    curves: tuple[Polyline, ...]
+
+
+@dataclass(frozen=True)
+class SpreadDensity:
+    """Known at some vertices of the Blender mesh (k,), by values (k,), and smooth between."""
+
+    vertices: Indices
+    values: Reals
+    label: str  # of what it was painted in, for messages
+
+
+# (V,) values at the Blender mesh's vertices, or what the core makes them from.
+Density = Reals | CurvatureDensity | DistanceDensity | SpreadDensity
+
+
+@dataclass(frozen=True)
 class TessellateRequest:
-    """One tessellation. `density` (V,) and `sites` speak of the Blender mesh's vertices."""
+    """One tessellation. `density` and `sites` speak of the Blender mesh's vertices."""
 
     surface: Surface
     settings: TessellateSettings
-    density: Reals | None = None
+    density: Density | None = None
     sites: Points | None = None  # None: place `settings.count`
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only

@@ -12,6 +12,7 @@ from . import native
 from .boundary_distance import boundary_distance, find_boundary
 from .cache import Cache
 from .curve_points import curves_on_surface, points_on_surface
+from .density_runs import density_of
 from .duals import dual_of, figures_of
 from .errors import BadInputError
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
@@ -45,10 +46,10 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
             "ask for fewer, or subdivide the mesh"
         )
     sites = None if request.sites is None else compact_points(surface, request.sites, "site")
-    density = None if request.density is None else surface.gather(request.density)
     mesh = mesh_of_surface(surface, progress, cache)
     choice = GraphChoice(settings.quality, settings.k)
     graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
+    density = density_of(request.density, surface, settings, mesh, graph, progress)
     moves = sites is None or settings.relax_sites
     iterations = settings.iterations if moves else 0
     what = digest(
@@ -64,7 +65,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         return _solve(request, mesh, graph, sites, density, iterations, progress)
 
     solved = cache.get(("cells", *key), solve, _solved_bytes)
-    result = _result(request, solved)
+    result = _result(request, solved, density)
     if settings.make_cells or settings.write_edge_distance:
         with progress.stage(0.98, "cutting the cells out"):
             split = cache.get(("split", *key), solved.cells.split, _split_bytes)
@@ -202,12 +203,12 @@ def _solve(
     return _Solved(cells, positions, normals, energy, done, reason, normalised)
 
 
-def _result(request: TessellateRequest, solved: _Solved) -> CellsResult:
+def _result(request: TessellateRequest, solved: _Solved, density: Reals | None) -> CellsResult:
     cells, surface = solved.cells, request.surface
     return CellsResult(
         vertex_cell=surface.spread(cells.vertex_cell, -1),
         vertex_distance=surface.spread(cells.vertex_distance, np.inf),
-        vertex_density=request.density,
+        vertex_density=None if density is None else surface.spread(density, 0.0),
         sites_position=solved.site_positions,
         sites_normal=solved.site_normals,
         cell_area=np.asarray(cells.areas, np.float64),

@@ -6,7 +6,24 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class TessellateSettings:
+class DensitySettings:
+    """Where cells or shapes are small: the properties that several operators share."""
+
+    density_source: str = "UNIFORM"
+    # UNIFORM, VERTEX_GROUP, ATTRIBUTE, COLOR, MASK, IMAGE, CURVATURE, DISTANCE, SPREAD
+    density_name: str = ""  # vertex group, attribute or UV map; "" = the active one
+    density_channel: str = "LUMINANCE"  # LUMINANCE, R, G, B, A
+    density_image: str = ""
+    density_object: str = ""  # the curve of DISTANCE
+    density_collection: str = ""  # of curves; "" = those parented to the object
+    density_reach: float = 0.0  # of the curve; 0 = by the surface's extent
+    density_beyond: float = 0.1  # the density there, to 1 at the curve
+    density_invert: bool = False
+    density_contrast: float = 1.0
+
+
+@dataclass(frozen=True)
+class TessellateSettings(DensitySettings):
     """All properties of `saddleback.tessellate`; lengths are world units, objects are given by name ("" = none)."""
 
     count: int = 200
@@ -16,11 +33,6 @@ class TessellateSettings:
     sites_source: str = "COUNT"  # COUNT, SELECTED, OBJECT
     sites_object: str = ""
     relax_sites: bool = False  # move chosen sites too (those of COUNT always move)
-    density_source: str = "UNIFORM"  # UNIFORM, VERTEX_GROUP, ATTRIBUTE, COLOR, MASK
-    density_name: str = ""
-    density_channel: str = "LUMINANCE"  # LUMINANCE, R, G, B, A
-    density_invert: bool = False
-    density_contrast: float = 1.0
     quality: str = "NORMAL"  # FAST, NORMAL, FINE
     k: int = 0  # vertices in a neighbourhood of the graph; 0 = by quality
     cache_on_disk: bool = False

@@ -73,7 +73,7 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
             settings.cell_attribute: result.vertex_cell.astype(np.int32, copy=False),
             settings.distance_attribute: result.vertex_distance.astype(np.float32),
         }
-        if result.vertex_density is not None:
+        if result.vertex_density is not None and _writes_density(settings):
             values[settings.density_attribute] = result.vertex_density.astype(np.float32)
         if result.edge_distance is not None:
             values[settings.edge_distance_attribute] = result.edge_distance.astype(np.float32)
@@ -105,6 +105,13 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
         return lines_of(result.figures)
 
 
+def _writes_density(settings: TessellateSettings) -> bool:
+    """Whether the density used becomes an attribute; not where it was painted under that name."""
+    is_named = settings.density_source in ("VERTEX_GROUP", "ATTRIBUTE", "COLOR", "SPREAD")
+    is_source = is_named and settings.density_name == settings.density_attribute
+    return settings.density_source != "UNIFORM" and not is_source
+
+
 def _steps(result: CellsResult) -> str:
     if not result.iterations:
         return ""
@@ -130,13 +137,13 @@ def _lost(source: bpy.types.Object) -> str:
 def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:
     """Refuses names that lead nowhere or would overwrite what they are made from, before anything is computed."""
     names = {"cell_attribute": settings.cell_attribute, "distance_attribute": settings.distance_attribute}
-    if settings.density_source != "UNIFORM":
+    if _writes_density(settings):
         names["density_attribute"] = settings.density_attribute
-        if settings.density_source in ("ATTRIBUTE", "COLOR") and settings.density_name in names.values():
-            raise BadInputError(
-                f"'{source.name}': the result would overwrite its density '{settings.density_name}'; "
-                "choose another name for the attributes that are written"
-            )
+    if settings.density_source in ("ATTRIBUTE", "COLOR") and settings.density_name in names.values():
+        raise BadInputError(
+            f"'{source.name}': the result would overwrite its density '{settings.density_name}'; "
+            "choose another name for the attributes that are written"
+        )
     if settings.write_edge_distance:
         names["edge_distance_attribute"] = settings.edge_distance_attribute
     types = {name: "INT" if name == "cell_attribute" else "FLOAT" for name in names}

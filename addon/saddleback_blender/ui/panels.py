@@ -128,7 +128,9 @@ class SADDLEBACK_PT_density(SaddlebackSubPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         item = context.view_layer.objects.active
-        rows.draw_density(self.split_layout(context), item.saddleback.tessellate, item)
+        layout = self.split_layout(context)
+        rows.draw_density(layout, item.saddleback.tessellate, item)
+        rows.draw_paint_buttons(layout, "tessellate")
 
 
 class SaddlebackOutputPanel(SaddlebackSubPanel):
@@ -372,6 +374,7 @@ class SADDLEBACK_PT_direction_field(SaddlebackSubPanel, bpy.types.Panel):
         settings = context.view_layer.objects.active.saddleback.direction_field
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.direction_field", "FORCE_WIND")
+        rows.draw_pens(layout)
         rows.draw_field(layout.column(), settings)
         layout.prop(settings, "use_modifiers")
         layout.prop(settings, "direction_attribute")

@@ -11,6 +11,8 @@ DENSITY_LISTS = {
     "VERTEX_GROUP": ("vertex_groups", "GROUP_VERTEX"),
     "ATTRIBUTE": ("attributes", "SPREADSHEET"),
     "COLOR": ("color_attributes", "GROUP_VCOL"),
+    "IMAGE": ("uv_layers", "GROUP_UVS"),
+    "SPREAD": ("vertex_groups", "GROUP_VERTEX"),
 }
 
 
@@ -36,13 +38,38 @@ def draw_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Obje
     source = settings.density_source
     if source in DENSITY_LISTS:
         name, icon = DENSITY_LISTS[source]
-        owner = item if source == "VERTEX_GROUP" else item.data
-        layout.prop_search(settings, "density_name", owner, name, text="Name", icon=icon)
-    if source == "COLOR":
+        owner = item if name == "vertex_groups" else item.data
+        text = "UV Map" if source == "IMAGE" else "Name"
+        layout.prop_search(settings, "density_name", owner, name, text=text, icon=icon)
+    if source == "IMAGE":
+        draw_pointer(layout, settings, "density_image", "images")
+    elif source == "DISTANCE":
+        draw_object(layout, settings, "density_object")
+        if not settings.density_object:
+            draw_collection(layout, settings, "density_collection")
+        layout.prop(settings, "density_reach")
+        layout.prop(settings, "density_beyond")
+    if source in ("COLOR", "IMAGE"):
         layout.prop(settings, "density_channel")
     if source != "UNIFORM":
         layout.prop(settings, "density_invert")
         layout.prop(settings, "density_contrast")
+
+
+def draw_paint_buttons(layout: bpy.types.UILayout, settings_name: str) -> None:
+    """Buttons that begin to paint the density of one operator's settings."""
+    row = layout.row(align=True)
+    for paint, text, icon in (("WEIGHT", "Weights", "WPAINT_HLT"), ("COLOR", "Colors", "VPAINT_HLT")):
+        button = row.operator("saddleback.paint_density", text=f"Paint {text}", icon=icon)
+        button.paint, button.settings = paint, settings_name
+
+
+def draw_pens(layout: bpy.types.UILayout) -> None:
+    """Buttons that begin to draw what a field follows."""
+    row = layout.row(align=True)
+    row.operator("saddleback.draw_strokes", text="Draw", icon="GREASEPENCIL").pen = "ANNOTATE"
+    row.operator("saddleback.draw_strokes", text="Curves", icon="CURVE_BEZCURVE").pen = "CURVE"
+    row.operator("saddleback.add_singularity", text="Singularity", icon="EMPTY_AXIS")
 
 
 def draw_edges(layout: bpy.types.UILayout, settings: Any) -> None:
