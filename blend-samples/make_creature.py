@@ -17,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent / "creature"))
 import implicit
 import sculpt
 import shape
+import strokes
 
 GRID = 0.0165  # about 125,000 triangles
 PAINT = "Cell density"
@@ -101,6 +102,19 @@ def make_eyes(body: bpy.types.Object, collection: bpy.types.Collection) -> None:
         eye.parent = body
 
 
+def make_strokes(body: bpy.types.Object, collection: bpy.types.Collection) -> None:
+    """What an artist would draw to say which way scales lie: one curve object, parented to the body."""
+    curve = bpy.data.curves.new("Strokes", "CURVE")
+    curve.dimensions = "3D"
+    for points in strokes.strokes():
+        spline = curve.splines.new("POLY")
+        spline.points.add(len(points) - 1)
+        spline.points.foreach_set("co", np.column_stack([points, np.ones(len(points))]).astype(np.float32).ravel())
+    item = bpy.data.objects.new("Strokes", curve)
+    collection.objects.link(item)
+    item.parent = body
+
+
 def limb(knots: list[tuple[float, ...]], seed: int) -> tuple[np.ndarray, np.ndarray]:
     """A bent piece of wood with bark through knots (x, y, z, radius), its first end cut flat."""
     line = implicit.catmull_rom(np.array(knots), 40 * len(knots))
@@ -161,6 +175,7 @@ def main() -> None:
     body = make_body(collection)
     make_eyes(body, collection)
     make_branch(body, collection)
+    make_strokes(body, collection)
     bpy.context.view_layer.objects.active = body
     body.select_set(True)
     bpy.context.preferences.filepaths.save_version = 0

@@ -172,12 +172,13 @@ def test_points_in_order_become_curves_that_can_be_walked():
     mesh = sb.Mesh(*BALL)
     places = np.concatenate([equator(9), -equator(9)])  # far apart: with a leap between the halves
     points = sb.project(mesh, places)
-    pieces = joined(mesh, points.faces, points.barycentric, 0.5)
+    starts = np.arange(18) == 0
+    (pieces,) = joined(mesh, points.faces, points.barycentric, starts, 0.5)
     lengths = [sb.SurfaceCurve(mesh, piece).length for piece in pieces]
     np.testing.assert_allclose(lengths, [0.6 * np.pi] * 2, rtol=0.005)
     flat = sb.Mesh(*meshes.two_components())
     ends = sb.SurfacePoints(np.array([0, len(flat.triangles) - 1], np.int32), np.full((2, 3), 1 / 3))
-    assert joined(flat, ends.faces, ends.barycentric, 0.5) == []
+    assert joined(flat, ends.faces, ends.barycentric, np.array([True, False]), 0.5) == [[]]
 
 
 def test_even_points_keep_their_distance():

@@ -27,20 +27,19 @@ def strokes_of(request: DirectionFieldRequest, mesh: Any) -> tuple[list[Any], li
     reach = settings.stroke_reach or REACH * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
     step = float(mesh.mean_edge_length) / STEPS_PER_EDGE
     lines = [_smoothed(places_along(line, step), line.closed) for line in request.strokes]
-    ends = np.cumsum([0, *(len(line) for line in lines)])
-    places = np.concatenate(lines)
+    places, owner = np.concatenate(lines), np.repeat(np.arange(len(lines)), [len(line) for line in lines])
     points = sb.project(mesh, places)
-    faces, barycentric = points.faces, points.barycentric
     near = np.linalg.norm(points.positions(mesh) - places, axis=1) <= reach
+    # A line begins where a stroke does, and where one comes near the surface again.
+    starts = near & (np.diff(owner, prepend=-1).astype(bool) | ~np.append(False, near[:-1]))
+    walked = joined(mesh, points.faces[near], points.barycentric[near], starts[near], LEAP * step)
     strokes, labels = [], []
-    for line, begin, end in zip(request.strokes, ends[:-1], ends[1:], strict=True):
-        hard = line.hard or settings.hard_strokes
-        for first, last in _runs(near[begin:end]):
-            part = slice(begin + first, begin + last)
-            for piece in joined(mesh, faces[part], barycentric[part], LEAP * step):
-                curve = sb.SurfaceCurve(mesh, piece)
-                strokes.append(sb.Stroke(curve, hard=hard, weight=settings.stroke_weight))
-                labels.append(line.label)
+    for pieces, stroke in zip(walked, owner[starts].tolist(), strict=True):
+        line = request.strokes[stroke]
+        for piece in pieces:
+            hard = line.hard or settings.hard_strokes
+            strokes.append(sb.Stroke(sb.SurfaceCurve(mesh, piece), hard=hard, weight=settings.stroke_weight))
+            labels.append(line.label)
     if not strokes:
         raise BadInputError(
             f"'{request.surface.name}': no stroke comes within {reach:.3g} of the surface; draw on it "
@@ -60,9 +59,3 @@ def _smoothed(places: Reals, closed: bool) -> Reals:
             means[0], means[-1] = places[0], places[-1]
         places = means
     return np.concatenate([places, places[:1]]) if closed else places
-
-
-def _runs(kept: np.ndarray) -> list[tuple[int, int]]:
-    """Begin and end of each row of True."""
-    steps = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in steps.reshape(-1, 2)]

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import native
 from .normals import normals_at
@@ -53,29 +54,27 @@ def even_streamlines(mesh: Any, field: Any, settings: DirectionFieldSettings, pr
                 points.append(line.points[kept])
                 faces.append(line.surface.faces[kept])
                 barycentric.append(line.surface.barycentric[kept])
-                taken.add(_thinned(points[-1], STEP * spacing))
+                taken.add(points[-1][_thinned(points[-1], STEP * spacing)])
     return _result(mesh, points, faces, barycentric)
 
 
 def _kept(line: Any, taken: PointGrid, spacing: float) -> Any:
     """The numbers of the points about the start as far as they keep their distance; none where that is too short."""
     points = line.points
-    free = taken.is_free(points)
-    before = np.flatnonzero(~free[: line.start])
-    after = np.flatnonzero(~free[line.start :])
-    first = int(before[-1]) + 1 if len(before) else 0
-    end = line.start + int(after[0]) if len(after) else len(points)
-    kept = np.arange(first, end)
+    asked = np.union1d(_thinned(points, STEP * spacing), [line.start])
+    blocked = asked[~taken.is_free(points[asked])]
+    before, after = blocked[blocked < line.start], blocked[blocked >= line.start]
+    kept = np.arange(before[-1] + 1 if len(before) else 0, after[0] if len(after) else len(points))
     length = np.linalg.norm(np.diff(points[kept], axis=0), axis=1).sum() if len(kept) > 1 else 0.0
     return kept if length >= SHORTEST * spacing else kept[:0]
 
 
-def _thinned(points: Reals, step: float) -> Reals:
-    """Points of a line about a step apart."""
+def _thinned(points: Reals, step: float) -> NDArray[np.int64]:
+    """The numbers of points of a line about a step apart."""
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     kept = np.unique(np.searchsorted(along, np.arange(0.0, along[-1] + step, step)).clip(max=len(points) - 1))
-    thinned: Reals = points[kept]
-    return thinned
+    numbers: NDArray[np.int64] = kept
+    return numbers
 
 
 def _result(mesh: Any, points: list[Reals], faces: list[Any], barycentric: list[Reals]) -> PathsResult:

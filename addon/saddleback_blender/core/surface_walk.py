@@ -20,30 +20,38 @@ from .results import Indices, Reals
 MOST_HALVINGS = 8
 
 
-def joined(mesh: Any, faces: Indices, barycentric: Reals, longest: float) -> list[Any]:
-    """The library's SurfacePoints of each piece between leaps, of two points or more. O(n) for close points.
+def joined(mesh: Any, faces: Indices, barycentric: Reals, starts: NDArray[np.bool_], longest: float) -> list[list[Any]]:
+    """Of each line the library's SurfacePoints of its pieces between leaps, of two points or more.
 
-    `longest`: a step through space that is longer is a leap, a way out of a face and back that is longer was meant.
+    Lines follow each other in `faces` (n,) and `barycentric` (n, 3); `starts` (n,) is True where one begins. `longest`:
+    a step through space that is longer is a leap, a way out of a face and back that is longer was meant. O(n) for close
+    points.
     """
-    places = (barycentric[:, :, None] * mesh.vertices[mesh.triangles[faces]]).sum(axis=1)
-    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    slots = [0, *(np.flatnonzero(steps > longest) + 1).tolist(), len(faces)]
-    parts = [slice(begin, end) for begin, end in pairwise(slots)]
-    return [piece for part in parts for piece in _joined(mesh, faces[part], barycentric[part], longest)]
+    places = _places(mesh, faces, barycentric)
+    leaps = np.append(False, np.linalg.norm(np.diff(places, axis=0), axis=1) > longest)
+    line = np.cumsum(starts) - 1
+    faces, barycentric, begins, line = _halved(mesh, faces, barycentric, starts | leaps, line)
+    lines: list[list[Any]] = [[] for _ in range(int(starts.sum()))]
+    for begin, end in pairwise([*np.flatnonzero(begins).tolist(), len(faces)]):
+        lines[line[begin]] += _pieces(mesh, faces[begin:end], barycentric[begin:end], longest)
+    return lines
 
 
-def _joined(mesh: Any, faces: Indices, barycentric: Reals, longest: float) -> list[Any]:
-    """The same for points without leaps."""
+def _places(mesh: Any, faces: Indices, barycentric: Reals) -> Reals:
+    places: Reals = (barycentric[:, :, None] * mesh.vertices[mesh.triangles[faces]]).sum(axis=1)
+    return places
+
+
+def _pieces(mesh: Any, faces: Indices, barycentric: Reals, longest: float) -> list[Any]:
+    """One line without leaps, cut where neighbours have nothing in common after all."""
     triangles, vertices = mesh.triangles, mesh.vertices
-    faces, barycentric = _halved(mesh, faces, barycentric)
-    kept = _without_returns(faces, (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1), longest)
+    kept = _without_returns(faces, _places(mesh, faces, barycentric), longest)
     faces, barycentric = faces[kept], barycentric[kept]
     if len(faces) < 2:
         return []
     common = _common(triangles, faces)
     count = common.sum(axis=(1, 2))
-    cuts = np.flatnonzero(count == 0) + 1
-    slots = [0, *cuts.tolist(), len(faces)]
+    slots = [0, *(np.flatnonzero(count == 0) + 1).tolist(), len(faces)]
     between_faces, between = _between(vertices, triangles, faces, barycentric, common, count)
     needs = (count == 1) | (count == 2)
     sb, pieces = native.load(), []
@@ -54,7 +62,7 @@ def _joined(mesh: Any, faces: Indices, barycentric: Reals, longest: float) -> li
         is_put[1:] = order[1:] == order[:-1]
         piece_faces = np.where(is_put, between_faces[np.minimum(order, len(between) - 1)], faces[order])
         piece = np.where(is_put[:, None], between[np.minimum(order, len(between) - 1)], barycentric[order])
-        places = (piece[:, :, None] * vertices[triangles[piece_faces]]).sum(axis=1)
+        places = _places(mesh, piece_faces, piece)
         moves = np.append(True, (places[1:] != places[:-1]).any(axis=1))
         if moves.sum() >= 2:
             pieces.append(sb.SurfacePoints(piece_faces[moves].astype(np.int32), piece[moves]))
@@ -68,18 +76,21 @@ def _common(triangles: Indices, faces: Indices) -> NDArray[np.bool_]:
     return equal
 
 
-def _halved(mesh: Any, faces: Indices, barycentric: Reals) -> tuple[Indices, Reals]:
+def _halved(
+    mesh: Any, faces: Indices, barycentric: Reals, begins: NDArray[np.bool_], line: NDArray[np.int64]
+) -> tuple[Indices, Reals, NDArray[np.bool_], NDArray[np.int64]]:
     """The points with others between them, until neighbours' faces have an edge in common, where that can be."""
-    triangles, vertices = mesh.triangles, mesh.vertices
     for _ in range(MOST_HALVINGS):
-        far = np.flatnonzero(_common(triangles, faces).sum(axis=(1, 2)) < 2)
+        far = np.flatnonzero((_common(mesh.triangles, faces).sum(axis=(1, 2)) < 2) & ~begins[1:])
         if not len(far):
             break
-        places = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
+        places = _places(mesh, faces, barycentric)
         middles = native.load().project(mesh, 0.5 * (places[far] + places[far + 1]))
         faces = np.insert(faces, far + 1, middles.faces)
         barycentric = np.insert(barycentric, far + 1, middles.barycentric, axis=0)
-    return faces, barycentric
+        begins = np.insert(begins, far + 1, False)
+        line = np.insert(line, far + 1, line[far])
+    return faces, barycentric, begins, line
 
 
 def _without_returns(faces: Indices, places: Reals, longest: float) -> list[int]:
