@@ -19,6 +19,7 @@ void bind_read_mesh(py::module_& m);
 void bind_relax_2d(py::module_& m);
 void bind_repair(py::module_& m);
 void bind_safe_distance(py::module_& m);
+void bind_shape_maps(py::module_& m);
 void bind_shapes(py::module_& m);
 void bind_stepped_sweep(py::module_& m);
 void bind_surface(py::module_& m);
@@ -109,4 +110,5 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_shapes(m);
   bind_placements(m);
   bind_safe_distance(m);
+  bind_shape_maps(m);
 }

@@ -61,25 +61,30 @@ class ShapeMap {
   /// Lays out the corners of a face that have no coordinates yet beside those that have. At least two must have some.
   void complete(Index face);
 
+  /// Walks from `face`, whose corners must be laid out, to the face that a point of the plane lies in, laying out what
+  /// it comes to: O(faces on the way). Leaves `face` where it got stuck when the answer is a failure.
+  MapFailure find(const Vec2& point, Index& face);
+
+  /// The surface point at a point of the plane that lies in the face; rounding outside of it is removed.
+  SurfacePoint surface_point(const Vec2& point, Index face) const;
+
  private:
   enum class State : std::uint8_t {
-    laid_out,  ///< beside its neighbours, waits for something better
-    seen,      ///< through an edge
-    source,    ///< at or beside the centre or curve
+    waiting,  ///< for a better or nearer edge to be seen through
+    source,   ///< at or beside the centre or curve
     settled,
   };
   struct Node {
     Vec2 place;
-    double distance;  ///< from the source
+    double key;   ///< in the queue: the distance from the source, if it is seen
+    double miss;  ///< by how much the line of sight misses the edge
     std::uint32_t stamp;
     State state;
   };
   struct Entry {
-    double distance;
+    double key;
     Index vertex;
-    bool operator<(const Entry& other) const {
-      return distance != other.distance ? distance > other.distance : vertex > other.vertex;
-    }
+    bool operator<(const Entry& other) const { return key != other.key ? key > other.key : vertex > other.vertex; }
   };
 
   void begin();
@@ -87,10 +92,12 @@ class ShapeMap {
   void seed_star(const SurfacePoint& centre, Index vertex, double angle);
   void seed_segment(const CurveSegment& segment, double start);
   Node& reach(Index vertex);
-  void put(Index vertex, const Vec2& place, State state);
+  void put(Index vertex, const Vec2& place, double key, double miss, State state);
+  void put_source(Index vertex, const Vec2& place) { put(vertex, place, distance_of(place), 0, State::source); }
   void march(const PlaneBox& box);
   void settle(Index vertex, const PlaneBox& box);
   void look_through(Index from, Index to, Index apex);
+  bool is_in(const Vec2& point, Index face) const;
   double distance_of(const Vec2& place) const { return along_curve_ ? std::abs(place.y()) : place.norm(); }
 
   const Mesh* mesh_;

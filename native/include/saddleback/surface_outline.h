@@ -1,6 +1,7 @@
 #pragma once
 // Outlines of shapes on the surface: closed chains of straight pieces, each within one face.
 
+#include "saddleback/centre_line.h"
 #include "saddleback/placement.h"
 #include "saddleback/shape_map.h"
 
@@ -14,6 +15,7 @@ struct OutlinePiece {
   Index corner;  ///< of the given outline, counted through all loops: the piece is of the edge that begins there
   Index exit;    ///< half-edge of `face` that the piece ends on, k_none when it ends at a corner of the outline
   Vec2 begin, end;
+  Vec2 plane_end;  ///< where the end comes from in the shape's plane, in its own units
 };
 
 /// What one shape covers.
@@ -22,6 +24,7 @@ struct SurfaceOutline {
   std::vector<std::size_t> loop_begins;  ///< and at the end the number of pieces
   std::vector<Index> faces;              ///< that the shape touches, once each
   std::vector<Index> inside;             ///< vertices within the shape
+  std::vector<Vec2> inside_plane;        ///< where they come from in the shape's plane
   double smallest = 1, largest = 1;      ///< singular values of the map in these faces
 };
 
@@ -45,20 +48,30 @@ class OutlineMapper {
   MapFailure map(std::span<const Loop> loops, const Placement& placement, SurfaceOutline& outline,
                  const MapLimits& limits = {});
 
-  /// The same along a curve through the centre, at the arc length `origin` of which the shape's plane has its own; the
-  /// shape's x axis bends with the curve and placement.angle does not count.
-  MapFailure map_along(std::span<const Loop> loops, const Placement& placement, const SurfaceCurve& curve,
-                       double origin, SurfaceOutline& outline, const MapLimits& limits = {});
+  /// The same along a centre line of the placement's: the shape bends with the line, and placement.angle does not
+  /// count.
+  MapFailure map_along(std::span<const Loop> loops, const Placement& placement, const CentreLine& line,
+                       SurfaceOutline& outline, const MapLimits& limits = {});
+
+  /// Where a point of a shape's plane lies in the plane that was laid last.
+  Vec2 laid(const Vec2& point) const {
+    const Vec2 scaled(point.x() * scale_.x(), point.y() * scale_.y());
+    return {turn_.x() * scaled.x() - turn_.y() * scaled.y(), turn_.y() * scaled.x() + turn_.x() * scaled.y()};
+  }
+  /// The other way round.
+  Vec2 given(const Vec2& place) const {
+    const Vec2 turned(turn_.x() * place.x() + turn_.y() * place.y(), turn_.x() * place.y() - turn_.y() * place.x());
+    return {turned.x() / scale_.x(), turned.y() / scale_.y()};
+  }
 
   /// The plane as it was laid last, in mesh units and not mirrored.
   const ShapeMap& plane() const { return plane_; }
   ShapeMap& plane() { return plane_; }
 
  private:
-  PlaneBox lay_corners(std::span<const Loop> loops, const Placement& placement);
+  void lay_corners(std::span<const Loop> loops, const Placement& placement, double turn);
   MapFailure cut(SurfaceOutline& outline, const MapLimits& limits);
   void cut_loop(std::size_t begin, std::size_t end);
-  void find_face(const Vec2& corner);
   void walk(const Vec2& a, const Vec2& b, Index corner);
   Index exit_of(const Vec2& a, const Vec2& b) const;
   double cross_weight(Index h, const Vec2& a, const Vec2& b) const;
@@ -74,6 +87,8 @@ class OutlineMapper {
 
   const Mesh* mesh_;
   ShapeMap plane_;
+  Vec2 scale_ = Vec2::Ones();  ///< mesh units for one of the shape's, along its axes: negative for mirrored ones
+  Vec2 turn_ = Vec2::UnitX();  ///< the shape's x axis
   std::vector<Vec2> corners_;
   std::vector<Index> given_;  ///< per corner: number of the given edge that begins there
   std::vector<std::size_t> begins_;

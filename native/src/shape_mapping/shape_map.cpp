@@ -9,10 +9,14 @@
 
 #include "saddleback/trace.h"
 
+#include "shape_mapping/sides.h"
 #include "shape_mapping/sight.h"
 
 namespace saddleback {
 namespace {
+
+/// A walk over more faces than this is lost.
+constexpr Index k_most_steps = 1'000'000;
 
 Vec2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
@@ -25,7 +29,7 @@ bool is_beyond(const PlaneBox& box, const Vec2& a, const Vec2& b) {
 }  // namespace
 
 ShapeMap::ShapeMap(const Mesh& mesh)
-    : mesh_(&mesh), nodes_(static_cast<std::size_t>(mesh.vertex_count()), {Vec2::Zero(), 0, 0, State::laid_out}) {}
+    : mesh_(&mesh), nodes_(static_cast<std::size_t>(mesh.vertex_count()), {Vec2::Zero(), 0, 0, 0, State::waiting}) {}
 
 void ShapeMap::begin() {
   if (++stamp_ == 0) {  // after 2^32 maps the old stamps would come again
@@ -53,23 +57,22 @@ void ShapeMap::seed_face(const SurfacePoint& centre, double angle) {
   const Vec2 place = chart.to_plane(centre.barycentric), x = unit(angle);
   for (int i = 0; i < 3; ++i) {
     const Vec2 arm = chart.corner[i] - place;
-    put(mesh_->from(3 * centre.face + i), {x.dot(arm), cross(x, arm)}, State::source);
+    put_source(mesh_->from(3 * centre.face + i), {x.dot(arm), cross(x, arm)});
   }
 }
 
 void ShapeMap::seed_star(const SurfacePoint& centre, Index vertex, double angle) {
   const double start = angle_about(*mesh_, centre, angle);
   const double scale = mesh_->is_boundary(vertex) ? 1 : 2 * std::numbers::pi / mesh_->total_angle(vertex);
-  put(vertex, Vec2::Zero(), State::source);
+  put_source(vertex, Vec2::Zero());
   const Index first = mesh_->first_halfedge(vertex);
   Index h = first;
   double fan = 0;
   do {
-    put(mesh_->to(h), mesh_->length(h) * unit((fan - start) * scale), State::source);
+    put_source(mesh_->to(h), mesh_->length(h) * unit((fan - start) * scale));
     fan += mesh_->corner_angle(h);
     const Index following = mesh_->rotate(h);
-    if (following == k_none)
-      put(mesh_->apex(h), mesh_->length(Mesh::prev(h)) * unit((fan - start) * scale), State::source);
+    if (following == k_none) put_source(mesh_->apex(h), mesh_->length(Mesh::prev(h)) * unit((fan - start) * scale));
     h = following;
   } while (h != k_none && h != first);
 }
@@ -85,15 +88,15 @@ void ShapeMap::along_curve(const SurfaceCurve& curve, double origin, const Plane
   }
   for (const Index vertex : reached_) {
     Node& node = nodes_[vertex];
-    node.distance = distance_of(node.place);
-    queue_.push_back({node.distance, vertex});
+    node.key = distance_of(node.place);
+    queue_.push_back({node.key, vertex});
   }
   std::make_heap(queue_.begin(), queue_.end());
   march(box);
 }
 
 /// Corners of the faces that the curve crosses take their foot on the nearest segment, run on straight where it falls
-/// beside: by how much is kept as the distance until all segments have been seen.
+/// beside: by how much is kept as the key until all segments have been seen.
 void ShapeMap::seed_segment(const CurveSegment& segment, double start) {
   const FaceChart chart(*mesh_, segment.face);
   const Vec2 begin = chart.to_plane(segment.begin);
@@ -104,7 +107,7 @@ void ShapeMap::seed_segment(const CurveSegment& segment, double start) {
     const Index vertex = mesh_->from(3 * segment.face + i);
     const bool is_new = !has(vertex);
     Node& node = reach(vertex);
-    if (is_new || miss < node.distance) node = {{start + foot, cross(along, arm)}, miss, stamp_, State::source};
+    if (is_new || miss < node.key) node = {{start + foot, cross(along, arm)}, miss, 0, stamp_, State::source};
   }
 }
 
@@ -117,10 +120,9 @@ ShapeMap::Node& ShapeMap::reach(Index vertex) {
   return node;
 }
 
-void ShapeMap::put(Index vertex, const Vec2& place, State state) {
-  const double distance = distance_of(place);
-  reach(vertex) = {place, distance, stamp_, state};
-  queue_.push_back({distance, vertex});
+void ShapeMap::put(Index vertex, const Vec2& place, double key, double miss, State state) {
+  reach(vertex) = {place, key, miss, stamp_, state};
+  queue_.push_back({key, vertex});
   std::push_heap(queue_.begin(), queue_.end());
 }
 
@@ -130,7 +132,7 @@ void ShapeMap::march(const PlaneBox& box) {
     std::pop_heap(queue_.begin(), queue_.end());
     queue_.pop_back();
     const Node& node = nodes_[entry.vertex];
-    if (node.state != State::settled && node.distance == entry.distance) settle(entry.vertex, box);
+    if (node.state != State::settled && node.key == entry.key) settle(entry.vertex, box);
   }
 }
 
@@ -156,13 +158,13 @@ void ShapeMap::look_through(Index from, Index to, Index apex) {
   const UnfoldedTriangle triangle(mesh_->position(from), mesh_->position(to), mesh_->position(apex));
   const Vec2 &a = nodes_[from].place, &b = nodes_[to].place;
   const Sight sight = along_curve_ ? sight_of_line(triangle, a, b) : sight_of_point(triangle, a, b);
+  // What is not seen well waits for an edge that it may be seen through after all.
+  const double key = distance_of(sight.place) + sight.miss * triangle.edge;
   if (has(apex)) {
     const Node& node = nodes_[apex];
-    const bool is_first = sight.is_seen && node.state == State::laid_out;
-    const bool is_rival = sight.is_seen == (node.state == State::seen);
-    if (!is_first && !(is_rival && distance_of(sight.place) < node.distance)) return;
+    if (sight.miss > node.miss || (sight.miss == node.miss && key >= node.key)) return;
   }
-  put(apex, sight.place, sight.is_seen ? State::seen : State::laid_out);
+  put(apex, sight.place, key, sight.miss, State::waiting);
 }
 
 void ShapeMap::complete(Index face) {
@@ -173,8 +175,43 @@ void ShapeMap::complete(Index face) {
     const UnfoldedTriangle triangle(mesh_->position(from), mesh_->position(to), mesh_->position(apex));
     const Vec2 &a = nodes_[from].place, &b = nodes_[to].place;
     const Vec2 place = (along_curve_ ? sight_of_line(triangle, a, b) : sight_of_point(triangle, a, b)).place;
-    reach(apex) = {place, distance_of(place), stamp_, State::laid_out};
+    reach(apex) = {place, 0, 0, stamp_, State::waiting};
   }
+}
+
+bool ShapeMap::is_in(const Vec2& point, Index face) const {
+  for (Index h = 3 * face; h < 3 * face + 3; ++h)
+    if (!is_corner_left(coordinates(mesh_->from(h)), coordinates(mesh_->to(h)), point)) return false;
+  return true;
+}
+
+/// Crosses any edge that the point is beyond, beginning with a different one each time: no round is walked for ever.
+MapFailure ShapeMap::find(const Vec2& point, Index& face) {
+  MapFailure obstacle = MapFailure::fold;
+  for (Index step = 0; step < k_most_steps; ++step) {
+    if (is_in(point, face)) return MapFailure::none;
+    Index onward = k_none;
+    for (Index i = 0; i < 3 && onward == k_none; ++i) {
+      const Index h = 3 * face + (i + step) % 3;
+      if (is_corner_left(coordinates(mesh_->from(h)), coordinates(mesh_->to(h)), point)) continue;
+      onward = mesh_->twin(h);
+      if (onward == k_none) obstacle = MapFailure::boundary;
+    }
+    if (onward == k_none) return obstacle;
+    face = Mesh::face_of(onward);
+    complete(face);
+    const Index h = 3 * face;
+    if (!is_upright(coordinates(mesh_->from(h)), coordinates(mesh_->to(h)), coordinates(mesh_->apex(h)))) break;
+  }
+  return MapFailure::fold;
+}
+
+SurfacePoint ShapeMap::surface_point(const Vec2& point, Index face) const {
+  const Vec2& origin = coordinates(mesh_->from(3 * face));
+  const Vec2 u = coordinates(mesh_->to(3 * face)) - origin, v = coordinates(mesh_->apex(3 * face)) - origin;
+  const Vec2 arm = point - origin;
+  const double area = cross(u, v), first = cross(arm, v) / area, second = cross(u, arm) / area;
+  return {face, normalised_barycentric({1 - first - second, first, second})};
 }
 
 }  // namespace saddleback

@@ -24,49 +24,60 @@ inline Vec2 beside(const UnfoldedTriangle& triangle, const Vec2& from, const Vec
   return from + triangle.apex.x() * along + triangle.apex.y() * Vec2(-along.y(), along.x());
 }
 
+/// What the apex sees of the source.
 struct Sight {
   Vec2 place;
-  bool is_seen;
+  /// By how much the line of sight misses the edge, in lengths of the edge: 0 when it passes through.
+  double miss;
 };
 
-/// By how much a line of sight may miss the edge, relative to it: rounding where it passes an end.
+/// Misses up to this are rounding.
 inline constexpr double k_sight = 1e-9;
+/// The apex counts as out of sight from here on, and is laid beside the edge.
+inline constexpr double k_most_miss = 0.5;
+
+/// Where along an edge of length 1 a line crosses: how far beside it.
+inline double miss_of(double hit) {
+  const double miss = hit < 0 ? -hit : hit > 1 ? hit - 1 : 0;
+  return miss <= k_sight ? 0 : miss;
+}
 
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// The source is the origin of the plane: it is put where its distances from both ends say, and the apex in the same
-/// place between the directions of the two ends as seen from there.
+/// place between the directions of the two ends as seen from there, or beside them.
 inline Sight sight_of_point(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) {
   const double d2_from = from.squaredNorm(), d2_to = to.squaredNorm(), e = triangle.edge;
   const double x = (d2_from - d2_to + e * e) / (2 * e), y2 = d2_from - x * x;
   const Vec2 aside = beside(triangle, from, to);
-  if (!(y2 >= -k_sight * d2_from)) return {aside, false};
+  const bool is_behind = cross(from, to) <= 0;  // the edge lies between the source and the apex
+  if (!is_behind || !(y2 >= -k_sight * d2_from)) return {aside, k_most_miss};
   const double y = std::sqrt(std::max(0.0, y2));
   const Vec2 to_apex(triangle.apex.x() - x, triangle.apex.y() + y);
-  const double hit = x + to_apex.x() * (y / to_apex.y());
-  if (hit < -k_sight * e || hit > (1 + k_sight) * e) return {aside, false};
+  const double miss = miss_of((x + to_apex.x() * (y / to_apex.y())) / e);
+  if (!(miss < k_most_miss)) return {aside, k_most_miss};
   // The ends and the apex as seen from the source. Where the edge is seen under a wide angle the mean of directions
   // would not be that of the apex; there the surface is nearly flat, or the mesh far too coarse for the shape.
   const Vec2 to_from(-x, y), to_to(e - x, y);
   const bool is_wide = to_from.dot(to_to) < 0.5 * std::sqrt(d2_from * d2_to);
   const Vec2 direction = is_wide ? aside : Vec2(cross(to_to, to_apex) * from + cross(to_apex, to_from) * to);
   const double length = direction.norm();
-  if (!(length > 0)) return {aside, false};
-  return {direction * (to_apex.norm() / length), true};
+  if (!(length > 0)) return {aside, k_most_miss};
+  return {direction * (to_apex.norm() / length), miss};
 }
 
 /// The source is the x axis: distance grows evenly across the triangle, and the foot stays where it is along the way.
 inline Sight sight_of_line(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) {
   const double side = from.y() + to.y() < 0 ? -1 : 1, e = triangle.edge;
-  const Vec2 aside = beside(triangle, from, to);
   const double d_from = side * from.y(), d_to = side * to.y(), slope = (d_to - d_from) / e;
-  if (d_from < 0 || d_to < 0 || !(std::abs(slope) < 1)) return {aside, false};
+  const bool is_behind = side * (to.x() - from.x()) >= 0;
+  if (!is_behind || d_from < 0 || d_to < 0 || !(std::abs(slope) < 1)) return {beside(triangle, from, to), k_most_miss};
   const double rise = std::sqrt(1 - slope * slope);
-  const double hit = triangle.apex.x() - slope * (triangle.apex.y() / rise);
-  if (hit < -k_sight * e || hit > (1 + k_sight) * e) return {aside, false};
-  const double share = hit / e;
+  const double share = (triangle.apex.x() - slope * (triangle.apex.y() / rise)) / e;
+  const double miss = miss_of(share);
+  if (!(miss < k_most_miss)) return {beside(triangle, from, to), k_most_miss};
   const double distance = d_from + slope * triangle.apex.x() + rise * triangle.apex.y();
-  return {Vec2((1 - share) * from.x() + share * to.x(), side * distance), true};
+  return {Vec2((1 - share) * from.x() + share * to.x(), side * distance), miss};
 }
 
 }  // namespace saddleback

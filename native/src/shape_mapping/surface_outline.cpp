@@ -27,17 +27,16 @@ struct Failed {
 /// A walk over more faces than this is lost: outlines are at most as long as a few rounds of their box.
 constexpr std::size_t k_most_pieces = 1'000'000;
 
-/// Squares of the singular values of the map from the plane to a face.
+/// The singular values of the map from the plane to a face.
 struct Stretch {
   double smallest, largest;
 };
 Stretch stretch_of(const Vec3& e1, const Vec3& e2, const Vec2& u1, const Vec2& u2) {
-  const double area = cross(u1, u2), g11 = e1.squaredNorm(), g12 = e1.dot(e2), g22 = e2.squaredNorm();
-  const double scale = 1 / (area * area);
-  const double half = 0.5 * scale * (g11 * u2.squaredNorm() - 2 * g12 * u1.dot(u2) + g22 * u1.squaredNorm());
-  const double product = scale * e1.cross(e2).squaredNorm();
-  const double root = std::sqrt(std::max(0.0, half * half - product));
-  return {product / (half + root), half + root};
+  const double scale = 1 / cross(u1, u2);
+  const Vec3 x = scale * (u2.y() * e1 - u1.y() * e2), y = scale * (u1.x() * e2 - u2.x() * e1);
+  const double xx = x.squaredNorm(), yy = y.squaredNorm();
+  const double largest = std::sqrt(0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), x.dot(y)));
+  return {x.cross(y).norm() / largest, largest};
 }
 
 }  // namespace
@@ -50,18 +49,22 @@ OutlineMapper::OutlineMapper(const Mesh& mesh)
 
 MapFailure OutlineMapper::map(std::span<const Loop> loops, const Placement& placement, SurfaceOutline& outline,
                               const MapLimits& limits) {
-  plane_.about_point(placement.centre, placement.angle, lay_corners(loops, placement));
+  lay_corners(loops, placement, 0);
+  plane_.about_point(placement.centre, placement.angle, box_);
   return cut(outline, limits);
 }
 
-MapFailure OutlineMapper::map_along(std::span<const Loop> loops, const Placement& placement, const SurfaceCurve& curve,
-                                    double origin, SurfaceOutline& outline, const MapLimits& limits) {
-  plane_.along_curve(curve, origin, lay_corners(loops, placement));
+MapFailure OutlineMapper::map_along(std::span<const Loop> loops, const Placement& placement, const CentreLine& line,
+                                    SurfaceOutline& outline, const MapLimits& limits) {
+  lay_corners(loops, placement, line.turn);
+  plane_.along_curve(line.curve, line.origin, box_);
   return cut(outline, limits);
 }
 
-/// Scales and mirrors; loops of a mirrored shape run the other way round, so that it stays on their left.
-PlaneBox OutlineMapper::lay_corners(std::span<const Loop> loops, const Placement& placement) {
+/// Loops of a mirrored shape run the other way round, so that it stays on their left.
+void OutlineMapper::lay_corners(std::span<const Loop> loops, const Placement& placement, double turn) {
+  scale_ = placement.scale * Vec2(1, placement.mirrored ? -1 : 1);
+  turn_ = turn == 0 ? Vec2(1, 0) : Vec2(std::cos(turn), std::sin(turn));
   corners_.clear();
   given_.clear();
   begins_.clear();
@@ -72,8 +75,7 @@ PlaneBox OutlineMapper::lay_corners(std::span<const Loop> loops, const Placement
     const auto count = static_cast<Index>(loop.size());
     for (Index i = 0; i < count; ++i) {
       const Index source = placement.mirrored ? count - 1 - i : i;
-      Vec2 corner = placement.scale * loop[source];
-      if (placement.mirrored) corner.y() = -corner.y();
+      const Vec2 corner = laid(loop[source]);
       corners_.push_back(corner);
       given_.push_back(first + (placement.mirrored ? (source + count - 1) % count : i));
       box_.low = box_.low.cwiseMin(corner);
@@ -82,7 +84,6 @@ PlaneBox OutlineMapper::lay_corners(std::span<const Loop> loops, const Placement
     first += count;
   }
   begins_.push_back(corners_.size());
-  return box_;
 }
 
 MapFailure OutlineMapper::cut(SurfaceOutline& outline, const MapLimits& limits) {
@@ -97,6 +98,7 @@ MapFailure OutlineMapper::cut(SurfaceOutline& outline, const MapLimits& limits) 
   outline.loop_begins.clear();
   outline.faces.clear();
   outline.inside.clear();
+  outline.inside_plane.clear();
   outline.smallest = std::numeric_limits<double>::infinity();
   outline.largest = 0;
   crossed_.clear();
@@ -115,33 +117,13 @@ MapFailure OutlineMapper::cut(SurfaceOutline& outline, const MapLimits& limits) 
 
 void OutlineMapper::cut_loop(std::size_t begin, std::size_t end) {
   outline_->loop_begins.push_back(outline_->pieces.size());
-  find_face(corners_[begin]);
+  if (const MapFailure failure = plane_.find(corners_[begin], face_); failure != MapFailure::none)
+    throw Failed{failure};
   enter(face_);
   const Index first_face = face_;
   weights_ = weights_in_face(corners_[begin]);
   for (std::size_t i = begin; i < end; ++i) walk(corners_[i], corners_[i + 1 < end ? i + 1 : begin], given_[i]);
   if (face_ != first_face) throw Failed{MapFailure::fold};
-}
-
-/// Crosses any edge that the corner is beyond, a different one first each time: that ends in every flat layout.
-void OutlineMapper::find_face(const Vec2& corner) {
-  MapFailure obstacle = MapFailure::fold;
-  for (std::size_t step = 0; step < k_most_pieces; ++step) {
-    if (is_in_face(corner)) return;
-    Index onward = k_none;
-    for (std::size_t i = 0; i < 3 && onward == k_none; ++i) {
-      const Index h = 3 * face_ + static_cast<Index>((i + step) % 3);
-      if (is_corner_left(place(mesh_->from(h)), place(mesh_->to(h)), corner)) continue;
-      onward = mesh_->twin(h);
-      if (onward == k_none) obstacle = MapFailure::boundary;
-    }
-    if (onward == k_none) break;
-    face_ = Mesh::face_of(onward);
-    plane_.complete(face_);
-    const Index h = 3 * face_;
-    if (!is_upright(place(mesh_->from(h)), place(mesh_->to(h)), place(mesh_->apex(h)))) break;
-  }
-  throw Failed{obstacle};
 }
 
 bool OutlineMapper::is_in_face(const Vec2& corner) const {
@@ -174,7 +156,8 @@ void OutlineMapper::walk(const Vec2& a, const Vec2& b, Index corner) {
     const Index twin = mesh_->twin(h);
     const double weight = edge_weight(cross_weight(h, a, b));
     const Vec2 exit = on_edge(h % 3, weight);
-    outline_->pieces.push_back({face_, corner, h, weights_, exit});
+    const Vec2 at = (1 - weight) * place(mesh_->from(h)) + weight * place(mesh_->to(h));
+    outline_->pieces.push_back({face_, corner, h, weights_, exit, given(at)});
     if (twin == k_none) throw Failed{MapFailure::boundary};
     if (outline_->pieces.size() > k_most_pieces) throw Failed{MapFailure::fold};
     crossed_.push_back(std::min(h, twin));
@@ -185,7 +168,7 @@ void OutlineMapper::walk(const Vec2& a, const Vec2& b, Index corner) {
     if (is_corner_left(place(mesh_->from(h)), place(mesh_->to(h)), b)) h = k_none;
   }
   const Vec2 end = weights_in_face(b);
-  outline_->pieces.push_back({face_, corner, k_none, weights_, end});
+  outline_->pieces.push_back({face_, corner, k_none, weights_, end, given(b)});
   weights_ = end;
 }
 
@@ -207,10 +190,10 @@ void OutlineMapper::enter(Index face) {
   if (!is_upright(a, b, c)) throw Failed{MapFailure::fold};
   const Vec3& origin = mesh_->position(i);
   const Stretch stretch = stretch_of(mesh_->position(j) - origin, mesh_->position(k) - origin, b - a, c - a);
-  const double smallest = std::sqrt(stretch.smallest), largest = std::sqrt(stretch.largest);
-  if (!(smallest >= limits_.smallest && largest <= limits_.largest)) throw Failed{MapFailure::stretched};
-  outline_->smallest = std::min(outline_->smallest, smallest);
-  outline_->largest = std::max(outline_->largest, largest);
+  if (!(stretch.smallest >= limits_.smallest && stretch.largest <= limits_.largest))
+    throw Failed{MapFailure::stretched};
+  outline_->smallest = std::min(outline_->smallest, stretch.smallest);
+  outline_->largest = std::max(outline_->largest, stretch.largest);
   outline_->faces.push_back(face);
 }
 
@@ -223,6 +206,7 @@ void OutlineMapper::find_inside() {
     if (mesh_->is_boundary(vertex)) throw Failed{MapFailure::boundary};
     inside_stamps_[vertex] = stamp_;
     outline_->inside.push_back(vertex);
+    outline_->inside_plane.push_back(given(at));
     complete_star(vertex);
   }
 }

@@ -1,0 +1,48 @@
+#include "saddleback/map_shapes.h"
+
+#include "saddleback/error.h"
+
+#include "shape_mapping/mapper_team.h"
+#include "support/parallel.h"
+
+namespace saddleback {
+
+void check_mapping(const Mesh& mesh, std::span<const Shape> shapes, std::span<const Placement> placements,
+                   const MapShapesOptions& options) {
+  check_placements(mesh, shapes.size(), placements);
+  if (options.field && &options.field->mesh() != &mesh) throw InputError("field belongs to another mesh");
+  const MapLimits& limits = options.limits;
+  if (!(limits.smallest > 0 && limits.smallest <= 1 && limits.largest >= 1))
+    throw InputError(message("limits are ", limits.smallest, " and ", limits.largest,
+                             ", but must be positive, the first at most 1 and the second at least 1"));
+}
+
+MapFailure map_shape(OutlineMapper& mapper, const Shape& shape, const Placement& placement, const DirectionField* field,
+                     SurfaceOutline& outline, const MapLimits& limits) {
+  if (field) {
+    const std::optional<CentreLine> line = centre_line(*field, placement, box_of(shape.loops(), placement));
+    if (line) return mapper.map_along(shape.loops(), placement, *line, outline, limits);
+  }
+  return mapper.map(shape.loops(), placement, outline, limits);
+}
+
+std::vector<MappedShape> map_shapes(const Mesh& mesh, std::span<const Shape> shapes,
+                                    std::span<const Placement> placements, const MapShapesOptions& options) {
+  const JobStage stage(options.job, "Laying shapes on the surface");
+  check_mapping(mesh, shapes, placements, options);
+  const auto count = static_cast<Index>(placements.size());
+  std::vector<MappedShape> result(placements.size());
+  std::atomic<Index> done{0};
+  MapperTeam team(mesh, options.threads);
+  parallel_for(count, team.threads(), 4, [&](Index i, int thread) {
+    MappedShape& mapped = result[i];
+    const Placement& placement = placements[i];
+    mapped.failure =
+        map_shape(team.of(thread), shapes[placement.shape], placement, options.field, mapped.outline, options.limits);
+    if (mapped.failure != MapFailure::none) mapped.outline = {};
+    stage.update(static_cast<double>(++done) / count);
+  });
+  return result;
+}
+
+}  // namespace saddleback
