@@ -398,7 +398,7 @@ void bind_shape_maps(py::module_& m) {
       .def("patch", &patch_of, py::arg("i"), "CutSurface of the piece of surface that a placement's shape covers.")
       .def(
           "patches", [](const MappedShapes& self) { return cut_surface(self, CutPart::shapes); },
-          "CutSurface of all pieces. Raises InputError where shapes overlap.")
+          "CutSurface of all pieces, each by itself.")
       .def(
           "cut", [](const MappedShapes& self) { return cut_surface(self, CutPart::everything); },
           "CutSurface of the whole surface, its own vertices first. Raises InputError where shapes overlap.")

@@ -101,14 +101,16 @@ def test_centres_at_vertices_and_on_edges_of_a_regular_grid() -> None:
 @pytest.mark.parametrize("name", ["icosphere", "torus", "double_torus"])
 def test_patches_are_what_the_shapes_are(name: str) -> None:
     """Their topology is the shape's, their area nearly so, and they are manifold: which a fold would not leave."""
-    mesh = sb.Mesh(*{"icosphere": meshes.icosphere(4), "torus": meshes.torus(60, 24), "double_torus": meshes.double_torus()}[name])
+    made = {"icosphere": meshes.icosphere(4), "torus": meshes.torus(60, 24), "double_torus": meshes.double_torus()}
+    mesh = sb.Mesh(*made[name])
     mapped = sb.map_shapes(mesh, SHAPES, scattered(mesh, 50, 0.04 * mesh.area**0.5))
     assert len(laid(mapped)) > (20 if name == "double_torus" else 48)
     for i in laid(mapped):
         patch = mapped.patch(i)
         piece = sb.Mesh(patch.vertices, patch.triangles)
         kind = int(mapped.placements.shape[i])
-        assert piece.genus == 0 and len(piece.boundary_loops) == LOOPS[kind] and piece.components.max() + 1 == PARTS[kind]
+        assert piece.genus == 0 and len(piece.boundary_loops) == LOOPS[kind]
+        assert piece.components.max() + 1 == PARTS[kind]
         smallest, largest = mapped.stretch[i]
         assert smallest**2 - 1e-9 <= piece.area / shape_area(mapped, i) <= largest**2 + 1e-9
         assert np.allclose(patch.surface.positions(mesh), patch.vertices)
@@ -189,8 +191,9 @@ def apart(mesh: sb.Mesh, count: int, scale: float) -> sb.Placements:
             kept.append(i)
     centre = sb.SurfacePoints(points.faces[kept], points.barycentric[kept])
     rng = np.random.default_rng(0)
-    n = len(kept)
-    return sb.Placements(np.arange(n) % len(SHAPES), centre, rng.uniform(0, 6, n), np.full(n, scale), np.arange(n) % 2 == 0)
+    order = np.arange(len(kept))
+    turn, size = rng.uniform(0, 6, len(kept)), np.full(len(kept), scale)
+    return sb.Placements(order % len(SHAPES), centre, turn, size, order % 2 == 0)
 
 
 @pytest.mark.parametrize("level", [1, 3])
@@ -240,7 +243,8 @@ def test_what_vertices_know() -> None:
         corners = np.concatenate([in_plane(mesh, loop, placements, i) for loop in shape.loops])
         nearest = np.linalg.norm(mesh.vertices[mine, None, :2] - corners, axis=2).min(axis=1)
         assert (np.abs(wide.distance[mine]) <= nearest + 1e-9).all()
-    assert np.isinf(wide.distance[wide.placement < 0]).all() and (np.abs(wide.distance[wide.placement >= 0]) < 0.09).all()
+    assert np.isinf(wide.distance[wide.placement < 0]).all()
+    assert (np.abs(wide.distance[wide.placement >= 0]) < 0.09).all()
     covered = sum(shape_area(mapped, i) for i in laid(mapped))
     assert (inside.placement >= 0).mean() == pytest.approx(covered, rel=0.1)
 

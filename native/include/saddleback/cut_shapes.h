@@ -21,8 +21,8 @@ enum class CutPart : std::uint8_t {
 };
 
 /// Cuts the faces that outlines cross into triangles with the pieces of the outlines as edges, as near to Delaunay's as
-/// those let them be. The shapes are those that could be mapped. \throw InputError naming two shapes that overlap.
-/// O(F + m log m) for m pieces.
+/// those let them be. The shapes are those that could be mapped. \throw InputError naming two shapes that overlap,
+/// unless they are cut out one by one. O(F + m log m) for m pieces.
 CutMesh cut_shapes(const Mesh& mesh, std::span<const MappedShape> shapes, CutPart part = CutPart::everything);
 
 }  // namespace saddleback

@@ -23,75 +23,114 @@ constexpr Index k_unknown = -2;
 
 class Cutter {
  public:
-  Cutter(const Mesh& mesh, std::span<const MappedShape> shapes, CutPart part)
+  Cutter(const Mesh& mesh, std::span<const MappedShape> shapes)
       : mesh_(mesh),
         shapes_(shapes),
-        part_(part),
         face_shape_(static_cast<std::size_t>(mesh.face_count()), k_none),
-        vertex_shape_(static_cast<std::size_t>(mesh.vertex_count()), k_none) {}
+        vertex_shape_(static_cast<std::size_t>(mesh.vertex_count()), k_none),
+        vertex_plane_(static_cast<std::size_t>(mesh.vertex_count()), Vec2::Zero()),
+        vertex_ids_(static_cast<std::size_t>(mesh.vertex_count()), k_none) {}
 
-  CutMesh run() {
-    list_pieces();
-    add_vertices();
+  CutMesh whole() {
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) vertex_ids_[v] = v;
+    for (std::size_t s = 0; s < shapes_.size(); ++s) mark(s);
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) add_vertex(at_vertex(mesh_, v), v, vertex_plane_[v]);
+    for (std::size_t s = 0; s < shapes_.size(); ++s) list_pieces(s);
+    sort_pieces();
     std::size_t next = 0;
-    for (Index f = 0; f < mesh_.face_count(); ++f) {
-      const std::size_t begin = next;
-      while (next < pieces_.size() && pieces_[next].face == f) ++next;
-      if (begin == next)
-        add_whole(f);
-      else
-        cut(f, std::span(pieces_).subspan(begin, next - begin));
+    for (Index f = 0; f < mesh_.face_count(); ++f) next = cut_face(f, next);
+    return std::move(result_);
+  }
+
+  /// One after the other, so that nothing of another shape is in the way.
+  CutMesh patches() {
+    is_only_shapes_ = true;
+    for (std::size_t s = 0; s < shapes_.size(); ++s) {
+      mark(s);
+      pieces_.clear();
+      list_pieces(s);
+      sort_pieces();
+      faces_ = shapes_[s].outline.faces;
+      std::sort(faces_.begin(), faces_.end());
+      std::size_t next = 0;
+      for (const Index face : faces_) next = cut_face(face, next);
+      for (const Index vertex : used_) vertex_ids_[vertex] = k_none;
+      used_.clear();
     }
-    if (part_ == CutPart::shapes) drop_unused();
     return std::move(result_);
   }
 
  private:
-  void list_pieces() {
-    Index id = mesh_.vertex_count();
-    for (std::size_t s = 0; s < shapes_.size(); ++s) {
-      const SurfaceOutline& outline = shapes_[s].outline;
-      for (const Index face : outline.faces) face_shape_[face] = static_cast<Index>(s);
-      for (const Index vertex : outline.inside) vertex_shape_[vertex] = static_cast<Index>(s);
-      for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop) {
-        const std::size_t first = outline.loop_begins[loop], last = outline.loop_begins[loop + 1] - 1;
-        for (std::size_t k = first; k <= last; ++k) {
-          const OutlinePiece& piece = outline.pieces[k];
-          const auto before = static_cast<Index>(k == first ? last : k - 1);
-          pieces_.push_back(
-              {piece.face, static_cast<Index>(s), id + before, id + static_cast<Index>(k), piece.begin, piece.end});
-        }
-      }
-      id += static_cast<Index>(outline.pieces.size());
+  void mark(std::size_t s) {
+    const SurfaceOutline& outline = shapes_[s].outline;
+    for (const Index face : outline.faces) face_shape_[face] = static_cast<Index>(s);
+    for (std::size_t i = 0; i < outline.inside.size(); ++i) {
+      vertex_shape_[outline.inside[i]] = static_cast<Index>(s);
+      vertex_plane_[outline.inside[i]] = outline.inside_plane[i];
     }
+  }
+
+  /// With the ends of the pieces as vertices.
+  void list_pieces(std::size_t s) {
+    const SurfaceOutline& outline = shapes_[s].outline;
+    const auto id = static_cast<Index>(result_.vertices.size());
+    for (const OutlinePiece& piece : outline.pieces)
+      add_vertex(outline_point(piece.face, piece.end), k_none, piece.plane_end);
+    for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop) {
+      const std::size_t first = outline.loop_begins[loop], last = outline.loop_begins[loop + 1] - 1;
+      for (std::size_t k = first; k <= last; ++k) {
+        const OutlinePiece& piece = outline.pieces[k];
+        const auto before = static_cast<Index>(k == first ? last : k - 1);
+        pieces_.push_back(
+            {piece.face, static_cast<Index>(s), id + before, id + static_cast<Index>(k), piece.begin, piece.end});
+      }
+    }
+  }
+
+  void sort_pieces() {
     std::stable_sort(pieces_.begin(), pieces_.end(),
                      [](const FacePiece& a, const FacePiece& b) { return a.face < b.face; });
   }
 
-  void add_vertices() {
-    const auto add = [&](const SurfacePoint& point, Index origin, const Vec2& plane) {
-      result_.vertices.push_back(point);
-      result_.vertex_origin.push_back(origin);
-      result_.vertex_plane.push_back(plane);
-    };
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) add(at_vertex(mesh_, v), v, Vec2::Zero());
-    for (const MappedShape& shape : shapes_) {
-      const SurfaceOutline& outline = shape.outline;
-      for (const OutlinePiece& piece : outline.pieces)
-        add(outline_point(piece.face, piece.end), k_none, piece.plane_end);
-      for (std::size_t i = 0; i < outline.inside.size(); ++i)
-        result_.vertex_plane[outline.inside[i]] = outline.inside_plane[i];
-    }
+  void add_vertex(const SurfacePoint& point, Index origin, const Vec2& plane) {
+    result_.vertices.push_back(point);
+    result_.vertex_origin.push_back(origin);
+    result_.vertex_plane.push_back(plane);
   }
 
-  void add_triangle(const Triangle& triangle, Index face, Index shape) {
-    if (shape == k_none && part_ == CutPart::shapes) return;
+  /// The id of a vertex of the mesh.
+  Index id_of(Index vertex) {
+    Index& id = vertex_ids_[vertex];
+    if (id == k_none) {
+      id = static_cast<Index>(result_.vertices.size());
+      used_.push_back(vertex);
+      add_vertex(at_vertex(mesh_, vertex), vertex, vertex_plane_[vertex]);
+    }
+    return id;
+  }
+
+  /// `next`: the first piece that is not in an earlier face; gives that of the next face.
+  std::size_t cut_face(Index face, std::size_t next) {
+    const std::size_t begin = next;
+    while (next < pieces_.size() && pieces_[next].face == face) ++next;
+    if (begin != next) {
+      cut(face, std::span(pieces_).subspan(begin, next - begin));
+    } else {
+      ids_.assign(mesh_.triangles()[face].begin(), mesh_.triangles()[face].end());
+      add_triangle({0, 1, 2}, face, face_shape_[face]);
+    }
+    return next;
+  }
+
+  /// A triangle of points of ids_, of which the first three are vertices of the mesh.
+  void add_triangle(const Triangle& points, Index face, Index shape) {
+    if (shape == k_none && is_only_shapes_) return;
+    Triangle triangle;
+    for (int i = 0; i < 3; ++i) triangle[i] = points[i] < 3 ? id_of(ids_[points[i]]) : ids_[points[i]];
     result_.triangles.push_back(triangle);
     result_.triangle_face.push_back(face);
     result_.triangle_shape.push_back(shape);
   }
-
-  void add_whole(Index face) { add_triangle(mesh_.triangles()[face], face, face_shape_[face]); }
 
   void cut(Index face, std::span<const FacePiece> pieces) {
     const FaceChart chart(mesh_, face);
@@ -105,10 +144,7 @@ class Cutter {
       if (!flat_.connect(ends_[i][0], ends_[i][1])) refuse(face, pieces);
     flat_.improve();
     label(face, pieces);
-    for (std::size_t t = 0; t < flat_.triangle_count(); ++t) {
-      const Triangle local = flat_.triangle(t);
-      add_triangle({ids_[local[0]], ids_[local[1]], ids_[local[2]]}, face, labels_[t]);
-    }
+    for (std::size_t t = 0; t < flat_.triangle_count(); ++t) add_triangle(flat_.triangle(t), face, labels_[t]);
   }
 
   Index add_point(const Vec2& weights, Index id) {
@@ -160,30 +196,14 @@ class Cutter {
     throw InputError(message("the outline of shape ", other, " crosses itself in face ", face));
   }
 
-  void drop_unused() {
-    std::vector<Index> number(result_.vertices.size(), k_none);
-    for (const Triangle& triangle : result_.triangles)
-      for (const Index v : triangle) number[v] = 0;
-    Index count = 0;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      if (number[v] == k_none) continue;
-      result_.vertices[count] = result_.vertices[v];
-      result_.vertex_origin[count] = result_.vertex_origin[v];
-      result_.vertex_plane[count] = result_.vertex_plane[v];
-      number[v] = count++;
-    }
-    result_.vertices.resize(static_cast<std::size_t>(count));
-    result_.vertex_origin.resize(static_cast<std::size_t>(count));
-    result_.vertex_plane.resize(static_cast<std::size_t>(count));
-    for (Triangle& triangle : result_.triangles)
-      for (Index& v : triangle) v = number[v];
-  }
-
   const Mesh& mesh_;
   std::span<const MappedShape> shapes_;
-  CutPart part_;
+  bool is_only_shapes_ = false;
   std::vector<Index> face_shape_;  ///< of faces without pieces
   std::vector<Index> vertex_shape_;
+  std::vector<Vec2> vertex_plane_;
+  std::vector<Index> vertex_ids_, used_;  ///< k_none: not in the result yet
+  std::vector<Index> faces_;
   std::vector<FacePiece> pieces_;  ///< by face
   ConstrainedTriangulation flat_;
   std::vector<Index> ids_;  ///< of the points of flat_
@@ -195,7 +215,8 @@ class Cutter {
 }  // namespace
 
 CutMesh cut_shapes(const Mesh& mesh, std::span<const MappedShape> shapes, CutPart part) {
-  return Cutter(mesh, shapes, part).run();
+  Cutter cutter(mesh, shapes);
+  return part == CutPart::everything ? cutter.whole() : cutter.patches();
 }
 
 }  // namespace saddleback
