@@ -4,6 +4,7 @@
 
 #include "saddleback/centroidal_voronoi.h"
 #include "saddleback/dual_mesh.h"
+#include "saddleback/geodesic_centre.h"
 
 #include "points.h"
 
@@ -137,6 +138,78 @@ py::object find_cells(const py::object& graph, const py::object& sites, bool exa
   };
   return make_cells(without_gil(find), graph);
 }
+
+SurfacePoints centres(const Cells& cells, const py::object& density, const py::object& threads, const py::object& job) {
+  ArrayIn<double> weights;
+  if (!density.is_none()) weights = as_reals(density, "density", cells.mesh().vertex_count());
+  const int count = as_integer(threads, "threads");
+  Job* const token = as_job(job);
+  return without_gil([&] { return cell_centres(cells.mesh(), cells.diagram, weights.values, count, token); });
+}
+
+SurfacePoints centre_of_points(const py::object& graph, const py::object& points, const py::object& weights,
+                               const py::object& job) {
+  const auto& g = py::cast<const SaddleVertexGraph&>(graph);
+  const SurfacePoints given = as_surface_points(points, g.mesh(), "points");
+  ArrayIn<double> shares;
+  if (!weights.is_none()) shares = as_reals(weights, "weights", static_cast<Index>(given.size()));
+  Job* const token = as_job(job);
+  return {without_gil([&] { return geodesic_centre(g, given, shares.values, token); })};
+}
+
+constexpr const char* k_centres_doc = R"(The centre of each cell: where its squared geodesic distances are least in sum.
+
+Parameters
+----------
+density : (V,) float array, optional
+    As in `centroidal_voronoi`: weighs by its square.
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+SurfacePoints
+    (n). Of a cell without area or density: its site.
+
+Raises
+------
+InputError
+    A density of the wrong length, with a negative or not finite value, or 0 everywhere.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(f log f) for f faces of a cell. H. Karcher: Riemannian center of mass and mollifier smoothing, 1977.)";
+
+constexpr const char* k_centre_doc = R"(Find the point from which squared geodesic distances to points are least in sum.
+
+Parameters
+----------
+graph : SaddleVertexGraph
+points : (n,) int array or SurfacePoints
+    Vertices, or points anywhere on one connected part of the surface.
+weights : (n,) float array, optional
+    0 or more. None: all the same.
+job : Job, optional
+
+Returns
+-------
+SurfacePoints
+    One point. Where there are several such points, the one that the given point nearest to the mean in space leads to.
+
+Raises
+------
+InputError
+    No points, points off the mesh or on separate parts, weights that are negative, not finite or all 0.
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+A few log maps, O(m sqrt(m) log m) each for m vertices within the spread of the points. H. Karcher: Riemannian center of
+mass and mollifier smoothing, 1977.)";
 
 RelaxationMethod as_method(const std::string& name) {
   if (name == "lbfgs") return RelaxationMethod::lbfgs;
@@ -343,6 +416,8 @@ void bind_cells(py::module_& m) {
           "SurfacePoints where three or more cells meet.")
       .def("corners", &corners, py::arg("cell"),
            "SurfacePoints around a cell: branch points and ends at the mesh's boundary, the cell on the left.")
+      .def("centres", &centres, py::arg("density") = py::none(), py::kw_only(), py::arg("threads") = 0,
+           py::arg("job") = py::none(), k_centres_doc)
       .def("dual", &dual, py::arg("policy") = "repair", py::kw_only(), py::arg("threads") = 0,
            py::arg("job") = py::none(), k_dual_doc)
       .def("locate", &locate, py::arg("points"),
@@ -358,6 +433,8 @@ void bind_cells(py::module_& m) {
       .def("__repr__", [](const Cells& c) {
         return message("<saddleback.GeodesicVoronoi of ", c.diagram.sites.size(), " cells>");
       });
+  m.def("geodesic_centre", &centre_of_points, py::arg("graph"), py::arg("points"), py::arg("weights") = py::none(),
+        py::kw_only(), py::arg("job") = py::none(), k_centre_doc);
   m.def("geodesic_voronoi", &find_cells, py::arg("graph"), py::arg("sites"), py::kw_only(), py::arg("exact") = false,
         py::arg("threads") = 0, py::arg("job") = py::none(), k_voronoi_doc);
 }

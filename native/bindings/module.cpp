@@ -17,6 +17,7 @@ void bind_placements(py::module_& m);
 void bind_predicates(py::module_& m);
 void bind_read_mesh(py::module_& m);
 void bind_relax_2d(py::module_& m);
+void bind_hausdorff_distance(py::module_& m);
 void bind_repair(py::module_& m);
 void bind_safe_distance(py::module_& m);
 void bind_shape_maps(py::module_& m);
@@ -102,6 +103,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_graph(m);
   bind_paths(m);
   bind_dual_mesh(m);
+  bind_hausdorff_distance(m);
   bind_fields(m);
   bind_tessellation(m);
   bind_voronoi_2d(m);

@@ -1,8 +1,9 @@
 """Even cells and their dual meshes: `python -m tests.bench tessellation [--cells N] [MESH...]`.
 
 Per mesh: CPU seconds an iteration and in all, vertices out, Euler characteristic (of the mesh in brackets), quality of
-the dual mesh, greatest distance from the mesh's vertices in % of its diagonal. Peers that are installed run on the same
-input: pyacvd (clusters of a subdivided mesh), pymeshlab (geodesic Voronoi relaxation of vertices), MeshLib (remesher).
+the dual mesh, greatest distances between the two surfaces, from the mesh and back, in % of its diagonal. Peers that are
+installed run on the same input: pyacvd (clusters of a subdivided mesh), pymeshlab (geodesic Voronoi relaxation of
+vertices), MeshLib (remesher).
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ Arrays = meshes.Arrays
 LONG = 400  # iterations at most
 
 HEADER = f"{'method':<34} {'s/iteration':>11} {'seconds':>8} {'V out':>6} {'chi':>9} {'Q mean':>7} {'Q min':>6}"
-HEADER += f" {'angle':>6} {'least':>6} {'irregular':>9} {'Hausdorff':>9}"
+HEADER += f" {'angle':>6} {'least':>6} {'irregular':>9} {'Hausdorff':>12}"
 
 
 def characteristic(triangles: np.ndarray) -> int:
@@ -30,26 +31,26 @@ def characteristic(triangles: np.ndarray) -> int:
     return len(np.unique(triangles)) - len(np.unique(edges, axis=0)) + len(triangles)
 
 
-def deviation(mesh: sb.Mesh, vertices: np.ndarray, triangles: np.ndarray) -> float:
-    """Greatest distance from the mesh's vertices to the dual mesh, in % of the diagonal."""
+def deviations(mesh: sb.Mesh, vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, float]:
+    """Greatest distances from the mesh to the dual mesh and back, in % of the diagonal."""
     try:
-        made = sb.Mesh(vertices, triangles)
+        found = sb.hausdorff_distance(mesh, sb.Mesh(vertices, triangles))
     except sb.MeshError:
-        return np.nan
-    nearest = sb.project(made, mesh.vertices).positions(made)
+        return np.nan, np.nan
     diagonal = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
-    return float(100 * np.linalg.norm(nearest - mesh.vertices, axis=1).max() / diagonal)
+    return float(100 * found.from_first / diagonal), float(100 * found.from_second / diagonal)
 
 
 def row(name: str, mesh: sb.Mesh, seconds: float, iterations: int, vertices: np.ndarray, triangles: np.ndarray) -> str:
     quality = sb.triangle_quality(vertices, triangles)
     own = len(mesh.vertices) - mesh.edge_count + len(mesh.triangles)
     per_iteration = f"{seconds / iterations:.3f}" if iterations else "-"
+    there, back = deviations(mesh, vertices, triangles)
     return (
         f"{name:<34} {per_iteration:>11} {seconds:>8.2f} {len(np.unique(triangles)):>6}"
         f" {characteristic(triangles):>4} ({own:>2}) {quality.mean_quality:>7.4f} {quality.min_quality:>6.3f}"
         f" {np.degrees(quality.mean_angle):>6.2f} {np.degrees(quality.min_angle):>6.1f}"
-        f" {100 * quality.irregular:>8.1f}% {deviation(mesh, vertices, triangles):>9.2f}"
+        f" {100 * quality.irregular:>8.1f}% {there:>6.2f} {back:>5.2f}"
     )
 
 

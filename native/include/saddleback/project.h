@@ -45,6 +45,9 @@ class NearestSurface {
   std::vector<Node> nodes_;
 };
 
+/// The nearest point of one face.
+SurfacePoint nearest_on_face(const Mesh& mesh, Index face, const Vec3& query);
+
 struct ProjectOptions {
   int threads = 0;  ///< 0: all cores; never changes the result
   Job* job = nullptr;

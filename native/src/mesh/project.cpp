@@ -104,6 +104,12 @@ Vec3 pulled_in(const Vec3& query) {
 
 }  // namespace
 
+SurfacePoint nearest_on_face(const Mesh& mesh, Index face, const Vec3& query) {
+  Nearest best;
+  consider(mesh, face, query, best);
+  return {face, best.barycentric};
+}
+
 Vec3 NearestSurface::to_box_units(const Vec3& point) const { return (point - centre_) / unit_; }
 
 NearestSurface::NearestSurface(const Mesh& mesh, const JobStage& stage) : mesh_(mesh) {

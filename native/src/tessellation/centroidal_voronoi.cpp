@@ -19,20 +19,7 @@ void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
   if (options.max_iterations < 0)
     throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
   if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
-  if (options.density.empty()) return;
-  const auto& density = options.density;
-  if (static_cast<Index>(density.size()) != mesh.vertex_count()) {
-    throw InputError(
-        message("density: wanted one value for each of the ", mesh.vertex_count(), " vertices, got ", density.size()));
-  }
-  const auto bad = std::find_if(density.begin(), density.end(), [](double d) { return !(d >= 0) || std::isinf(d); });
-  if (bad != density.end()) {
-    throw InputError(
-        message("density: wanted finite values of 0 or more, got ", *bad, " at vertex ", bad - density.begin()));
-  }
-  if (std::all_of(density.begin(), density.end(), [](double d) { return d == 0; })) {
-    throw InputError("density: it is 0 at every vertex; paint where cells are wanted");
-  }
+  check_density(mesh, options.density);
 }
 
 void check_count(const Mesh& mesh, Index count) {
@@ -260,6 +247,22 @@ void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, cons
 }
 
 }  // namespace
+
+void check_density(const Mesh& mesh, std::span<const double> density) {
+  if (density.empty()) return;
+  if (static_cast<Index>(density.size()) != mesh.vertex_count()) {
+    throw InputError(
+        message("density: wanted one value for each of the ", mesh.vertex_count(), " vertices, got ", density.size()));
+  }
+  const auto bad = std::ranges::find_if(density, [](double d) { return !(d >= 0) || std::isinf(d); });
+  if (bad != density.end()) {
+    throw InputError(
+        message("density: wanted finite values of 0 or more, got ", *bad, " at vertex ", bad - density.begin()));
+  }
+  if (std::ranges::all_of(density, [](double d) { return d == 0; })) {
+    throw InputError("density: it is 0 at every vertex; paint where cells are wanted");
+  }
+}
 
 SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const double> density, std::uint64_t seed) {
   check_count(mesh, count);

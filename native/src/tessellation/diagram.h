@@ -12,6 +12,10 @@ GeodesicVoronoi subdivision(const CellComplex& complex, const SurfacePoints& sit
 /// The public diagram of a cell complex of these sites. \throw Cancelled.
 GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
 
+/// \throw InputError for a density of wrong length, with a negative, infinite or not-a-number value, or zero
+/// everywhere; an empty one is uniform.
+void check_density(const Mesh& mesh, std::span<const double> density);
+
 /// centroidal_voronoi as a part of other work.
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                               const CentroidalVoronoiOptions& options, const JobStage& stage);

@@ -1,0 +1,157 @@
+// Centres of cells: the cell's faces are placed in the tangent plane of a point, which moves to the mean of the cell
+// there, until it stays.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saddleback/geodesic_centre.h"
+
+#include "support/parallel.h"
+#include "tessellation/diagram.h"
+#include "tessellation/patch_log.h"
+#include "tessellation/quadrature.h"
+#include "tessellation/tangent_moves.h"
+
+namespace saddleback {
+namespace {
+
+// Of a step, relative to the size of the cell: the maps themselves are right to 1e-4 or so.
+constexpr double k_tolerance = 1e-6;
+constexpr int k_most_steps = 50;
+// Steps shrink several times each, until they are what the maps from two places differ by.
+constexpr double k_least_shrinking = 0.5;
+
+/// The triangles of every cell, in the faces that they lie in.
+class CellTriangles {
+ public:
+  explicit CellTriangles(const GeodesicVoronoi& cells) : cells_(cells), first_(cells.areas.size() + 1, 0) {
+    const auto faces = static_cast<Index>(cells.face_cell.size());
+    const auto each = [&](auto&& visit) {
+      for (Index face = 0; face < faces; ++face)
+        if (cells.face_cell[face] != k_none) visit(cells.face_cell[face], face);
+      for (Index i = 0; i < static_cast<Index>(cells.pieces.size()); ++i) visit(cells.pieces[i].cell, ~i);
+    };
+    each([&](Index cell, Index) { ++first_[cell + 1]; });
+    for (std::size_t cell = 0; cell < cells.areas.size(); ++cell) first_[cell + 1] += first_[cell];
+    parts_.resize(first_.back());
+    std::vector<Index> next(first_.begin(), first_.end() - 1);
+    each([&](Index cell, Index part) { parts_[next[cell]++] = part; });
+  }
+
+  /// Visits (face, a, b, c) with barycentric coordinates.
+  template <class Visit>
+  void visit(Index cell, Visit&& visit) const {
+    for (Index i = first_[cell]; i < first_[cell + 1]; ++i) {
+      if (parts_[i] >= 0) {
+        visit(parts_[i], Vec3(Vec3::Unit(0)), Vec3(Vec3::Unit(1)), Vec3(Vec3::Unit(2)));
+        continue;
+      }
+      const GeodesicVoronoi::Piece& piece = cells_.pieces[~parts_[i]];
+      const Vec3* const corner = &cells_.piece_barycentric[piece.first];
+      for (Index j = 1; j + 1 < piece.count; ++j) visit(piece.face, corner[0], corner[j], corner[j + 1]);
+    }
+  }
+
+ private:
+  const GeodesicVoronoi& cells_;
+  std::vector<Index> first_, parts_;  ///< of each cell: a face, or ~ of a piece
+};
+
+/// One cell as weighted barycentric sums: its mean in a tangent plane is that of the corners of its faces.
+class CellMass {
+ public:
+  CellMass(const Mesh& mesh, const CellTriangles& triangles, Index cell, std::span<const double> density) {
+    triangles.visit(cell, [&](Index face, const Vec3& a, const Vec3& b, const Vec3& c) {
+      faces_.push_back(face);
+      shares_.push_back(share(mesh, face, density, a, b, c));
+      mass_ += shares_.back().sum();
+    });
+    merge();
+  }
+
+  double mass() const { return mass_; }
+  const std::vector<Index>& faces() const { return faces_; }
+  Vec2 mean(const PatchLog& log) const {
+    Vec2 sum = Vec2::Zero();
+    for (std::size_t i = 0; i < faces_.size(); ++i)
+      for (int corner = 0; corner < 3; ++corner) sum += shares_[i][corner] * log.log(static_cast<Index>(i), corner);
+    return sum / mass_;
+  }
+
+ private:
+  static Vec3 share(const Mesh& mesh, Index face, std::span<const double> density, const Vec3& a, const Vec3& b,
+                    const Vec3& c) {
+    const double area = mesh.face_area(face) * a.dot(b.cross(c));
+    if (density.empty()) return area / 3 * (a + b + c);
+    const Triangle& t = mesh.triangles()[face];
+    const Vec3 painted(density[t[0]], density[t[1]], density[t[2]]);
+    Vec3 sum = Vec3::Zero();
+    for (const QuadraturePoint& q : k_quartic) {
+      const Vec3 x = at(q, a, b, c);
+      const double value = painted.dot(x);
+      sum += area * q.weight * value * value * x;
+    }
+    return sum;
+  }
+
+  /// Each face once, in increasing order.
+  void merge() {
+    std::vector<Index> order(faces_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
+    std::ranges::stable_sort(order, {}, [&](Index i) { return faces_[i]; });
+    std::vector<Index> faces;
+    std::vector<Vec3> shares;
+    for (const Index i : order) {
+      if (faces.empty() || faces.back() != faces_[i]) {
+        faces.push_back(faces_[i]);
+        shares.push_back(shares_[i]);
+      } else {
+        shares.back() += shares_[i];
+      }
+    }
+    faces_.swap(faces);
+    shares_.swap(shares);
+  }
+
+  std::vector<Index> faces_;
+  std::vector<Vec3> shares_;  ///< by corner
+  double mass_ = 0;
+};
+
+SurfacePoint centre_of(const Mesh& mesh, const CellMass& cell, SurfacePoint place, double size) {
+  if (!(cell.mass() > 0)) return place;
+  PatchLog log(mesh, cell.faces());
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < k_most_steps; ++i) {
+    if (!log.run(place)) break;
+    const Vec2 step = cell.mean(log);
+    const double length = step.norm();
+    if (length <= k_tolerance * size || length > k_least_shrinking * before) break;
+    before = length;
+    const SurfacePoint next = move_sites(mesh, {place}, {step}, 1).sites.front();
+    if (!std::ranges::binary_search(cell.faces(), next.face)) break;  // the cell bends round what is not its own
+    place = next;
+  }
+  return place;
+}
+
+}  // namespace
+
+SurfacePoints cell_centres(const Mesh& mesh, const GeodesicVoronoi& cells, std::span<const double> density, int threads,
+                           Job* job) {
+  check_density(mesh, density);
+  const JobStage stage(job, "Finding the centres of cells");
+  const CellTriangles triangles(cells);
+  const auto count = static_cast<Index>(cells.areas.size());
+  SurfacePoints centres(count);
+  parallel_for(count, threads, 8, [&](Index cell, int) {
+    stage.check();
+    centres[cell] =
+        centre_of(mesh, CellMass(mesh, triangles, cell, density), cells.sites[cell], std::sqrt(cells.areas[cell]));
+  });
+  stage.update(1);
+  return centres;
+}
+
+}  // namespace saddleback

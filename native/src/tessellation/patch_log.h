@@ -1,0 +1,56 @@
+#pragma once
+// The logarithmic map of a few faces, again and again from other points.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "saddleback/surface_points.h"
+
+namespace saddleback {
+
+/// Places the corners of a patch of faces in the tangent plane of a point of the patch, by geodesics that stay in it:
+/// in order of distance, each vertex is seen across an edge whose ends are placed, or along an edge where that is
+/// shorter. E. Melvaer, M. Reimers: Geodesic polar coordinates on polygonal meshes (2012). Exact where the patch is
+/// flat and convex; of second order elsewhere.
+class PatchLog {
+ public:
+  /// `faces` in increasing order. The mesh must outlive it. O(n log n).
+  PatchLog(const Mesh& mesh, std::span<const Index> faces);
+
+  /// From a point of a face of the patch; false when that is none of its faces. O(n log n).
+  bool run(const SurfacePoint& centre);
+  /// Where the corners of the i-th face lie in the plane, with the axes of SiteMaps. After run.
+  const Vec2& log(Index i, int corner) const { return places_[corners_[i][corner]]; }
+
+ private:
+  struct Reached {
+    double distance;
+    Index vertex;
+    bool operator<(const Reached& other) const { return distance > other.distance; }  // the nearest on top of a heap
+  };
+  /// An edge of a face along the x axis, and the corner opposite.
+  struct EdgeShape {
+    double length, left, right;  ///< left and right: from the corner to the edge's start and end
+    Vec2 apex;
+  };
+  Index local_face(Index face) const;
+  void start_in_face(const SurfacePoint& centre, Index local);
+  void start_at_vertex(Index vertex);
+  void see_across(Index local, int edge);
+  Vec2 between(Index a, Index b, const Vec2& ray, const Vec2& back_a, const Vec2& back_b) const;
+  void offer(Index vertex, const Vec2& place, double distance);
+  void walk(Index from, Index to, double length);
+
+  const Mesh& mesh_;
+  std::span<const Index> faces_;
+  std::vector<Index> vertices_;                ///< of the mesh, increasing
+  std::vector<std::array<Index, 3>> corners_;  ///< of each face, into vertices_
+  std::vector<Index> first_, around_;          ///< faces at each vertex
+  std::vector<EdgeShape> edges_;               ///< by face and edge
+  std::vector<Vec2> places_;
+  std::vector<double> distances_;
+  std::vector<Reached> heap_;
+};
+
+}  // namespace saddleback

@@ -1,0 +1,71 @@
+"""Distance of two surfaces: closed forms, and never less than samples say."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
+
+
+def test_a_tent_over_a_square() -> None:
+    """Farthest is the ridge; of the square, the points below it, which are nearest to its slopes."""
+    square = np.array([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)], dtype=float)
+    flat = sb.Mesh(square, [(0, 1, 2), (0, 2, 3)])
+    ridge = np.array([(1, 0, 1), (1, 2, 1)], dtype=float)
+    tent = sb.Mesh(np.vstack([square, ridge]), [(0, 4, 5), (0, 5, 3), (4, 1, 2), (4, 2, 5)])
+    found = sb.hausdorff_distance(tent, flat, 1e-7)
+    assert found.from_first == pytest.approx(1, abs=1e-6)
+    assert found.from_second == pytest.approx(np.sqrt(0.5), abs=1e-6)
+    assert found.distance == found.from_first
+    assert found.farthest_of_first.positions(tent)[0, 2] == pytest.approx(1, abs=1e-6)
+    assert found.farthest_of_second.positions(flat)[0, 0] == pytest.approx(1, abs=1e-5)
+
+
+def test_inside_a_triangle() -> None:
+    """The farthest point of a large triangle from a ring is its middle, far from every vertex."""
+    triangle = sb.Mesh([(0, 0, 0), (4, 0, 0), (2, 2 * np.sqrt(3), 0)], [(0, 1, 2)])
+    corners = triangle.vertices
+    strips = [np.vstack([corners[i], corners[(i + 1) % 3], corners[i] + [0, 0, 0.1]]) for i in range(3)]
+    ring = sb.Mesh(np.vstack(strips), np.arange(9).reshape(3, 3))
+    found = sb.hausdorff_distance(triangle, ring, 1e-6)
+    assert found.from_first == pytest.approx(2 / np.sqrt(3), abs=1e-5)  # the radius of the inscribed circle
+    np.testing.assert_allclose(found.farthest_of_first.positions(triangle)[0], corners.mean(axis=0), atol=1e-2)
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
+def test_never_less_than_samples(tolerance: float) -> None:
+    fine, coarse = sb.Mesh(*meshes.torus(48, 20)), sb.Mesh(*meshes.torus(17, 9))
+    found = sb.hausdorff_distance(fine, coarse, tolerance)
+    slack = 2 * tolerance * np.linalg.norm(np.ptp(fine.vertices, axis=0))
+    for a, b, most in ((fine, coarse, found.from_first), (coarse, fine, found.from_second)):
+        places = sb.sample(a, 20000, seed=1).positions(a)
+        sampled = np.linalg.norm(sb.project(b, places).positions(b) - places, axis=1).max()
+        assert sampled <= most + slack
+        assert most <= 1.2 * sampled
+    place = found.farthest_of_second.positions(coarse)
+    foot = sb.project(fine, place).positions(fine)
+    assert np.linalg.norm(foot - place) == pytest.approx(found.from_second, rel=1e-9)
+
+
+def test_of_itself_it_is_nothing() -> None:
+    mesh = sb.Mesh(*meshes.double_torus())
+    assert sb.hausdorff_distance(mesh, mesh).distance < 1e-12
+    moved = sb.Mesh(mesh.vertices + [0, 0, 1e-3], mesh.triangles)
+    assert sb.hausdorff_distance(mesh, moved, 1e-6).distance == pytest.approx(1e-3, rel=1e-2)
+
+
+def test_threads_change_nothing() -> None:
+    a, b = sb.Mesh(*meshes.icosphere(3)), sb.Mesh(*meshes.icosphere(1))
+    one, many = (sb.hausdorff_distance(a, b, threads=n) for n in (1, 8))
+    assert (one.from_first, one.from_second) == (many.from_first, many.from_second)
+
+
+def test_bad_tolerance_and_cancel() -> None:
+    mesh = sb.Mesh(*meshes.torus(200, 90))
+    with pytest.raises(sb.InputError, match="tolerance"):
+        sb.hausdorff_distance(mesh, mesh, 0)
+    other = sb.Mesh(*meshes.torus(150, 80))
+    check_progress_and_cancel(lambda job: sb.hausdorff_distance(mesh, other, 1e-7, job=job), 0.02)
