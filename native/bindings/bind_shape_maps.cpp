@@ -1,14 +1,12 @@
 // Shapes on the surface: what they cover, bent copies, cut faces, attributes.
 
 #include <limits>
-#include <mutex>
 
-#include "saddleback/conform.h"
 #include "saddleback/cut_shapes.h"
 #include "saddleback/shape_attributes.h"
 
+#include "mapped_shapes.h"
 #include "points.h"
-#include "shapes.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -85,41 +83,31 @@ const char* name_of(MapFailure failure) {
   return "none";
 }
 
-/// The shapes with all that they were laid with, so that they can be laid again.
-struct MappedShapes {
-  py::object mesh_object, field_object;
-  std::vector<Shape> shapes;
-  Placements placements;
-  MapLimits limits;
-  std::vector<MappedShape> mapped;
-  std::vector<Vec3> normals;
-  std::mutex mutex;  ///< of the mapper
-  std::unique_ptr<OutlineMapper> mapper;
-
-  const Mesh& mesh() const { return as_mesh(mesh_object, "mesh"); }
-  const DirectionField* field() const {
-    return field_object.is_none() ? nullptr : &py::cast<const DirectionField&>(field_object);
-  }
-  const Shape& shape(Index i) const { return shapes[placements[i].shape]; }
-
-  Index checked(const py::object& index) const {
-    const Index i = as_integer(index, "i"), count = static_cast<Index>(placements.size());
-    if (i < -count || i >= count) throw InputError(message("i: ", i, " is out of range for ", count, " placements"));
-    return i < 0 ? i + count : i;
-  }
-  /// The index of a shape that lies on the surface.
-  Index laid(const py::object& index) const {
-    const Index i = checked(index);
-    if (mapped[i].failure != MapFailure::none)
-      throw InputError(message("i: shape ", i, " could not be laid on the surface (", name_of(mapped[i].failure), ")"));
-    return i;
-  }
-};
-
 MapLimits as_limits(const py::object& value) {
   if (!py::isinstance<py::sequence>(value) || py::len(value) != 2)
     throw InputError("limits: wanted (smallest, largest)");
   return {as_real(value[py::int_(0)], "limits"), as_real(value[py::int_(1)], "limits")};
+}
+
+}  // namespace
+
+const Mesh& MappedShapes::mesh() const { return as_mesh(mesh_object, "mesh"); }
+
+const DirectionField* MappedShapes::field() const {
+  return field_object.is_none() ? nullptr : &py::cast<const DirectionField&>(field_object);
+}
+
+Index MappedShapes::checked(const py::object& index) const {
+  const Index i = as_integer(index, "i"), count = static_cast<Index>(placements.size());
+  if (i < -count || i >= count) throw InputError(message("i: ", i, " is out of range for ", count, " placements"));
+  return i < 0 ? i + count : i;
+}
+
+Index MappedShapes::laid(const py::object& index) const {
+  const Index i = checked(index);
+  if (mapped[i].failure != MapFailure::none)
+    throw InputError(message("i: shape ", i, " could not be laid on the surface (", name_of(mapped[i].failure), ")"));
+  return i;
 }
 
 std::unique_ptr<MappedShapes> make_mapped(const py::object& mesh_object, const py::object& shapes,
@@ -140,6 +128,8 @@ std::unique_ptr<MappedShapes> make_mapped(const py::object& mesh_object, const p
   });
   return result;
 }
+
+namespace {
 
 py::dict failures_of(const MappedShapes& self) {
   py::dict result;

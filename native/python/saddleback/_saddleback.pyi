@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Literal, SupportsFloat, SupportsIndex, TypeAlias, final, overload
+from typing import Literal, Protocol, SupportsFloat, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -903,3 +903,43 @@ def map_shapes(
     threads: SupportsIndex = 0,
     job: Job | None = None,
 ) -> MappedShapes: ...
+
+class _Distribution(Protocol):
+    @property
+    def placements(self) -> Placements: ...
+    @property
+    def shapes(self) -> Shape | Sequence[Shape]: ...
+
+@final
+class CheckReport:
+    @property
+    def ok(self) -> bool: ...
+    @property
+    def faults(self) -> list[tuple[str, int, int | None, tuple[float, float, float]]]: ...
+    @property
+    def fault_count(self) -> int: ...
+    @property
+    def coverage(self) -> float: ...
+    @property
+    def coverage_error(self) -> float: ...
+    @property
+    def patch_coverage(self) -> float: ...
+    @property
+    def stretch(self) -> tuple[float, float]: ...
+    @property
+    def piece_count(self) -> int: ...
+    @property
+    def triangle_count(self) -> int: ...
+    @property
+    def sample_count(self) -> int: ...
+    def __bool__(self) -> bool: ...
+
+def check_distribution(
+    mesh: Mesh,
+    result: MappedShapes | _Distribution,
+    *,
+    samples: SupportsIndex = 1_000_000,
+    seed: SupportsIndex = 0,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
+) -> CheckReport: ...

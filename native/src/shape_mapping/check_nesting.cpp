@@ -1,0 +1,142 @@
+// Which shape each vertex lies in, found from the edges that outlines cross; then whether an outline begins within
+// another shape.
+
+#include <algorithm>
+
+#include "predicates/predicates.h"
+#include "shape_mapping/check_parts.h"
+
+namespace saddleback {
+namespace {
+
+/// How often one outline crosses an edge inwards, seen along its smaller half-edge, less outwards.
+struct EdgeCount {
+  Index edge;
+  int sum;
+};
+
+std::vector<EdgeCount> count_crossings(const Mesh& mesh, const SurfaceOutline& outline) {
+  std::vector<EdgeCount> all;
+  for (const OutlinePiece& piece : outline.pieces) {
+    if (piece.exit == k_none) continue;
+    // The shape is on the left of the piece: on the edge that it leaves by, towards its end.
+    const Index twin = mesh.twin(piece.exit);
+    const bool is_smaller = twin == k_none || piece.exit < twin;
+    all.push_back({is_smaller ? piece.exit : twin, is_smaller ? 1 : -1});
+  }
+  std::sort(all.begin(), all.end(), [](const EdgeCount& a, const EdgeCount& b) { return a.edge < b.edge; });
+  std::vector<EdgeCount> result;
+  for (const EdgeCount& count : all) {
+    if (result.empty() || result.back().edge != count.edge)
+      result.push_back(count);
+    else
+      result.back().sum += count.sum;
+  }
+  return result;
+}
+
+class Nesting {
+ public:
+  Nesting(const Mesh& mesh, std::span<const MappedShape> mapped, const CheckedPieces& pieces, FaultList& faults)
+      : mesh_(mesh),
+        mapped_(mapped),
+        pieces_(pieces),
+        faults_(faults),
+        owners_(static_cast<std::size_t>(mesh.vertex_count()), k_none) {}
+
+  void run() {
+    for (std::size_t s = 0; s < mapped_.size(); ++s) spread(static_cast<Index>(s));
+    for (std::size_t s = 0; s < mapped_.size(); ++s)
+      if (!mapped_[s].outline.pieces.empty()) look_around(static_cast<Index>(s));
+  }
+
+ private:
+  /// From vertices that the outline's crossings show to be inside, over edges that it does not cross.
+  void spread(Index shape) {
+    const std::vector<EdgeCount> counts = count_crossings(mesh_, mapped_[shape].outline);
+    front_.clear();
+    for (const auto& [edge, sum] : counts) {
+      if (sum > 1 || sum < -1) faults_.add(Fault::open, shape, k_none, at_vertex(mesh_, mesh_.from(edge)));
+      if (sum > 0) own(mesh_.to(edge), shape);
+      if (sum < 0) own(mesh_.from(edge), shape);
+    }
+    while (!front_.empty()) {
+      const Index vertex = front_.back();
+      front_.pop_back();
+      const Index first = mesh_.first_halfedge(vertex);
+      Index h = first;
+      do {
+        if (!is_rim(counts, h)) own(mesh_.to(h), shape);
+        const Index last = Mesh::prev(h);
+        if (mesh_.twin(last) == k_none && !is_rim(counts, last)) own(mesh_.from(last), shape);
+        h = mesh_.rotate(h);
+      } while (h != k_none && h != first);
+    }
+  }
+
+  /// Whether one end of the edge is inside and one is not.
+  bool is_rim(const std::vector<EdgeCount>& counts, Index h) const {
+    const Index twin = mesh_.twin(h), edge = twin == k_none ? h : std::min(h, twin);
+    const auto at = std::lower_bound(counts.begin(), counts.end(), edge,
+                                     [](const EdgeCount& count, Index wanted) { return count.edge < wanted; });
+    return at != counts.end() && at->edge == edge && at->sum != 0;
+  }
+
+  void own(Index vertex, Index shape) {
+    if (owners_[vertex] == shape) return;
+    if (owners_[vertex] != k_none) {
+      faults_.add(Fault::nesting, owners_[vertex], shape, at_vertex(mesh_, vertex));
+      // The later one takes the vertex over: so that it ends, and all that it meets are found.
+    }
+    owners_[vertex] = shape;
+    front_.push_back(vertex);
+  }
+
+  /// A point of the outline against all others in its face and around it.
+  void look_around(Index shape) {
+    const OutlinePiece& piece = mapped_[shape].outline.pieces.front();
+    const Vec3 weights = outline_point(piece.face, piece.begin).barycentric;
+    // From the corner opposite to the edge that the point may lie on: the line runs inside of the face.
+    const int corner = weights[0] == 0 ? 0 : weights[1] == 0 ? 1 : 2;
+    const Vec2 from = corner == 0 ? Vec2(0, 0) : corner == 1 ? Vec2(1, 0) : Vec2(0, 1);
+    inside_.clear();
+    toggle(owners_[mesh_.from(3 * piece.face + corner)]);
+    for (const CheckedPiece& other : pieces_.of(piece.face))
+      if (other.shape != shape && crosses(from, piece.begin, other)) toggle(other.shape);
+    for (const Index other : inside_)
+      if (other != shape) faults_.add(Fault::nesting, shape, other, outline_point(piece.face, piece.begin));
+  }
+
+  void toggle(Index shape) {
+    if (shape == k_none) return;
+    const auto at = std::find(inside_.begin(), inside_.end(), shape);
+    if (at == inside_.end())
+      inside_.push_back(shape);
+    else
+      inside_.erase(at);
+  }
+
+  static bool crosses(const Vec2& from, const Vec2& to, const CheckedPiece& piece) {
+    const auto is_left = [](const Vec2& a, const Vec2& b, const Vec2& p) {
+      return predicates::orient_2d({a.x(), a.y()}, {b.x(), b.y()}, {p.x(), p.y()}) == predicates::Sign::positive;
+    };
+    return is_left(from, to, piece.begin) != is_left(from, to, piece.end) &&
+           is_left(piece.begin, piece.end, from) != is_left(piece.begin, piece.end, to);
+  }
+
+  const Mesh& mesh_;
+  std::span<const MappedShape> mapped_;
+  const CheckedPieces& pieces_;
+  FaultList& faults_;
+  std::vector<Index> owners_;  ///< per vertex the shape that it lies in
+  std::vector<Index> front_, inside_;
+};
+
+}  // namespace
+
+void check_nesting(const Mesh& mesh, std::span<const MappedShape> mapped, const CheckedPieces& pieces,
+                   FaultList& faults) {
+  Nesting(mesh, mapped, pieces, faults).run();
+}
+
+}  // namespace saddleback

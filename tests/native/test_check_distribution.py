@@ -1,0 +1,162 @@
+"""The independent checker: nothing found where there is nothing, and every planted collision found, no other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import saddleback as sb
+from tests import meshes
+
+DISK, STAR, LEAF, NEEDLE = sb.Shape.disk(48), sb.Shape.star(5), sb.Shape.leaf(), sb.Shape.needle(8)
+RING = sb.Shape([DISK.loops[0], 0.6 * DISK.loops[0]])
+SHAPES = [DISK, STAR, LEAF, NEEDLE, RING]
+Floats = NDArray[np.float64]
+Copy = tuple[int, sb.SurfacePoints, float, float]  # shape, centre, angle, scale
+
+
+def surfaces() -> dict[str, sb.Mesh]:
+    return {
+        "plane": sb.Mesh(*meshes.grid(40, 40, 0.3)),
+        "coarse plane": sb.Mesh(*meshes.grid(4, 4)),
+        "cylinder": sb.Mesh(*meshes.cylinder(60, 40)),
+        "sphere": sb.Mesh(*meshes.icosphere(5)),
+        "torus": sb.Mesh(*meshes.torus(120, 48)),
+    }
+
+
+def placed(copies: list[Copy]) -> sb.Placements:
+    shape, centres, angle, scale = zip(*copies, strict=True)
+    faces, weights = [c.faces[0] for c in centres], [c.barycentric[0] for c in centres]
+    mirrored = np.arange(len(copies)) % 3 == 0
+    return sb.Placements(shape, sb.SurfacePoints(faces, weights), angle, scale, mirrored)
+
+
+def rim(mesh: sb.Mesh) -> Floats:
+    """Points all along the boundary; one far away where there is none."""
+    steps = np.linspace(0, 1, 20)[:, None, None]
+    sides = [
+        mesh.vertices[loop] * (1 - steps) + np.roll(mesh.vertices[loop], -1, 0) * steps for loop in mesh.boundary_loops
+    ]
+    return np.concatenate([side.reshape(-1, 3) for side in sides]) if sides else np.full((1, 3), np.inf)
+
+
+def spots(mesh: sb.Mesh, scale: float, apart: float) -> sb.SurfacePoints:
+    """Places so far from each other, and half as far from the boundary, in units of scale."""
+    points, ends = sb.sample(mesh, 2000, seed=3), rim(mesh)
+    xyz = points.positions(mesh)
+    kept: list[int] = []
+    for i, place in enumerate(xyz):
+        far = np.linalg.norm(ends - place, axis=1).min() > 0.51 * apart * scale
+        if far and all(np.linalg.norm(place - xyz[j]) > apart * scale for j in kept):
+            kept.append(i)
+    return sb.SurfacePoints(points.faces[kept], points.barycentric[kept])
+
+
+@pytest.mark.parametrize("name", ["plane", "coarse plane", "cylinder", "sphere", "torus"])
+def test_nothing_is_found_where_there_is_nothing(name: str) -> None:
+    mesh = surfaces()[name]
+    scale = 0.04 * mesh.area**0.5
+    rng = np.random.default_rng(1)
+    copies: list[Copy] = [
+        (k % len(SHAPES), centre, float(rng.uniform(0, 6)), scale) for k, centre in enumerate(spots(mesh, scale, 2.05))
+    ]
+    # A star in the hole of each ring: it lies in its outline, but not in the shape.
+    copies += [(1, c, 0.0, 0.5 * scale) for shape, c, _, _ in copies if shape == 4]
+    assert len(copies) > 30
+    mapped = sb.map_shapes(mesh, SHAPES, placed(copies))
+    report = sb.check_distribution(mesh, mapped, samples=200_000)
+    assert report and report.ok and report.faults == [] and "no fault" in str(report)
+    assert report.coverage == pytest.approx(report.patch_coverage, abs=4 * report.coverage_error + 1e-6)
+    covered = sum(SHAPES[shape].area * size**2 for shape, _, _, size in copies) / mesh.area
+    assert report.patch_coverage == pytest.approx(covered, rel=1e-6 if name[-5:] in ("plane", "inder") else 0.02)
+    assert (
+        np.nanmin(mapped.stretch) <= report.stretch[0] + 1e-6 and report.stretch[1] <= np.nanmax(mapped.stretch) + 1e-6
+    )
+
+
+def overlap(mesh: sb.Mesh, centre: sb.SurfacePoints, scale: float, rng: np.random.Generator) -> tuple[Copy, Copy]:
+    """A tip that reaches into a disk by 2 % of its radius."""
+    angle, kind = float(rng.uniform(0, 6)), int(rng.integers(1, 4))
+    line = sb.trace(mesh, centre, angle, 1.98 * scale)
+    return (kind, centre, angle, scale), (0, line.surface[-1:], line.end_angle + np.pi, scale)
+
+
+def nested(mesh: sb.Mesh, centre: sb.SurfacePoints, scale: float, rng: np.random.Generator) -> tuple[Copy, Copy]:
+    angle, kind = float(rng.uniform(0, 6)), int(rng.integers(0, 5))
+    line = sb.trace(mesh, centre, angle, 0.5 * scale)
+    return (kind, line.surface[-1:], angle, 0.3 * scale), (0, centre, 0.0, scale)
+
+
+def crossed(mesh: sb.Mesh, centre: sb.SurfacePoints, scale: float, rng: np.random.Generator) -> tuple[Copy, Copy]:
+    angle = float(rng.uniform(0, 6))
+    return (3, centre, angle, scale), (int(rng.integers(1, 4)), centre, angle + float(rng.uniform(0.5, 2.5)), scale)
+
+
+@pytest.mark.parametrize("name", ["plane", "coarse plane", "cylinder", "sphere", "torus"])
+def test_every_planted_collision_is_found(name: str) -> None:
+    mesh = surfaces()[name]
+    scale = 0.016 * mesh.area**0.5
+    rng = np.random.default_rng(7)
+    plants = (overlap, nested, crossed)
+    pairs = [plants[k % 3](mesh, centre, scale, rng) for k, centre in enumerate(spots(mesh, scale, 6.2)[:42])]
+    copies = [copy for pair in pairs for copy in pair]
+    assert len(pairs) == 42
+    report = sb.check_distribution(mesh, sb.map_shapes(mesh, SHAPES, placed(copies)), samples=300_000)
+    wanted = {(2 * i, 2 * i + 1) for i in range(len(pairs))}
+    found = {kind: {fault[1:3] for fault in report.faults if fault[0] == kind} for kind, *_ in report.faults}
+    assert found.keys() == {"crossing", "nesting", "covered_twice"}
+    assert found["crossing"] | found["nesting"] == wanted
+    assert found["crossing"] >= {(2 * i, 2 * i + 1) for i in range(len(pairs)) if i % 3 != 1}
+    assert found["nesting"] >= {(2 * i, 2 * i + 1) for i in range(1, len(pairs), 3)}
+    # The samples alone find most of those that are not too small for them.
+    assert found["covered_twice"] <= wanted and len(found["covered_twice"]) > 20
+
+
+def test_what_could_not_be_laid_is_a_fault() -> None:
+    mesh = sb.Mesh(*meshes.grid())
+    copies: list[Copy] = [
+        (0, sb.SurfacePoints([0], [[1, 0, 0]]), 0.0, 0.2),
+        (0, sb.SurfacePoints([100], [[1, 0, 0]]), 0.0, 0.1),
+    ]
+    report = sb.check_distribution(mesh, sb.map_shapes(mesh, SHAPES, placed(copies)), samples=0)
+    assert [fault[:3] for fault in report.faults] == [("not_laid", 0, None)] and report.fault_count == 1
+    assert report.faults[0][3] == pytest.approx((0, 0, 0)) and not report
+
+
+def test_a_distribution_is_anything_with_placements_and_shapes() -> None:
+    class Distribution:
+        shapes = SHAPES
+
+        def __init__(self, placements: sb.Placements) -> None:
+            self.placements = placements
+
+    mesh = sb.Mesh(*meshes.icosphere(3))
+    centre = sb.SurfacePoints([3], [[0.3, 0.3, 0.4]])
+    report = sb.check_distribution(mesh, Distribution(placed([(0, centre, 0.0, 0.2), (1, centre, 0.0, 0.2)])))
+    assert not report.ok
+    with pytest.raises(sb.InputError, match="wanted a MappedShapes or a distribution"):
+        sb.check_distribution(mesh, centre)  # type: ignore[arg-type]
+
+
+def test_the_same_for_any_number_of_threads() -> None:
+    mesh = surfaces()["torus"]
+    rng = np.random.default_rng(0)
+    copies: list[Copy] = [
+        (int(rng.integers(0, 5)), c, float(rng.uniform(0, 6)), 0.25) for c in sb.sample(mesh, 60, seed=1)
+    ]
+    mapped = sb.map_shapes(mesh, SHAPES, placed(copies))
+    reports = [sb.check_distribution(mesh, mapped, samples=50_000, threads=n) for n in (1, 2, 8)]
+    assert reports[0].fault_count > 10
+    for report in reports[1:]:
+        assert report.faults == reports[0].faults and report.coverage == reports[0].coverage
+
+
+def test_bad_input() -> None:
+    mesh, other = sb.Mesh(*meshes.grid()), sb.Mesh(*meshes.grid(13, 13))
+    mapped = sb.map_shapes(mesh, SHAPES, placed([(0, sb.SurfacePoints([60], [[0.3, 0.3, 0.4]]), 0.0, 0.1)]))
+    with pytest.raises(sb.InputError, match="another mesh"):
+        sb.check_distribution(other, mapped)
+    with pytest.raises(sb.InputError, match="samples"):
+        sb.check_distribution(mesh, mapped, samples=-1)
