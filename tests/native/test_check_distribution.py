@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import saddleback as sb
+from saddleback import check
 from tests import meshes
 
 DISK, STAR, LEAF, NEEDLE = sb.Shape.disk(48), sb.Shape.star(5), sb.Shape.leaf(), sb.Shape.needle(8)
@@ -137,7 +140,7 @@ def test_a_distribution_is_anything_with_placements_and_shapes() -> None:
     report = sb.check_distribution(mesh, Distribution(placed([(0, centre, 0.0, 0.2), (1, centre, 0.0, 0.2)])))
     assert not report.ok
     with pytest.raises(sb.InputError, match="wanted a MappedShapes or a distribution"):
-        sb.check_distribution(mesh, centre)  # type: ignore[arg-type]
+        sb.check_distribution(mesh, centre)
 
 
 def test_the_same_for_any_number_of_threads() -> None:
@@ -160,3 +163,26 @@ def test_bad_input() -> None:
         sb.check_distribution(other, mapped)
     with pytest.raises(sb.InputError, match="samples"):
         sb.check_distribution(mesh, mapped, samples=-1)
+
+
+def test_as_a_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    vertices, triangles = meshes.icosphere(3)
+    mesh_file, good, bad = tmp_path / "sphere.obj", tmp_path / "good.json", tmp_path / "bad.json"
+    lines = ["v " + " ".join(repr(float(x)) for x in v) for v in vertices]
+    lines += ["f " + " ".join(str(i + 1) for i in t) for t in triangles]
+    mesh_file.write_text("\n".join(lines) + "\n", encoding="ascii")
+    mesh = sb.read_mesh(str(mesh_file))
+    a, b = sb.SurfacePoints([3], [[0.3, 0.3, 0.4]]), sb.SurfacePoints([700], [[0.3, 0.3, 0.4]])
+    for file, second in ((good, b), (bad, a)):
+        sb.write_placements(file, mesh, SHAPES, placed([(4, a, 0.1, 0.3), (3, second, 0.3, 0.3)]))
+        shapes, placements = sb.read_placements(file, mesh)
+        assert [shape.loops[-1].tolist() for shape in shapes] == [shape.loops[-1].tolist() for shape in SHAPES]
+        assert placements.angle.tolist() == [0.1, 0.3] and placements.mirrored.tolist() == [True, False]
+        assert placements.centre.barycentric.tolist() == [[0.3, 0.3, 0.4]] * 2
+    assert check.main([str(mesh_file), str(good), "--samples", "1000"]) == 0
+    assert "2 shapes" in capsys.readouterr().out
+    assert check.main([str(mesh_file), str(bad), "--samples", "1000"]) == 1
+    assert "crossing: 0 and 1" in capsys.readouterr().out
+    assert check.main([str(mesh_file), str(mesh_file)]) == 2 and "not a file" in capsys.readouterr().err
+    with pytest.raises(sb.InputError, match="for a mesh of 642 vertices and 1280 faces, this one has 144 and 242"):
+        sb.read_placements(good, sb.Mesh(*meshes.grid()))

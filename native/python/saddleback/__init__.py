@@ -73,6 +73,7 @@ from saddleback._saddleback import (
     triangle_quality,
     voronoi_2d,
 )
+from saddleback.placement_files import read_placements, write_placements
 from saddleback.progress import progress_bar
 from saddleback.sizes import blend_by_distance, density_by_curvature, ramp_by_distance
 
@@ -146,6 +147,7 @@ __all__ = [
     "ramp_by_distance",
     "read_arrays",
     "read_mesh",
+    "read_placements",
     "relax_2d",
     "repair",
     "sample",
@@ -154,4 +156,5 @@ __all__ = [
     "trace",
     "triangle_quality",
     "voronoi_2d",
+    "write_placements",
 ]

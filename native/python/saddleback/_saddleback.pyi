@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Literal, Protocol, SupportsFloat, SupportsIndex, TypeAlias, final, overload
+from typing import Literal, SupportsFloat, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -904,12 +904,6 @@ def map_shapes(
     job: Job | None = None,
 ) -> MappedShapes: ...
 
-class _Distribution(Protocol):
-    @property
-    def placements(self) -> Placements: ...
-    @property
-    def shapes(self) -> Shape | Sequence[Shape]: ...
-
 @final
 class CheckReport:
     @property
@@ -936,7 +930,7 @@ class CheckReport:
 
 def check_distribution(
     mesh: Mesh,
-    result: MappedShapes | _Distribution,
+    result: object,
     *,
     samples: SupportsIndex = 1_000_000,
     seed: SupportsIndex = 0,
