@@ -224,18 +224,33 @@ RelaxationStart as_start(const std::string& name) {
   throw InputError(message("start: wanted 'auto', 'coarse_to_fine' or 'sample', got '", name, "'"));
 }
 
+std::vector<const SurfaceCurve*> as_curves(const py::object& curves) {
+  std::vector<const SurfaceCurve*> result;
+  if (curves.is_none()) return result;
+  for (const py::handle& curve : curves) {
+    if (!py::isinstance<SurfaceCurve>(curve))
+      throw InputError(message("curves: wanted SurfaceCurves, got a ", Py_TYPE(curve.ptr())->tp_name));
+    result.push_back(&py::cast<const SurfaceCurve&>(curve));
+  }
+  return result;
+}
+
 Relaxed relax(const py::object& graph, const py::object& sites, const py::object& count, const py::object& density,
               const std::string& method, const py::object& max_iterations, const py::object& tolerance,
-              const py::object& seed, const std::string& start, const py::object& fixed, bool return_when_cancelled,
-              const py::object& threads, const py::object& job) {
+              const py::object& seed, const std::string& start, const py::object& fixed, const py::object& curves,
+              const py::object& held, bool return_when_cancelled, const py::object& threads, const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   ArrayIn<double> weights;
   if (!density.is_none()) weights = as_reals(density, "density", g.mesh().vertex_count());
-  ArrayIn<Index> held;
-  if (!fixed.is_none()) held = as_indices(fixed, "fixed");
+  ArrayIn<Index> stay, on_curves;
+  if (!fixed.is_none()) stay = as_indices(fixed, "fixed");
+  if (!held.is_none()) on_curves = as_indices(held, "held");
+  const std::vector<const SurfaceCurve*> lines = as_curves(curves);
   const CentroidalVoronoiOptions options{.density = weights.values,
-                                         .fixed = held.values,
+                                         .fixed = stay.values,
+                                         .curves = lines,
+                                         .held = on_curves.values,
                                          .method = as_method(method),
                                          .max_iterations = as_integer(max_iterations, "max_iterations"),
                                          .tolerance = as_real(tolerance, "tolerance"),
@@ -314,6 +329,11 @@ start : str
     same without iterations. "auto": from coarse cells when max_iterations is 50 or more.
 fixed : (m,) int array, optional
     Sites that stay where they are.
+curves : sequence of SurfaceCurve, optional
+    Features or boundaries that sites slide along instead of leaving them. With `count`, sites are put on them as far
+    apart as neighbours in even cells; the ends of open curves stay where they are.
+held : (n,) int array, optional
+    With `sites`: the curve that each is held on, -1 for free ones. Held sites begin at the nearest points of their curves.
 return_when_cancelled : bool
     When the job is cancelled during the iterations, return the best found so far instead of raising.
 threads : int
@@ -327,8 +347,8 @@ CentroidalVoronoi
 Raises
 ------
 InputError
-    Neither or both of sites and count; fewer cells than connected parts; a fixed site out of range; a density of the wrong
-    length, with a negative or not finite value, or 0 everywhere; what `geodesic_voronoi` refuses.
+    Neither or both of sites and count; fewer cells than connected parts, or than the curves need; a fixed site or a curve
+    out of range, a curve of another mesh; a density of the wrong length, with a negative or not finite value, or 0 everywhere; what `geodesic_voronoi` refuses.
 Cancelled
     The job was cancelled.
 
@@ -461,6 +481,14 @@ void bind_tessellation(py::module_& m) {
           "stop_reason", [](const Relaxed& r) { return r.result.stop_reason; },
           "\"tolerance\", \"no step lowers the energy\", \"max_iterations\" or \"cancelled\".")
       .def_property_readonly(
+          "held",
+          [](const Relaxed& r) {
+            std::vector<Index> held = r.result.held;
+            held.resize(r.result.sites.size(), k_none);
+            return to_array(std::move(held));
+          },
+          "(n,) int32: the curve that each site is held on, -1 for free ones.")
+      .def_property_readonly(
           "normalised_energy", [](const Relaxed& r) { return r.result.normalised_energy; },
           "Energy without a scale: near 1 for many nearly regular hexagons, larger for worse cells.")
       .def("__repr__", [](const Relaxed& r) {
@@ -470,8 +498,9 @@ void bind_tessellation(py::module_& m) {
   m.def("centroidal_voronoi", &relax, py::arg("graph"), py::arg("sites") = py::none(), py::arg("count") = py::none(),
         py::arg("density") = py::none(), py::arg("method") = "lbfgs", py::arg("max_iterations") = 100,
         py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("start") = "auto",
-        py::arg("fixed") = py::none(), py::arg("return_when_cancelled") = false, py::arg("threads") = 0,
-        py::arg("job") = py::none(), k_centroidal_doc);
+        py::arg("fixed") = py::none(), py::arg("curves") = py::none(), py::arg("held") = py::none(),
+        py::arg("return_when_cancelled") = false, py::arg("threads") = 0, py::arg("job") = py::none(),
+        k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

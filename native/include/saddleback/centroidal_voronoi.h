@@ -5,6 +5,7 @@
 #include <string>
 
 #include "saddleback/geodesic_voronoi.h"
+#include "saddleback/surface_curve.h"
 
 namespace saddleback {
 
@@ -18,6 +19,11 @@ enum class RelaxationStart { automatic, coarse_to_fine, sample };
 struct CentroidalVoronoiOptions {
   std::span<const double> density;  ///< (V,) wanted cells per area, in proportion; empty: uniform
   std::span<const Index> fixed;     ///< sites that stay where they are
+  /// Curves that sites slide along instead of leaving them: features, the mesh's boundary.
+  std::span<const SurfaceCurve* const> curves;
+  /// (n,) the curve that each site is held on, k_none for free ones; empty: all are free. Held sites begin at the
+  /// nearest points of their curves. Not for a number of cells, which says itself.
+  std::span<const Index> held;
   RelaxationMethod method = RelaxationMethod::lbfgs;
   int max_iterations = 100;
   double tolerance = 1e-6;             ///< stop when the energy falls by less than this share of itself
@@ -27,6 +33,7 @@ struct CentroidalVoronoiOptions {
 
 struct CentroidalVoronoi {
   SurfacePoints sites;
+  std::vector<Index> held;  ///< (n,) the curve that each site is held on, k_none for free ones; empty: all are free
   GeodesicVoronoi cells;
   std::vector<double> energy;  ///< of the start and after each iteration; never rises
   int iterations = 0;
@@ -55,8 +62,9 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);
 
-/// The same for a number of cells. Without iterations the sites are the sample's. \throw InputError also as
-/// `initial_sites`.
+/// The same for a number of cells. Without iterations the sites are the sample's. With curves the first sites lie on
+/// them, as far apart as neighbours are, the ends of open ones fixed; the others are the sample's. \throw InputError
+/// also as `initial_sites`, and for fewer cells than the curves need.
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
                                      std::uint64_t seed, const CentroidalVoronoiOptions& options = {},
                                      Job* job = nullptr);

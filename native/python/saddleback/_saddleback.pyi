@@ -469,6 +469,8 @@ class CentroidalVoronoi:
     @property
     def converged(self) -> bool: ...
     @property
+    def held(self) -> _Indices: ...
+    @property
     def stop_reason(self) -> str: ...
     @property
     def normalised_energy(self) -> float: ...
@@ -485,6 +487,8 @@ def centroidal_voronoi(
     *,
     start: Literal["auto", "coarse_to_fine", "sample"] = "auto",
     fixed: ArrayLike | None = None,
+    curves: Sequence[SurfaceCurve] | None = None,
+    held: ArrayLike | None = None,
     return_when_cancelled: bool = False,
     threads: SupportsIndex = 0,
     job: Job | None = None,

@@ -9,6 +9,7 @@
 
 #include "tessellation/cell_moments.h"
 #include "tessellation/diagram.h"
+#include "tessellation/held_sites.h"
 #include "tessellation/limited_memory.h"
 #include "tessellation/tangent_moves.h"
 
@@ -40,6 +41,7 @@ void check_fixed(const CentroidalVoronoiOptions& options, const SurfacePoints& s
 /// Sites with their cells and what is needed to move on.
 struct State {
   SurfacePoints sites;
+  std::vector<double> along;  ///< of held sites, see HeldSites
   std::unique_ptr<CellClaims> claims;
   std::vector<CellMoments> moments;
   double energy = 0;
@@ -56,7 +58,7 @@ class Relaxation {
   double mass() const;
 
  private:
-  State evaluate(SurfacePoints sites, const JobStage& stage) const;
+  State evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage) const;
   bool revive_empty_cells(const JobStage& stage);
   SurfacePoint far_place(Index site) const;
   bool advance_by(const TangentField& direction, const TangentField& gradient, const JobStage& stage);
@@ -70,6 +72,7 @@ class Relaxation {
   const VertexRings rings_;
   const FaceWeights weights_;
   std::vector<std::uint8_t> is_fixed_;
+  const HeldSites held_;
   State state_;
   LimitedMemory memory_;
 };
@@ -80,15 +83,19 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
       options_(options),
       rings_(graph, options.threads),
       weights_(graph.mesh(), options.density, options.threads),
-      is_fixed_(sites.size(), 0) {
+      is_fixed_(sites.size(), 0),
+      held_(graph.mesh(), options.curves, options.held, sites.size()) {
   for (const Index site : options.fixed) is_fixed_[site] = 1;
-  state_ = evaluate(sites, stage);
+  SurfacePoints start = sites;
+  std::vector<double> along = held_.bring(start);
+  state_ = evaluate(std::move(start), std::move(along), stage);
   while (revive_empty_cells(stage)) {}
 }
 
-State Relaxation::evaluate(SurfacePoints sites, const JobStage& stage) const {
+State Relaxation::evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage) const {
   State state;
   state.sites = std::move(sites);
+  state.along = std::move(along);
   state.claims = std::make_unique<CellClaims>(graph_, rings_, state.sites, options_.threads, stage.part(0, 0.8));
   state.moments = cell_moments(*state.claims, weights_, options_.threads, stage);
   for (const CellMoments& cell : state.moments) state.energy += cell.energy;
@@ -114,7 +121,7 @@ bool Relaxation::revive_empty_cells(const JobStage& stage) {
   for (Index i = 0; i < static_cast<Index>(state_.moments.size()); ++i) {
     if (state_.moments[i].area > 0)
       rich.push_back(i);
-    else if (!is_fixed_[i])
+    else if (!is_fixed_[i] && !held_.is_held(i))
       empty.push_back(i);
   }
   if (empty.empty()) return false;
@@ -124,7 +131,7 @@ bool Relaxation::revive_empty_cells(const JobStage& stage) {
   });
   SurfacePoints sites = state_.sites;
   for (std::size_t i = 0; i < std::min(empty.size(), rich.size()); ++i) sites[empty[i]] = far_place(rich[i]);
-  State next = evaluate(std::move(sites), stage);
+  State next = evaluate(std::move(sites), state_.along, stage);
   if (!(next.energy < state_.energy)) return false;  // nothing is far enough to be told apart
   state_ = std::move(next);
   memory_.forget();
@@ -162,8 +169,9 @@ bool Relaxation::advance_by(const TangentField& direction, const TangentField& s
   for (int halving = 0; halving <= k_most_halvings; ++halving, length /= 2) {
     TangentField steps = direction;
     for (Vec2& step : steps) step *= length;
-    const Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads);
-    State next = evaluate(moved.sites, stage);
+    Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads);
+    std::vector<double> along = held_.move(state_.along, state_.sites, steps, moved);
+    State next = evaluate(moved.sites, std::move(along), stage);
     if (!(next.energy <= state_.energy + k_least_share * length * promise)) continue;
     if (options_.method == RelaxationMethod::lbfgs) {
       TangentField before = slope, change = gradient(next);
@@ -184,6 +192,7 @@ TangentField Relaxation::gradient(const State& state) const {
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (!is_fixed_[i]) field[i] = -2 * state.moments[i].moment;
   }
+  held_.project(state.along, state.sites, field);
   return field;
 }
 
@@ -194,6 +203,7 @@ TangentField Relaxation::lloyd_direction() const {
     const CellMoments& cell = state_.moments[i];
     if (!is_fixed_[i] && cell.mass > 0) field[i] = cell.moment / cell.mass;
   }
+  held_.project(state_.along, state_.sites, field);
   return field;
 }
 
@@ -204,6 +214,7 @@ TangentField Relaxation::quasi_newton_direction(const TangentField& slope) const
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (is_fixed_[i]) field[i].setZero();
   }
+  held_.project(state_.along, state_.sites, field);
   shorten(field);
   return field;
 }
@@ -281,6 +292,17 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count
   check_options(graph.mesh(), options);
   check_count(graph.mesh(), count);
   const JobStage stage(job, "Finding cells");
+  if (!options.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
+  if (!options.curves.empty()) {
+    const HeldSites checked(graph.mesh(), options.curves, {}, 0);
+    const HeldStart held = held_start(graph.mesh(), count, options.curves, options.density, seed);
+    CentroidalVoronoiOptions with_held = options;
+    std::vector<Index> fixed(options.fixed.begin(), options.fixed.end());
+    fixed.insert(fixed.end(), held.fixed.begin(), held.fixed.end());
+    with_held.fixed = fixed;
+    with_held.held = held.held;
+    return relax_sites(graph, held.sites, with_held, stage);
+  }
   const bool coarse = start == RelaxationStart::automatic ? options.max_iterations >= k_long_run
                                                           : start == RelaxationStart::coarse_to_fine;
   if (!coarse || options.max_iterations == 0) {
@@ -308,6 +330,7 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   const State& best = relaxation.state();
   const JobStage last = options.return_when_cancelled ? JobStage() : stage;
   result.sites = best.sites;
+  result.held.assign(options.held.begin(), options.held.end());
   result.cells = make_diagram(CellComplex(*best.claims, options.threads, last), best.sites, last);
   constexpr double k_hexagon = 5 / (36 * 1.7320508075688772);
   const double mass = relaxation.mass();

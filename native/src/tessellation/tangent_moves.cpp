@@ -30,8 +30,7 @@ void move_site(const Mesh& mesh, const SurfacePoint& site, const Vec2& step, Ind
   try {
     const TraceEnd end = trace_end(mesh, site, angle, length);
     moved.sites[i] = end.point;
-    const double arrival = angle_about(mesh, end.point, end.angle) / surface_scale(mesh, end.point);
-    moved.rotations[i] = arrival - heading;
+    moved.rotations[i] = tangent_heading(mesh, end.point, end.angle) - heading;
     moved.steps[i] = rotated(step * (end.length / length), moved.rotations[i]);
   } catch (const InputError&) {
     moved.sites[i] = site;  // the curve would turn without end
@@ -39,6 +38,10 @@ void move_site(const Mesh& mesh, const SurfacePoint& site, const Vec2& step, Ind
 }
 
 }  // namespace
+
+double tangent_heading(const Mesh& mesh, const SurfacePoint& point, double chart_angle) {
+  return angle_about(mesh, point, chart_angle) / surface_scale(mesh, point);
+}
 
 Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads) {
   Moved moved{SurfacePoints(sites.size()), TangentField(sites.size(), Vec2::Zero()),

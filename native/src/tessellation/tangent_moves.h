@@ -22,6 +22,9 @@ struct Moved {
 /// geodesics keeps the angle to the geodesic. O(faces crossed).
 Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads);
 
+/// A direction given in the chart of the point's face as an angle of the point's tangent plane.
+double tangent_heading(const Mesh& mesh, const SurfacePoint& point, double chart_angle);
+
 /// The field carried along.
 void transport(const Moved& moved, TangentField& field);
 
