@@ -1,20 +1,15 @@
-#include <algorithm>
-
 #include "saddleback/saddle_vertex_graph.h"
 
 #include "bind_queries.h"
 #include "convert.h"
+#include "devices.h"
 #include "points.h"
 
 namespace saddleback::bindings {
 namespace {
 
-void check_device(const std::string& device) {
-  if (device == "cuda")
-    throw DeviceError("device: graphs are built on the CPU only in this version; use device=\"auto\"");
-  if (device != "auto" && device != "cpu")
-    throw InputError(message("device: wanted 'auto', 'cpu' or 'cuda', got '", device, "'"));
-}
+// Below this, what the device gains is lost on the way there.
+constexpr Index k_worth_a_device = 20000;
 
 std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k,
                                               const py::object& accuracy, bool exact, const py::object& threads,
@@ -36,9 +31,11 @@ std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, con
           "distances");
     }
   }
-  check_device(device);
   Job* const token = as_job(job);
-  return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });
+  return run_on(device, !exact && mesh.vertex_count() >= k_worth_a_device, [&](int cuda_device) {
+    options.cuda_device = cuda_device;
+    return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });
+  });
 }
 
 void save(const SaddleVertexGraph& graph, const py::object& path, const py::object& job) {
@@ -74,7 +71,8 @@ exact : bool
 threads : int
     0: all cores. The result does not depend on it.
 device : str
-    "auto" or "cpu".
+    "cpu"; "cuda", or "cuda:1" for the second CUDA device; "auto" takes the first one where there is one and the mesh is
+    large enough to gain by it, and the CPU otherwise. The result does not depend on it, to the bit.
 instructions : str
     "auto", or one of "avx512", "avx2", "plain" and "neon" that the machine has. The result does not depend on it.
 job : Job, optional
@@ -86,7 +84,8 @@ InputError
     k below 1 or above the vertex count; accuracy not between 0 and 1; more than one of k, accuracy and exact; not
     enough memory for the exact graph (the message says how much it would take); an unknown device or instruction set.
 DeviceError
-    device="cuda": this build computes on the CPU.
+    device="cuda" where there is no usable CUDA device or module, too little of its memory is free, or it fails; the
+    message says why. Exact graphs are built on the CPU only.
 Cancelled
     The job was cancelled.
 
@@ -169,7 +168,8 @@ void bind_graph(py::module_& m) {
           "Largest relative error accepted; None when built otherwise.")
       .def_property_readonly("is_exact", &SaddleVertexGraph::is_exact, "Whether distances between vertices are exact.")
       .def_property_readonly(
-          "device", [](const SaddleVertexGraph&) { return "cpu"; }, "Which device built the graph.")
+          "device", [](const SaddleVertexGraph& graph) { return graph.built_by_cuda() ? "cuda" : "cpu"; },
+          "Which device found the arcs: \"cpu\" or \"cuda\".")
       .def_property_readonly("build_seconds", &SaddleVertexGraph::build_seconds, "Time of the build.")
       .def("__repr__", [](const SaddleVertexGraph& graph) {
         const std::string how = graph.is_exact() ? "exact"

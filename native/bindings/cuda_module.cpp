@@ -4,6 +4,9 @@
 #include <pybind11/stl.h>
 
 #include "saddleback/cuda_devices.h"
+#include "saddleback/cuda_twins.h"
+
+#include "geodesics/device_arcs.h"
 
 namespace py = pybind11;
 
@@ -21,5 +24,7 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
   py::class_<CudaDevices>(module, "CudaDevices", py::module_local())
       .def_readonly("usable", &CudaDevices::usable)
       .def_readonly("reason", &CudaDevices::reason);
+  static const saddleback::CudaTwins twins{.find_arcs = &saddleback::find_arcs_on_device};
+  module.attr("twins") = py::capsule(&twins);
   module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
 }

@@ -9,6 +9,7 @@ namespace saddleback::bindings {
 
 void bind_charts(py::module_& m);
 void bind_check(py::module_& m);
+void bind_devices(py::module_& m);
 void bind_exact(py::module_& m);
 void bind_fields(py::module_& m);
 void bind_job(py::module_& m);
@@ -108,6 +109,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_fields(m);
   bind_tessellation(m);
   bind_voronoi_2d(m);
+  bind_devices(m);
   bind_charts(m);
   bind_relax_2d(m);
   bind_shapes(m);

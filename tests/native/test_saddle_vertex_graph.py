@@ -243,11 +243,6 @@ def test_a_graph_says_how_it_was_built() -> None:
     assert ["accuracy=0.005" in repr(built[0]), "k=20" in repr(built[2]), "exact" in repr(built[3])] == [True] * 3
 
 
-def test_no_graph_on_the_gpu_yet() -> None:
-    with pytest.raises(sb.DeviceError, match="CPU"):
-        sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()), k=4, device="cuda")
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

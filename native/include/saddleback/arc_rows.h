@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "saddleback/arc_packing.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -31,33 +32,33 @@ class ArcCodec {
   ArcCodec(Index vertex_count, double mean_edge, double longest_path);
 
   /// As `length` will return it, or as an exact multiple of the quantum that is no arc; never zero.
-  double round(double length) const;
-  std::uint64_t pack(Index target, int sector, double length) const;
+  double round(double length) const { return packing_.round(length); }
+  std::uint64_t pack(Index target, int sector, double length) const { return packing_.pack(target, sector, length); }
+  const ArcPacking& packing() const { return packing_; }
 
-  Index target(std::uint64_t word) const { return static_cast<Index>(word & target_mask_); }
-  int sector(std::uint64_t word) const { return static_cast<int>(word >> target_bits_ & 0xFF); }
+  Index target(std::uint64_t word) const { return static_cast<Index>(word & packing_.target_mask); }
+  int sector(std::uint64_t word) const { return static_cast<int>(word >> packing_.target_bits & 0xFF); }
   /// The length's bits are an exponent and a mantissa: put in their places they are a double.
   double length(std::uint64_t word) const {
-    return std::bit_cast<double>(((word & length_mask_) >> k_length_shift) + bias_);
+    return std::bit_cast<double>(((word & packing_.length_mask) >> k_length_shift) + packing_.bias);
   }
-  std::uint64_t length_bits(std::uint64_t word) const { return word & length_mask_; }  ///< order as the lengths do
-  std::uint64_t target_mask() const { return target_mask_; }
+  std::uint64_t length_bits(std::uint64_t word) const { return word & packing_.length_mask; }  ///< order as lengths do
+  std::uint64_t target_mask() const { return packing_.target_mask; }
 
   /// For loops over whole rows: a double's bits are ((word & length_mask) >> k_length_shift) + length_bias.
   static constexpr int k_exponent_bits = 6;  ///< at the top of the word, where a double has a sign and 11
   static constexpr int k_length_shift = 12 - k_exponent_bits;
-  std::uint64_t length_mask() const { return length_mask_; }
-  std::uint64_t length_bias() const { return bias_; }
+  std::uint64_t length_mask() const { return packing_.length_mask; }
+  std::uint64_t length_bias() const { return packing_.bias; }
 
   double quantum() const { return quantum_; }
-  int target_bits() const { return target_bits_; }
+  int target_bits() const { return packing_.target_bits; }
   std::int32_t least_exponent() const { return least_exponent_; }
 
  private:
-  std::uint64_t target_mask_ = 0, length_mask_ = 0, bias_ = 0;
-  int target_bits_ = 1, length_shift_ = 9;
+  ArcPacking packing_;
   std::int32_t least_exponent_ = 0;
-  double quantum_ = 1, least_ = 1, rounder_ = 1;
+  double quantum_ = 1;
 };
 
 /// Leaves memory as it is: whoever fills it touches it first, on a core of its own.

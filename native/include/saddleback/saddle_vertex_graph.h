@@ -26,6 +26,7 @@ struct SaddleVertexGraphOptions {
   double accuracy = 0;                ///< largest relative error of a distance that is accepted
   bool exact = false;                 ///< all straight geodesics: exact between vertices, and much larger
   int threads = 0;                    ///< 0: all cores; the result does not depend on it
+  int cuda_device = -1;               ///< number of the CUDA device that finds the arcs; -1: the processor does
   std::string instructions = "auto";  ///< "avx512", "avx2", "plain", "neon": the result does not depend on it
   static constexpr double k_default_accuracy = 5e-3;
 };
@@ -101,6 +102,7 @@ class SaddleVertexGraph {
   double mean_degree() const { return static_cast<double>(arc_count()) / mesh_->vertex_count(); }
   std::size_t nbytes() const;  ///< memory of the arcs and the order of the nodes
   double build_seconds() const { return build_seconds_; }
+  bool built_by_cuda() const { return built_by_cuda_; }
 
   /// The graph's own numbering of the vertices, along a curve that fills space: neighbours lie close in memory.
   Index node_of(Index vertex) const { return nodes_[vertex]; }
@@ -153,6 +155,7 @@ class SaddleVertexGraph {
   std::vector<Index> nodes_, vertices_;
   ArcRows arcs_;
   double build_seconds_ = 0;
+  bool built_by_cuda_ = false;
   std::shared_ptr<QueryCache> queries_ = make_query_cache();
 };
 

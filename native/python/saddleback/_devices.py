@@ -7,6 +7,8 @@ import os
 from dataclasses import dataclass
 from typing import Any
 
+from saddleback._saddleback import set_cuda_twins
+
 
 @dataclass(frozen=True)
 class Device:
@@ -47,6 +49,20 @@ def cuda_status() -> str:
     if not found:
         return reason
     return f"{len(found)} CUDA device{'s' if len(found) != 1 else ''} can be used"
+
+
+def _usable_cuda_device(wanted: int) -> int | str:
+    """Return the driver's number of the wanted one of the usable CUDA devices, or a sentence telling why there is none.
+
+    The library is told what the CUDA module offers: from here on it can be called.
+    """
+    found, reason = _cuda()
+    if not found:
+        return reason
+    if wanted >= len(found):
+        return f"there is no CUDA device {wanted}; the usable ones are 0 to {len(found) - 1}"
+    set_cuda_twins(_cuda_module().twins)
+    return found[wanted].index
 
 
 def _processor() -> Device:

@@ -11,9 +11,12 @@ _Floats: TypeAlias = NDArray[np.float64]
 _Indices: TypeAlias = NDArray[np.int32]
 _Path: TypeAlias = str | bytes | os.PathLike[str] | os.PathLike[bytes]
 _Method: TypeAlias = Literal["label_correcting", "dijkstra"]
-_Device: TypeAlias = Literal["auto", "cpu", "cuda"]
+_Device: TypeAlias = str  # "auto", "cpu", "cuda", "cuda:1"
 
 __version__: str
+
+def limit_device_memory(bytes: SupportsIndex) -> None: ...
+def set_cuda_twins(twins: object) -> None: ...
 
 class Error(Exception): ...
 class MeshError(Error, ValueError): ...

@@ -15,28 +15,16 @@ constexpr int k_octaves_below_mean = 40;
 }  // namespace
 
 ArcCodec::ArcCodec(Index vertex_count, double mean_edge, double longest_path)
-    : target_bits_(std::max(1, static_cast<int>(std::bit_width(static_cast<std::uint32_t>(vertex_count - 1))))),
-      least_exponent_(std::ilogb(mean_edge) - k_octaves_below_mean),
+    : least_exponent_(std::ilogb(mean_edge) - k_octaves_below_mean),
       quantum_(std::ldexp(1.0, std::ilogb(longest_path) + 1 - k_double_mantissa_bits)) {
-  target_mask_ = (std::uint64_t{1} << target_bits_) - 1;
-  length_shift_ = std::max(target_bits_ + 8, 64 - k_exponent_bits - k_most_mantissa_bits);
-  length_mask_ = ~((std::uint64_t{1} << length_shift_) - 1);
-  bias_ = static_cast<std::uint64_t>(least_exponent_ + k_double_exponent_bias) << k_double_mantissa_bits;
-  least_ = std::max(quantum_, std::ldexp(1.0, least_exponent_));
-  rounder_ = std::ldexp(quantum_, k_double_mantissa_bits);
-}
-
-double ArcCodec::round(double length) const {
-  // No path is as long as the rounder, whose own last bit is the quantum: the sum has room for no smaller ones.
-  return std::max((length + rounder_) - rounder_, least_);
-}
-
-std::uint64_t ArcCodec::pack(Index target, int sector, double length) const {
-  // Half a unit in the last place that is kept; a carry into the exponent is what rounding up means.
-  const std::uint64_t bits = (std::bit_cast<std::uint64_t>(round(length)) - bias_) << k_length_shift;
-  const std::uint64_t half = std::uint64_t{1} << (length_shift_ - 1);
-  return ((bits + half) & length_mask_) | static_cast<std::uint64_t>(sector) << target_bits_ |
-         static_cast<std::uint64_t>(target);
+  packing_.target_bits = std::max(1, static_cast<int>(std::bit_width(static_cast<std::uint32_t>(vertex_count - 1))));
+  packing_.target_mask = (std::uint64_t{1} << packing_.target_bits) - 1;
+  packing_.length_shift = std::max(packing_.target_bits + 8, 64 - k_exponent_bits - k_most_mantissa_bits);
+  packing_.length_mask = ~((std::uint64_t{1} << packing_.length_shift) - 1);
+  packing_.kept_shift = k_length_shift;
+  packing_.bias = static_cast<std::uint64_t>(least_exponent_ + k_double_exponent_bias) << k_double_mantissa_bits;
+  packing_.least = std::max(quantum_, std::ldexp(1.0, least_exponent_));
+  packing_.rounder = std::ldexp(quantum_, k_double_mantissa_bits);
 }
 
 ArcRows::ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, ArcWords words)

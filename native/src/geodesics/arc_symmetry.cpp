@@ -29,6 +29,7 @@ class Union {
  public:
   Union(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found, Index block_size)
       : codec_(codec),
+        packing_(codec.packing()),
         kernel_(kernel),
         found_(found),
         block_size_(block_size),
@@ -61,7 +62,7 @@ class Union {
         const Place reverse = find(target, node);
         if (reverse.arc < 0) {
           missing_[block_index].push_back(
-              {target, MissingArc::Kind::added, reversed(node, block.back_sectors[i], word)});
+              {target, MissingArc::Kind::added, packing_.reversed(node, block.back_sectors[i], word)});
           continue;
         }
         paired_[reverse.block][reverse.arc] = 1;
@@ -70,10 +71,10 @@ class Union {
         // The shorter one replaces its reverse: then that leaves in another direction.
         if (codec_.length_bits(word) < codec_.length_bits(back))
           missing_[block_index].push_back(
-              {target, MissingArc::Kind::replaces, reversed(node, block.back_sectors[i], word)});
+              {target, MissingArc::Kind::replaces, packing_.reversed(node, block.back_sectors[i], word)});
         if (codec_.length_bits(back) < codec_.length_bits(word))
           missing_[block_index].push_back(
-              {node, MissingArc::Kind::replaces, reversed(target, other.back_sectors[reverse.arc], back)});
+              {node, MissingArc::Kind::replaces, packing_.reversed(target, other.back_sectors[reverse.arc], back)});
       }
     }
   }
@@ -88,7 +89,7 @@ class Union {
         const Index target = codec_.target(block.words[i]);
         if (target > node || paired_[block_index][i]) continue;
         missing_[block_index].push_back(
-            {target, MissingArc::Kind::added, reversed(node, block.back_sectors[i], block.words[i])});
+            {target, MissingArc::Kind::added, packing_.reversed(node, block.back_sectors[i], block.words[i])});
       }
     }
   }
@@ -145,11 +146,6 @@ class Union {
     return {b, i < 0 ? -1 : starts_[node] + i};
   }
 
-  std::uint64_t reversed(Index node, std::uint8_t sector, std::uint64_t word) const {
-    return codec_.length_bits(word) | static_cast<std::uint64_t>(sector) << codec_.target_bits() |
-           static_cast<std::uint64_t>(node);
-  }
-
   /// Into the blocks of their nodes, each sorted: the order in which they were found does not matter.
   void sort_missing(int threads, const JobStage& stage) {
     first_missing_.assign(found_.size() + 1, 0);
@@ -182,6 +178,7 @@ class Union {
   }
 
   const ArcCodec& codec_;
+  const ArcPacking& packing_;
   const WaveKernel& kernel_;
   std::vector<FoundArcs>& found_;
   Index block_size_, node_count_ = 0;

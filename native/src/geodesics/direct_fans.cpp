@@ -130,7 +130,7 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, FanA
                                   std::vector<DirectArc>& arcs) {
   const SightingRows rows = waves_->sightings();
   row_.clear();
-  for (const std::int32_t i : waves_->choose(lane)) {
+  for (const std::int32_t i : waves_->chosen(lane)) {
     const Vec2 place(rows.x[i], rows.y[i]);
     DirectArc arc{graph.vertex_of(rows.slot[i] / k_batch), place.norm() * mesh_->waves().unit(), 0, 0};
     if (angles == FanAngles::both) {

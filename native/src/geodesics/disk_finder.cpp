@@ -14,7 +14,7 @@ const std::int32_t k_unreached = std::bit_cast<std::int32_t>(k_infinity);
 constexpr int k_most_windows = 1 << 20;
 // Vertices as far as the k-th, but for rounding, belong to the disk: on regular meshes there are many.
 constexpr float k_as_far = 1 + 1e-5f;
-constexpr float k_much_shorter = 1 - 1e-6f;
+constexpr float k_longer = 1 + 1e-6f;
 constexpr double k_rounding = 1e-6;
 // Finding the k-th nearest takes as long as a generation.
 constexpr int k_generations_per_bound = 3;
@@ -30,6 +30,13 @@ std::int32_t label_of(float distance, bool makes_arc) {
 bool makes_arc(std::int32_t label) { return (label & 1) == 0; }
 
 }  // namespace
+
+WaveScene wave_scene(const WaveMesh& mesh, const DiskRule& rule) {
+  return {mesh.records(), nullptr, nullptr, static_cast<float>(1 + rule.tolerance),
+          static_cast<float>(k_radius_tolerance * rule.tolerance)};
+}
+
+double arc_slack(const DiskRule& rule) { return 1 + std::max(rule.tolerance, k_rounding); }
 
 DiskFinder::DiskFinder(const WaveMesh& mesh, const WaveKernel& kernel, const DiskRule& rule)
     : mesh_(mesh), kernel_(kernel), rule_(rule) {
@@ -125,13 +132,15 @@ bool DiskFinder::run(const JobStage& stage) {
     advance();
   }
   if (by_count()) finish_disks();
+  choose();
   return now_->size() == 0;
 }
 
 /// Sights all windows of this generation, then splits them into the next.
 void DiskFinder::advance() {
-  const WaveScene scene{mesh_.records(), labels_.data(), limits_.data(), static_cast<float>(1 + rule_.tolerance),
-                        static_cast<float>(k_radius_tolerance * rule_.tolerance)};
+  WaveScene scene = wave_scene(mesh_, rule_);
+  scene.labels = labels_.data();
+  scene.limits = limits_.data();
   const int before = sighting_count_;
   sightings_.reserve(sighting_count_ + now_->size() + k_row_padding);
   apexes_.reserve(now_->size() + 2 * k_row_padding);
@@ -175,22 +184,23 @@ void DiskFinder::lower_labels(int from, int to) {
 /// An arc that is not the shortest way stays as long as others may rely on it: no distance in the graph exceeds the
 /// shortest by more than the tolerance, so that longer arcs serve nothing.
 bool DiskFinder::is_kept(std::int32_t slot) const {
-  const double slack = 1 + std::max(rule_.tolerance, k_rounding);
   const float reach = distance_of(arcs_[slot].label);
-  return reach < k_infinity && reach <= slack * distance_of(labels_[slot]) && reach <= limits_[slot % k_batch];
+  return reach < k_infinity && reach <= arc_slack(rule_) * distance_of(labels_[slot]) &&
+         reach <= limits_[slot % k_batch];
 }
 
-std::span<const std::int32_t> DiskFinder::choose(int lane) {
+/// In the order in which they were sighted.
+void DiskFinder::choose() {
   const SightingRows rows = sightings();
-  chosen_.clear();
-  for (const std::int32_t slot : touched_[lane])
-    if (is_kept(slot)) chosen_.push_back(arcs_[slot].sighting);
-  // Edges stay even where something shorter, but no arc, was found.
-  for (int i = 0; i < sighting_count_ && is_link(rows.root[i]); ++i)
-    if (rows.slot[i] % k_batch == lane && !is_kept(rows.slot[i])) chosen_.push_back(i);
-  const std::size_t count = chosen_.size();
-  chosen_.resize(count + k_row_padding);
-  return {chosen_.data(), count};
+  for (auto& chosen : chosen_) chosen.clear();
+  for (int i = 0; i < sighting_count_; ++i) {
+    const std::int32_t slot = rows.slot[i];
+    const bool is_shortest = arcs_[slot].sighting == i && makes_arc(rows.label[i]);
+    // Edges stay even where something shorter, but no arc, was found.
+    if (is_link(rows.root[i]) ? is_shortest || !is_kept(slot) : is_shortest && is_kept(slot))
+      chosen_[slot % k_batch].push_back(i);
+  }
+  for (auto& chosen : chosen_) chosen.resize(chosen.size() + k_row_padding);
 }
 
 void DiskFinder::clear() {
@@ -257,9 +267,9 @@ void DiskFinder::relax_from(std::int32_t slot) {
   if (distance_of(label) >= limits_[lane] || (makes_arc(label) && !mesh_.is_saddle(node))) return;
   const auto offer = [&](Index target, double length) {
     const std::int32_t there = target * k_batch + lane;
-    const std::int32_t bent = label_of(distance_of(label) + static_cast<float>(length), false);
-    // Shorter by more than rounding: what is collinear stays an arc.
-    if (distance_of(bent) >= distance_of(labels_[there]) * k_much_shorter) return;
+    // Longer by more than rounding: what is collinear stays an arc.
+    const std::int32_t bent = label_of((distance_of(label) + static_cast<float>(length)) * k_longer, false);
+    if (bent >= labels_[there]) return;
     if (labels_[there] == k_unreached) touched_[lane].push_back(there);
     labels_[there] = bent;
     changed_.push_back(there);

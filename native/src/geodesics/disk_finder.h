@@ -18,6 +18,11 @@ struct DiskRule {
   double tolerance = 0;  ///< relative
 };
 
+/// What windows of the rule look up: labels and limits are still to be set.
+WaveScene wave_scene(const WaveMesh& mesh, const DiskRule& rule);
+/// What an arc may be longer by than the shortest way found.
+double arc_slack(const DiskRule& rule);
+
 /// A source inside a face or on its border, in a plane of its own with the source at the origin.
 struct FaceSource {
   std::array<Vec2, 3> corner;    ///< counter-clockwise, in units of the WaveMesh
@@ -43,9 +48,11 @@ class DiskFinder {
   /// False when windows were so many that it was stopped: no arc is wrong then, but some may be missing. \throw
   /// Cancelled.
   bool run(const JobStage& stage);
-  /// The sightings that make a lane's arcs, and k_row_padding more entries that are valid. The links are always among
-  /// them.
-  std::span<const std::int32_t> choose(int lane);
+  /// The sightings that make a lane's arcs, in the order in which they were sighted, and k_row_padding more entries
+  /// that are valid. The links are always among them.
+  std::span<const std::int32_t> chosen(int lane) const {
+    return {chosen_[lane].data(), chosen_[lane].size() - k_row_padding};
+  }
   SightingRows sightings() { return sightings_.rows(sources_ == Sources::points); }
 
   /// Sightings of what a source is linked with by mesh edges or, of a point, by the lines to its face's corners. From a
@@ -84,6 +91,7 @@ class DiskFinder {
   void fetch_records(const std::int32_t* edges, int count) const;
   void lower_labels(int from, int to);
   bool is_kept(std::int32_t slot) const;
+  void choose();
 
   bool by_count() const { return rule_.k > 0; }
   bool bound_disk(int lane);
@@ -108,7 +116,7 @@ class DiskFinder {
   alignas(64) std::array<float, k_batch> limits_{};
   std::vector<std::int32_t> changed_;  ///< slots whose neighbours may have to be told of their labels
   std::vector<float> radii_;
-  std::vector<std::int32_t> chosen_;
+  std::array<std::vector<std::int32_t>, k_batch> chosen_;
 };
 
 }  // namespace saddleback

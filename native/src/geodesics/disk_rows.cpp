@@ -18,7 +18,7 @@ void DiskRows::find(Index first, Index count, FoundArcs& found, const JobStage& 
 
 void DiskRows::write_row(Index node, int lane, FoundArcs& found) {
   const SightingRows rows = finder_.sightings();
-  const std::span<const std::int32_t> chosen = finder_.choose(lane);
+  const std::span<const std::int32_t> chosen = finder_.chosen(lane);
   const std::size_t count = chosen.size(), room = count + k_row_padding;
   found.counts.push_back(static_cast<std::int32_t>(count));
   lengths_.resize(room);

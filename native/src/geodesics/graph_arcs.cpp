@@ -96,13 +96,17 @@ void check_memory(const ArcSearch& search, WindowPropagator& propagator, const J
 
 DiskRule disk_rule(Index k, double accuracy) { return {.k = k, .tolerance = k_room * accuracy}; }
 
-std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage) {
+void check_mesh_size(const ArcSearch& search) {
   if (search.unfolding.mesh().halfedge_count() > std::numeric_limits<std::int32_t>::max() / k_batch) {
     throw InputError(message("mesh: ", search.unfolding.mesh().face_count(),
                              " triangles are more than a graph can be "
                              "built for (",
                              std::numeric_limits<std::int32_t>::max() / k_batch / 3, ")"));
   }
+}
+
+std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage) {
+  check_mesh_size(search);
   const JobStage tables = stage.part(0, 0);
   const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, search.threads, tables);
   const WaveSectors sectors(mesh, search.unfolding, search.vertices, ArcCodec::k_sectors, search.threads, tables);

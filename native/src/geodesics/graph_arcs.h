@@ -25,6 +25,9 @@ struct ArcSearch {
 /// What a graph of the given options keeps, of vertices and of other points.
 DiskRule disk_rule(Index k, double accuracy);
 
+/// \throw InputError for more triangles than slots can be numbered for.
+void check_mesh_size(const ArcSearch& search);
+
 /// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
 std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage);
 

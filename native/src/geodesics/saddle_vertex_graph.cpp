@@ -9,9 +9,11 @@
 #include "saddleback/error.h"
 
 #include "geodesics/arc_symmetry.h"
+#include "geodesics/arc_twin.h"
 #include "geodesics/arc_unfolding.h"
 #include "geodesics/graph_arcs.h"
 #include "geodesics/path_bound.h"
+#include "geodesics/twin_arcs.h"
 #include "mesh/hilbert.h"
 #include "support/parallel.h"
 
@@ -48,6 +50,14 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   order_nodes(options.threads);
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh));
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
+  if (options.cuda_device >= 0) {
+    if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
+    ArcTwinTimes times;
+    arcs_ = twin_arcs(search, disk_rule(k_, accuracy_), options.cuda_device, times, stage);
+    built_by_cuda_ = true;
+    build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    return;
+  }
   // Joining takes the rest, and next to nothing beside exact disks.
   const double found_at = exact_ ? 0.99 : 0.9;
   const JobStage finding = stage.part(0, found_at);

@@ -22,6 +22,7 @@ class WaveMesh {
   Index node_count() const { return static_cast<Index>(first_.size()) - 1; }
   Index begin(Index node) const { return first_[node]; }  ///< edges out of a node: [begin, end)
   Index end(Index node) const { return first_[node + 1]; }
+  Index edge_count() const { return static_cast<Index>(records_.size()); }
   const EdgeRecord* records() const { return records_.data(); }
   double unit() const { return unit_; }
 
@@ -35,6 +36,13 @@ class WaveMesh {
   bool has_left(Index edge) const { return records_[edge].left >= 0; }
   /// The edge from one node to another. O(degree).
   Index edge_between(Index from, Index to) const;
+
+  /// Whole tables, for those who copy them elsewhere: per node, with the number of edges at the end; per edge; per
+  /// edge; per node.
+  const Index* firsts() const { return first_.data(); }
+  const Index* targets() const { return targets_.data(); }
+  const double* lengths() const { return lengths_.data(); }
+  const std::uint8_t* saddles() const { return saddles_.data(); }
 
  private:
   std::vector<EdgeRecord> records_;
@@ -71,6 +79,12 @@ class WaveSectors {
   /// Of the way from its face's apex to its origin.
   float apex_sector(Index edge) const { return apex_sectors_[edge]; }
   float per_radian(Index node) const { return per_radian_[node]; }
+
+  /// Whole tables, as WaveMesh's.
+  const float* sectors() const { return sectors_.data(); }
+  const float* reverse_sectors() const { return reverse_sectors_.data(); }
+  const float* apex_sectors() const { return apex_sectors_.data(); }
+  const float* per_radians() const { return per_radian_.data(); }
 
  private:
   std::vector<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;

@@ -1,0 +1,63 @@
+#pragma once
+// What passes between a graph's construction and its twin on a CUDA device: plain data and calls back, since the two
+// belong to modules that are not linked with one another.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "saddleback/arc_packing.h"
+#include "saddleback/cuda_twins.h"
+
+#include "geodesics/window_waves.h"
+
+namespace saddleback {
+
+/// Where and how arcs are to be found. Arrays are the caller's and live through the call.
+struct ArcTwinRequest {
+  int device = 0;                ///< the driver's number
+  std::uint64_t most_bytes = 0;  ///< of device memory; 0: what is free
+
+  // The rule, as DiskRule and WaveScene have it.
+  std::int32_t k = 0;
+  float detour = 1, excess = 0;
+  double slack = 1;
+
+  // The mesh, as WaveMesh and WaveSectors hold it.
+  std::int32_t node_count = 0, edge_count = 0;
+  const EdgeRecord* records = nullptr;
+  const std::int32_t* first = nullptr;  ///< (node_count + 1,)
+  const std::int32_t* targets = nullptr;
+  const double* lengths = nullptr;
+  const float *sectors = nullptr, *reverse_sectors = nullptr, *apex_sectors = nullptr;
+  const float* per_radian = nullptr;      ///< per node
+  const std::uint8_t* saddles = nullptr;  ///< per node
+  double unit = 1;
+  ArcPacking packing;
+};
+
+/// Rows of arcs that the caller found.
+struct FoundRows {
+  const std::int32_t* counts;        ///< per node asked for
+  const std::uint64_t* words;        ///< row after row
+  const std::uint8_t* back_sectors;  ///< per word
+  std::size_t word_count;
+};
+
+/// What the twin asks of its caller. No call throws.
+struct ArcTwinCaller {
+  void* self = nullptr;
+  /// Tells the share done; false: stop.
+  bool (*keep_going)(void* self, double fraction) = nullptr;
+  /// Finds the arcs of nodes that are too much for the device; false: stop.
+  bool (*find_rows)(void* self, const std::int32_t* nodes, std::int32_t count, FoundRows* rows) = nullptr;
+  /// Makes room for the graph's offsets (node_count + 1) and words; false: stop.
+  bool (*make_room)(void* self, std::int64_t words, std::int64_t** offsets_to, std::uint64_t** words_to) = nullptr;
+};
+
+/// How long the parts took, in seconds by the device's clock, and how the sources went.
+struct ArcTwinTimes {
+  double upload = 0, find = 0, unite = 0, download = 0;
+  std::int64_t second_pass = 0, by_caller = 0;  ///< sources
+};
+
+}  // namespace saddleback

@@ -1,0 +1,406 @@
+// Finding a graph's arcs on a CUDA device. A warp takes a source or two at a time, with all their windows in shared
+// memory; sources that overflow it are done again with room in global memory, and what overflows even that is left to
+// the caller. The answer is the processor's, to the bit.
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "geodesics/device_arcs.h"
+#include "geodesics/device_union.cuh"
+#include "geodesics/device_waves.cuh"
+
+namespace saddleback {
+namespace {
+
+constexpr int k_draft_room = 2048;
+constexpr int k_large_draft_room = 1 << 15;
+// Sources between two looks at whether to go on: a few milliseconds.
+constexpr std::int32_t k_sources_per_launch = 1 << 18;
+
+/// Room for the windows of a source and the vertices that it reaches. What overflows one goes on to the next.
+template <bool All_, int Ring, int Slots, bool RingsAreShared>
+struct Room {
+  static constexpr bool All = All_;
+  [[maybe_unused]] static constexpr bool rings_are_shared = RingsAreShared;
+  using Table = WaveTable<All, 1, Slots>;
+  using Rings = WaveRings<All, Ring>;
+  [[maybe_unused]] static constexpr std::size_t shared_bytes = sizeof(Table) + (RingsAreShared ? sizeof(Rings) : 0);
+};
+template <bool All>
+using SmallRoom = Room<All, 48, 256, true>;
+template <bool All>
+using MiddleRoom = Room<All, 160, 512, false>;
+template <bool All>
+using WideRoom = Room<All, 512, 2048, false>;
+/// In global memory, two thousand sources at a time.
+template <bool All>
+using LargeRoom = Room<All, 4096, 1 << 14, false>;
+
+struct Work {
+  const std::int32_t* nodes;  ///< null: all from `begin` on
+  std::int32_t begin, count;
+  std::int32_t* next;      ///< counts what is taken
+  std::int32_t* failed;    ///< nodes
+  std::int32_t* failures;  ///< their number
+};
+
+template <class Room>
+__device__ void work_through(const DeviceMesh& mesh, const Work& work, typename Room::Table& table,
+                             typename Room::Rings& rings, Sighting* draft, int draft_room, const DeviceRows& rows) {
+  const int lane = threadIdx.x & 31;
+  constexpr int k_sources = Room::Table::Sources;
+  WarpWaves<Room::All, typename Room::Table, typename Room::Rings> waves(mesh, table, rings, draft, draft_room);
+  while (true) {
+    std::int32_t start = 0;
+    if (lane == 0) start = atomicAdd(work.next, k_sources);
+    start = __shfl_sync(k_whole_warp, start, 0);
+    if (start >= work.count) return;
+    const int sources = min(k_sources, work.count - start);
+    const auto node_of = [&](int source) {
+      return work.nodes ? work.nodes[start + source] : work.begin + start + source;
+    };
+    waves.begin();
+    for (int source = 0; source < sources; ++source) waves.add_node(source, node_of(source));
+    if (waves.run()) {
+      for (int source = 0; source < sources; ++source) {
+        int count = 0;
+        waves.for_each_kept(source, [&](const Sighting&, unsigned kept) { count += __popc(kept); });
+        const RowPlace row = rows.reserve(node_of(source), count);
+        std::int64_t at = row.first;
+        waves.for_each_kept(source, [&](const Sighting& seen, unsigned kept) {
+          if (row.fits && (kept >> lane & 1)) {
+            const auto [word, back_sector] = waves.arc_of(seen);
+            rows.put(at + __popc(kept & ((1u << lane) - 1)), word, back_sector);
+          }
+          at += __popc(kept);
+        });
+      }
+    } else if (lane < sources) {
+      work.failed[atomicAdd(work.failures, 1)] = node_of(lane);
+    }
+    __syncwarp();
+  }
+}
+
+/// One warp a block. The table is in shared memory, and the rings where they are small.
+template <class Room>
+__global__ void __launch_bounds__(32)
+    find_arcs(DeviceMesh mesh, Work work, typename Room::Rings* rings, Sighting* drafts, DeviceRows rows) {
+  extern __shared__ __align__(16) char memory[];
+  auto& table = *reinterpret_cast<typename Room::Table*>(memory);
+  Sighting* const draft = drafts + static_cast<std::size_t>(blockIdx.x) * k_draft_room;
+  if constexpr (Room::rings_are_shared) {
+    auto& own = *reinterpret_cast<typename Room::Rings*>(memory + sizeof table);
+    work_through<Room>(mesh, work, table, own, draft, k_draft_room, rows);
+  } else {
+    work_through<Room>(mesh, work, table, rings[blockIdx.x], draft, k_draft_room, rows);
+  }
+}
+
+/// One warp a block, in global memory.
+template <class Room>
+__global__ void __launch_bounds__(32) find_large_disks(DeviceMesh mesh, Work work, typename Room::Table* tables,
+                                                       typename Room::Rings* rings, Sighting* drafts, DeviceRows rows) {
+  work_through<Room>(mesh, work, tables[blockIdx.x], rings[blockIdx.x],
+                     drafts + static_cast<std::size_t>(blockIdx.x) * k_large_draft_room, k_large_draft_room, rows);
+}
+
+/// The caller asked to stop.
+struct Stopped {};
+
+/// Host memory of the request, on the device.
+class Tables {
+ public:
+  Tables(const ArcTwinRequest& r, cudaStream_t stream)
+      : records_({r.records, edges(r)}, stream),
+        first_({r.first, nodes(r) + 1}, stream),
+        targets_({r.targets, edges(r)}, stream),
+        lengths_({r.lengths, edges(r)}, stream),
+        sectors_({r.sectors, edges(r)}, stream),
+        reverse_sectors_({r.reverse_sectors, edges(r)}, stream),
+        apex_sectors_({r.apex_sectors, edges(r)}, stream),
+        per_radian_({r.per_radian, nodes(r)}, stream),
+        saddles_({r.saddles, nodes(r)}, stream),
+        mesh_{records_.data(),
+              first_.data(),
+              targets_.data(),
+              lengths_.data(),
+              sectors_.data(),
+              reverse_sectors_.data(),
+              apex_sectors_.data(),
+              per_radian_.data(),
+              saddles_.data(),
+              r.unit,
+              r.packing,
+              r.k,
+              r.detour,
+              r.excess,
+              r.slack} {}
+  const DeviceMesh& mesh() const { return mesh_; }
+
+ private:
+  static std::size_t edges(const ArcTwinRequest& r) { return static_cast<std::size_t>(r.edge_count); }
+  static std::size_t nodes(const ArcTwinRequest& r) { return static_cast<std::size_t>(r.node_count); }
+  DeviceBuffer<EdgeRecord> records_;
+  DeviceBuffer<std::int32_t> first_, targets_;
+  DeviceBuffer<double> lengths_;
+  DeviceBuffer<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;
+  DeviceBuffer<std::uint8_t> saddles_;
+  DeviceMesh mesh_;
+};
+
+/// Time between two moments of a stream.
+class Stopwatch {
+ public:
+  explicit Stopwatch(cudaStream_t stream) : stream_(stream) {
+    check_cuda(cudaEventCreate(&from_), "making an event");
+    check_cuda(cudaEventCreate(&to_), "making an event");
+    check_cuda(cudaEventRecord(from_, stream), "recording an event");
+  }
+  ~Stopwatch() {
+    (void)cudaEventDestroy(from_);
+    (void)cudaEventDestroy(to_);
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  /// Seconds since the last lap; waits for the stream.
+  double lap() {
+    check_cuda(cudaEventRecord(to_, stream_), "recording an event");
+    check_cuda(cudaEventSynchronize(to_), "waiting for the device");
+    float milliseconds = 0;
+    check_cuda(cudaEventElapsedTime(&milliseconds, from_, to_), "reading the clock");
+    std::swap(from_, to_);
+    return milliseconds * 1e-3;
+  }
+
+ private:
+  cudaStream_t stream_;
+  cudaEvent_t from_ = nullptr, to_ = nullptr;
+};
+
+class Stream {
+ public:
+  Stream() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream"); }
+  ~Stream() {
+    (void)cudaStreamSynchronize(stream_);
+    (void)cudaStreamDestroy(stream_);
+  }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  operator cudaStream_t() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+/// Words a row that memory is taken for at first; more are found to be needed when they are.
+std::int64_t first_guess(const ArcTwinRequest& r) {
+  const std::int64_t per_row = r.k > 0 ? r.k + r.k / 8 + 24 : 96;
+  return per_row * r.node_count + 4096;
+}
+
+class ArcFinder {
+ public:
+  ArcFinder(const ArcTwinRequest& request, const ArcTwinCaller& caller, cudaStream_t stream)
+      : request_(request),
+        caller_(caller),
+        stream_(stream),
+        tables_(request, stream),
+        failed_(static_cast<std::size_t>(request.node_count), stream),
+        counters_(2, stream),
+        rows_(request.node_count, first_guess(request), request.packing.target_mask, stream) {}
+
+  void find(ArcTwinTimes& times) {
+    while (true) {
+      find_all(times);
+      const std::int64_t wanted = rows_.words_wanted();
+      if (wanted <= rows_.room()) return;
+      rows_ = RowStore(request_.node_count, wanted + wanted / 16, request_.packing.target_mask, stream_);
+    }
+  }
+  RowStore& rows() { return rows_; }
+
+ private:
+  void find_all(ArcTwinTimes& times) {
+    rows_.clear();
+    times.second_pass = times.by_caller = 0;
+    if (request_.k > 0) {
+      find_by_size<true>(request_.k <= 40, times);
+    } else {
+      find_by_size<false>(request_.excess >= 6e-3, times);
+    }
+  }
+
+  /// `small` when most sources need little memory: then more of them run at once.
+  template <bool All>
+  void find_by_size(bool small, ArcTwinTimes& times) {
+    std::vector<std::int32_t> left;
+    bool all = true;
+    const auto pass = [&]<class Room>(std::type_identity<Room>) {
+      left = find_in_shared<Room>(all ? nullptr : &left);
+      all = false;
+    };
+    if (small) pass(std::type_identity<SmallRoom<All>>());
+    if (all || !left.empty()) pass(std::type_identity<MiddleRoom<All>>());
+    times.second_pass = static_cast<std::int64_t>(left.size());
+    if (!left.empty()) pass(std::type_identity<WideRoom<All>>());
+    if (!left.empty()) find_large<All>(left, times);
+  }
+
+  /// Of all nodes or those listed. \return what did not find room.
+  template <class Room>
+  std::vector<std::int32_t> find_in_shared(const std::vector<std::int32_t>* nodes) {
+    const auto kernel = find_arcs<Room>;
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, Room::shared_bytes),
+               "asking for shared memory");
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, 100),
+               "asking for shared memory");
+    const int blocks = blocks_of(reinterpret_cast<const void*>(kernel), Room::shared_bytes);
+    DeviceBuffer<Sighting> drafts(static_cast<std::size_t>(blocks) * k_draft_room, stream_);
+    DeviceBuffer<typename Room::Rings> rings(Room::rings_are_shared ? 0 : static_cast<std::size_t>(blocks), stream_);
+    const std::int32_t all = nodes ? static_cast<std::int32_t>(nodes->size()) : request_.node_count;
+    const DeviceBuffer<std::int32_t> list(
+        nodes ? std::span<const std::int32_t>(*nodes) : std::span<const std::int32_t>(), stream_);
+    counters_.fill_bytes(0);
+    for (std::int32_t begin = 0; begin < all; begin += k_sources_per_launch) {
+      report(nodes ? 0.99 : static_cast<double>(begin) / all);
+      const std::int32_t count = std::min(k_sources_per_launch, all - begin);
+      check_cuda(cudaMemsetAsync(counters_.data(), 0, sizeof(std::int32_t), stream_), "clearing a counter");
+      const Work part = work(nodes ? list.data() + begin : nullptr, begin, count, failed_);
+      kernel<<<std::min(blocks, count), 32, Room::shared_bytes, stream_>>>(tables_.mesh(), part, rings.data(),
+                                                                           drafts.data(), rows_.view());
+      check_cuda(cudaGetLastError(), "finding arcs");
+      if (all > k_sources_per_launch) check_cuda(cudaStreamSynchronize(stream_), "finding arcs");
+    }
+    return failures(failed_);
+  }
+
+  template <bool All>
+  void find_large(const std::vector<std::int32_t>& nodes, ArcTwinTimes& times) {
+    using Room = LargeRoom<All>;
+    const auto kernel = find_large_disks<Room>;
+    const int most = blocks_of(reinterpret_cast<const void*>(kernel), 0);
+    const int blocks = std::min({most, static_cast<int>(nodes.size()), 2048});
+    DeviceBuffer<Sighting> drafts(static_cast<std::size_t>(blocks) * k_large_draft_room, stream_);
+    DeviceBuffer<typename Room::Table> tables(static_cast<std::size_t>(blocks), stream_);
+    DeviceBuffer<typename Room::Rings> rings(static_cast<std::size_t>(blocks), stream_);
+    const DeviceBuffer<std::int32_t> list(nodes, stream_);
+    DeviceBuffer<std::int32_t> failed(nodes.size(), stream_);
+    counters_.fill_bytes(0);
+    kernel<<<blocks, 32, 0, stream_>>>(tables_.mesh(),
+                                       work(list.data(), 0, static_cast<std::int32_t>(nodes.size()), failed),
+                                       tables.data(), rings.data(), drafts.data(), rows_.view());
+    check_cuda(cudaGetLastError(), "finding arcs of large disks");
+    std::vector<std::int32_t> left = failures(failed);
+    times.by_caller = static_cast<std::int64_t>(left.size());
+    if (left.empty()) return;
+    std::ranges::sort(left);
+    FoundRows found{};
+    if (!caller_.find_rows(caller_.self, left.data(), static_cast<std::int32_t>(left.size()), &found)) throw Stopped();
+    rows_.append(left, found);
+  }
+
+  int blocks_of(const void* kernel, std::size_t shared) const {
+    int per_processor = 0, processors = 0;
+    check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, kernel, 32, shared),
+               "asking for occupancy");
+    check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, request_.device),
+               "asking for the number of processors");
+    return std::max(1, per_processor) * processors;
+  }
+
+  Work work(const std::int32_t* nodes, std::int32_t begin, std::int32_t count, DeviceBuffer<std::int32_t>& failed) {
+    return {nodes, begin, count, counters_.data(), failed.data(), counters_.data() + 1};
+  }
+
+  std::vector<std::int32_t> failures(const DeviceBuffer<std::int32_t>& failed) {
+    std::int32_t counts[2];
+    counters_.read(counts);
+    std::vector<std::int32_t> nodes(static_cast<std::size_t>(counts[1]));
+    if (!nodes.empty()) {
+      check_cuda(cudaMemcpyAsync(nodes.data(), failed.data(), nodes.size() * sizeof(std::int32_t),
+                                 cudaMemcpyDeviceToHost, stream_),
+                 "copying from the device");
+      check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
+      std::ranges::sort(nodes);  // they failed in any order
+    }
+    return nodes;
+  }
+
+  void report(double fraction) const {
+    if (!caller_.keep_going(caller_.self, 0.9 * fraction)) throw Stopped();
+  }
+
+  const ArcTwinRequest& request_;
+  const ArcTwinCaller& caller_;
+  cudaStream_t stream_;
+  Tables tables_;
+  DeviceBuffer<std::int32_t> failed_, counters_;
+  RowStore rows_;
+};
+
+/// What a build takes at most, in bytes; rows once more for the union.
+std::uint64_t bytes_needed(const ArcTwinRequest& r) {
+  const auto edges = static_cast<std::uint64_t>(r.edge_count), nodes = static_cast<std::uint64_t>(r.node_count);
+  const auto words = static_cast<std::uint64_t>(first_guess(r));
+  constexpr std::uint64_t k_drafts = std::uint64_t{96} << 20;
+  return edges * (sizeof(EdgeRecord) + 24) + nodes * 48 + words * (13 + 10) + k_drafts;
+}
+
+void check_room(const ArcTwinRequest& request) {
+  std::size_t free = 0, total = 0;
+  check_cuda(cudaMemGetInfo(&free, &total), "asking for free memory");
+  const std::uint64_t room = request.most_bytes > 0 ? std::min<std::uint64_t>(request.most_bytes, free) : free;
+  const std::uint64_t needed = bytes_needed(request);
+  if (needed <= room) return;
+  const auto megabytes = [](std::uint64_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20); };
+  throw std::runtime_error("the graph needs about " + megabytes(needed) + " MB of the device's memory, and " +
+                           megabytes(room) + " MB are free");
+}
+
+void keep_freed_memory(int device) {
+  cudaMemPool_t pool = nullptr;
+  check_cuda(cudaDeviceGetDefaultMemPool(&pool, device), "asking for the memory pool");
+  std::uint64_t everything = ~std::uint64_t{0};
+  check_cuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &everything), "setting up the memory pool");
+}
+
+void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, ArcTwinTimes& times) {
+  check_cuda(cudaSetDevice(request.device), "choosing the device");
+  check_room(request);
+  keep_freed_memory(request.device);
+  const Stream stream;
+  Stopwatch watch(stream);
+  ArcFinder finder(request, caller, stream);
+  times.upload = watch.lap();
+  finder.find(times);
+  times.find = watch.lap();
+  DeviceUnion arcs(request.packing, finder.rows(), stream);
+  times.unite = watch.lap();
+  if (!caller.keep_going(caller.self, 0.95)) throw Stopped();
+  std::int64_t* offsets = nullptr;
+  std::uint64_t* words = nullptr;
+  if (!caller.make_room(caller.self, arcs.count(), &offsets, &words)) throw Stopped();
+  watch.lap();
+  arcs.read(offsets, words);
+  times.download = watch.lap();
+}
+
+}  // namespace
+
+TwinStatus find_arcs_on_device(const ArcTwinRequest& request, const ArcTwinCaller& caller, ArcTwinTimes& times,
+                               TwinReason& reason) {
+  try {
+    build(request, caller, times);
+    return TwinStatus::done;
+  } catch (const Stopped&) {
+    return TwinStatus::stopped;
+  } catch (const std::exception& failure) {
+    reason = failure.what();
+    return TwinStatus::failed;
+  }
+}
+
+}  // namespace saddleback

@@ -1,0 +1,276 @@
+#pragma once
+// Rows of arcs on the device as they are found, and their union with their reverses: the twin of arc_symmetry.
+
+#include <cub/device/device_scan.cuh>
+#include <vector>
+
+#include "geodesics/arc_twin.h"
+#include "support/device_buffer.h"
+
+namespace saddleback {
+namespace {
+
+constexpr int k_block_threads = 256;
+constexpr int k_rows_per_block = k_block_threads / 32;
+
+struct RowPlace {
+  std::int64_t first;
+  bool fits;
+};
+
+/// Rows in the order in which they were found: each is in one piece.
+struct DeviceRows {
+  std::int64_t* firsts;  ///< per node
+  std::int32_t* counts;  ///< per node
+  std::uint64_t* words;
+  std::int32_t* targets;  ///< of the words, to search in
+  std::uint8_t* back_sectors;
+  unsigned long long* taken;
+  std::int64_t room;
+  std::uint64_t target_mask;
+
+  /// By all lanes of a warp.
+  __device__ RowPlace reserve(std::int32_t node, int count) const {
+    unsigned long long first = 0;
+    if ((threadIdx.x & 31) == 0) {
+      first = atomicAdd(taken, static_cast<unsigned long long>(count));
+      firsts[node] = static_cast<std::int64_t>(first);
+      counts[node] = count;
+    }
+    first = __shfl_sync(0xffffffffu, first, 0);
+    return {static_cast<std::int64_t>(first), static_cast<std::int64_t>(first) + count <= room};
+  }
+  __device__ void put(std::int64_t at, std::uint64_t word, std::uint8_t back_sector) const {
+    words[at] = word;
+    targets[at] = static_cast<std::int32_t>(word & target_mask);
+    back_sectors[at] = back_sector;
+  }
+};
+
+/// A reverse that its row lacks: it is the `number`-th that the row gets.
+struct AddedArc {
+  std::int32_t node, number;
+  std::uint64_t word;
+};
+
+/// Puts each arc, or its reverse where that is shorter, into `own`; counts and lists the reverses that are missing.
+__global__ void pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t nodes, std::uint64_t* own,
+                          std::int32_t* added_counts, AddedArc* added, unsigned long long* added_count,
+                          std::int64_t added_room) {
+  const int lane = threadIdx.x & 31;
+  const std::int32_t node =
+      static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
+  if (node >= nodes) return;
+  const std::int64_t first = rows.firsts[node];
+  const int count = rows.counts[node];
+  for (int base = 0; base < count; base += 32) {
+    const int mine = base + lane;
+    std::int64_t reverse = -1, other_first = 0;
+    std::int32_t target = 0;
+    int other_count = 0;
+    if (mine < count) {
+      target = rows.targets[first + mine];
+      other_first = rows.firsts[target];
+      other_count = rows.counts[target];
+    }
+    for (int j = 0; j < min(32, count - base); ++j) {  // the whole warp searches one row after the other
+      const std::int64_t there = __shfl_sync(0xffffffffu, other_first, j);
+      const int length = __shfl_sync(0xffffffffu, other_count, j);
+      for (int at = 0; at < length; at += 32) {
+        const unsigned here = __ballot_sync(0xffffffffu, at + lane < length && rows.targets[there + at + lane] == node);
+        if (here == 0) continue;
+        if (lane == j) reverse = there + at + __ffs(static_cast<int>(here)) - 1;
+        break;
+      }
+    }
+    if (mine >= count) continue;
+    const std::uint64_t word = rows.words[first + mine];
+    std::uint64_t kept = word;
+    if (reverse >= 0) {
+      const std::uint64_t back = rows.words[reverse];
+      if ((back & packing.length_mask) < (word & packing.length_mask))
+        kept = packing.reversed(target, rows.back_sectors[reverse], back);
+    } else {
+      const std::int32_t number = atomicAdd(&added_counts[target], 1);
+      const auto at = static_cast<std::int64_t>(atomicAdd(added_count, 1ull));
+      if (at < added_room) added[at] = {target, number, packing.reversed(node, rows.back_sectors[first + mine], word)};
+    }
+    own[first + mine] = kept;
+  }
+}
+
+__global__ void add_counts(const std::int32_t* counts, const std::int32_t* added, std::int32_t nodes,
+                           std::int64_t* totals, std::int64_t* added_totals) {
+  const auto node = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (node > nodes) return;
+  totals[node] = node < nodes ? counts[node] + added[node] : 0;  // the scan's last entry becomes the sum
+  added_totals[node] = node < nodes ? added[node] : 0;
+}
+
+__global__ void gather_added(const AddedArc* added, std::int64_t count, const std::int64_t* first,
+                             std::uint64_t* words) {
+  const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i < count) words[first[added[i].node] + added[i].number] = added[i].word;
+}
+
+/// A row's own arcs in their order, then those that were added, sorted.
+__global__ void write_rows(DeviceRows rows, std::int32_t nodes, const std::uint64_t* own, const std::uint64_t* added,
+                           const std::int64_t* added_first, const std::int64_t* offsets, std::uint64_t* words) {
+  const int lane = threadIdx.x & 31;
+  const std::int32_t node =
+      static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
+  if (node >= nodes) return;
+  const std::int64_t first = rows.firsts[node], to = offsets[node];
+  const int count = rows.counts[node];
+  for (int i = lane; i < count; i += 32) words[to + i] = own[first + i];
+  const std::uint64_t* const others = added + added_first[node];
+  const int other_count = static_cast<int>(added_first[node + 1] - added_first[node]);
+  for (int i = lane; i < other_count; i += 32) {
+    int rank = 0;
+    for (int j = 0; j < other_count; ++j) rank += others[j] < others[i];
+    words[to + count + rank] = others[i];
+  }
+}
+
+/// Owns what DeviceRows shows.
+class RowStore {
+ public:
+  RowStore(std::int32_t nodes, std::int64_t room, std::uint64_t target_mask, cudaStream_t stream)
+      : stream_(stream),
+        nodes_(nodes),
+        room_(room),
+        target_mask_(target_mask),
+        firsts_(static_cast<std::size_t>(nodes), stream),
+        counts_(static_cast<std::size_t>(nodes), stream),
+        words_(static_cast<std::size_t>(room), stream),
+        targets_(static_cast<std::size_t>(room), stream),
+        back_sectors_(static_cast<std::size_t>(room), stream),
+        taken_(1, stream) {}
+
+  void clear() {
+    taken_.fill_bytes(0);
+    counts_.fill_bytes(0);
+  }
+  DeviceRows view() {
+    return {firsts_.data(),       counts_.data(), words_.data(), targets_.data(),
+            back_sectors_.data(), taken_.data(),  room_,         target_mask_};
+  }
+  std::int32_t nodes() const { return nodes_; }
+  std::int64_t room() const { return room_; }
+  /// Waits for the stream.
+  std::int64_t words_wanted() const {
+    unsigned long long taken = 0;
+    taken_.read({&taken, 1});
+    return static_cast<std::int64_t>(taken);
+  }
+
+  /// Adds rows that were found elsewhere.
+  void append(const std::vector<std::int32_t>& nodes, const FoundRows& found) {
+    const std::int64_t first = words_wanted();
+    const auto taken = static_cast<unsigned long long>(first) + found.word_count;
+    check_cuda(cudaMemcpyAsync(taken_.data(), &taken, sizeof taken, cudaMemcpyHostToDevice, stream_), "copying rows");
+    if (static_cast<std::int64_t>(taken) <= room_) {
+      std::vector<std::int32_t> targets(found.word_count);
+      for (std::size_t i = 0; i < targets.size(); ++i)
+        targets[i] = static_cast<std::int32_t>(found.words[i] & target_mask_);
+      copy(words_.data() + first, found.words, found.word_count);
+      copy(targets_.data() + first, targets.data(), targets.size());
+      copy(back_sectors_.data() + first, found.back_sectors, found.word_count);
+      std::int64_t at = first;
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        copy(firsts_.data() + nodes[i], &at, 1);
+        copy(counts_.data() + nodes[i], found.counts + i, 1);
+        check_cuda(cudaStreamSynchronize(stream_), "copying rows");
+        at += found.counts[i];
+      }
+    }
+    check_cuda(cudaStreamSynchronize(stream_), "copying rows");
+  }
+
+ private:
+  template <class Number>
+  void copy(Number* to, const Number* from, std::size_t count) {
+    check_cuda(cudaMemcpyAsync(to, from, count * sizeof(Number), cudaMemcpyHostToDevice, stream_), "copying rows");
+  }
+
+  cudaStream_t stream_;
+  std::int32_t nodes_;
+  std::int64_t room_;
+  std::uint64_t target_mask_;
+  DeviceBuffer<std::int64_t> firsts_;
+  DeviceBuffer<std::int32_t> counts_;
+  DeviceBuffer<std::uint64_t> words_;
+  DeviceBuffer<std::int32_t> targets_;
+  DeviceBuffer<std::uint8_t> back_sectors_;
+  DeviceBuffer<unsigned long long> taken_;
+};
+
+/// A graph's arcs in compressed rows, on the device.
+class DeviceUnion {
+ public:
+  DeviceUnion(const ArcPacking& packing, RowStore& rows, cudaStream_t stream)
+      : stream_(stream), nodes_(rows.nodes()), offsets_(static_cast<std::size_t>(nodes_) + 1, stream) {
+    const std::int64_t found = rows.words_wanted();
+    const auto places = static_cast<std::size_t>(nodes_) + 1;
+    DeviceBuffer<std::uint64_t> own(static_cast<std::size_t>(found), stream);
+    DeviceBuffer<std::int32_t> added_counts(places, stream);
+    DeviceBuffer<AddedArc> added(static_cast<std::size_t>(found), stream);
+    DeviceBuffer<unsigned long long> added_count(1, stream);
+    DeviceBuffer<std::int64_t> totals(places, stream), added_totals(places, stream), added_first(places, stream);
+    added_counts.fill_bytes(0);
+    added_count.fill_bytes(0);
+    const auto row_blocks = static_cast<unsigned>((nodes_ + k_rows_per_block - 1) / k_rows_per_block);
+    pair_arcs<<<row_blocks, k_block_threads, 0, stream>>>(rows.view(), packing, nodes_, own.data(), added_counts.data(),
+                                                          added.data(), added_count.data(), found);
+    check_cuda(cudaGetLastError(), "pairing arcs");
+    const auto place_blocks = static_cast<unsigned>(nodes_ / k_block_threads + 1);
+    add_counts<<<place_blocks, k_block_threads, 0, stream>>>(rows.view().counts, added_counts.data(), nodes_,
+                                                             totals.data(), added_totals.data());
+    check_cuda(cudaGetLastError(), "counting arcs");
+    scan(totals, offsets_);
+    scan(added_totals, added_first);
+    unsigned long long missing = 0;
+    check_cuda(cudaMemcpyAsync(&count_, offsets_.data() + nodes_, sizeof count_, cudaMemcpyDeviceToHost, stream),
+               "counting arcs");
+    added_count.read({&missing, 1});
+    words_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(count_), stream);
+    DeviceBuffer<std::uint64_t> others(static_cast<std::size_t>(missing), stream);
+    if (missing > 0) {
+      const auto blocks = static_cast<unsigned>((missing + k_block_threads - 1) / k_block_threads);
+      gather_added<<<blocks, k_block_threads, 0, stream>>>(added.data(), static_cast<std::int64_t>(missing),
+                                                           added_first.data(), others.data());
+      check_cuda(cudaGetLastError(), "gathering reverses");
+    }
+    write_rows<<<row_blocks, k_block_threads, 0, stream>>>(rows.view(), nodes_, own.data(), others.data(),
+                                                           added_first.data(), offsets_.data(), words_.data());
+    check_cuda(cudaGetLastError(), "writing rows");
+  }
+
+  std::int64_t count() const { return count_; }
+  /// Waits for the stream.
+  void read(std::int64_t* offsets, std::uint64_t* words) const {
+    check_cuda(cudaMemcpyAsync(offsets, offsets_.data(), offsets_.size() * sizeof(std::int64_t), cudaMemcpyDeviceToHost,
+                               stream_),
+               "copying the graph");
+    words_.read({words, static_cast<std::size_t>(count_)});
+  }
+
+ private:
+  void scan(const DeviceBuffer<std::int64_t>& from, DeviceBuffer<std::int64_t>& to) {
+    const int count = static_cast<int>(from.size());
+    std::size_t bytes = 0;
+    check_cuda(cub::DeviceScan::ExclusiveSum(nullptr, bytes, from.data(), to.data(), count, stream_), "adding up");
+    DeviceBuffer<std::uint8_t> scratch(bytes, stream_);
+    check_cuda(cub::DeviceScan::ExclusiveSum(scratch.data(), bytes, from.data(), to.data(), count, stream_),
+               "adding up");
+  }
+
+  cudaStream_t stream_;
+  std::int32_t nodes_;
+  DeviceBuffer<std::int64_t> offsets_;
+  DeviceBuffer<std::uint64_t> words_;
+  std::int64_t count_ = 0;
+};
+
+}  // namespace
+}  // namespace saddleback

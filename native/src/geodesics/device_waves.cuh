@@ -1,0 +1,616 @@
+#pragma once
+// Windows of a few sources, kept and advanced by the 32 lanes of a warp: the twin of DiskFinder, to the bit.
+//
+// As there, generations have no order but their own: all windows of one look at their apexes, the labels are lowered,
+// then all are split. What a source sees of the mesh is in a hash table of its own, since it reaches a hundred vertices
+// or two of all there are; a *slot* is an entry of that table, with the source's number in the key's low bits.
+
+#include <cstdint>
+
+#include "geodesics/arc_twin.h"
+
+#define SADDLEBACK_STEP __device__ __forceinline__
+
+namespace saddleback {
+namespace {
+
+/// One lane, a thread: what window_waves_step.h computes with. This source is compiled without fused operations.
+struct Simd {
+  using Floats = float;
+  using Doubles = double;
+  using Ints = std::int32_t;
+  using Mask = bool;
+  SADDLEBACK_STEP static float fill(float value) { return value; }
+  SADDLEBACK_STEP static float pick(bool mask, float yes, float no) { return mask ? yes : no; }
+  SADDLEBACK_STEP static bool pick(bool mask, bool yes, bool no) { return mask ? yes : no; }
+  SADDLEBACK_STEP static float min(float a, float b) { return a < b ? a : b; }
+  SADDLEBACK_STEP static float max(float a, float b) { return a > b ? a : b; }
+  /// a / (a + b) for b > 0; nothing's share is often asked for, and dividing it takes long.
+  SADDLEBACK_STEP static float share(float a, float b) { return a == 0 ? 0 : a / (a + b); }
+  SADDLEBACK_STEP static float sqrt(float a) { return __fsqrt_rn(a); }
+};
+
+}  // namespace
+}  // namespace saddleback
+
+#include "geodesics/window_waves_step.h"
+
+namespace saddleback {
+namespace {
+
+constexpr unsigned k_whole_warp = 0xffffffffu;
+constexpr std::uint32_t k_no_key = 0xffffffffu;
+constexpr std::int32_t k_unreached_label = 0x7f800000;
+constexpr std::uint64_t k_no_arc = static_cast<std::uint64_t>(k_unreached_label) << 32 | 0xffffffffu;
+// As in disk_finder.cpp.
+constexpr float k_disk_as_far = 1 + 1e-5f;
+constexpr float k_bend_longer = 1 + 1e-6f;
+constexpr int k_disk_generations_per_bound = 3;
+
+/// The mesh in device memory.
+struct DeviceMesh {
+  const EdgeRecord* records;
+  const std::int32_t *first, *targets;
+  const double* lengths;
+  const float *sectors, *reverse_sectors, *apex_sectors, *per_radian;
+  const std::uint8_t* saddles;
+  double unit;
+  ArcPacking packing;
+  std::int32_t k;
+  float detour, excess;
+  double slack;
+};
+
+/// A vertex seen, until it is known whether an arc to it stays: the directions are computed only then.
+struct Sighting {
+  double2 place;            ///< of the vertex
+  float2 side;              ///< from it to the start of the half-edge that the window came through
+  std::int32_t edge, root;  ///< of the window; a link of the source has ~edge as root, and whether it is the other side
+  std::int32_t slot;
+  std::int32_t unused;
+};
+
+/// A warp's windows: a ring of those behind left sides, and one of those behind right ones.
+template <bool All, int Ring_>
+struct WaveRings {
+  static constexpr int Ring = Ring_;
+  double2 from[2][Ring], to[2][Ring];
+  float4 rays[2][Ring];  ///< right_x, right_y, left_x, left_y
+  float2 reaches[2][Ring];
+  float2 ways[All ? 1 : 2][All ? 1 : Ring];
+  std::int32_t edges[2][Ring];  ///< record * k_batch + source
+  std::int32_t roots[2][Ring];
+  float most[All ? 1 : 2][All ? 1 : Ring];
+  ushort2 ends[2][Ring];  ///< slots of the half-edge's ends
+  std::uint16_t apexes[2][Ring];
+};
+
+/// The vertices that a warp's sources reached.
+template <bool All, int Sources_, int Slots_>
+struct WaveTable {
+  static constexpr int Sources = Sources_, Slots = Slots_;
+  std::uint64_t arcs[Slots];  ///< label of the shortest arc, and its number in the draft
+  std::int32_t labels[Slots];
+  std::uint32_t keys[Slots];                    ///< node * k_batch + source
+  std::uint32_t changed[All ? Slots / 32 : 1];  ///< bits: neighbours may have to be told of the label
+  float limits[Sources];
+  std::int32_t nodes[Sources];
+  std::uint16_t todo[All ? Slots : 1];
+};
+
+SADDLEBACK_STEP float distance_of(std::int32_t label) { return __int_as_float(label); }
+SADDLEBACK_STEP std::int32_t label_of(float distance, bool makes_arc) {
+  const std::int32_t bits = __float_as_int(distance) & ~1;
+  return makes_arc ? bits : bits | 1;
+}
+SADDLEBACK_STEP int to_sector(float sector) {
+  const int whole = static_cast<int>(sector);
+  return whole < 0 ? 0 : whole > 255 ? 255 : whole;
+}
+/// As Eigen's norm.
+SADDLEBACK_STEP double norm_of(double x, double y) { return __dsqrt_rn(x * x + y * y); }
+
+/// One window as its lane holds it.
+struct LaneWindow {
+  double2 from, to;
+  Rays rays;
+  float right_way, left_way, most;
+  std::int32_t edge, root;
+  ushort2 ends;
+};
+
+/// The far corner of a window's face, as its lane sees it.
+struct LaneApex {
+  double x, y;
+  ApexView view;
+  float way;
+  bool direct;
+  std::int32_t left, right, node;
+};
+
+/// Sources from their first windows to their rows of arcs.
+template <bool All, class Table, class Rings>
+class WarpWaves {
+  static constexpr int k_ring = Rings::Ring, k_slots = Table::Slots, k_sources = Table::Sources;
+
+ public:
+  /// `draft` has room for the sightings of all sources that make arcs.
+  SADDLEBACK_STEP WarpWaves(const DeviceMesh& mesh, Table& table, Rings& rings, Sighting* draft, int draft_room)
+      : mesh_(mesh), table_(table), rings_(rings), draft_(draft), draft_room_(draft_room), lane_(threadIdx.x & 31) {}
+
+  SADDLEBACK_STEP void begin() {
+    for (int i = lane_; i < k_slots; i += 32) {
+      table_.keys[i] = k_no_key;
+      table_.labels[i] = k_unreached_label;
+      table_.arcs[i] = k_no_arc;
+    }
+    if constexpr (All)
+      for (int i = lane_; i < k_slots / 32; i += 32) table_.changed[i] = 0;
+    if (lane_ < k_sources) table_.limits[lane_] = __int_as_float(k_unreached_label);
+    left_head_ = right_head_ = left_count_ = right_count_ = 0;
+    arcs_ = 0;
+    generation_ = 0;
+    overflow_ = false;
+    __syncwarp();
+  }
+
+  SADDLEBACK_STEP void add_node(int source, std::int32_t node) {
+    if (lane_ == 0) {
+      table_.nodes[source] = node;
+      const int centre = insert(node, source);
+      if (centre >= 0) table_.labels[centre] = label_of(0, false);
+    }
+    __syncwarp();
+    const std::int32_t end = mesh_.first[node + 1];
+    for (std::int32_t base = mesh_.first[node]; base < end; base += 32) add_edges(source, base + lane_, end);
+    links_ = arcs_;
+  }
+
+  /// To the last generation. False when the memory did not do.
+  SADDLEBACK_STEP bool run() {
+    while (!overflowed()) {
+      const int lefts = left_count_, all = lefts + right_count_;
+      if (all == 0) break;
+      int slot = 0;
+      LaneWindow w;
+      LaneApex apex;
+      for (int base = 0; base < all; base += 32) slot = sight(base, lefts, all, w, apex);
+      if (overflowed()) break;
+      bend();
+      int lefts_used = 0, rights_used = 0;
+      for (int base = 0; base < all; base += 32) {
+        const int now = min(32, all - base), lefts_now = max(0, min(32, lefts - base));
+        if (all > 32) {  // otherwise what a window saw is still in its lane
+          const int p = base + (lane_ < now ? lane_ : 0);
+          const Place place = p < lefts ? Place{0, wrapped(left_head_ + p - lefts_used)}
+                                        : Place{1, wrapped(right_head_ + p - lefts - rights_used)};
+          w = load(place);
+          apex = look(w);
+          slot = rings_.apexes[place.ring][place.at];
+          __syncwarp();
+        }
+        left_head_ = wrapped(left_head_ + lefts_now);
+        left_count_ -= lefts_now;
+        right_head_ = wrapped(right_head_ + now - lefts_now);
+        right_count_ -= now - lefts_now;
+        lefts_used += lefts_now;
+        rights_used += now - lefts_now;
+        split(lane_ < now, w, apex, slot);
+        if (overflowed()) break;
+      }
+    }
+    if constexpr (All) {
+      for (bool smaller = true; smaller && !overflowed();) {
+        smaller = false;
+        for (int source = 0; source < k_sources; ++source) smaller |= bound_disk(source);
+        relax_bends();
+      }
+    }
+    return !overflowed();
+  }
+
+  /// Calls use(sighting, lanes) for a source's arcs to keep, 32 sightings at a time: `lanes` are those that hold one.
+  template <class Use>
+  SADDLEBACK_STEP void for_each_kept(int source, Use&& use) const {
+    for (int base = 0; base < arcs_; base += 32) {
+      const int i = base + lane_;
+      bool kept = false;
+      if (i < arcs_) {
+        const int slot = draft_[i].slot;
+        if (is_of(slot, source)) {
+          const bool shortest = static_cast<std::uint32_t>(table_.arcs[slot]) == static_cast<std::uint32_t>(i);
+          kept = i < links_ ? shortest || !is_kept(slot, source) : shortest && is_kept(slot, source);
+        }
+      }
+      use(draft_[i < arcs_ ? i : 0], __ballot_sync(k_whole_warp, kept));
+    }
+  }
+
+  struct Arc {
+    std::uint64_t word;
+    std::uint8_t back_sector;
+  };
+  SADDLEBACK_STEP Arc arc_of(const Sighting& seen) const {
+    const std::uint32_t key = table_.keys[seen.slot];
+    const std::int32_t target = static_cast<std::int32_t>(key >> k_batch_bits);
+    float leaving, back;
+    if (seen.root >= 0) {
+      const float x = static_cast<float>(seen.place.x), y = static_cast<float>(seen.place.y);
+      const std::int32_t node = table_.nodes[key & (k_batch - 1)];
+      leaving = mesh_.sectors[seen.root] + angle_of(x, y) * mesh_.per_radian[node];
+      back = mesh_.apex_sectors[seen.edge >> k_batch_bits] +
+             angle_back(x, y, seen.side.x, seen.side.y) * mesh_.per_radian[target];
+    } else if (seen.edge == 0) {
+      leaving = mesh_.sectors[~seen.root];
+      back = mesh_.reverse_sectors[~seen.root];
+    } else {  // at the boundary
+      leaving = 256;
+      back = mesh_.apex_sectors[~seen.root];
+    }
+    const double length = norm_of(seen.place.x, seen.place.y);
+    return {mesh_.packing.pack(target, to_sector(leaving), length * mesh_.unit),
+            static_cast<std::uint8_t>(to_sector(back))};
+  }
+
+ private:
+  SADDLEBACK_STEP bool overflowed() { return __any_sync(k_whole_warp, overflow_); }
+  SADDLEBACK_STEP unsigned below() const { return (1u << lane_) - 1; }
+
+  /// The slot of a node, made if need be. Any lanes may call it at once.
+  SADDLEBACK_STEP int insert(std::int32_t node, int source) {
+    const std::uint32_t key = static_cast<std::uint32_t>(node) << k_batch_bits | static_cast<std::uint32_t>(source);
+    std::uint32_t at = __umulhi(key * 2654435769u, k_slots);
+    for (int tries = 0; tries < k_slots / 2; ++tries) {
+      const std::uint32_t there = table_.keys[at];
+      if (there == key) return static_cast<int>(at);
+      if (there == k_no_key) {
+        const std::uint32_t before = atomicCAS(&table_.keys[at], k_no_key, key);
+        if (before == k_no_key || before == key) return static_cast<int>(at);
+      }
+      if (++at == k_slots) at = 0;
+    }
+    overflow_ = true;
+    return -1;
+  }
+
+  SADDLEBACK_STEP void lower_label(int slot, std::int32_t label) {
+    const std::int32_t before = atomicMin(&table_.labels[slot], label);
+    if constexpr (All)
+      if (label < before) atomicOr(&table_.changed[slot / 32], 1u << (slot % 32));
+  }
+
+  SADDLEBACK_STEP void put_arc(int number, std::int32_t label, const Sighting& seen) {
+    if (number >= draft_room_) {
+      overflow_ = true;
+      return;
+    }
+    atomicMin(reinterpret_cast<unsigned long long*>(&table_.arcs[seen.slot]),
+              static_cast<unsigned long long>(label) << 32 | static_cast<unsigned>(number));
+    draft_[number] = seen;
+  }
+
+  /// Links and first windows of the source's edges.
+  SADDLEBACK_STEP void add_edges(int source, std::int32_t e, std::int32_t end) {
+    const bool active = e < end;
+    EdgeRecord record{};
+    double length = 1;
+    std::int32_t target = 0;
+    if (active) {
+      record = mesh_.records[e];
+      length = mesh_.lengths[e];
+      target = mesh_.targets[e];
+    }
+    const bool boundary = active && record.left < 0;
+    const unsigned actives = __ballot_sync(k_whole_warp, active), boundaries = __ballot_sync(k_whole_warp, boundary);
+    const int number = arcs_ + __popc(actives & below()) + __popc(boundaries & below());
+    const double apex_x = record.a * length, apex_y = record.b * length, other = norm_of(apex_x, apex_y);
+    int to = -1, apex = -1;
+    if (active) {
+      to = insert(target, source);
+      apex = insert(record.apex, source);
+    }
+    if (active && to >= 0 && apex >= 0) {
+      const std::int32_t label = label_of(static_cast<float>(norm_of(length, 0)), true);
+      lower_label(to, label);
+      put_arc(number, label, {{length, 0}, {0, 0}, 0, ~e, to, 0});
+      if (boundary) {
+        const std::int32_t far = label_of(static_cast<float>(norm_of(other, 0)), true);
+        lower_label(apex, far);
+        put_arc(number + 1, far, {{other, 0}, {0, 0}, 1, ~e, apex, 0});
+      }
+    }
+    const bool opens = active && record.right >= 0 && to >= 0 && apex >= 0;
+    const unsigned opening = __ballot_sync(k_whole_warp, opens);
+    if (left_count_ + __popc(opening) > k_ring) {
+      overflow_ = true;
+    } else if (opens) {
+      const int i = left_count_ + __popc(opening & below());
+      const double right_reach = norm_of(length, 0), left_reach = other;
+      rings_.from[0][i] = {apex_x, apex_y};
+      rings_.to[0][i] = {length, 0};
+      rings_.rays[0][i] = {static_cast<float>(length / right_reach), static_cast<float>(0 / right_reach),
+                           static_cast<float>(apex_x / left_reach), static_cast<float>(apex_y / left_reach)};
+      const float2 reach{static_cast<float>(right_reach), static_cast<float>(left_reach)};
+      rings_.reaches[0][i] = reach;
+      if constexpr (!All) {
+        rings_.ways[0][i] = reach;
+        rings_.most[0][i] = __int_as_float(k_unreached_label);
+      }
+      rings_.edges[0][i] = record.right * k_batch + source;
+      rings_.roots[0][i] = e;
+      rings_.ends[0][i] = make_ushort2(static_cast<unsigned short>(apex), static_cast<unsigned short>(to));
+    }
+    left_count_ += __popc(opening);
+    arcs_ += __popc(actives) + __popc(boundaries);
+    __syncwarp();
+  }
+
+  SADDLEBACK_STEP static int wrapped(int at) { return at < k_ring ? at : at - k_ring; }
+
+  struct Place {
+    int ring, at;
+  };
+  /// Of the window that is p-th in its generation, lefts first.
+  SADDLEBACK_STEP Place place_of(int p, int lefts) const {
+    return p < lefts ? Place{0, wrapped(left_head_ + p)} : Place{1, wrapped(right_head_ + p - lefts)};
+  }
+
+  SADDLEBACK_STEP LaneWindow load(const Place& place) const {
+    const float4 rays = rings_.rays[place.ring][place.at];
+    const float2 reach = rings_.reaches[place.ring][place.at];
+    LaneWindow w{rings_.from[place.ring][place.at],
+                 rings_.to[place.ring][place.at],
+                 {rays.x, rays.y, rays.z, rays.w, reach.x, reach.y},
+                 0,
+                 0,
+                 0,
+                 rings_.edges[place.ring][place.at],
+                 rings_.roots[place.ring][place.at],
+                 rings_.ends[place.ring][place.at]};
+    if constexpr (!All) {
+      const float2 ways = rings_.ways[place.ring][place.at];
+      w.right_way = ways.x;
+      w.left_way = ways.y;
+      w.most = rings_.most[place.ring][place.at];
+    }
+    return w;
+  }
+
+  SADDLEBACK_STEP LaneApex look(const LaneWindow& w) const {
+    const EdgeRecord& record = mesh_.records[w.edge >> k_batch_bits];
+    const double along_x = w.to.x - w.from.x, along_y = w.to.y - w.from.y;
+    LaneApex apex;
+    apex.x = w.from.x + (record.a * along_x - record.b * along_y);
+    apex.y = w.from.y + (record.a * along_y + record.b * along_x);
+    apex.left = record.left;
+    apex.right = record.right;
+    apex.node = record.apex;
+    apex.view = view_apex(static_cast<float>(apex.x), static_cast<float>(apex.y), w.rays);
+    apex.direct = apex.view.inside;
+    if constexpr (!All) {
+      const float way = way_by_flank(apex.view, w.rays, w.right_way, w.left_way, mesh_.detour);
+      apex.direct = apex.direct && mesh_.detour * apex.view.reach < way;
+      apex.way = apex.direct ? apex.view.reach : way;
+    }
+    return apex;
+  }
+
+  /// 32 windows of the generation look at their apexes and lower the labels. \return the slot of the lane's apex.
+  SADDLEBACK_STEP int sight(int base, int lefts, int all, LaneWindow& w, LaneApex& apex) {
+    const bool active = base + lane_ < all;
+    const Place place = place_of(active ? base + lane_ : 0, lefts);
+    bool makes_arc = false;
+    int slot = -1;
+    std::int32_t label = 0;
+    w = load(place);
+    apex = look(w);
+    if (active) {
+      slot = insert(apex.node, w.edge & (k_batch - 1));
+      if (all > 32) rings_.apexes[place.ring][place.at] = static_cast<std::uint16_t>(slot);
+      if (slot >= 0 && apex.view.in_sight) {
+        label = label_of(apex.view.reach, apex.direct);
+        lower_label(slot, label);
+        makes_arc = apex.direct;
+      }
+    }
+    const unsigned making = __ballot_sync(k_whole_warp, makes_arc);
+    if (makes_arc) {
+      put_arc(arcs_ + __popc(making & below()), label,
+              {{apex.x, apex.y},
+               {static_cast<float>(w.from.x - apex.x), static_cast<float>(w.from.y - apex.y)},
+               w.edge,
+               w.root,
+               slot,
+               0});
+    }
+    arcs_ += __popc(making);
+    __syncwarp();
+    return slot;
+  }
+
+  SADDLEBACK_STEP void bend() {
+    if constexpr (All) {
+      if (++generation_ % k_disk_generations_per_bound != 0) return;
+      for (int source = 0; source < k_sources; ++source) bound_disk(source);
+      relax_bends();
+    }
+  }
+
+  /// The children of each lane's window, into the rings.
+  SADDLEBACK_STEP void split(bool active, const LaneWindow& w, const LaneApex& apex, int slot) {
+    FacePlaces face{static_cast<float>(w.from.x),
+                    static_cast<float>(w.from.y),
+                    static_cast<float>(w.to.x),
+                    static_cast<float>(w.to.y),
+                    distance_of(table_.labels[w.ends.x]),
+                    distance_of(table_.labels[w.ends.y]),
+                    distance_of(table_.labels[active ? slot : 0])};
+    ApexView view = apex.view;
+    Rays rays = w.rays;
+    ApexRay ray = ray_to(view);
+    // One after the other in the same code: it is larger than the cache of instructions likes as it is.
+#pragma unroll 1
+    for (int ring = 0; ring < 2; ++ring) {
+      const Side side = left_side(face, view, rays, active && (ring == 0 ? apex.left : apex.right) >= 0);
+      put_child(ring, side, look_at(side), ray, w, apex, slot);
+      face = mirrored(face);
+      view = mirrored(view);
+      rays = mirrored(rays);
+      ray.y = 0 - ray.y;
+    }
+  }
+
+  SADDLEBACK_STEP void put_child(int ring, const Side& side, const Child& child, const ApexRay& ray,
+                                 const LaneWindow& w, const LaneApex& apex, int slot) {
+    float most = w.most;
+    const int source = w.edge & (k_batch - 1);
+    if constexpr (All) {
+      most = table_.limits[source];
+    } else if (apex.view.inside && child.useful) {
+      most = bound_child(side, ray, {apex.view.reach, apex.way},
+                         {ring == 0 ? w.rays.left_reach : w.rays.right_reach, ring == 0 ? w.left_way : w.right_way},
+                         mesh_.excess, w.most);
+    }
+    const bool keep = child.useful && is_within(child, most);
+    const unsigned keeping = __ballot_sync(k_whole_warp, keep);
+    const int count = ring == 0 ? left_count_ : right_count_;
+    if (count + __popc(keeping) > k_ring) {
+      overflow_ = true;
+      return;
+    }
+    if (keep) {
+      const int head = ring == 0 ? left_head_ : right_head_;
+      const int i = wrapped(wrapped(head + count) + __popc(keeping & below()));
+      // The apex's ray takes the place of the far one where the light ends there.
+      const bool left = ring == 0, right_is_apex = left && side.cut, left_is_apex = !left && side.cut;
+      const float2 apex_ray{ray.x, left ? ray.y : -ray.y};
+      const double2 place{apex.x, apex.y};
+      rings_.from[ring][i] = left ? w.from : place;
+      rings_.to[ring][i] = left ? place : w.to;
+      const float2 right = right_is_apex ? apex_ray : float2{w.rays.right_x, w.rays.right_y};
+      const float2 other = left_is_apex ? apex_ray : float2{w.rays.left_x, w.rays.left_y};
+      rings_.rays[ring][i] = {right.x, right.y, other.x, other.y};
+      rings_.reaches[ring][i] = {right_is_apex ? apex.view.reach : w.rays.right_reach,
+                                 left_is_apex ? apex.view.reach : w.rays.left_reach};
+      if constexpr (!All) {
+        rings_.ways[ring][i] = {right_is_apex ? apex.way : w.right_way, left_is_apex ? apex.way : w.left_way};
+        rings_.most[ring][i] = most;
+      }
+      rings_.edges[ring][i] = (left ? apex.left : apex.right) * k_batch + source;
+      rings_.roots[ring][i] = w.root;
+      const auto here = static_cast<unsigned short>(slot);
+      rings_.ends[ring][i] = left ? make_ushort2(w.ends.x, here) : make_ushort2(here, w.ends.y);
+    }
+    (ring == 0 ? left_count_ : right_count_) = count + __popc(keeping);
+    __syncwarp();
+  }
+
+  SADDLEBACK_STEP bool is_kept(int slot, int source) const {
+    const float reach = distance_of(static_cast<std::int32_t>(table_.arcs[slot] >> 32));
+    return reach < distance_of(k_unreached_label) &&
+           reach <= mesh_.slack * static_cast<double>(distance_of(table_.labels[slot])) &&
+           reach <= table_.limits[source];
+  }
+
+  SADDLEBACK_STEP bool is_of(int slot, int source) const {
+    return k_sources == 1 || static_cast<int>(table_.keys[slot] & (k_batch - 1)) == source;
+  }
+  /// Slots of a source with labels up to one.
+  SADDLEBACK_STEP int count_labels(int source, std::int32_t most) const {
+    int count = 0;
+    for (int i = lane_; i < k_slots; i += 32) count += table_.labels[i] <= most && is_of(i, source);
+    return __reduce_add_sync(k_whole_warp, count);
+  }
+
+  /// Lowers the radius of a source's disk to that of the k-th nearest vertex, as far as is known.
+  SADDLEBACK_STEP bool bound_disk(int source) {
+    __syncwarp();
+    const int wanted = mesh_.k + 1;  // a node is its own nearest
+    const float limit = table_.limits[source];
+    std::int32_t low = -1, high = min(__float_as_int(limit), k_unreached_label - 1);
+    // The k-th label is at most the limit over k_disk_as_far, once there is one.
+    int count = count_labels(source, high);
+    if (count < wanted) return false;
+    while (count != wanted && high - low > 1) {
+      const std::int32_t middle = low + (high - low) / 2;
+      const int there = count_labels(source, middle);
+      if (there >= wanted) {
+        high = middle;
+        count = there;
+      } else {
+        low = middle;
+      }
+    }
+    std::int32_t kth = 0;
+    for (int i = lane_; i < k_slots; i += 32)
+      if (table_.labels[i] <= high && is_of(i, source)) kth = max(kth, table_.labels[i]);
+    kth = __reduce_max_sync(k_whole_warp, kth);
+    const float radius = distance_of(kth) * k_disk_as_far;
+    __syncwarp();
+    if (!(radius < limit)) return false;
+    if (lane_ == 0) table_.limits[source] = radius;
+    __syncwarp();
+    return true;
+  }
+
+  /// As DiskFinder::relax_bends: what bends make of the labels does not depend on the order in which they are told.
+  SADDLEBACK_STEP void relax_bends() {
+    __syncwarp();
+    while (true) {
+      int count = 0;
+      for (int base = 0; base < k_slots; base += 32) {
+        const int slot = base + lane_;
+        const std::uint32_t word = table_.changed[base / 32];
+        if (word == 0) continue;
+        bool tells = false, done = false;
+        if (word >> lane_ & 1) {
+          const std::int32_t label = table_.labels[slot];
+          const std::uint32_t key = table_.keys[slot];
+          const float limit = table_.limits[k_sources == 1 ? 0 : key & (k_batch - 1)];
+          done = limit < distance_of(k_unreached_label);
+          tells = done && distance_of(label) < limit && ((label & 1) != 0 || mesh_.saddles[key >> k_batch_bits] != 0);
+        }
+        const unsigned telling = __ballot_sync(k_whole_warp, tells), over = __ballot_sync(k_whole_warp, done);
+        if (tells) table_.todo[count + __popc(telling & below())] = static_cast<std::uint16_t>(slot);
+        if (lane_ == 0) table_.changed[base / 32] = word & ~over;
+        count += __popc(telling);
+      }
+      __syncwarp();
+      if (count == 0) return;
+      for (int i = lane_ / 8; i < count; i += 4) tell_neighbours(table_.todo[i]);
+      if (overflowed()) return;
+    }
+  }
+
+  SADDLEBACK_STEP void tell_neighbours(int slot) {
+    const std::int32_t label = table_.labels[slot];
+    const std::uint32_t key = table_.keys[slot];
+    const std::int32_t node = static_cast<std::int32_t>(key >> k_batch_bits);
+    const int source = static_cast<int>(key & (k_batch - 1));
+    const auto offer = [&](std::int32_t target, double length) {
+      const int there = insert(target, source);
+      if (there < 0) return;
+      const std::int32_t bent = label_of((distance_of(label) + static_cast<float>(length)) * k_bend_longer, false);
+      lower_label(there, bent);
+    };
+    const std::int32_t end = mesh_.first[node + 1];
+    for (std::int32_t e = mesh_.first[node] + (lane_ & 7); e < end; e += 8) {
+      const double length = mesh_.lengths[e];
+      offer(mesh_.targets[e], length);
+      const EdgeRecord& record = mesh_.records[e];
+      if (record.left < 0) offer(record.apex, norm_of(record.a * length, record.b * length));
+    }
+  }
+
+  const DeviceMesh& mesh_;
+  Table& table_;
+  Rings& rings_;
+  Sighting* draft_;
+  int draft_room_, lane_;
+  int left_head_, right_head_, left_count_, right_count_;  ///< of the rings
+  int arcs_ = 0, links_ = 0, generation_ = 0;
+  bool overflow_ = false;
+};
+
+}  // namespace
+}  // namespace saddleback

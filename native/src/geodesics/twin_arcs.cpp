@@ -1,0 +1,154 @@
+#include "geodesics/twin_arcs.h"
+
+#include <exception>
+#include <memory>
+#include <span>
+
+#include "saddleback/cuda_twins.h"
+#include "saddleback/error.h"
+
+#include "geodesics/arc_twin.h"
+#include "geodesics/disk_rows.h"
+#include "support/parallel.h"
+
+namespace saddleback {
+namespace {
+
+/// Answers the twin's calls. What they throw waits here until the twin has come back.
+class Caller {
+ public:
+  Caller(const ArcSearch& search, const WaveMesh& mesh, const WaveSectors& sectors, const DiskRule& rule,
+         const JobStage& stage)
+      : search_(search), mesh_(mesh), sectors_(sectors), rule_(rule), stage_(stage) {}
+
+  ArcTwinCaller calls() {
+    return {this,
+            [](void* self, double fraction) {
+              return static_cast<Caller*>(self)->guard([=](Caller& caller) { caller.stage_.update(fraction); });
+            },
+            [](void* self, const std::int32_t* nodes, std::int32_t count, FoundRows* rows) {
+              return static_cast<Caller*>(self)->guard([=](Caller& caller) {
+                *rows = caller.find_rows({nodes, static_cast<std::size_t>(count)});
+              });
+            },
+            [](void* self, std::int64_t words, std::int64_t** offsets_to, std::uint64_t** words_to) {
+              return static_cast<Caller*>(self)->guard([=](Caller& caller) {
+                caller.offsets_.resize(caller.search_.vertices.size() + 1);
+                caller.words_.resize(static_cast<std::size_t>(words));
+                *offsets_to = caller.offsets_.data();
+                *words_to = caller.words_.data();
+              });
+            }};
+  }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+  ArcRows take() { return {search_.codec, std::move(offsets_), std::move(words_)}; }
+
+ private:
+  template <class Work>
+  bool guard(Work&& work) {
+    try {
+      work(*this);
+      return true;
+    } catch (...) {
+      failure_ = std::current_exception();
+      return false;
+    }
+  }
+
+  /// In the batches in which disk_arcs finds them: what ends the windows of one is the same then.
+  FoundRows find_rows(std::span<const Index> nodes) {
+    std::vector<std::span<const Index>> batches;
+    for (std::size_t i = 0; i < nodes.size();) {
+      std::size_t end = i + 1;
+      while (end < nodes.size() && nodes[end] / k_batch == nodes[i] / k_batch) ++end;
+      batches.push_back(nodes.subspan(i, end - i));
+      i = end;
+    }
+    std::vector<FoundArcs> found(batches.size());
+    std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search_.threads));
+    parallel_for(static_cast<Index>(batches.size()), search_.threads, 1, [&](Index b, int thread) {
+      if (!finders[thread])
+        finders[thread] = std::make_unique<DiskRows>(mesh_, sectors_, search_.codec, search_.kernel, rule_);
+      const Index first = batches[b].front() / k_batch * k_batch;
+      const Index count = std::min(k_batch, static_cast<Index>(search_.vertices.size()) - first);
+      found[b].first_node = first;
+      finders[thread]->find(first, count, found[b], stage_);
+    });
+    counts_.clear();
+    row_words_.clear();
+    back_sectors_.clear();
+    for (std::size_t b = 0; b < batches.size(); ++b) append_rows(found[b], batches[b]);
+    return {counts_.data(), row_words_.data(), back_sectors_.data(), row_words_.size()};
+  }
+
+  void append_rows(const FoundArcs& found, std::span<const Index> nodes) {
+    std::size_t begin = 0, next = 0;
+    for (std::size_t i = 0; i < found.counts.size() && next < nodes.size(); ++i) {
+      const std::size_t end = begin + static_cast<std::size_t>(found.counts[i]);
+      if (found.first_node + static_cast<Index>(i) == nodes[next]) {
+        ++next;
+        counts_.push_back(found.counts[i]);
+        row_words_.insert(row_words_.end(), found.words.begin() + begin, found.words.begin() + end);
+        back_sectors_.insert(back_sectors_.end(), found.back_sectors.begin() + begin, found.back_sectors.begin() + end);
+      }
+      begin = end;
+    }
+  }
+
+  const ArcSearch& search_;
+  const WaveMesh& mesh_;
+  const WaveSectors& sectors_;
+  const DiskRule& rule_;
+  const JobStage& stage_;
+  std::exception_ptr failure_;
+  std::vector<std::int64_t> offsets_;
+  ArcWords words_;
+  std::vector<std::int32_t> counts_;
+  std::vector<std::uint64_t> row_words_;
+  std::vector<std::uint8_t> back_sectors_;
+};
+
+}  // namespace
+
+ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, int device, ArcTwinTimes& times,
+                  const JobStage& stage) {
+  const CudaTwins* const twins = cuda_twins();
+  if (!twins) throw DeviceError("device: the CUDA module is not loaded");
+  check_mesh_size(search);
+  const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, search.threads, stage.part(0, 0.2));
+  const WaveSectors sectors(mesh, search.unfolding, search.vertices, ArcCodec::k_sectors, search.threads,
+                            stage.part(0.2, 0.3));
+  const WaveScene scene = wave_scene(mesh, rule);
+  ArcTwinRequest request;
+  request.device = device;
+  request.most_bytes = cuda_memory_limit();
+  request.k = rule.k;
+  request.detour = scene.detour;
+  request.excess = scene.excess;
+  request.slack = arc_slack(rule);
+  request.node_count = mesh.node_count();
+  request.edge_count = mesh.edge_count();
+  request.records = mesh.records();
+  request.first = mesh.firsts();
+  request.targets = mesh.targets();
+  request.lengths = mesh.lengths();
+  request.sectors = sectors.sectors();
+  request.reverse_sectors = sectors.reverse_sectors();
+  request.apex_sectors = sectors.apex_sectors();
+  request.per_radian = sectors.per_radians();
+  request.saddles = mesh.saddles();
+  request.unit = mesh.unit();
+  request.packing = search.codec.packing();
+
+  const JobStage finding = stage.part(0.3, 1);
+  Caller caller(search, mesh, sectors, rule, finding);
+  TwinReason reason;
+  const TwinStatus status = twins->find_arcs(request, caller.calls(), times, reason);
+  caller.rethrow();
+  if (status != TwinStatus::done) throw DeviceError(message("device: ", reason.text));
+  return caller.take();
+}
+
+}  // namespace saddleback

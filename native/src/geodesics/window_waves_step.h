@@ -1,0 +1,220 @@
+#pragma once
+// What one window does, for as many at a time as `Simd` has lanes: shared by the vector kernels (window_waves_kernel.h)
+// and the CUDA kernel, whose lanes are threads. The including source defines `Simd`, and SADDLEBACK_STEP as what its
+// functions need to be called. Multiplications and additions are not fused and roots and quotients are IEEE's, so that
+// every machine gives the same bits.
+//
+// Windows and their filters: Xin and Wang 2009. To keep an arc only where no way over a flank will do, and to end
+// windows there: Adikusuma, Fang and He 2020 ("Fast construction of discrete geodesic graphs"). Their rule allows every
+// detour the same share of the whole way, and such shares add up where the second leg is itself a detour. Here a way
+// counts the graph's distance to the flank, and the rest with the whole tolerance on top: way + (1 + e) rest <= (1 + e)
+// straight. By induction over lengths no distance in the graph is then longer than 1 + e times the geodesic, as far as
+// windows have run; their end is a bound on one detour alone, with a factor found by measuring.
+
+namespace saddleback {
+namespace {
+
+using Floats = Simd::Floats;
+using Doubles = Simd::Doubles;
+using Ints = Simd::Ints;
+using Mask = Simd::Mask;
+
+// Of the sine between two directions: what float arithmetic cannot tell from a vertex on the ray itself.
+constexpr float k_on_ray = 1e-6f;
+// Squares must differ by more than rounding before a filter removes a window.
+constexpr float k_shorter = (1 - 1e-6f) * (1 - 1e-6f);
+// Of the half-edge: narrower windows serve no further vertex.
+constexpr float k_narrow = 1e-6f;
+
+SADDLEBACK_STEP Floats square(Floats a) { return a * a; }
+SADDLEBACK_STEP Floats length_squared(Floats x, Floats y) { return x * x + y * y; }
+SADDLEBACK_STEP Floats cross(Floats ax, Floats ay, Floats bx, Floats by) { return ax * by - ay * bx; }
+
+/// The two rays of a window, and how far the vertices are that they run through: its flanks.
+struct Rays {
+  Floats right_x, right_y, left_x, left_y;  ///< unit vectors
+  Floats right_reach, left_reach;
+};
+
+/// How a window sees the far corner of its face.
+struct ApexView {
+  Floats x, y, reach;
+  Floats from_right, to_left;  ///< offsets from the rays, positive inside
+  Mask in_sight;
+  Mask inside;  ///< and on neither ray: a vertex on a ray is reached by the flank as well
+};
+
+SADDLEBACK_STEP ApexView view_apex(Floats x, Floats y, const Rays& rays) {
+  const Floats reach = Simd::sqrt(length_squared(x, y));
+  const Floats from_right = cross(rays.right_x, rays.right_y, x, y), to_left = cross(x, y, rays.left_x, rays.left_y);
+  const Floats tolerance = Simd::fill(k_on_ray) * reach, border = Simd::fill(0) - tolerance;
+  const Mask in_sight = (border < from_right) & (border < to_left);
+  const Mask inside = (tolerance < from_right) & (tolerance < to_left);
+  return {x, y, reach, from_right, to_left, in_sight, inside};
+}
+
+/// The shortest way to the apex by one of the flanks: `right_way` and `left_way` bound the graph's distances to them,
+/// and `detour` is what a way may be longer by than a straight geodesic.
+SADDLEBACK_STEP Floats way_by_flank(const ApexView& apex, const Rays& rays, Floats right_way, Floats left_way,
+                                    Floats detour) {
+  const Floats by_right = right_way + detour * Simd::sqrt(length_squared(apex.x - rays.right_reach * rays.right_x,
+                                                                         apex.y - rays.right_reach * rays.right_y));
+  const Floats by_left = left_way + detour * Simd::sqrt(length_squared(apex.x - rays.left_reach * rays.left_x,
+                                                                       apex.y - rays.left_reach * rays.left_y));
+  return Simd::min(by_right, by_left);
+}
+
+/// A vertex that a window's ray runs through.
+struct Flank {
+  Floats reach;  ///< distance from the source
+  Floats way;    ///< bound of the graph's distance
+};
+
+/// The distance from which on a flank serves all vertices whose directions are off its own by an angle at most: with r
+/// its reach, w its way and k the factor that a way may be longer by, the larger root of
+/// (k^2 - 1) D^2 - 2 (k w - r cos) D + w^2 - r^2 = 0, from w + |flank to vertex| = k D.
+///
+/// Flanks nearer than a mean edge are allowed less: they leave nearly the whole way to others, which may be detours in
+/// their turn. `allowed` is what a way may be longer by, less 1.
+SADDLEBACK_STEP Floats serving_distance(const Flank& flank, Floats angle, float allowed) {
+  const Floats one = Simd::fill(1), half = Simd::fill(0.5f);
+  const Floats excess = Simd::fill(allowed) * Simd::min(flank.reach, one);
+  const Floats surplus = excess * (excess + one + one);
+  const Floats b = (one + excess) * flank.way - flank.reach + half * flank.reach * square(angle);
+  const Floats c = surplus * (flank.reach - flank.way) * (flank.reach + flank.way);
+  return (b + Simd::sqrt(Simd::max(b * b + c, Simd::fill(0)))) / surplus;
+}
+
+/// The radius beyond which the way by one of two flanks does for all vertices between them. `cosine` and `sine` are of
+/// the angle between the flanks.
+SADDLEBACK_STEP Floats serving_radius(Floats cosine, Floats sine, const Flank& p, const Flank& q, float allowed,
+                                      Floats most) {
+  const Floats zero = Simd::fill(0);
+  // An upper bound of the angle (Huygens), closer than rounding for all that are small enough to count.
+  const Floats angle = (sine + sine + sine / cosine) * Simd::fill(1.0f / 3);
+  // Far away the detours are r (1 - cos): divide the angle so that they are the same.
+  const Floats p_root = Simd::sqrt(p.reach), q_root = Simd::sqrt(q.reach);
+  const Floats off_p = angle * (q_root / (p_root + q_root)), off_q = angle - off_p;
+  const Floats bound = Simd::max(serving_distance(p, off_p, allowed), serving_distance(q, off_q, allowed));
+  return Simd::pick((zero < cosine) & (bound < most), bound, most);
+}
+
+/// One side of a window's face, in the words of its left side: from the start of the half-edge, the *near* end, to the
+/// apex. The right side is the left one of the mirror image, y upside down, to the bit.
+struct Side {
+  Mask lit;                             ///< any light falls on it
+  Mask cut;                             ///< the light ends at the apex
+  Floats near_x, near_y, far_x, far_y;  ///< ends of the half-edge
+  Floats apex_x, apex_y;
+  Floats near_ray_x, near_ray_y, far_ray_x, far_ray_y;  ///< the window's rays
+  Floats apex_off, apex_in;                             ///< offsets of the apex from the two, positive inside
+  Floats near_label, far_label, apex_label;
+};
+
+/// What the light on a side has to tell.
+struct Child {
+  Mask useful;                          ///< no filter removes it
+  Floats begin_squared, end_squared;    ///< distances of the light's ends from the source
+  Floats begin_ahead, end_ahead;        ///< how far the source's foot is behind them, times the side's length
+  Floats foot_squared, length_squared;  ///< distance of the foot times the side's length; both squared
+};
+
+SADDLEBACK_STEP Child look_at(const Side& side) {
+  const Floats zero = Simd::fill(0), one = Simd::fill(1), shorter = Simd::fill(k_shorter);
+  const Floats along_x = side.apex_x - side.near_x, along_y = side.apex_y - side.near_y;
+  const Floats length_2 = length_squared(along_x, along_y), length = Simd::sqrt(length_2);
+  const Floats near_off = Simd::max(cross(side.near_ray_x, side.near_ray_y, side.near_x, side.near_y), zero);
+  const Floats near_in = Simd::max(cross(side.far_ray_x, side.far_ray_y, side.near_x, side.near_y), zero);
+  // The apex of a side with light on it is off the ray by more than nothing.
+  const Floats begin = Simd::share(near_off, side.apex_off);
+  const Floats end = Simd::pick(side.cut, one, Simd::min(near_in / (near_in - side.apex_in), one));
+  Mask useful = side.lit & (Simd::fill(k_narrow) < end - begin);
+  const Floats begin_x = side.near_x + begin * along_x, begin_y = side.near_y + begin * along_y;
+  const Floats end_x = side.near_x + end * along_x, end_y = side.near_y + end * along_y;
+  const Floats begin_2 = length_squared(begin_x, begin_y), end_2 = length_squared(end_x, end_y);
+  // A corner of the face offers every point of the light a shorter way: three filters.
+  const Floats by_near = side.near_label + end * length, by_apex = side.apex_label + (one - begin) * length;
+  useful = useful & (!(square(by_near) < end_2 * shorter)) & (!(square(by_apex) < begin_2 * shorter));
+  const Floats left_over = Simd::sqrt(begin_2 * shorter) - side.far_label;
+  const Floats across_2 = length_squared(begin_x - side.far_x, begin_y - side.far_y);
+  useful = useful & (!((zero < left_over) & (across_2 < square(left_over))));
+  const Floats begin_ahead = begin_x * along_x + begin_y * along_y, end_ahead = end_x * along_x + end_y * along_y;
+  const Floats foot_2 = square(cross(side.near_x, side.near_y, along_x, along_y));
+  return {useful, begin_2, end_2, begin_ahead, end_ahead, foot_2, length_2};
+}
+
+/// Whether the light's nearest point, an end or the source's foot on the side, is nearer than `most`.
+SADDLEBACK_STEP Mask is_within(const Child& child, Floats most) {
+  const Floats zero = Simd::fill(0), most_2 = square(most);
+  return Simd::pick(zero < child.begin_ahead, child.begin_squared < most_2,
+                    Simd::pick(child.end_ahead < zero, child.end_squared < most_2,
+                               child.foot_squared < most_2 * child.length_squared));
+}
+
+/// Ends of the window's half-edge and their labels, and the apex's.
+struct FacePlaces {
+  Floats from_x, from_y, to_x, to_y;
+  Floats from_label, to_label, apex_label;
+};
+
+/// `is_open` where there is a face behind the side.
+SADDLEBACK_STEP Side left_side(const FacePlaces& face, const ApexView& apex, const Rays& rays, Mask is_open) {
+  const Floats tolerance = Simd::fill(k_on_ray) * apex.reach;
+  const Mask inside_right = tolerance < apex.from_right, lit = is_open & (tolerance < apex.to_left);
+  return {lit,          inside_right,    face.from_x,     face.from_y,   face.to_x,      face.to_y,
+          apex.x,       apex.y,          rays.left_x,     rays.left_y,   rays.right_x,   rays.right_y,
+          apex.to_left, apex.from_right, face.from_label, face.to_label, face.apex_label};
+}
+
+/// Upside down, with right and left exchanged.
+SADDLEBACK_STEP FacePlaces mirrored(const FacePlaces& face) {
+  const Floats zero = Simd::fill(0);
+  return {face.to_x,     zero - face.to_y, face.from_x,    zero - face.from_y,
+          face.to_label, face.from_label,  face.apex_label};
+}
+SADDLEBACK_STEP ApexView mirrored(const ApexView& apex) {
+  return {apex.x, Simd::fill(0) - apex.y, apex.reach, apex.to_left, apex.from_right, apex.in_sight, apex.inside};
+}
+SADDLEBACK_STEP Rays mirrored(const Rays& rays) {
+  const Floats zero = Simd::fill(0);
+  return {rays.left_x, zero - rays.left_y, rays.right_x, zero - rays.right_y, rays.left_reach, rays.right_reach};
+}
+
+/// The flank that the apex becomes for the children whose light ends there.
+struct ApexRay {
+  Floats x, y;
+};
+SADDLEBACK_STEP ApexRay ray_to(const ApexView& apex) {
+  const Floats per_reach = Simd::fill(1) / apex.reach;
+  return {apex.x * per_reach, apex.y * per_reach};
+}
+
+/// The radius beyond which the child behind a side serves nothing, where the apex divides the window's light. `ray` is
+/// mirrored as the side is; `near_flank` is the one on the near ray.
+SADDLEBACK_STEP Floats bound_child(const Side& side, const ApexRay& ray, const Flank& apex, const Flank& near_flank,
+                                   float allowed, Floats most) {
+  return serving_radius(ray.x * side.near_ray_x + ray.y * side.near_ray_y,
+                        cross(ray.x, ray.y, side.near_ray_x, side.near_ray_y), apex, near_flank, allowed, most);
+}
+
+/// Of a vector in the upper half-plane.
+SADDLEBACK_STEP Floats angle_of(Floats x, Floats y) {
+  const Floats zero = Simd::fill(0), width = Simd::max(x, zero - x), height = Simd::max(y, zero);
+  const Floats least = Simd::min(width, height), most = Simd::max(Simd::max(width, height), Simd::fill(1e-30f));
+  const Floats t = least / most, t2 = t * t;
+  // Minimax polynomial of the arc tangent on [0, 1].
+  const float k_terms[] = {0.05265332f, -0.11643287f, 0.19354346f, -0.33262347f, 0.99997726f};
+  Floats sum = Simd::fill(-0.01172120f);
+  for (const float term : k_terms) sum = sum * t2 + Simd::fill(term);
+  const Floats octant = t * sum, quadrant = Simd::pick(width < height, Simd::fill(1.57079633f) - octant, octant);
+  return Simd::pick(x < zero, Simd::fill(3.14159265f) - quadrant, quadrant);
+}
+
+/// The angle at which a straight way from the origin comes into (x, y), from `side`, a vector from there to the right
+/// of the way.
+SADDLEBACK_STEP Floats angle_back(Floats x, Floats y, Floats side_x, Floats side_y) {
+  return angle_of(Simd::fill(0) - (side_x * x + side_y * y), cross(x, y, side_x, side_y));
+}
+
+}  // namespace
+}  // namespace saddleback

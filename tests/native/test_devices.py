@@ -1,0 +1,72 @@
+"""What happens where there is no CUDA module, or one that does not fit; tests/parity has the rest."""
+
+from __future__ import annotations
+
+import importlib
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+import saddleback as sb
+from tests import meshes
+
+
+@pytest.fixture
+def mesh() -> sb.Mesh:
+    return sb.Mesh(*meshes.icosphere(2))
+
+
+def use_module(monkeypatch: pytest.MonkeyPatch, module: Any) -> None:
+    def find(name: str) -> Any:
+        if isinstance(module, Exception):
+            raise module
+        return module
+
+    monkeypatch.setattr(importlib, "import_module", find)
+
+
+def module_with(usable: int, reason: str = "") -> Any:
+    one = [
+        SimpleNamespace(name=f"card {i}", memory=1 << 30, compute_major=9, compute_minor=0, index=i)
+        for i in range(usable)
+    ]
+    return SimpleNamespace(cuda_devices=lambda: SimpleNamespace(usable=one, reason=reason), twins=None)
+
+
+@pytest.mark.parametrize(
+    ("module", "words"),
+    [
+        (ModuleNotFoundError("gone"), "no CUDA module"),
+        (ImportError("libcuda.so.1: cannot open"), r"cannot be loaded: libcuda\.so\.1"),
+        (module_with(0, "CUDA finds no device: no driver"), "finds no device: no driver"),
+        (SimpleNamespace(), "cannot be asked"),
+    ],
+    ids=["no_module", "unloadable", "no_device", "broken"],
+)
+def test_without_a_device_the_reason_is_told_and_auto_takes_the_processor(
+    mesh: sb.Mesh, module: Any, words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    use_module(monkeypatch, module)
+    with pytest.raises(sb.DeviceError, match=words):
+        sb.SaddleVertexGraph(mesh, device="cuda")
+    assert sb.SaddleVertexGraph(mesh, device="auto").device == "cpu"
+    assert [device.kind for device in sb.devices()] == ["cpu"]
+
+
+def test_a_device_number_that_does_not_exist_is_named(mesh: sb.Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
+    use_module(monkeypatch, module_with(2))
+    with pytest.raises(sb.DeviceError, match=r"no CUDA device 7; the usable ones are 0 to 1"):
+        sb.SaddleVertexGraph(mesh, device="cuda:7")
+
+
+@pytest.mark.parametrize("word", ["gpu", "CUDA", "cuda:", "cuda:-1", "cuda:x", "cuda:1x", ""])
+def test_any_other_word_is_refused(mesh: sb.Mesh, word: str) -> None:
+    with pytest.raises(sb.InputError, match="device: wanted 'auto'"):
+        sb.SaddleVertexGraph(mesh, device=word)
+
+
+@pytest.mark.parametrize("wrong", [-1, 1.5, "1 GB", None])
+def test_the_memory_limit_is_a_number_of_bytes(wrong: Any) -> None:
+    with pytest.raises(sb.InputError, match="bytes"):
+        sb.limit_device_memory(wrong)
