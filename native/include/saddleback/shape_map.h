@@ -2,12 +2,17 @@
 // A plane laid on the surface: flat coordinates of the vertices about a point or along a curve.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "saddleback/surface_curve.h"
 
 namespace saddleback {
+
+class CurveBend;
+struct Sight;
+struct UnfoldedTriangle;
 
 /// Why a piece of the plane could not be laid on the surface.
 enum class MapFailure : std::uint8_t {
@@ -39,6 +44,9 @@ struct PlaneBox {
 class ShapeMap {
  public:
   explicit ShapeMap(const Mesh& mesh);
+  ~ShapeMap();
+  ShapeMap(ShapeMap&&) noexcept;
+  ShapeMap& operator=(ShapeMap&&) noexcept;
 
   /// The exponential map: the centre at the origin, the x axis at `angle` in the FaceChart of centre.face. At a vertex
   /// angles are scaled so that its total angle becomes 2 pi. O(n log n) for the n vertices within the box.
@@ -100,7 +108,10 @@ class ShapeMap {
   bool is_in(const Vec2& point, Index face) const;
   double distance_of(const Vec2& place) const { return along_curve_ ? std::abs(place.y()) : place.norm(); }
 
+  Sight sight_through(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) const;
+
   const Mesh* mesh_;
+  std::unique_ptr<CurveBend> bend_;  ///< of the curve
   std::vector<Node> nodes_;
   std::vector<Index> reached_;
   std::vector<Entry> queue_;

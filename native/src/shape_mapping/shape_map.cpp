@@ -9,6 +9,7 @@
 
 #include "saddleback/trace.h"
 
+#include "shape_mapping/curve_bend.h"
 #include "shape_mapping/sides.h"
 #include "shape_mapping/sight.h"
 
@@ -29,7 +30,13 @@ bool is_beyond(const PlaneBox& box, const Vec2& a, const Vec2& b) {
 }  // namespace
 
 ShapeMap::ShapeMap(const Mesh& mesh)
-    : mesh_(&mesh), nodes_(static_cast<std::size_t>(mesh.vertex_count()), {Vec2::Zero(), 0, 0, 0, State::waiting}) {}
+    : mesh_(&mesh),
+      bend_(std::make_unique<CurveBend>()),
+      nodes_(static_cast<std::size_t>(mesh.vertex_count()), {Vec2::Zero(), 0, 0, 0, State::waiting}) {}
+
+ShapeMap::~ShapeMap() = default;
+ShapeMap::ShapeMap(ShapeMap&&) noexcept = default;
+ShapeMap& ShapeMap::operator=(ShapeMap&&) noexcept = default;
 
 void ShapeMap::begin() {
   if (++stamp_ == 0) {  // after 2^32 maps the old stamps would come again
@@ -80,6 +87,7 @@ void ShapeMap::seed_star(const SurfacePoint& centre, Index vertex, double angle)
 void ShapeMap::along_curve(const SurfaceCurve& curve, double origin, const PlaneBox& box) {
   begin();
   along_curve_ = true;
+  bend_->measure(curve, origin);
   centre_face_ = curve.segments().front().face;
   for (const CurveSegment& segment : curve.segments()) {
     const double start = segment.start - origin;
@@ -153,11 +161,15 @@ void ShapeMap::settle(Index vertex, const PlaneBox& box) {
   } while (h != k_none && h != first);
 }
 
+Sight ShapeMap::sight_through(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) const {
+  if (!along_curve_) return sight_of_point(triangle, from, to);
+  return sight_of_line(triangle, from, to, bend_->curvature(0.5 * (from.x() + to.x()), triangle.edge));
+}
+
 void ShapeMap::look_through(Index from, Index to, Index apex) {
   if (has(apex) && nodes_[apex].state >= State::source) return;
   const UnfoldedTriangle triangle(mesh_->position(from), mesh_->position(to), mesh_->position(apex));
-  const Vec2 &a = nodes_[from].place, &b = nodes_[to].place;
-  const Sight sight = along_curve_ ? sight_of_line(triangle, a, b) : sight_of_point(triangle, a, b);
+  const Sight sight = sight_through(triangle, nodes_[from].place, nodes_[to].place);
   // What is not seen well waits for an edge that it may be seen through after all.
   const double key = distance_of(sight.place) + sight.miss * triangle.edge;
   if (has(apex)) {
@@ -173,8 +185,7 @@ void ShapeMap::complete(Index face) {
     const Index from = mesh_->from(h), to = mesh_->to(h), apex = mesh_->apex(h);
     if (has(apex) || !has(from) || !has(to)) continue;
     const UnfoldedTriangle triangle(mesh_->position(from), mesh_->position(to), mesh_->position(apex));
-    const Vec2 &a = nodes_[from].place, &b = nodes_[to].place;
-    const Vec2 place = (along_curve_ ? sight_of_line(triangle, a, b) : sight_of_point(triangle, a, b)).place;
+    const Vec2 place = sight_through(triangle, nodes_[from].place, nodes_[to].place).place;
     reach(apex) = {place, 0, 0, stamp_, State::waiting};
   }
 }

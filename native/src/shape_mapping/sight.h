@@ -66,18 +66,40 @@ inline Sight sight_of_point(const UnfoldedTriangle& triangle, const Vec2& from, 
   return {direction * (to_apex.norm() / length), miss};
 }
 
-/// The source is the x axis: distance grows evenly across the triangle, and the foot stays where it is along the way.
-inline Sight sight_of_line(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) {
+/// Less bend than this over an edge is none: beyond, distances to the centre of the bend would lose too many digits.
+inline constexpr double k_straight = 1e-6;
+
+/// The source is the x axis, which stands for a curve that bends by `curvature` beside the edge. Along a straight one
+/// distance grows evenly across the triangle; along a circle it grows from the circle's centre, or towards it. The foot
+/// stays where it is along the way.
+inline Sight sight_of_line(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to, double curvature) {
   const double side = from.y() + to.y() < 0 ? -1 : 1, e = triangle.edge;
-  const double d_from = side * from.y(), d_to = side * to.y(), slope = (d_to - d_from) / e;
-  const bool is_behind = side * (to.x() - from.x()) >= 0;
-  if (!is_behind || d_from < 0 || d_to < 0 || !(std::abs(slope) < 1)) return {beside(triangle, from, to), k_most_miss};
-  const double rise = std::sqrt(1 - slope * slope);
-  const double share = (triangle.apex.x() - slope * (triangle.apex.y() / rise)) / e;
+  const bool is_behind = side * (to.x() - from.x()) >= 0 && side * from.y() >= 0 && side * to.y() >= 0;
+  const Sight unseen{beside(triangle, from, to), k_most_miss};
+  if (!is_behind) return unseen;
+  double share = 0, height = 0;
+  if (std::abs(curvature) * e < k_straight) {
+    const double slope = side * (to.y() - from.y()) / e;
+    if (!(std::abs(slope) < 1)) return unseen;
+    const double rise = std::sqrt(1 - slope * slope);
+    share = (triangle.apex.x() - slope * (triangle.apex.y() / rise)) / e;
+    height = from.y() + side * (slope * triangle.apex.x() + rise * triangle.apex.y());
+  } else {
+    const double radius = 1 / curvature, sign = curvature < 0 ? -1 : 1;
+    const double r_from = sign * (radius - from.y()), r_to = sign * (radius - to.y());
+    const double x = (r_from * r_from - r_to * r_to + e * e) / (2 * e), y2 = r_from * r_from - x * x;
+    if (!(r_from > 0 && r_to > 0 && y2 >= 0)) return unseen;
+    // The centre lies beyond the apex on the inner side of the bend, behind the edge on the outer one.
+    const Vec2 centre(x, side * sign * std::sqrt(y2));
+    const Vec2 to_from = -centre, to_to = Vec2(e, 0) - centre, to_apex = triangle.apex - centre;
+    const double whole = std::atan2(cross(to_from, to_to), to_from.dot(to_to));
+    if (whole == 0) return unseen;
+    share = std::atan2(cross(to_from, to_apex), to_from.dot(to_apex)) / whole;
+    height = radius - sign * to_apex.norm();
+  }
   const double miss = miss_of(share);
-  if (!(miss < k_most_miss)) return {beside(triangle, from, to), k_most_miss};
-  const double distance = d_from + slope * triangle.apex.x() + rise * triangle.apex.y();
-  return {Vec2((1 - share) * from.x() + share * to.x(), side * distance), miss};
+  if (!(miss < k_most_miss)) return unseen;
+  return {Vec2((1 - share) * from.x() + share * to.x(), height), miss};
 }
 
 }  // namespace saddleback
