@@ -73,6 +73,14 @@ def test_tessellate_gives_every_vertex_one_of_the_cells():
     assert "saddleback_density" not in item.data.attributes
 
 
+def test_more_cells_than_vertices():
+    item = add_object("Tile", *grid_arrays(1))
+    assert bpy.ops.saddleback.tessellate(count=5, iterations=5) == {"FINISHED"}
+    cells = attribute(item, "saddleback_cell")
+    assert len(cells) == 4 and len(np.unique(cells)) == 4
+    assert ((cells >= 0) & (cells < 5)).all()
+
+
 def test_a_script_gets_the_same_cells_twice_and_others_from_another_seed():
     item = sphere()
     bpy.ops.saddleback.tessellate(**QUICK)

@@ -85,11 +85,6 @@ def test_empty_mesh_and_mesh_without_faces():
     refuse("'Wire' has no faces")
 
 
-def test_more_cells_than_vertices():
-    add_object("Tile", *grid_arrays(1))
-    refuse("'Tile': 5 cells do not fit on 4 vertices", count=5)
-
-
 def test_selection_is_missing_or_off_the_surface():
     vertices, faces = grid_arrays(3)
     item = add_object("Loose", np.concatenate([vertices, [[9, 9, 9]]]), faces)

@@ -75,6 +75,18 @@ def test_fixed_sites_stay_and_settings_of_the_count_do_not_matter(cache):
     assert cache.builds["cells"] == 2
 
 
+def test_more_cells_than_vertices(cache):
+    surface = shapes.grid(3, loose=1)
+    result = tessellate(surface, cache, count=90, iterations=8, k=15, make_cells=True)
+    assert len(result.sites_position) == 90
+    assert len(np.unique(result.vertex_cell[1:])) <= 16
+    areas = np.bincount(result.split_cell, area(result.split_vertices, result.split_triangles), minlength=90)
+    assert (areas > 0).all()
+    whole = area(surface.vertices, surface.triangles).sum()
+    assert areas.sum() == pytest.approx(whole, rel=1e-6)
+    assert areas.max() < 4 * areas.min()
+
+
 def test_places_in_the_world_come_to_the_nearest_point(cache):
     result = tessellate(shapes.grid(12), cache, sites=np.array([[0.2, 0.2, 0.7], [0.8, 0.8, -0.3]]))
     np.testing.assert_allclose(result.sites_position, [[0.2, 0.2, 0], [0.8, 0.8, 0]], atol=1e-12)
@@ -138,8 +150,6 @@ def test_distances_to_the_nearest_source_within_a_limit(cache):
 
 def test_sentences_name_the_object(cache):
     surface = shapes.grid(3, loose=1)
-    with pytest.raises(BadInputError, match="'Shape': 90 cells do not fit on 16 vertices"):
-        tessellate(surface, cache, count=90)
     with pytest.raises(BadInputError, match="'Shape': the site at vertex 0 belongs to no face"):
         tessellate(surface, cache, sites=np.array([0, 3], np.int32))
     bad = Surface("Shape", surface.vertices, np.concatenate([surface.triangles, surface.triangles[:1]]), 17)

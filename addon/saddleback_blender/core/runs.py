@@ -14,7 +14,6 @@ from .cache import Cache
 from .curve_points import curves_on_surface, points_on_surface
 from .density_runs import density_of
 from .duals import dual_of, figures_of
-from .errors import BadInputError
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .level_lines import LevelLines, isoline_levels, level_lines
 from .normals import normals_at
@@ -40,11 +39,6 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
     """
     cache = cache or cache_module.shared
     settings, surface = request.settings, request.surface
-    if request.sites is None and settings.count > len(surface.vertices):
-        raise BadInputError(
-            f"'{surface.name}': {settings.count} cells do not fit on {len(surface.vertices)} vertices; "
-            "ask for fewer, or subdivide the mesh"
-        )
     sites = None if request.sites is None else compact_points(surface, request.sites, "site")
     mesh = mesh_of_surface(surface, progress, cache)
     choice = GraphChoice(settings.quality, settings.k)
