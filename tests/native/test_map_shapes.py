@@ -156,7 +156,7 @@ def test_along_a_field_shapes_bend() -> None:
         bent = mapped.conform(points, 0).points[:, :2] - 0.5
         radius = np.hypot(0.3, 0.03)
         wanted = radius - 0.2 * points[:, 1] * (-1 if mirrored else 1)
-        assert np.abs(np.linalg.norm(bent, axis=1) - wanted).max() < 0.002
+        assert np.abs(np.linalg.norm(bent, axis=1) - wanted).max() < 0.003
         turned = np.unwrap(np.arctan2(bent[:, 1], bent[:, 0])) - np.arctan2(0.03, 0.3)
         assert np.abs(turned - 0.2 * points[:, 0] / radius).max() < 0.013
         smallest, largest = mapped.stretch[0]
