@@ -139,6 +139,38 @@ py::object find_cells(const py::object& graph, const py::object& sites, bool exa
   return make_cells(without_gil(find), graph);
 }
 
+py::list dual_paths(const Cells& cells, const py::object& threads, const py::object& job) {
+  const auto& graph = py::cast<const SaddleVertexGraph&>(cells.graph);
+  const int count = as_integer(threads, "threads");
+  Job* const token = as_job(job);
+  py::list result;
+  for (GeodesicPath& path : without_gil([&] { return dual_edge_paths(graph, cells.diagram, count, token); }))
+    result.append(std::move(path));
+  return result;
+}
+
+constexpr const char* k_dual_paths_doc = R"(The edges of the dual mesh as geodesics on the surface.
+
+Parameters
+----------
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+list of GeodesicPath
+    In the order of `dual("strict").edges`: from site to site across the boundary between their cells.
+
+Raises
+------
+Cancelled
+    The job was cancelled.
+
+Notes
+-----
+O(faces crossed) each, with a distance field for those that pass a saddle vertex.)";
+
 SurfacePoints centres(const Cells& cells, const py::object& density, const py::object& threads, const py::object& job) {
   ArrayIn<double> weights;
   if (!density.is_none()) weights = as_reals(density, "density", cells.mesh().vertex_count());
@@ -436,6 +468,8 @@ void bind_cells(py::module_& m) {
           "SurfacePoints where three or more cells meet.")
       .def("corners", &corners, py::arg("cell"),
            "SurfacePoints around a cell: branch points and ends at the mesh's boundary, the cell on the left.")
+      .def("dual_paths", &dual_paths, py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(),
+           k_dual_paths_doc)
       .def("centres", &centres, py::arg("density") = py::none(), py::kw_only(), py::arg("threads") = 0,
            py::arg("job") = py::none(), k_centres_doc)
       .def("dual", &dual, py::arg("policy") = "repair", py::kw_only(), py::arg("threads") = 0,

@@ -172,3 +172,39 @@ def test_valences() -> None:
 def test_quality_of_bad_input(vertices: np.ndarray, triangles: list[tuple[int, int, int]], words: str) -> None:
     with pytest.raises(sb.InputError, match=words):
         sb.triangle_quality(vertices, triangles)
+
+
+@pytest.mark.parametrize("arrays", [meshes.torus(60, 24), meshes.grid(20, 20, 0.3), meshes.icosphere(3)])
+def test_dual_edges_as_paths(arrays: meshes.Arrays) -> None:
+    mesh = sb.Mesh(*arrays)
+    graph = sb.SaddleVertexGraph(mesh, k=60)
+    cells = sb.centroidal_voronoi(graph, count=60, max_iterations=8).cells
+    dual, paths = cells.dual("strict"), cells.dual_paths()
+    assert len(paths) == len(dual.edges)
+    for path, (a, b), length in zip(paths, dual.edges, dual.edge_lengths, strict=True):
+        np.testing.assert_allclose(path.points[[0, -1]], dual.vertices[[a, b]], atol=1e-12)
+        np.testing.assert_allclose(path.surface.positions(mesh), path.points, atol=1e-9)
+        assert np.linalg.norm(np.diff(path.points, axis=0), axis=1).sum() == pytest.approx(path.length, rel=1e-8)
+        assert path.length == pytest.approx(length, rel=0.05)
+        assert path.length >= graph.distance(cells.sites[int(a)], cells.sites[int(b)]) * (1 - 0.01)
+    again = cells.dual_paths(threads=1)
+    assert all(np.array_equal(p.points, q.points) for p, q in zip(paths, again, strict=True))
+
+
+def test_double_edges_go_both_ways_round() -> None:
+    """Sites above and below one another on a tube meet on its outside and on its inside."""
+    mesh = sb.Mesh(*meshes.torus(48, 12))
+    graph = sb.SaddleVertexGraph(mesh, k=60)
+    angles = 2 * np.pi * np.arange(4) / 4
+    places = [(np.cos(a), np.sin(a), z) for a in angles for z in (0.35, -0.35)]
+    sites = [int(np.argmin(np.linalg.norm(mesh.vertices - p, axis=1))) for p in places]
+    cells = sb.geodesic_voronoi(graph, sites)
+    dual, paths = cells.dual("strict"), cells.dual_paths()
+    pairs: dict[tuple[int, int], list[sb.GeodesicPath]] = {}
+    for path, edge in zip(paths, dual.edges, strict=True):
+        pairs.setdefault((int(min(edge)), int(max(edge))), []).append(path)
+    double = [both for both in pairs.values() if len(both) > 1]
+    assert double
+    for first, second, *_ in double:
+        gap = np.linalg.norm(first.points[len(first.points) // 2] - second.points[len(second.points) // 2])
+        assert gap > 0.2

@@ -12,8 +12,8 @@ namespace saddleback {
 enum class RelaxationMethod { lbfgs, lloyd };
 
 /// Where sites come from when only their number is given: relaxed cells of a quarter of the number, with a site more on
-/// each boundary between two of them (few irregular cells remain; samples where coarse cells are no disks or meet twice),
-/// or a sample by density and seed. Automatic: from coarse cells for runs long enough to be worth it.
+/// each boundary between two of them (few irregular cells remain; samples where coarse cells are no disks or meet
+/// twice), or a sample by density and seed. Automatic: from coarse cells for runs long enough to be worth it.
 enum class RelaxationStart { automatic, coarse_to_fine, sample };
 
 struct CentroidalVoronoiOptions {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "saddleback/geodesic_voronoi.h"
+#include "saddleback/trace.h"
 
 namespace saddleback {
 
@@ -53,5 +54,12 @@ DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells);
 /// them (the mesh is too coarse for what lies between the cells: subdivide it); Cancelled.
 DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, DualPolicy policy, int threads = 0,
                    Job* job = nullptr);
+
+/// The edges of `dual_mesh(mesh, cells)`, in its order, as paths on the surface: from the left cell's site to the right
+/// one's across the boundary between the two, straightest where such a geodesic can be aimed, else the graph's shortest
+/// paths to that boundary, straightened. \throw Cancelled. O(faces crossed) each, with a distance field for those that
+/// pass a saddle.
+std::vector<GeodesicPath> dual_edge_paths(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, int threads = 0,
+                                          Job* job = nullptr);
 
 }  // namespace saddleback
