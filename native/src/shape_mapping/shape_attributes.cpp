@@ -6,6 +6,7 @@
 
 #include "saddleback/error.h"
 
+#include "geodesics/planar.h"
 #include "shape_mapping/mapper_team.h"
 #include "support/parallel.h"
 
@@ -17,12 +18,6 @@ struct NearVertex {
   double distance;
   Vec2 plane;
 };
-
-double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 along = b - a;
-  const double t = std::clamp(along.dot(p - a) / along.squaredNorm(), 0.0, 1.0);
-  return (p - a - t * along).norm();
-}
 
 double distance_to_outline(const Shape& shape, const Vec2& point) {
   double least = std::numeric_limits<double>::infinity();

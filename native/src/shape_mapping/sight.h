@@ -5,6 +5,8 @@
 
 #include "saddleback/types.h"
 
+#include "geodesics/planar.h"
+
 namespace saddleback {
 
 /// A triangle unfolded: its edge from the origin along the x axis, the apex above it.
@@ -42,8 +44,6 @@ inline double miss_of(double hit) {
   return miss <= k_sight ? 0 : miss;
 }
 
-inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// The source is the origin of the plane: it is put where its distances from both ends say, and the apex in the same
 /// place between the directions of the two ends as seen from there, or beside them.
 inline Sight sight_of_point(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) {
@@ -75,12 +75,12 @@ inline constexpr double k_straight = 1e-6;
 inline Sight sight_of_line(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to, double curvature) {
   const double side = from.y() + to.y() < 0 ? -1 : 1, e = triangle.edge;
   const bool is_behind = side * (to.x() - from.x()) >= 0 && side * from.y() >= 0 && side * to.y() >= 0;
-  const Sight unseen{beside(triangle, from, to), k_most_miss};
-  if (!is_behind) return unseen;
+  const auto unseen = [&] { return Sight{beside(triangle, from, to), k_most_miss}; };
+  if (!is_behind) return unseen();
   double share = 0, height = 0;
   if (std::abs(curvature) * e < k_straight) {
     const double slope = side * (to.y() - from.y()) / e;
-    if (!(std::abs(slope) < 1)) return unseen;
+    if (!(std::abs(slope) < 1)) return unseen();
     const double rise = std::sqrt(1 - slope * slope);
     share = (triangle.apex.x() - slope * (triangle.apex.y() / rise)) / e;
     height = from.y() + side * (slope * triangle.apex.x() + rise * triangle.apex.y());
@@ -88,17 +88,17 @@ inline Sight sight_of_line(const UnfoldedTriangle& triangle, const Vec2& from, c
     const double radius = 1 / curvature, sign = curvature < 0 ? -1 : 1;
     const double r_from = sign * (radius - from.y()), r_to = sign * (radius - to.y());
     const double x = (r_from * r_from - r_to * r_to + e * e) / (2 * e), y2 = r_from * r_from - x * x;
-    if (!(r_from > 0 && r_to > 0 && y2 >= 0)) return unseen;
+    if (!(r_from > 0 && r_to > 0 && y2 >= 0)) return unseen();
     // The centre lies beyond the apex on the inner side of the bend, behind the edge on the outer one.
     const Vec2 centre(x, side * sign * std::sqrt(y2));
     const Vec2 to_from = -centre, to_to = Vec2(e, 0) - centre, to_apex = triangle.apex - centre;
     const double whole = std::atan2(cross(to_from, to_to), to_from.dot(to_to));
-    if (whole == 0) return unseen;
+    if (whole == 0) return unseen();
     share = std::atan2(cross(to_from, to_apex), to_from.dot(to_apex)) / whole;
     height = radius - sign * to_apex.norm();
   }
   const double miss = miss_of(share);
-  if (!(miss < k_most_miss)) return unseen;
+  if (!(miss < k_most_miss)) return unseen();
   return {Vec2((1 - share) * from.x() + share * to.x(), height), miss};
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include "shape_mapping/face_weights.h"
 #include "shape_mapping/sides.h"
@@ -20,8 +21,13 @@ namespace saddleback {
 namespace {
 
 /// Ends the mapping from anywhere in it.
-struct Failed {
-  MapFailure reason;
+class Failed : public std::exception {
+ public:
+  explicit Failed(MapFailure reason) : reason_(reason) {}
+  MapFailure reason() const { return reason_; }
+
+ private:
+  MapFailure reason_;
 };
 
 /// A walk over more faces than this is lost: outlines are at most as long as a few rounds of their box.
@@ -110,7 +116,7 @@ MapFailure OutlineMapper::cut(SurfaceOutline& outline, const MapLimits& limits) 
     find_inside();
     check_crossings();
   } catch (const Failed& failed) {
-    return failed.reason;
+    return failed.reason();
   }
   return MapFailure::none;
 }
@@ -118,12 +124,12 @@ MapFailure OutlineMapper::cut(SurfaceOutline& outline, const MapLimits& limits) 
 void OutlineMapper::cut_loop(std::size_t begin, std::size_t end) {
   outline_->loop_begins.push_back(outline_->pieces.size());
   if (const MapFailure failure = plane_.find(corners_[begin], face_); failure != MapFailure::none)
-    throw Failed{failure};
+    throw Failed(failure);
   enter(face_);
   const Index first_face = face_;
   weights_ = weights_in_face(corners_[begin]);
   for (std::size_t i = begin; i < end; ++i) walk(corners_[i], corners_[i + 1 < end ? i + 1 : begin], given_[i]);
-  if (face_ != first_face) throw Failed{MapFailure::fold};
+  if (face_ != first_face) throw Failed(MapFailure::fold);
 }
 
 bool OutlineMapper::is_in_face(const Vec2& corner) const {
@@ -146,7 +152,7 @@ Index OutlineMapper::exit_of(const Vec2& a, const Vec2& b) const {
   for (int i = 0; i < 3; ++i) is_left[i] = is_vertex_left(a, b, place(mesh_->from(3 * face_ + i)));
   for (int i = 0; i < 3; ++i)
     if (!is_left[i] && is_left[(i + 1) % 3]) return 3 * face_ + i;
-  throw Failed{MapFailure::fold};
+  throw Failed(MapFailure::fold);
 }
 
 /// Writes down the pieces from a, where the walk is, to b.
@@ -158,8 +164,8 @@ void OutlineMapper::walk(const Vec2& a, const Vec2& b, Index corner) {
     const Vec2 exit = on_edge(h % 3, weight);
     const Vec2 at = (1 - weight) * place(mesh_->from(h)) + weight * place(mesh_->to(h));
     outline_->pieces.push_back({face_, corner, h, weights_, exit, given(at)});
-    if (twin == k_none) throw Failed{MapFailure::boundary};
-    if (outline_->pieces.size() > k_most_pieces) throw Failed{MapFailure::fold};
+    if (twin == k_none) throw Failed(MapFailure::boundary);
+    if (outline_->pieces.size() > k_most_pieces) throw Failed(MapFailure::fold);
     crossed_.push_back(std::min(h, twin));
     weights_ = on_edge(twin % 3, 1 - weight);
     face_ = Mesh::face_of(twin);
@@ -187,11 +193,11 @@ void OutlineMapper::enter(Index face) {
   plane_.complete(face);
   const Index i = mesh_->from(3 * face), j = mesh_->to(3 * face), k = mesh_->apex(3 * face);
   const Vec2 &a = place(i), &b = place(j), &c = place(k);
-  if (!is_upright(a, b, c)) throw Failed{MapFailure::fold};
+  if (!is_upright(a, b, c)) throw Failed(MapFailure::fold);
   const Vec3& origin = mesh_->position(i);
   const Stretch stretch = stretch_of(mesh_->position(j) - origin, mesh_->position(k) - origin, b - a, c - a);
   if (!(stretch.smallest >= limits_.smallest && stretch.largest <= limits_.largest))
-    throw Failed{MapFailure::stretched};
+    throw Failed(MapFailure::stretched);
   outline_->smallest = std::min(outline_->smallest, stretch.smallest);
   outline_->largest = std::max(outline_->largest, stretch.largest);
   outline_->faces.push_back(face);
@@ -203,7 +209,7 @@ void OutlineMapper::find_inside() {
     const Index vertex = plane_.vertices()[i];
     const Vec2& at = place(vertex);
     if ((at.array() < box_.low.array()).any() || (at.array() > box_.high.array()).any() || !is_inside(at)) continue;
-    if (mesh_->is_boundary(vertex)) throw Failed{MapFailure::boundary};
+    if (mesh_->is_boundary(vertex)) throw Failed(MapFailure::boundary);
     inside_stamps_[vertex] = stamp_;
     outline_->inside.push_back(vertex);
     outline_->inside_plane.push_back(given(at));
@@ -245,7 +251,7 @@ void OutlineMapper::check_crossings() {
     for (; i < crossed_.size() && crossed_[i] == h; ++i) ++count;
     if (count % 2 == 0) continue;
     ++odd;
-    if (has_inside(mesh_->from(h)) == has_inside(mesh_->to(h))) throw Failed{MapFailure::fold};
+    if (has_inside(mesh_->from(h)) == has_inside(mesh_->to(h))) throw Failed(MapFailure::fold);
   }
   for (const Index vertex : outline_->inside) {
     const Index first = mesh_->first_halfedge(vertex);
@@ -255,7 +261,7 @@ void OutlineMapper::check_crossings() {
       h = mesh_->rotate(h);
     } while (h != first);
   }
-  if (mixed != odd) throw Failed{MapFailure::fold};
+  if (mixed != odd) throw Failed(MapFailure::fold);
 }
 
 }  // namespace saddleback
