@@ -10,6 +10,7 @@ namespace saddleback::bindings {
 void bind_charts(py::module_& m);
 void bind_check(py::module_& m);
 void bind_devices(py::module_& m);
+void bind_distribution(py::module_& m);
 void bind_exact(py::module_& m);
 void bind_fields(py::module_& m);
 void bind_job(py::module_& m);
@@ -117,4 +118,5 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_safe_distance(m);
   bind_shape_maps(m);
   bind_check(m);
+  bind_distribution(m);
 }

@@ -945,3 +945,53 @@ def check_distribution(
     threads: SupportsIndex = 0,
     job: Job | None = None,
 ) -> CheckReport: ...
+
+@final
+class Certificate:
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def cells(self) -> int: ...
+    @property
+    def leaves(self) -> int: ...
+    @property
+    def uncertified_area(self) -> float: ...
+    @property
+    def uncertified(self) -> SurfacePoints: ...
+
+@final
+class Distribution:
+    @property
+    def mesh(self) -> Mesh: ...
+    @property
+    def shapes(self) -> list[Shape]: ...
+    @property
+    def placements(self) -> Placements: ...
+    @property
+    def stop_reason(self) -> Literal["counts", "full", "tired"]: ...
+    @property
+    def rejections(self) -> dict[str, int]: ...
+    @property
+    def certificate(self) -> Certificate | None: ...
+    def outline(self, index: SupportsIndex) -> list[_Floats]: ...
+    def __len__(self) -> int: ...
+
+def distribute(
+    graph: SaddleVertexGraph | Mesh,
+    shapes: Shape | Sequence[Shape],
+    counts: SupportsIndex | ArrayLike | None = None,
+    field: DirectionField | None = None,
+    density: ArrayLike | None = None,
+    size: SupportsFloat | ArrayLike = 1.0,
+    seed: SupportsIndex = 0,
+    mode: Literal["random", "packed"] | SupportsFloat = "random",
+    maximal: bool = False,
+    *,
+    gap: SupportsFloat = 0.0,
+    size_range: ArrayLike = ...,
+    forbidden: ArrayLike | None = None,
+    mirror: bool = False,
+    tolerance: SupportsFloat = 0.01,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
+) -> Distribution: ...

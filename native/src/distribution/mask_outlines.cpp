@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "predicates/planar_loops.h"
+
 namespace saddleback::distribution {
 namespace {
 
@@ -83,5 +85,24 @@ class Tracer {
 }  // namespace
 
 std::vector<Shape::Loop> mask_outlines(const MaskImage& image) { return Tracer(image).run(); }
+
+std::vector<Shape::Part> parts_of(std::vector<Shape::Loop> loops) {
+  std::vector<Shape::Loop> outlines;
+  std::vector<double> areas;
+  std::vector<Shape::Loop> holes;
+  for (Shape::Loop& loop : loops) (predicates::twice_area(loop) > 0 ? outlines : holes).push_back(std::move(loop));
+  std::vector<Shape::Part> parts;
+  for (Shape::Loop& outline : outlines) {
+    areas.push_back(predicates::twice_area(outline));
+    parts.push_back({std::move(outline)});
+  }
+  for (Shape::Loop& hole : holes) {
+    std::size_t best = parts.size();
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (predicates::is_inside(parts[i][0], hole[0]) && (best == parts.size() || areas[i] < areas[best])) best = i;
+    parts[best].push_back(std::move(hole));
+  }
+  return parts;
+}
 
 }  // namespace saddleback::distribution

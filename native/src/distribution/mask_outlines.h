@@ -11,4 +11,7 @@ namespace saddleback::distribution {
 /// No two touch. Marching squares (Lorensen and Cline, Marching cubes, 1987, in the plane). O(pixels).
 std::vector<Shape::Loop> mask_outlines(const MaskImage& image);
 
+/// Every hole with the smallest outline around it. O(loops^2 corners).
+std::vector<Shape::Part> parts_of(std::vector<Shape::Loop> loops);
+
 }  // namespace saddleback::distribution

@@ -5,7 +5,6 @@
 #include "saddleback/shape.h"
 
 #include "mask_outlines.h"
-#include "predicates/planar_loops.h"
 #include "simplify_outward.h"
 
 namespace saddleback {
@@ -34,26 +33,6 @@ void check(const MaskImage& image, Index max_corners) {
     throw InputError("image: no clear mask, every pixel is over one half");
 }
 
-/// Every hole with the smallest outline around it.
-std::vector<Shape::Part> parts_of(std::vector<Shape::Loop> loops) {
-  std::vector<Shape::Loop> outlines;
-  std::vector<double> areas;
-  std::vector<Shape::Loop> holes;
-  for (Shape::Loop& loop : loops) (predicates::twice_area(loop) > 0 ? outlines : holes).push_back(std::move(loop));
-  std::vector<Shape::Part> parts;
-  for (Shape::Loop& outline : outlines) {
-    areas.push_back(predicates::twice_area(outline));
-    parts.push_back({std::move(outline)});
-  }
-  for (Shape::Loop& hole : holes) {
-    std::size_t best = parts.size();
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      if (predicates::is_inside(parts[i][0], hole[0]) && (best == parts.size() || areas[i] < areas[best])) best = i;
-    parts[best].push_back(std::move(hole));
-  }
-  return parts;
-}
-
 }  // namespace
 
 Shape shape_from_mask(const MaskImage& image, Index max_corners, bool centred) {
@@ -66,7 +45,7 @@ Shape shape_from_mask(const MaskImage& image, Index max_corners, bool centred) {
   if (corners > static_cast<std::size_t>(max_corners))
     throw InputError(message("image: no clear mask, it has ", count, " parts and holes, for which ", max_corners,
                              " corners are too few"));
-  const Shape shape(parts_of(std::move(loops)));
+  const Shape shape(distribution::parts_of(std::move(loops)));
   return centred ? shape.centred() : shape;
 }
 

@@ -16,22 +16,10 @@
 #include "saddleback/error.h"
 
 #include "hilbert.h"
+#include "support/random_numbers.h"
 
 namespace saddleback {
 namespace {
-
-/// A well mixed 64-bit number for each counter (splitmix64; Steele, Lea, Flood 2014).
-std::uint64_t mixed(std::uint64_t seed, std::uint64_t counter) {
-  std::uint64_t z = seed + (counter + 1) * 0x9E3779B97F4A7C15u;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-  return z ^ (z >> 31);
-}
-
-/// Uniform in [0, 1), 53 bits.
-double uniform(std::uint64_t seed, std::uint64_t counter) {
-  return static_cast<double>(mixed(seed, counter) >> 11) * 0x1p-53;
-}
 
 /// The share of a linear function's mass that lies in [0, x] of [0, 1] is u: x. The function goes from a to b.
 double inverse_linear(double a, double b, double u) {

@@ -1,0 +1,227 @@
+// distribute and its result.
+
+#include <algorithm>
+
+#include "saddleback/distribution.h"
+#include "saddleback/saddle_vertex_graph.h"
+#include "saddleback/surface_outline.h"
+
+#include "points.h"
+#include "shapes.h"
+
+namespace saddleback::bindings {
+namespace {
+
+constexpr const char* k_distribute_doc = R"(Lays many copies of shapes on a surface so that none collides with another.
+
+Every copy is accepted only after the exact test of its outline, cut at the edges of the faces, against those already there.
+Candidates come in a random order (or that of a sweep), and each that finds room stays, as if one after the other.
+
+Args:
+    graph: a SaddleVertexGraph or a Mesh.
+    shapes: a Shape or a sequence of Shapes.
+    counts: None: as many as find room; or one integer a shape (one for all where there is one shape).
+    field: DirectionField of the mesh: x axes of the shapes point along one of its directions, chosen at random among those
+        that make a difference. None: the smoothest field of lines.
+    density: (V,) wanted number of copies per area, only ratios matter; needs counts.
+    size: scale of the shapes, mesh units for one unit of their planes: a number, or (V,).
+    seed: integer >= 0.
+    mode: "random", or "packed": one beside the other in a front that sweeps over the surface, denser by a quarter and more;
+        or a number from 0 (random) to 1 (packed).
+    maximal: go on until nothing more fits, and prove it: `result.certificate`.
+    gap: least distance between copies, mesh units.
+    size_range: (smallest, largest): every copy is scaled by another factor in this range.
+    forbidden: (F,) booleans: faces that nothing may touch.
+    mirror: half of the copies are mirrored, at random.
+    tolerance: clearance of the proof, as a share of the smallest copy's circumradius.
+    threads: 0: all cores. The result is the same for any number.
+    job: progress and cancellation.
+
+Returns:
+    Distribution.
+
+Raises:
+    InputError: naming the argument: no shape; counts of another number than shapes, or negative; a field of another mesh;
+        sizes or density of the wrong length, not finite or not positive; density zero everywhere, without counts or with
+        maximal; a copy larger than the surface; everything forbidden.
+    Cancelled: the job was.
+
+Notes:
+    Distances are within the surface: sheets that lie close to each other know nothing of each other. After Blelloch,
+    Fineman and Shun, Greedy sequential maximal independent set and matching are parallel on average (2012), and Ebeida and
+    others, Efficient maximal Poisson-disk sampling (2011), for outlines instead of disks.
+)";
+
+/// The result, and what it was made of.
+struct Distribution {
+  py::object mesh;
+  std::vector<Shape> shapes;
+  DistributionResult result;
+};
+
+const Mesh& mesh_of(const py::object& graph, py::object& mesh_object) {
+  if (py::isinstance<SaddleVertexGraph>(graph)) {
+    mesh_object = graph.attr("mesh");
+    return as_mesh(mesh_object, "graph");
+  }
+  mesh_object = graph;
+  return as_mesh(graph, "graph");
+}
+
+std::vector<double> as_sizes(const py::object& value, const char* name) {
+  if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value) || !py::hasattr(value, "__len__"))
+    return {as_real(value, name)};
+  const ArrayIn<double> array = as_reals(value, name);
+  return {array.values.begin(), array.values.end()};
+}
+
+std::vector<Index> as_counts(const py::object& value) {
+  if (value.is_none()) return {};
+  if (!py::hasattr(value, "__len__")) return {as_integer(value, "counts")};
+  const ArrayIn<Index> array = as_indices(value, "counts");
+  if (array.count == 0) throw InputError("counts has 0 values, wanted one a shape");
+  return {array.values.begin(), array.values.end()};
+}
+
+double as_packing(const py::object& mode) {
+  if (!py::isinstance<py::str>(mode)) return as_real(mode, "mode");
+  const auto name = py::cast<std::string>(mode);
+  if (name == "random") return 0;
+  if (name == "packed") return 1;
+  throw InputError(message("mode: wanted \"random\", \"packed\" or a number from 0 to 1, got \"", name, "\""));
+}
+
+std::vector<std::uint8_t> as_mask(const py::object& value) {
+  if (value.is_none()) return {};
+  const auto array = py::array_t<bool>::ensure(value);
+  if (!array || array.ndim() != 1) throw InputError("forbidden: wanted an (F,) array of booleans");
+  return {array.data(), array.data() + array.size()};
+}
+
+const DirectionField* as_field(const py::object& value) {
+  if (value.is_none()) return nullptr;
+  if (!py::isinstance<DirectionField>(value))
+    throw InputError(
+        message("field: wanted a DirectionField, got a ", py::cast<std::string>(py::type::of(value).attr("__name__"))));
+  return &py::cast<const DirectionField&>(value);
+}
+
+std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& shapes, const py::object& counts,
+                                  const py::object& field, const py::object& density, const py::object& size,
+                                  const py::object& seed, const py::object& mode, bool maximal, const py::object& gap,
+                                  const py::object& size_range, const py::object& forbidden, bool mirror,
+                                  const py::object& tolerance, const py::object& threads, const py::object& job) {
+  auto made = std::make_unique<Distribution>();
+  const Mesh& mesh = mesh_of(graph, made->mesh);
+  made->shapes = as_shapes(shapes, "shapes");
+  DistributionOptions options;
+  options.counts = as_counts(counts);
+  options.field = as_field(field);
+  if (!density.is_none()) options.density = as_sizes(density, "density");
+  options.size = as_sizes(size, "size");
+  options.seed = as_seed(seed, "seed");
+  options.packing = as_packing(mode);
+  options.maximal = maximal;
+  options.gap = as_real(gap, "gap");
+  const ArrayIn<double> range = as_reals(size_range, "size_range", 2);
+  options.smallest = range.values[0];
+  options.largest = range.values[1];
+  options.forbidden = as_mask(forbidden);
+  options.mirror = mirror;
+  options.tolerance = as_real(tolerance, "tolerance");
+  options.threads = as_integer(threads, "threads");
+  Job* const token = as_job(job);
+  made->result = without_gil([&] { return distribute(mesh, made->shapes, options, token); });
+  return made;
+}
+
+const Placement& placement_of(const Distribution& self, const py::object& index) {
+  const Index i = as_integer(index, "index");
+  const auto count = static_cast<Index>(self.result.placements.size());
+  if (i < -count || i >= count) throw py::index_error(message("copy ", i, " is out of range, there are ", count));
+  return self.result.placements[i < 0 ? i + count : i];
+}
+
+/// Closed polylines in space, one a loop of the shape.
+py::list outline_of(const Distribution& self, const py::object& index) {
+  const Mesh& mesh = as_mesh(self.mesh, "mesh");
+  const Placement& placement = placement_of(self, index);
+  SurfaceOutline outline;
+  OutlineMapper mapper(mesh);
+  mapper.map(self.shapes[placement.shape].loops(), placement, outline);
+  py::list result;
+  for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop) {
+    std::vector<Vec3> points;
+    for (std::size_t i = outline.loop_begins[loop]; i < outline.loop_begins[loop + 1]; ++i)
+      points.push_back(position(mesh, outline_point(outline.pieces[i].face, outline.pieces[i].begin)));
+    result.append(to_array(std::move(points)));
+  }
+  return result;
+}
+
+const char* name_of(DistributionStop stop) {
+  return stop == DistributionStop::counts ? "counts" : stop == DistributionStop::full ? "full" : "tired";
+}
+
+py::dict rejections_of(const Distribution& self) {
+  constexpr const char* k_names[k_rejection_count] = {"collision", "boundary", "forbidden", "fold", "stretched"};
+  py::dict result;
+  for (std::size_t i = 0; i < k_rejection_count; ++i) result[k_names[i]] = self.result.rejections[i];
+  return result;
+}
+
+void bind_certificate(py::module_& m) {
+  py::class_<Certificate>(m, "Certificate", py::module_local(),
+                          "That nothing more fits: whatever is laid anywhere comes nearer to a copy than `tolerance`.")
+      .def_readonly("tolerance", &Certificate::tolerance, "Mesh units.")
+      .def_readonly("cells", &Certificate::cells, "Tests of a cell of the surface.")
+      .def_readonly("leaves", &Certificate::leaves,
+                    "Cells over which a copy can move by the tolerance at most, and at whose centre none fits.")
+      .def_readonly("uncertified_area", &Certificate::uncertified_area,
+                    "Of cells that it cannot tell about: around singularities, and where the surface bends too much.")
+      .def_readonly("uncertified", &Certificate::uncertified, "SurfacePoints: the centres of those cells.")
+      .def("__repr__", [](const Certificate& self) {
+        return message("<Certificate: tolerance ", self.tolerance, ", ", self.cells, " cells, ", self.leaves,
+                       " leaves, uncertified area ", self.uncertified_area, ">");
+      });
+}
+
+}  // namespace
+
+void bind_distribution(py::module_& m) {
+  bind_certificate(m);
+  py::class_<Distribution>(m, "Distribution", py::module_local(), "Copies of shapes on a surface; see `distribute`.")
+      .def_readonly("mesh", &Distribution::mesh, "The mesh.")
+      .def_property_readonly(
+          "shapes", [](const Distribution& self) { return py::cast(self.shapes); }, "List of the Shapes.")
+      .def_property_readonly(
+          "placements", [](const Distribution& self) { return Placements(self.result.placements); },
+          "Placements, in the order in which they were laid.")
+      .def_property_readonly(
+          "stop_reason", [](const Distribution& self) { return name_of(self.result.stop); },
+          "\"counts\": every count is met; \"full\": nothing more fits, as the certificate proves; \"tired\": no room "
+          "was found in a while.")
+      .def_property_readonly("rejections", &rejections_of,
+                             "{cause: number} of candidates that were not laid: collision, boundary, forbidden, fold, "
+                             "stretched.")
+      .def_property_readonly(
+          "certificate",
+          [](const Distribution& self) -> py::object {
+            return self.result.certificate.tolerance > 0 ? py::cast(self.result.certificate) : py::none();
+          },
+          "Certificate; None unless asked for.")
+      .def("outline", &outline_of, py::arg("index"),
+           "List of (n, 3) float64: the closed outlines of a copy on the surface, loop by loop.")
+      .def("__len__", [](const Distribution& self) { return self.result.placements.size(); })
+      .def("__repr__", [](const Distribution& self) {
+        return message("<Distribution: ", self.result.placements.size(), " copies of ", self.shapes.size(),
+                       self.shapes.size() == 1 ? " shape, " : " shapes, ", name_of(self.result.stop), ">");
+      });
+  m.def("distribute", &lay, py::arg("graph"), py::arg("shapes"), py::arg("counts") = py::none(),
+        py::arg("field") = py::none(), py::arg("density") = py::none(), py::arg("size") = 1.0, py::arg("seed") = 0,
+        py::arg("mode") = "random", py::arg("maximal") = false, py::kw_only(), py::arg("gap") = 0.0,
+        py::arg("size_range") = py::make_tuple(1.0, 1.0), py::arg("forbidden") = py::none(), py::arg("mirror") = false,
+        py::arg("tolerance") = 0.01, py::arg("threads") = 0, py::arg("job") = py::none(), k_distribute_doc);
+}
+
+}  // namespace saddleback::bindings

@@ -1,0 +1,81 @@
+#include "encounter.h"
+
+namespace saddleback::distribution {
+namespace {
+
+double side(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+bool crosses(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  return (side(c, d, a) > 0) != (side(c, d, b) > 0) && (side(a, b, c) > 0) != (side(a, b, d) > 0);
+}
+
+}  // namespace
+
+bool boxes_meet(const Body& body, const Pose& pose, const Body& other, double other_scale) {
+  // Along each of the four sides of the two boxes: the way between the centres against what the boxes reach.
+  const Vec2 way = pose(body.box_centre) - other_scale * other.box_centre;
+  const Vec2 half = other_scale * other.box_half;
+  const Eigen::Matrix2d arms = pose.turn * body.box_half.asDiagonal();
+  const Vec2 reach = arms.cwiseAbs().rowwise().sum() + half;
+  if ((way.array().abs() > reach.array()).any()) return false;
+  for (int i = 0; i < 2; ++i) {
+    const Vec2 normal(-pose.turn(1, i), pose.turn(0, i));
+    const double across = std::abs(normal.dot(arms.col(1 - i))) + normal.cwiseAbs().dot(half);
+    if (std::abs(normal.dot(way)) > across) return false;
+  }
+  return true;
+}
+
+Encounter encounter(const Body& body, double scale, const Pose& pose, const Motion& motion, const Body& other,
+                    double other_scale, double enough) {
+  Encounter best;
+  if (pose.at.norm() > scale * body.shape.circumradius() + other_scale * other.shape.circumradius()) return best;
+  if (!boxes_meet(body, pose, other, other_scale)) return best;
+  const double per_other_unit = 1 / other_scale;
+  for (const Disk& disk : body.disks) {
+    const Vec2 place = pose(disk.centre);
+    const double bound = scale * disk.radius - motion.of(disk.centre);
+    const double depth = bound - other_scale * other.distance.upper(place * per_other_unit);
+    if (depth <= best.depth) continue;
+    best = {depth, disk.centre, disk.radius * scale, false, place};
+    if (depth > enough) return best;
+  }
+  const Eigen::Matrix2d back = pose.turn.inverse();
+  for (const Disk& disk : other.disks) {
+    const Vec2 place = other_scale * disk.centre, own = back * (place - pose.at);
+    const double distance = scale * body.distance.upper(own);
+    if (disk.radius * other_scale - distance - motion.base <= best.depth) continue;
+    const double depth = disk.radius * other_scale - distance - motion.of(own);
+    if (depth <= best.depth) continue;
+    best = {depth, own, disk.radius * other_scale, true, place};
+    if (depth > enough) return best;
+  }
+  return best;
+}
+
+bool outlines_cross(const Shape& shape, const Pose& pose, const Shape& other, double other_scale) {
+  const double reach = other_scale * other.circumradius();
+  for (const Shape::Loop& loop : shape.loops()) {
+    Vec2 a = pose(loop.back());
+    for (const Vec2& corner : loop) {
+      const Vec2 b = pose(corner), low = a.cwiseMin(b), high = a.cwiseMax(b);
+      const bool is_near = (low.array() < reach).all() && (high.array() > -reach).all();
+      for (const Shape::Loop& others : is_near ? other.loops() : std::span<const Shape::Loop>()) {
+        Vec2 c = other_scale * others.back();
+        for (const Vec2& other_corner : others) {
+          const Vec2 d = other_scale * other_corner;
+          const bool is_apart = (c.array() < low.array() && d.array() < low.array()).any() ||
+                                (c.array() > high.array() && d.array() > high.array()).any();
+          if (!is_apart && crosses(a, b, c, d)) return true;
+          c = d;
+        }
+      }
+      a = b;
+    }
+  }
+  return false;
+}
+
+}  // namespace saddleback::distribution

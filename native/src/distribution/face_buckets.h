@@ -1,0 +1,61 @@
+#pragma once
+// Pieces of faces, so that lists of what lies there stay short on faces that are larger than what lies on them.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "saddleback/mesh.h"
+
+namespace saddleback::distribution {
+
+/// Every face is cut into n * n cells by its weights of corners 1 and 2 (half of the cells are beyond the face), n = 1
+/// for most meshes.
+class FaceBuckets {
+ public:
+  /// n is the least for which a cell's sides are at most `longest`, within limits.
+  FaceBuckets(const Mesh& mesh, double longest) {
+    first_.reserve(static_cast<std::size_t>(mesh.face_count()) + 1);
+    std::int64_t count = 0;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      first_.push_back(static_cast<Index>(count));
+      const Index n = divisions(mesh, f, longest);
+      count += static_cast<std::int64_t>(n) * n;
+    }
+    first_.push_back(static_cast<Index>(count));
+  }
+
+  Index count() const { return first_.back(); }
+  Index divisions(Index face) const {
+    const Index cells = first_[face + 1] - first_[face];
+    return cells == 1 ? 1 : static_cast<Index>(std::lround(std::sqrt(static_cast<double>(cells))));
+  }
+  Index at(Index face, const Vec2& weights) const {
+    const Index n = divisions(face);
+    if (n == 1) return first_[face];
+    return first_[face] + place(weights.y(), n) * n + place(weights.x(), n);
+  }
+  /// Calls visit(bucket) for those that meet the box from low to high.
+  template <class Visit>
+  void visit(Index face, const Vec2& low, const Vec2& high, Visit&& visit) const {
+    const Index n = divisions(face);
+    if (n == 1) return visit(first_[face]);
+    const Index left = place(low.x(), n), right = place(high.x(), n), top = place(high.y(), n);
+    for (Index j = place(low.y(), n); j <= top; ++j)
+      for (Index i = left; i <= right && i + j < n; ++i) visit(first_[face] + j * n + i);
+  }
+
+ private:
+  static Index place(double weight, Index n) { return std::clamp(static_cast<Index>(weight * n), Index{0}, n - 1); }
+
+  static Index divisions(const Mesh& mesh, Index face, double longest) {
+    constexpr double k_most = 512;
+    const double edge = std::max({mesh.length(3 * face), mesh.length(3 * face + 1), mesh.length(3 * face + 2)});
+    const double most = std::clamp(std::sqrt(2e7 / mesh.face_count()), 1.0, k_most);
+    return static_cast<Index>(std::clamp(std::ceil(edge / longest), 1.0, most));
+  }
+
+  std::vector<Index> first_;  ///< per face
+};
+
+}  // namespace saddleback::distribution

@@ -1,0 +1,66 @@
+#pragma once
+// Looks for room by subdivision, and proves where there is none.
+
+#include <vector>
+
+#include "saddleback/distribution.h"
+
+#include "laying.h"
+
+namespace saddleback::distribution {
+
+class GapSearch {
+ public:
+  GapSearch(const Mesh& mesh, const PlacingRules& rules, Laying& laying, const DistributionOptions& options);
+
+  /// Lays copies until every count is met, nothing more fits, or (unless all is wanted) rooms become rare.
+  DistributionStop run(const JobStage& stage);
+  const Certificate& certificate() const { return certificate_; }
+
+ private:
+  /// A cell and the kinds that may still fit somewhere in it, by bits.
+  struct OpenCell {
+    Cell cell;
+    std::uint64_t kinds;
+  };
+  /// What came of looking at a cell.
+  struct Look {
+    std::uint64_t open = 0;   ///< kinds that may fit, to be split
+    std::uint64_t asked = 0;  ///< kinds of which a copy at the centre is to be tried
+    std::int64_t tests = 0, leaves = 0;
+    bool is_lost = false;  ///< some kind cannot be told
+    bool has_dart = false;
+    Candidate dart;
+  };
+
+  void make_base_cells();
+  double base_radius() const;
+  void flag_borders();
+  void round(const JobStage& stage);
+  void look(const OpenCell& open, Index number, Look& look) const;
+  void throw_dart(const OpenCell& open, Index number, Look& look) const;
+  bool is_covered(const CellView& view, const Copy& copy, const Motion& motion) const;
+  bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Encounter& found,
+                  const Pose& pose, Index other) const;
+  bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const;
+  double order(const Cell& cell, const SurfacePoint& point, double area, std::uint64_t key) const;
+  double tolerance(const CellView& view, const Kind& kind) const {
+    return options_->tolerance * rules_->smallest_factor() * view.size * rules_->shape_radius(kind);
+  }
+  void lose(const Cell& cell);
+
+  const Mesh* mesh_;
+  const PlacingRules* rules_;
+  Laying* laying_;
+  const DistributionOptions* options_;
+  std::vector<OpenCell> open_;
+  std::vector<double> front_;              ///< per vertex, for packing
+  std::vector<std::uint8_t> near_border_;  ///< per face; empty where there is none
+  std::vector<double> forbidden_depth_;    ///< per vertex: at least so far within what is forbidden
+  std::vector<double> kind_weights_;       ///< sums, by which kinds are drawn
+  Certificate certificate_;
+  std::int64_t laid_in_round_ = 0;
+  int rounds_ = 0;
+};
+
+}  // namespace saddleback::distribution

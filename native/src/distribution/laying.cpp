@@ -1,0 +1,159 @@
+// Candidates are taken in batches: all of a batch are tested against what lay there before it, by all threads, then
+// committed in order. One that shares a face with another of its batch that was committed before it is tested again. So
+// each is laid exactly if it has room among those before it. Batches depend on nothing but the outcomes.
+
+#include "laying.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "support/parallel.h"
+
+namespace saddleback::distribution {
+namespace {
+
+constexpr std::size_t k_least_batch = 64, k_largest_batch = 4096;
+
+Outcome outcome_of(MapFailure failure) {
+  switch (failure) {
+    case MapFailure::boundary:
+      return Outcome::boundary;
+    case MapFailure::fold:
+      return Outcome::fold;
+    case MapFailure::stretched:
+      return Outcome::stretched;
+    default:
+      return Outcome::laid;
+  }
+}
+
+}  // namespace
+
+Laying::Laying(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options)
+    : mesh_(&mesh),
+      rules_(&rules),
+      forbidden_(options.forbidden),
+      threads_(thread_count(options.threads)),
+      settled_(mesh, rules.largest_radius()),
+      wanted_(options.counts),
+      touched_(static_cast<std::size_t>(mesh.face_count()), 0) {
+  for (const Kind& kind : rules.kinds()) laid_.resize(static_cast<std::size_t>(kind.shape) + 1, 0);
+  mappers_.resize(static_cast<std::size_t>(threads_));
+}
+
+bool Laying::is_any_wanted() const {
+  for (Index shape = 0; shape < static_cast<Index>(laid_.size()); ++shape)
+    if (is_wanted(shape)) return true;
+  return false;
+}
+
+bool Laying::is_foreseen_to_meet(const Copy& copy) const {
+  const SurfacePoint& centre = copy.placement.centre;
+  const FaceChart chart(*mesh_, centre.face);
+  const Vec2 place = chart.to_plane(centre.barycentric);
+  const double c = copy.placement.scale * std::cos(copy.placement.angle),
+               s = copy.placement.scale * std::sin(copy.placement.angle);
+  Eigen::Matrix2d own;
+  own << c, -s, s, c;
+  return settled_.visit(
+      centre.face, {centre.barycentric[1], centre.barycentric[2]},
+      [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
+        const Copy& other = settled_.copies()[number];
+        const Pose pose{origin + turn * place, turn * own};
+        return encounter(*copy.body, copy.placement.scale, pose, {}, *other.body, other.placement.scale, 0).depth > 0;
+      });
+}
+
+void Laying::attempt(const Candidate& candidate, Attempt& attempt, int thread) const {
+  attempt.copy = rules_->copy(candidate.kind, candidate.centre, rules_->field_angle(candidate.centre), candidate.scale);
+  if (!is_wanted(attempt.copy.placement.shape)) {
+    attempt.outcome = Outcome::not_wanted;
+    return;
+  }
+  if (!candidate.is_thorough && is_foreseen_to_meet(attempt.copy)) {
+    attempt.outcome = Outcome::collision;
+    return;
+  }
+  auto& mapper = mappers_[thread];
+  if (!mapper) mapper = std::make_unique<OutlineMapper>(*mesh_);
+  test(attempt, *mapper);
+}
+
+void Laying::test(Attempt& attempt, OutlineMapper& mapper) const {
+  Placement placement = attempt.copy.placement;
+  placement.mirrored = false;  // the body is
+  const MapFailure failure = mapper.map(attempt.copy.body->shape.loops(), placement, attempt.outline);
+  attempt.outcome = outcome_of(failure);
+  if (attempt.outcome != Outcome::laid) return;
+  const auto is_forbidden = [&](Index face) { return !forbidden_.empty() && forbidden_[face]; };
+  if (std::any_of(attempt.outline.faces.begin(), attempt.outline.faces.end(), is_forbidden))
+    attempt.outcome = Outcome::forbidden;
+  else if (!settled_.is_free(attempt.copy, attempt.outline, mapper))
+    attempt.outcome = Outcome::collision;
+}
+
+void Laying::commit(Attempt& attempt) {
+  if (attempt.outcome == Outcome::laid && !is_wanted(attempt.copy.placement.shape))
+    attempt.outcome = Outcome::not_wanted;
+  if (attempt.outcome == Outcome::laid) {
+    const auto& faces = attempt.outline.faces;
+    if (std::any_of(faces.begin(), faces.end(), [&](Index face) { return touched_[face] == batch_; })) {
+      make_pending_known(false);
+      if (!mappers_[0]) mappers_[0] = std::make_unique<OutlineMapper>(*mesh_);
+      test(attempt, *mappers_[0]);
+    }
+  }
+  if (attempt.outcome == Outcome::laid) {
+    pending_.push_back(static_cast<Index>(settled_.copies().size()));
+    settled_.add(attempt.copy, attempt.outline);
+    ++laid_[attempt.copy.placement.shape];
+    for (const Index face : attempt.outline.faces) touched_[face] = batch_;
+  } else if (attempt.outcome != Outcome::not_wanted) {
+    ++rejections_[static_cast<std::size_t>(attempt.outcome) - static_cast<std::size_t>(Outcome::collision)];
+  }
+}
+
+void Laying::make_pending_known(bool in_parallel) {
+  std::vector<std::vector<FacePlace>> places(pending_.size());
+  parallel_for(static_cast<Index>(pending_.size()), in_parallel ? threads_ : 1, 1, [&](Index i, int thread) {
+    auto& mapper = mappers_[thread];
+    if (!mapper) mapper = std::make_unique<OutlineMapper>(*mesh_);
+    places[i] = settled_.places_about(settled_.copies()[pending_[i]], mapper->plane());
+  });
+  for (std::size_t i = 0; i < pending_.size(); ++i) settled_.add_places(pending_[i], places[i]);
+  pending_.clear();
+}
+
+std::vector<Outcome> Laying::lay(std::vector<Candidate> candidates, const JobStage& stage) {
+  std::vector<Outcome> outcomes(candidates.size(), Outcome::not_wanted);
+  std::vector<Index> order(candidates.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return candidates[a].key != candidates[b].key ? candidates[a].key < candidates[b].key : a < b;
+  });
+  std::size_t size = k_least_batch;
+  for (std::size_t begin = 0, end; begin < order.size() && is_any_wanted(); begin = end) {
+    stage.update(static_cast<double>(begin) / static_cast<double>(order.size()));
+    end = std::min(order.size(), begin + size);
+    ++batch_;
+    attempts_.resize(std::max(attempts_.size(), end - begin));
+    parallel_for(static_cast<Index>(end - begin), threads_, 8, [&](Index i, int thread) {
+      stage.check();
+      attempt(candidates[order[begin + i]], attempts_[i], thread);
+    });
+    std::size_t laid = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      stage.check();
+      commit(attempts_[i - begin]);
+      outcomes[order[i]] = attempts_[i - begin].outcome;
+      laid += attempts_[i - begin].outcome == Outcome::laid ? 1 : 0;
+    }
+    make_pending_known(true);
+    if (laid * 16 > end - begin) size = std::max(k_least_batch, size / 2);
+    if (laid * 64 < end - begin) size = std::min(k_largest_batch, size * 2);
+  }
+  return outcomes;
+}
+
+}  // namespace saddleback::distribution

@@ -1,0 +1,71 @@
+#pragma once
+// Lays candidates one after the other, as far as others can tell, by several threads.
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "saddleback/distribution.h"
+
+#include "placing_rules.h"
+
+namespace saddleback::distribution {
+
+struct Candidate {
+  double key;  ///< the smallest comes first
+  Index kind;
+  Index cell;  ///< of the caller's, also what comes first among equal keys
+  SurfacePoint centre;
+  double scale;
+  /// Not turned away by what is only foreseen: its outline is tested.
+  bool is_thorough = false;
+};
+
+enum class Outcome : std::uint8_t { laid, not_wanted, collision, boundary, forbidden, fold, stretched };
+
+class Laying {
+ public:
+  Laying(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options);
+
+  const SettledShapes& settled() const { return settled_; }
+  std::span<const std::int64_t> rejections() const { return rejections_; }
+
+  bool is_wanted(Index shape) const { return wanted_.empty() || laid_[shape] < wanted_[shape]; }
+  bool is_any_wanted() const;
+  /// How many more; all equal where no counts are wanted.
+  double share(Index shape) const { return wanted_.empty() ? 1.0 : std::max(0, wanted_[shape] - laid_[shape]); }
+
+  /// Lays those that find room, in the order of their keys. Returns what became of each, in the order given. Stops as
+  /// soon as every count is met.
+  std::vector<Outcome> lay(std::vector<Candidate> candidates, const JobStage& stage);
+
+  /// Whether a copy meets one that lies there, as far as can be foreseen.
+  bool is_foreseen_to_meet(const Copy& copy) const;
+
+ private:
+  struct Attempt {
+    Copy copy;
+    Outcome outcome = Outcome::laid;
+    SurfaceOutline outline;
+  };
+
+  void attempt(const Candidate& candidate, Attempt& attempt, int thread) const;
+  void test(Attempt& attempt, OutlineMapper& mapper) const;
+  void commit(Attempt& attempt);
+  void make_pending_known(bool in_parallel);
+
+  const Mesh* mesh_;
+  const PlacingRules* rules_;
+  std::span<const std::uint8_t> forbidden_;
+  int threads_;
+  SettledShapes settled_;
+  std::vector<Index> wanted_, laid_;
+  std::array<std::int64_t, k_rejection_count> rejections_{};
+  mutable std::vector<std::unique_ptr<OutlineMapper>> mappers_;  ///< one a thread
+  std::vector<Attempt> attempts_;
+  std::vector<Index> pending_;          ///< copies whose surroundings are not known yet
+  std::vector<std::uint32_t> touched_;  ///< per face the last batch that laid something there
+  std::uint32_t batch_ = 0;
+};
+
+}  // namespace saddleback::distribution

@@ -1,0 +1,110 @@
+#include "placing_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "support/parallel.h"
+
+namespace saddleback::distribution {
+namespace {
+
+/// Copies of sizes that differ by no more share the outline that holds the gap, made for the smallest.
+constexpr double k_size_step = 1.15;
+/// The field is sampled about the corners of a cell; between them it may go a little beyond.
+constexpr double k_field_slack = 1.2;
+
+}  // namespace
+
+PlacingRules::PlacingRules(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
+                           const DirectionField& field, const JobStage& stage)
+    : mesh_(&mesh),
+      field_(&field),
+      size_(options.size),
+      smallest_factor_(options.smallest),
+      largest_factor_(options.largest) {
+  for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+    radii_.push_back(shapes[shape].circumradius());
+    const int directions = field.symmetry();
+    const int different = shapes[shape].has_half_turn() && directions % 2 == 0 ? directions / 2 : directions;
+    for (const bool is_mirrored : {false, true})
+      for (int turn = 0; turn < different && is_mirrored <= options.mirror; ++turn)
+        kinds_.push_back({static_cast<Index>(shape), turn, is_mirrored});
+  }
+  make_bodies(shapes, options, stage);
+}
+
+void PlacingRules::make_bodies(std::span<const Shape> shapes, const DistributionOptions& options,
+                               const JobStage& stage) {
+  const auto [least, most] = std::minmax_element(size_.begin(), size_.end());
+  least_scale_ = *least * smallest_factor_;
+  const double most_scale = *most * largest_factor_;
+  const int levels =
+      options.gap > 0 ? 1 + static_cast<int>(std::log(most_scale / least_scale_) / std::log(k_size_step)) : 1;
+  bodies_.resize(2 * shapes.size());
+  smallest_radius_ = *std::min_element(radii_.begin(), radii_.end()) * least_scale_;
+  std::vector<std::size_t> work;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (i % 2 == 1 && !options.mirror) continue;
+    bodies_[i].resize(static_cast<std::size_t>(levels));
+    for (int level = 0; level < levels; ++level) work.push_back(i * static_cast<std::size_t>(levels) + level);
+  }
+  parallel_for(static_cast<Index>(work.size()), options.threads, 1, [&](Index k, int) {
+    stage.check();
+    const std::size_t i = work[k] / levels;
+    const int level = static_cast<int>(work[k] % levels);
+    const Shape side = i % 2 == 0 ? shapes[i / 2] : shapes[i / 2].mirrored();
+    const double scale = least_scale_ * std::pow(k_size_step, level);
+    bodies_[i][level] = std::make_unique<Body>(options.gap > 0 ? grown(side, 0.5 * options.gap / scale) : side);
+  });
+  for (const auto& sizes : bodies_)
+    for (std::size_t level = 0; level < sizes.size(); ++level) {
+      const double scale = std::min(most_scale, least_scale_ * std::pow(k_size_step, level + 1));
+      largest_radius_ =
+          std::max(largest_radius_, sizes[level]->shape.circumradius() * (levels == 1 ? most_scale : scale));
+    }
+}
+
+const Body& PlacingRules::body(Index kind, double scale) const {
+  const auto& sizes = bodies_[static_cast<std::size_t>(2 * kinds_[kind].shape + (kinds_[kind].is_mirrored ? 1 : 0))];
+  if (sizes.size() == 1) return *sizes[0];
+  const auto level = static_cast<int>(std::log(scale / least_scale_) / std::log(k_size_step));
+  return *sizes[static_cast<std::size_t>(std::clamp(level, 0, static_cast<int>(sizes.size()) - 1))];
+}
+
+Copy PlacingRules::copy(Index kind, const SurfacePoint& centre, double field_angle, double scale) const {
+  const Kind& what = kinds_[kind];
+  const double angle = field_angle + 2 * std::numbers::pi * what.turn / field_->symmetry();
+  return {{what.shape, centre, angle, scale, what.is_mirrored}, &body(kind, scale)};
+}
+
+double PlacingRules::size_at(Index face, const Vec2& weights) const {
+  if (size_.size() == 1) return size_[0];
+  const Triangle& t = mesh_->triangles()[face];
+  return size_[t[0]] * (1 - weights.x() - weights.y()) + size_[t[1]] * weights.x() + size_[t[2]] * weights.y();
+}
+
+CellView PlacingRules::view(const Cell& cell) const {
+  const FaceChart chart(*mesh_, cell.face);
+  CellView view{point_at(cell.face, cell.centre()), chart, Vec2::Zero(), 0, 0, 0, 0, 0};
+  view.place = chart.to_plane(view.centre.barycentric);
+  view.angle = field_->angle_at(view.centre);
+  view.size = size_at(cell.face, cell.centre());
+  // Beside a vertex the field depends on the side from which one comes, so it is asked for a little off the corners.
+  constexpr double k_corners[3][2] = {{0, 0}, {1, 0}, {0, 1}}, k_off = 0.01;
+  for (int i = 0; i < 3; ++i) {
+    const Vec2 corner = cell.weights(k_corners[i][0], k_corners[i][1]);
+    view.radius = std::max(view.radius, (chart.to_plane(point_at(cell.face, corner).barycentric) - view.place).norm());
+    view.size_spread = std::max(view.size_spread, std::abs(size_at(cell.face, corner) - view.size));
+    for (int k = 1; k < 3; ++k) {
+      const int other = (i + k) % 3;
+      const double along = k_corners[i][0] + k_off * (k_corners[other][0] - k_corners[i][0]);
+      const double up = k_corners[i][1] + k_off * (k_corners[other][1] - k_corners[i][1]);
+      const double angle = field_->angle_at(point_at(cell.face, cell.weights(along, up)));
+      view.angle_spread = std::max(view.angle_spread, k_field_slack * std::abs(angle - view.angle));
+    }
+  }
+  return view;
+}
+
+}  // namespace saddleback::distribution

@@ -1,0 +1,76 @@
+#pragma once
+// What may be laid at a point: which kinds of copies, how turned, how large.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "saddleback/distribution.h"
+
+#include "body.h"
+#include "cell.h"
+#include "encounter.h"
+#include "settled_shapes.h"
+
+namespace saddleback::distribution {
+
+/// A shape in one of the directions that the field offers, mirrored or not. Position tells the rest.
+struct Kind {
+  Index shape;
+  int turn;  ///< which of the field's directions
+  bool is_mirrored;
+};
+
+/// A cell, and how much direction and size change over it.
+struct CellView {
+  SurfacePoint centre;
+  FaceChart chart;
+  Vec2 place;           ///< the centre in the chart
+  double radius;        ///< farthest corner from the centre
+  double angle;         ///< of the field at the centre
+  double angle_spread;  ///< by how much it differs elsewhere in the cell
+  double size, size_spread;
+};
+
+class PlacingRules {
+ public:
+  PlacingRules(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
+               const DirectionField& field, const JobStage& stage);
+
+  std::span<const Kind> kinds() const { return kinds_; }
+  /// The largest circumradius of anything that is laid, gap included, and the smallest without.
+  double largest_radius() const { return largest_radius_; }
+  double smallest_radius() const { return smallest_radius_; }
+  double shape_radius(const Kind& kind) const { return radii_[kind.shape]; }
+  double smallest_factor() const { return smallest_factor_; }
+
+  CellView view(const Cell& cell) const;
+  double size_at(Index face, const Vec2& weights) const;
+  double size_at(const SurfacePoint& point) const {
+    return size_at(point.face, {point.barycentric[1], point.barycentric[2]});
+  }
+
+  /// A copy of the kind at a point where the field has this angle.
+  Copy copy(Index kind, const SurfacePoint& centre, double field_angle, double scale) const;
+  double field_angle(const SurfacePoint& point) const { return field_->angle_at(point); }
+  /// By how much the points of a copy move when its centre does within the cell.
+  Motion motion(const CellView& view, double factor) const {
+    return {view.radius, factor * (view.size * view.angle_spread + view.size_spread)};
+  }
+
+ private:
+  const Body& body(Index kind, double scale) const;
+  void make_bodies(std::span<const Shape> shapes, const DistributionOptions& options, const JobStage& stage);
+
+  const Mesh* mesh_;
+  const DirectionField* field_;
+  std::vector<double> size_;
+  double smallest_factor_, largest_factor_;
+  std::vector<double> radii_;  ///< per shape
+  std::vector<Kind> kinds_;
+  std::vector<std::vector<std::unique_ptr<Body>>> bodies_;  ///< per shape and side, by size where there is a gap
+  double least_scale_ = 1;
+  double largest_radius_ = 0, smallest_radius_ = 0;
+};
+
+}  // namespace saddleback::distribution

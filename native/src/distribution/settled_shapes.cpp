@@ -1,0 +1,156 @@
+#include "settled_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "predicates/planar_loops.h"
+
+namespace saddleback::distribution {
+namespace {
+
+Vec2 at_weights(const FaceChart& chart, const Vec2& weights) {
+  return weights.x() * chart.corner[1] + weights.y() * chart.corner[2];  // corner 0 is the origin
+}
+
+/// The points of a face that are within `reach` of the origin of the copy's plane, as a box of weights; false when
+/// there are none.
+bool reached_box(const FacePlace& place, const FaceChart& chart, double reach, Vec2& low, Vec2& high) {
+  const Vec2 e1 = place.turn * chart.corner[1], e2 = place.turn * chart.corner[2];
+  const double area = e1.x() * e2.y() - e1.y() * e2.x();
+  const auto weights = [&](const Vec2& arm) {
+    return Vec2((arm.x() * e2.y() - arm.y() * e2.x()) / area, (e1.x() * arm.y() - e1.y() * arm.x()) / area);
+  };
+  const Vec2 centre = weights(-place.origin);
+  // A circle of the plane is an ellipse in weights, as wide as the gradients of the weights are long.
+  const Vec2 half(reach * e2.norm() / area, reach * e1.norm() / area);
+  low = (centre - half).cwiseMax(0.0);
+  high = (centre + half).cwiseMin(1.0);
+  const Vec2 third = -Vec2(e1 - e2);  // the third weight's gradient is as long as this over the area
+  const double sum_low = centre.sum() - reach * third.norm() / area;
+  return low.x() <= high.x() && low.y() <= high.y() && sum_low <= 1;
+}
+
+}  // namespace
+
+SettledShapes::SettledShapes(const Mesh& mesh, double reach)
+    : mesh_(&mesh),
+      reach_(reach),
+      buckets_(mesh, 2 * reach),
+      piece_heads_(static_cast<std::size_t>(buckets_.count()), k_none),
+      place_heads_(static_cast<std::size_t>(buckets_.count()), k_none) {}
+
+bool SettledShapes::is_free(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
+  for (const OutlinePiece& piece : outline.pieces)
+    if (meets(piece)) return false;
+  // No outlines meet: one point of each loop tells the rest.
+  for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop)
+    if (is_within_another(outline.pieces[outline.loop_begins[loop]])) return false;
+  return !holds_another(copy, outline, mapper);
+}
+
+bool SettledShapes::meets(const OutlinePiece& piece) const {
+  const Vec2 low = piece.begin.cwiseMin(piece.end), high = piece.begin.cwiseMax(piece.end);
+  bool found = false;
+  buckets_.visit(piece.face, low, high, [&](Index bucket) {
+    for (Index i = piece_heads_[bucket]; i != k_none && !found; i = pieces_[i].next) {
+      const Piece& other = pieces_[i];
+      const bool apart = (other.begin.cwiseMin(other.end).array() > high.array()).any() ||
+                         (other.begin.cwiseMax(other.end).array() < low.array()).any();
+      found = !apart && predicates::segments_touch(piece.begin, piece.end, other.begin, other.end);
+    }
+  });
+  return found;
+}
+
+bool SettledShapes::is_within_another(const OutlinePiece& piece) const {
+  const Vec2 point = at_weights(FaceChart(*mesh_, piece.face), piece.begin);
+  return visit(piece.face, piece.begin, [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
+    const Copy& copy = copies_[other];
+    return copy.body->shape.contains((origin + turn * point) / copy.placement.scale);
+  });
+}
+
+/// Whoever lies within is met at the centre, however the outline runs.
+bool SettledShapes::holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
+  const SurfacePoint& centre = copy.placement.centre;
+  const ShapeMap& plane = mapper.plane();
+  return visit(centre.face, {centre.barycentric[1], centre.barycentric[2]},
+               [&](Index other, const Vec2&, const Eigen::Matrix2d&) {
+                 for (std::size_t i = start_begins_[other];
+                      i < (static_cast<std::size_t>(other) + 1 < start_begins_.size() ? start_begins_[other + 1]
+                                                                                      : starts_.size());
+                      ++i) {
+                   const auto& [face, weights] = starts_[i];
+                   const Triangle& corners = mesh_->triangles()[face];
+                   if (!plane.has(corners[0]) || !plane.has(corners[1]) || !plane.has(corners[2])) continue;
+                   const Vec2 place = plane.coordinates(corners[0]) * (1 - weights.x() - weights.y()) +
+                                      plane.coordinates(corners[1]) * weights.x() +
+                                      plane.coordinates(corners[2]) * weights.y();
+                   if (copy.body->shape.contains(place / copy.placement.scale) &&
+                       std::find(outline.faces.begin(), outline.faces.end(), face) != outline.faces.end())
+                     return true;
+                 }
+                 return false;
+               });
+}
+
+void SettledShapes::add(const Copy& copy, const SurfaceOutline& outline) {
+  copies_.push_back(copy);
+  start_begins_.push_back(starts_.size());
+  for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop) {
+    const OutlinePiece& piece = outline.pieces[outline.loop_begins[loop]];
+    starts_.push_back({piece.face, piece.begin});
+  }
+  for (const OutlinePiece& piece : outline.pieces)
+    buckets_.visit(piece.face, piece.begin.cwiseMin(piece.end), piece.begin.cwiseMax(piece.end), [&](Index bucket) {
+      pieces_.push_back({piece.begin, piece.end, piece_heads_[bucket]});
+      piece_heads_[bucket] = static_cast<Index>(pieces_.size()) - 1;
+    });
+}
+
+std::vector<FacePlace> SettledShapes::places_about(const Copy& copy, ShapeMap& map) const {
+  const double reach = copy.radius() + reach_;
+  map.about_point(copy.placement.centre, copy.placement.angle, {Vec2::Constant(-reach), Vec2::Constant(reach)});
+  std::vector<FacePlace> result;
+  std::vector<Index> faces;
+  for (const Index vertex : map.vertices()) {
+    const Index first = mesh_->first_halfedge(vertex);
+    Index h = first;
+    do {
+      // Each face once: from its corner of the smallest number.
+      const Triangle& corners = mesh_->triangles()[Mesh::face_of(h)];
+      if (vertex == std::min({corners[0], corners[1], corners[2]}) && map.has(corners[0]) && map.has(corners[1]) &&
+          map.has(corners[2]))
+        faces.push_back(Mesh::face_of(h));
+      h = mesh_->rotate(h);
+    } while (h != k_none && h != first);
+  }
+  for (const Index face : faces) {
+    const Triangle& corners = mesh_->triangles()[face];
+    const Vec2 origin = map.coordinates(corners[0]), e1 = map.coordinates(corners[1]) - origin,
+               e2 = map.coordinates(corners[2]) - origin;
+    if (!(e1.x() * e2.y() - e1.y() * e2.x() > 0)) continue;
+    if (origin.norm() > reach + std::max(e1.norm(), e2.norm())) continue;
+    const FaceChart chart(*mesh_, face);
+    const Vec2 x = e1 / chart.corner[1].x(), y = (e2 - x * chart.corner[2].x()) / chart.corner[2].y();
+    Eigen::Matrix2d turn;
+    turn << x, y;
+    result.push_back({face, origin, turn});
+  }
+  return result;
+}
+
+void SettledShapes::add_places(Index copy, const std::vector<FacePlace>& places) {
+  const double reach = copies_[copy].radius() + reach_;
+  for (const FacePlace& place : places) {
+    Vec2 low = Vec2::Zero(), high = Vec2::Ones();
+    if (buckets_.divisions(place.face) > 1 && !reached_box(place, FaceChart(*mesh_, place.face), reach, low, high))
+      continue;
+    buckets_.visit(place.face, low, high, [&](Index bucket) {
+      places_.push_back({place.origin, place.turn, copy, place_heads_[bucket]});
+      place_heads_[bucket] = static_cast<Index>(places_.size()) - 1;
+    });
+  }
+}
+
+}  // namespace saddleback::distribution

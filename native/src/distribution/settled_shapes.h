@@ -1,0 +1,89 @@
+#pragma once
+// The copies that lie on the surface: their outlines face by face, and where points near them are in their planes.
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "saddleback/surface_outline.h"
+
+#include "body.h"
+#include "face_buckets.h"
+
+namespace saddleback::distribution {
+
+/// What is laid, or is to be.
+struct Copy {
+  Placement placement;
+  const Body* body = nullptr;
+  double radius() const { return placement.scale * body->shape.circumradius(); }
+};
+
+/// How a face lies in the plane of a copy, in mesh units: a point p of the face's own plane (FaceChart) is at
+/// origin + turn * p.
+struct FacePlace {
+  Index face;
+  Vec2 origin;
+  Eigen::Matrix2d turn;
+};
+
+class SettledShapes {
+ public:
+  /// `reach`: how far from its outline a copy may be met by others (their largest circumradius).
+  SettledShapes(const Mesh& mesh, double reach);
+
+  const Mesh& mesh() const { return *mesh_; }
+  std::span<const Copy> copies() const { return copies_; }
+
+  /// Exact: whether the outline has no common point with those that lie there and neither lies within the other.
+  /// `mapper` has just mapped it.
+  bool is_free(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;
+
+  /// Puts a copy there.
+  void add(const Copy& copy, const SurfaceOutline& outline);
+
+  /// Where all faces lie from which a copy can be met. Safe to call from several threads with a map each.
+  std::vector<FacePlace> places_about(const Copy& copy, ShapeMap& map) const;
+  /// Makes them known for the copy of this number.
+  void add_places(Index copy, const std::vector<FacePlace>& places);
+
+  /// Calls visit(copy number, FacePlace's origin and turn) for copies that may be met at the point, until it gives
+  /// true; then returns true.
+  template <class Visit>
+  bool visit(Index face, const Vec2& weights, Visit&& visit) const {
+    for (Index i = place_heads_[buckets_.at(face, weights)]; i != k_none; i = places_[i].next)
+      if (visit(places_[i].copy, places_[i].origin, places_[i].turn)) return true;
+    return false;
+  }
+
+ private:
+  struct Piece {
+    Vec2 begin, end;
+    Index next;
+  };
+  struct Place {
+    Vec2 origin;
+    Eigen::Matrix2d turn;
+    Index copy, next;
+  };
+  struct Start {
+    Index face;
+    Vec2 weights;
+  };
+
+  bool meets(const OutlinePiece& piece) const;
+  bool is_within_another(const OutlinePiece& piece) const;
+  bool holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;
+
+  const Mesh* mesh_;
+  double reach_;
+  FaceBuckets buckets_;
+  std::vector<Copy> copies_;
+  std::vector<std::size_t> start_begins_;  ///< per copy, of its loops
+  std::vector<Start> starts_;              ///< a point of every loop
+  std::vector<Index> piece_heads_, place_heads_;
+  std::vector<Piece> pieces_;
+  std::vector<Place> places_;
+};
+
+}  // namespace saddleback::distribution
