@@ -193,7 +193,13 @@ void bind_distribution(py::module_& m) {
   py::class_<Distribution>(m, "Distribution", py::module_local(), "Copies of shapes on a surface; see `distribute`.")
       .def_readonly("mesh", &Distribution::mesh, "The mesh.")
       .def_property_readonly(
-          "shapes", [](const Distribution& self) { return py::cast(self.shapes); }, "List of the Shapes.")
+          "shapes",
+          [](const Distribution& self) {
+            py::list shapes;
+            for (const Shape& shape : self.shapes) shapes.append(shape);
+            return shapes;
+          },
+          "List of the Shapes.")
       .def_property_readonly(
           "placements", [](const Distribution& self) { return Placements(self.result.placements); },
           "Placements, in the order in which they were laid.")

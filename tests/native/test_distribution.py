@@ -1,0 +1,315 @@
+"""Distribution: nothing collides, nothing more fits, and what was asked for is what lies there."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests import meshes
+
+STAR, NEEDLE, DISK, CRESCENT = sb.Shape.star(), sb.Shape.needle(6), sb.Shape.disk(24), sb.Shape.crescent(0.8, 0.4, 20)
+SQUARE = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]])
+FRAME = sb.Shape([SQUARE * 0.7, SQUARE * 0.4])
+
+
+@functools.cache
+def plane(turning: bool = False) -> tuple[sb.Mesh, sb.DirectionField]:
+    mesh = sb.Mesh(*meshes.grid(25, 25))
+    return mesh, sb.direction_field(mesh, 1, {312: 2} if turning else {})
+
+
+@functools.cache
+def ring() -> tuple[sb.Mesh, sb.DirectionField]:
+    mesh = sb.Mesh(*meshes.torus(60, 30))
+    return mesh, sb.direction_field(mesh, 2, {100: 0.5, 900: -0.5})
+
+
+def laid_flat(result: sb.Distribution, scale: float = 1.0) -> list[sb.Shape]:
+    """The copies of a distribution on a plane, as shapes of that plane."""
+    mesh, placements = result.mesh, result.placements
+    places = placements.centre.positions(mesh)[:, :2]
+    corners = mesh.vertices[mesh.triangles[placements.centre.faces]]
+    edge = corners[:, 1] - corners[:, 0]
+    angles = placements.angle + np.arctan2(edge[:, 1], edge[:, 0])
+    shapes = [result.shapes[i].mirrored() if m else result.shapes[i] for i, m in zip(*_kinds(placements), strict=True)]
+    return [
+        shape.moved(size * scale, angle, place)
+        for shape, size, angle, place in zip(shapes, placements.scale, angles, places, strict=True)
+    ]
+
+
+def _kinds(placements: sb.Placements) -> tuple[np.ndarray, np.ndarray]:
+    return placements.shape, placements.mirrored
+
+
+def collisions(shapes: list[sb.Shape]) -> int:
+    boxes = [(np.concatenate(s.loops).min(axis=0), np.concatenate(s.loops).max(axis=0)) for s in shapes]
+    return sum(
+        shapes[i].overlaps(shapes[j])
+        for i in range(len(shapes))
+        for j in range(i)
+        if (boxes[i][0] <= boxes[j][1]).all() and (boxes[j][0] <= boxes[i][1]).all()
+    )
+
+
+def same(a: sb.Distribution, b: sb.Distribution) -> bool:
+    p, q = a.placements, b.placements
+    return (
+        np.array_equal(p.shape, q.shape)
+        and np.array_equal(p.centre.faces, q.centre.faces)
+        and np.array_equal(p.centre.barycentric, q.centre.barycentric)
+        and np.array_equal(p.angle, q.angle)
+        and np.array_equal(p.scale, q.scale)
+        and np.array_equal(p.mirrored, q.mirrored)
+    )
+
+
+@pytest.mark.parametrize("turning", [False, True])
+@pytest.mark.parametrize("mode", ["random", "packed"])
+@pytest.mark.parametrize("shape", [STAR, NEEDLE, CRESCENT, FRAME], ids=["star", "needle", "crescent", "frame"])
+def test_nothing_collides_on_a_plane_and_nothing_more_fits(shape, mode, turning) -> None:
+    mesh, field = plane(turning)
+    result = sb.distribute(mesh, shape, field=field, size=0.07, mode=mode, maximal=True, tolerance=0.02)
+    assert result.stop_reason == "full" and result.certificate.uncertified_area < 0.02 * mesh.area
+    copies = laid_flat(result)
+    assert collisions(copies) == 0
+    assert all((np.abs(np.concatenate(s.loops) - 0.5) <= 0.5).all() for s in copies)
+    rng = np.random.default_rng(1)
+    places = rng.uniform(0.0, 1.0, (700, 2))
+    ahead = field.directions(sb.project(mesh, np.column_stack([places, np.zeros(len(places))])))
+    centres = result.placements.centre.positions(mesh)[:, :2]
+    for place, direction in zip(places, ahead, strict=True):
+        if turning and np.linalg.norm(place - [0.5, 0.5]) < 0.05:
+            continue  # about the singularity the certificate says nothing
+        extra = shape.moved(0.07, np.arctan2(direction[1], direction[0]), place)
+        if (np.abs(np.concatenate(extra.loops) - 0.5) > 0.5).any():
+            continue
+        near = np.flatnonzero(np.linalg.norm(centres - place, axis=1) < 0.14)
+        assert any(extra.overlaps(copies[i]) for i in near)
+
+
+@pytest.mark.parametrize(("shape", "least"), [(STAR, 1.2), (DISK, 1.2), (NEEDLE, 1.12)])
+def test_packed_is_denser(shape, least) -> None:
+    mesh, field = ring()
+    loose = sb.distribute(mesh, shape, field=field, size=0.13, maximal=True, tolerance=0.05)
+    packed = sb.distribute(mesh, shape, field=field, size=0.13, mode="packed", maximal=True, tolerance=0.05)
+    assert len(packed) > least * len(loose)
+
+
+@pytest.mark.parametrize("case", meshes.good(), ids=str)
+def test_the_checker_finds_nothing(case) -> None:
+    radius = 0.12 * np.sqrt(case.mesh.area)
+    result = sb.distribute(case.mesh, [STAR, DISK, FRAME], size=radius, size_range=(0.25, 1), mirror=True, seed=3)
+    assert len(result) >= 1
+    report = sb.check_distribution(case.mesh, result, samples=20_000)
+    assert report.ok, report
+
+
+def test_the_result_does_not_depend_on_threads() -> None:
+    mesh, field = ring()
+    results = [
+        sb.distribute(mesh, [STAR, NEEDLE], field=field, size=0.12, size_range=(0.4, 1), threads=threads, maximal=True)
+        for threads in (1, 2, 5)
+    ]
+    assert same(results[0], results[1]) and same(results[0], results[2]) and len(results[0]) > 50
+    again = sb.distribute(mesh, [STAR, NEEDLE], field=field, size=0.12, size_range=(0.4, 1), seed=1)
+    assert not same(results[0], again)
+
+
+def test_counts_are_met_and_kept() -> None:
+    mesh, field = ring()
+    result = sb.distribute(mesh, [STAR, NEEDLE, DISK], [30, 50, 0], field, size=0.1)
+    assert np.bincount(result.placements.shape, minlength=3).tolist() == [30, 50, 0]
+    assert result.stop_reason == "counts" and result.certificate is None
+    too_many = sb.distribute(mesh, DISK, 10_000, field, size=0.2, maximal=True, tolerance=0.05)
+    assert too_many.stop_reason == "full" and len(too_many) < 200 and too_many.certificate.cells > 0
+
+
+def test_copies_point_along_the_field() -> None:
+    mesh, field = ring()
+    placements = sb.distribute(mesh, CRESCENT, field=field, size=0.1).placements
+    corners = mesh.vertices[mesh.triangles[placements.centre.faces]]
+    x = corners[:, 1] - corners[:, 0]
+    x /= np.linalg.norm(x, axis=1)[:, None]
+    normal = np.cross(x, corners[:, 2] - corners[:, 0])
+    y = np.cross(normal / np.linalg.norm(normal, axis=1)[:, None], x)
+    axis = x * np.cos(placements.angle)[:, None] + y * np.sin(placements.angle)[:, None]
+    along = (axis * field.directions(placements.centre)).sum(axis=1)
+    assert np.abs(along) == pytest.approx(1, abs=1e-9)
+    assert 0.2 < (along > 0).mean() < 0.8  # lines have two ends, the crescent one
+
+
+def test_a_gap_is_kept() -> None:
+    mesh, field = plane(True)
+    for gap in (0.01, 0.05):
+        result = sb.distribute(mesh, STAR, field=field, size=0.07, gap=gap, size_range=(0.5, 1))
+        copies = laid_flat(result)
+        corners = [np.concatenate(s.loops) for s in copies]
+        edges = [np.concatenate([np.roll(loop, -1, axis=0) for loop in s.loops]) for s in copies]
+        nearest = np.inf
+        for i, own in enumerate(corners):
+            for j, begin in enumerate(corners):
+                if i != j:
+                    along = edges[j] - begin
+                    arm = own[:, None] - begin
+                    share = np.clip((arm * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
+                    nearest = min(nearest, np.linalg.norm(arm - share[..., None] * along, axis=2).min())
+        assert gap <= nearest < 1.5 * gap + 0.02
+        assert len(result) > 20
+
+
+def test_forbidden_faces_and_rims_are_kept_free() -> None:
+    mesh, field = plane()
+    centres = mesh.vertices[mesh.triangles].mean(axis=1)
+    forbidden = np.hypot(centres[:, 0] - 0.4, centres[:, 1] - 0.5) < 0.25
+    result = sb.distribute(mesh, DISK, field=field, size=0.06, forbidden=forbidden, maximal=True)
+    places = result.placements.centre.positions(mesh)[:, :2]
+    assert (np.hypot(places[:, 0] - 0.4, places[:, 1] - 0.5) > 0.25 + 0.02).all()
+    assert (np.abs(places - 0.5) <= 0.44).all() and len(result) > 20
+    assert result.rejections["boundary"] + result.rejections["forbidden"] > 0
+    free = sb.distribute(mesh, DISK, field=field, size=0.06, maximal=True)
+    assert len(free) > len(result)
+
+
+def test_many_shapes_in_one_face() -> None:
+    mesh = sb.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    field = sb.direction_field(mesh, 1, {})
+    result = sb.distribute(mesh, [STAR, FRAME, DISK], field=field, size=0.03, size_range=(0.3, 1), maximal=True)
+    copies = laid_flat(result)
+    assert len(result) > 200 and collisions(copies) == 0
+
+
+def test_small_ones_lie_in_holes_of_large_ones() -> None:
+    mesh, field = plane()
+    ring_shape = sb.Shape([SQUARE * 0.7, SQUARE * 0.65])
+    result = sb.distribute(mesh, [ring_shape, DISK.moved(0.1)], [6, 400], field, size=0.25, seed=2)
+    copies = laid_flat(result)
+    assert collisions(copies) == 0
+    kinds = result.placements.shape
+    middles = result.placements.centre.positions(mesh)[:, :2]
+    inside = sum(
+        (np.abs(middles[kinds == 1] - middle).max(axis=1) < 0.7 * 0.25 / np.sqrt(2)).sum()
+        for middle in middles[kinds == 0]
+    )
+    assert inside > 5
+
+
+def test_sizes_follow_a_field_of_sizes() -> None:
+    mesh, field = plane()
+    size = 0.02 + 0.06 * mesh.vertices[:, 0]
+    result = sb.distribute(mesh, STAR, field=field, size=size, maximal=True, tolerance=0.05)
+    places = result.placements.centre.positions(mesh)
+    assert result.placements.scale == pytest.approx(0.02 + 0.06 * places[:, 0])
+    assert collisions(laid_flat(result)) == 0
+    left, right = (places[:, 0] < 0.3).sum(), (places[:, 0] > 0.7).sum()
+    assert left > 2.5 * right
+
+
+def test_numbers_follow_a_density() -> None:
+    mesh, field = plane()
+    density = 1 + 7 * mesh.vertices[:, 0]
+    result = sb.distribute(mesh, [STAR, DISK], [600, 200], field, density, size=0.008)
+    assert np.bincount(result.placements.shape).tolist() == [600, 200]
+    x = result.placements.centre.positions(mesh)[:, 0]
+    found = np.histogram(x, 10, (0, 1))[0]
+    edges = np.linspace(0, 1, 11)
+    wanted = np.diff(edges + 3.5 * edges**2) / 4.5 * 800
+    assert np.abs(found - wanted).max() < 10
+    quiet = sb.distribute(mesh, DISK, 100, field, np.where(mesh.vertices[:, 0] < 0.5, 0.0, 1.0), size=0.01)
+    assert (quiet.placements.centre.positions(mesh)[:, 0] > 0.45).all()
+
+
+def test_sheets_that_lie_close_do_not_know_each_other() -> None:
+    vertices, triangles = meshes.grid(20, 20)
+    below = vertices + [0, 0, -1e-4]
+    both = sb.Mesh(np.concatenate([vertices, below]), np.concatenate([triangles, triangles[:, ::-1] + len(vertices)]))
+    alone = sb.Mesh(vertices, triangles)
+    options = {"size": 0.08, "maximal": True, "tolerance": 0.05, "seed": 4}
+    one = sb.distribute(alone, STAR, field=sb.direction_field(alone, 1, {}), **options).placements
+    two = sb.distribute(both, STAR, field=sb.direction_field(both, 1, {}), **options).placements
+    upper = two.centre.faces < len(triangles)
+    assert np.array_equal(one.centre.faces, two.centre.faces[upper])
+    assert np.array_equal(one.centre.barycentric, two.centre.barycentric[upper]) and (~upper).sum() > 20
+
+
+def test_triangulations_of_one_surface_agree() -> None:
+    counts = []
+    for around, tube in ((40, 20), (90, 45)):
+        mesh = sb.Mesh(*meshes.torus(around, tube))
+        field = sb.direction_field(mesh, 1, {})
+        counts.append(
+            np.mean(
+                [
+                    len(sb.distribute(mesh, DISK, field=field, size=0.08, maximal=True, seed=s, tolerance=0.05))
+                    for s in range(3)
+                ]
+            )
+        )
+    assert counts[0] == pytest.approx(counts[1], rel=0.04)
+
+
+def test_a_graph_stands_for_its_mesh() -> None:
+    mesh, field = ring()
+    graph = sb.SaddleVertexGraph(mesh, k=10)
+    assert same(sb.distribute(graph, STAR, field=field, size=0.2), sb.distribute(mesh, STAR, field=field, size=0.2))
+
+
+def test_outlines_are_closed_curves_on_the_surface() -> None:
+    mesh, field = ring()
+    result = sb.distribute(mesh, FRAME, 5, field, size=0.1)
+    loops = result.outline(2)
+    assert len(loops) == 2 and all(np.isfinite(loop).all() and len(loop) >= 4 for loop in loops)
+    lengths = [np.linalg.norm(loop - np.roll(loop, -1, axis=0), axis=1).sum() for loop in loops]
+    assert lengths == pytest.approx([0.1 * 8 * 0.7, 0.1 * 8 * 0.4], rel=0.05)
+    assert np.array_equal(result.outline(-1)[0], result.outline(4)[0])
+    with pytest.raises(IndexError):
+        result.outline(5)
+
+
+REFUSED = {
+    "no shape": ({"shapes": []}, "at least one Shape"),
+    "counts of another number": ({"counts": [1, 2, 3]}, "counts has 3 values"),
+    "negative count": ({"counts": [-1]}, "negative"),
+    "size of another length": ({"size": [1.0, 2.0]}, "size has 2 values"),
+    "size zero": ({"size": 0.0}, "size is 0"),
+    "larger than the surface": ({"size": 100.0}, "larger than the surface"),
+    "range upside down": ({"size_range": (2, 1)}, "no range"),
+    "density without counts": ({"density": np.ones(625)}, "counts must tell"),
+    "density zero": ({"density": np.zeros(625), "counts": [1]}, "zero everywhere"),
+    "density and maximal": ({"density": np.ones(625), "counts": [1], "maximal": True}, "full everywhere"),
+    "density not finite": ({"density": np.full(625, np.nan), "counts": [1]}, "not finite"),
+    "negative gap": ({"gap": -1}, "gap is -1"),
+    "unknown mode": ({"mode": "dense"}, "mode: wanted"),
+    "packing beyond 1": ({"mode": 1.5}, "packing is 1.5"),
+    "everything forbidden": ({"forbidden": np.ones(1152, bool)}, "no face is left"),
+    "forbidden of another length": ({"forbidden": np.ones(3, bool)}, "forbidden has 3"),
+    "tolerance": ({"tolerance": 0}, "tolerance is 0"),
+    "no field": ({"field": 3}, "field: wanted"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bad_input_is_refused(case) -> None:
+    mesh, field = plane()
+    given, words = REFUSED[case]
+    with pytest.raises(sb.InputError, match=words):
+        sb.distribute(mesh, **{"shapes": STAR, "field": field, "size": 0.1, **given})
+
+
+def test_a_field_of_another_mesh_is_refused() -> None:
+    with pytest.raises(sb.InputError, match="another mesh"):
+        sb.distribute(plane()[0], STAR, field=ring()[1], size=0.1)
+
+
+def test_a_job_is_cancelled_and_tells_how_far_it_is() -> None:
+    mesh, field = ring()
+    job = sb.Job()
+    sb.distribute(mesh, STAR, field=field, size=0.1, job=job)
+    assert job.fraction == 1
+    job = sb.Job()
+    job.cancel()
+    with pytest.raises(sb.Cancelled):
+        sb.distribute(mesh, STAR, field=field, size=0.1, maximal=True, job=job)
