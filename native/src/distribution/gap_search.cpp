@@ -25,7 +25,7 @@ constexpr double k_bending = 4;
 constexpr double k_edge_excess = 1.5;
 constexpr Index k_border_corners = 24;
 /// A round that lays less than this share of all is the last one, unless everything is wanted.
-constexpr double k_tired = 0.005;
+constexpr double k_tired = 0.02;
 
 Pose pose_at(const CellView& view, const Copy& copy, const Vec2& origin, const Eigen::Matrix2d& turn) {
   const double c = copy.placement.scale * std::cos(copy.placement.angle),
@@ -40,6 +40,9 @@ Pose pose_at(const CellView& view, const Copy& copy, const Vec2& origin, const E
 GapSearch::GapSearch(const Mesh& mesh, const PlacingRules& rules, Laying& laying, const DistributionOptions& options)
     : mesh_(&mesh), rules_(&rules), laying_(&laying), options_(&options) {
   if (options.packing > 0) front_ = sweep_coordinate(mesh);
+  if (options.maximal)
+    certificate_.tolerance = options.tolerance * options.smallest *
+                             *std::max_element(options.size.begin(), options.size.end()) * rules.largest_shape_radius();
   flag_borders();
   make_base_cells();
 }
@@ -246,8 +249,6 @@ void GapSearch::round(const JobStage& stage) {
       const double area = mesh_->face_area(open_[i].cell.face) * open_[i].cell.unit() * open_[i].cell.unit();
       const std::uint64_t key = mixed(options_->seed, open_[i].cell.key());
       const double scale = rules_->smallest_factor() * view.size;
-      const double least = tolerance(view, rules_->kinds()[kind]);
-      certificate_.tolerance = std::max(certificate_.tolerance, least);
       candidates.push_back({order(open_[i].cell, view.centre, area, key), kind, i, view.centre, scale, true});
     }
   }
@@ -289,7 +290,7 @@ DistributionStop GapSearch::run(const JobStage& stage) {
     round(stage.part(done, done + 0.5 * (1 - done)));
     done += 0.5 * (1 - done);
     const auto total = static_cast<double>(laying_->settled().copies().size());
-    const bool is_tired = static_cast<double>(laid_in_round_) < k_tired * total && rounds_ > 2;
+    const bool is_tired = static_cast<double>(laid_in_round_) < k_tired * total && rounds_ > 1;
     if (!options_->maximal && (is_tired || total == 0)) break;
   }
   if (!laying_->is_any_wanted()) return DistributionStop::counts;

@@ -1,6 +1,7 @@
 #pragma once
 // What may be laid at a point: which kinds of copies, how turned, how large.
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -42,6 +43,7 @@ class PlacingRules {
   double largest_radius() const { return largest_radius_; }
   double smallest_radius() const { return smallest_radius_; }
   double shape_radius(const Kind& kind) const { return radii_[kind.shape]; }
+  double largest_shape_radius() const { return *std::max_element(radii_.begin(), radii_.end()); }
   double smallest_factor() const { return smallest_factor_; }
 
   CellView view(const Cell& cell) const;
