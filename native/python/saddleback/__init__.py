@@ -77,6 +77,7 @@ from saddleback._saddleback import (
     triangle_quality,
     voronoi_2d,
 )
+from saddleback.density_match import DensityMatch, density_match
 from saddleback.placement_files import read_placements, write_placements
 from saddleback.progress import progress_bar
 from saddleback.sizes import blend_by_distance, density_by_curvature, ramp_by_distance
@@ -90,6 +91,7 @@ __all__ = [
     "ClippedCells",
     "ConformedPoints",
     "CutSurface",
+    "DensityMatch",
     "Device",
     "DeviceError",
     "DirectionField",
@@ -136,6 +138,7 @@ __all__ = [
     "check_distribution",
     "cuda_status",
     "density_by_curvature",
+    "density_match",
     "devices",
     "direction_field",
     "distribute",

@@ -1,0 +1,46 @@
+"""How well copies follow a density: exact shares, the law of large numbers, and copies that ignore it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from saddleback.density_match import equal_areas
+from tests import meshes
+
+
+def copies(points: sb.SurfacePoints) -> sb.Placements:
+    n = len(points)
+    return sb.Placements(np.zeros(n, int), points, np.zeros(n), np.ones(n))
+
+
+@pytest.mark.parametrize("cells", [2, 7, 200])
+def test_the_parts_are_equally_large(cells: int) -> None:
+    mesh = sb.Mesh(*meshes.icosphere(5))
+    labels = equal_areas(mesh, cells)
+    a, b, c = mesh.vertices[mesh.triangles].transpose(1, 0, 2)
+    areas = np.bincount(labels, 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
+    assert len(areas) == cells and np.abs(areas / areas.mean() - 1).max() < 0.06
+
+
+def test_copies_that_follow_a_ramp_and_copies_that_do_not() -> None:
+    mesh = sb.Mesh(*meshes.grid(60, 60))
+    ramp = 1 + 7 * mesh.vertices[:, 0]
+    follows = sb.density_match(mesh, copies(sb.sample(mesh, 20_000, ramp, seed=1)), ramp)
+    assert follows.correlation > 0.95 and follows.found.sum() == 20_000
+    assert follows.wanted.sum() == pytest.approx(20_000)
+    even = copies(sb.sample(mesh, 20_000, seed=1))
+    assert abs(sb.density_match(mesh, even, ramp).correlation) < 0.3
+    assert sb.density_match(mesh, even, ramp.max() - ramp).correlation < 0.3
+    assert np.isnan(sb.density_match(mesh, even, np.ones(len(ramp))).correlation)
+
+
+def test_bad_input() -> None:
+    mesh = sb.Mesh(*meshes.grid())
+    one = copies(sb.SurfacePoints([3], [[1, 0, 0]]))
+    for density, message in ((np.ones(3), "wanted 144 values"), (np.zeros(144), "not all zero")):
+        with pytest.raises(sb.InputError, match=message):
+            sb.density_match(mesh, one, density)
+    with pytest.raises(sb.InputError, match="cells is 1"):
+        sb.density_match(mesh, one, np.ones(144), 1)
