@@ -10,12 +10,13 @@ from . import compat
 
 MARK = "saddleback_made"  # custom property: which of the things below a data-block is
 
-TUBES, INSTANCES, SWEEP = "tubes", "instances", "sweep"
+TUBES, INSTANCES, SWEEP, SHAPES = "tubes", "instances", "sweep", "shapes"
 CELLS, EDGES, PATHS = "cells", "edges", "paths"
 ARROWS, SOURCES, SADDLES = "arrows", "field sources", "field saddles"
 
 SIZE_ATTRIBUTE = "saddleback_size"
 ROTATION_ATTRIBUTE = "saddleback_rotation"
+SCALE_ATTRIBUTE, CLASS_ATTRIBUTE = "saddleback_scale", "saddleback_class"
 COLOR_ATTRIBUTE = "saddleback_color"
 # Radii of a sweep circle from which on, and until which, a vertex is shown.
 FROM_ATTRIBUTE, UNTIL_ATTRIBUTE = "saddleback_from", "saddleback_until"
@@ -69,6 +70,21 @@ def set_instances(item: bpy.types.Object, instance: bpy.types.Object | None, sca
     info = next(node for node in modifier.node_group.nodes if node.type == "OBJECT_INFO")
     info.inputs["Object"].default_value = instance
     compat.set_modifier_input(modifier, "Scale", scale)
+    return modifier
+
+
+def set_shapes(item: bpy.types.Object, shapes: list[bpy.types.Object]) -> bpy.types.Modifier:
+    """Puts on each point the object of its class, turned and scaled by the point's attributes.
+
+    The objects stand on the nodes of a group of the output's own; one that is there already gets them anew.
+    """
+    modifier = modifier_of(item, SHAPES)
+    group = _new_shapes_group(shapes)
+    if modifier is None:
+        return _add_first(item, "Saddleback Shapes", group)
+    old, modifier.node_group = modifier.node_group, group
+    if old.users == 0:
+        bpy.data.node_groups.remove(old)
     return modifier
 
 
@@ -200,6 +216,43 @@ def _new_instances_group() -> bpy.types.NodeTree:
     return group
 
 
+def _new_shapes_group(shapes: list[bpy.types.Object]) -> bpy.types.NodeTree:
+    """One Instance on Points for each class, since the order of a collection's children is not ours to tell."""
+    group, source, sink = _new_group("Saddleback Shapes", SHAPES)
+    nodes, link = group.nodes, group.links.new
+    points, joined = nodes.new("GeometryNodeMeshToPoints"), nodes.new("GeometryNodeJoinGeometry")
+    rotation, scale, kind = (nodes.new("GeometryNodeInputNamedAttribute") for _ in range(3))
+    for node, data_type, name in (
+        (rotation, "FLOAT_VECTOR", ROTATION_ATTRIBUTE),
+        (scale, "FLOAT_VECTOR", SCALE_ATTRIBUTE),
+        (kind, "INT", CLASS_ATTRIBUTE),
+    ):
+        node.data_type = data_type
+        node.inputs["Name"].default_value = name
+    link(source.outputs["Geometry"], points.inputs["Mesh"])
+    _place((source, rotation, scale, kind), points)
+    for number, shape in enumerate(shapes):
+        is_of_it, info = nodes.new("FunctionNodeCompare"), nodes.new("GeometryNodeObjectInfo")
+        is_of_it.data_type, is_of_it.operation = "INT", "EQUAL"
+        compared = {socket.name: socket for socket in is_of_it.inputs if socket.enabled}
+        compared["B"].default_value = number
+        info.inputs["Object"].default_value = shape
+        info.inputs["As Instance"].default_value = True
+        placed = nodes.new("GeometryNodeInstanceOnPoints")
+        link(_attribute_output(kind), compared["A"])
+        link(points.outputs["Points"], placed.inputs["Points"])
+        link(is_of_it.outputs["Result"], placed.inputs["Selection"])
+        link(info.outputs["Geometry"], placed.inputs["Instance"])
+        link(_attribute_output(rotation), placed.inputs["Rotation"])
+        link(_attribute_output(scale), placed.inputs["Scale"])
+        link(placed.outputs["Instances"], joined.inputs["Geometry"])
+        for column, node in enumerate((is_of_it, info, placed), 2):
+            node.location = (220 * column, -300 * number)
+    link(joined.outputs["Geometry"], sink.inputs["Geometry"])
+    joined.location, sink.location = (1100, 0), (1320, 0)
+    return group
+
+
 def _new_sweep_group(circle: bpy.types.Object, draws_circle: bool) -> bpy.types.NodeTree:
     """Keyframes of the circle's scale drive everything: an artist may move them."""
     group, source, sink = _new_group("Saddleback Sweep", SWEEP)
@@ -261,6 +314,20 @@ def cells_material() -> bpy.types.Material:
     color.location = (-220, 300)
     material.node_tree.links.new(color.outputs["Color"], shader.inputs["Base Color"])
     shader.inputs["Roughness"].default_value = 0.55
+    return material
+
+
+def shapes_material() -> bpy.types.Material:
+    """A plain material that shows the colour of each shape."""
+    material = _find_material(SHAPES)
+    if material is not None:
+        return material
+    material, shader = new_material("Saddleback Shapes", SHAPES)
+    color = material.node_tree.nodes.new("ShaderNodeVertexColor")
+    color.layer_name = COLOR_ATTRIBUTE
+    color.location = (-220, 300)
+    material.node_tree.links.new(color.outputs["Color"], shader.inputs["Base Color"])
+    shader.inputs["Roughness"].default_value = 0.4
     return material
 
 

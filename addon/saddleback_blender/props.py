@@ -11,6 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 from .core.settings import (
     DirectionFieldSettings,
     DistanceSettings,
+    DistributeSettings,
     PathSettings,
     RepairSettings,
     TessellateSettings,
@@ -24,6 +25,7 @@ Settings = TypeVar(
     PathSettings,
     Voronoi2dSettings,
     DirectionFieldSettings,
+    DistributeSettings,
     RepairSettings,
 )
 
@@ -36,8 +38,9 @@ COLLECTION_NAMES = (
     "strokes_collection",
     "singularities_collection",
     "density_collection",
+    "shapes_collection",
 )
-IMAGE_NAMES = ("image_name", "density_image")
+IMAGE_NAMES = ("image_name", "density_image", "shapes_image")
 
 SITES_SOURCES = (
     ("COUNT", "Count", "Place this many sites, by the density"),
@@ -129,6 +132,20 @@ SINGULARITIES = (
 DOMAINS = (
     ("POINT", "Vertex", "One direction for each vertex"),
     ("FACE", "Face", "One direction for each face"),
+)
+SHAPES = (
+    ("SCALES", "Scales", "Shields with a keel, their tips along the field"),
+    ("STUDS", "Studs", "Round heads with a rim"),
+    ("FEATHERS", "Feathers", "Long vanes along the field"),
+    ("LEAVES", "Leaves", "Leaves of two sizes"),
+    ("MOSAIC", "Mosaic", "Square, long and three-cornered tiles"),
+    ("COLLECTION", "Collection", "Its meshes, closed curves and images; their property 'share' says how many of each"),
+    ("IMAGE", "Image", "Where an image is opaque or, without transparency, dark"),
+)
+FIELD_SOURCES = (
+    ("PANEL", "Direction Field", "The field that the panel Direction Field says, made anew where that has changed"),
+    ("ATTRIBUTE", "Attribute", "A vector attribute of vertices or faces"),
+    ("NONE", "Smoothest", "Lines as smooth as can be, without strokes"),
 )
 QUALITIES = (
     ("FAST", "Fast", "Distances at most 2 % too long"),
@@ -400,6 +417,42 @@ DIRECTION_FIELD: dict[str, Any] = {
     "seed": TESSELLATE["seed"],
 }  # fmt: skip
 
+DISTRIBUTE: dict[str, Any] = {
+    "shapes": _choice("Shapes", "What is laid on the surface", SHAPES, "SCALES"),
+    "shapes_collection": _name("Shapes Collection", "The collection whose objects are laid on the surface"),
+    "shapes_image": _name("Shape Image", "The image whose mask is laid on the surface"),
+    "count": IntProperty(
+        name="Count", description="Number of shapes", default=500, min=1, soft_max=20000, options={"SKIP_SAVE"}
+    ),
+    "size": _length("Size", "Radius of the circle around the largest shapes; 0 means by their number", 0.0),
+    "size_variation": FloatProperty(
+        name="Variation", description="By which share of the largest the smallest are smaller", default=0.0, min=0.0,
+        max=0.95, subtype="FACTOR", options={"SKIP_SAVE"},
+    ),
+    "size_by_density": _switch("Size by Density", "Shapes are small where the density is high", False),
+    "gap": _length("Gap", "Least distance from shape to shape", 0.0),
+    "packing": FloatProperty(
+        name="Packing", description="0 lays shapes in a random order, 1 side by side, which makes room for more",
+        default=0.0, min=0.0, max=1.0, subtype="FACTOR", options={"SKIP_SAVE"},
+    ),
+    "maximal": _switch("Fill", "Go on until nothing more fits, whatever the count, and prove it", False),
+    "mirror": _switch("Mirror", "Mirror half of the shapes, by chance", False),
+    "seed": TESSELLATE["seed"],
+    "field_source": _choice("Field", "Which way shapes point", FIELD_SOURCES, "PANEL"),
+    "direction_attribute": _name("Attribute", "The vectors that shapes point along", "saddleback_direction"),
+    "forbidden_group": _name("Keep Off", "No shape lies where this vertex group's weights are above one half"),
+    **DENSITY,
+    "use_modifiers": _use_modifiers(),
+    "make_bent": _switch("Bent Copies", "Make one mesh of all shapes, bent onto the surface", True),
+    "thickness": _length("Thickness", "Of shapes without a mesh: how far they rise; 0 means by their size", 0.0),
+    "make_instances": _switch("Instances", "Make a mesh of points that carry rigid copies of the shapes", False),
+    "make_outlines": _switch("Outlines", "Make a curve object of the shapes' outlines", False),
+    "outline_radius": _length("Radius", "Half the thickness of the outlines", 0.005),
+    "write_attributes": _switch(
+        "Attributes", "Write on the mesh whose outline is nearest, how far it is, and where in the shape one is", False
+    ),
+}  # fmt: skip
+
 REPAIR: dict[str, Any] = {
     "weld_distance": _length("Weld Distance", "Join vertices closer than this; 0 joins those at the same place", 0.0),
 }
@@ -410,6 +463,7 @@ PROPERTIES = {
     "path": PATH,
     "voronoi_2d": VORONOI_2D,
     "direction_field": DIRECTION_FIELD,
+    "distribute": DISTRIBUTE,
     "repair": REPAIR,
 }
 
@@ -462,6 +516,12 @@ class SaddlebackDirectionFieldProps(bpy.types.PropertyGroup):
     __annotations__ = _kept(DIRECTION_FIELD)
 
 
+class SaddlebackDistributeProps(bpy.types.PropertyGroup):
+    """Settings of `saddleback.distribute`."""
+
+    __annotations__ = _kept(DISTRIBUTE)
+
+
 class SaddlebackRepairProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.repair`."""
 
@@ -477,6 +537,7 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
         "path": PointerProperty(type=SaddlebackPathProps),
         "voronoi_2d": PointerProperty(type=SaddlebackVoronoi2dProps),
         "direction_field": PointerProperty(type=SaddlebackDirectionFieldProps),
+        "distribute": PointerProperty(type=SaddlebackDistributeProps),
         "repair": PointerProperty(type=SaddlebackRepairProps),
     }
 
@@ -487,6 +548,7 @@ CLASSES = (
     SaddlebackPathProps,
     SaddlebackVoronoi2dProps,
     SaddlebackDirectionFieldProps,
+    SaddlebackDistributeProps,
     SaddlebackRepairProps,
     SaddlebackObjectProps,
 )
@@ -521,6 +583,21 @@ def keep_settings(settings: Settings, group: bpy.types.PropertyGroup) -> None:
         # Default values stay unset, so that an object carries no more than what was chosen for it.
         if getattr(group, field.name) != value:
             setattr(group, field.name, value)
+
+
+def kept_settings(source: bpy.types.Object, settings_name: str, kind: type[Settings]) -> Settings:
+    """The settings that the object keeps, or the defaults; asks before it looks, as `fill_operator` does."""
+    if not source.is_property_set("saddleback") or not source.saddleback.is_property_set(settings_name):
+        return kind()
+    group = getattr(source.saddleback, settings_name)
+    values = {}
+    for field in fields(kind):
+        if group.is_property_set(field.name):
+            value = getattr(group, field.name)
+            if field.name in OBJECT_NAMES + COLLECTION_NAMES + IMAGE_NAMES:
+                value = value.name if value is not None else ""
+            values[field.name] = value
+    return kind(**values)
 
 
 def settings_of(operator: bpy.types.Operator, kind: type[Settings]) -> Settings:

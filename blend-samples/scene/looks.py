@@ -32,6 +32,31 @@ def grout() -> bpy.types.Material:
     return principled("Grout", (0.10, 0.055, 0.02), Roughness=0.6)
 
 
+def horn() -> bpy.types.Material:
+    """Polished scales, each of its own colour."""
+    material = principled("Horn", (0.4, 0.2, 0.1), Roughness=0.28, Clearcoat=0.6, Clearcoat_Roughness=0.1, Specular=0.5)
+    tree = material.node_tree
+    color = tree.nodes.new("ShaderNodeAttribute")
+    color.attribute_name = COLOR
+    tree.links.new(color.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    return material
+
+
+def skin() -> bpy.types.Material:
+    """What shows between scales."""
+    return principled("Skin", (0.016, 0.011, 0.012), Roughness=0.7, Specular=0.2)
+
+
+def clay() -> bpy.types.Material:
+    """A plain body that lines stand out on."""
+    return principled("Clay", (0.62, 0.50, 0.40), Roughness=0.6)
+
+
+def red_ink() -> bpy.types.Material:
+    """Strokes that somebody drew."""
+    return principled("Ink", (0.80, 0.08, 0.03), Roughness=0.4)
+
+
 def dress_child(child: bpy.types.Object) -> None:
     """Materials for the parts of our own model that came without."""
     if child.type != "MESH" or len(child.data.materials):

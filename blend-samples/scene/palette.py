@@ -12,6 +12,9 @@ ALONG = ["#31307e", "#25609b", "#148a93", "#1f9d6b", "#5db544", "#3fa867", "#1d9
 BAND = "#f2a33a"
 BELLY = "#f6e3b0"
 CREST = "#e4572e"
+# The same for scales: dusk from the tail to the head.
+DUSK = ["#3a1445", "#7a1f4d", "#b8323f", "#e0602f", "#efa02f", "#e9c04a", "#5fa58a", "#1f7f86"]
+DUSK_BAND = "#2a1038"
 
 
 def linear(codes: list[str]) -> Array:
@@ -55,6 +58,20 @@ def smoothstep(value: Array, low: float, high: float) -> Array:
     """0 at `low`, 1 at `high`, smooth between."""
     t = np.clip((value - low) / (high - low), 0, 1)
     return t * t * (3 - 2 * t)
+
+
+def scale_colors(centres: Array, random: Array, low: Array, high: Array) -> Array:
+    """Linear RGB (n, 3) for scales with these centres and random numbers (n,) in the bounding box low..high."""
+    stops, band = to_oklab(linear(DUSK)), to_oklab(linear([DUSK_BAND]))[0]
+    place = (centres - low) / np.maximum(high - low, 1e-12)
+    long = int(np.argmax((high - low)[:2]))
+    wobble = 0.02 * np.sin(9 * place[:, 2] + 5 * place[:, 1 - long]) + 0.012 * np.sin(23 * place[:, 2] + 1)
+    along = np.clip(place[:, long] + wobble, 0, 1) * (len(stops) - 1)
+    lab = np.stack([np.interp(along, np.arange(len(stops)), stops[:, i]) for i in range(3)], axis=1)
+    stripe = smoothstep(np.cos(2 * np.pi * (place[:, long] + 0.14 * place[:, 2] + wobble) * 6.5), 0.62, 0.92)
+    lab = mix(lab, band, 0.8 * stripe)
+    lab[:, 0] += 0.10 * (random - 0.5)
+    return from_oklab(lab)
 
 
 def cell_colors(centres: Array, normals: Array, areas: Array, low: Array, high: Array) -> Array:

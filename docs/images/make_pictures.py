@@ -165,6 +165,38 @@ def shell(body: bpy.types.Object) -> None:
     body.hide_render = True
 
 
+def strokes_of(body: bpy.types.Object) -> bpy.types.Object:
+    """The curves that the model was given, shown in red."""
+    strokes = next(child for child in body.children if child.type == "CURVE")
+    strokes.data.bevel_depth = 0.012
+    strokes.data.materials.append(looks.red_ink())
+    return strokes
+
+
+def fields_strokes(body: bpy.types.Object) -> None:
+    """Picture: streamlines of a field that follows strokes."""
+    strokes_of(body)
+    bpy.ops.saddleback.direction_field(
+        strokes="COLLECTION", make_arrows=False, make_streamlines=True, streamline_spacing=0.05, streamline_radius=0.006
+    )
+    body.data.materials.append(looks.clay())
+
+
+def fields_arrows(body: bpy.types.Object) -> None:
+    """Picture: the same field as arrows, with its singularities."""
+    bpy.ops.saddleback.direction_field(strokes="COLLECTION", arrow_count=3000, arrow_length=0.072)
+    body.data.materials.append(looks.clay())
+
+
+def fields_curvature(body: bpy.types.Object) -> None:
+    """Picture: crosses along the principal directions, as streamlines both ways."""
+    bpy.ops.saddleback.direction_field(
+        symmetry="4", align="CURVATURE", align_weight=0.4, make_arrows=False, make_streamlines=True,
+        streamline_spacing=0.06, streamline_radius=0.005,
+    )  # fmt: skip
+    body.data.materials.append(looks.clay())
+
+
 def distance(body: bpy.types.Object) -> None:
     """Picture: the distance from the tip of the nose along the skin, a line every fifth of a unit."""
     nose = int(np.argmax(models.positions(body)[:, 0]))
@@ -204,7 +236,8 @@ def main() -> None:
     for name in sys.argv[1:] or everything:
         body = start()
         everything[name](body)
-        shoot(body, name if name in ("distance", "paths") else f"tessellation-{name}")
+        own_page = name in ("distance", "paths") or name.startswith(("fields_", "shapes_"))
+        shoot(body, name.replace("_", "-") if own_page else f"tessellation-{name}")
 
 
 main()

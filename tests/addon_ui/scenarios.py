@@ -41,7 +41,7 @@ def _count_draw(_panel, context):
 
 def in_order(screen):
     """The scenarios; later ones go on where earlier ones ended."""
-    plays = (opened, repaired, tessellated, undone, adjusted, escaped, divided, refused)
+    plays = (opened, repaired, tessellated, undone, adjusted, escaped, divided, combed, clothed, refused)
     return {play.__name__: (lambda play=play: play(screen)) for play in plays}
 
 
@@ -246,6 +246,60 @@ def divided(screen):
     sheet = bpy.data.objects["Sheet"]
     made = sorted(item["saddleback_role"] for item in bpy.data.objects if item.parent == sheet)
     return {"line": manager().saddleback_line, "roles": made}
+
+
+def combed(screen):
+    """The panels of direction fields draw every choice, and a run goes through the window, strokes and all."""
+    bpy.context.view_layer.objects.active = ball()
+    curve = bpy.data.curves.new("Stroke", "CURVE")
+    curve.dimensions = "3D"
+    points = curve.splines.new("POLY").points
+    points.add(1)
+    points[0].co, points[1].co = (0, -1, 0, 1), (0.8, -0.6, 0, 1)
+    stroke = bpy.data.objects.new("Stroke", curve)
+    bpy.context.scene.collection.objects.link(stroke)
+    stroke.parent = ball()
+    settings = ball().saddleback.direction_field
+    settings.make_streamlines, settings.singularities = True, "EMPTIES"
+    choices = [("1", "NONE", "NONE"), ("2", "CURVATURE", "OBJECT"), ("4", "BOUNDARY", "COLLECTION")]
+    for settings.symmetry, settings.align, settings.strokes in choices:
+        yield from show_panels(screen, ("direction_field", "arrows", "streamlines"))
+    settings.singularities, settings.align = "AUTO", "NONE"
+    with screen.override():
+        bpy.ops.saddleback.direction_field("INVOKE_DEFAULT")
+    yield from wait_until(lambda: not manager().saddleback_running, "the field to be made")
+    yield 4 * FRAME
+    yield from screen.shoot("combed")
+    return {"line": manager().saddleback_line, "outputs": outputs()}
+
+
+def clothed(screen):
+    """The panels of shapes draw every choice, and a run goes through the window."""
+    settings = ball().saddleback.distribute
+    settings.make_outlines = settings.make_instances = True
+    sources = ("UNIFORM", "IMAGE", "DISTANCE", "SPREAD")
+    for settings.shapes, settings.density_source in zip(
+        ("SCALES", "COLLECTION", "IMAGE", "MOSAIC"), sources, strict=True
+    ):
+        settings.field_source = "ATTRIBUTE" if settings.shapes == "IMAGE" else "PANEL"
+        yield from show_panels(screen, ("distribute", "shape_density", "shape_outputs"))
+    settings.density_source, settings.count = "UNIFORM", 100
+    with screen.override():
+        bpy.ops.saddleback.distribute("INVOKE_DEFAULT")
+    yield from wait_until(lambda: not manager().saddleback_running, "the shapes to be laid")
+    yield 4 * FRAME
+    yield from screen.shoot("clothed")
+    return {"line": manager().saddleback_line, "outputs": outputs()}
+
+
+def show_panels(screen, names):
+    """Each panel by itself, drawn and photographed."""
+    for name in names:
+        with screen.override():
+            bpy.ops.wm.call_panel(name=f"SADDLEBACK_PT_{name}", keep_open=False)
+        yield 4 * FRAME
+        yield from screen.shoot(f"panel-{name}")
+        yield from leave_popup(screen)
 
 
 def refused(screen):

@@ -125,5 +125,17 @@ def test_plane_diagrams_are_made_through_the_window(report):
     ]  # fmt: skip
 
 
+def test_fields_are_combed_through_the_window(report):
+    result = seen(report, "combed")
+    assert "'Ball': crosses" in result["line"] and "along 1 stroke" in result["line"]
+    assert {"Ball Arrows", "Ball Streamlines"} <= set(result["outputs"])
+
+
+def test_shapes_are_laid_through_the_window(report):
+    result = seen(report, "clothed")
+    assert "'Ball': 100 shapes" in result["line"]
+    assert {"Ball Shapes", "Ball Shape Instances", "Ball Shape Outlines"} <= set(result["outputs"])
+
+
 def test_the_tab_says_what_to_do_without_a_mesh(report):
     assert seen(report, "refused")["drawn"] > 0

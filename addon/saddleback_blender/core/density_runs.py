@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -21,9 +22,17 @@ MOST_SMOOTH = 24
 
 
 def density_of(
-    density: Density | None, surface: Surface, settings: DensitySettings, mesh: Any, graph: Any, progress: Progress
+    density: Density | None,
+    surface: Surface,
+    settings: DensitySettings,
+    mesh: Any,
+    find_graph: Callable[[], Any],
+    progress: Progress,
 ) -> Reals | None:
-    """(n,) density at the surface's vertices; None for uniform. Raises BadInputError and the library's errors."""
+    """(n,) density at the surface's vertices; None for uniform. Raises BadInputError and the library's errors.
+
+    `find_graph` is asked for a distance graph only where distances count.
+    """
     if density is None:
         return None
     if isinstance(density, np.ndarray):
@@ -32,7 +41,10 @@ def density_of(
     if isinstance(density, CurvatureDensity):
         values, label, upper = native.load().density_by_curvature(mesh), "the density by curvature", None
     elif isinstance(density, DistanceDensity):
-        values, label = _by_distance(density, surface, settings, mesh, graph, progress), "the density about curves"
+        values, label = (
+            _by_distance(density, surface, settings, mesh, find_graph(), progress),
+            "the density about curves",
+        )
     else:
         values, label = _spread(density, surface, mesh, progress), f"what spreads from {density.label}"
     try:

@@ -17,10 +17,12 @@ from .results import Indices, Reals
 from .settings import (
     DirectionFieldSettings,
     DistanceSettings,
+    DistributeSettings,
     PathSettings,
     TessellateSettings,
     Voronoi2dSettings,
 )
+from .shape_templates import ShapeTemplate
 
 Number = TypeVar("Number", bound=np.generic)
 
@@ -187,6 +189,30 @@ class DirectionFieldRequest:
     strokes: tuple[StrokeLine, ...] = ()
     singularities: tuple[SingularPlace, ...] | None = None  # None: the field chooses them
     polygons: Indices | None = None  # (F,) polygon that each triangle is part of; of the domain FACE
+
+
+@dataclass(frozen=True)
+class GivenDirections:
+    """A vector attribute: directions in the world on the Blender mesh's vertices, or on its polygons."""
+
+    vectors: Reals  # (V, 3) or (polygons, 3)
+    symmetry: int
+    label: str  # for messages
+    polygons: Indices | None = None  # (F,) polygon of each triangle, where the vectors are on polygons
+
+
+@dataclass(frozen=True)
+class DistributeRequest:
+    """Shapes to be laid on a surface without touching each other."""
+
+    surface: Surface
+    settings: DistributeSettings
+    templates: tuple[ShapeTemplate, ...]
+    density: Density | None = None
+    field: DirectionFieldRequest | GivenDirections | None = None  # None: the smoothest lines
+    forbidden: NDArray[np.bool_] | None = None  # (V,) of the Blender mesh: where no shape may lie
+    threads: int = 0
+    disk: DiskCache | None = None
 
 
 @dataclass(frozen=True)

@@ -201,6 +201,64 @@ class FieldResult:
 
 
 @dataclass(frozen=True)
+class PlacedShapes:
+    """n shapes on a surface, as rigid copies stand there, in the world."""
+
+    shape: Indices  # (n,) class
+    points: Reals  # (n, 3) the centre
+    rotations: Reals  # (n, 4) quaternions, w first: from the shape's axes, z away from the surface
+    scales: Reals  # (n, 3) length of a unit of the shape's plane; y negative where it is mirrored
+    faces: Indices  # (n,) of the surface's triangles
+    barycentric: Reals  # (n, 3)
+
+
+@dataclass(frozen=True)
+class BentCopies:
+    """Polygon i runs through corners[offsets[i]:offsets[i + 1]], counter-clockwise from outside."""
+
+    vertices: Reals  # (n, 3) in the world
+    corners: Indices
+    offsets: Indices
+    uv: Reals  # (corners, 2)
+    smooth: NDArray[np.bool_]  # (p,)
+    material: Indices  # (p,) of the shape's own list
+    polygon_copy: Indices  # (p,) which placement
+    polygon_shape: Indices  # (p,) which class of shapes
+
+
+@dataclass(frozen=True)
+class ShapeValues:
+    """What each of the Blender mesh's V vertices knows of the shapes."""
+
+    shape: Indices  # (V,) whose outline is nearest; -1 = none near
+    distance: Reals  # (V,) world units to its outline, negative inside; inf = none near
+    uv: Reals  # (V, 2) in the unit square about the shape
+
+
+@dataclass(frozen=True)
+class DistributeResult:
+    """Shapes on a surface, and what is made of them."""
+
+    placed: PlacedShapes
+    class_counts: Indices  # (classes,) how many of each
+    text: str  # how it went, for a person to read
+    lines: tuple[str, ...]  # further figures
+    warnings: tuple[str, ...]
+    bent: BentCopies | None = None  # where it was wanted
+    outlines: PathsResult | None = None  # where they were wanted
+    values: ShapeValues | None = None  # where they were wanted
+
+
+@dataclass(frozen=True)
+class CheckResult:
+    """What an independent check of shapes found."""
+
+    text: str  # for a person to read
+    faults: tuple[str, ...]  # the first of them, one sentence each
+    lines: tuple[str, ...]  # figures
+
+
+@dataclass(frozen=True)
 class RepairResult:
     """A repaired surface: what became of the vertices and triangles of the one given, and how much was changed."""
 

@@ -43,7 +43,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
     mesh = mesh_of_surface(surface, progress, cache)
     choice = GraphChoice(settings.quality, settings.k)
     graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
-    density = density_of(request.density, surface, settings, mesh, graph, progress)
+    density = density_of(request.density, surface, settings, mesh, lambda: graph, progress)
     moves = sites is None or settings.relax_sites
     iterations = settings.iterations if moves else 0
     what = digest(

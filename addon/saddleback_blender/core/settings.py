@@ -163,6 +163,34 @@ class DirectionFieldSettings:
 
 
 @dataclass(frozen=True)
+class DistributeSettings(DensitySettings):
+    """All properties of `saddleback.distribute`; lengths are world units, "" is no object, collection or layer."""
+
+    shapes: str = "SCALES"  # COLLECTION, IMAGE, SCALES, STUDS, FEATHERS, LEAVES, MOSAIC
+    shapes_collection: str = ""
+    shapes_image: str = ""
+    count: int = 500
+    size: float = 0.0  # radius of the circle around the largest shapes; 0 = by the count
+    size_variation: float = 0.0  # by which share of the largest the smallest are smaller
+    size_by_density: bool = False  # small where the density is high, instead of by chance
+    gap: float = 0.0
+    packing: float = 0.0  # 0 = by chance, 1 = side by side
+    maximal: bool = False  # go on until nothing more fits, whatever the count
+    mirror: bool = False  # half of them
+    seed: int = 0
+    field_source: str = "PANEL"  # PANEL, ATTRIBUTE, NONE = the smoothest lines
+    direction_attribute: str = "saddleback_direction"
+    forbidden_group: str = ""
+    use_modifiers: bool = False
+    make_bent: bool = True
+    thickness: float = 0.0  # of shapes without a mesh; 0 = by their size
+    make_instances: bool = False
+    make_outlines: bool = False
+    outline_radius: float = 0.005
+    write_attributes: bool = False
+
+
+@dataclass(frozen=True)
 class RepairSettings:
     """All properties of `saddleback.repair`."""
 

@@ -26,43 +26,53 @@ STEP = 0.25  # of the spacing, from point to point of a drawn line
 
 
 def even_streamlines(mesh: Any, field: Any, settings: DirectionFieldSettings, progress: Progress) -> PathsResult:
-    """Streamlines at the settings' spacing; of a cross field in both directions, each keeping its own distance."""
+    """Streamlines at the settings' spacing; of a cross field both ways, each keeping its distance to its like only."""
     sb = native.load()
     extent = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
     spacing = settings.streamline_spacing or SPACING * extent
     length = settings.streamline_length or LENGTH * spacing
     count = int(np.clip(mesh.area / spacing**2, 1, 50_000))
     starts = even_points(mesh, count, settings.seed)
-    places = starts.positions(mesh)
-    directions = [field.directions(starts)]
-    if field.symmetry == 4:
+    places, headings = starts.positions(mesh), field.directions(starts)[:, None]
+    crosses = field.symmetry == 4
+    if crosses:
         normals = normals_at(mesh.vertices, mesh.triangles, starts.faces, starts.barycentric)
-        directions.append(np.cross(normals, directions[0]))
+        headings = np.concatenate([headings, np.cross(normals, headings[:, 0])[:, None]], axis=1)
+    taken = PointGrid(NEAREST * spacing)
     points, faces, barycentric, begin = [], [], [], progress.fraction
-    for turn, headings in enumerate(directions):
-        taken = PointGrid(NEAREST * spacing)
-        for number, heading in enumerate(headings):
-            if number % 64 == 0:
-                share = (turn + number / len(headings)) / len(directions)
-                with progress.stage(begin + (0.95 - begin) * share, "following streamlines"):
-                    pass
-            if not taken.is_free(places[number : number + 1])[0]:
+    for number, own in enumerate(headings):
+        if number % 64 == 0:
+            with progress.stage(begin + (0.95 - begin) * number / len(headings), "following streamlines"):
+                pass
+        for heading in own:
+            axis = heading[None] if crosses else None
+            if not taken.is_free(places[number : number + 1], axis)[0]:
                 continue
             line = sb.streamline(mesh, field, starts[number], length, True, heading=heading)
-            kept = _kept(line, taken, spacing)
+            kept = _kept(line, taken, spacing, crosses)
             if len(kept):
                 points.append(line.points[kept])
                 faces.append(line.surface.faces[kept])
                 barycentric.append(line.surface.barycentric[kept])
-                taken.add(points[-1][_thinned(points[-1], STEP * spacing)])
+                few = _thinned(points[-1], STEP * spacing)
+                taken.add(points[-1][few], _axes(points[-1])[few] if crosses else None)
     return _result(mesh, points, faces, barycentric)
 
 
-def _kept(line: Any, taken: PointGrid, spacing: float) -> Any:
+def _axes(points: Reals) -> Reals:
+    """(n, 3) which way a line runs at each of its points."""
+    along = np.gradient(points, axis=0)
+    lengths = np.linalg.norm(along, axis=1, keepdims=True)
+    units: Reals = np.divide(along, lengths, out=np.zeros_like(along), where=lengths > 0)
+    return units
+
+
+def _kept(line: Any, taken: PointGrid, spacing: float, crosses: bool) -> Any:
     """The numbers of the points about the start as far as they keep their distance; none where that is too short."""
     points = line.points
     asked = np.union1d(_thinned(points, STEP * spacing), [line.start])
-    blocked = asked[~taken.is_free(points[asked])]
+    axes = _axes(points)[asked] if crosses and len(points) > 1 else None
+    blocked = asked[~taken.is_free(points[asked], axes)]
     before, after = blocked[blocked < line.start], blocked[blocked >= line.start]
     kept = np.arange(before[-1] + 1 if len(before) else 0, after[0] if len(after) else len(points))
     length = np.linalg.norm(np.diff(points[kept], axis=0), axis=1).sum() if len(kept) > 1 else 0.0

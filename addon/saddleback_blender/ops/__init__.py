@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import clear, direction_field, distance, paint, path, repair, tessellate, voronoi_2d
+from . import clear, direction_field, distance, distribute, paint, path, repair, tessellate, voronoi_2d
 
 CLASSES = (
     *distance.CLASSES,
@@ -12,6 +12,7 @@ CLASSES = (
     *tessellate.CLASSES,
     *voronoi_2d.CLASSES,
     *direction_field.CLASSES,
+    *distribute.CLASSES,
     *paint.CLASSES,
     *repair.CLASSES,
     *clear.CLASSES,

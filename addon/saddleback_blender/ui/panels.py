@@ -416,6 +416,59 @@ class SADDLEBACK_PT_streamlines(SaddlebackFieldOutputPanel, bpy.types.Panel):
         rows.draw_streamlines(self.split_layout(context), context.view_layer.objects.active.saddleback.direction_field)
 
 
+class SADDLEBACK_PT_distribute(SaddlebackSubPanel, bpy.types.Panel):
+    """Shapes on the surface."""
+
+    bl_label = "Distribute Shapes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        item = context.view_layer.objects.active
+        settings = item.saddleback.distribute
+        layout = self.split_layout(context)
+        _draw_button(layout, context, "saddleback.distribute", "STICKY_UVS_DISABLE")
+        rows.draw_shapes(layout.column(), settings, item)
+        layout.prop(settings, "use_modifiers")
+        layout.operator("saddleback.check_distribution", icon="CHECKMARK")
+
+
+class SADDLEBACK_PT_shape_density(SaddlebackSubPanel, bpy.types.Panel):
+    """Where shapes are many."""
+
+    bl_label = "Density"
+    bl_parent_id = "SADDLEBACK_PT_distribute"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        item = context.view_layer.objects.active
+        rows.draw_shape_density(self.split_layout(context), item.saddleback.distribute, item)
+
+
+class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
+    """What is made of the shapes."""
+
+    bl_label = "Output"
+    bl_parent_id = "SADDLEBACK_PT_distribute"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = context.view_layer.objects.active.saddleback.distribute
+        layout = self.split_layout(context)
+        layout.prop(settings, "make_bent")
+        row = layout.row()
+        row.active = settings.make_bent and settings.shapes in ("COLLECTION", "IMAGE")
+        row.prop(settings, "thickness")
+        layout.prop(settings, "make_instances")
+        layout.operator("saddleback.make_real", icon="OUTLINER_OB_MESH")
+        layout.prop(settings, "make_outlines")
+        row = layout.row()
+        row.active = settings.make_outlines
+        row.prop(settings, "outline_radius")
+        layout.prop(settings, "write_attributes")
+
+
 class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
     """Faults of the mesh."""
 
@@ -457,5 +510,8 @@ CLASSES = (
     SADDLEBACK_PT_direction_field,
     SADDLEBACK_PT_arrows,
     SADDLEBACK_PT_streamlines,
+    SADDLEBACK_PT_distribute,
+    SADDLEBACK_PT_shape_density,
+    SADDLEBACK_PT_shape_outputs,
     SADDLEBACK_PT_repair,
 )

@@ -205,6 +205,39 @@ def draw_streamlines(layout: bpy.types.UILayout, settings: Any) -> None:
     layout.prop(settings, "streamline_radius")
 
 
+def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """What is laid on a surface, how many, how large, which way."""
+    layout.prop(settings, "shapes")
+    if settings.shapes == "COLLECTION":
+        draw_collection(layout, settings, "shapes_collection")
+    elif settings.shapes == "IMAGE":
+        draw_pointer(layout, settings, "shapes_image", "images")
+    layout.prop(settings, "maximal")
+    row = layout.row()
+    row.active = not settings.maximal or not settings.size
+    row.prop(settings, "count")
+    column = layout.column(align=True)
+    column.prop(settings, "size")
+    column.prop(settings, "size_variation")
+    layout.prop(settings, "gap")
+    layout.prop(settings, "packing")
+    layout.prop(settings, "mirror")
+    layout.prop(settings, "seed")
+    layout.prop(settings, "field_source")
+    if settings.field_source == "ATTRIBUTE":
+        layout.prop_search(settings, "direction_attribute", item.data, "attributes", icon="SPREADSHEET")
+    layout.prop_search(settings, "forbidden_group", item, "vertex_groups", icon="GROUP_VERTEX")
+
+
+def draw_shape_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """Where shapes are many, or small."""
+    draw_density(layout, settings, item)
+    row = layout.row()
+    row.active = settings.density_source != "UNIFORM"
+    row.prop(settings, "size_by_density")
+    draw_paint_buttons(layout, "distribute")
+
+
 def draw_distance_sources(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
     """Where distances are measured from, and how far."""
     layout.prop(settings, "sources")

@@ -1,0 +1,223 @@
+"""Shapes on a surface into Blender: bent copies, instances, outlines, what the surface's vertices know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import bpy
+import numpy as np
+
+from .. import compat, nodes
+from ..core.quaternions import euler_of, quaternions_of, turned
+from ..core.results import DistributeResult, Indices, Reals
+from ..core.shape_colors import random_of, shape_colors
+from ..core.shape_templates import ShapeTemplate
+from .out_attributes import set_attribute, write_vertex_attributes
+from .out_collection import (
+    NAME,
+    ROLE,
+    SOURCE,
+    directions_to_place,
+    level_place,
+    outputs_of,
+    remove_object,
+    replace_object,
+    source_token,
+    to_place,
+)
+from .out_curves import new_curve
+
+BENT_ROLE, INSTANCES_ROLE, OUTLINES_ROLE = "shapes", "shape instances", "shape outlines"
+TEMPLATE_ROLE = "shape template"  # and a number: objects of ours that instances show, in no collection
+SHAPE_ATTRIBUTE, RANDOM_ATTRIBUTE, UV_NAME = "saddleback_shape", "saddleback_random", "UVMap"
+OUTLINE_DISTANCE, SHAPE_UV = "saddleback_outline_distance", "saddleback_shape_uv"
+# Of the points: where on the source each stands.
+FACE_ATTRIBUTE, WEIGHTS_ATTRIBUTE = "saddleback_triangle", "saddleback_barycentric"
+FAR = 1e10  # instead of infinity, which shaders do not like
+
+
+def write_bent(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: DistributeResult,
+    templates: Sequence[ShapeTemplate],
+    seed: int,
+) -> bpy.types.Object:
+    """Makes or replaces the source's shapes object: all bent copies as one mesh.
+
+    Faces know their shape, its class and a random number of its own; corners have UV places and a colour.
+    """
+    bent = result.bent
+    assert bent is not None
+    place = level_place(source)
+    mesh = bpy.data.meshes.new("Saddleback Shapes")
+    _fill(mesh, to_place(place, bent.vertices), bent.corners, bent.offsets, bent.uv, bent.smooth)
+    random = random_of(len(result.placed.shape), seed)
+    set_attribute(mesh, SHAPE_ATTRIBUTE, "FACE", bent.polygon_copy)
+    set_attribute(mesh, nodes.CLASS_ATTRIBUTE, "FACE", bent.polygon_shape)
+    set_attribute(mesh, RANDOM_ATTRIBUTE, "FACE", random[bent.polygon_copy])
+    color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
+    rgb = shape_colors(bent.polygon_shape, random[bent.polygon_copy])
+    rgba = np.column_stack([rgb, np.ones(len(rgb))]).astype(np.float32)
+    color.data.foreach_set("color", np.repeat(rgba, np.diff(bent.offsets), axis=0).ravel())
+    compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
+    firsts = _add_materials(mesh, templates)
+    mesh.polygons.foreach_set("material_index", (bent.material + firsts[bent.polygon_shape]).astype(np.int32))
+    mesh.update()
+    return replace_object(context, source, BENT_ROLE, mesh, place)
+
+
+def write_instances(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: DistributeResult,
+    templates: Sequence[ShapeTemplate],
+    seed: int,
+) -> bpy.types.Object:
+    """Makes or replaces the source's instances object: a point for each shape, and a node group that shows it there."""
+    placed, place = result.placed, level_place(source)
+    own = [templates[shape] for shape in placed.shape.tolist()]
+    units = np.array([template.scale for template in own]).reshape(-1, 1)
+    shifts = np.array([template.shift for template in own]).reshape(-1, 3)
+    points = placed.points + turned(placed.rotations, placed.scales * units * shifts)
+    scales = placed.scales * units * np.array([_own_scale(template) for template in own]).reshape(-1, 3)
+    mesh = bpy.data.meshes.new("Saddleback Shapes")
+    mesh.vertices.add(len(points))
+    mesh.vertices.foreach_set("co", to_place(place, points).astype(np.float32).ravel())
+    columns = {
+        nodes.CLASS_ATTRIBUTE: placed.shape,
+        nodes.ROTATION_ATTRIBUTE: euler_of(_to_place(place, placed.rotations)),
+        nodes.SCALE_ATTRIBUTE: scales,
+        RANDOM_ATTRIBUTE: random_of(len(points), seed),
+        FACE_ATTRIBUTE: placed.faces,
+        WEIGHTS_ATTRIBUTE: placed.barycentric,
+    }
+    for name, values in columns.items():
+        set_attribute(mesh, name, "POINT", values)
+    mesh.update()
+    item = replace_object(context, source, INSTANCES_ROLE, mesh, place)
+    remove_templates(source)
+    nodes.set_shapes(item, [_shown_object(source, number, template) for number, template in enumerate(templates)])
+    return item
+
+
+def write_outlines(
+    context: bpy.types.Context, source: bpy.types.Object, result: DistributeResult, radius: float
+) -> bpy.types.Object:
+    """Makes or replaces the source's outlines object; the radius is in world units."""
+    lines = result.outlines
+    assert lines is not None
+    place = level_place(source)
+    points = to_place(place, lines.points)
+    ends = zip(lines.offsets[:-1], lines.offsets[1:], strict=True)
+    curve = new_curve("Saddleback Outlines", ((points[begin:end], True) for begin, end in ends), radius)
+    curve.materials.append(nodes.edges_material())
+    return replace_object(context, source, OUTLINES_ROLE, curve, place)
+
+
+def write_shape_values(surface: bpy.types.Object, result: DistributeResult) -> None:
+    """Writes on the surface's vertices whose outline is nearest, how far it is, and where in the shape they are."""
+    values = result.values
+    assert values is not None
+    distance = np.where(np.isfinite(values.distance), values.distance, FAR)
+    write_vertex_attributes(
+        surface, {SHAPE_ATTRIBUTE: values.shape, OUTLINE_DISTANCE: distance.astype(np.float32), SHAPE_UV: values.uv}
+    )
+
+
+def make_real(context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object) -> int:
+    """Turns instances into objects beside them, which are the artist's from then on; returns how many."""
+    active, selected = context.view_layer.objects.active, list(context.selected_objects)
+    before = set(bpy.data.objects.keys())
+    for other in selected:
+        other.select_set(False)
+    item.hide_set(False)
+    item.select_set(True)
+    context.view_layer.objects.active = item
+    bpy.ops.object.duplicates_make_real()
+    made = [other for name, other in bpy.data.objects.items() if name not in before]
+    for other in made:
+        other.select_set(False)
+        for key in (ROLE, NAME, SOURCE):
+            if key in other:
+                del other[key]
+    remove_object(item)
+    remove_templates(source)
+    for other in selected:
+        if other != item:
+            other.select_set(True)
+    context.view_layer.objects.active = active
+    return len(made)
+
+
+def remove_templates(source: bpy.types.Object) -> None:
+    """Removes the objects of ours that instances showed."""
+    for item in outputs_of(source):
+        if str(item[ROLE]).startswith(TEMPLATE_ROLE):
+            remove_object(item)
+
+
+def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate) -> bpy.types.Object:
+    """What an instance shows: the artist's own object, or a new one of ours."""
+    if template.source:
+        return bpy.data.objects[template.source]
+    mesh = bpy.data.meshes.new(template.name)
+    if template.solid is not None:
+        solid = template.solid
+        _fill(mesh, solid.vertices, solid.corners, solid.offsets, solid.uv, solid.smooth)
+        color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
+        rgba = np.append(shape_colors(np.array([number], np.int32), np.array([0.5])), 1.0)
+        color.data.foreach_set("color", np.tile(rgba, len(solid.corners)).astype(np.float32))
+        compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
+    else:
+        _fill_flat(mesh, template)
+    mesh.materials.append(nodes.shapes_material())
+    item = bpy.data.objects.new(template.name, mesh)
+    item[ROLE], item[NAME], item[SOURCE] = f"{TEMPLATE_ROLE} {number}", item.name, source_token(source)
+    return item
+
+
+def _fill(
+    mesh: bpy.types.Mesh, vertices: Reals, corners: Indices, offsets: Indices, uv: Reals, smooth: np.ndarray
+) -> None:
+    mesh.vertices.add(len(vertices))
+    mesh.vertices.foreach_set("co", vertices.astype(np.float32).ravel())
+    compat.write_polygons(mesh, corners, offsets)
+    mesh.polygons.foreach_set("use_smooth", smooth)
+    mesh.update(calc_edges=True)
+    mesh.uv_layers.new(name=UV_NAME).data.foreach_set("uv", uv.astype(np.float32).ravel())
+
+
+def _fill_flat(mesh: bpy.types.Mesh, template: ShapeTemplate) -> None:
+    """A shape without a solid: its outlines as polygons; holes are left out, which one polygon cannot have."""
+    loops = [part[0] for part in template.parts]
+    offsets = np.concatenate([[0], np.cumsum([len(loop) for loop in loops])]).astype(np.int32)
+    flat = np.concatenate(loops)
+    vertices = np.column_stack([flat, np.full(len(flat), 0.02)])
+    corners = np.arange(len(flat), dtype=np.int32)
+    _fill(mesh, vertices, corners, offsets, 0.5 + 0.5 * flat, np.zeros(len(loops), bool))
+
+
+def _add_materials(mesh: bpy.types.Mesh, templates: Sequence[ShapeTemplate]) -> np.ndarray:
+    """Adds the materials of all classes; returns (classes,) the slot at which those of each begin."""
+    firsts = []
+    for template in templates:
+        firsts.append(len(mesh.materials))
+        item = bpy.data.objects.get(template.source) if template.source else None
+        own = [slot.material for slot in item.material_slots] if item is not None and item.type == "MESH" else []
+        for material in own if any(own) else [nodes.shapes_material()]:
+            mesh.materials.append(material)
+    return np.array(firsts, np.int32)
+
+
+def _own_scale(template: ShapeTemplate) -> tuple[float, float, float]:
+    item = bpy.data.objects.get(template.source) if template.source else None
+    scale: tuple[float, float, float] = tuple(item.matrix_world.to_scale()) if item is not None else (1.0, 1.0, 1.0)
+    return scale
+
+
+def _to_place(place: object, rotations: Reals) -> Reals:
+    """The turns as seen from an object whose world matrix is `place`, a turn without scale."""
+    x = directions_to_place(place, turned(rotations, np.tile([1.0, 0, 0], (len(rotations), 1))))
+    z = directions_to_place(place, turned(rotations, np.tile([0, 0, 1.0], (len(rotations), 1))))
+    return quaternions_of(x, np.cross(z, x), z)

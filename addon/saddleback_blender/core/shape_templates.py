@@ -1,0 +1,116 @@
+"""What is laid on a surface: an outline, and what stands on it as a small mesh in the outline's own units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .results import Indices, Reals
+
+Parts = tuple[tuple[Reals, ...], ...]  # each an outline (n, 2) and its holes
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A mesh in the plane of a shape, z away from the surface. Polygon i: corners[offsets[i]:offsets[i + 1]]."""
+
+    vertices: Reals  # (n, 3)
+    corners: Indices
+    offsets: Indices
+    uv: Reals  # (corners, 2)
+    smooth: NDArray[np.bool_]  # (polygons,)
+    material: Indices  # (polygons,) of the shape's own list
+
+    def moved(self, shift: Reals, scale: float) -> Solid:
+        """Shifted by (2,) in the plane, then scaled."""
+        return replace(self, vertices=(self.vertices + np.append(shift, 0.0)) * scale)
+
+
+@dataclass(frozen=True)
+class ShapeTemplate:
+    """One class of shapes, of circumradius 1 about the origin; x points along the field.
+
+    Without a solid the surface itself is raised within the outline. `half_turn`: looks the same turned by half a turn.
+    """
+
+    name: str
+    parts: Parts
+    solid: Solid | None = None
+    share: float = 1.0  # how many there shall be, to those of other classes
+    size: float = 1.0  # to other classes
+    source: str = ""  # name of the object that it was read from
+    # From the object's own space to the template's: shift (3,), then scale.
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    scale: float = 1.0
+
+
+def sized(template: ShapeTemplate) -> ShapeTemplate:
+    """The template in units in which the largest class of its kind has circumradius 1."""
+    size = template.size
+    return replace(
+        template,
+        parts=tuple(tuple(loop * size for loop in part) for part in template.parts),
+        solid=None if template.solid is None else template.solid.moved(np.zeros(2), size),
+        scale=template.scale * size,
+        size=1.0,
+    )
+
+
+def fitted(name: str, parts: Sequence[Sequence[Reals]], centre: Reals, solid: Solid | None = None) -> ShapeTemplate:
+    """A template of circumradius 1 about `centre` (2,) of the given coordinates."""
+    radius = max(float(np.linalg.norm(loop - centre, axis=1).max()) for part in parts for loop in part)
+    scale = 1.0 / radius if radius > 0 else 1.0
+    moved = tuple(tuple((loop - centre) * scale for loop in part) for part in parts)
+    return ShapeTemplate(
+        name, moved, None if solid is None else solid.moved(-centre, scale),
+        shift=(-float(centre[0]), -float(centre[1]), 0.0), scale=scale,
+    )  # fmt: skip
+
+
+def dome(outline: Reals, levels: Reals, heights: Reals, lift: Reals | None = None) -> Solid:
+    """A solid over an outline (m, 2) that sees all of itself from the origin: rings drawn in towards it.
+
+    Ring k is the outline times levels[k], at heights[k]; the last ring is closed by a fan about the origin at the last
+    height. `lift` (m,): heights are multiplied by it at each corner of the outline, and by its mean at the origin.
+    """
+    count, rings = len(outline), len(levels)
+    lift = np.ones(count) if lift is None else lift
+    ring = levels[:, None, None] * outline[None]
+    z = heights[:, None] * lift[None]
+    vertices = np.concatenate([np.dstack([ring, z]).reshape(-1, 3), [[0.0, 0.0, heights[-1] * lift.mean()]]])
+    here = np.arange(rings * count).reshape(rings, count)
+    onward = np.roll(here, -1, axis=1)
+    quads = np.stack([here[:-1], onward[:-1], onward[1:], here[1:]], axis=-1).reshape(-1, 4)
+    fan = np.stack([here[-1], onward[-1], np.full(count, rings * count)], axis=-1)
+    corners = np.concatenate([quads.ravel(), fan.ravel()]).astype(np.int32)
+    sizes = np.concatenate([np.full(len(quads), 4), np.full(len(fan), 3)])
+    return Solid(
+        vertices, corners, np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32), box_uv(vertices)[corners],
+        np.ones(len(sizes), bool), np.zeros(len(sizes), np.int32),
+    )  # fmt: skip
+
+
+def box_uv(vertices: Reals) -> Reals:
+    """(n, 2) places in the unit square, along and across the shape, its longer side as long as the square's."""
+    low, high = vertices[:, :2].min(axis=0), vertices[:, :2].max(axis=0)
+    extent = float((high - low).max()) or 1.0
+    places: Reals = 0.5 + (vertices[:, :2] - (low + high) / 2) / extent
+    return places
+
+
+def rounded(corners: Reals, radius: float, steps: int = 6) -> Reals:
+    """A convex outline (m, 2), counter-clockwise, its corners replaced by arcs that begin `radius` before them."""
+    before, after = np.roll(corners, 1, axis=0) - corners, np.roll(corners, -1, axis=0) - corners
+    share = np.linspace(0.0, 1.0, steps + 1)[:, None]
+    pieces = []
+    for corner, back, ahead in zip(corners, before, after, strict=True):
+        a = corner + back * min(0.5, radius / np.linalg.norm(back))
+        b = corner + ahead * min(0.5, radius / np.linalg.norm(ahead))
+        pieces.append((1 - share) ** 2 * a + 2 * share * (1 - share) * corner + share**2 * b)
+    points = np.concatenate(pieces)
+    moved = np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1) > 1e-9
+    outline: Reals = points[moved]
+    return outline

@@ -1,0 +1,185 @@
+"""`saddleback.distribute`: shapes all over a surface that follow a field and never touch each other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import bpy
+import numpy as np
+
+from .. import prefs
+from ..bridge.density import read_density, read_vertex_group
+from ..bridge.directions_in import read_directions
+from ..bridge.mesh_in import mesh_of, read_surface
+from ..bridge.out_collection import find_output, remove_output
+from ..bridge.out_shapes import (
+    BENT_ROLE,
+    INSTANCES_ROLE,
+    OUTLINE_DISTANCE,
+    OUTLINES_ROLE,
+    SHAPE_ATTRIBUTE,
+    SHAPE_UV,
+    make_real,
+    remove_templates,
+    write_bent,
+    write_instances,
+    write_outlines,
+    write_shape_values,
+)
+from ..bridge.output_surface import check_attribute_names, output_surface
+from ..bridge.shapes_in import read_templates
+from ..bridge.singularities_in import read_singularities
+from ..bridge.source import shared_mesh_warning
+from ..bridge.strokes_in import read_strokes
+from ..core import distribute_runs
+from ..core.errors import BadInputError
+from ..core.progress import Progress
+from ..core.requests import DirectionFieldRequest, DistributeRequest, GivenDirections, Surface
+from ..core.results import CheckResult, DistributeResult
+from ..core.settings import DirectionFieldSettings, DistributeSettings
+from ..props import DISTRIBUTE, keep_settings, kept_settings, settings_of
+from .base import SurfaceOperator
+from .paint import HelperOperator
+
+
+class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
+    """Lays shapes."""
+
+    bl_idname = "saddleback.distribute"
+    bl_label = "Distribute Shapes"
+    bl_description = "Lay shapes on the surface of the active object: along its direction field, none touching another"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = dict(DISTRIBUTE)
+
+    settings_name = "distribute"
+
+    def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], DistributeResult]:
+        """Reads everything from Blender."""
+        settings = settings_of(self, DistributeSettings)
+        if settings.write_attributes:
+            names = {"shape_attribute": SHAPE_ATTRIBUTE, "distance_attribute": OUTLINE_DISTANCE, "uv": SHAPE_UV}
+            types = {"shape_attribute": "INT", "distance_attribute": "FLOAT", "uv": "FLOAT2"}
+            check_attribute_names(source, names, types)
+        request = _request(context, source, settings)
+        self._templates = request.templates
+        return partial(distribute_runs.distribute, request)
+
+    def write(self, context: bpy.types.Context, source: bpy.types.Object, result: DistributeResult) -> str:
+        """Writes the result into Blender."""
+        settings = settings_of(self, DistributeSettings)
+        warning = shared_mesh_warning(source) if settings.write_attributes else ""
+        if result.values is not None:
+            write_shape_values(output_surface(context, source, settings.use_modifiers), result)
+        if result.bent is not None:
+            write_bent(context, source, result, self._templates, settings.seed)
+        else:
+            remove_output(source, BENT_ROLE)
+        if settings.make_instances:
+            write_instances(context, source, result, self._templates, settings.seed)
+        else:
+            remove_output(source, INSTANCES_ROLE)
+            remove_templates(source)
+        if result.outlines is not None:
+            write_outlines(context, source, result, settings.outline_radius)
+        else:
+            remove_output(source, OUTLINES_ROLE)
+        keep_settings(settings, source.saddleback.distribute)
+        if warning:
+            self.report({"WARNING"}, warning)
+        return f"'{source.name}': {result.text}"
+
+    def notes(self, result: DistributeResult) -> list[str]:
+        """What went wrong."""
+        return list(result.warnings)
+
+    def figures(self, result: DistributeResult) -> list[str]:
+        """How dense it is, and why no more found room."""
+        return list(result.lines)
+
+
+class SADDLEBACK_OT_check_distribution(SurfaceOperator, bpy.types.Operator):
+    """Checks shapes."""
+
+    bl_idname = "saddleback.check_distribution"
+    bl_label = "Check Shapes"
+    bl_description = "Lay the same shapes again and check by other mathematics that none touches another"
+    bl_options = {"REGISTER"}
+    __annotations__ = dict(DISTRIBUTE)
+
+    settings_name = "distribute"
+
+    def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CheckResult]:
+        """Reads everything from Blender."""
+        return partial(distribute_runs.check, _request(context, source, settings_of(self, DistributeSettings)))
+
+    def write(self, _context: bpy.types.Context, source: bpy.types.Object, result: CheckResult) -> str:
+        """Changes nothing; tells."""
+        return f"'{source.name}': {result.text}"
+
+    def notes(self, result: CheckResult) -> list[str]:
+        """The faults."""
+        return list(result.faults)
+
+    def figures(self, result: CheckResult) -> list[str]:
+        """What was looked at."""
+        return list(result.lines)
+
+
+class SADDLEBACK_OT_make_real(HelperOperator, bpy.types.Operator):
+    """Frees instances."""
+
+    bl_idname = "saddleback.make_real"
+    bl_label = "Make Instances Real"
+    bl_description = "Turn the instances on the active object into objects of their own"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def help(self, context: bpy.types.Context, source: bpy.types.Object) -> str:
+        """Makes the objects and removes the instances."""
+        item = find_output(source, INSTANCES_ROLE)
+        if item is None:
+            raise BadInputError(f"'{source.name}' carries no instances; press Distribute Shapes with Instances on")
+        count = make_real(context, source, item)
+        source.saddleback.distribute.make_instances = False
+        return f"'{source.name}': {count} objects"
+
+
+def _request(context: bpy.types.Context, source: bpy.types.Object, settings: DistributeSettings) -> DistributeRequest:
+    """Reads everything from Blender."""
+    with mesh_of(context, source, settings.use_modifiers) as mesh:
+        surface = read_surface(source, mesh)
+        return DistributeRequest(
+            surface=surface,
+            settings=settings,
+            templates=read_templates(context, source, settings),
+            density=read_density(source, mesh, settings),
+            field=_read_field(context, source, mesh, settings, surface),
+            forbidden=_read_forbidden(source, mesh, settings),
+            threads=prefs.threads(context),
+            disk=prefs.disk_cache(context, False),
+        )
+
+
+def _read_field(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    mesh: bpy.types.Mesh,
+    settings: DistributeSettings,
+    surface: Surface,
+) -> DirectionFieldRequest | GivenDirections | None:
+    if settings.field_source == "NONE":
+        return None
+    if settings.field_source == "ATTRIBUTE":
+        return read_directions(source, mesh, settings.direction_attribute)
+    own = kept_settings(source, "direction_field", DirectionFieldSettings)
+    return DirectionFieldRequest(surface, own, read_strokes(context, source, own), read_singularities(source, own))
+
+
+def _read_forbidden(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DistributeSettings) -> np.ndarray | None:
+    if not settings.forbidden_group:
+        return None
+    weights, _ = read_vertex_group(source, mesh, settings.forbidden_group)
+    return weights > 0.5
+
+
+CLASSES = (SADDLEBACK_OT_distribute, SADDLEBACK_OT_check_distribution, SADDLEBACK_OT_make_real)

@@ -1,0 +1,194 @@
+"""`saddleback.distribute` as scripts call it: bent copies, instances, outlines, attributes, and what is replaced."""
+
+import bpy
+import numpy as np
+import pytest
+from scenes import add_object, attribute, fingerprint, grid, grid_arrays, sphere
+from test_operators_direction_field import add_curve, vectors
+
+from saddleback_blender import jobs
+from saddleback_blender.bridge.out_collection import find_output, outputs_of
+
+FEW = {"count": 20}
+
+
+def host():
+    return sphere("Host", subdivisions=4)
+
+
+def instances(item):
+    """Names, world matrices of what an object's instances show."""
+    bpy.context.view_layer.update()
+    shown = bpy.context.evaluated_depsgraph_get().object_instances
+    return [
+        (instance.object.data.name, np.array(instance.matrix_world))
+        for instance in shown
+        if instance.is_instance and instance.parent and instance.parent.original == item
+    ]
+
+
+def add_shapes():
+    collection = bpy.data.collections.new("Shapes")
+    bpy.context.scene.collection.children.link(collection)
+    bpy.ops.mesh.primitive_cube_add(size=0.5)
+    cube = bpy.context.active_object
+    vertices, faces = grid_arrays(3)
+    plate = add_object("Plate", vertices - (0.5, 0.5, 0), faces, active=False)
+    plate.scale, plate.location = (1, 0.5, 1), (7, 8, 9)
+    for item in (cube, plate):
+        bpy.context.scene.collection.objects.unlink(item)
+        collection.objects.link(item)
+    bpy.context.view_layer.update()
+    return cube, plate
+
+
+@pytest.mark.parametrize("shapes", ["SCALES", "STUDS", "FEATHERS", "LEAVES", "MOSAIC"])
+def test_presets_are_bent_onto_the_surface(shapes):
+    item = host()
+    assert bpy.ops.saddleback.distribute(shapes=shapes, **FEW) == {"FINISHED"}
+    (output,) = outputs_of(item)
+    assert output.name == "Host Shapes" and output.users_collection[0].name == "Saddleback"
+    mesh = output.data
+    number = np.empty(len(mesh.polygons), np.int32)
+    mesh.attributes["saddleback_shape"].data.foreach_get("value", number)
+    assert len(np.unique(number)) == 20 and mesh.uv_layers.active.name == "UVMap"
+    assert mesh.attributes["saddleback_random"].domain == "FACE"
+    places = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", places)
+    radius = np.linalg.norm(places.reshape(-1, 3), axis=1)
+    assert radius.min() > 0.97 and 1.005 < radius.max() < 1.5
+    assert jobs.state.line.startswith("'Host': 20 shapes") and jobs.state.figures[0].startswith("Covered: ")
+
+
+def test_instances_stand_where_bent_copies_lie():
+    item = host()
+    item.location, item.rotation_euler, item.scale = (1, 2, 3), (0.3, 0.4, 0.5), (2, 2, 2)
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.distribute(make_instances=True, **FEW)
+    bent, points = find_output(item, "shapes"), find_output(item, "shape instances")
+    matrix = np.array(bent.matrix_world)
+    world = np.array([vertex.co for vertex in bent.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]
+    shown = instances(points)
+    assert len(shown) == 20
+    template = bpy.data.meshes[shown[0][0]]
+    own = np.array([vertex.co for vertex in template.vertices])
+    copies = world.reshape(20, len(own), 3)
+    for _, placed in shown:
+        rigid = own @ placed[:3, :3].T + placed[:3, 3]
+        away = np.linalg.norm(copies - rigid[None], axis=2).max(axis=1)
+        assert away.min() < 0.3 * np.linalg.norm(placed[:3, 0])
+
+
+def test_shapes_of_a_collection_keep_materials_scale_and_centre():
+    item = host()
+    cube, plate = add_shapes()
+    cube.data.materials.append(bpy.data.materials.new("Red"))
+    for name in ("Blue", "Green"):
+        plate.data.materials.append(bpy.data.materials.new(name))
+    plate.data.polygons[0].material_index = 1
+    bpy.context.view_layer.objects.active = item
+    settings = {"shapes": "COLLECTION", "shapes_collection": "Shapes", "make_instances": True}
+    bpy.ops.saddleback.distribute(**settings, **FEW)
+    assert "10 Cube, 10 Plate" in jobs.state.line
+    bent = find_output(item, "shapes")
+    assert [material.name for material in bent.data.materials] == ["Red", "Blue", "Green"]
+    slots = np.empty(len(bent.data.polygons), np.int32)
+    bent.data.polygons.foreach_get("material_index", slots)
+    assert [int((slots == slot).sum()) for slot in range(3)] == [60, 80, 10]
+    shown = instances(find_output(item, "shape instances"))
+    assert sorted(name for name, _ in shown) == ["Cube"] * 10 + ["Plate"] * 10
+    for name, placed in shown:
+        x, y = (np.linalg.norm(placed[:3, i]) for i in (0, 1))
+        assert y == pytest.approx(x * (0.5 if name == "Plate" else 1.0), rel=1e-4)
+    # Running again replaces, and an output that is not wanted any more goes.
+    names = sorted(output.name for output in outputs_of(item))
+    bpy.ops.saddleback.distribute()
+    assert sorted(output.name for output in outputs_of(item)) == names
+    groups = len(bpy.data.node_groups)
+    bpy.ops.saddleback.distribute(seed=4)
+    assert len(bpy.data.node_groups) == groups == 1
+    bpy.ops.saddleback.distribute(make_instances=False)
+    assert find_output(item, "shape instances") is None
+    assert item.saddleback.distribute.shapes_collection.name == "Shapes"
+
+
+def test_everything_goes_with_clear_and_nothing_else():
+    item = host()
+    before = fingerprint()
+    bpy.ops.saddleback.distribute(make_instances=True, make_outlines=True, write_attributes=True, **FEW)
+    assert len(outputs_of(item)) == 4  # one of them is what instances show
+    distance = attribute(item, "saddleback_outline_distance")
+    assert 0.2 < (distance < 0).mean() < 0.6 and (attribute(item, "saddleback_shape")[distance < 0] >= 0).all()
+    assert len(find_output(item, "shape outlines").data.splines) == 20
+    assert bpy.ops.saddleback.clear() == {"FINISHED"}
+    after = fingerprint()
+    kept = [entry for entry in after if entry[0] != "Host"]
+    assert kept == [entry for entry in before if entry[0] != "Host"]
+    assert not bpy.data.node_groups and len(bpy.data.meshes) == 1
+
+
+def test_instances_become_real():
+    item = host()
+    with pytest.raises(RuntimeError, match="'Host' carries no instances"):
+        bpy.ops.saddleback.make_real()
+    bpy.ops.saddleback.distribute(make_bent=False, make_instances=True, **FEW)
+    wanted = sorted(placed[:3, 3].tolist() for _, placed in instances(find_output(item, "shape instances")))
+    assert bpy.ops.saddleback.make_real() == {"FINISHED"}
+    assert bpy.context.active_object == item and not outputs_of(item)
+    real = [other for other in bpy.data.objects if other.name.startswith("Scale")]
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(sorted(list(other.matrix_world.translation) for other in real), wanted, atol=1e-5)
+    assert bpy.ops.saddleback.clear() == {"CANCELLED"} and len(real) == 20
+
+
+def test_the_check_finds_nothing_and_changes_nothing():
+    item = host()
+    bpy.ops.saddleback.distribute(**FEW)
+    before = fingerprint()
+    assert bpy.ops.saddleback.check_distribution() == {"FINISHED"}
+    assert jobs.state.line.startswith("'Host': 20 shapes checked: none touches another")
+    assert fingerprint() == before and item.saddleback.distribute.count == 20
+
+
+def test_the_panels_field_is_followed_and_so_is_an_attribute():
+    item = grid("Host", n=30)
+    add_curve("Stroke", np.array([(0.1, 0.2, 0), (0.9, 0.8, 0)]), item)
+    item.saddleback.direction_field.strokes = "COLLECTION"
+    angles = []
+    for source in ("PANEL", "ATTRIBUTE"):
+        if source == "ATTRIBUTE":
+            with pytest.raises(RuntimeError, match="has no attribute 'saddleback_direction' for directions"):
+                bpy.ops.saddleback.distribute(field_source=source, **FEW)
+            bpy.ops.saddleback.direction_field(make_arrows=False)
+            np.testing.assert_allclose(vectors(item)[:, 1] / vectors(item)[:, 0], 0.75, atol=0.03)
+        bpy.ops.saddleback.distribute(field_source=source, make_instances=True, **FEW)
+        shown = instances(find_output(item, "shape instances"))
+        angles.append(sorted(np.arctan2(placed[1, 0], placed[0, 0]) for _, placed in shown))
+    np.testing.assert_allclose(angles, np.arctan(0.75), atol=0.03)
+
+
+def test_a_vertex_group_keeps_shapes_off():
+    item = host()
+    group = item.vertex_groups.new(name="Face")
+    group.add([v.index for v in item.data.vertices if v.co[2] > 0], 1.0, "REPLACE")
+    bpy.ops.saddleback.distribute(forbidden_group="Face", make_bent=False, make_instances=True, count=10)
+    assert all(placed[2, 3] < 0 for _, placed in instances(find_output(item, "shape instances")))
+    with pytest.raises(RuntimeError, match="has no vertex group 'Nope'"):
+        bpy.ops.saddleback.distribute(forbidden_group="Nope")
+
+
+def test_what_cannot_be_done_is_told_and_changes_nothing():
+    item = host()
+    item.data.attributes.new("saddleback_shape", "FLOAT", "FACE")
+    before = fingerprint()
+    calls = [
+        ({"shapes": "COLLECTION"}, "no collection is chosen to take shapes from"),
+        ({"shapes": "IMAGE", "shapes_image": "Nope"}, "there is no image 'Nope'"),
+        ({"size": 50.0}, "'Host': .*larger than the surface"),
+        ({"write_attributes": True}, "has another kind of attribute 'saddleback_shape'"),
+        ({"density_source": "VERTEX_GROUP"}, "'Host' has no vertex group"),
+    ]
+    for settings, text in calls:
+        with pytest.raises(RuntimeError, match=text):
+            bpy.ops.saddleback.distribute(**settings)
+        assert fingerprint() == before

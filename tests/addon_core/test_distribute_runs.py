@@ -1,0 +1,177 @@
+"""Shapes on a surface as the add-on asks for them: counts, sizes, fields, what is made of the placements."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from saddleback_blender.core import distribute_runs, runs
+from saddleback_blender.core.cache import Cache
+from saddleback_blender.core.errors import BadInputError
+from saddleback_blender.core.quaternions import turned
+from saddleback_blender.core.requests import DirectionFieldRequest, DistributeRequest, GivenDirections, Surface
+from saddleback_blender.core.settings import DirectionFieldSettings, DistributeSettings
+from saddleback_blender.core.shape_presets import preset
+from saddleback_blender.core.shape_templates import fitted
+from tests import meshes
+
+BALL = meshes.icosphere(4)
+FEW = {"count": 60}
+
+
+def surface_of(vertices, triangles):
+    return Surface("Thing", np.asarray(vertices, np.float64), np.asarray(triangles, np.int32), len(vertices))
+
+
+def run(templates=None, arrays=BALL, cache=None, options=None, **settings):
+    surface = surface_of(*arrays)
+    request = DistributeRequest(
+        surface,
+        DistributeSettings(**(FEW | settings)),
+        tuple(templates or preset("SCALES")),
+        **(options or {}),
+    )
+    return distribute_runs.distribute(request, runs.new_progress(), cache or Cache(2**28))
+
+
+def panel(symmetry="1"):
+    return DirectionFieldRequest(surface_of(*BALL), DirectionFieldSettings(symmetry=symmetry))
+
+
+def test_shapes_are_laid_bent_and_framed():
+    result = run(make_outlines=True, write_attributes=True, options={"field": panel()})
+    assert result.class_counts.tolist() == [60] and result.text.startswith("60 shapes")
+    assert result.lines[0].startswith("Covered: 40.0%")
+    placed = result.placed
+    np.testing.assert_allclose(np.linalg.norm(placed.points, axis=1), 1, atol=0.01)
+    np.testing.assert_allclose(turned(placed.rotations, np.tile([0, 0, 1.0], (60, 1))), placed.points, atol=0.05)
+    bent = result.bent
+    assert set(bent.polygon_copy) == set(range(60)) and bent.offsets[-1] == len(bent.corners) == len(bent.uv)
+    radius = np.linalg.norm(bent.vertices, axis=1)
+    assert radius.min() > 0.98 and radius.max() > 1.02
+    # Faces look outwards, and each copy stays about its centre.
+    first = bent.vertices[bent.corners[bent.offsets[:-1]]]
+    second, third = (bent.vertices[bent.corners[bent.offsets[:-1] + i]] for i in (1, 2))
+    outwards = (np.cross(second - first, third - first) * first).sum(axis=1)
+    assert (outwards > 0).mean() > 0.9
+    assert np.linalg.norm(first - placed.points[bent.polygon_copy], axis=1).max() < 1.5 * placed.scales.max()
+    assert len(result.outlines.lengths) == 60 and result.outlines.closed.all()
+    inside = result.values.distance < 0
+    assert 0.3 < inside.mean() < 0.5 and (result.values.shape[inside] >= 0).all()
+    assert np.ptp(result.values.uv[inside]) > 0.5
+
+
+def test_mirrored_copies_face_outwards_too():
+    drop = np.stack([np.cos(np.linspace(0, 6, 20)), np.sin(np.linspace(0, 6, 20)) * 0.5], axis=1)
+    template = fitted("Drop", [[drop]], np.zeros(2), preset("SCALES")[0].solid)
+    result = run([template], mirror=True)
+    bent = result.bent
+    mirrored = result.placed.scales[:, 1] < 0
+    assert 0.2 < mirrored.mean() < 0.8
+    a, b, c = (bent.vertices[bent.corners[bent.offsets[:-1] + i]] for i in (0, 1, 2))
+    outwards = (np.cross(b - a, c - a) * a).sum(axis=1) > 0
+    for chosen in (mirrored, ~mirrored):
+        assert outwards[chosen[bent.polygon_copy]].mean() > 0.9
+
+
+def test_shapes_without_a_solid_raise_the_surface():
+    ring = np.stack([np.cos(np.arange(24) / 24 * 2 * np.pi), np.sin(np.arange(24) / 24 * 2 * np.pi)], axis=1)
+    result = run([fitted("Ring", [[ring, 0.5 * ring]], np.zeros(2))], thickness=0.05, count=20)
+    bent = result.bent
+    radius = np.linalg.norm(bent.vertices, axis=1)
+    assert 0.98 < radius.min() < 1.0 and 1.04 < radius.max() < 1.06
+    for copy in range(20):
+        chosen = bent.polygon_copy == copy
+        rows = [bent.corners[a:b] for a, b in zip(bent.offsets[:-1][chosen], bent.offsets[1:][chosen], strict=True)]
+        edges = {(int(a), int(b)) for row in rows for a, b in zip(row, np.roll(row, -1), strict=True)}
+        lone = [(a, b) for a, b in edges if (b, a) not in edges]
+        # Open only below: around the outline and around the hole.
+        assert lone and all(radius[a] < 1.001 for a, _ in lone)
+        assert len({a for a, _ in lone}) == len(lone)
+    assert bent.uv.min() >= -1e-9 and bent.uv.max() <= 1 + 1e-9
+
+
+def test_counts_follow_the_shares_to_the_last_one():
+    leaves = preset("LEAVES")
+    result = run(leaves, count=50)
+    assert result.class_counts.tolist() == [20, 30] and "20 Leaf, 30 Small Leaf" in result.text
+    scales = result.placed.scales[:, 0]
+    np.testing.assert_allclose(scales, scales[0])  # sizes of classes are in their outlines
+    three = [replace(template, share=1.0) for template in (*leaves, leaves[0])]
+    assert sorted(run(three, count=50).class_counts.tolist()) == [16, 17, 17]
+    with pytest.raises(BadInputError, match="the shares of all shapes are 0"):
+        run([replace(leaves[0], share=0.0)])
+
+
+def test_shapes_are_small_where_the_density_is_high():
+    z = BALL[0][:, 2]
+    density = np.where(z > 0, 4.0, 1.0)
+    result = run(preset("STUDS"), size_by_density=True, count=120, options={"density": density})
+    top = result.placed.points[:, 2] > 0.1
+    bottom = result.placed.points[:, 2] < -0.1
+    sizes = result.placed.scales[:, 0]
+    assert np.median(sizes[bottom]) == pytest.approx(2 * np.median(sizes[top]), rel=0.05)
+    assert top.sum() > 2.5 * bottom.sum()
+    varied = run(size_variation=0.5).placed.scales[:, 0]
+    assert varied.max() <= 2.001 * varied.min() and varied.max() > 1.6 * varied.min()
+
+
+def test_nothing_is_laid_where_it_is_forbidden():
+    forbidden = BALL[0][:, 2] > 0
+    result = run(count=30, make_bent=False, write_attributes=True, options={"forbidden": forbidden})
+    assert (result.placed.points[:, 2] < 0).all()
+    assert not (result.values.distance[BALL[0][:, 2] > 0.1] < 0).any()
+
+
+@pytest.mark.parametrize("domain", ["POINT", "FACE"])
+def test_shapes_follow_a_vector_attribute(domain):
+    vertices, triangles = BALL
+    places = vertices if domain == "POINT" else vertices[triangles].mean(axis=1)
+    east = np.stack([-places[:, 1], places[:, 0], 0.3 * np.ones(len(places))], axis=1)
+    polygons = np.arange(len(triangles), dtype=np.int32) if domain == "FACE" else None
+    given = GivenDirections(east, 1, "attribute 'flow'", polygons)
+    result = run(make_bent=False, options={"field": given})
+    x = turned(result.placed.rotations, np.tile([1.0, 0, 0], (60, 1)))
+    there = result.placed.points
+    wanted = np.stack([-there[:, 1], there[:, 0], 0.3 * np.ones(60)], axis=1)
+    wanted -= (wanted * there).sum(axis=1, keepdims=True) * there
+    wanted /= np.linalg.norm(wanted, axis=1, keepdims=True)
+    far_from_poles = np.abs(there[:, 2]) < 0.8
+    assert (x * wanted).sum(axis=1)[far_from_poles].min() > 0.99
+    east[:5] = 0
+    with pytest.raises(BadInputError, match=r"'Thing': attribute 'flow' has no direction .* of 5120 faces"):
+        run(options={"field": GivenDirections(east * (domain == "FACE"), 1, "attribute 'flow'", polygons)})
+
+
+def test_outputs_do_not_compute_the_placements_again():
+    cache = Cache(2**28)
+    first = run(cache=cache)
+    again = run(cache=cache, make_outlines=True, write_attributes=True)
+    assert cache.builds["shapes"] == cache.builds["mapped shapes"] == 1
+    np.testing.assert_array_equal(first.bent.vertices, again.bent.vertices)
+    other = run(cache=cache, seed=1)
+    assert cache.builds["shapes"] == 2 and not np.array_equal(other.placed.points, first.placed.points)
+
+
+def test_shapes_are_checked_by_other_mathematics():
+    request = DistributeRequest(surface_of(*BALL), DistributeSettings(count=40), tuple(preset("SCALES")))
+    report = distribute_runs.check(request, runs.new_progress(), Cache(2**28))
+    assert report.text == "40 shapes checked: none touches another" and not report.faults
+    assert 0.35 < float(report.lines[0].split()[1].rstrip("%")) / 100 < 0.45
+    assert distribute_runs._fault("crossing", 3, 5, (1.0, 2.0, 0.5)) == "Shape 3 crosses shape 5 at (1, 2, 0.5)"
+
+
+def test_filling_is_proved():
+    result = run(preset("STUDS"), size=0.25, maximal=True, count=5)
+    assert len(result.placed.shape) > 20 and "nothing more fits" in result.text
+    assert any(line.startswith("Proved full") for line in result.lines)
+    packed = run(preset("STUDS"), size=0.25, maximal=True, packing=1.0)
+    assert len(packed.placed.shape) > len(result.placed.shape)
+
+
+def test_counts_that_do_not_fit_are_told():
+    result = run(preset("STUDS"), size=0.3, count=500)
+    assert len(result.placed.shape) < 100 and "no more room" in result.text
+    with pytest.raises(sb.InputError, match="larger"):
+        run(size=50.0)
