@@ -1,14 +1,14 @@
-"""Preferences: threads, what is kept in memory and on disk, and what the native library is and sees."""
+"""Preferences: threads, device, what is kept in memory and on disk, and what the native library is and sees."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import bpy
-from bpy.props import BoolProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from . import compat
-from .core import cache, native
+from .core import cache, devices, native
 from .core.disk_cache import DiskCache
 
 DEFAULT_DISK_MEGABYTES = 4096
@@ -16,6 +16,10 @@ DEFAULT_DISK_MEGABYTES = 4096
 
 def _resize_cache(preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
     cache.shared.resize(preferences.cache_megabytes * 2**20)
+
+
+def _choose_device(preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
+    devices.choose(preferences.device, preferences.cuda_index)
 
 
 class SaddlebackPreferences(bpy.types.AddonPreferences):
@@ -26,6 +30,20 @@ class SaddlebackPreferences(bpy.types.AddonPreferences):
     __annotations__ = {
         "threads": IntProperty(
             name="Threads", description="Processor threads to compute with; 0 means all", default=0, min=0, max=1024
+        ),
+        "device": EnumProperty(
+            name="Device",
+            description="What builds the distance graphs; the result does not depend on it",
+            items=[
+                (devices.AUTO, "Automatic", "A CUDA device where there is one and the mesh is large enough to gain by it"),
+                (devices.CPU, "Processor", "The processor only"),
+                (devices.CUDA, "CUDA", "A CUDA device; where it fails, the processor"),
+            ],
+            default=devices.AUTO,
+            update=_choose_device,
+        ),
+        "cuda_index": IntProperty(
+            name="CUDA Device", description="Which of several", default=0, min=0, max=63, update=_choose_device
         ),
         "cache_megabytes": IntProperty(
             name="Cache",
@@ -59,6 +77,11 @@ class SaddlebackPreferences(bpy.types.AddonPreferences):
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "threads")
+        layout.prop(self, "device")
+        if self.device == devices.CUDA:
+            layout.prop(self, "cuda_index")
+        if self.device != devices.CPU:
+            layout.label(text=devices.status(), icon="BLANK1")
         layout.prop(self, "cache_megabytes")
         layout.prop(self, "cache_on_disk")
         layout.prop(self, "cache_folder")
@@ -92,6 +115,7 @@ def register() -> None:
     addon = bpy.context.preferences.addons.get(__package__)
     if addon is not None and addon.preferences is not None:
         cache.shared.resize(addon.preferences.cache_megabytes * 2**20)
+        devices.choose(addon.preferences.device, addon.preferences.cuda_index)
 
 
 def unregister() -> None:

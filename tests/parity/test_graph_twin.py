@@ -17,9 +17,11 @@ RULE_NAMES = [next(f"{name}={value}" for name, value in rule.items()) for rule i
 
 
 def saved(graph: sb.SaddleVertexGraph, folder: Path) -> bytes:
+    """What a file holds of a graph, but for how long it took to build and the sum of all bytes at the end."""
     path = folder / "graph"
     graph.save(path)
-    return path.read_bytes()
+    data = path.read_bytes()
+    return data[:72] + data[80:-4]
 
 
 def expect_twins(mesh: sb.Mesh, folder: Path, **rule: Any) -> None:

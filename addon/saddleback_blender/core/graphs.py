@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from . import native
+from . import devices, native
 from .cache import Cache
 from .disk_cache import DiskCache
 from .progress import Progress
@@ -71,7 +71,7 @@ def graph_of_surface(
 
     def build() -> Any:
         with progress.stage(0.5, "building the distance graph") as job:
-            return native.load().SaddleVertexGraph(mesh, **choice.options(surface), threads=threads, job=job)
+            return devices.build_graph(mesh, choice.options(surface), threads, progress, job)
 
     def find() -> Any:
         if disk is not None and disk.has(name):

@@ -3,13 +3,12 @@
 
 #include <bit>
 #include <cstdint>
-#include <memory>
-#include <new>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "saddleback/arc_packing.h"
+#include "saddleback/large_array.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -61,19 +60,8 @@ class ArcCodec {
   double quantum_ = 1;
 };
 
-/// Leaves memory as it is: whoever fills it touches it first, on a core of its own.
-template <class Number>
-struct UninitializedAllocator : std::allocator<Number> {
-  template <class Other>
-  void construct(Other* place) noexcept {
-    ::new (static_cast<void*>(place)) Other;
-  }
-  template <class Other, class... Arguments>
-  void construct(Other* place, Arguments&&... arguments) {
-    ::new (static_cast<void*>(place)) Other(std::forward<Arguments>(arguments)...);
-  }
-};
-using ArcWords = std::vector<std::uint64_t, UninitializedAllocator<std::uint64_t>>;
+/// Whoever fills it touches it first, on a core of its own; huge pages spare those who look rows up here and there.
+using ArcWords = LargeArray<std::uint64_t>;
 
 /// Rows of arcs, a row a node, in compressed sparse rows.
 class ArcRows {

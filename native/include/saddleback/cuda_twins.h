@@ -9,7 +9,12 @@ namespace saddleback {
 
 struct ArcTwinRequest;
 struct ArcTwinCaller;
-struct ArcTwinTimes;
+
+/// How long the parts of a build took, in seconds by the device's clock, and how its sources went.
+struct DeviceTimes {
+  double upload = 0, find = 0, unite = 0, download = 0;
+  std::int64_t second_pass = 0, by_processor = 0;  ///< sources that overflowed: done again there, or here
+};
 
 enum class TwinStatus { done, stopped, failed };
 
@@ -27,7 +32,7 @@ struct CudaTwins {
   static constexpr int k_version = 1;  ///< of this table and of all that it passes
   int version = k_version;
   /// See geodesics/arc_twin.h.
-  TwinStatus (*find_arcs)(const ArcTwinRequest&, const ArcTwinCaller&, ArcTwinTimes&, TwinReason&) = nullptr;
+  TwinStatus (*find_arcs)(const ArcTwinRequest&, const ArcTwinCaller&, DeviceTimes&, TwinReason&) = nullptr;
 };
 
 /// Tells the library of its twins, which stay valid until the process ends. \throw DeviceError for another version.

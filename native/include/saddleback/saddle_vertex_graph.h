@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saddleback/arc_rows.h"
+#include "saddleback/cuda_twins.h"
 #include "saddleback/job.h"
 #include "saddleback/mesh.h"
 #include "saddleback/surface_curve.h"
@@ -103,6 +104,7 @@ class SaddleVertexGraph {
   std::size_t nbytes() const;  ///< memory of the arcs and the order of the nodes
   double build_seconds() const { return build_seconds_; }
   bool built_by_cuda() const { return built_by_cuda_; }
+  const DeviceTimes& device_times() const { return device_times_; }  ///< zero when no device built it
 
   /// The graph's own numbering of the vertices, along a curve that fills space: neighbours lie close in memory.
   Index node_of(Index vertex) const { return nodes_[vertex]; }
@@ -156,6 +158,7 @@ class SaddleVertexGraph {
   ArcRows arcs_;
   double build_seconds_ = 0;
   bool built_by_cuda_ = false;
+  DeviceTimes device_times_;
   std::shared_ptr<QueryCache> queries_ = make_query_cache();
 };
 

@@ -54,10 +54,4 @@ struct ArcTwinCaller {
   bool (*make_room)(void* self, std::int64_t words, std::int64_t** offsets_to, std::uint64_t** words_to) = nullptr;
 };
 
-/// How long the parts took, in seconds by the device's clock, and how the sources went.
-struct ArcTwinTimes {
-  double upload = 0, find = 0, unite = 0, download = 0;
-  std::int64_t second_pass = 0, by_caller = 0;  ///< sources
-};
-
 }  // namespace saddleback

@@ -212,7 +212,7 @@ class ArcFinder {
         counters_(2, stream),
         rows_(request.node_count, first_guess(request), request.packing.target_mask, stream) {}
 
-  void find(ArcTwinTimes& times) {
+  void find(DeviceTimes& times) {
     while (true) {
       find_all(times);
       const std::int64_t wanted = rows_.words_wanted();
@@ -223,9 +223,9 @@ class ArcFinder {
   RowStore& rows() { return rows_; }
 
  private:
-  void find_all(ArcTwinTimes& times) {
+  void find_all(DeviceTimes& times) {
     rows_.clear();
-    times.second_pass = times.by_caller = 0;
+    times.second_pass = times.by_processor = 0;
     if (request_.k > 0) {
       find_by_size<true>(request_.k <= 40, times);
     } else {
@@ -235,7 +235,7 @@ class ArcFinder {
 
   /// `small` when most sources need little memory: then more of them run at once.
   template <bool All>
-  void find_by_size(bool small, ArcTwinTimes& times) {
+  void find_by_size(bool small, DeviceTimes& times) {
     std::vector<std::int32_t> left;
     bool all = true;
     const auto pass = [&]<class Room>(std::type_identity<Room>) {
@@ -278,7 +278,7 @@ class ArcFinder {
   }
 
   template <bool All>
-  void find_large(const std::vector<std::int32_t>& nodes, ArcTwinTimes& times) {
+  void find_large(const std::vector<std::int32_t>& nodes, DeviceTimes& times) {
     using Room = LargeRoom<All>;
     const auto kernel = find_large_disks<Room>;
     const int most = blocks_of(reinterpret_cast<const void*>(kernel), 0);
@@ -294,7 +294,7 @@ class ArcFinder {
                                        tables.data(), rings.data(), drafts.data(), rows_.view());
     check_cuda(cudaGetLastError(), "finding arcs of large disks");
     std::vector<std::int32_t> left = failures(failed);
-    times.by_caller = static_cast<std::int64_t>(left.size());
+    times.by_processor = static_cast<std::int64_t>(left.size());
     if (left.empty()) return;
     std::ranges::sort(left);
     FoundRows found{};
@@ -367,7 +367,7 @@ void keep_freed_memory(int device) {
   check_cuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &everything), "setting up the memory pool");
 }
 
-void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, ArcTwinTimes& times) {
+void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, DeviceTimes& times) {
   check_cuda(cudaSetDevice(request.device), "choosing the device");
   check_room(request);
   keep_freed_memory(request.device);
@@ -390,7 +390,7 @@ void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, ArcTwinTi
 
 }  // namespace
 
-TwinStatus find_arcs_on_device(const ArcTwinRequest& request, const ArcTwinCaller& caller, ArcTwinTimes& times,
+TwinStatus find_arcs_on_device(const ArcTwinRequest& request, const ArcTwinCaller& caller, DeviceTimes& times,
                                TwinReason& reason) {
   try {
     build(request, caller, times);

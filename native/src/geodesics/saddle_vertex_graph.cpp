@@ -9,7 +9,6 @@
 #include "saddleback/error.h"
 
 #include "geodesics/arc_symmetry.h"
-#include "geodesics/arc_twin.h"
 #include "geodesics/arc_unfolding.h"
 #include "geodesics/graph_arcs.h"
 #include "geodesics/path_bound.h"
@@ -52,8 +51,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   if (options.cuda_device >= 0) {
     if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
-    ArcTwinTimes times;
-    arcs_ = twin_arcs(search, disk_rule(k_, accuracy_), options.cuda_device, times, stage);
+    arcs_ = twin_arcs(search, disk_rule(k_, accuracy_), options.cuda_device, device_times_, stage);
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;

@@ -112,7 +112,7 @@ class Caller {
 
 }  // namespace
 
-ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, int device, ArcTwinTimes& times,
+ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, int device, DeviceTimes& times,
                   const JobStage& stage) {
   const CudaTwins* const twins = cuda_twins();
   if (!twins) throw DeviceError("device: the CUDA module is not loaded");

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "saddleback/job.h"
+#include "saddleback/large_array.h"
 
 #include "geodesics/unfolding.h"
 #include "geodesics/window_waves.h"
@@ -45,9 +46,10 @@ class WaveMesh {
   const std::uint8_t* saddles() const { return saddles_.data(); }
 
  private:
-  std::vector<EdgeRecord> records_;
-  std::vector<Index> first_, targets_;
-  std::vector<double> lengths_;
+  LargeArray<EdgeRecord> records_;
+  std::vector<Index> first_;
+  LargeArray<Index> targets_;
+  LargeArray<double> lengths_;
   std::vector<std::uint8_t> saddles_;
   double unit_ = 1;
 };
@@ -87,7 +89,7 @@ class WaveSectors {
   const float* per_radians() const { return per_radian_.data(); }
 
  private:
-  std::vector<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;
+  LargeArray<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;
 };
 
 }  // namespace saddleback

@@ -1,0 +1,58 @@
+"""Where graphs are built."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+import saddleback as sb
+from saddleback_blender.core import devices
+from saddleback_blender.core.progress import Progress
+from tests import meshes
+
+
+@pytest.fixture(autouse=True)
+def as_before() -> Iterator[None]:
+    yield
+    devices.choose(devices.AUTO)
+
+
+def progress() -> Progress:
+    return Progress(sb.Job, sb.Cancelled)
+
+
+def build(watched: Progress) -> Any:
+    mesh = sb.Mesh(*meshes.icosphere(2))
+    with watched.stage(1.0, "building") as job:
+        return devices.build_graph(mesh, {"k": 10}, 1, watched, job)
+
+
+@pytest.mark.parametrize(
+    ("kind", "index", "word"), [(devices.AUTO, 3, "auto"), (devices.CPU, 3, "cpu"), (devices.CUDA, 3, "cuda:3")]
+)
+def test_a_choice_is_what_the_library_calls_it(kind: str, index: int, word: str) -> None:
+    devices.choose(kind, index)
+    assert devices.chosen() == word
+
+
+@pytest.mark.parametrize("kind", [devices.AUTO, devices.CPU])
+def test_nobody_is_told_what_is_as_it_should_be(kind: str) -> None:
+    devices.choose(kind)
+    watched = progress()
+    assert build(watched).device == "cpu"
+    assert watched.notes == []
+
+
+def test_where_the_device_fails_the_processor_builds_and_the_user_is_told() -> None:
+    devices.choose(devices.CUDA, 63)
+    watched = progress()
+    assert build(watched).device == "cpu"
+    (note,) = watched.notes
+    assert note.startswith("Built on the processor instead: ")
+    assert "device:" not in note
+
+
+def test_the_status_is_a_sentence() -> None:
+    assert devices.status() == sb.cuda_status() != ""
