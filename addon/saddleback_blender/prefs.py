@@ -35,7 +35,7 @@ class SaddlebackPreferences(bpy.types.AddonPreferences):
             name="Device",
             description="What builds the distance graphs; the result does not depend on it",
             items=[
-                (devices.AUTO, "Automatic", "A CUDA device where there is one and the mesh is large enough to gain by it"),
+                (devices.AUTO, "Automatic", "A CUDA device where there is one and the mesh is large enough"),
                 (devices.CPU, "Processor", "The processor only"),
                 (devices.CUDA, "CUDA", "A CUDA device; where it fails, the processor"),
             ],
