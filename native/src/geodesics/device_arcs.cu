@@ -3,6 +3,7 @@
 // the caller. The answer is the processor's, to the bit.
 
 #include <algorithm>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -109,6 +110,22 @@ __global__ void __launch_bounds__(32) find_large_disks(DeviceMesh mesh, Work wor
 
 /// The caller asked to stop.
 struct Stopped {};
+
+/// The request's larger tables, pinned.
+class PinnedTables {
+ public:
+  explicit PinnedTables(const ArcTwinRequest& r)
+      : records_(r.records, edges(r) * sizeof(EdgeRecord)),
+        lengths_(r.lengths, edges(r) * sizeof(double)),
+        targets_(r.targets, edges(r) * sizeof(std::int32_t)),
+        sectors_(r.sectors, edges(r) * sizeof(float)),
+        reverse_sectors_(r.reverse_sectors, edges(r) * sizeof(float)),
+        apex_sectors_(r.apex_sectors, edges(r) * sizeof(float)) {}
+
+ private:
+  static std::size_t edges(const ArcTwinRequest& r) { return static_cast<std::size_t>(r.edge_count); }
+  PinnedRange records_, lengths_, targets_, sectors_, reverse_sectors_, apex_sectors_;
+};
 
 /// Host memory of the request, on the device.
 class Tables {
@@ -373,8 +390,10 @@ void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, DeviceTim
   keep_freed_memory(request.device);
   const Stream stream;
   Stopwatch watch(stream);
+  std::optional<PinnedTables> pinned(request);
   ArcFinder finder(request, caller, stream);
   times.upload = watch.lap();
+  pinned.reset();
   finder.find(times);
   times.find = watch.lap();
   DeviceUnion arcs(request.packing, finder.rows(), stream);
@@ -384,6 +403,7 @@ void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, DeviceTim
   std::uint64_t* words = nullptr;
   if (!caller.make_room(caller.self, arcs.count(), &offsets, &words)) throw Stopped();
   watch.lap();
+  const PinnedRange pinned_words(words, static_cast<std::size_t>(arcs.count()) * sizeof(std::uint64_t));
   arcs.read(offsets, words);
   times.download = watch.lap();
 }

@@ -72,7 +72,7 @@ struct Sighting {
 
 /// A warp's windows: a ring of those behind left sides, and one of those behind right ones.
 template <bool All, int Ring_>
-struct WaveRings {
+struct alignas(16) WaveRings {
   static constexpr int Ring = Ring_;
   double2 from[2][Ring], to[2][Ring];
   float4 rays[2][Ring];  ///< right_x, right_y, left_x, left_y
@@ -87,7 +87,7 @@ struct WaveRings {
 
 /// The vertices that a warp's sources reached.
 template <bool All, int Sources_, int Slots_>
-struct WaveTable {
+struct alignas(16) WaveTable {
   static constexpr int Sources = Sources_, Slots = Slots_;
   std::uint64_t arcs[Slots];  ///< label of the shortest arc, and its number in the draft
   std::int32_t labels[Slots];

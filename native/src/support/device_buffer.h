@@ -9,6 +9,29 @@
 
 namespace saddleback {
 
+/// Host memory that the device reads and writes by itself as long as this lives: many times faster than through a
+/// buffer of the driver's. Where it cannot be had, copies go the slow way. Small ranges are not worth it.
+class PinnedRange {
+ public:
+  PinnedRange(const void* data, std::size_t size) {
+    constexpr std::size_t k_worth_pinning = std::size_t{1} << 22;
+    if (size < k_worth_pinning) return;
+    if (cudaHostRegister(const_cast<void*>(data), size, cudaHostRegisterDefault) == cudaSuccess) {
+      data_ = const_cast<void*>(data);
+    } else {
+      (void)cudaGetLastError();
+    }
+  }
+  ~PinnedRange() {
+    if (data_) (void)cudaHostUnregister(data_);
+  }
+  PinnedRange(const PinnedRange&) = delete;
+  PinnedRange& operator=(const PinnedRange&) = delete;
+
+ private:
+  void* data_ = nullptr;
+};
+
 /// `count` numbers on the device. Memory comes from the device's pool, which keeps what was freed for the next one.
 template <class Number>
 class DeviceBuffer {
