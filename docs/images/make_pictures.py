@@ -197,6 +197,31 @@ def fields_curvature(body: bpy.types.Object) -> None:
     body.data.materials.append(looks.clay())
 
 
+def lay(body: bpy.types.Object, shapes: str, **settings: object) -> None:
+    """Shapes along the strokes' field, in the colours that the add-on gives them, on dark skin."""
+    bpy.ops.saddleback.direction_field(strokes="COLLECTION", make_arrows=False)
+    bpy.ops.saddleback.distribute(shapes=shapes, seed=7, **settings)
+    body.data.materials.append(looks.skin())
+
+
+def shapes_mosaic(body: bpy.types.Object) -> None:
+    """Picture: tiles of three kinds."""
+    lay(body, "MOSAIC", count=2200, size=0.038)
+
+
+def shapes_leaves(body: bpy.types.Object) -> None:
+    """Picture: leaves of two sizes."""
+    lay(body, "LEAVES", count=2600, size=0.05, size_variation=0.15)
+
+
+def shapes_studs(body: bpy.types.Object) -> None:
+    """Picture: studs, small where the density was painted."""
+    lay(body, "STUDS", count=1800, size=0.024, size_by_density=True, density_source="VERTEX_GROUP", density_name=PAINT)
+    body.data.materials.clear()
+    body.data.materials.append(studio.principled("Leather", (0.10, 0.035, 0.015), Roughness=0.55))
+    output(body, "shapes").data.materials[0].user_remap(looks.gold())
+
+
 def distance(body: bpy.types.Object) -> None:
     """Picture: the distance from the tip of the nose along the skin, a line every fifth of a unit."""
     nose = int(np.argmax(models.positions(body)[:, 0]))

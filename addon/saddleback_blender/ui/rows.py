@@ -60,16 +60,15 @@ def draw_paint_buttons(layout: bpy.types.UILayout, settings_name: str) -> None:
     """Buttons that begin to paint the density of one operator's settings."""
     row = layout.row(align=True)
     for paint, text, icon in (("WEIGHT", "Weights", "WPAINT_HLT"), ("COLOR", "Colors", "VPAINT_HLT")):
-        button = row.operator("saddleback.paint_density", text=f"Paint {text}", icon=icon)
+        button = row.operator("saddleback.paint_density", text=text, icon=icon)
         button.paint, button.settings = paint, settings_name
 
 
 def draw_pens(layout: bpy.types.UILayout) -> None:
-    """Buttons that begin to draw what a field follows."""
+    """Buttons that begin to draw strokes for a field."""
     row = layout.row(align=True)
     row.operator("saddleback.draw_strokes", text="Draw", icon="GREASEPENCIL").pen = "ANNOTATE"
     row.operator("saddleback.draw_strokes", text="Curves", icon="CURVE_BEZCURVE").pen = "CURVE"
-    row.operator("saddleback.add_singularity", text="Singularity", icon="EMPTY_AXIS")
 
 
 def draw_edges(layout: bpy.types.UILayout, settings: Any) -> None:
@@ -187,6 +186,7 @@ def draw_field(layout: bpy.types.UILayout, settings: Any) -> None:
     layout.prop(settings, "singularities")
     if settings.singularities == "EMPTIES":
         draw_collection(layout, settings, "singularities_collection")
+        layout.operator("saddleback.add_singularity", icon="EMPTY_AXIS")
     layout.prop(settings, "turn")
 
 
