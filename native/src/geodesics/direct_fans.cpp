@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "saddleback/saddle_vertex_graph.h"
 
@@ -72,19 +73,19 @@ std::vector<Index> inside_in_order(const SaddleVertexGraph& graph, std::span<con
 
 }  // namespace
 
-void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles,
-                           DirectFans& fans, const JobStage& stage) {
+void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
+                           std::span<const double> limits, FanAngles angles, DirectFans& fans, const JobStage& stage) {
   if (graph.is_exact()) return find_exactly(graph, points, fans, stage);
   for (std::size_t i = 0; i < points.size();) {
     batch_.clear();
     std::size_t end = i;
     for (; end < points.size() && batch_.size() < k_batch; ++end)
       if (!is_vertex(graph.mesh(), points[end])) batch_.push_back(end);
-    const bool together = see(graph, points, batch_, stage);
+    const bool together = see(graph, points, limits, batch_, stage);
     for (int lane = 0; i < end; ++i) {
       if (lane < std::ssize(batch_) && batch_[lane] == i) {
         // So many windows that all were stopped: alone each may need fewer.
-        if (!together) see(graph, points, Batch(batch_).subspan(lane, 1), stage);
+        if (!together) see(graph, points, limits, Batch(batch_).subspan(lane, 1), stage);
         append_arcs(graph, together ? lane : 0, angles, fans.arcs);
         ++lane;
       }
@@ -113,8 +114,8 @@ void DirectFanFinder::append_row(std::vector<DirectArc>& arcs) {
 }
 
 /// Whether all windows of a batch ran to their end.
-bool DirectFanFinder::see(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, Batch batch,
-                          const JobStage& stage) {
+bool DirectFanFinder::see(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
+                          std::span<const double> limits, Batch batch, const JobStage& stage) {
   if (batch.empty()) return true;
   if (!waves_) {
     mesh_ = &graph.query_cache().fan_mesh(graph, 1, stage);
@@ -122,7 +123,10 @@ bool DirectFanFinder::see(const SaddleVertexGraph& graph, std::span<const Surfac
   }
   waves_->begin(DiskFinder::Sources::points);
   int lane = 0;
-  for (const std::size_t i : batch) waves_->add_point(lane++, face_source(graph, mesh_->waves(), points[i]));
+  for (const std::size_t i : batch) {
+    const double limit = limits.empty() ? std::numeric_limits<double>::infinity() : limits[i] / mesh_->waves().unit();
+    waves_->add_point(lane++, face_source(graph, mesh_->waves(), points[i]), limit);
+  }
   return waves_->run(stage);
 }
 
@@ -155,8 +159,8 @@ FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> p
     finders_.push_back(graph.query_cache().fan_finders.lease());
 }
 
-void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles, int threads,
-                  const JobStage& stage, const UseFan& use) {
+void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+                  FanAngles angles, int threads, const JobStage& stage, const UseFan& use) {
   const std::vector<Index> order = inside_in_order(graph, points);
   if (order.empty()) return;
   const auto count = static_cast<Index>(order.size()), blocks = (count + k_chunk - 1) / k_chunk;
@@ -166,17 +170,22 @@ void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
   const JobStage finding = stage.part(before, 1);
   struct Work {
     std::vector<SurfacePoint> points;
+    std::vector<double> limits;
     DirectFans fans;
   };
   std::vector<Work> works(thread_count(threads));
   std::atomic<Index> done{0};
   parallel_for(blocks, threads, 1, [&](Index block, int thread) {
-    auto& [own, fans] = works[thread];
+    auto& [own, own_limits, fans] = works[thread];
     const std::span chosen = std::span(order).subspan(block * k_chunk, std::min(k_chunk, count - block * k_chunk));
     own.clear();
+    own_limits.clear();
     fans.clear();
-    for (const Index i : chosen) own.push_back(points[i]);
-    team[thread].find(graph, own, angles, fans, stage);
+    for (const Index i : chosen) {
+      own.push_back(points[i]);
+      if (!limits.empty()) own_limits.push_back(limits[i]);
+    }
+    team[thread].find(graph, own, own_limits, angles, fans, stage);
     for (std::size_t i = 0; i < chosen.size(); ++i) use(chosen[i], fans[i]);
     finding.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
   });
@@ -185,7 +194,7 @@ void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
 DirectFans direct_fans(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
                        const JobStage& stage) {
   std::vector<std::vector<DirectArc>> rows(points.size());
-  for_each_fan(graph, points, FanAngles::both, threads, stage,
+  for_each_fan(graph, points, {}, FanAngles::both, threads, stage,
                [&](Index i, std::span<const DirectArc> fan) { rows[i].assign(fan.begin(), fan.end()); });
   DirectFans fans;
   fans.offsets.reserve(points.size() + 1);

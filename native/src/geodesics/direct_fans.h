@@ -41,12 +41,15 @@ class DirectFanFinder {
  public:
   /// Appends a row for every point: lengths as they are, not yet rounded as the graph's arcs are; nothing for a point
   /// that is a vertex. What a point sees does not depend on the others. \throw Cancelled.
-  void find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles, DirectFans& fans,
-            const JobStage& stage);
+  /// `limits`: for each point the length from which on arcs, but those to its face's corners, are not wanted; empty:
+  /// none (nor for the exact graph).
+  void find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+            FanAngles angles, DirectFans& fans, const JobStage& stage);
 
  private:
   using Batch = std::span<const std::size_t>;
-  bool see(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, Batch batch, const JobStage& stage);
+  bool see(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+           Batch batch, const JobStage& stage);
   void append_arcs(const SaddleVertexGraph& graph, int lane, FanAngles angles, std::vector<DirectArc>& arcs);
   void append_row(std::vector<DirectArc>& arcs);
   void find_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, DirectFans& fans,
@@ -76,9 +79,9 @@ class FanTeam {
 /// Takes the fan of the point of an index. May be called by several threads at once.
 using UseFan = std::function<void(Index, std::span<const DirectArc>)>;
 /// Calls use(i, fan) once for every point that is no vertex, in no particular order; what it is called with is the same
-/// for any number of threads (0: all cores). \throw Cancelled.
-void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanAngles angles, int threads,
-                  const JobStage& stage, const UseFan& use);
+/// for any number of threads (0: all cores). `limits` as for DirectFanFinder. \throw Cancelled.
+void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+                  FanAngles angles, int threads, const JobStage& stage, const UseFan& use);
 
 /// All fans at once, with their angles. \throw Cancelled.
 DirectFans direct_fans(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,

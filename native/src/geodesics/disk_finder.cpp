@@ -67,7 +67,8 @@ void DiskFinder::add_node(int lane, Index node) {
   }
 }
 
-void DiskFinder::add_point(int lane, const FaceSource& source) {
+void DiskFinder::add_point(int lane, const FaceSource& source, double limit) {
+  limits_[lane] = static_cast<float>(limit);
   for (int i = 0; i < 3; ++i) {
     const int next = (i + 1) % 3;
     add_link(source.node[i] * k_batch + lane, source.corner[i], source.corner[next], source.edge[next] * k_batch + lane,
@@ -117,7 +118,7 @@ void DiskFinder::add_window(int lane, const FirstWindow& window) {
   rows.left_y[i] = static_cast<float>(window.left.y() / left_reach);
   rows.right_reach[i] = rows.right_way[i] = static_cast<float>(right_reach);
   rows.left_reach[i] = rows.left_way[i] = static_cast<float>(left_reach);
-  rows.most[i] = k_infinity;
+  rows.most[i] = limits_[lane];
   rows.edge[i] = window.entered * k_batch + lane;
   rows.from[i] = window.left_node * k_batch + lane;
   rows.to[i] = window.right_node * k_batch + lane;

@@ -44,7 +44,8 @@ class DiskFinder {
   enum class Sources { nodes, points };
   void begin(Sources sources);
   void add_node(int lane, Index node);
-  void add_point(int lane, const FaceSource& source);
+  /// What lies beyond `limit` (in units of the WaveMesh) is not looked for, but for the face's corners.
+  void add_point(int lane, const FaceSource& source, double limit);
   /// False when windows were so many that it was stopped: no arc is wrong then, but some may be missing. \throw
   /// Cancelled.
   bool run(const JobStage& stage);

@@ -298,7 +298,7 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);
     const std::span own = std::span(targets).subspan(block * k_block, std::min(k_block, count - block * k_block));
     fans[thread].clear();
-    team[thread].find(graph, own, FanAngles::both, fans[thread], stage);
+    team[thread].find(graph, own, {}, FanAngles::both, fans[thread], stage);
     for (std::size_t i = 0; i < own.size(); ++i) {
       stage.check();
       makers[thread]->append(own[i], fans[thread][i], parts[block]);

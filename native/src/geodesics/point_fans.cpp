@@ -74,7 +74,7 @@ std::vector<PointFan> find_fans(const SaddleVertexGraph& graph, const SurfacePoi
   std::vector<PointFan> fans(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     if (vertex_at(graph.mesh(), points[i]) != k_none) fans[i] = point_fan(graph, points[i], {});
-  for_each_fan(graph, points, FanAngles::none, options.threads, stage,
+  for_each_fan(graph, points, {}, FanAngles::none, options.threads, stage,
                [&](Index i, std::span<const DirectArc> arcs) { fans[i] = point_fan(graph, points[i], arcs); });
   return fans;
 }

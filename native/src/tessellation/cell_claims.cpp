@@ -81,9 +81,9 @@ struct CellClaims::Laid {
 };
 
 CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
-                       int threads, const JobStage& stage)
+                       std::span<const double> reaches, int threads, const JobStage& stage)
     : FaceClaims(graph.mesh(), static_cast<Index>(sites.size())),
-      maps_(graph, rings, sites, threads, stage.part(0, 0.7)) {
+      maps_(graph, rings, sites, reaches, threads, stage.part(0, 0.7)) {
   std::vector<Worker> workers(thread_count(threads), Worker(maps_));
   claim_by_corners(workers, threads, stage);
   stage.update(0.85);

@@ -68,8 +68,9 @@ class FaceClaims {
 class CellClaims final : public FaceClaims {
  public:
   /// The sites must have passed check_sites; the graph and its rings must outlive the claims. \throw Cancelled.
-  CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites, int threads,
-             const JobStage& stage);
+  /// `reaches` as for SiteMaps.
+  CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
+             std::span<const double> reaches, int threads, const JobStage& stage);
 
   const SiteMaps& maps() const { return maps_; }
   Index label(Index vertex) const override { return maps_.label(vertex); }

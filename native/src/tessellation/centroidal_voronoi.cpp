@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "saddleback/error.h"
@@ -58,6 +59,7 @@ class Relaxation {
   double mass() const;
 
  private:
+  std::vector<double> reaches(const SurfacePoints& sites) const;
   State evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage) const;
   bool revive_empty_cells(const JobStage& stage);
   SurfacePoint far_place(Index site) const;
@@ -96,10 +98,29 @@ State Relaxation::evaluate(SurfacePoints sites, std::vector<double> along, const
   State state;
   state.sites = std::move(sites);
   state.along = std::move(along);
-  state.claims = std::make_unique<CellClaims>(graph_, rings_, state.sites, options_.threads, stage.part(0, 0.8));
+  state.claims = std::make_unique<CellClaims>(graph_, rings_, state.sites, reaches(state.sites), options_.threads,
+                                              stage.part(0, 0.8));
   state.moments = cell_moments(*state.claims, weights_, options_.threads, stage);
   for (const CellMoments& cell : state.moments) state.energy += cell.energy;
   return state;
+}
+
+/// How far sites may own something: somewhat farther than before, and than they have moved. None for the first cells.
+std::vector<double> Relaxation::reaches(const SurfacePoints& sites) const {
+  constexpr double k_growth = 1.3;
+  if (!state_.claims) return {};
+  const CellClaims& before = *state_.claims;
+  std::vector<double> reach(sites.size(), 0.0);
+  for (Index shared = 0; shared < before.shared_count(); ++shared) {
+    for (const FaceClaim& claim : before.claims(shared))
+      for (const SiteVector& corner : claim.corner) reach[claim.site] = std::max(reach[claim.site], corner.distance);
+  }
+  const Mesh& mesh = graph_.mesh();
+  for (std::size_t i = 0; i < reach.size(); ++i) {
+    const double moved = (position(mesh, sites[i]) - position(mesh, state_.sites[i])).norm();
+    reach[i] = reach[i] > 0 ? k_growth * (reach[i] + moved) : std::numeric_limits<double>::infinity();
+  }
+  return reach;
 }
 
 double Relaxation::mass() const {

@@ -57,8 +57,8 @@ void sort_by_node(std::vector<DirectArc>& arcs) {
 
 }  // namespace
 
-SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites, int threads,
-                   const JobStage& stage)
+SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
+                   std::span<const double> reaches, int threads, const JobStage& stage)
     : graph_(graph),
       mesh_(graph.mesh()),
       rings_(rings),
@@ -67,7 +67,7 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, con
       fans_(sites.size()),
       places_(graph.mesh().vertex_count()),
       placed_(graph.mesh().vertex_count(), 0) {
-  make_fans(threads, stage.part(0, 0.3));
+  make_fans(reaches, threads, stage.part(0, 0.3));
   label_nodes(stage);
   group_nodes();
   stage.update(0.8);
@@ -81,16 +81,17 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, con
   stage.update(1);
 }
 
-void SiteMaps::make_fans(int threads, const JobStage& stage) {
-  for_each_fan(graph_, sites_, FanAngles::both, threads, stage, [&](Index site, std::span<const DirectArc> arcs) {
-    Fan& fan = fans_[site];
-    fan.arcs.assign(arcs.begin(), arcs.end());
-    for (DirectArc& arc : fan.arcs) {
-      arc.vertex = graph_.node_of(arc.vertex);
-      arc.length = graph_.arcs().codec().round(arc.length);
-    }
-    sort_by_node(fan.arcs);
-  });
+void SiteMaps::make_fans(std::span<const double> reaches, int threads, const JobStage& stage) {
+  for_each_fan(graph_, sites_, reaches, FanAngles::both, threads, stage,
+               [&](Index site, std::span<const DirectArc> arcs) {
+                 Fan& fan = fans_[site];
+                 fan.arcs.assign(arcs.begin(), arcs.end());
+                 for (DirectArc& arc : fan.arcs) {
+                   arc.vertex = graph_.node_of(arc.vertex);
+                   arc.length = graph_.arcs().codec().round(arc.length);
+                 }
+                 sort_by_node(fan.arcs);
+               });
   std::vector<Index> at_vertices;
   for (Index site = 0; site < site_count(); ++site) {
     const Index vertex = vertex_at(mesh_, sites_[site]);

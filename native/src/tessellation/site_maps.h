@@ -38,9 +38,11 @@ class SiteMaps {
   };
 
  public:
-  /// \throw Cancelled. O(sites k log k + arcs).
-  SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites, int threads,
-           const JobStage& stage);
+  /// `reaches`: for each site a distance beyond which it is not asked for arcs of its own, which are most of the work
+  /// where cells are small; empty: none. What lies beyond is placed as what is hidden from the site. \throw Cancelled.
+  /// O(sites k log k + arcs).
+  SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
+           std::span<const double> reaches, int threads, const JobStage& stage);
 
   const Mesh& mesh() const { return mesh_; }
   Index site_count() const { return static_cast<Index>(fans_.size()); }
@@ -87,7 +89,7 @@ class SiteMaps {
     double beyond = 0;    ///< by how much of the edge's length the ray passes the edge's ends; below 0 past its start
   };
 
-  void make_fans(int threads, const JobStage& stage);
+  void make_fans(std::span<const double> reaches, int threads, const JobStage& stage);
   void make_fan_at_vertex(Fan& fan);
   void label_nodes(const JobStage& stage);
   void group_nodes();
