@@ -12,6 +12,7 @@ import pytest
 import saddleback as sb
 from tests import meshes
 from tests.native.cancelling import check_progress_and_cancel
+from tests.native.cell_checks import triangle_areas
 
 CONNECTED = [c for c in meshes.good() if len(c.vertices) >= 100]
 
@@ -142,6 +143,22 @@ def test_painted_density_is_the_number_of_cells_per_area() -> None:
     assert np.corrcoef(counts, wanted)[0, 1] >= 0.97
     per_cell = np.corrcoef(1 / relaxed.cells.areas, 1 + 7 * x)[0, 1]
     assert per_cell >= 0.95
+
+
+def test_a_sharp_step_of_density_is_followed() -> None:
+    """Paint of 1 and 16, side by side: cells per area against the paint that a cell covers, and in 20 strips."""
+    mesh = sb.Mesh(*meshes.grid(70, 70, 0.2))
+    paint = np.where(mesh.vertices[:, 0] > 0.5, 16.0, 1.0)
+    cells = sb.centroidal_voronoi(
+        sb.SaddleVertexGraph(mesh, k=30), count=600, density=paint, max_iterations=15, start="coarse_to_fine"
+    ).cells
+    split = cells.split()
+    middles = split.vertices[split.triangles].mean(axis=1)[:, 0]
+    areas = triangle_areas(split.vertices, split.triangles)
+    covered = np.bincount(split.triangle_cell, areas * np.where(middles > 0.5, 16.0, 1.0)) / cells.areas
+    assert np.corrcoef(1 / cells.areas, covered)[0, 1] >= 0.97
+    strips = np.histogram(middles, bins=20, range=(0, 1), weights=areas / cells.areas[split.triangle_cell])[0]
+    assert np.corrcoef(strips, np.where(np.arange(20) < 10, 1.0, 16.0))[0, 1] >= 0.97
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
