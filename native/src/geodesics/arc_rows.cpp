@@ -30,7 +30,9 @@ ArcCodec::ArcCodec(Index vertex_count, double mean_edge, double longest_path)
 ArcRows::ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, ArcWords words)
     : codec_(codec), offsets_(std::move(offsets)), words_(std::move(words)) {
   std::uint64_t longest = 0;
-  for (const std::uint64_t word : words_) longest = std::max(longest, codec_.length_bits(word));
+  const std::int64_t count = std::ssize(words_);
+#pragma omp parallel for reduction(max : longest)
+  for (std::int64_t i = 0; i < count; ++i) longest = std::max(longest, codec_.length_bits(words_[i]));
   if (!words_.empty()) longest_ = codec_.length(longest);
 }
 

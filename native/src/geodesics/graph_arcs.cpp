@@ -92,28 +92,30 @@ void check_memory(const ArcSearch& search, WindowPropagator& propagator, const J
                            " are free; give accuracy=1e-3 instead, or call exact_distances for the sources you need"));
 }
 
+const Unfolding& checked(const Unfolding& unfolding) {
+  constexpr Index k_most_edges = std::numeric_limits<std::int32_t>::max() / k_batch;
+  if (unfolding.mesh().halfedge_count() > k_most_edges) {
+    throw InputError(message("mesh: ", unfolding.mesh().face_count(),
+                             " triangles are more than a graph can be built for (", k_most_edges / 3, ")"));
+  }
+  return unfolding;
+}
+
 }  // namespace
 
 DiskRule disk_rule(Index k, double accuracy) { return {.k = k, .tolerance = k_room * accuracy}; }
 
-void check_mesh_size(const ArcSearch& search) {
-  if (search.unfolding.mesh().halfedge_count() > std::numeric_limits<std::int32_t>::max() / k_batch) {
-    throw InputError(message("mesh: ", search.unfolding.mesh().face_count(),
-                             " triangles are more than a graph can be "
-                             "built for (",
-                             std::numeric_limits<std::int32_t>::max() / k_batch / 3, ")"));
-  }
-}
+WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
+                       int threads, const JobStage& stage)
+    : mesh(checked(unfolding), nodes, vertices, threads, stage),
+      sectors(mesh, unfolding, vertices, ArcCodec::k_sectors, threads, stage) {}
 
-std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage) {
-  check_mesh_size(search);
-  const JobStage tables = stage.part(0, 0);
-  const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, search.threads, tables);
-  const WaveSectors sectors(mesh, search.unfolding, search.vertices, ArcCodec::k_sectors, search.threads, tables);
+std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
+                                 const JobStage& stage) {
   std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
   return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread) {
     if (!finders[thread])
-      finders[thread] = std::make_unique<DiskRows>(mesh, sectors, search.codec, search.kernel, rule);
+      finders[thread] = std::make_unique<DiskRows>(tables.mesh, tables.sectors, search.codec, search.kernel, rule);
     for (Index i = 0; i < count; i += k_batch)
       finders[thread]->find(found.first_node + i, std::min(k_batch, count - i), found, stage);
   });

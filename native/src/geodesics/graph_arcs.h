@@ -13,6 +13,15 @@ namespace saddleback {
 /// Nodes whose arcs are found and joined together.
 inline constexpr Index k_block = 256;
 
+/// What waves of windows run on.
+struct WaveTables {
+  WaveMesh mesh;
+  WaveSectors sectors;
+  /// \throw InputError for more triangles than slots can be numbered for; Cancelled.
+  WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+             const JobStage& stage);
+};
+
 /// Where arcs are looked for.
 struct ArcSearch {
   const Unfolding& unfolding;
@@ -25,11 +34,9 @@ struct ArcSearch {
 /// What a graph of the given options keeps, of vertices and of other points.
 DiskRule disk_rule(Index k, double accuracy);
 
-/// \throw InputError for more triangles than slots can be numbered for.
-void check_mesh_size(const ArcSearch& search);
-
 /// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
-std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const DiskRule& rule, const JobStage& stage);
+std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
+                                 const JobStage& stage);
 
 /// All straight geodesics of the mesh. \throw InputError when the graph would not fit into memory; Cancelled. O(V^2 log
 /// V).

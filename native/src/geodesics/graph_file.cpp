@@ -199,7 +199,7 @@ SaddleVertexGraph SaddleVertexGraph::load(const std::string& path, const Mesh& m
     refuse_graph_file(path, "its checksum is wrong");
 
   check_build(header, path);
-  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh));
+  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh, stage));
   if (!same_codec(header, codec)) refuse_graph_file(path, "its lengths are in another unit than this mesh needs");
   if (offsets.back() != static_cast<std::int64_t>(words.size()))
     refuse_graph_file(path, message("its rows hold ", offsets.back(), " arcs instead of ", words.size()));

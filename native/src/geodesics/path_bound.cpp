@@ -4,7 +4,7 @@
 
 namespace saddleback {
 
-double longest_path_bound(const Mesh& mesh) {
+double longest_path_bound(const Mesh& mesh, const JobStage& stage) {
   std::vector<double> depth(mesh.vertex_count(), -1);
   std::vector<Index> queue;
   queue.reserve(mesh.vertex_count());
@@ -19,6 +19,7 @@ double longest_path_bound(const Mesh& mesh) {
   for (Index root = 0; root < mesh.vertex_count(); ++root) {
     reach(root, 0);
     for (; next < queue.size(); ++next) {
+      stage.check();
       const Index vertex = queue[next], first = mesh.first_halfedge(vertex);
       Index h = first;
       do {

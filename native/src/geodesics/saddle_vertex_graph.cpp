@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <future>
+#include <optional>
 
 #include "saddleback/error.h"
 
@@ -45,13 +48,19 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
   const JobStage stage(job, "Building the saddle vertex graph");
+  // One thread's work, beside that of all.
+  std::future<double> longest =
+      std::async(thread_count(options.threads) > 1 ? std::launch::async : std::launch::deferred, longest_path_bound,
+                 std::cref(mesh), std::cref(stage));
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
   order_nodes(options.threads);
-  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh));
+  std::optional<WaveTables> tables;
+  if (!exact_) tables.emplace(*unfolding_, nodes_, vertices_, options.threads, stage.part(0, 0));
+  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest.get());
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   if (options.cuda_device >= 0) {
     if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
-    arcs_ = twin_arcs(search, disk_rule(k_, accuracy_), options.cuda_device, device_times_, stage);
+    arcs_ = twin_arcs(search, *tables, disk_rule(k_, accuracy_), options.cuda_device, device_times_, stage);
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;
@@ -59,7 +68,8 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   // Joining takes the rest, and next to nothing beside exact disks.
   const double found_at = exact_ ? 0.99 : 0.9;
   const JobStage finding = stage.part(0, found_at);
-  auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, disk_rule(k_, accuracy_), finding);
+  auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, *tables, disk_rule(k_, accuracy_), finding);
+  tables.reset();
   arcs_ = unite_with_reverses(codec, *kernel_, found, k_block, options.threads, stage.part(found_at, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }

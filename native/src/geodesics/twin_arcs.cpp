@@ -28,9 +28,8 @@ void touch(ArcWords& words, int threads) {
 /// Answers the twin's calls. What they throw waits here until the twin has come back.
 class Caller {
  public:
-  Caller(const ArcSearch& search, const WaveMesh& mesh, const WaveSectors& sectors, const DiskRule& rule,
-         const JobStage& stage)
-      : search_(search), mesh_(mesh), sectors_(sectors), rule_(rule), stage_(stage) {}
+  Caller(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, const JobStage& stage)
+      : search_(search), tables_(tables), rule_(rule), stage_(stage) {}
 
   ArcTwinCaller calls() {
     return {this,
@@ -82,7 +81,8 @@ class Caller {
     std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search_.threads));
     parallel_for(static_cast<Index>(batches.size()), search_.threads, 1, [&](Index b, int thread) {
       if (!finders[thread])
-        finders[thread] = std::make_unique<DiskRows>(mesh_, sectors_, search_.codec, search_.kernel, rule_);
+        finders[thread] =
+            std::make_unique<DiskRows>(tables_.mesh, tables_.sectors, search_.codec, search_.kernel, rule_);
       const Index first = batches[b].front() / k_batch * k_batch;
       const Index count = std::min(k_batch, static_cast<Index>(search_.vertices.size()) - first);
       found[b].first_node = first;
@@ -110,8 +110,7 @@ class Caller {
   }
 
   const ArcSearch& search_;
-  const WaveMesh& mesh_;
-  const WaveSectors& sectors_;
+  const WaveTables& tables_;
   const DiskRule& rule_;
   const JobStage& stage_;
   std::exception_ptr failure_;
@@ -124,14 +123,12 @@ class Caller {
 
 }  // namespace
 
-ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, int device, DeviceTimes& times,
-                  const JobStage& stage) {
+ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, int device,
+                  DeviceTimes& times, const JobStage& stage) {
   const CudaTwins* const twins = cuda_twins();
   if (!twins) throw DeviceError("device: the CUDA module is not loaded");
-  check_mesh_size(search);
-  const WaveMesh mesh(search.unfolding, search.nodes, search.vertices, search.threads, stage.part(0, 0.2));
-  const WaveSectors sectors(mesh, search.unfolding, search.vertices, ArcCodec::k_sectors, search.threads,
-                            stage.part(0.2, 0.3));
+  const WaveMesh& mesh = tables.mesh;
+  const WaveSectors& sectors = tables.sectors;
   const WaveScene scene = wave_scene(mesh, rule);
   ArcTwinRequest request;
   request.device = device;
@@ -154,8 +151,7 @@ ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, int device, Dev
   request.unit = mesh.unit();
   request.packing = search.codec.packing();
 
-  const JobStage finding = stage.part(0.3, 1);
-  Caller caller(search, mesh, sectors, rule, finding);
+  Caller caller(search, tables, rule, stage);
   TwinReason reason;
   const TwinStatus status = twins->find_arcs(request, caller.calls(), times, reason);
   caller.rethrow();

@@ -8,6 +8,7 @@
 namespace saddleback {
 
 /// As unite_with_reverses(disk_arcs(...)), to the bit. \throw DeviceError when the device cannot do it; Cancelled.
-ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, int device, DeviceTimes& times, const JobStage& stage);
+ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, int device,
+                  DeviceTimes& times, const JobStage& stage);
 
 }  // namespace saddleback
