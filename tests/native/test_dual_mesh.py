@@ -208,3 +208,35 @@ def test_double_edges_go_both_ways_round() -> None:
     for first, second, *_ in double:
         gap = np.linalg.norm(first.points[len(first.points) // 2] - second.points[len(second.points) // 2])
         assert gap > 0.2
+
+
+def double_sheet(size: int, gap: float) -> meshes.Arrays:
+    """Two square sheets that almost touch, joined along their border: a closed surface."""
+    vertices, triangles = meshes.grid(size, size)
+    count = len(vertices)
+    border = sb.Mesh(vertices, triangles).boundary_loops[0]
+    after = np.roll(border, -1)
+    rim = np.concatenate(
+        [np.stack([after, border, border + count], axis=1), np.stack([after, border + count, after + count], axis=1)]
+    )
+    places = np.concatenate([vertices + [0, 0, gap / 2], vertices - [0, 0, gap / 2]])
+    return places, np.concatenate([triangles, triangles[:, ::-1] + count, rim]).astype(np.int32)
+
+
+def test_sheets_that_almost_touch_stay_apart() -> None:
+    """Nearest through space is the other sheet; on the surface it is far away, but for what lies about the border."""
+    mesh = sb.Mesh(*double_sheet(24, 0.002))
+    assert characteristic(mesh) == 2
+    cells = relaxed_cells(mesh, 80)
+    dual = cells.dual("repair")
+    check_triangulation(mesh, dual)
+    heights, places = dual.vertices[:, 2], dual.vertices[:, :2]
+    for a, b in dual.edges:
+        if heights[a] * heights[b] < 0:  # over the border: no longer than two cells are wide
+            to_border = np.minimum(places[[a, b]], 1 - places[[a, b]]).min(axis=1)
+            assert to_border.sum() < 0.4
+    from_site = np.linalg.norm(mesh.vertices[:, :2] - cells.sites.positions(mesh)[cells.vertex_cell, :2], axis=1)
+    assert (from_site <= cells.vertex_distance * 1.02 + 1e-9).all()
+    inner = (np.minimum(mesh.vertices[:, :2], 1 - mesh.vertices[:, :2]) > 0.3).all(axis=1)
+    sheet = cells.sites.positions(mesh)[cells.vertex_cell, 2]
+    assert (sheet[inner] * mesh.vertices[inner, 2] > 0).all()
