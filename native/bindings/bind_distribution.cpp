@@ -4,10 +4,9 @@
 
 #include "saddleback/distribution.h"
 #include "saddleback/saddle_vertex_graph.h"
-#include "saddleback/surface_outline.h"
 
+#include "mapped_shapes.h"
 #include "points.h"
-#include "shapes.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -57,6 +56,7 @@ struct Distribution {
   py::object mesh;
   std::vector<Shape> shapes;
   DistributionResult result;
+  py::object mapped;  ///< MappedShapes, once they have been asked for
 };
 
 const Mesh& mesh_of(const py::object& graph, py::object& mesh_object) {
@@ -135,28 +135,24 @@ std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& sha
   return made;
 }
 
-const Placement& placement_of(const Distribution& self, const py::object& index) {
-  const Index i = as_integer(index, "index");
-  const auto count = static_cast<Index>(self.result.placements.size());
-  if (i < -count || i >= count) throw py::index_error(message("copy ", i, " is out of range, there are ", count));
-  return self.result.placements[i < 0 ? i + count : i];
+py::list shapes_of(const Distribution& self) {
+  py::list shapes;
+  for (const Shape& shape : self.shapes) shapes.append(shape);
+  return shapes;
 }
 
-/// Closed polylines in space, one a loop of the shape.
-py::list outline_of(const Distribution& self, const py::object& index) {
-  const Mesh& mesh = as_mesh(self.mesh, "mesh");
-  const Placement& placement = placement_of(self, index);
-  SurfaceOutline outline;
-  OutlineMapper mapper(mesh);
-  mapper.map(self.shapes[placement.shape].loops(), placement, outline);
-  py::list result;
-  for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop) {
-    std::vector<Vec3> points;
-    for (std::size_t i = outline.loop_begins[loop]; i < outline.loop_begins[loop + 1]; ++i)
-      points.push_back(position(mesh, outline_point(outline.pieces[i].face, outline.pieces[i].begin)));
-    result.append(to_array(std::move(points)));
-  }
-  return result;
+/// Made when first asked for: the outlines that were tested take much more memory than the placements.
+py::object mapped_of(Distribution& self) {
+  if (!self.mapped)
+    self.mapped = py::cast(make_mapped(self.mesh, shapes_of(self), py::cast(Placements(self.result.placements)),
+                                       py::none(), py::make_tuple(0.5, 2.0), py::int_(0), py::none()));
+  return self.mapped;
+}
+
+py::object outline_of(Distribution& self, const py::object& index) { return mapped_of(self).attr("outline")(index); }
+
+py::object conform_to(Distribution& self, const py::object& vertices, const py::object& index) {
+  return mapped_of(self).attr("conform")(vertices, index).attr("points");
 }
 
 const char* name_of(DistributionStop stop) {
@@ -192,14 +188,7 @@ void bind_distribution(py::module_& m) {
   bind_certificate(m);
   py::class_<Distribution>(m, "Distribution", py::module_local(), "Copies of shapes on a surface; see `distribute`.")
       .def_readonly("mesh", &Distribution::mesh, "The mesh.")
-      .def_property_readonly(
-          "shapes",
-          [](const Distribution& self) {
-            py::list shapes;
-            for (const Shape& shape : self.shapes) shapes.append(shape);
-            return shapes;
-          },
-          "List of the Shapes.")
+      .def_property_readonly("shapes", &shapes_of, "List of the Shapes.")
       .def_property_readonly(
           "placements", [](const Distribution& self) { return Placements(self.result.placements); },
           "Placements, in the order in which they were laid.")
@@ -216,8 +205,15 @@ void bind_distribution(py::module_& m) {
             return self.result.certificate.tolerance > 0 ? py::cast(self.result.certificate) : py::none();
           },
           "Certificate; None unless asked for.")
-      .def("outline", &outline_of, py::arg("index"),
-           "List of (n, 3) float64: the closed outlines of a copy on the surface, loop by loop.")
+      .def_property_readonly("mapped", &mapped_of,
+                             "MappedShapes of all copies: patches, cut faces, attributes, bent objects, frames. Kept.")
+      .def(
+          "outline", &outline_of, py::arg("index"),
+          "List of (n, 3) float64: the closed outlines of a copy on the surface, loop by loop. InputError for an index "
+          "out of range.")
+      .def("conform", &conform_to, py::arg("vertices"), py::arg("index"),
+           "(n, 3) float64: an object, (n, 3) or (n, 2) in the shape's units, bent onto the surface as a copy is; see "
+           "`MappedShapes.conform`.")
       .def("__len__", [](const Distribution& self) { return self.result.placements.size(); })
       .def("__repr__", [](const Distribution& self) {
         return message("<Distribution: ", self.result.placements.size(), " copies of ", self.shapes.size(),

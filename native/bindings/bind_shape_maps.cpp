@@ -52,7 +52,8 @@ Args:
     i: which placement.
 
 Raises:
-    InputError: bad vertices, an index out of range, a shape that could not be laid.
+    InputError: bad vertices, a shape that could not be laid.
+    IndexError: i is out of range.
 )";
 
 constexpr const char* k_attributes_doc = R"(What each vertex of the mesh knows of the shapes.
@@ -99,7 +100,7 @@ const DirectionField* MappedShapes::field() const {
 
 Index MappedShapes::checked(const py::object& index) const {
   const Index i = as_integer(index, "i"), count = static_cast<Index>(placements.size());
-  if (i < -count || i >= count) throw InputError(message("i: ", i, " is out of range for ", count, " placements"));
+  if (i < -count || i >= count) throw py::index_error(message("copy ", i, " is out of range, there are ", count));
   return i < 0 ? i + count : i;
 }
 

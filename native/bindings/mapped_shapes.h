@@ -24,7 +24,7 @@ struct MappedShapes {
   const Mesh& mesh() const;
   const DirectionField* field() const;
   const Shape& shape(Index i) const { return shapes[placements[i].shape]; }
-  /// An index, negative from the end. \throw InputError out of range.
+  /// An index, negative from the end. \throw IndexError out of range.
   Index checked(const py::object& index) const;
   /// The index of a shape that lies on the surface. \throw InputError for one that could not be laid.
   Index laid(const py::object& index) const;

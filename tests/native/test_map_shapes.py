@@ -13,7 +13,8 @@ Floats = NDArray[np.float64]
 
 FRAME = sb.Shape([[(-1, -1), (1, -1), (1, 1), (-1, 1)], [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]])
 TWO_PARTS = sb.Shape([(-1, -0.4), (-0.2, -0.3), (-0.3, 0.5)], [(0.2, -0.5), (1, 0.1), (0.2, 0.6)])
-SHAPES = [sb.Shape.star(5), sb.Shape.crescent(), sb.Shape.disk(32), FRAME, sb.Shape.needle(6), TWO_PARTS]
+STAR_OF_FIVE = sb.Shape.star(5)
+SHAPES = [STAR_OF_FIVE, sb.Shape.crescent(), sb.Shape.disk(32), FRAME, sb.Shape.needle(6), TWO_PARTS]
 LOOPS = [1, 1, 1, 2, 1, 2]
 PARTS = [1, 1, 1, 1, 1, 2]
 
@@ -294,9 +295,22 @@ def test_bad_input() -> None:
     with pytest.raises(sb.InputError, match="limits"):
         sb.map_shapes(mesh, SHAPES, placement, limits=(1.5, 2.0))
     mapped = sb.map_shapes(mesh, SHAPES, placement)
-    with pytest.raises(sb.InputError, match="out of range"):
+    with pytest.raises(IndexError, match="copy 1 is out of range, there are 1"):
         mapped.patch(1)
     with pytest.raises(sb.InputError, match="not finite"):
         mapped.conform([[0.0, np.nan, 0.0]], 0)
     with pytest.raises(sb.InputError, match="reach"):
         mapped.attributes(-1.0)
+
+
+def test_a_distribution_hands_out_its_shapes() -> None:
+    mesh = sb.Mesh(*meshes.icosphere(4))
+    result = sb.distribute(mesh, [STAR_OF_FIVE, FRAME], [20, 10], size=0.15)
+    mapped = result.mapped
+    assert mapped is result.mapped and len(mapped) == len(result) == 30 and mapped.failures == {}
+    points = [(0.0, 0.0, 0.2), (0.3, 0.1, 0.0)]
+    assert np.array_equal(result.conform(points, 4), mapped.conform(points, 4).points)
+    assert np.array_equal(result.outline(-1)[0], mapped.outline(29)[0])
+    whole = mapped.cut()
+    assert set(whole.triangle_shape) == set(range(-1, 30))
+    assert sb.check_distribution(mesh, result, samples=50_000).ok
