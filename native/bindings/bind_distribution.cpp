@@ -61,8 +61,9 @@ struct Distribution {
 
 const Mesh& mesh_of(const py::object& graph, py::object& mesh_object) {
   if (py::isinstance<SaddleVertexGraph>(graph)) {
-    mesh_object = graph.attr("mesh");
-    return as_mesh(mesh_object, "graph");
+    const Mesh& mesh = py::cast<const SaddleVertexGraph&>(graph).mesh();
+    mesh_object = py::cast(mesh, py::return_value_policy::reference);  // the object that the graph keeps alive
+    return mesh;
   }
   mesh_object = graph;
   return as_mesh(graph, "graph");

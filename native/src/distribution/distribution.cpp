@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "saddleback/error.h"
 #include "saddleback/sample.h"
+#include "saddleback/trace.h"
 
 #include "gap_search.h"
 #include "laying.h"
@@ -95,33 +98,66 @@ std::vector<Index> interleaved(const std::vector<Index>& counts) {
   return result;
 }
 
-/// Copies at places that follow the density evenly. Those that find no room are tried at other such places.
-DistributionStop follow_density(const Mesh& mesh, const PlacingRules& rules, Laying& laying,
-                                const DistributionOptions& options, const JobStage& stage) {
-  constexpr int k_attempts = 12;
-  for (int attempt = 0; attempt < k_attempts && laying.is_any_wanted(); ++attempt) {
-    std::vector<Index> missing;
-    for (std::size_t shape = 0; shape < options.counts.size(); ++shape)
-      missing.push_back(static_cast<Index>(laying.share(static_cast<Index>(shape))));
-    const std::vector<Index> turns = interleaved(missing);
-    const std::uint64_t key = mixed(options.seed, static_cast<std::uint64_t>(attempt));
-    const SurfacePoints places = sample(mesh, static_cast<Index>(turns.size()), options.density, key);
-    std::vector<Candidate> candidates;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      std::vector<Index> kinds;
-      for (Index k = 0; k < static_cast<Index>(rules.kinds().size()); ++k)
-        if (rules.kinds()[k].shape == turns[i]) kinds.push_back(k);
-      const std::uint64_t own = mixed(key, i);
-      const Index kind = kinds[static_cast<std::size_t>(uniform(own, 0) * static_cast<double>(kinds.size()))];
-      const double factor = options.smallest + (options.largest - options.smallest) * uniform(own, 1);
-      candidates.push_back(
-          {uniform(own, 2), kind, static_cast<Index>(i), places[i], rules.size_at(places[i]) * factor});
-    }
-    laying.lay(std::move(candidates),
-               stage.part(static_cast<double>(attempt) / k_attempts, (attempt + 1.0) / k_attempts));
+/// Places copies so that they follow a density evenly.
+class DensityFollower {
+ public:
+  DensityFollower(const Mesh& mesh, const PlacingRules& rules, Laying& laying, const DistributionOptions& options)
+      : mesh_(mesh), rules_(rules), laying_(laying), options_(options) {
+    for (Index f = 0; f < mesh.face_count(); ++f) mass_ += mesh.face_area(f) * density_at(f, Vec3::Constant(1.0 / 3));
   }
-  return laying.is_any_wanted() ? DistributionStop::tired : DistributionStop::counts;
-}
+
+  /// Every copy has a place of its own; one that finds no room there tries farther and farther about it.
+  DistributionStop run(const JobStage& stage) {
+    constexpr int k_attempts = 16;
+    turns_ = interleaved(options_.counts);
+    places_ = sample(mesh_, static_cast<Index>(turns_.size()), options_.density, options_.seed);
+    std::vector<Index> missing(turns_.size());
+    std::iota(missing.begin(), missing.end(), 0);
+    for (int attempt = 0; attempt < k_attempts && !missing.empty(); ++attempt) {
+      const double spread = 1.5 * attempt / k_attempts;
+      std::vector<Candidate> candidates;
+      for (const Index which : missing) candidates.push_back(candidate(which, attempt, spread));
+      const std::vector<Outcome> outcomes =
+          laying_.lay(candidates, stage.part(static_cast<double>(attempt) / k_attempts, (attempt + 1.0) / k_attempts));
+      std::erase_if(missing, [&, i = std::size_t{0}](Index) mutable { return outcomes[i++] == Outcome::laid; });
+    }
+    return missing.empty() ? DistributionStop::counts : DistributionStop::tired;
+  }
+
+ private:
+  double density_at(Index face, const Vec3& weights) const {
+    const Triangle& t = mesh_.triangles()[face];
+    return options_.density[t[0]] * weights[0] + options_.density[t[1]] * weights[1] +
+           options_.density[t[2]] * weights[2];
+  }
+
+  /// `spread` in units of the distance between copies where the density is met.
+  Candidate candidate(Index which, int attempt, double spread) const {
+    const std::uint64_t key = mixed(mixed(options_.seed, static_cast<std::uint64_t>(attempt)), which);
+    SurfacePoint place = places_[which];
+    if (attempt > 0) {
+      const double density = density_at(place.face, place.barycentric);
+      const double apart = std::sqrt(mass_ / static_cast<double>(turns_.size()) / std::max(density, 1e-9 * mass_));
+      const double length = spread * std::min(apart, std::sqrt(mesh_.area())) * std::sqrt(uniform(key, 3));
+      const SurfacePoint moved = trace_end(mesh_, place, 2 * std::numbers::pi * uniform(key, 4), length).point;
+      if (density_at(moved.face, moved.barycentric) > 0) place = moved;
+    }
+    std::vector<Index> kinds;
+    for (Index k = 0; k < static_cast<Index>(rules_.kinds().size()); ++k)
+      if (rules_.kinds()[k].shape == turns_[which]) kinds.push_back(k);
+    const Index kind = kinds[static_cast<std::size_t>(uniform(key, 0) * static_cast<double>(kinds.size()))];
+    const double factor = options_.smallest + (options_.largest - options_.smallest) * uniform(key, 1);
+    return {uniform(key, 2), kind, which, place, rules_.size_at(place) * factor};
+  }
+
+  const Mesh& mesh_;
+  const PlacingRules& rules_;
+  Laying& laying_;
+  const DistributionOptions& options_;
+  double mass_ = 0;           ///< the density's integral
+  std::vector<Index> turns_;  ///< the shape of each copy
+  SurfacePoints places_;
+};
 
 }  // namespace
 
@@ -139,7 +175,7 @@ DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, c
   Laying laying(mesh, rules, options);
   DistributionResult result;
   if (!options.density.empty()) {
-    result.stop = follow_density(mesh, rules, laying, options, stage.part(0.05, 1));
+    result.stop = DensityFollower(mesh, rules, laying, options).run(stage.part(0.05, 1));
   } else {
     GapSearch search(mesh, rules, laying, options);
     result.stop = search.run(stage.part(0.05, 1));

@@ -1,5 +1,7 @@
 #include "encounter.h"
 
+#include <algorithm>
+
 namespace saddleback::distribution {
 namespace {
 
@@ -29,28 +31,36 @@ bool boxes_meet(const Body& body, const Pose& pose, const Body& other, double ot
 }
 
 Encounter encounter(const Body& body, double scale, const Pose& pose, const Motion& motion, const Body& other,
-                    double other_scale, double enough) {
+                    double other_scale, const Search& search) {
   Encounter best;
+  best.depth = search.least;
   if (pose.at.norm() > scale * body.shape.circumradius() + other_scale * other.shape.circumradius()) return best;
   if (!boxes_meet(body, pose, other, other_scale)) return best;
+  // No place is deeper in a shape than its largest disk's middle.
+  const double deepest = scale * body.disks[0].radius, other_deepest = other_scale * other.disks[0].radius;
   const double per_other_unit = 1 / other_scale;
-  for (const Disk& disk : body.disks) {
+  for (std::size_t i = 0; i < std::min(body.disks.size(), search.most_disks); ++i) {
+    const Disk& disk = body.disks[i];
+    if (scale * disk.radius + other_deepest - motion.base <= best.depth) break;
     const Vec2 place = pose(disk.centre);
     const double bound = scale * disk.radius - motion.of(disk.centre);
+    if (bound + other_deepest <= best.depth) continue;
     const double depth = bound - other_scale * other.distance.upper(place * per_other_unit);
     if (depth <= best.depth) continue;
     best = {depth, disk.centre, disk.radius * scale, false, place};
-    if (depth > enough) return best;
+    if (depth > search.enough) return best;
   }
   const Eigen::Matrix2d back = pose.turn.inverse();
-  for (const Disk& disk : other.disks) {
+  for (std::size_t i = 0; i < std::min(other.disks.size(), search.most_disks); ++i) {
+    const Disk& disk = other.disks[i];
+    if (other_scale * disk.radius + deepest - motion.base <= best.depth) break;
     const Vec2 place = other_scale * disk.centre, own = back * (place - pose.at);
-    const double distance = scale * body.distance.upper(own);
-    if (disk.radius * other_scale - distance - motion.base <= best.depth) continue;
-    const double depth = disk.radius * other_scale - distance - motion.of(own);
+    const double bound = other_scale * disk.radius - motion.of(own);
+    if (bound + deepest <= best.depth) continue;
+    const double depth = bound - scale * body.distance.upper(own);
     if (depth <= best.depth) continue;
     best = {depth, own, disk.radius * other_scale, true, place};
-    if (depth > enough) return best;
+    if (depth > search.enough) return best;
   }
   return best;
 }

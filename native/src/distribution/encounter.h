@@ -32,11 +32,17 @@ struct Encounter {
 /// False only if the boxes of the two have no common point, so that the shapes have none.
 bool boxes_meet(const Body& body, const Pose& pose, const Body& other, double other_scale);
 
-/// The deepest place known from the disks of either: a lower bound, found by the grids of distances. Stops at the first
-/// that is deeper than `enough`. `scale` of the moving shape, `other_scale` of the one that lies at the origin.
-/// O(disks).
+/// What is looked for: places deeper than `least`; the search stops at the first that is deeper than `enough`, and
+/// looks at no more than the `most_disks` largest disks of either.
+struct Search {
+  double least = -SignedDistance::k_far, enough = SignedDistance::k_far;
+  std::size_t most_disks = 1000;
+};
+
+/// The deepest place known from the disks of either: a lower bound, found by the grids of distances. `scale` of the
+/// moving shape, `other_scale` of the one that lies at the origin. O(disks).
 Encounter encounter(const Body& body, double scale, const Pose& pose, const Motion& motion, const Body& other,
-                    double other_scale, double enough);
+                    double other_scale, const Search& search);
 
 /// Whether outlines cross when the shape is laid into the plane of the other, up to rounding. O(corners of both) for
 /// most, O(their product) at worst.

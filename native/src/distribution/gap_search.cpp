@@ -190,7 +190,8 @@ bool GapSearch::is_covered(const CellView& view, const Copy& copy, const Motion&
         // What the grids cannot tell, their distances being rounded up, the exact ones may.
         const double slack =
             std::max(scale * copy.body->distance.slack(), there.placement.scale * there.body->distance.slack());
-        const Encounter found = encounter(*copy.body, scale, pose, motion, *there.body, there.placement.scale, slack);
+        const Encounter found = encounter(*copy.body, scale, pose, motion, *there.body, there.placement.scale,
+                                          {.least = -slack, .enough = slack});
         return found.depth > -slack && is_certain(view, copy, motion, found, pose, other);
       });
   return meets || (!near_border_.empty() && near_border_[centre.face] && is_beyond_border(view, copy, motion));

@@ -13,7 +13,7 @@
 namespace saddleback::distribution {
 namespace {
 
-constexpr std::size_t k_least_batch = 64, k_largest_batch = 4096;
+constexpr std::size_t k_least_batch = 8, k_first_batch = 64, k_largest_batch = 4096;
 
 Outcome outcome_of(MapFailure failure) {
   switch (failure) {
@@ -61,7 +61,13 @@ bool Laying::is_foreseen_to_meet(const Copy& copy) const {
       [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
         const Copy& other = settled_.copies()[number];
         const Pose pose{origin + turn * place, turn * own};
-        return encounter(*copy.body, copy.placement.scale, pose, {}, *other.body, other.placement.scale, 0).depth > 0;
+        if (pose.at.norm() > copy.radius() + other.radius() ||
+            !boxes_meet(*copy.body, pose, *other.body, other.placement.scale))
+          return false;
+        const Search deep{.least = 0, .enough = 0, .most_disks = 4};
+        return encounter(*copy.body, copy.placement.scale, pose, {}, *other.body, other.placement.scale, deep).depth >
+                   0 ||
+               outlines_cross(copy.body->shape, pose, other.body->shape, other.placement.scale);
       });
 }
 
@@ -132,7 +138,7 @@ std::vector<Outcome> Laying::lay(std::vector<Candidate> candidates, const JobSta
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
     return candidates[a].key != candidates[b].key ? candidates[a].key < candidates[b].key : a < b;
   });
-  std::size_t size = k_least_batch;
+  std::size_t size = k_first_batch;
   for (std::size_t begin = 0, end; begin < order.size() && is_any_wanted(); begin = end) {
     stage.update(static_cast<double>(begin) / static_cast<double>(order.size()));
     end = std::min(order.size(), begin + size);
@@ -142,16 +148,19 @@ std::vector<Outcome> Laying::lay(std::vector<Candidate> candidates, const JobSta
       stage.check();
       attempt(candidates[order[begin + i]], attempts_[i], thread);
     });
-    std::size_t laid = 0;
+    std::size_t laid = 0, in_vain = 0;  // in vain: mapped, and turned away for another of the batch
     for (std::size_t i = begin; i < end; ++i) {
       stage.check();
+      const bool has_room = attempts_[i - begin].outcome == Outcome::laid;
       commit(attempts_[i - begin]);
       outcomes[order[i]] = attempts_[i - begin].outcome;
-      laid += attempts_[i - begin].outcome == Outcome::laid ? 1 : 0;
+      const bool is_laid = attempts_[i - begin].outcome == Outcome::laid;
+      laid += is_laid ? 1 : 0;
+      in_vain += has_room && !is_laid ? 1 : 0;
     }
     make_pending_known(true);
-    if (laid * 16 > end - begin) size = std::max(k_least_batch, size / 2);
-    if (laid * 64 < end - begin) size = std::min(k_largest_batch, size * 2);
+    if (2 * in_vain > laid) size = std::max(k_least_batch, size / 2);
+    if (8 * in_vain <= laid) size = std::min(k_largest_batch, size * 2);
   }
   return outcomes;
 }
