@@ -37,6 +37,11 @@ void add_inner_disks(const Shape& shape, const SignedDistance& distance, std::ve
         uncovered.push_back(2 * depth);
       }
     }
+  if (shape.inradius() > k_least_radius * radius) {  // about the centre, which no turning moves
+    disks.push_back({Vec2::Zero(), shape.inradius()});
+    for (std::size_t i = 0; i < places.size(); ++i)
+      uncovered[i] = std::min(uncovered[i], places[i].centre.norm() + places[i].radius - shape.inradius());
+  }
   while (!places.empty() && static_cast<Index>(disks.size()) < k_most_disks) {
     const auto best =
         static_cast<std::size_t>(std::max_element(uncovered.begin(), uncovered.end()) - uncovered.begin());

@@ -21,6 +21,9 @@ namespace {
 /// Where the tracing of a point ends differs from where the flat plane puts it by a quarter of K r^2 of its distance;
 /// lengths across are off by as much as K r^2. So the one tells the other.
 constexpr double k_bending = 4;
+/// And the stretch of a map is a sixth of K r^2 at its rim: points are certainly not farther off than this many times
+/// that, of their distance. What is deeper needs no tracing.
+constexpr double k_drift = 4;
 /// Ways along edges are at most so much longer than others on meshes of sound triangles.
 constexpr double k_edge_excess = 1.5;
 constexpr Index k_border_corners = 24;
@@ -179,6 +182,26 @@ bool GapSearch::is_certain(const CellView& view, const Copy& copy, const Motion&
   return found.radius * (1 - bending) - distance - moved * (1 + bending) > 0;
 }
 
+/// Kinds of which the disk about the centre meets a copy wherever in the cell it is. It does not matter how they turn.
+std::uint64_t GapSearch::centrally_covered(const CellView& view, std::uint64_t kinds) const {
+  const SurfacePoint& centre = view.centre;
+  const double scale = rules_->smallest_factor() * view.size;
+  std::uint64_t covered = 0;
+  laying_->settled().visit(centre.face, {centre.barycentric[1], centre.barycentric[2]},
+                           [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
+                             const Copy& there = laying_->settled().copies()[other];
+                             const Vec2 place = (origin + turn * view.place) / there.placement.scale;
+                             const double distance = there.placement.scale * there.body->distance.upper(place);
+                             for (std::uint64_t rest = kinds & ~covered; rest; rest &= rest - 1) {
+                               const auto kind = static_cast<Index>(std::countr_zero(rest));
+                               if (scale * rules_->inradius(kind) - view.radius > distance)
+                                 covered |= std::uint64_t{1} << kind;
+                             }
+                             return covered == kinds;
+                           });
+  return covered;
+}
+
 bool GapSearch::is_covered(const CellView& view, const Copy& copy, const Motion& motion) const {
   const SurfacePoint& centre = view.centre;
   const double scale = copy.placement.scale;
@@ -190,8 +213,10 @@ bool GapSearch::is_covered(const CellView& view, const Copy& copy, const Motion&
         // What the grids cannot tell, their distances being rounded up, the exact ones may.
         const double slack =
             std::max(scale * copy.body->distance.slack(), there.placement.scale * there.body->distance.slack());
+        const double drift = k_drift * there.bend * scale;
         const Encounter found = encounter(*copy.body, scale, pose, motion, *there.body, there.placement.scale,
-                                          {.least = -slack, .enough = slack});
+                                          {.least = -slack, .enough = slack + drift * copy.body->shape.circumradius()});
+        if (found.depth > drift * found.point.norm()) return true;
         return found.depth > -slack && is_certain(view, copy, motion, found, pose, other);
       });
   return meets || (!near_border_.empty() && near_border_[centre.face] && is_beyond_border(view, copy, motion));
@@ -199,13 +224,13 @@ bool GapSearch::is_covered(const CellView& view, const Copy& copy, const Motion&
 
 void GapSearch::look(const OpenCell& open, Index number, Look& look) const {
   const CellView view = rules_->view(open.cell);
-  for (std::uint64_t rest = open.kinds; rest; rest &= rest - 1) {
+  look.tests = std::popcount(open.kinds);
+  for (std::uint64_t rest = open.kinds & ~centrally_covered(view, open.kinds); rest; rest &= rest - 1) {
     const auto kind = static_cast<Index>(std::countr_zero(rest));
     const Kind& what = rules_->kinds()[kind];
     if (!laying_->is_wanted(what.shape)) continue;
     const Copy copy = rules_->copy(kind, view.centre, view.angle, rules_->smallest_factor() * view.size);
     const Motion motion = rules_->motion(view, rules_->smallest_factor());
-    ++look.tests;
     if (is_covered(view, copy, motion)) continue;
     const double least = tolerance(view, what);
     if (motion.base + motion.per_length * copy.body->shape.circumradius() > least) {

@@ -39,6 +39,7 @@ class GapSearch {
   void round(const JobStage& stage);
   void look(const OpenCell& open, Index number, Look& look) const;
   void throw_dart(const OpenCell& open, Index number, Look& look) const;
+  std::uint64_t centrally_covered(const CellView& view, std::uint64_t kinds) const;
   bool is_covered(const CellView& view, const Copy& copy, const Motion& motion) const;
   bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Encounter& found,
                   const Pose& pose, Index other) const;

@@ -111,6 +111,7 @@ void Laying::commit(Attempt& attempt) {
     }
   }
   if (attempt.outcome == Outcome::laid) {
+    attempt.copy.bend = std::max(attempt.outline.largest - 1, 1 - attempt.outline.smallest);
     pending_.push_back(static_cast<Index>(settled_.copies().size()));
     settled_.add(attempt.copy, attempt.outline);
     ++laid_[attempt.copy.placement.shape];

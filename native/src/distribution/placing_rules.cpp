@@ -25,6 +25,7 @@ PlacingRules::PlacingRules(const Mesh& mesh, std::span<const Shape> shapes, cons
       largest_factor_(options.largest) {
   for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
     radii_.push_back(shapes[shape].circumradius());
+    inradii_.push_back(shapes[shape].inradius());
     const int directions = field.symmetry();
     const int different = shapes[shape].has_half_turn() && directions % 2 == 0 ? directions / 2 : directions;
     for (const bool is_mirrored : {false, true})
@@ -75,7 +76,7 @@ const Body& PlacingRules::body(Index kind, double scale) const {
 Copy PlacingRules::copy(Index kind, const SurfacePoint& centre, double field_angle, double scale) const {
   const Kind& what = kinds_[kind];
   const double angle = field_angle + 2 * std::numbers::pi * what.turn / field_->symmetry();
-  return {{what.shape, centre, angle, scale, what.is_mirrored}, &body(kind, scale)};
+  return {{what.shape, centre, angle, scale, what.is_mirrored}, &body(kind, scale), 0};
 }
 
 double PlacingRules::size_at(Index face, const Vec2& weights) const {

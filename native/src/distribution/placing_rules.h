@@ -43,6 +43,7 @@ class PlacingRules {
   double largest_radius() const { return largest_radius_; }
   double smallest_radius() const { return smallest_radius_; }
   double shape_radius(const Kind& kind) const { return radii_[kind.shape]; }
+  double inradius(Index kind) const { return inradii_[kinds_[kind].shape]; }
   double largest_shape_radius() const { return *std::max_element(radii_.begin(), radii_.end()); }
   double smallest_factor() const { return smallest_factor_; }
 
@@ -68,7 +69,7 @@ class PlacingRules {
   const DirectionField* field_;
   std::vector<double> size_;
   double smallest_factor_, largest_factor_;
-  std::vector<double> radii_;  ///< per shape
+  std::vector<double> radii_, inradii_;  ///< per shape
   std::vector<Kind> kinds_;
   std::vector<std::vector<std::unique_ptr<Body>>> bodies_;  ///< per shape and side, by size where there is a gap
   double least_scale_ = 1;

@@ -16,6 +16,7 @@ namespace saddleback::distribution {
 struct Copy {
   Placement placement;
   const Body* body = nullptr;
+  double bend = 0;  ///< by how much lengths on it differ from those of its plane, as a share
   double radius() const { return placement.scale * body->shape.circumradius(); }
 };
 
