@@ -49,9 +49,10 @@ class FaceBuckets {
   static Index place(double weight, Index n) { return std::clamp(static_cast<Index>(weight * n), Index{0}, n - 1); }
 
   static Index divisions(const Mesh& mesh, Index face, double longest) {
-    constexpr double k_most = 512;
+    constexpr double k_most = 512, k_most_per_square = 8;  // needles get no more cells than their area is worth
     const double edge = std::max({mesh.length(3 * face), mesh.length(3 * face + 1), mesh.length(3 * face + 2)});
-    const double most = std::clamp(std::sqrt(2e7 / mesh.face_count()), 1.0, k_most);
+    const double worth = 1 + std::sqrt(k_most_per_square * mesh.face_area(face)) / longest;
+    const double most = std::clamp(std::min(worth, std::sqrt(2e7 / mesh.face_count())), 1.0, k_most);
     return static_cast<Index>(std::clamp(std::ceil(edge / longest), 1.0, most));
   }
 

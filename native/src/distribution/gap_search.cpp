@@ -29,6 +29,9 @@ constexpr double k_edge_excess = 1.5;
 constexpr Index k_border_corners = 24;
 /// A round that lays less than this share of all is the last one, unless everything is wanted.
 constexpr double k_tired = 0.02;
+/// Cells are not split after a round that lays more than this share, for so many rounds.
+constexpr double k_busy = 0.01;
+constexpr int k_most_rounds_unsplit = 8;
 
 Pose pose_at(const CellView& view, const Copy& copy, const Vec2& origin, const Eigen::Matrix2d& turn) {
   const double c = copy.placement.scale * std::cos(copy.placement.angle),
@@ -87,7 +90,11 @@ void GapSearch::make_base_cells() {
     if (!options_->forbidden.empty() && options_->forbidden[f]) continue;
     const double edge = std::max({mesh_->length(3 * f), mesh_->length(3 * f + 1), mesh_->length(3 * f + 2)});
     int level = 0;
-    while (level < 12 && edge / (1 << level) > 1.7 * base_radius()) ++level;
+    // Similar triangles of a needle would be as many as its length asks for, with hardly any area each.
+    const double least_area = 0.1 * base_radius() * base_radius();
+    while (level < 12 && edge / (1 << level) > 1.7 * base_radius() &&
+           std::ldexp(mesh_->face_area(f), -2 * level) > least_area)
+      ++level;
     const std::int32_t n = 1 << level;
     const auto depth = static_cast<std::uint8_t>(level);
     for (std::int32_t j = 0; j < n; ++j)
@@ -108,7 +115,7 @@ double GapSearch::order(const Cell& cell, const SurfacePoint& point, double area
 }
 
 void GapSearch::throw_dart(const OpenCell& open, Index number, Look& look) const {
-  const std::uint64_t key = mixed(options_->seed, open.cell.key());
+  const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
   double total = 0;
   for (std::size_t k = 0; k < kind_weights_.size(); ++k)
     if (look.open >> k & 1) total += kind_weights_[k];
@@ -191,6 +198,8 @@ std::uint64_t GapSearch::centrally_covered(const CellView& view, std::uint64_t k
                            [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
                              const Copy& there = laying_->settled().copies()[other];
                              const Vec2 place = (origin + turn * view.place) / there.placement.scale;
+                             const double away = place.norm() - there.body->shape.circumradius();
+                             if (away * there.placement.scale > scale * rules_->largest_inradius()) return false;
                              const double distance = there.placement.scale * there.body->distance.upper(place);
                              for (std::uint64_t rest = kinds & ~covered; rest; rest &= rest - 1) {
                                const auto kind = static_cast<Index>(std::countr_zero(rest));
@@ -295,12 +304,19 @@ void GapSearch::round(const JobStage& stage) {
       if (is_odd) lose(open_[candidate.cell].cell);
     }
   }
+  // As long as many find room, room is easier to find than to rule out.
+  const auto total = static_cast<double>(laying_->settled().copies().size());
+  const bool splits = static_cast<double>(laid_in_round_) < k_busy * total || rounds_ >= k_most_rounds_unsplit;
   std::vector<OpenCell> next;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     if (!looks[i].open) continue;
     const CellView view = rules_->view(open_[i].cell);
     if (is_stuck[i] && view.radius < 8 * options_->tolerance * rules_->smallest_radius()) {
       lose(open_[i].cell);
+      continue;
+    }
+    if (!splits) {
+      next.push_back({open_[i].cell, looks[i].open});
       continue;
     }
     for (const Cell& child : open_[i].cell.children()) next.push_back({child, looks[i].open});

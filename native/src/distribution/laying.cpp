@@ -14,6 +14,8 @@ namespace saddleback::distribution {
 namespace {
 
 constexpr std::size_t k_least_batch = 8, k_first_batch = 64, k_largest_batch = 4096;
+/// Candidates that a thread takes at a time: fewer are not worth waking it up for.
+constexpr Index k_share = 32;
 
 Outcome outcome_of(MapFailure failure) {
   switch (failure) {
@@ -123,7 +125,7 @@ void Laying::commit(Attempt& attempt) {
 
 void Laying::make_pending_known(bool in_parallel) {
   std::vector<std::vector<FacePlace>> places(pending_.size());
-  parallel_for(static_cast<Index>(pending_.size()), in_parallel ? threads_ : 1, 1, [&](Index i, int thread) {
+  parallel_for(static_cast<Index>(pending_.size()), in_parallel ? threads_ : 1, 4, [&](Index i, int thread) {
     auto& mapper = mappers_[thread];
     if (!mapper) mapper = std::make_unique<OutlineMapper>(*mesh_);
     places[i] = settled_.places_about(settled_.copies()[pending_[i]], mapper->plane());
@@ -145,7 +147,7 @@ std::vector<Outcome> Laying::lay(std::vector<Candidate> candidates, const JobSta
     end = std::min(order.size(), begin + size);
     ++batch_;
     attempts_.resize(std::max(attempts_.size(), end - begin));
-    parallel_for(static_cast<Index>(end - begin), threads_, 8, [&](Index i, int thread) {
+    parallel_for(static_cast<Index>(end - begin), threads_, k_share, [&](Index i, int thread) {
       stage.check();
       attempt(candidates[order[begin + i]], attempts_[i], thread);
     });

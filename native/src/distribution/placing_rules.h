@@ -44,6 +44,7 @@ class PlacingRules {
   double smallest_radius() const { return smallest_radius_; }
   double shape_radius(const Kind& kind) const { return radii_[kind.shape]; }
   double inradius(Index kind) const { return inradii_[kinds_[kind].shape]; }
+  double largest_inradius() const { return *std::max_element(inradii_.begin(), inradii_.end()); }
   double largest_shape_radius() const { return *std::max_element(radii_.begin(), radii_.end()); }
   double smallest_factor() const { return smallest_factor_; }
 
