@@ -153,6 +153,7 @@ void bind_graph(py::module_& m) {
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("job") = py::none(), k_save_doc)
       .def_static("load", &load, py::arg("path"), py::arg("mesh"), py::kw_only(), py::arg("job") = py::none(),
                   py::keep_alive<0, 2>(), k_load_doc)
+      .def_property_readonly("mesh", &SaddleVertexGraph::mesh, py::return_value_policy::reference, "The Mesh.")
       .def_property_readonly("arc_count", &SaddleVertexGraph::arc_count, "Directed arcs; each has its reverse.")
       .def_property_readonly("mean_degree", &SaddleVertexGraph::mean_degree, "Arcs per vertex.")
       .def_property_readonly("nbytes", &SaddleVertexGraph::nbytes, "Memory of the arcs, bytes.")
