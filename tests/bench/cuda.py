@@ -51,6 +51,7 @@ def measure(name: str, mesh: sb.Mesh, rule: dict[str, Any]) -> None:
     parts = "".join(f"{1e3 * min(one[part] for one in times):10.2f}" for part in PARTS)
     with tempfile.TemporaryDirectory() as folder:
         same = saved(twins[0], Path(folder)) == saved(graph, Path(folder))
-    done = f"second pass {times[0]['second_pass']}, processor {times[0]['by_processor']}, {'equal' if same else 'DIFFERENT'}"
+    done = f"second pass {times[0]['second_pass']}, processor {times[0]['by_processor']}, "
+    done += "equal" if same else "DIFFERENT"
     how = ", ".join(f"{key}={value}" for key, value in rule.items())
     print(f"{name:<28} {how:<15}{parts} {1e3 * wall:6.1f} {1e3 * processor:6.1f}  {done}", flush=True)
