@@ -276,6 +276,8 @@ def test_outlines_are_closed_curves_on_the_surface() -> None:
     lengths = [np.linalg.norm(loop - np.roll(loop, -1, axis=0), axis=1).sum() for loop in loops]
     assert lengths == pytest.approx([0.1 * 8 * 0.7, 0.1 * 8 * 0.4], rel=0.05)
     assert np.array_equal(result.outline(-1)[0], result.outline(4)[0])
+    laid = result.conform(FRAME.loops[0], 2)
+    assert max(np.linalg.norm(loops[0] - corner, axis=1).min() for corner in laid) < 1e-6
     with pytest.raises(IndexError):
         result.outline(5)
 
