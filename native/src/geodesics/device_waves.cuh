@@ -572,6 +572,7 @@ class WarpWaves {
         }
         const unsigned telling = __ballot_sync(k_whole_warp, tells), over = __ballot_sync(k_whole_warp, done);
         if (tells) table_.todo[count + __popc(telling & below())] = static_cast<std::uint16_t>(slot);
+        __syncwarp();
         if (lane_ == 0) table_.changed[base / 32] = word & ~over;
         count += __popc(telling);
       }
