@@ -46,7 +46,7 @@ void add_inner_disks(const Shape& shape, const SignedDistance& distance, std::ve
     const auto best =
         static_cast<std::size_t>(std::max_element(uncovered.begin(), uncovered.end()) - uncovered.begin());
     if (uncovered[best] < 2 * k_covered * radius) break;
-    const Disk disk = places[best];
+    const Disk& disk = places[best];
     disks.push_back(disk);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double gap = (places[i].centre - disk.centre).norm() + places[i].radius - disk.radius;

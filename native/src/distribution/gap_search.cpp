@@ -124,7 +124,8 @@ void GapSearch::throw_dart(const OpenCell& open, Index number, Look& look) const
   for (std::size_t k = 0; k < kind_weights_.size(); ++k) {
     if (!(look.open >> k & 1) || kind_weights_[k] <= 0) continue;
     kind = static_cast<Index>(k);
-    if ((pick -= kind_weights_[k]) < 0) break;
+    pick -= kind_weights_[k];
+    if (pick < 0) break;
   }
   if (kind == k_none) return;
   double along = uniform(key, 1), up = uniform(key, 2);

@@ -44,16 +44,15 @@ void PlacingRules::make_bodies(std::span<const Shape> shapes, const Distribution
       options.gap > 0 ? 1 + static_cast<int>(std::log(most_scale / least_scale_) / std::log(k_size_step)) : 1;
   bodies_.resize(2 * shapes.size());
   smallest_radius_ = *std::min_element(radii_.begin(), radii_.end()) * least_scale_;
-  std::vector<std::size_t> work;
+  std::vector<std::pair<std::size_t, int>> work;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (i % 2 == 1 && !options.mirror) continue;
     bodies_[i].resize(static_cast<std::size_t>(levels));
-    for (int level = 0; level < levels; ++level) work.push_back(i * static_cast<std::size_t>(levels) + level);
+    for (int level = 0; level < levels; ++level) work.push_back({i, level});
   }
   parallel_for(static_cast<Index>(work.size()), options.threads, 1, [&](Index k, int) {
     stage.check();
-    const std::size_t i = work[k] / levels;
-    const int level = static_cast<int>(work[k] % levels);
+    const auto [i, level] = work[k];
     const Shape side = i % 2 == 0 ? shapes[i / 2] : shapes[i / 2].mirrored();
     const double scale = least_scale_ * std::pow(k_size_step, level);
     bodies_[i][level] = std::make_unique<Body>(options.gap > 0 ? grown(side, 0.5 * options.gap / scale) : side);

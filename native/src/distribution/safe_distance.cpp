@@ -43,7 +43,7 @@ double largest_sum(const FrontProfiles& a, Index alpha, double scale_a, const Fr
   while (i < k_columns && j < k_columns) {
     best = std::max(best, scale_a * fronts_a[i] + scale_b * fronts_b[k_columns - 1 - j]);
     // Ends of strips counted from the middle. Where rounding cannot tell which is first, both neighbours were summed.
-    const double end_a = (i + 1 - k_columns / 2) * width_a, end_b = (j + 1 - k_columns / 2) * width_b;
+    const double end_a = (i + 1 - 0.5 * k_columns) * width_a, end_b = (j + 1 - 0.5 * k_columns) * width_b;
     const double slack = k_rounding * (width_a + width_b);
     if (std::abs(end_a - end_b) <= slack) {
       if (i + 1 < k_columns) best = std::max(best, scale_a * fronts_a[i + 1] + scale_b * fronts_b[k_columns - 1 - j]);

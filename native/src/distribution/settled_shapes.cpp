@@ -127,8 +127,8 @@ std::vector<FacePlace> SettledShapes::places_about(const Copy& copy, ShapeMap& m
   }
   for (const Index face : faces) {
     const Triangle& corners = mesh_->triangles()[face];
-    const Vec2 origin = map.coordinates(corners[0]), e1 = map.coordinates(corners[1]) - origin,
-               e2 = map.coordinates(corners[2]) - origin;
+    const Vec2& origin = map.coordinates(corners[0]);
+    const Vec2 e1 = map.coordinates(corners[1]) - origin, e2 = map.coordinates(corners[2]) - origin;
     if (!(e1.x() * e2.y() - e1.y() * e2.x() > 0)) continue;
     if (origin.norm() > reach + std::max(e1.norm(), e2.norm())) continue;
     const FaceChart chart(*mesh_, face);
