@@ -17,13 +17,15 @@ std::optional<int> cuda_device_of(const std::string& device, bool is_worth_it);
 /// processor.
 template <class Work>
 auto run_on(const std::string& device, bool is_worth_it, Work&& work) {
+  constexpr int k_processor = -1;
   const std::optional<int> number = cuda_device_of(device, is_worth_it);
-  if (number && device == "auto") {
-    try {
-      return work(*number);
-    } catch (const DeviceError&) {}
+  if (!number) return work(k_processor);
+  try {
+    return work(*number);
+  } catch (const DeviceError&) {
+    if (device != "auto") throw;
+    return work(k_processor);
   }
-  return work(number && device != "auto" ? *number : -1);
 }
 
 }  // namespace saddleback::bindings
