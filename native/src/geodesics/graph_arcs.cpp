@@ -92,13 +92,12 @@ void check_memory(const ArcSearch& search, WindowPropagator& propagator, const J
                            " are free; give accuracy=1e-3 instead, or call exact_distances for the sources you need"));
 }
 
-const Unfolding& checked(const Unfolding& unfolding) {
+/// \throw InputError for more triangles than slots can be numbered for.
+void check_mesh_size(const Mesh& mesh) {
   constexpr Index k_most_edges = std::numeric_limits<std::int32_t>::max() / k_batch;
-  if (unfolding.mesh().halfedge_count() > k_most_edges) {
-    throw InputError(message("mesh: ", unfolding.mesh().face_count(),
-                             " triangles are more than a graph can be built for (", k_most_edges / 3, ")"));
-  }
-  return unfolding;
+  if (mesh.halfedge_count() <= k_most_edges) return;
+  throw InputError(message("mesh: ", mesh.face_count(), " triangles are more than a graph can be built for (",
+                           k_most_edges / 3, ")"));
 }
 
 }  // namespace
@@ -107,7 +106,7 @@ DiskRule disk_rule(Index k, double accuracy) { return {.k = k, .tolerance = k_ro
 
 WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
                        int threads, const JobStage& stage)
-    : mesh(checked(unfolding), nodes, vertices, threads, stage),
+    : mesh((check_mesh_size(unfolding.mesh()), unfolding), nodes, vertices, threads, stage),
       sectors(mesh, unfolding, vertices, ArcCodec::k_sectors, threads, stage) {}
 
 std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
