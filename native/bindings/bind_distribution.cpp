@@ -32,7 +32,7 @@ Args:
     size_range: (smallest, largest): every copy is scaled by another factor in this range.
     forbidden: (F,) booleans: faces that nothing may touch.
     mirror: half of the copies are mirrored, at random.
-    tolerance: clearance of the proof, as a share of the smallest copy's circumradius.
+    tolerance: clearance of the proof, as a share of the circumradius of the smallest copy of a kind that might lie there.
     threads: 0: all cores. The result is the same for any number.
     job: progress and cancellation.
 
@@ -170,7 +170,8 @@ py::dict rejections_of(const Distribution& self) {
 void bind_certificate(py::module_& m) {
   py::class_<Certificate>(m, "Certificate", py::module_local(),
                           "That nothing more fits: whatever is laid anywhere comes nearer to a copy than `tolerance`.")
-      .def_readonly("tolerance", &Certificate::tolerance, "Mesh units.")
+      .def_readonly("tolerance", &Certificate::tolerance,
+                    "Mesh units: of the largest shape where sizes are largest; elsewhere it is less.")
       .def_readonly("cells", &Certificate::cells, "Tests of a cell of the surface.")
       .def_readonly("leaves", &Certificate::leaves,
                     "Cells over which a copy can move by the tolerance at most, and at whose centre none fits.")

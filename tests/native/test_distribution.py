@@ -301,6 +301,7 @@ REFUSED = {
     "forbidden of another length": ({"forbidden": np.ones(3, bool)}, "forbidden has 3"),
     "tolerance": ({"tolerance": 0}, "tolerance is 0"),
     "no field": ({"field": 3}, "field: wanted"),
+    "too many kinds": ({"shapes": [STAR] * 70}, "more than the 64"),
 }
 
 

@@ -118,6 +118,8 @@ class DirectionFieldEditor {
   /// not positive and finite; hard strokes that disagree in a face, with others or themselves; curvature for
   /// symmetry 1. Cancelled. About O(F).
   DirectionField field(const DirectionFieldOptions& options = {}, Job* job = nullptr);
+  /// The same as a part of other work.
+  DirectionField field(const DirectionFieldOptions& options, const JobStage& stage);
 
  private:
   struct Kept;
@@ -133,5 +135,8 @@ DirectionField field_of_vectors(const Mesh& mesh, int symmetry, std::span<const 
 /// One field, as by an editor that is used once.
 DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options = {},
                                Job* job = nullptr);
+/// The same as a part of other work.
+DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options,
+                               const JobStage& stage);
 
 }  // namespace saddleback

@@ -34,7 +34,7 @@ struct DistributionOptions {
   bool mirror = false;  ///< half of the copies are mirrored, at random
   /// Goes on until nothing more fits, and proves it: see Certificate.
   bool maximal = false;
-  /// Clearance of that proof, as a share of the smallest copy's circumradius.
+  /// Clearance of that proof, as a share of the circumradius of the smallest copy of a kind that might lie there.
   double tolerance = 0.01;
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0: all cores; the result is the same for any number

@@ -18,6 +18,8 @@
 namespace saddleback {
 namespace {
 
+constexpr double k_field_share = 0.3;  ///< of the work, where the field is to be made as well
+
 using namespace distribution;
 
 void check_per_vertex(const char* name, const Mesh& mesh, const std::vector<double>& values, bool may_be_zero) {
@@ -167,18 +169,19 @@ DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, c
   const JobStage stage(job, "Shapes");
   std::optional<DirectionField> smoothest;
   if (!options.field) {
-    DirectionFieldOptions even;
-    smoothest = direction_field(mesh, 2, even);
+    const DirectionFieldOptions even;
+    smoothest = direction_field(mesh, 2, even, stage.part(0, k_field_share));
   }
+  const JobStage laid = options.field ? stage : stage.part(k_field_share, 1);
   const DirectionField& field = options.field ? *options.field : *smoothest;
-  const PlacingRules rules(mesh, shapes, options, field, stage.part(0, 0.05));
+  const PlacingRules rules(mesh, shapes, options, field, laid.part(0, 0.05));
   Laying laying(mesh, rules, options);
   DistributionResult result;
   if (!options.density.empty()) {
-    result.stop = DensityFollower(mesh, rules, laying, options).run(stage.part(0.05, 1));
+    result.stop = DensityFollower(mesh, rules, laying, options).run(laid.part(0.05, 1));
   } else {
     GapSearch search(mesh, rules, laying, options);
-    result.stop = search.run(stage.part(0.05, 1));
+    result.stop = search.run(laid.part(0.05, 1));
     if (options.maximal) result.certificate = search.certificate();
   }
   for (const Copy& copy : laying.settled().copies()) result.placements.push_back(copy.placement);

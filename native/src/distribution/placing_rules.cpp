@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "saddleback/error.h"
+
 #include "support/parallel.h"
 
 namespace saddleback::distribution {
@@ -11,6 +13,7 @@ namespace {
 
 /// Copies of sizes that differ by no more share the outline that holds the gap, made for the smallest.
 constexpr double k_size_step = 1.15;
+constexpr std::size_t k_most_kinds = 64;  // a bit of a word each, see gap_search
 /// The field is sampled about the corners of a cell; between them it may go a little beyond.
 constexpr double k_field_slack = 1.2;
 
@@ -32,6 +35,10 @@ PlacingRules::PlacingRules(const Mesh& mesh, std::span<const Shape> shapes, cons
       for (int turn = 0; turn < different && is_mirrored <= options.mirror; ++turn)
         kinds_.push_back({static_cast<Index>(shape), turn, is_mirrored});
   }
+  if (kinds_.size() > k_most_kinds)
+    throw InputError(message("shapes: ", shapes.size(), " of them make ", kinds_.size(),
+                             " kinds by the field's directions and their mirror images, more than the ", k_most_kinds,
+                             " that can be told apart; leave some out, or lay them one after the other"));
   make_bodies(shapes, options, stage);
 }
 
@@ -66,7 +73,7 @@ void PlacingRules::make_bodies(std::span<const Shape> shapes, const Distribution
 }
 
 const Body& PlacingRules::body(Index kind, double scale) const {
-  const auto& sizes = bodies_[static_cast<std::size_t>(2 * kinds_[kind].shape + (kinds_[kind].is_mirrored ? 1 : 0))];
+  const auto& sizes = bodies_[2 * static_cast<std::size_t>(kinds_[kind].shape) + (kinds_[kind].is_mirrored ? 1 : 0)];
   if (sizes.size() == 1) return *sizes[0];
   const auto level = static_cast<int>(std::log(scale / least_scale_) / std::log(k_size_step));
   return *sizes[static_cast<std::size_t>(std::clamp(level, 0, static_cast<int>(sizes.size()) - 1))];

@@ -234,7 +234,10 @@ DirectionFieldEditor::DirectionFieldEditor(DirectionFieldEditor&&) noexcept = de
 DirectionFieldEditor& DirectionFieldEditor::operator=(DirectionFieldEditor&&) noexcept = default;
 
 DirectionField DirectionFieldEditor::field(const DirectionFieldOptions& options, Job* job) {
-  const JobStage stage(job, "Turning directions");
+  return field(options, JobStage(job, "Turning directions"));
+}
+
+DirectionField DirectionFieldEditor::field(const DirectionFieldOptions& options, const JobStage& stage) {
   check_options(options, kept_->symmetry);
   kept_->prepare(stage);
   return options.singularities ? kept_->designed(options, stage) : kept_->automatic(options, stage);
@@ -242,6 +245,11 @@ DirectionField DirectionFieldEditor::field(const DirectionFieldOptions& options,
 
 DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options, Job* job) {
   return DirectionFieldEditor(mesh, symmetry).field(options, job);
+}
+
+DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options,
+                               const JobStage& stage) {
+  return DirectionFieldEditor(mesh, symmetry).field(options, stage);
 }
 
 }  // namespace saddleback
