@@ -20,17 +20,8 @@ from ..props import fill_operator
 TIMER_STEP = 0.05
 
 
-class SurfaceOperator:
-    """Mixin for operators on the active object. A subclass names its `settings` group and says how to gather and write.
-
-    `execute` computes before it returns; `invoke` starts a thread and `modal` waits for it, so the window stays usable
-    and ESC stops the run. Nothing in the file changes before the result is there.
-    """
-
-    settings_name: str  # of the group in Object.saddleback
-    report: Callable[..., None]
-
-    _task: jobs.Task | None = None
+class PolledOperator:
+    """Mixin: can be pressed while a mesh is active and nothing is being computed."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -41,6 +32,19 @@ class SurfaceOperator:
         if problem:
             cls.poll_message_set(problem)  # type: ignore[attr-defined]  # of bpy.types.Operator
         return not problem
+
+
+class SurfaceOperator(PolledOperator):
+    """Mixin for operators on the active object. A subclass names its `settings` group and says how to gather and write.
+
+    `execute` computes before it returns; `invoke` starts a thread and `modal` waits for it, so the window stays usable
+    and ESC stops the run. Nothing in the file changes before the result is there.
+    """
+
+    settings_name: str  # of the group in Object.saddleback
+    report: Callable[..., None]
+
+    _task: jobs.Task | None = None
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], Any]:
         """Reads everything from Blender; returns the call that computes without it."""

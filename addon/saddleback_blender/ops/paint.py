@@ -8,11 +8,11 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
-from .. import jobs
 from ..bridge.nearest import nearest_vertex
 from ..bridge.paint_layers import PAINT_NAME, prepare_colors, prepare_weights
-from ..bridge.source import usable_source, why_not
+from ..bridge.source import usable_source
 from ..core.errors import BadInputError
+from .base import PolledOperator
 
 PAINTS = (
     ("WEIGHT", "Weights", "A vertex group, painted in Weight Paint mode"),
@@ -24,20 +24,10 @@ PENS = (
 )
 
 
-class HelperOperator:
+class HelperOperator(PolledOperator):
     """Mixin: an operator that changes something on the active object at once."""
 
     report: Any
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether the button can be pressed; says why not."""
-        problem = why_not(context)
-        if not problem and jobs.state.task is not None:
-            problem = f"{jobs.state.task.name} is being computed: wait, or press ESC"
-        if problem:
-            cls.poll_message_set(problem)  # type: ignore[attr-defined]  # of bpy.types.Operator
-        return not problem
 
     def help(self, context: bpy.types.Context, source: bpy.types.Object) -> str:
         """Does it; returns one line that tells it."""
