@@ -9,6 +9,8 @@ double side(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
+double square(double x) { return x * x; }
+
 bool crosses(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   return (side(c, d, a) > 0) != (side(c, d, b) > 0) && (side(a, b, c) > 0) != (side(a, b, d) > 0);
 }
@@ -34,7 +36,8 @@ Encounter encounter(const Body& body, double scale, const Pose& pose, const Moti
                     double other_scale, const Search& search) {
   Encounter best;
   best.depth = search.least;
-  if (pose.at.norm() > scale * body.shape.circumradius() + other_scale * other.shape.circumradius()) return best;
+  const double reach = scale * body.shape.circumradius(), other_reach = other_scale * other.shape.circumradius();
+  if (!(pose.at.squaredNorm() < square(reach + other_reach))) return best;
   if (!boxes_meet(body, pose, other, other_scale)) return best;
   // No place is deeper in a shape than its largest disk's middle.
   const double deepest = scale * body.disks[0].radius, other_deepest = other_scale * other.disks[0].radius;
@@ -44,7 +47,8 @@ Encounter encounter(const Body& body, double scale, const Pose& pose, const Moti
     if (scale * disk.radius + other_deepest - motion.base <= best.depth) break;
     const Vec2 place = pose(disk.centre);
     const double bound = scale * disk.radius - motion.of(disk.centre);
-    if (bound + other_deepest <= best.depth) continue;
+    if (bound + other_deepest <= best.depth || !(place.squaredNorm() < square(bound + other_reach - best.depth)))
+      continue;
     const double depth = bound - other_scale * other.distance.upper(place * per_other_unit);
     if (depth <= best.depth) continue;
     best = {depth, disk.centre, disk.radius * scale, false, place};
@@ -56,7 +60,8 @@ Encounter encounter(const Body& body, double scale, const Pose& pose, const Moti
     if (other_scale * disk.radius + deepest - motion.base <= best.depth) break;
     const Vec2 place = other_scale * disk.centre, own = back * (place - pose.at);
     const double bound = other_scale * disk.radius - motion.of(own);
-    if (bound + deepest <= best.depth) continue;
+    if (bound + deepest <= best.depth || !(scale * scale * own.squaredNorm() < square(bound + reach - best.depth)))
+      continue;
     const double depth = bound - scale * body.distance.upper(own);
     if (depth <= best.depth) continue;
     best = {depth, own, disk.radius * other_scale, true, place};

@@ -38,11 +38,18 @@ class FaceBuckets {
   /// Calls visit(bucket) for those that meet the box from low to high.
   template <class Visit>
   void visit(Index face, const Vec2& low, const Vec2& high, Visit&& visit) const {
+    visit_cells(face, low, high, [&](Index bucket, const Vec2&, double) { visit(bucket); });
+  }
+  /// Calls visit(bucket, middle, share), too: no point of the cell is farther from the one of weights `middle` than the
+  /// sum of the lengths of the face's edges from corner 0, times `share`.
+  template <class Visit>
+  void visit_cells(Index face, const Vec2& low, const Vec2& high, Visit&& visit) const {
     const Index n = divisions(face);
-    if (n == 1) return visit(first_[face]);
+    if (n == 1) return visit(first_[face], Vec2(1.0 / 3, 1.0 / 3), 2.0 / 3);
     const Index left = place(low.x(), n), right = place(high.x(), n), top = place(high.y(), n);
     for (Index j = place(low.y(), n); j <= top; ++j)
-      for (Index i = left; i <= right && i + j < n; ++i) visit(first_[face] + j * n + i);
+      for (Index i = left; i <= right && i + j < n; ++i)
+        visit(first_[face] + j * n + i, Vec2(i + 0.5, j + 0.5) / n, 0.5 / n);
   }
 
  private:

@@ -1,6 +1,8 @@
-// Rounds over all open cells: those that are proven covered are dropped; into each of the others a dart is thrown; what
-// remains is split in four. Cells over which a copy can move by less than the tolerance are leaves: one copy is tried
-// at the centre, and if it does not fit, nothing fits there with that clearance.
+// First it rains: drops fall evenly all over the surface, and those that find room stay. Then rounds over all open
+// cells: those that are proven covered are dropped; into each of the others a dart is thrown; what remains is split in
+// four. Cells over which a copy can move by less than the tolerance are leaves: one copy is tried at the centre, and if
+// it does not fit, nothing fits there with that clearance. How many drops fall on a face, and where, depends on that
+// face alone: so other triangles elsewhere, or other sheets, change nothing.
 
 #include "gap_search.h"
 
@@ -29,16 +31,23 @@ constexpr double k_edge_excess = 1.5;
 constexpr Index k_border_corners = 24;
 /// A round that lays less than this share of all is the last one, unless everything is wanted.
 constexpr double k_tired = 0.02;
-/// Cells are not split after a round that lays more than this share, for so many rounds.
-constexpr double k_busy = 0.01;
-constexpr int k_most_rounds_unsplit = 8;
+/// Drops of each shower on the area of a copy; a sweep needs many to choose from. The last ones are for when no search
+/// follows.
+constexpr std::array<double, 10> k_showers{2, 2, 4, 4, 8, 8, 16, 16, 32, 32};
+constexpr std::array<double, 4> k_sweeping_showers{80, 40, 40, 40};
+constexpr std::size_t k_searching_showers = 6, k_searching_sweeps = 2;
+constexpr double k_most_drops = 1e6;  ///< on a face
+/// Cells smaller than this share of that square get fewer darts.
+constexpr double k_dart_area = 0.05;
+/// Disks looked at before all of them are: the largest, which tell most cells.
+constexpr std::size_t k_first_disks = 6;
 
-Pose pose_at(const CellView& view, const Copy& copy, const Vec2& origin, const Eigen::Matrix2d& turn) {
+Eigen::Matrix2d turn_of(const Copy& copy) {
   const double c = copy.placement.scale * std::cos(copy.placement.angle),
                s = copy.placement.scale * std::sin(copy.placement.angle);
-  Eigen::Matrix2d own;
-  own << c, -s, s, c;
-  return {origin + turn * view.place, turn * own};
+  Eigen::Matrix2d turn;
+  turn << c, -s, s, c;
+  return turn;
 }
 
 }  // namespace
@@ -50,7 +59,6 @@ GapSearch::GapSearch(const Mesh& mesh, const PlacingRules& rules, Laying& laying
     certificate_.tolerance = options.tolerance * options.smallest *
                              *std::max_element(options.size.begin(), options.size.end()) * rules.largest_shape_radius();
   flag_borders();
-  make_base_cells();
 }
 
 void GapSearch::flag_borders() {
@@ -80,8 +88,8 @@ void GapSearch::flag_borders() {
   }
 }
 
-/// Small enough for several darts a copy; a sweep needs many more to choose from.
-double GapSearch::base_radius() const { return rules_->smallest_radius() * (options_->packing > 0 ? 0.2 : 0.5); }
+/// Larger cells are hardly ever covered as a whole.
+double GapSearch::base_radius() const { return 0.5 * rules_->smallest_radius(); }
 
 void GapSearch::make_base_cells() {
   const std::size_t count = rules_->kinds().size();
@@ -105,37 +113,99 @@ void GapSearch::make_base_cells() {
   }
 }
 
-double GapSearch::order(const Cell& cell, const SurfacePoint& point, double area, std::uint64_t key) const {
+double GapSearch::order(const SurfacePoint& point, std::uint64_t key) const {
   const double chance = uniform(key, 3);
-  if (options_->packing <= 0) return -std::log1p(-chance) / area;  // when the first of even rain falls there
-  const Triangle& t = mesh_->triangles()[cell.face];
+  if (options_->packing <= 0) return chance;
+  const Triangle& t = mesh_->triangles()[point.face];
   const double front =
       front_[t[0]] * point.barycentric[0] + front_[t[1]] * point.barycentric[1] + front_[t[2]] * point.barycentric[2];
   return (1 - options_->packing) * chance + options_->packing * front;
 }
 
-void GapSearch::throw_dart(const OpenCell& open, Index number, Look& look) const {
-  const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
+void GapSearch::weigh_kinds() {
+  kind_weights_.clear();
+  for (const Kind& kind : rules_->kinds())
+    kind_weights_.push_back(laying_->share(kind.shape) * rules_->shape_radius(kind) * rules_->shape_radius(kind));
+}
+
+Index GapSearch::draw_kind(std::uint64_t kinds, double chance) const {
   double total = 0;
   for (std::size_t k = 0; k < kind_weights_.size(); ++k)
-    if (look.open >> k & 1) total += kind_weights_[k];
-  double pick = uniform(key, 0) * total;
+    if (kinds >> k & 1) total += kind_weights_[k];
+  double pick = chance * total;
   Index kind = k_none;
   for (std::size_t k = 0; k < kind_weights_.size(); ++k) {
-    if (!(look.open >> k & 1) || kind_weights_[k] <= 0) continue;
+    if (!(kinds >> k & 1) || kind_weights_[k] <= 0) continue;
     kind = static_cast<Index>(k);
     pick -= kind_weights_[k];
     if (pick < 0) break;
   }
+  return kind;
+}
+
+void GapSearch::drop_on(Index face, int shower, double per_area, std::vector<Candidate>& drops) const {
+  if (!options_->forbidden.empty() && options_->forbidden[face]) return;
+  const double size = rules_->size_at(face, Vec2::Constant(1.0 / 3));
+  const std::uint64_t own = mixed(mixed(options_->seed, static_cast<std::uint64_t>(shower)), face);
+  const double mean = std::min(per_area * mesh_->face_area(face) / (size * size), k_most_drops);
+  const auto count = static_cast<Index>(mean + uniform(own, 0));
+  for (Index i = 0; i < count; ++i) {
+    const std::uint64_t key = mixed(own, static_cast<std::uint64_t>(i) + 1);
+    double along = uniform(key, 1), up = uniform(key, 2);
+    if (along + up > 1) along = 1 - along, up = 1 - up;
+    const SurfacePoint point = point_at(face, Vec2(along, up));
+    const Index kind = draw_kind(~std::uint64_t{0}, uniform(key, 0));
+    drops.push_back({order(point, key), kind, face, point, drawn_scale(point, uniform(key, 4))});
+  }
+}
+
+/// Until a shower lays hardly anything, or all have fallen.
+DistributionStop GapSearch::rain(const JobStage& stage) {
+  std::span<const double> showers = options_->packing > 0 ? std::span<const double>(k_sweeping_showers) : k_showers;
+  if (searches()) showers = showers.first(options_->packing > 0 ? k_searching_sweeps : k_searching_showers);
+  double area = 0;
+  for (const Kind& kind : rules_->kinds()) area += rules_->shape_area(kind);
+  area *= rules_->mean_square_factor() / static_cast<double>(rules_->kinds().size());
+  bool is_tired = false;
+  for (std::size_t i = 0; i < showers.size() && laying_->is_any_wanted(); ++i) {
+    const auto part = [&](double share) {
+      return (static_cast<double>(i) + share) / static_cast<double>(showers.size());
+    };
+    weigh_kinds();
+    std::vector<Candidate> drops;
+    for (Index f = 0; f < mesh_->face_count(); ++f) {
+      if (f % 4096 == 0) stage.check();
+      drop_on(f, static_cast<int>(i), showers[i] / area, drops);
+    }
+    const std::size_t before = laying_->settled().copies().size();
+    laying_->lay(drops, stage.part(part(0), part(1)));
+    const std::size_t total = laying_->settled().copies().size();
+    is_tired = static_cast<double>(total - before) < k_tired * static_cast<double>(total);
+    if (is_tired && !options_->maximal) break;
+  }
+  if (!laying_->is_any_wanted()) return DistributionStop::counts;
+  return DistributionStop::tired;
+}
+
+void GapSearch::throw_dart(const OpenCell& open, Index number, Look& look) const {
+  const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
+  const Index kind = draw_kind(look.free ? look.free : look.open, uniform(key, 0));
   if (kind == k_none) return;
   double along = uniform(key, 1), up = uniform(key, 2);
   if (along + up > 1) along = 1 - along, up = 1 - up;
+  if (look.free) {
+    const SurfacePoint centre = point_at(open.cell.face, open.cell.centre());
+    look.has_dart = true;
+    look.dart = {order(centre, key), kind, number, centre, rules_->size_at(centre) * rules_->smallest_factor()};
+    return;
+  }
   const SurfacePoint point = point_at(open.cell.face, open.cell.weights(along, up));
-  const double range = options_->largest - options_->smallest;
-  const double scale = rules_->size_at(point) * (options_->smallest + range * uniform(key, 4));
+  const double radius =
+      rules_->size_at(point) * rules_->smallest_factor() * rules_->shape_radius(rules_->kinds()[kind]);
   const double area = mesh_->face_area(open.cell.face) * open.cell.unit() * open.cell.unit();
+  if (area < uniform(key, 5) * k_dart_area * radius * radius) return;
   look.has_dart = true;
-  look.dart = {order(open.cell, point, area, key), kind, number, point, scale};
+  look.dart = {order(point, key), kind, number, point, drawn_scale(point, uniform(key, 4))};
 }
 
 bool GapSearch::is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const {
@@ -167,13 +237,14 @@ bool GapSearch::is_certain(const CellView& view, const Copy& copy, const Motion&
     const double angle = copy.placement.angle + std::atan2(found.point.y(), found.point.x());
     const TraceEnd end = trace_end(*mesh_, view.centre, angle_about(*mesh_, view.centre, angle), length);
     if (end.hit_boundary) return false;
-    const Vec2 in_face = FaceChart(*mesh_, end.point.face).to_plane(end.point.barycentric);
-    const bool is_known = laying_->settled().visit(end.point.face, {end.point.barycentric[1], end.point.barycentric[2]},
-                                                   [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
-                                                     if (number != other) return false;
-                                                     place = origin + turn * in_face;
-                                                     return true;
-                                                   });
+    const Vec2 in_face = rules_->flat().place(end.point);
+    const bool is_known =
+        laying_->settled().visit(end.point.face, {end.point.barycentric[1], end.point.barycentric[2]}, copy.radius(),
+                                 [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
+                                   if (number != other) return false;
+                                   place = origin + turn * in_face;
+                                   return true;
+                                 });
     if (!is_known) return false;
   }
   const double drift = (place - pose(found.point)).norm();
@@ -190,65 +261,83 @@ bool GapSearch::is_certain(const CellView& view, const Copy& copy, const Motion&
   return found.radius * (1 - bending) - distance - moved * (1 + bending) > 0;
 }
 
-/// Kinds of which the disk about the centre meets a copy wherever in the cell it is. It does not matter how they turn.
-std::uint64_t GapSearch::centrally_covered(const CellView& view, std::uint64_t kinds) const {
+/// Those that the smallest copies may meet, the nearest first.
+void GapSearch::find_neighbours(const CellView& view, Neighbours& near) const {
+  near.clear();
   const SurfacePoint& centre = view.centre;
-  const double scale = rules_->smallest_factor() * view.size;
-  std::uint64_t covered = 0;
-  laying_->settled().visit(centre.face, {centre.barycentric[1], centre.barycentric[2]},
+  const double reach = rules_->smallest_factor() * view.size * rules_->largest_body_radius();
+  laying_->settled().visit(centre.face, {centre.barycentric[1], centre.barycentric[2]}, reach,
                            [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
                              const Copy& there = laying_->settled().copies()[other];
-                             const Vec2 place = (origin + turn * view.place) / there.placement.scale;
-                             const double away = place.norm() - there.body->shape.circumradius();
-                             if (away * there.placement.scale > scale * rules_->largest_inradius()) return false;
-                             const double distance = there.placement.scale * there.body->distance.upper(place);
-                             for (std::uint64_t rest = kinds & ~covered; rest; rest &= rest - 1) {
-                               const auto kind = static_cast<Index>(std::countr_zero(rest));
-                               if (scale * rules_->inradius(kind) - view.radius > distance)
-                                 covered |= std::uint64_t{1} << kind;
-                             }
-                             return covered == kinds;
+                             const double away = (origin + turn * view.place).norm() - there.radius();
+                             if (away < reach) near.push_back({other, away, origin, turn});
+                             return false;
                            });
+  std::sort(near.begin(), near.end(), [](const Neighbour& a, const Neighbour& b) {
+    return a.away != b.away ? a.away < b.away : a.copy < b.copy;
+  });
+}
+
+/// Kinds of which the disk about the centre meets a copy wherever in the cell it is. It does not matter how they turn.
+std::uint64_t GapSearch::centrally_covered(const CellView& view, std::uint64_t kinds, const Neighbours& near) const {
+  const double scale = rules_->smallest_factor() * view.size;
+  std::uint64_t covered = 0;
+  for (const Neighbour& neighbour : near) {
+    if (neighbour.away > scale * rules_->largest_inradius()) break;
+    const Copy& there = laying_->settled().copies()[neighbour.copy];
+    const Vec2 place = (neighbour.origin + neighbour.turn * view.place) / there.placement.scale;
+    const double distance = there.placement.scale * there.body->distance.upper(place);
+    for (std::uint64_t rest = kinds & ~covered; rest; rest &= rest - 1) {
+      const auto kind = static_cast<Index>(std::countr_zero(rest));
+      if (scale * rules_->inradius(kind) - view.radius > distance) covered |= std::uint64_t{1} << kind;
+    }
+    if (covered == kinds) break;
+  }
   return covered;
 }
 
-bool GapSearch::is_covered(const CellView& view, const Copy& copy, const Motion& motion) const {
-  const SurfacePoint& centre = view.centre;
+bool GapSearch::is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbours& near) const {
   const double scale = copy.placement.scale;
-  const bool meets = laying_->settled().visit(
-      centre.face, {centre.barycentric[1], centre.barycentric[2]},
-      [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
-        const Copy& there = laying_->settled().copies()[other];
-        const Pose pose = pose_at(view, copy, origin, turn);
-        // What the grids cannot tell, their distances being rounded up, the exact ones may.
-        const double slack =
-            std::max(scale * copy.body->distance.slack(), there.placement.scale * there.body->distance.slack());
-        const double drift = k_drift * there.bend * scale;
-        const Encounter found = encounter(*copy.body, scale, pose, motion, *there.body, there.placement.scale,
-                                          {.least = -slack, .enough = slack + drift * copy.body->shape.circumradius()});
-        if (found.depth > drift * found.point.norm()) return true;
-        return found.depth > -slack && is_certain(view, copy, motion, found, pose, other);
-      });
-  return meets || (!near_border_.empty() && near_border_[centre.face] && is_beyond_border(view, copy, motion));
+  const Eigen::Matrix2d own = turn_of(copy);
+  for (const std::size_t disks : {k_first_disks, std::numeric_limits<std::size_t>::max()})
+    for (const Neighbour& neighbour : near) {
+      const Copy& there = laying_->settled().copies()[neighbour.copy];
+      const Pose pose{neighbour.origin + neighbour.turn * view.place, neighbour.turn * own};
+      // What the grids cannot tell, their distances being rounded up, the exact ones may.
+      const double slack =
+          std::max(scale * copy.body->distance.slack(), there.placement.scale * there.body->distance.slack());
+      const double drift = k_drift * there.bend * scale;
+      const Encounter found =
+          encounter(*copy.body, scale, pose, motion, *there.body, there.placement.scale,
+                    {.least = -slack, .enough = slack + drift * copy.body->shape.circumradius(), .most_disks = disks});
+      if (found.depth > drift * found.point.norm()) return true;
+      if (found.depth > -slack && is_certain(view, copy, motion, found, pose, neighbour.copy)) return true;
+    }
+  return !near_border_.empty() && near_border_[view.centre.face] && is_beyond_border(view, copy, motion);
 }
 
-void GapSearch::look(const OpenCell& open, Index number, Look& look) const {
-  const CellView view = rules_->view(open.cell);
+void GapSearch::look(const OpenCell& open, Index number, Neighbours& near, Look& look) const {
+  CellView view = rules_->view(open.cell);
   look.tests = std::popcount(open.kinds);
-  for (std::uint64_t rest = open.kinds & ~centrally_covered(view, open.kinds); rest; rest &= rest - 1) {
+  find_neighbours(view, near);
+  const std::uint64_t kinds = open.kinds & ~centrally_covered(view, open.kinds, near);
+  if (!kinds) return;
+  rules_->turn(open.cell, view);
+  const Motion motion = rules_->motion(view, rules_->smallest_factor());
+  for (std::uint64_t rest = kinds; rest; rest &= rest - 1) {
     const auto kind = static_cast<Index>(std::countr_zero(rest));
     const Kind& what = rules_->kinds()[kind];
     if (!laying_->is_wanted(what.shape)) continue;
     const Copy copy = rules_->copy(kind, view.centre, view.angle, rules_->smallest_factor() * view.size);
-    const Motion motion = rules_->motion(view, rules_->smallest_factor());
-    if (is_covered(view, copy, motion)) continue;
+    if (is_covered(view, copy, motion, near)) continue;
     const double least = tolerance(view, what);
     if (motion.base + motion.per_length * copy.body->shape.circumradius() > least) {
       if (view.radius < 0.25 * least || open.cell.level >= k_most_levels)
         look.is_lost = true;
       else
         look.open |= std::uint64_t{1} << kind;
-    } else if (is_covered(view, copy, {})) {
+      if (!is_covered(view, copy, {}, near)) look.free |= std::uint64_t{1} << kind;
+    } else if (is_covered(view, copy, {}, near)) {
       ++look.leaves;
     } else {
       look.asked |= std::uint64_t{1} << kind;
@@ -263,14 +352,13 @@ void GapSearch::lose(const Cell& cell) {
 }
 
 void GapSearch::round(const JobStage& stage) {
-  kind_weights_.clear();
-  for (const Kind& kind : rules_->kinds())
-    kind_weights_.push_back(laying_->share(kind.shape) * rules_->shape_radius(kind) * rules_->shape_radius(kind));
+  weigh_kinds();
   std::vector<Look> looks(open_.size());
   const JobStage looking = stage.part(0, 0.5);
-  parallel_for(static_cast<Index>(open_.size()), options_->threads, 64, [&](Index i, int) {
+  std::vector<Neighbours> near(static_cast<std::size_t>(thread_count(options_->threads)));
+  parallel_for(static_cast<Index>(open_.size()), options_->threads, 64, [&](Index i, int thread) {
     if (i % 1024 == 0) looking.update(static_cast<double>(i) / static_cast<double>(open_.size()));
-    look(open_[i], i, looks[i]);
+    look(open_[i], i, near[thread], looks[i]);
   });
   std::vector<Candidate> candidates;
   for (Index i = 0; i < static_cast<Index>(open_.size()); ++i) {
@@ -282,10 +370,9 @@ void GapSearch::round(const JobStage& stage) {
     for (std::uint64_t rest = found.asked; rest; rest &= rest - 1) {
       const auto kind = static_cast<Index>(std::countr_zero(rest));
       const CellView view = rules_->view(open_[i].cell);
-      const double area = mesh_->face_area(open_[i].cell.face) * open_[i].cell.unit() * open_[i].cell.unit();
       const std::uint64_t key = mixed(options_->seed, open_[i].cell.key());
       const double scale = rules_->smallest_factor() * view.size;
-      candidates.push_back({order(open_[i].cell, view.centre, area, key), kind, i, view.centre, scale, true});
+      candidates.push_back({order(view.centre, key), kind, i, view.centre, scale, true});
     }
   }
   const std::vector<Outcome> outcomes = laying_->lay(candidates, stage.part(0.5, 1));
@@ -305,19 +392,12 @@ void GapSearch::round(const JobStage& stage) {
       if (is_odd) lose(open_[candidate.cell].cell);
     }
   }
-  // As long as many find room, room is easier to find than to rule out.
-  const auto total = static_cast<double>(laying_->settled().copies().size());
-  const bool splits = static_cast<double>(laid_in_round_) < k_busy * total || rounds_ >= k_most_rounds_unsplit;
   std::vector<OpenCell> next;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     if (!looks[i].open) continue;
     const CellView view = rules_->view(open_[i].cell);
     if (is_stuck[i] && view.radius < 8 * options_->tolerance * rules_->smallest_radius()) {
       lose(open_[i].cell);
-      continue;
-    }
-    if (!splits) {
-      next.push_back({open_[i].cell, looks[i].open});
       continue;
     }
     for (const Cell& child : open_[i].cell.children()) next.push_back({child, looks[i].open});
@@ -327,7 +407,10 @@ void GapSearch::round(const JobStage& stage) {
 }
 
 DistributionStop GapSearch::run(const JobStage& stage) {
-  double done = 0;
+  double done = searches() ? 0.4 : 1;
+  const DistributionStop rained = rain(stage.part(0, done));
+  if (rained == DistributionStop::counts || !searches()) return rained;
+  make_base_cells();
   while (!open_.empty()) {
     if (!laying_->is_any_wanted()) return DistributionStop::counts;
     round(stage.part(done, done + 0.5 * (1 - done)));

@@ -26,25 +26,44 @@ class GapSearch {
   /// What came of looking at a cell.
   struct Look {
     std::uint64_t open = 0;   ///< kinds that may fit, to be split
+    std::uint64_t free = 0;   ///< those of them of which a copy at the centre seems to have room
     std::uint64_t asked = 0;  ///< kinds of which a copy at the centre is to be tried
     std::int64_t tests = 0, leaves = 0;
     bool is_lost = false;  ///< some kind cannot be told
     bool has_dart = false;
     Candidate dart;
   };
+  /// A copy that one in the cell might meet, and how the cell's face lies in its plane.
+  struct Neighbour {
+    Index copy;
+    double away;  ///< from its circumcircle to the cell's centre
+    Vec2 origin;
+    Eigen::Matrix2d turn;
+  };
+  using Neighbours = std::vector<Neighbour>;
 
   void make_base_cells();
   double base_radius() const;
   void flag_borders();
+  /// Copies that are wanted by number are looked for where the rain has missed the room.
+  bool searches() const { return options_->maximal || !options_->counts.empty(); }
+  void weigh_kinds();
+  DistributionStop rain(const JobStage& stage);
+  void drop_on(Index face, int shower, double per_area, std::vector<Candidate>& drops) const;
   void round(const JobStage& stage);
-  void look(const OpenCell& open, Index number, Look& look) const;
+  void look(const OpenCell& open, Index number, Neighbours& near, Look& look) const;
+  void find_neighbours(const CellView& view, Neighbours& near) const;
+  Index draw_kind(std::uint64_t kinds, double chance) const;
+  double drawn_scale(const SurfacePoint& point, double chance) const {
+    return rules_->size_at(point) * (options_->smallest + (options_->largest - options_->smallest) * chance);
+  }
   void throw_dart(const OpenCell& open, Index number, Look& look) const;
-  std::uint64_t centrally_covered(const CellView& view, std::uint64_t kinds) const;
-  bool is_covered(const CellView& view, const Copy& copy, const Motion& motion) const;
+  std::uint64_t centrally_covered(const CellView& view, std::uint64_t kinds, const Neighbours& near) const;
+  bool is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbours& near) const;
   bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Encounter& found,
                   const Pose& pose, Index other) const;
   bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const;
-  double order(const Cell& cell, const SurfacePoint& point, double area, std::uint64_t key) const;
+  double order(const SurfacePoint& point, std::uint64_t key) const;
   double tolerance(const CellView& view, const Kind& kind) const {
     return options_->tolerance * rules_->smallest_factor() * view.size * rules_->shape_radius(kind);
   }

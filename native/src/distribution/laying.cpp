@@ -37,7 +37,7 @@ Laying::Laying(const Mesh& mesh, const PlacingRules& rules, const DistributionOp
       rules_(&rules),
       forbidden_(options.forbidden),
       threads_(thread_count(options.threads)),
-      settled_(mesh, rules.largest_radius()),
+      settled_(mesh, rules.flat(), rules.smallest_radius(), rules.largest_radius()),
       wanted_(options.counts),
       touched_(static_cast<std::size_t>(mesh.face_count()), 0) {
   for (const Kind& kind : rules.kinds()) laid_.resize(static_cast<std::size_t>(kind.shape) + 1, 0);
@@ -52,19 +52,18 @@ bool Laying::is_any_wanted() const {
 
 bool Laying::is_foreseen_to_meet(const Copy& copy) const {
   const SurfacePoint& centre = copy.placement.centre;
-  const FaceChart chart(*mesh_, centre.face);
-  const Vec2 place = chart.to_plane(centre.barycentric);
+  const Vec2 place = rules_->flat().place(centre);
   const double c = copy.placement.scale * std::cos(copy.placement.angle),
                s = copy.placement.scale * std::sin(copy.placement.angle);
   Eigen::Matrix2d own;
   own << c, -s, s, c;
   return settled_.visit(
-      centre.face, {centre.barycentric[1], centre.barycentric[2]},
+      centre.face, {centre.barycentric[1], centre.barycentric[2]}, copy.radius(),
       [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
         const Copy& other = settled_.copies()[number];
         const Pose pose{origin + turn * place, turn * own};
-        if (pose.at.norm() > copy.radius() + other.radius() ||
-            !boxes_meet(*copy.body, pose, *other.body, other.placement.scale))
+        const double reach = copy.radius() + other.radius();
+        if (pose.at.squaredNorm() > reach * reach || !boxes_meet(*copy.body, pose, *other.body, other.placement.scale))
           return false;
         const Search deep{.least = 0, .enough = 0, .most_disks = 4};
         return encounter(*copy.body, copy.placement.scale, pose, {}, *other.body, other.placement.scale, deep).depth >

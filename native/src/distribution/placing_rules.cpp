@@ -16,12 +16,15 @@ constexpr double k_size_step = 1.15;
 constexpr std::size_t k_most_kinds = 64;  // a bit of a word each, see gap_search
 /// The field is sampled about the corners of a cell; between them it may go a little beyond.
 constexpr double k_field_slack = 1.2;
+/// Corners of a cell, see Cell::weights.
+constexpr double k_corners[3][2] = {{0, 0}, {1, 0}, {0, 1}};
 
 }  // namespace
 
 PlacingRules::PlacingRules(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
                            const DirectionField& field, const JobStage& stage)
     : mesh_(&mesh),
+      flat_(mesh, options.threads),
       field_(&field),
       size_(options.size),
       smallest_factor_(options.smallest),
@@ -29,6 +32,7 @@ PlacingRules::PlacingRules(const Mesh& mesh, std::span<const Shape> shapes, cons
   for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
     radii_.push_back(shapes[shape].circumradius());
     inradii_.push_back(shapes[shape].inradius());
+    areas_.push_back(shapes[shape].area());
     const int directions = field.symmetry();
     const int different = shapes[shape].has_half_turn() && directions % 2 == 0 ? directions / 2 : directions;
     for (const bool is_mirrored : {false, true})
@@ -66,6 +70,7 @@ void PlacingRules::make_bodies(std::span<const Shape> shapes, const Distribution
   });
   for (const auto& sizes : bodies_)
     for (std::size_t level = 0; level < sizes.size(); ++level) {
+      largest_body_radius_ = std::max(largest_body_radius_, sizes[level]->shape.circumradius());
       const double scale = std::min(most_scale, least_scale_ * std::pow(k_size_step, level + 1));
       largest_radius_ =
           std::max(largest_radius_, sizes[level]->shape.circumradius() * (levels == 1 ? most_scale : scale));
@@ -92,17 +97,21 @@ double PlacingRules::size_at(Index face, const Vec2& weights) const {
 }
 
 CellView PlacingRules::view(const Cell& cell) const {
-  const FaceChart chart(*mesh_, cell.face);
-  CellView view{point_at(cell.face, cell.centre()), chart, Vec2::Zero(), 0, 0, 0, 0, 0};
-  view.place = chart.to_plane(view.centre.barycentric);
-  view.angle = field_->angle_at(view.centre);
+  CellView view{point_at(cell.face, cell.centre()), flat_.place(cell.face, cell.centre()), 0, 0, 0, 0, 0};
   view.size = size_at(cell.face, cell.centre());
-  // Beside a vertex the field depends on the side from which one comes, so it is asked for a little off the corners.
-  constexpr double k_corners[3][2] = {{0, 0}, {1, 0}, {0, 1}}, k_off = 0.01;
-  for (int i = 0; i < 3; ++i) {
-    const Vec2 corner = cell.weights(k_corners[i][0], k_corners[i][1]);
-    view.radius = std::max(view.radius, (chart.to_plane(point_at(cell.face, corner).barycentric) - view.place).norm());
+  for (const auto& [along, up] : k_corners) {
+    const Vec2 corner = cell.weights(along, up);
+    view.radius = std::max(view.radius, (flat_.place(cell.face, corner) - view.place).norm());
     view.size_spread = std::max(view.size_spread, std::abs(size_at(cell.face, corner) - view.size));
+  }
+  return view;
+}
+
+void PlacingRules::turn(const Cell& cell, CellView& view) const {
+  view.angle = field_->angle_at(view.centre);
+  // Beside a vertex the field depends on the side from which one comes, so it is asked for a little off the corners.
+  constexpr double k_off = 0.01;
+  for (int i = 0; i < 3; ++i) {
     for (int k = 1; k < 3; ++k) {
       const int other = (i + k) % 3;
       const double along = k_corners[i][0] + k_off * (k_corners[other][0] - k_corners[i][0]);
@@ -111,7 +120,6 @@ CellView PlacingRules::view(const Cell& cell) const {
       view.angle_spread = std::max(view.angle_spread, k_field_slack * std::abs(angle - view.angle));
     }
   }
-  return view;
 }
 
 }  // namespace saddleback::distribution

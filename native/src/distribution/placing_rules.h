@@ -11,6 +11,7 @@
 #include "body.h"
 #include "cell.h"
 #include "encounter.h"
+#include "flat_faces.h"
 #include "settled_shapes.h"
 
 namespace saddleback::distribution {
@@ -25,8 +26,7 @@ struct Kind {
 /// A cell, and how much direction and size change over it.
 struct CellView {
   SurfacePoint centre;
-  FaceChart chart;
-  Vec2 place;           ///< the centre in the chart
+  Vec2 place;           ///< the centre in the face's plane
   double radius;        ///< farthest corner from the centre
   double angle;         ///< of the field at the centre
   double angle_spread;  ///< by how much it differs elsewhere in the cell
@@ -39,16 +39,28 @@ class PlacingRules {
                const DirectionField& field, const JobStage& stage);
 
   std::span<const Kind> kinds() const { return kinds_; }
+  const FlatFaces& flat() const { return flat_; }
   /// The largest circumradius of anything that is laid, gap included, and the smallest without.
   double largest_radius() const { return largest_radius_; }
   double smallest_radius() const { return smallest_radius_; }
   double shape_radius(const Kind& kind) const { return radii_[kind.shape]; }
+  double shape_area(const Kind& kind) const { return areas_[kind.shape]; }
   double inradius(Index kind) const { return inradii_[kinds_[kind].shape]; }
   double largest_inradius() const { return *std::max_element(inradii_.begin(), inradii_.end()); }
+  /// Of bodies, the gap included, in units of their planes.
+  double largest_body_radius() const { return largest_body_radius_; }
   double largest_shape_radius() const { return *std::max_element(radii_.begin(), radii_.end()); }
   double smallest_factor() const { return smallest_factor_; }
+  /// The mean of the squares of the factors that copies are scaled by.
+  double mean_square_factor() const {
+    return (smallest_factor_ * smallest_factor_ + smallest_factor_ * largest_factor_ +
+            largest_factor_ * largest_factor_) /
+           3;
+  }
 
+  /// All but the angle and its spread, which `turn` adds: most cells can be told without.
   CellView view(const Cell& cell) const;
+  void turn(const Cell& cell, CellView& view) const;
   double size_at(Index face, const Vec2& weights) const;
   double size_at(const SurfacePoint& point) const {
     return size_at(point.face, {point.barycentric[1], point.barycentric[2]});
@@ -67,14 +79,15 @@ class PlacingRules {
   void make_bodies(std::span<const Shape> shapes, const DistributionOptions& options, const JobStage& stage);
 
   const Mesh* mesh_;
+  FlatFaces flat_;
   const DirectionField* field_;
   std::vector<double> size_;
   double smallest_factor_, largest_factor_;
-  std::vector<double> radii_, inradii_;  ///< per shape
+  std::vector<double> radii_, inradii_, areas_;  ///< per shape
   std::vector<Kind> kinds_;
   std::vector<std::vector<std::unique_ptr<Body>>> bodies_;  ///< per shape and side, by size where there is a gap
   double least_scale_ = 1;
-  double largest_radius_ = 0, smallest_radius_ = 0;
+  double largest_radius_ = 0, smallest_radius_ = 0, largest_body_radius_ = 0;
 };
 
 }  // namespace saddleback::distribution

@@ -8,14 +8,11 @@
 namespace saddleback::distribution {
 namespace {
 
-Vec2 at_weights(const FaceChart& chart, const Vec2& weights) {
-  return weights.x() * chart.corner[1] + weights.y() * chart.corner[2];  // corner 0 is the origin
-}
+constexpr int k_most_rings = 8;
 
 /// The points of a face that are within `reach` of the origin of the copy's plane, as a box of weights; false when
-/// there are none.
-bool reached_box(const FacePlace& place, const FaceChart& chart, double reach, Vec2& low, Vec2& high) {
-  const Vec2 e1 = place.turn * chart.corner[1], e2 = place.turn * chart.corner[2];
+/// there are none. e1 and e2: where its edges from corner 0 lie.
+bool reached_box(const FacePlace& place, const Vec2& e1, const Vec2& e2, double reach, Vec2& low, Vec2& high) {
   const double area = e1.x() * e2.y() - e1.y() * e2.x();
   const auto weights = [&](const Vec2& arm) {
     return Vec2((arm.x() * e2.y() - arm.y() * e2.x()) / area, (e1.x() * arm.y() - e1.y() * arm.x()) / area);
@@ -32,12 +29,15 @@ bool reached_box(const FacePlace& place, const FaceChart& chart, double reach, V
 
 }  // namespace
 
-SettledShapes::SettledShapes(const Mesh& mesh, double reach)
+SettledShapes::SettledShapes(const Mesh& mesh, const FlatFaces& flat, double least, double most)
     : mesh_(&mesh),
-      reach_(reach),
-      buckets_(mesh, 2 * reach),
+      flat_(&flat),
+      least_(least),
+      reach_(most),
+      rings_(1 + std::clamp(static_cast<int>(std::ceil(std::log2(most / least) - 1e-9)), 0, k_most_rings - 1)),
+      buckets_(mesh, least + most),
       piece_heads_(static_cast<std::size_t>(buckets_.count()), k_none),
-      place_heads_(static_cast<std::size_t>(buckets_.count()), k_none) {}
+      place_heads_(static_cast<std::size_t>(buckets_.count()) * rings_, k_none) {}
 
 bool SettledShapes::is_free(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
   for (const OutlinePiece& piece : outline.pieces)
@@ -63,8 +63,8 @@ bool SettledShapes::meets(const OutlinePiece& piece) const {
 }
 
 bool SettledShapes::is_within_another(const OutlinePiece& piece) const {
-  const Vec2 point = at_weights(FaceChart(*mesh_, piece.face), piece.begin);
-  return visit(piece.face, piece.begin, [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
+  const Vec2 point = flat_->place(piece.face, piece.begin);
+  return visit(piece.face, piece.begin, 0, [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
     const Copy& copy = copies_[other];
     return copy.body->shape.contains((origin + turn * point) / copy.placement.scale);
   });
@@ -74,7 +74,7 @@ bool SettledShapes::is_within_another(const OutlinePiece& piece) const {
 bool SettledShapes::holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
   const SurfacePoint& centre = copy.placement.centre;
   const ShapeMap& plane = mapper.plane();
-  return visit(centre.face, {centre.barycentric[1], centre.barycentric[2]},
+  return visit(centre.face, {centre.barycentric[1], centre.barycentric[2]}, copy.radius(),
                [&](Index other, const Vec2&, const Eigen::Matrix2d&) {
                  for (std::size_t i = start_begins_[other];
                       i < (static_cast<std::size_t>(other) + 1 < start_begins_.size() ? start_begins_[other + 1]
@@ -110,7 +110,7 @@ void SettledShapes::add(const Copy& copy, const SurfaceOutline& outline) {
 
 std::vector<FacePlace> SettledShapes::places_about(const Copy& copy, ShapeMap& map) const {
   const double reach = copy.radius() + reach_;
-  map.about_point(copy.placement.centre, copy.placement.angle, {Vec2::Constant(-reach), Vec2::Constant(reach)});
+  map.about_point(copy.placement.centre, copy.placement.angle, {Vec2::Constant(-reach), Vec2::Constant(reach)}, reach);
   std::vector<FacePlace> result;
   std::vector<Index> faces;
   for (const Index vertex : map.vertices()) {
@@ -131,24 +131,23 @@ std::vector<FacePlace> SettledShapes::places_about(const Copy& copy, ShapeMap& m
     const Vec2 e1 = map.coordinates(corners[1]) - origin, e2 = map.coordinates(corners[2]) - origin;
     if (!(e1.x() * e2.y() - e1.y() * e2.x() > 0)) continue;
     if (origin.norm() > reach + std::max(e1.norm(), e2.norm())) continue;
-    const FaceChart chart(*mesh_, face);
-    const Vec2 x = e1 / chart.corner[1].x(), y = (e2 - x * chart.corner[2].x()) / chart.corner[2].y();
-    Eigen::Matrix2d turn;
-    turn << x, y;
-    result.push_back({face, origin, turn});
+    result.push_back({face, origin, flat_->turn_to(face, e1, e2)});
   }
   return result;
 }
 
 void SettledShapes::add_places(Index copy, const std::vector<FacePlace>& places) {
-  const double reach = copies_[copy].radius() + reach_;
+  const double radius = copies_[copy].radius();
   for (const FacePlace& place : places) {
+    const Vec2 e1 = place.turn * flat_->place(place.face, {1, 0}), e2 = place.turn * flat_->place(place.face, {0, 1});
     Vec2 low = Vec2::Zero(), high = Vec2::Ones();
-    if (buckets_.divisions(place.face) > 1 && !reached_box(place, FaceChart(*mesh_, place.face), reach, low, high))
-      continue;
-    buckets_.visit(place.face, low, high, [&](Index bucket) {
-      places_.push_back({place.origin, place.turn, copy, place_heads_[bucket]});
-      place_heads_[bucket] = static_cast<Index>(places_.size()) - 1;
+    if (buckets_.divisions(place.face) > 1 && !reached_box(place, e1, e2, radius + reach_, low, high)) continue;
+    buckets_.visit_cells(place.face, low, high, [&](Index bucket, const Vec2& middle, double share) {
+      const double away = (place.origin + middle.x() * e1 + middle.y() * e2).norm() - share * (e1.norm() + e2.norm());
+      if (away > radius + reach_) return;
+      Index& head = place_heads_[static_cast<std::size_t>(bucket) * rings_ + ring_of(away - radius)];
+      places_.push_back({place.origin, place.turn, copy, head});
+      head = static_cast<Index>(places_.size()) - 1;
     });
   }
 }

@@ -9,6 +9,7 @@
 
 #include "body.h"
 #include "face_buckets.h"
+#include "flat_faces.h"
 
 namespace saddleback::distribution {
 
@@ -30,8 +31,8 @@ struct FacePlace {
 
 class SettledShapes {
  public:
-  /// `reach`: how far from its outline a copy may be met by others (their largest circumradius).
-  SettledShapes(const Mesh& mesh, double reach);
+  /// `least` and `most`: circumradii of what copies may be met by.
+  SettledShapes(const Mesh& mesh, const FlatFaces& flat, double least, double most);
 
   const Mesh& mesh() const { return *mesh_; }
   std::span<const Copy> copies() const { return copies_; }
@@ -48,12 +49,15 @@ class SettledShapes {
   /// Makes them known for the copy of this number.
   void add_places(Index copy, const std::vector<FacePlace>& places);
 
-  /// Calls visit(copy number, FacePlace's origin and turn) for copies that may be met at the point, until it gives
-  /// true; then returns true.
+  /// Calls visit(copy number, FacePlace's origin and turn) for copies that something of the circumradius `reach` about
+  /// the point may meet, until it gives true; then returns true.
   template <class Visit>
-  bool visit(Index face, const Vec2& weights, Visit&& visit) const {
-    for (Index i = place_heads_[buckets_.at(face, weights)]; i != k_none; i = places_[i].next)
-      if (visit(places_[i].copy, places_[i].origin, places_[i].turn)) return true;
+  bool visit(Index face, const Vec2& weights, double reach, Visit&& visit) const {
+    const Index* const heads = place_heads_.data() + static_cast<std::size_t>(buckets_.at(face, weights)) * rings_;
+    const int last = ring_of(reach);
+    for (int ring = 0; ring <= last; ++ring)
+      for (Index i = heads[ring]; i != k_none; i = places_[i].next)
+        if (visit(places_[i].copy, places_[i].origin, places_[i].turn)) return true;
     return false;
   }
 
@@ -72,17 +76,25 @@ class SettledShapes {
     Vec2 weights;
   };
 
+  /// Copies are listed by how large something has to be to meet them: in ring k up to the circumradius least * 2^k.
+  int ring_of(double reach) const {
+    int ring = 0;
+    for (double radius = least_; radius < reach && ring + 1 < rings_; radius *= 2) ++ring;
+    return ring;
+  }
   bool meets(const OutlinePiece& piece) const;
   bool is_within_another(const OutlinePiece& piece) const;
   bool holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;
 
   const Mesh* mesh_;
-  double reach_;
+  const FlatFaces* flat_;
+  double least_, reach_;
+  int rings_;
   FaceBuckets buckets_;
   std::vector<Copy> copies_;
-  std::vector<std::size_t> start_begins_;  ///< per copy, of its loops
-  std::vector<Start> starts_;              ///< a point of every loop
-  std::vector<Index> piece_heads_, place_heads_;
+  std::vector<std::size_t> start_begins_;         ///< per copy, of its loops
+  std::vector<Start> starts_;                     ///< a point of every loop
+  std::vector<Index> piece_heads_, place_heads_;  ///< per bucket, of places per ring
   std::vector<Piece> pieces_;
   std::vector<Place> places_;
 };
