@@ -75,7 +75,30 @@ std::vector<Index> inside_in_order(const SaddleVertexGraph& graph, std::span<con
 
 void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
                            std::span<const double> limits, FanAngles angles, DirectFans& fans, const JobStage& stage) {
-  if (graph.is_exact()) return find_exactly(graph, points, fans, stage);
+  if (graph.is_exact())
+    return find_exactly(graph, points, fans, stage, [&](std::vector<DirectArc>& arcs) { append_row(arcs); });
+  find_in_batches(graph, points, limits, fans, stage,
+                  [&](int lane, std::vector<DirectArc>& arcs) { append_arcs(graph, lane, angles, arcs); });
+}
+
+void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
+                           std::span<const double> limits, FanViews& views, const JobStage& stage) {
+  if (graph.is_exact()) {
+    return find_exactly(graph, points, views, stage, [&](std::vector<SeenNode>& seen) {
+      for (const DirectArc& arc : row_) {
+        const Vec2 place = arc.length * Vec2(std::cos(arc.start_angle), std::sin(arc.start_angle));
+        seen.push_back({graph.node_of(arc.vertex), k_none, arc.length, place, Vec2(arc.end_angle, 0)});
+      }
+    });
+  }
+  find_in_batches(graph, points, limits, views, stage,
+                  [&](int lane, std::vector<SeenNode>& seen) { append_seen(lane, seen); });
+}
+
+template <class Arc, class Append>
+void DirectFanFinder::find_in_batches(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
+                                      std::span<const double> limits, FanRows<Arc>& rows, const JobStage& stage,
+                                      Append&& append) {
   for (std::size_t i = 0; i < points.size();) {
     batch_.clear();
     std::size_t end = i;
@@ -86,25 +109,26 @@ void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const Surfa
       if (lane < std::ssize(batch_) && batch_[lane] == i) {
         // So many windows that all were stopped: alone each may need fewer.
         if (!together) see(graph, points, limits, Batch(batch_).subspan(lane, 1), stage);
-        append_arcs(graph, together ? lane : 0, angles, fans.arcs);
+        append(together ? lane : 0, rows.arcs);
         ++lane;
       }
-      fans.offsets.push_back(std::ssize(fans.arcs));
+      rows.offsets.push_back(std::ssize(rows.arcs));
     }
   }
 }
 
 /// One by one, in order of distance.
+template <class Arc, class Append>
 void DirectFanFinder::find_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
-                                   DirectFans& fans, const JobStage& stage) {
+                                   FanRows<Arc>& rows, const JobStage& stage, Append&& append) {
   if (!propagator_) propagator_ = std::make_unique<WindowPropagator>(graph.unfolding());
   for (const SurfacePoint& point : points) {
     stage.check();
     if (!is_vertex(graph.mesh(), point)) {
       propagator_->from_point(point, exact_width(graph), row_);
-      append_row(fans.arcs);
+      append(rows.arcs);
     }
-    fans.offsets.push_back(std::ssize(fans.arcs));
+    rows.offsets.push_back(std::ssize(rows.arcs));
   }
 }
 
@@ -146,6 +170,23 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, FanA
   append_row(arcs);
 }
 
+void DirectFanFinder::append_seen(int lane, std::vector<SeenNode>& seen) {
+  const SightingRows rows = waves_->sightings();
+  const double unit = mesh_->waves().unit();
+  for (const std::int32_t i : waves_->chosen(lane)) {
+    const Vec2 place = unit * Vec2(rows.x[i], rows.y[i]);
+    seen.push_back({rows.slot[i] / k_batch, rows.edge[i] / k_batch, place.norm(), place,
+                    unit * Vec2(rows.from_x[i], rows.from_y[i])});
+  }
+}
+
+double direction_back(const SaddleVertexGraph& graph, const SeenNode& seen) {
+  if (seen.edge == k_none) return seen.from.x();
+  const Vec2 along = seen.from - seen.place;
+  const double angle = std::atan2(cross(along, -seen.place), along.dot(-seen.place));
+  return graph.query_cache().fan_mesh(graph, 1, {}).apex_direction(seen.edge) + std::max(angle, 0.0);
+}
+
 double fans_a_fan_mesh_costs(const SaddleVertexGraph& graph) {
   return graph.query_cache().has_fan_mesh() ? 0 : k_fan_mesh_cost * graph.mesh().vertex_count();
 }
@@ -159,8 +200,12 @@ FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> p
     finders_.push_back(graph.query_cache().fan_finders.lease());
 }
 
-void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
-                  FanAngles angles, int threads, const JobStage& stage, const UseFan& use) {
+namespace {
+
+/// Calls find(finder, points, limits, rows) for stretches of points and use(i, row) for each of them.
+template <class Arc, class Find, class Use>
+void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+                  int threads, const JobStage& stage, Find&& find, Use&& use) {
   const std::vector<Index> order = inside_in_order(graph, points);
   if (order.empty()) return;
   const auto count = static_cast<Index>(order.size()), blocks = (count + k_chunk - 1) / k_chunk;
@@ -171,24 +216,46 @@ void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
   struct Work {
     std::vector<SurfacePoint> points;
     std::vector<double> limits;
-    DirectFans fans;
+    FanRows<Arc> rows;
   };
   std::vector<Work> works(thread_count(threads));
   std::atomic<Index> done{0};
   parallel_for(blocks, threads, 1, [&](Index block, int thread) {
-    auto& [own, own_limits, fans] = works[thread];
+    auto& [own, own_limits, rows] = works[thread];
     const std::span chosen = std::span(order).subspan(block * k_chunk, std::min(k_chunk, count - block * k_chunk));
     own.clear();
     own_limits.clear();
-    fans.clear();
+    rows.clear();
     for (const Index i : chosen) {
       own.push_back(points[i]);
       if (!limits.empty()) own_limits.push_back(limits[i]);
     }
-    team[thread].find(graph, own, own_limits, angles, fans, stage);
-    for (std::size_t i = 0; i < chosen.size(); ++i) use(chosen[i], fans[i]);
+    find(team[thread], own, own_limits, rows);
+    for (std::size_t i = 0; i < chosen.size(); ++i) use(chosen[i], rows[i]);
     finding.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
   });
+}
+
+}  // namespace
+
+void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+                  FanAngles angles, int threads, const JobStage& stage, const UseFan& use) {
+  for_each_row<DirectArc>(
+      graph, points, limits, threads, stage,
+      [&](DirectFanFinder& finder, const auto& own, const auto& own_limits, DirectFans& fans) {
+        finder.find(graph, own, own_limits, angles, fans, stage);
+      },
+      use);
+}
+
+void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+                   int threads, const JobStage& stage, const UseSeen& use) {
+  for_each_row<SeenNode>(
+      graph, points, limits, threads, stage,
+      [&](DirectFanFinder& finder, const auto& own, const auto& own_limits, FanViews& views) {
+        finder.find(graph, own, own_limits, views, stage);
+      },
+      use);
 }
 
 DirectFans direct_fans(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,

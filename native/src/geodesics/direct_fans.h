@@ -17,13 +17,23 @@ namespace saddleback {
 
 class SaddleVertexGraph;
 
-/// Arcs from points to vertices, a row a point, in compressed sparse rows.
-struct DirectFans {
+/// A vertex that a point sees, without the angles of a DirectArc, which are as much work as all else about it.
+struct SeenNode {
+  Index node;
+  Index edge;     ///< of the waves' mesh, across which it is seen; k_none: `from` is no place but the direction back, 0
+  double length;  ///< as it is
+  Vec2 place;     ///< in the chart of the point's face, from the point
+  Vec2 from;      ///< the start of `edge` in the same plane
+};
+
+/// What points see, a row a point, in compressed sparse rows.
+template <class Arc>
+struct FanRows {
   std::vector<std::int64_t> offsets{0};  ///< (n + 1,)
-  std::vector<DirectArc> arcs;           ///< each row by vertex
+  std::vector<Arc> arcs;
 
   std::size_t size() const { return offsets.size() - 1; }
-  std::span<const DirectArc> operator[](std::size_t i) const {
+  std::span<const Arc> operator[](std::size_t i) const {
     return std::span(arcs).subspan(offsets[i], offsets[i + 1] - offsets[i]);
   }
   void clear() {
@@ -31,6 +41,8 @@ struct DirectFans {
     arcs.clear();
   }
 };
+using DirectFans = FanRows<DirectArc>;  ///< each row by vertex
+using FanViews = FanRows<SeenNode>;     ///< in no particular order
 
 /// Whether the angles of arcs are wanted, which are as much work as all else about an arc.
 enum class FanAngles { none, both };
@@ -45,6 +57,8 @@ class DirectFanFinder {
   /// none (nor for the exact graph).
   void find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
             FanAngles angles, DirectFans& fans, const JobStage& stage);
+  void find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+            FanViews& views, const JobStage& stage);
 
  private:
   using Batch = std::span<const std::size_t>;
@@ -52,8 +66,15 @@ class DirectFanFinder {
            Batch batch, const JobStage& stage);
   void append_arcs(const SaddleVertexGraph& graph, int lane, FanAngles angles, std::vector<DirectArc>& arcs);
   void append_row(std::vector<DirectArc>& arcs);
-  void find_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, DirectFans& fans,
-                    const JobStage& stage);
+  void append_seen(int lane, std::vector<SeenNode>& seen);
+  /// Calls append(lane, rows.arcs) for each point inside a face.
+  template <class Arc, class Append>
+  void find_in_batches(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
+                       std::span<const double> limits, FanRows<Arc>& rows, const JobStage& stage, Append&& append);
+  /// Calls append(rows.arcs) for each point inside a face, with what it sees in row_.
+  template <class Arc, class Append>
+  void find_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanRows<Arc>& rows,
+                    const JobStage& stage, Append&& append);
 
   const FanMesh* mesh_ = nullptr;
   std::unique_ptr<DiskFinder> waves_;
@@ -82,6 +103,14 @@ using UseFan = std::function<void(Index, std::span<const DirectArc>)>;
 /// for any number of threads (0: all cores). `limits` as for DirectFanFinder. \throw Cancelled.
 void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                   FanAngles angles, int threads, const JobStage& stage, const UseFan& use);
+
+/// The same for what points see, in no particular order.
+using UseSeen = std::function<void(Index, std::span<const SeenNode>)>;
+void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+                   int threads, const JobStage& stage, const UseSeen& use);
+
+/// Direction, at the vertex from first_halfedge, back to the point that sees it.
+double direction_back(const SaddleVertexGraph& graph, const SeenNode& seen);
 
 /// All fans at once, with their angles. \throw Cancelled.
 DirectFans direct_fans(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,

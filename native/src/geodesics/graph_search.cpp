@@ -53,10 +53,24 @@ class Heap {
   std::vector<Entry> entries_;
 };
 
+Index node_of(const SaddleVertexGraph& graph, const Seed& seed) { return graph.node_of(seed.vertex); }
+Index node_of(const SaddleVertexGraph&, const NodeSeed& seed) { return seed.node; }
+
 }  // namespace
 
 void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
                       SearchLabels labels, const JobStage& stage) {
+  run_from(graph, seeds, options, labels, stage);
+}
+
+void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const QueryOptions& options,
+                      SearchLabels labels, const JobStage& stage) {
+  run_from(graph, seeds, options, labels, stage);
+}
+
+template <class AnySeed>
+void GraphSearch::run_from(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const QueryOptions& options,
+                           SearchLabels labels, const JobStage& stage) {
   const auto count = static_cast<std::size_t>(graph.arcs().node_count());
   bound_ = std::nextafter(options.limit, k_infinity);
   distances_.assign(count, bound_);
@@ -68,7 +82,7 @@ void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const Seed> seed
     propagate(heap, relax_row_portable(), graph, seeds, stage);
   } else {
     double span = graph.arcs().longest();
-    for (const Seed& seed : seeds) span = std::max(span, seed.distance);
+    for (const AnySeed& seed : seeds) span = std::max(span, seed.distance);
     if (width_ == 0) width_ = k_bucket_width * shortest_arcs_below(graph.arcs(), k_median);
     buckets_.reset(width_, span);
     propagate(buckets_, relax_row(), graph, seeds, stage);
@@ -76,16 +90,16 @@ void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const Seed> seed
   stage.update(1);
 }
 
-template <class Queue>
-void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGraph& graph, std::span<const Seed> seeds,
-                            const JobStage& stage) {
+template <class Queue, class AnySeed>
+void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGraph& graph,
+                            std::span<const AnySeed> seeds, const JobStage& stage) {
   const ArcCodec& codec = graph.arcs().codec();
   const std::uint64_t* const words = graph.arcs().words().data();
   const std::int64_t* const offsets = graph.arcs().offsets().data();
   const bool with_sources = !sources_.empty(), with_predecessors = !predecessors_.empty();
 
-  for (const Seed& seed : seeds) {
-    const Index node = graph.node_of(seed.vertex);
+  for (const AnySeed& seed : seeds) {
+    const Index node = node_of(graph, seed);
     if (seed.distance > distances_[node] || seed.distance >= bound_) continue;
     if (seed.distance == distances_[node] && (!with_sources || seed.source >= sources_[node])) continue;
     distances_[node] = seed.distance;

@@ -18,6 +18,13 @@ struct Seed {
   double distance;
 };
 
+/// The same in the graph's own numbering.
+struct NodeSeed {
+  Index node;
+  Index source;
+  double distance;
+};
+
 /// What a search keeps beside the distances.
 enum class SearchLabels { none, sources, sources_and_predecessors };
 
@@ -28,6 +35,8 @@ class GraphSearch {
  public:
   /// \throw Cancelled. O(arcs) with buckets, O(arcs + V log V) with Dijkstra's heap.
   void run(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
+           SearchLabels labels, const JobStage& stage);
+  void run(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const QueryOptions& options,
            SearchLabels labels, const JobStage& stage);
 
   // Of the last run. Distances are in the order of the vertices, infinity where nothing reached within the limit.
@@ -43,8 +52,11 @@ class GraphSearch {
   double distance(const SaddleVertexGraph& graph, Index vertex) const;
 
  private:
-  template <class Queue>
-  void propagate(Queue& queue, RelaxRow relax, const SaddleVertexGraph& graph, std::span<const Seed> seeds,
+  template <class AnySeed>
+  void run_from(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const QueryOptions& options,
+                SearchLabels labels, const JobStage& stage);
+  template <class Queue, class AnySeed>
+  void propagate(Queue& queue, RelaxRow relax, const SaddleVertexGraph& graph, std::span<const AnySeed> seeds,
                  const JobStage& stage);
 
   double width_ = 0;  ///< of the buckets; 0: not known yet

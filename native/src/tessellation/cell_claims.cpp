@@ -55,19 +55,24 @@ struct CellClaims::Worker {
 
   /// A vertex beside a cell has several faces there: its last answers are kept.
   struct Known {
-    Index vertex = k_none, site = k_none;
+    Index node = k_none, site = k_none;
     bool found = false;
     SiteVector vector;
   };
   static constexpr std::size_t k_known = 256;
   std::vector<Known> known;
-  const Known& find(const SiteMaps& maps, Index site, Index vertex) {
-    Known& entry = known[static_cast<std::size_t>(vertex) % k_known];
-    if (entry.vertex == vertex && entry.site == site) return entry;
-    entry.vertex = vertex;
+  const Known& find(const SiteMaps& maps, Index site, Index node) {
+    Known& entry = known[static_cast<std::size_t>(node) % k_known];
+    if (entry.node == node && entry.site == site) return entry;
+    entry.node = node;
     entry.site = site;
-    entry.found = maps.find(site, vertex, scratch, entry.vector);
+    entry.found = maps.find(site, node, scratch, entry.vector);
     return entry;
+  }
+  /// Before others ask than the cells themselves.
+  void forget() {
+    scratch.forget();
+    std::ranges::fill(known, Known());
   }
 };
 
@@ -80,76 +85,100 @@ struct CellClaims::Laid {
   }
 };
 
-CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
-                       std::span<const double> reaches, int threads, const JobStage& stage)
-    : FaceClaims(graph.mesh(), static_cast<Index>(sites.size())),
-      maps_(graph, rings, sites, reaches, threads, stage.part(0, 0.7)) {
-  std::vector<Worker> workers(thread_count(threads), Worker(maps_));
-  claim_by_corners(workers, threads, stage);
+CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads)
+    : graph_(graph), rings_(rings), threads_(threads), maps_(graph, rings) {
+  for (int thread = 0; thread < thread_count(threads); ++thread) workers_.emplace_back(maps_);
+}
+
+CellClaims::~CellClaims() = default;
+
+void CellClaims::find(const SurfacePoints& sites, std::span<const double> reaches, const JobStage& stage) {
+  maps_.label_nodes(sites, reaches, threads_, stage.part(0, 0.6));
+  find_mixed_faces();
+  claim_by_cells(stage);
   stage.update(0.85);
-  spread(sites, workers, threads, stage);
+  spread(sites, stage);
   stage.update(1);
 }
 
 /// Faces whose corners differ in their labels, each with the number of labels.
-void CellClaims::find_mixed_faces(int threads) {
-  struct Mixed {
-    Index face, labels;
+void CellClaims::find_mixed_faces() {
+  struct Stretch {
+    std::vector<Row> rows;
+    Index claims = 0;
   };
   constexpr Index k_stretch = 16384;
-  const Index count = mesh().face_count(), stretches = (count + k_stretch - 1) / k_stretch;
-  std::vector<std::vector<Mixed>> found(stretches);
-  parallel_for(stretches, threads, 1, [&](Index stretch, int) {
+  const Index count = rings_.face_count(), stretches = (count + k_stretch - 1) / k_stretch;
+  shared_index_.resize(count);
+  std::vector<Stretch> found(stretches);
+  parallel_for(stretches, threads_, 1, [&](Index stretch, int) {
+    auto& [rows, claims] = found[stretch];
     for (Index face = stretch * k_stretch; face < std::min(count, (stretch + 1) * k_stretch); ++face) {
-      const Triangle& t = mesh().triangles()[face];
-      const Index a = maps_.label(t[0]), b = maps_.label(t[1]), c = maps_.label(t[2]);
-      if (a != b || b != c) found[stretch].push_back({face, a != b && b != c && c != a ? 3 : 2});
+      const auto& nodes = rings_.face(face).nodes;
+      const Index a = maps_.label(nodes[0]), b = maps_.label(nodes[1]), c = maps_.label(nodes[2]);
+      shared_index_[face] = k_none;
+      if (a == b && b == c) continue;
+      const Index labels = a != b && b != c && c != a ? 3 : 2;
+      rows.push_back({face, claims, labels});
+      claims += labels;
     }
   });
-  for (const std::vector<Mixed>& stretch : found) {
-    for (const Mixed& mixed : stretch) {
-      shared_index_[mixed.face] = shared_count();
-      faces_.push_back(mixed.face);
-      first_.push_back(first_.back() + mixed.labels);
+  rows_.clear();
+  Index claims = 0;
+  for (const Stretch& stretch : found) {
+    for (const Row& row : stretch.rows) {
+      shared_index_[row.face] = shared_count();
+      rows_.push_back({row.face, claims + row.first, row.count});
     }
+    claims += stretch.claims;
   }
+  claims_.resize(claims);
 }
 
-/// Each label of a face's corners claims it where they differ.
-void CellClaims::claim_by_corners(std::vector<Worker>& workers, int threads, const JobStage& stage) {
-  find_mixed_faces(threads);
-  claims_.resize(first_.back());
-  const Laid none;  // each label has a corner next to the others
-  parallel_for(shared_count(), threads, 256, [&](Index shared, int thread) {
+/// Each label of a face's corners claims it where they differ; cell by cell, whose own vertices and those beside it
+/// are in reach then.
+void CellClaims::claim_by_cells(const JobStage& stage) {
+  for (Worker& worker : workers_) worker.forget();
+  parallel_for(site_count(), threads_, 16, [&](Index i, int thread) {
     stage.check();
-    const Triangle& t = mesh().triangles()[faces_[shared]];
-    std::array<Index, 3> labels{maps_.label(t[0]), maps_.label(t[1]), maps_.label(t[2])};
-    std::sort(labels.begin(), labels.end());
-    Index place = first_[shared];
-    for (int i = 0; i < 3; ++i) {
-      if (i > 0 && labels[i] == labels[i - 1]) continue;
-      make_claim(faces_[shared], labels[i], none, workers[thread], claims_[place++]);
-    }
+    const Index site = maps_.sites_along_curve()[i];
+    maps_.place_cell(site, workers_[thread].scratch);
+    for (const Index node : maps_.nodes(site)) claim_from(node, site, workers_[thread]);
   });
+}
+
+/// The faces about a node that are shared and have no earlier node of the cell's.
+void CellClaims::claim_from(Index node, Index site, Worker& worker) {
+  for (const VertexRings::Wedge& wedge : rings_.around(node)) {
+    const Index from = maps_.label(wedge.from), to = maps_.label(wedge.to);
+    if ((from == site && (to == site || wedge.from < node)) || (to == site && wedge.to < node)) continue;
+    const Index face = wedge.side / 3;
+    const Row& row = rows_[shared_index_[face]];
+    FaceClaim& claim = claims_[row.first + (from < site) + (to < site && to != from)];
+    claim.face = face;
+    claim.site = site;
+    const auto& nodes = rings_.face(face).nodes;
+    for (int i = 0; i < 3; ++i) maps_.find(site, nodes[i], worker.scratch, claim.corner[i]);  // each is beside the cell
+  }
 }
 
 /// Claims of sites on the faces in which they lie.
 std::vector<CellClaims::Wish> CellClaims::wishes_of_sites(const SurfacePoints& sites) const {
   std::vector<Wish> wishes;
-  for (Index site = 0; site < site_count(); ++site) wish_for({sites[site].face, site, k_none}, wishes);
+  for (Index site = 0; site < site_count(); ++site) wish_for({rings_.face_of(sites[site].face), site, k_none}, wishes);
   return wishes;
 }
 
 /// False where corners are left to be laid down.
 bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& worker, FaceClaim& claim) const {
-  const Triangle& t = mesh().triangles()[face];
+  const auto& nodes = rings_.face(face).nodes;
   claim = {face, site, {}};
   bool complete = true;
   for (int i = 0; i < 3; ++i) {
-    const Worker::Known& known = worker.find(maps_, site, t[i]);
+    const Worker::Known& known = worker.find(maps_, site, nodes[i]);
     claim.corner[i] = known.vector;
     if (known.found) continue;
-    const auto found = laid.vectors.find(Laid::key(site, t[i]));
+    const auto found = laid.vectors.find(Laid::key(site, nodes[i]));
     if (found != laid.vectors.end())
       claim.corner[i] = found->second;
     else
@@ -158,91 +187,87 @@ bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& wo
   return complete;
 }
 
-/// Completes a claim from the same site's on the face beyond the half-edge.
-void CellClaims::lay_corners(Index halfedge, Laid& laid, FaceClaim& claim) const {
-  const int start = halfedge % 3, end = Mesh::next(halfedge) % 3, apex = Mesh::prev(halfedge) % 3;
-  const Index twin = mesh().twin(halfedge);
-  visit_claims(Mesh::face_of(twin), [&](const FaceClaim& beyond) {
+/// Completes a claim from the same site's on the face beyond the side.
+void CellClaims::lay_corners(Index side, Laid& laid, FaceClaim& claim) const {
+  const int start = side % 3, end = Mesh::next(side) % 3, apex = Mesh::prev(side) % 3;
+  const VertexRings::Face& face = rings_.face(side / 3);
+  const Index twin = face.twins[start];
+  visit_claims(twin / 3, [&](const FaceClaim& beyond) {
     if (beyond.site != claim.site) return;
     claim.corner[start] = beyond.corner[Mesh::next(twin) % 3];
     claim.corner[end] = beyond.corner[twin % 3];
   });
   if (claim.corner[apex].distance != k_unknown) return;
-  const auto key = Laid::key(claim.site, mesh().apex(halfedge));
-  claim.corner[apex] =
-      laid.vectors.try_emplace(key, maps_.laid_beside(halfedge, claim.corner[start], claim.corner[end])).first->second;
+  const auto key = Laid::key(claim.site, face.nodes[apex]);
+  const SiteVector beside = maps_.laid_beside(rings_.halfedge(side), claim.corner[start], claim.corner[end]);
+  claim.corner[apex] = laid.vectors.try_emplace(key, beside).first->second;
 }
 
 /// Makes the claims that are wished for; each face and site once.
-void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid, std::vector<Worker>& workers, int threads) {
+void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid) {
   const auto count = static_cast<Index>(wishes.size());
   std::vector<FaceClaim> granted(count);
   std::vector<std::uint8_t> complete(count);
-  parallel_for(count, threads, 64, [&](Index i, int thread) {
-    complete[i] = make_claim(wishes[i].face, wishes[i].site, laid, workers[thread], granted[i]);
+  parallel_for(count, threads_, 64, [&](Index i, int thread) {
+    complete[i] = make_claim(wishes[i].face, wishes[i].site, laid, workers_[thread], granted[i]);
   });
   for (Index i = 0; i < count; ++i) {
-    if (!complete[i] && wishes[i].halfedge != k_none) lay_corners(wishes[i].halfedge, laid, granted[i]);
+    if (!complete[i] && wishes[i].side != k_none) lay_corners(wishes[i].side, laid, granted[i]);
   }
   for (const FaceClaim& claim : granted) {
-    Index& index = late_index_[claim.face];
-    if (index == k_none) {
-      index = static_cast<Index>(late_.size());
-      late_.emplace_back();
-    }
-    late_[index].push_back(claim);
+    Index& last = late_index_[claim.face];
+    if (last == k_none) late_faces_.push_back(claim.face);
+    late_.push_back({claim, last});
+    last = static_cast<Index>(late_.size()) - 1;
   }
 }
 
 /// Claims beyond the edges of faces with new claims, until there are no new ones.
-void CellClaims::spread(const SurfacePoints& sites, std::vector<Worker>& workers, int threads, const JobStage& stage) {
-  std::vector<Index> changed = faces_;
+void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
+  std::vector<Index> changed(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) changed[i] = rows_[i].face;
   Laid laid;
-  late_index_.assign(mesh().face_count(), k_none);
+  late_index_.assign(rings_.face_count(), k_none);
+  late_.clear();
+  late_faces_.clear();
+  for (Worker& worker : workers_) worker.forget();
   std::vector<Wish> wishes = wishes_of_sites(sites);
   while (!changed.empty() || !wishes.empty()) {
-    parallel_for(static_cast<Index>(changed.size()), threads, 256, [&](Index i, int thread) {
+    parallel_for(static_cast<Index>(changed.size()), threads_, 256, [&](Index i, int thread) {
       stage.check();
-      find_wishes(changed[i], workers[thread]);
+      if (!is_settled(changed[i])) find_wishes(changed[i], workers_[thread]);
     });
-    for (Worker& worker : workers) {
+    for (Worker& worker : workers_) {
       wishes.insert(wishes.end(), worker.wishes.begin(), worker.wishes.end());
       worker.wishes.clear();
     }
     std::sort(wishes.begin(), wishes.end());
     const auto same = [](const Wish& a, const Wish& b) { return a.face == b.face && a.site == b.site; };
     wishes.erase(std::unique(wishes.begin(), wishes.end(), same), wishes.end());
-    grant(wishes, laid, workers, threads);
+    grant(wishes, laid);
     changed.clear();
     for (const Wish& wish : wishes) {
       if (changed.empty() || changed.back() != wish.face) changed.push_back(wish.face);
     }
     wishes.clear();
   }
-  if (!late_.empty()) merge_late();
-  late_index_ = {};
+  merge_late();
 }
 
-/// Puts the late claims in their places among the others.
+/// Faces with late claims get new rows behind the others.
 void CellClaims::merge_late() {
-  std::vector<FaceClaim> all;
-  std::vector<Index> faces, first;
-  for (Index face = 0; face < mesh().face_count(); ++face) {
-    if (shared_index_[face] == k_none && late_index_[face] == k_none) continue;
-    faces.push_back(face);
-    first.push_back(static_cast<Index>(all.size()));
-    visit_claims(face, [&](const FaceClaim& claim) { all.push_back(claim); });
-    if (late_index_[face] != k_none) {
-      std::sort(all.begin() + first.back(), all.end(),
-                [](const FaceClaim& a, const FaceClaim& b) { return a.site < b.site; });
+  std::vector<FaceClaim> row;
+  for (const Index face : late_faces_) {
+    row.clear();
+    visit_claims(face, [&](const FaceClaim& claim) { row.push_back(claim); });
+    std::ranges::sort(row, {}, &FaceClaim::site);
+    if (shared_index_[face] == k_none) {
+      shared_index_[face] = shared_count();
+      rows_.emplace_back();
     }
+    rows_[shared_index_[face]] = {face, claim_count(), static_cast<Index>(row.size())};
+    claims_.insert(claims_.end(), row.begin(), row.end());
   }
-  first.push_back(static_cast<Index>(all.size()));
-  claims_ = std::move(all);
-  faces_ = std::move(faces);
-  first_ = std::move(first);
-  for (Index i = 0; i < shared_count(); ++i) shared_index_[faces_[i]] = i;
-  late_ = {};
 }
 
 template <class Visit>
@@ -250,23 +275,36 @@ void CellClaims::visit_claims(Index face, Visit&& visit) const {
   if (shared_index_[face] != k_none) {
     for (const FaceClaim& claim : claims(shared_index_[face])) visit(claim);
   }
-  if (late_index_[face] == k_none) return;
-  for (const FaceClaim& claim : late_[late_index_[face]]) visit(claim);
+  for (Index i = late_index_[face]; i != k_none; i = late_[i].before) visit(late_[i].claim);
+}
+
+/// Whether each corner is nearest to its label, which claims the faces beyond, and no third site can be nearest between
+/// corners.
+bool CellClaims::is_settled(Index face) const {
+  if (late_index_[face] != k_none) return false;
+  const auto all = claims(shared_index_[face]);
+  if (all.size() != 2) return false;
+  const auto& nodes = rings_.face(face).nodes;
+  for (int i = 0; i < 3; ++i) {
+    const double first = all[0].squared_distance(i), second = all[1].squared_distance(i);
+    if ((second < first ? all[1] : all[0]).site != maps_.label(nodes[i])) return false;
+  }
+  return true;
 }
 
 void CellClaims::find_wishes(Index face, Worker& worker) const {
-  for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-    const Index twin = mesh().twin(h);
+  for (Index side = 3 * face; side < 3 * face + 3; ++side) {
+    const Index twin = rings_.face(face).twins[side % 3];
     if (twin == k_none) continue;
     worker.lines.clear();
-    visit_claims(face, [&](const FaceClaim& claim) { worker.lines.push_back(line_along(claim, h)); });
+    visit_claims(face, [&](const FaceClaim& claim) { worker.lines.push_back(line_along(claim, side)); });
     if (worker.lines.size() == 2) {
       for (const Index site : winners(worker.lines[0], worker.lines[1]))
-        wish_for({Mesh::face_of(twin), site, twin}, worker.wishes);
+        wish_for({twin / 3, site, twin}, worker.wishes);
       continue;
     }
     lower_envelope(worker.lines, worker.pieces);
-    for (const EdgePiece& piece : worker.pieces) wish_for({Mesh::face_of(twin), piece.site, twin}, worker.wishes);
+    for (const EdgePiece& piece : worker.pieces) wish_for({twin / 3, piece.site, twin}, worker.wishes);
   }
 }
 
@@ -280,6 +318,19 @@ void CellClaims::wish_for(const Wish& wish, std::vector<Wish>& wishes) const {
   if (known || (!shared && face_site(wish.face) == wish.site)) return;
   if (!shared) wishes.push_back({wish.face, face_site(wish.face), k_none});
   wishes.push_back(wish);
+}
+
+ClaimsOfCells::ClaimsOfCells(const CellClaims& cells)
+    : FaceClaims(cells.maps().graph().mesh(), cells.site_count()), cells_(cells), graph_(cells.maps().graph()) {
+  for (Index shared = 0; shared < cells.shared_count(); ++shared)
+    faces_.push_back(cells.rings().face(cells.face(shared)).in_mesh);
+  std::ranges::sort(faces_);
+  for (Index i = 0; i < shared_count(); ++i) {
+    shared_index_[faces_[i]] = i;
+    const auto claims = cells.claims(cells.shared_index(cells.rings().face_of(faces_[i])));
+    for (const FaceClaim& claim : claims) claims_.push_back({faces_[i], claim.site, claim.corner});
+    first_.push_back(static_cast<Index>(claims_.size()));
+  }
 }
 
 void FaceClaims::lines_along(Index shared, Index halfedge, std::vector<EdgeLine>& lines) const {

@@ -60,47 +60,93 @@ class FaceClaims {
   std::vector<FaceClaim> claims_;
 };
 
-/// Claims by the labels and distances of the graph.
+/// Claims by the labels and distances of the graph, on faces in the order of VertexRings.
 ///
 /// Claims on a face start with the labels of its corners and the sites that lie in it; a site that is nearest on a part
 /// of an edge claims the face beyond, too, until nothing changes. Thus cells smaller than a face, or without any
-/// vertex, are found: a cell is connected, and its site's own face begins the walk.
-class CellClaims final : public FaceClaims {
+/// vertex, are found: a cell is connected, and its site's own face begins the walk. Keeps its memory for other sites.
+class CellClaims {
  public:
-  /// The sites must have passed check_sites; the graph and its rings must outlive the claims. \throw Cancelled.
-  /// `reaches` as for SiteMaps.
-  CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
-             std::span<const double> reaches, int threads, const JobStage& stage);
+  /// Nothing is claimed before `find`. Both must outlive the claims.
+  CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads);
+  ~CellClaims();
+
+  /// The sites must have passed check_sites. `reaches` as for SiteMaps. \throw Cancelled, and then holds nothing of
+  /// use.
+  void find(const SurfacePoints& sites, std::span<const double> reaches, const JobStage& stage);
 
   const SiteMaps& maps() const { return maps_; }
-  Index label(Index vertex) const override { return maps_.label(vertex); }
-  double distance(Index vertex) const override { return maps_.own(vertex).distance; }
+  const VertexRings& rings() const { return rings_; }
+  Index site_count() const { return maps_.site_count(); }
+
+  /// Faces that several sites may share; the others belong to one cell.
+  Index shared_count() const { return static_cast<Index>(rows_.size()); }
+  Index face(Index shared) const { return rows_[shared].face; }
+  /// Number of a face among the shared ones, k_none for others.
+  Index shared_index(Index face) const { return shared_index_[face]; }
+  /// Of a shared face, by site. Their corners are the face's.
+  std::span<const FaceClaim> claims(Index shared) const {
+    return {claims_.data() + rows_[shared].first, static_cast<std::size_t>(rows_[shared].count)};
+  }
+  /// All, and where those of a shared face begin; some between belong to no face.
+  Index claim_count() const { return static_cast<Index>(claims_.size()); }
+  Index first_claim(Index shared) const { return rows_[shared].first; }
 
  private:
   struct Worker;
+  struct Row {
+    Index face, first, count;
+  };
   struct Wish {
     Index face, site;
-    Index halfedge;  ///< of the face, beyond which the site is nearest; k_none: it lies in the face
+    Index side;  ///< of the face, beyond which the site is nearest; k_none: it lies in the face
     auto operator<=>(const Wish&) const = default;
   };
   struct Laid;
-  void find_mixed_faces(int threads);
-  void claim_by_corners(std::vector<Worker>& workers, int threads, const JobStage& stage);
+  void find_mixed_faces();
+  void claim_by_cells(const JobStage& stage);
+  void claim_from(Index node, Index site, Worker& worker);
   std::vector<Wish> wishes_of_sites(const SurfacePoints& sites) const;
-  void spread(const SurfacePoints& sites, std::vector<Worker>& workers, int threads, const JobStage& stage);
+  void spread(const SurfacePoints& sites, const JobStage& stage);
   void merge_late();
-  void grant(const std::vector<Wish>& wishes, Laid& laid, std::vector<Worker>& workers, int threads);
+  void grant(const std::vector<Wish>& wishes, Laid& laid);
   bool make_claim(Index face, Index site, const Laid& laid, Worker& worker, FaceClaim& claim) const;
-  void lay_corners(Index halfedge, Laid& laid, FaceClaim& claim) const;
+  void lay_corners(Index side, Laid& laid, FaceClaim& claim) const;
   template <class Visit>
   void visit_claims(Index face, Visit&& visit) const;
+  bool is_settled(Index face) const;
   void find_wishes(Index face, Worker& worker) const;
   void wish_for(const Wish& wish, std::vector<Wish>& wishes) const;
+  Index face_site(Index face) const { return maps_.label(rings_.face(face).nodes[0]); }
 
+  const SaddleVertexGraph& graph_;
+  const VertexRings& rings_;
+  const int threads_;
   SiteMaps maps_;
+  std::vector<Worker> workers_;
+  std::vector<Index> shared_index_;  ///< by face
+  std::vector<Row> rows_;
+  std::vector<FaceClaim> claims_;
   // Found while claims spread:
-  std::vector<Index> late_index_;  ///< per face, into late_; k_none
-  std::vector<std::vector<FaceClaim>> late_;
+  struct Late {
+    FaceClaim claim;
+    Index before;  ///< the face's one before, k_none for the first
+  };
+  std::vector<Index> late_index_;  ///< by face: its last one in late_, or k_none
+  std::vector<Late> late_;
+  std::vector<Index> late_faces_;
+};
+
+/// The same by the faces and vertices of the mesh. The cells must outlive it.
+class ClaimsOfCells final : public FaceClaims {
+ public:
+  explicit ClaimsOfCells(const CellClaims& cells);
+  Index label(Index vertex) const override { return cells_.maps().label(graph_.node_of(vertex)); }
+  double distance(Index vertex) const override { return cells_.maps().own_distance(graph_.node_of(vertex)); }
+
+ private:
+  const CellClaims& cells_;
+  const SaddleVertexGraph& graph_;
 };
 
 }  // namespace saddleback

@@ -1,4 +1,9 @@
+// Faces that one cell owns whole are summed about their vertices: what a vertex weighs does not change. Shared faces
+// are cut.
+
 #include "tessellation/cell_moments.h"
+
+#include <algorithm>
 
 #include "support/parallel.h"
 #include "tessellation/face_partition.h"
@@ -7,19 +12,17 @@
 namespace saddleback {
 namespace {
 
-/// A flat face, for integrals over its parts.
+using Face = CellIntegrals::Face;
+
+/// A face that cells share, for integrals over its parts.
 struct FaceShape {
-  Vec3 squared_edges, density;  ///< squared_edges[i]: of the side opposite corner i
-  double area;
+  const Face& face;
+  Vec3 squared_edges, density;
   bool uniform;
 
-  FaceShape(const Mesh& mesh, Index face, std::span<const double> densities)
-      : density(Vec3::Ones()), area(mesh.face_area(face)), uniform(densities.empty()) {
-    for (int i = 0; i < 3; ++i) {
-      const double opposite = mesh.length(Mesh::next(3 * face + i));
-      squared_edges[i] = opposite * opposite;
-      if (!uniform) density[i] = densities[mesh.triangles()[face][i]];
-    }
+  FaceShape(const Face& the_face, const std::array<double, 3>* densities)
+      : face(the_face), squared_edges(the_face.squared_edges.data()), density(Vec3::Ones()), uniform(!densities) {
+    if (densities) density = Vec3(densities->data());
   }
   /// By how much the squared distance to a point of the plane is below the interpolation of its values at the corners.
   double bulge(const Vec3& x) const {
@@ -56,7 +59,7 @@ void integrate(const ClaimedFace& face, const std::array<QuadraturePoint, Count>
 
 /// Adds the integrals over the triangle a, b, c (barycentric coordinates in the face).
 void add_triangle(const ClaimedFace& face, const Vec3& a, const Vec3& b, const Vec3& c, CellMoments& sum) {
-  const double area = face.shape.area * a.dot(b.cross(c));
+  const double area = face.shape.face.area * a.dot(b.cross(c));
   sum.area += area;
   if (face.shape.uniform) {
     integrate(face, k_quadratic, area, a, b, c, sum);
@@ -65,20 +68,68 @@ void add_triangle(const ClaimedFace& face, const Vec3& a, const Vec3& b, const V
   }
 }
 
-/// Where a claim's difference to another's vanishes on the way from corner i to corner j.
-Vec3 zero_between(const Vec3& difference, int i, int j) {
-  const double t = difference[i] / (difference[i] - difference[j]);
-  return (1 - t) * Vec3::Unit(i) + t * Vec3::Unit(j);
+void add_whole(const ClaimedFace& face, CellMoments& sum) {
+  const Face& whole = face.shape.face;
+  for (int i = 0; i < 3; ++i) {
+    sum.mass += whole.weight[i];
+    sum.moment += whole.weight[i] * face.claim.corner[i].log;
+    sum.energy += whole.weight[i] * face.squared_distance[i];
+  }
+  sum.energy -= whole.bulge;
+  sum.area += whole.area;
 }
+
+/// Where a straight cut parts one corner from the others.
+struct Cut {
+  int lone, left, right;
+  double on_left, on_right;  ///< as shares of the sides from the lone corner
+  Vec3 left_end() const { return (1 - on_left) * Vec3::Unit(lone) + on_left * Vec3::Unit(left); }
+  Vec3 right_end() const { return (1 - on_right) * Vec3::Unit(lone) + on_right * Vec3::Unit(right); }
+};
+
+/// `lead`: above 0 where the second of two claims is nearer; not so at all corners, nor at none.
+Cut cut_where_zero(const Vec3& lead) {
+  int lone = 0;
+  while ((lead[lone] > 0) == (lead[(lone + 1) % 3] > 0) || (lead[lone] > 0) == (lead[(lone + 2) % 3] > 0)) ++lone;
+  const int left = (lone + 1) % 3, right = (lone + 2) % 3;
+  return {lone, left, right, lead[lone] / (lead[lone] - lead[left]), lead[lone] / (lead[lone] - lead[right])};
+}
+
+/// The triangle that a cut leaves with the lone corner, for a uniform density: integrals of the position from its
+/// corners' mean, of the squared distance from its corners and sides.
+class Tip {
+ public:
+  Tip(const FaceShape& shape, const Cut& cut) : cut_(cut), area_(shape.face.area * cut.on_left * cut.on_right) {
+    const double l = cut.on_left, r = cut.on_right;
+    const double left_side = shape.squared_edges[cut.right], right_side = shape.squared_edges[cut.left];
+    const double twice_dot = left_side + right_side - shape.squared_edges[cut.lone];
+    const double sides = 2 * (l * l * left_side + r * r * right_side) - l * r * twice_dot;
+    bulge_ = (l * (1 - l) * left_side + r * (1 - r) * right_side) / 3 + sides / 12;
+  }
+  double area() const { return area_; }
+  CellMoments moments(const ClaimedFace& face) const {
+    Vec3 share;  // of each corner of the face in the tip's mean
+    share[cut_.lone] = (3 - cut_.on_left - cut_.on_right) / 3;
+    share[cut_.left] = cut_.on_left / 3;
+    share[cut_.right] = cut_.on_right / 3;
+    const auto& corner = face.claim.corner;
+    const Vec2 mean = share[0] * corner[0].log + share[1] * corner[1].log + share[2] * corner[2].log;
+    return {area_, area_, area_ * mean, area_ * (share.dot(face.squared_distance) - bulge_)};
+  }
+
+ private:
+  const Cut& cut_;
+  double area_, bulge_;
+};
 
 /// The moments of the shared faces' parts.
 class SharedFace {
  public:
-  void add(const CellClaims& claims, Index shared, std::span<const double> density, CellMoments* parts);
+  void add(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts);
 
  private:
-  void add_two(const FaceShape& shape, const CellClaims& claims, Index shared, CellMoments* parts);
-  void add_many(const FaceShape& shape, const CellClaims& claims, Index shared, CellMoments* parts);
+  void add_two(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts);
+  void add_many(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts);
 
   std::vector<Index> rivals_;  ///< claims that are nearest somewhere, as far as corners tell
   std::vector<FacePlane> planes_;
@@ -96,55 +147,19 @@ bool is_beaten(const FaceClaim& claim, const FaceClaim& by) {
   return !ties || by.site < claim.site;
 }
 
-void SharedFace::add(const CellClaims& claims, Index shared, std::span<const double> density, CellMoments* parts) {
-  const auto all = claims.claims(shared);
+void SharedFace::add(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts) {
   rivals_.clear();
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  for (std::size_t i = 0; i < claims.size(); ++i) {
     bool beaten = false;
-    for (std::size_t j = 0; j < all.size() && !beaten; ++j) beaten = j != i && is_beaten(all[i], all[j]);
+    for (std::size_t j = 0; j < claims.size() && !beaten; ++j) beaten = j != i && is_beaten(claims[i], claims[j]);
     if (!beaten) rivals_.push_back(static_cast<Index>(i));
   }
-  const FaceShape shape(claims.mesh(), claims.face(shared), density);
   if (rivals_.size() == 1) {
-    const Index only = rivals_.front();
-    add_triangle({shape, all[only]}, Vec3::Unit(0), Vec3::Unit(1), Vec3::Unit(2), parts[only]);
+    add_whole({shape, claims[rivals_.front()]}, parts[rivals_.front()]);
   } else if (rivals_.size() == 2) {
-    add_two(shape, claims, shared, parts);
+    add_two(shape, claims, parts);
   } else {
-    add_many(shape, claims, shared, parts);
-  }
-}
-
-/// One straight cut: a corner on one side of it, two on the other.
-void SharedFace::add_two(const FaceShape& shape, const CellClaims& claims, Index shared, CellMoments* parts) {
-  const auto all = claims.claims(shared);
-  const ClaimedFace first(shape, all[rivals_[0]]), second(shape, all[rivals_[1]]);
-  const Vec3 lead = first.squared_distance - second.squared_distance;  // above 0: the second is nearer
-  int lone = 0;
-  while ((lead[lone] > 0) == (lead[(lone + 1) % 3] > 0) || (lead[lone] > 0) == (lead[(lone + 2) % 3] > 0)) ++lone;
-  const int left = (lone + 1) % 3, right = (lone + 2) % 3;
-  const Vec3 on_left = zero_between(lead, lone, left), on_right = zero_between(lead, lone, right);
-  const bool second_is_lone = lead[lone] > 0;
-  const ClaimedFace &tip = second_is_lone ? second : first, &rest = second_is_lone ? first : second;
-  add_triangle(tip, Vec3::Unit(lone), on_left, on_right, parts[rivals_[second_is_lone ? 1 : 0]]);
-  CellMoments& sum = parts[rivals_[second_is_lone ? 0 : 1]];
-  add_triangle(rest, on_left, Vec3::Unit(left), Vec3::Unit(right), sum);
-  add_triangle(rest, on_left, Vec3::Unit(right), on_right, sum);
-}
-
-void SharedFace::add_many(const FaceShape& shape, const CellClaims& claims, Index shared, CellMoments* parts) {
-  const auto all = claims.claims(shared);
-  planes_.clear();
-  for (const Index i : rivals_) {
-    planes_.push_back({i, {all[i].squared_distance(0), all[i].squared_distance(1), all[i].squared_distance(2)}});
-  }
-  partition_.build(planes_);
-  for (const FacePartition::Piece& piece : partition_.pieces()) {
-    const auto corner = [&](std::size_t i) { return partition_.vertices()[piece.loop[i]].barycentric; };
-    const ClaimedFace face(shape, all[piece.site]);
-    for (std::size_t j = 1; j + 1 < piece.loop.size(); ++j) {
-      add_triangle(face, corner(0), corner(j), corner(j + 1), parts[piece.site]);
-    }
+    add_many(shape, claims, parts);
   }
 }
 
@@ -156,69 +171,138 @@ CellMoments& operator+=(CellMoments& sum, const CellMoments& part) {
   return sum;
 }
 
-/// Adds a face that one cell owns whole.
-void add_whole_face(const CellClaims& claims, Index face, const FaceWeights::Weights& weights, CellMoments& sum) {
-  const Triangle& t = claims.mesh().triangles()[face];
-  for (int i = 0; i < 3; ++i) {
-    const SiteVector seen = claims.maps().own(t[i]);
-    sum.mass += weights.corner[i];
-    sum.moment += weights.corner[i] * seen.log;
-    sum.energy += weights.corner[i] * seen.distance * seen.distance;
-  }
-  sum.energy -= weights.bulge;
-  sum.area += claims.mesh().face_area(face);
+CellMoments& operator-=(CellMoments& sum, const CellMoments& part) {
+  sum.area -= part.area;
+  sum.mass -= part.mass;
+  sum.moment -= part.moment;
+  sum.energy -= part.energy;
+  return sum;
 }
 
-/// The faces in a fixed number of ranges, so that sums do not depend on the number of threads.
-std::vector<CellMoments> moments_of_whole_faces(const CellClaims& claims, const FaceWeights& weights, int threads,
-                                                const JobStage& stage) {
-  constexpr Index k_ranges = 8;
-  const std::int64_t count = claims.mesh().face_count();
-  std::array<std::vector<CellMoments>, k_ranges> sums;
-  parallel_for(k_ranges, threads, 1, [&](Index range, int) {
-    sums[range].resize(claims.site_count());
-    const auto first = static_cast<Index>(count * range / k_ranges),
-               last = static_cast<Index>(count * (range + 1) / k_ranges);
-    for (Index face = first; face < last; ++face) {
-      if (face % 1024 == 0) stage.check();
-      const Index site = claims.face_site(face);
-      if (site != k_none) add_whole_face(claims, face, weights[face], sums[range][site]);
-    }
-  });
-  for (Index range = 1; range < k_ranges; ++range) {
-    for (Index site = 0; site < claims.site_count(); ++site) sums[0][site] += sums[range][site];
+/// One straight cut: a corner on one side of it, two on the other.
+void SharedFace::add_two(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts) {
+  constexpr double k_most_of_it = 0.9;  // what is left is too little to be told from a difference
+  const ClaimedFace first(shape, claims[rivals_[0]]), second(shape, claims[rivals_[1]]);
+  const Vec3 lead = first.squared_distance - second.squared_distance;
+  const Cut cut = cut_where_zero(lead);
+  const bool second_is_lone = lead[cut.lone] > 0;
+  const ClaimedFace &lone = second_is_lone ? second : first, &rest = second_is_lone ? first : second;
+  CellMoments &of_lone = parts[rivals_[second_is_lone ? 1 : 0]], &of_rest = parts[rivals_[second_is_lone ? 0 : 1]];
+  if (shape.uniform && cut.on_left * cut.on_right < k_most_of_it) {
+    const Tip tip(shape, cut);
+    of_lone += tip.moments(lone);
+    add_whole(rest, of_rest);
+    of_rest -= tip.moments(rest);
+    return;
   }
-  return std::move(sums[0]);
+  const Vec3 on_left = cut.left_end(), on_right = cut.right_end();
+  add_triangle(lone, Vec3::Unit(cut.lone), on_left, on_right, of_lone);
+  add_triangle(rest, on_left, Vec3::Unit(cut.left), Vec3::Unit(cut.right), of_rest);
+  add_triangle(rest, on_left, Vec3::Unit(cut.right), on_right, of_rest);
+}
+
+void SharedFace::add_many(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts) {
+  planes_.clear();
+  for (const Index i : rivals_) {
+    planes_.push_back(
+        {i, {claims[i].squared_distance(0), claims[i].squared_distance(1), claims[i].squared_distance(2)}});
+  }
+  partition_.build(planes_);
+  for (const FacePartition::Piece& piece : partition_.pieces()) {
+    const auto corner = [&](std::size_t i) { return partition_.vertices()[piece.loop[i]].barycentric; };
+    const ClaimedFace face(shape, claims[piece.site]);
+    for (std::size_t j = 1; j + 1 < piece.loop.size(); ++j) {
+      add_triangle(face, corner(0), corner(j), corner(j + 1), parts[piece.site]);
+    }
+  }
 }
 
 }  // namespace
 
-FaceWeights::FaceWeights(const Mesh& mesh, std::span<const double> density, int threads)
-    : density_(density), weights_(mesh.face_count()) {
-  parallel_for(mesh.face_count(), threads, 4096, [&](Index face, int) {
-    const FaceShape shape(mesh, face, density);
-    Weights& sum = weights_[face];
-    sum = {};
+CellIntegrals::CellIntegrals(const SaddleVertexGraph& graph, const VertexRings& rings, std::span<const double> density,
+                             int threads)
+    : rings_(rings),
+      threads_(threads),
+      faces_(rings.face_count()),
+      density_(density.empty() ? 0 : rings.face_count()),
+      nodes_(graph.mesh().vertex_count()) {
+  const Mesh& mesh = graph.mesh();
+  parallel_for(rings.face_count(), threads, 4096, [&](Index face, int) {
+    Face& sum = faces_[face];
+    const Index in_mesh = rings.face(face).in_mesh;
+    sum = {.squared_edges = {}, .weight = {}, .bulge = 0, .area = mesh.face_area(in_mesh)};
+    for (int i = 0; i < 3; ++i) {
+      const double opposite = mesh.length(Mesh::next(3 * in_mesh + i));
+      sum.squared_edges[i] = opposite * opposite;
+      if (!density.empty()) density_[face][i] = density[mesh.triangles()[in_mesh][i]];
+    }
+    const FaceShape shape(sum, density.empty() ? nullptr : &density_[face]);
     for (const QuadraturePoint& q : k_quartic) {
       const Vec3 x = at(q, Vec3::Unit(0), Vec3::Unit(1), Vec3::Unit(2));
-      const double weight = shape.area * q.weight * shape.weight(x);
-      for (int i = 0; i < 3; ++i) sum.corner[i] += weight * x[i];
+      const double weight = sum.area * q.weight * shape.weight(x);
+      for (int i = 0; i < 3; ++i) sum.weight[i] += weight * x[i];
       sum.bulge += weight * shape.bulge(x);
+    }
+  });
+  parallel_for(static_cast<Index>(nodes_.size()), threads, 4096, [&](Index node, int) {
+    for (const VertexRings::Wedge& wedge : rings.around(node)) {
+      const Face& face = faces_[wedge.side / 3];
+      nodes_[node].weight += face.weight[Mesh::prev(wedge.side) % 3];
+      nodes_[node].bulge += face.bulge / 3;
+      nodes_[node].area += face.area / 3;
     }
   });
 }
 
-std::vector<CellMoments> cell_moments(const CellClaims& claims, const FaceWeights& weights, int threads,
-                                      const JobStage& stage) {
-  std::vector<CellMoments> cells = moments_of_whole_faces(claims, weights, threads, stage);
-  std::vector<CellMoments> parts(claims.claim_count());
-  std::vector<SharedFace> scratch(thread_count(threads));
-  parallel_for(claims.shared_count(), threads, 256, [&](Index shared, int thread) {
+void CellIntegrals::mark_border(const CellClaims& claims) {
+  at_border_.assign(nodes_.size(), 0);
+  for (Index shared = 0; shared < claims.shared_count(); ++shared)
+    for (const Index node : rings_.face(claims.face(shared)).nodes) at_border_[node] = 1;
+}
+
+/// The parts about a cell's own vertices of the faces that it owns whole.
+CellMoments CellIntegrals::whole_faces(const CellClaims& claims, Index site) const {
+  CellMoments sum;
+  for (const Index node : claims.maps().nodes(site)) {
+    Node about;
+    if (at_border_[node]) {
+      for (const VertexRings::Wedge& wedge : rings_.around(node)) {
+        if (claims.shared_index(wedge.side / 3) != k_none) continue;
+        const Face& face = faces_[wedge.side / 3];
+        about.weight += face.weight[Mesh::prev(wedge.side) % 3];
+        about.bulge += face.bulge / 3;
+        about.area += face.area / 3;
+      }
+    } else {
+      about = nodes_[node];
+    }
+    const SiteVector seen = claims.maps().own(node);
+    sum.mass += about.weight;
+    sum.moment += about.weight * seen.log;
+    sum.energy += about.weight * seen.distance * seen.distance - about.bulge;
+    sum.area += about.area;
+  }
+  return sum;
+}
+
+std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, const JobStage& stage) {
+  mark_border(claims);
+  std::vector<CellMoments> cells(claims.site_count());
+  parallel_for(claims.site_count(), threads_, 16, [&](Index i, int) {
     stage.check();
-    scratch[thread].add(claims, shared, weights.density(), &parts[claims.first_claim(shared)]);
+    const Index site = claims.maps().sites_along_curve()[i];
+    cells[site] = whole_faces(claims, site);
+  });
+  parts_.assign(claims.claim_count(), {});
+  std::vector<SharedFace> scratch(thread_count(threads_));
+  parallel_for(claims.shared_count(), threads_, 256, [&](Index shared, int thread) {
+    stage.check();
+    const Index face = claims.face(shared);
+    const FaceShape shape(faces_[face], density_.empty() ? nullptr : &density_[face]);
+    scratch[thread].add(shape, claims.claims(shared), &parts_[claims.first_claim(shared)]);
   });
   for (Index shared = 0; shared < claims.shared_count(); ++shared) {
-    const CellMoments* part = &parts[claims.first_claim(shared)];
+    const CellMoments* part = &parts_[claims.first_claim(shared)];
     for (const FaceClaim& claim : claims.claims(shared)) cells[claim.site] += *part++;
   }
   return cells;

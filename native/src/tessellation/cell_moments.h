@@ -17,28 +17,40 @@ struct CellMoments {
   double energy = 0;           ///< of the squared distance to the site
 };
 
-/// What integrals over whole faces need, for a density that does not change while sites move: density^2 integrated
-/// with the barycentric coordinates, and with what squared distances fall short of their corners' interpolation.
-class FaceWeights {
+/// Integrates over cells with a density that does not change while sites move. Keeps its memory for other cells.
+class CellIntegrals {
  public:
-  /// `density` (V,) or empty for 1; must outlive the weights. O(F).
-  FaceWeights(const Mesh& mesh, std::span<const double> density, int threads);
+  /// `density` (V,) or empty for 1. Both must outlive it. O(F).
+  CellIntegrals(const SaddleVertexGraph& graph, const VertexRings& rings, std::span<const double> density, int threads);
 
-  struct Weights {
-    std::array<double, 3> corner;  ///< their sum is the mass
+  /// By cell. Integrals of density^2 times squared distance (both quadratic in a flat face) are exact. The same for any
+  /// number of threads. \throw Cancelled. O(V + pieces).
+  std::vector<CellMoments> moments(const CellClaims& claims, const JobStage& stage);
+
+  /// A flat face. Integrals over all of it: density^2 with the barycentric coordinates, and with what squared distances
+  /// fall short of their corners' interpolation.
+  struct Face {
+    std::array<double, 3> squared_edges;  ///< of the side opposite each corner
+    std::array<double, 3> weight;         ///< of each corner; their sum is the mass
     double bulge;
+    double area;
   };
-  const Weights& operator[](Index face) const { return weights_[face]; }
-  std::span<const double> density() const { return density_; }
 
  private:
-  std::span<const double> density_;
-  std::vector<Weights> weights_;
-};
+  /// The same about a node: a third of each face's.
+  struct Node {
+    double weight = 0, bulge = 0, area = 0;
+  };
+  void mark_border(const CellClaims& claims);
+  CellMoments whole_faces(const CellClaims& claims, Index site) const;
 
-/// Per cell. Integrals of density^2 times squared distance (both quadratic in a flat face) are exact. The same for any
-/// thread count. \throw Cancelled. O(V + pieces).
-std::vector<CellMoments> cell_moments(const CellClaims& claims, const FaceWeights& weights, int threads,
-                                      const JobStage& stage);
+  const VertexRings& rings_;
+  const int threads_;
+  std::vector<Face> faces_;                     ///< in the rings' order
+  std::vector<std::array<double, 3>> density_;  ///< of their corners; empty for 1
+  std::vector<Node> nodes_;
+  std::vector<std::uint8_t> at_border_;  ///< by node: a face about it is shared
+  std::vector<CellMoments> parts_;       ///< by claim
+};
 
 }  // namespace saddleback

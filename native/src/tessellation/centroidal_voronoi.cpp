@@ -60,7 +60,8 @@ class Relaxation {
 
  private:
   std::vector<double> reaches(const SurfacePoints& sites) const;
-  State evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage) const;
+  State evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage);
+  void accept(State next);
   bool revive_empty_cells(const JobStage& stage);
   SurfacePoint far_place(Index site) const;
   bool advance_by(const TangentField& direction, const TangentField& gradient, const JobStage& stage);
@@ -72,7 +73,8 @@ class Relaxation {
   const SaddleVertexGraph& graph_;
   const CentroidalVoronoiOptions& options_;
   const VertexRings rings_;
-  const FaceWeights weights_;
+  CellIntegrals integrals_;
+  std::unique_ptr<CellClaims> spare_;  ///< memory for the next cells
   std::vector<std::uint8_t> is_fixed_;
   const HeldSites held_;
   State state_;
@@ -84,7 +86,7 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
     : graph_(graph),
       options_(options),
       rings_(graph, options.threads),
-      weights_(graph.mesh(), options.density, options.threads),
+      integrals_(graph, rings_, options.density, options.threads),
       is_fixed_(sites.size(), 0),
       held_(graph.mesh(), options.curves, options.held, sites.size()) {
   for (const Index site : options.fixed) is_fixed_[site] = 1;
@@ -94,15 +96,21 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
   while (revive_empty_cells(stage)) {}
 }
 
-State Relaxation::evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage) const {
+State Relaxation::evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage) {
   State state;
   state.sites = std::move(sites);
   state.along = std::move(along);
-  state.claims = std::make_unique<CellClaims>(graph_, rings_, state.sites, reaches(state.sites), options_.threads,
-                                              stage.part(0, 0.8));
-  state.moments = cell_moments(*state.claims, weights_, options_.threads, stage);
+  state.claims = spare_ ? std::move(spare_) : std::make_unique<CellClaims>(graph_, rings_, options_.threads);
+  state.claims->find(state.sites, reaches(state.sites), stage.part(0, 0.8));
+  state.moments = integrals_.moments(*state.claims, stage);
   for (const CellMoments& cell : state.moments) state.energy += cell.energy;
   return state;
+}
+
+/// Takes the better of two states; the other's memory is for the next.
+void Relaxation::accept(State next) {
+  spare_ = std::move(state_.claims);
+  state_ = std::move(next);
 }
 
 /// How far sites may own something: somewhat farther than before, and than they have moved. None for the first cells.
@@ -153,17 +161,21 @@ bool Relaxation::revive_empty_cells(const JobStage& stage) {
   SurfacePoints sites = state_.sites;
   for (std::size_t i = 0; i < std::min(empty.size(), rich.size()); ++i) sites[empty[i]] = far_place(rich[i]);
   State next = evaluate(std::move(sites), state_.along, stage);
-  if (!(next.energy < state_.energy)) return false;  // nothing is far enough to be told apart
-  state_ = std::move(next);
+  if (!(next.energy < state_.energy)) {  // nothing is far enough to be told apart
+    spare_ = std::move(next.claims);
+    return false;
+  }
+  accept(std::move(next));
   memory_.forget();
   return true;
 }
 
 /// Far from the site, in its cell: the last of its vertices, else on the way to a corner of its face.
 SurfacePoint Relaxation::far_place(Index site) const {
-  const Index farthest = state_.claims->maps().farthest_vertex(site);
-  if (farthest != k_none && vertex_at(graph_.mesh(), state_.sites[site]) != farthest) {
-    return at_vertex(graph_.mesh(), farthest);
+  const auto nodes = state_.claims->maps().nodes(site);
+  if (!nodes.empty()) {
+    const Index farthest = graph_.vertex_of(nodes.back());
+    if (vertex_at(graph_.mesh(), state_.sites[site]) != farthest) return at_vertex(graph_.mesh(), farthest);
   }
   SurfacePoint place = state_.sites[site];
   const int corner = place.barycentric[0] < place.barycentric[1] ? 0 : 1;
@@ -193,14 +205,17 @@ bool Relaxation::advance_by(const TangentField& direction, const TangentField& s
     Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads);
     std::vector<double> along = held_.move(state_.along, state_.sites, steps, moved);
     State next = evaluate(moved.sites, std::move(along), stage);
-    if (!(next.energy <= state_.energy + k_least_share * length * promise)) continue;
+    if (!(next.energy <= state_.energy + k_least_share * length * promise)) {
+      spare_ = std::move(next.claims);
+      continue;
+    }
     if (options_.method == RelaxationMethod::lbfgs) {
       TangentField before = slope, change = gradient(next);
       transport(moved, before);
       for (std::size_t i = 0; i < change.size(); ++i) change[i] -= before[i];
       memory_.add(moved, std::move(change));
     }
-    state_ = std::move(next);
+    accept(std::move(next));
     revive_empty_cells(stage);
     return true;
   }
@@ -352,7 +367,8 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   const JobStage last = options.return_when_cancelled ? JobStage() : stage;
   result.sites = best.sites;
   result.held.assign(options.held.begin(), options.held.end());
-  result.cells = make_diagram(CellComplex(*best.claims, options.threads, last), best.sites, last);
+  const ClaimsOfCells claims(*best.claims);
+  result.cells = make_diagram(CellComplex(claims, options.threads, last), best.sites, last);
   constexpr double k_hexagon = 5 / (36 * 1.7320508075688772);
   const double mass = relaxation.mass();
   result.normalised_energy = best.energy * static_cast<double>(sites.size()) / (2 * k_hexagon * mass * mass);

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <limits>
 
-#include "geodesics/direct_fans.h"
+#include "geodesics/planar.h"
 #include "geodesics/query_cache.h"
 #include "support/parallel.h"
 
@@ -31,7 +31,7 @@ constexpr double k_end_on = 1e-10;
 
 Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+Vec2 rotated(const Vec2& v, double c, double s) { return {c * v.x() - s * v.y(), s * v.x() + c * v.y()}; }
 
 double angle_between(const Vec2& a, const Vec2& b) { return std::atan2(cross(a, b), a.dot(b)); }
 
@@ -51,54 +51,74 @@ double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
   return 0;
 }
 
-void sort_by_node(std::vector<DirectArc>& arcs) {
-  std::sort(arcs.begin(), arcs.end(), [](const DirectArc& a, const DirectArc& b) { return a.vertex < b.vertex; });
+/// The angle of (x, y) to 1e-5, where it is a share of a small one that is wanted (Abramowitz and Stegun 4.4.47).
+double rough_angle(double x, double y) {
+  const double across = std::abs(x), up = std::abs(y);
+  const double t = std::min(across, up) / std::max({across, up, std::numeric_limits<double>::min()}), s = t * t;
+  double angle = t * (0.9998660 + s * (-0.3302995 + s * (0.1801410 + s * (-0.0851330 + s * 0.0208351))));
+  if (up > across) angle = M_PI / 2 - angle;
+  if (x < 0) angle = M_PI - angle;
+  return y < 0 ? -angle : angle;
+}
+
+/// Turned by an angle that is small nearly always.
+Vec2 turned(const Vec2& v, double angle) {
+  constexpr double k_small = 1e-2;  // the next term of the series is below rounding
+  if (std::abs(angle) > k_small) return rotated(v, std::cos(angle), std::sin(angle));
+  const double s = angle * angle;
+  return rotated(v, 1 - s / 2 * (1 - s / 12 * (1 - s / 30)), angle * (1 - s / 6 * (1 - s / 20 * (1 - s / 42))));
 }
 
 }  // namespace
 
-SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
-                   std::span<const double> reaches, int threads, const JobStage& stage)
+SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings)
     : graph_(graph),
       mesh_(graph.mesh()),
       rings_(rings),
-      sites_(sites),
       slack_(std::max(2 * graph.accuracy(), k_least_slack)),
-      fans_(sites.size()),
-      places_(graph.mesh().vertex_count()),
-      placed_(graph.mesh().vertex_count(), 0) {
-  make_fans(reaches, threads, stage.part(0, 0.3));
-  label_nodes(stage);
+      places_(graph.mesh().vertex_count()) {}
+
+void SiteMaps::Scratch::forget() {
+  site = k_none;
+  std::ranges::fill(beside, Beside());
+}
+
+void SiteMaps::label_nodes(const SurfacePoints& sites, std::span<const double> reaches, int threads,
+                           const JobStage& stage) {
+  sites_ = sites;
+  order_sites();
+  make_fans(reaches, threads, stage.part(0, 0.5));
+  seeds_.clear();
+  for (Index site = 0; site < site_count(); ++site) {
+    const Fan& fan = fans_[site];
+    if (fan.centre != k_none) seeds_.push_back({fan.centre, site, 0});
+    for (const SeenNode& seen : fan.seen) seeds_.push_back({seen.node, site, seen.length});
+  }
+  const auto search = graph_.query_cache().field_searches.lease();
+  search->run(graph_, std::span<const NodeSeed>(seeds_), {}, SearchLabels::sources, stage.part(0.5, 1));
+  label_.assign(search->node_sources().begin(), search->node_sources().end());
+  distance_.assign(search->node_distances().begin(), search->node_distances().end());
   group_nodes();
-  stage.update(0.8);
-  std::vector<std::unique_ptr<Scratch>> scratch(thread_count(threads));
-  const std::vector<Index> order = sites_along_curve();
-  parallel_for(site_count(), threads, 16, [&](Index i, int thread) {
-    stage.check();
-    if (!scratch[thread]) scratch[thread] = std::make_unique<Scratch>(*this);
-    place_cell(order[i], *scratch[thread]);
-  });
-  stage.update(1);
 }
 
 void SiteMaps::make_fans(std::span<const double> reaches, int threads, const JobStage& stage) {
-  for_each_fan(graph_, sites_, reaches, FanAngles::both, threads, stage,
-               [&](Index site, std::span<const DirectArc> arcs) {
-                 Fan& fan = fans_[site];
-                 fan.arcs.assign(arcs.begin(), arcs.end());
-                 for (DirectArc& arc : fan.arcs) {
-                   arc.vertex = graph_.node_of(arc.vertex);
-                   arc.length = graph_.arcs().codec().round(arc.length);
-                 }
-                 sort_by_node(fan.arcs);
-               });
+  fans_.resize(sites_.size());
   std::vector<Index> at_vertices;
   for (Index site = 0; site < site_count(); ++site) {
     const Index vertex = vertex_at(mesh_, sites_[site]);
-    if (vertex == k_none) continue;
-    fans_[site].centre = graph_.node_of(vertex);
-    at_vertices.push_back(site);
+    fans_[site].centre = vertex == k_none ? k_none : graph_.node_of(vertex);
+    fans_[site].corners = rings_.face(rings_.face_of(sites_[site].face)).nodes;
+    if (vertex != k_none) at_vertices.push_back(site);
   }
+  for_each_view(graph_, sites_, reaches, threads, stage, [&](Index site, std::span<const SeenNode> view) {
+    std::vector<SeenNode>& seen = fans_[site].seen;
+    seen.assign(view.begin(), view.end());
+    for (SeenNode& node : seen) {
+      const double length = graph_.arcs().codec().round(node.length);
+      node.place *= length / node.length;
+      node.length = length;
+    }
+  });
   parallel_for(static_cast<Index>(at_vertices.size()), threads, 16, [&](Index i, int) {
     stage.check();
     make_fan_at_vertex(fans_[at_vertices[i]]);
@@ -111,24 +131,12 @@ void SiteMaps::make_fan_at_vertex(Fan& fan) {
   const ArcRows& arcs = graph_.arcs();
   ArcUnfolder unfolder(graph_.unfolding());
   UnfoldedArc unfolded;
+  fan.seen.clear();
   for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
     unfolder.unfold(graph_.hint(node, arc), unfolded);
-    fan.arcs.push_back({arcs.target(arc), arcs.length(arc), scale * unfolded.start_angle, unfolded.end_angle});
+    fan.seen.push_back({arcs.target(arc), k_none, arcs.length(arc),
+                        polar(arcs.length(arc), scale * unfolded.start_angle), Vec2(unfolded.end_angle, 0)});
   }
-  sort_by_node(fan.arcs);
-}
-
-void SiteMaps::label_nodes(const JobStage& stage) {
-  std::vector<Seed> seeds;
-  for (Index site = 0; site < site_count(); ++site) {
-    const Fan& fan = fans_[site];
-    if (fan.centre != k_none) seeds.push_back({graph_.vertex_of(fan.centre), site, 0});
-    for (const DirectArc& arc : fan.arcs) seeds.push_back({graph_.vertex_of(arc.vertex), site, arc.length});
-  }
-  const auto search = graph_.query_cache().field_searches.lease();
-  search->run(graph_, seeds, {}, SearchLabels::sources, stage.part(0.3, 0.8));
-  label_.assign(search->node_sources().begin(), search->node_sources().end());
-  distance_.assign(search->node_distances().begin(), search->node_distances().end());
 }
 
 void SiteMaps::group_nodes() {
@@ -140,51 +148,42 @@ void SiteMaps::group_nodes() {
   for (Index node = 0; node < mesh_.vertex_count(); ++node) nodes_[cursor[label_[node]]++] = node;
 }
 
-Index SiteMaps::farthest_vertex(Index site) const {
-  const Index last = first_node_[site + 1];
-  return last == first_node_[site] ? k_none : graph_.vertex_of(nodes_[last - 1]);
-}
-
-/// Cells beside each other one after the other: they use the same memory.
-std::vector<Index> SiteMaps::sites_along_curve() const {
-  std::vector<std::pair<Index, Index>> order;
-  for (Index site = 0; site < site_count(); ++site) {
-    order.emplace_back(graph_.node_of(mesh_.triangles()[sites_[site].face][0]), site);
-  }
-  std::sort(order.begin(), order.end());
-  std::vector<Index> sites;
-  for (const auto& [node, site] : order) sites.push_back(site);
-  return sites;
+void SiteMaps::order_sites() {
+  std::vector<std::pair<Index, Index>> keys;
+  for (Index site = 0; site < site_count(); ++site) keys.emplace_back(rings_.face_of(sites_[site].face), site);
+  std::ranges::sort(keys);
+  order_.clear();
+  for (const auto& [face, site] : keys) order_.push_back(site);
 }
 
 void SiteMaps::place_cell(Index site, Scratch& scratch) {
   const auto first = nodes_.begin() + first_node_[site], last = nodes_.begin() + first_node_[site + 1];
   std::sort(first, last,
             [&](Index a, Index b) { return distance_[a] != distance_[b] ? distance_[a] < distance_[b] : a < b; });
+  for (auto node = first; node != last; ++node) places_[*node].found_by = k_unplaced;
+  scratch.site = site;
+  ++scratch.round;
+  scratch.answers.clear();
   const Fan& fan = fans_[site];
   // Straight ones first: each may serve as the end of an edge that others are seen across.
-  for (const DirectArc& arc : fan.arcs) {
-    if (label_[arc.vertex] != site || arc.length > distance_[arc.vertex]) continue;
-    places_[arc.vertex] = place_direct(arc);
-    placed_[arc.vertex] = 1;
+  for (std::size_t i = 0; i < fan.seen.size(); ++i) {
+    const SeenNode& seen = fan.seen[i];
+    scratch.table[seen.node] = {scratch.round, static_cast<Index>(i)};
+    if (label_[seen.node] == site && seen.length <= distance_[seen.node]) places_[seen.node] = place_straight(seen);
   }
-  if (fan.centre != k_none && label_[fan.centre] == site) placed_[fan.centre] = 1;
+  if (fan.centre != k_none && label_[fan.centre] == site) places_[fan.centre] = {.found_by = k_centre};
   for (auto node = first; node != last; ++node) {
-    if (placed_[*node]) continue;
-    if (!place_own(*node, site, places_[*node])) places_[*node] = place_after(*node, node_before(*node), scratch);
-    placed_[*node] = 1;
+    if (places_[*node].found_by != k_unplaced) continue;
+    Place place;
+    if (!place_own(*node, site, place)) place = place_after(*node, node_before(*node), scratch);
+    places_[*node] = place;
   }
 }
 
-const DirectArc* SiteMaps::fan_arc(Index site, Index node) const {
-  const auto& arcs = fans_[site].arcs;
-  const auto found = std::lower_bound(arcs.begin(), arcs.end(), node,
-                                      [](const DirectArc& arc, Index wanted) { return arc.vertex < wanted; });
-  return found != arcs.end() && found->vertex == node ? &*found : nullptr;
-}
-
-SiteMaps::Place SiteMaps::place_direct(const DirectArc& arc) const {
-  return {polar(arc.length, arc.start_angle), arc.length, arc.end_angle, k_none};
+const SeenNode* SiteMaps::seen_in_fan(Index site, Index node) const {
+  const auto& seen = fans_[site].seen;
+  const auto found = std::ranges::find(seen, node, &SeenNode::node);
+  return found != seen.end() ? &*found : nullptr;
 }
 
 /// Whether a path may bend where it comes from `back` and goes on towards `out`, so much that it counts.
@@ -208,17 +207,35 @@ Index SiteMaps::node_before(Index node) const {
 }
 
 SiteMaps::Place SiteMaps::place_after(Index node, Index previous, Scratch& scratch) const {
+  const double back = direction_back(previous, scratch);
   const Place& before = places_[previous];
   const Index vertex = graph_.vertex_of(previous);
   const std::int64_t arc = graph_.arcs().find(previous, node);
   scratch.unfolder.unfold(graph_.hint(previous, arc), scratch.unfolded);
   const double length = graph_.arcs().length(arc), out = scratch.unfolded.start_angle;
-  if (is_anchor(vertex, before.back, out)) {
-    return {polar(length, out - before.back), before.distance + length, scratch.unfolded.end_angle, previous};
+  if (is_anchor(vertex, back, out))
+    return {polar(length, out - back), before.distance + length, previous, k_after_another};
+  const double heading = std::atan2(before.at.y(), before.at.x()) + turn_at(mesh_, vertex, back, out);
+  const Vec2 at = before.at + polar(length, heading);
+  return {at, anchor_distance(before) + at.norm(), before.anchor, k_after_another};
+}
+
+/// To the anchor of a placed node, surface angle at the node. Few are asked for it.
+double SiteMaps::direction_back(Index node, Scratch& scratch) const {
+  const Place& place = places_[node];
+  if (place.found_by == k_centre) return 0;
+  if (place.found_by == k_straight) return saddleback::direction_back(graph_, *seen_in_fan(label_[node], node));
+  if (place.found_by == k_after_another) {
+    const Index previous = node_before(node);
+    scratch.unfolder.unfold(graph_.hint(previous, graph_.arcs().find(previous, node)), scratch.unfolded);
+    const double back = scratch.unfolded.end_angle;
+    return place.anchor == previous ? back : back + angle_between(place.at - places_[previous].at, place.at);
   }
-  const double heading = std::atan2(before.at.y(), before.at.x()) + turn_at(mesh_, vertex, before.back, out);
-  const Vec2 step = polar(length, heading), at = before.at + step;
-  return {at, anchor_distance(before) + at.norm(), scratch.unfolded.end_angle + angle_between(step, at), before.anchor};
+  const Wedge& wedge = rings_.wedge(place.found_by);
+  Sight sight;
+  see(wedge, places_[wedge.from], places_[wedge.to], sight);
+  return graph_.unfolding().polar(Mesh::prev(rings_.halfedge(wedge.side))) +
+         angle_between(Vec2(-wedge.apex), Vec2(-sight.ray));
 }
 
 /// False where the anchor is on the corner's own side of the edge, where the lengths make no triangle, or where the ray
@@ -237,15 +254,27 @@ bool SiteMaps::see(const Wedge& wedge, const Place& from, const Place& to, Sight
   return sight.beyond == 0 || !(sight.beyond < 0 ? wedge.from_bends : wedge.to_bends);
 }
 
-/// The direction divides the angle between those of the edge's ends as the ray divides it in the edge's frame.
+/// The direction divides the angle between those of the edge's ends as the ray divides it in the edge's frame: turned
+/// from the start's as the ray is from it, and by the ray's share of what the two angles differ by.
 SiteMaps::Place SiteMaps::place_by(const Sight& sight, const Wedge& wedge, const Place& from, const Place& to) const {
   const Vec2 to_start = -sight.anchor, to_end = Vec2(wedge.length, 0) - sight.anchor;
-  const double share = angle_between(to_start, sight.ray) / angle_between(to_start, to_end);
-  const double angle = std::atan2(from.at.y(), from.at.x()) + share * angle_between(from.at, to.at);
-  Place place{polar(sight.distance, angle), sight.distance, 0, from.anchor};
+  const double ray_x = to_start.dot(sight.ray), ray_y = cross(to_start, sight.ray);
+  const double frame_x = to_start.dot(to_end), frame_y = cross(to_start, to_end);
+  const double plane_x = from.at.dot(to.at), plane_y = cross(from.at, to.at);
+  const double x = plane_x * frame_x + plane_y * frame_y, y = plane_y * frame_x - plane_x * frame_y;
+  constexpr double k_small = 1e-2;
+  const double ratio = y / x;
+  double turn;
+  if (x > 0 && std::abs(ratio) < k_small) {
+    const double difference = ratio * (1 - ratio * ratio / 3);
+    turn = difference == 0 ? 0 : difference * (rough_angle(ray_x, ray_y) / rough_angle(frame_x, frame_y));
+  } else {
+    turn = std::atan2(y, x) * (std::atan2(ray_y, ray_x) / std::atan2(frame_y, frame_x));
+  }
+  // The start is as far from the anchor in the plane as in the frame.
+  Place place{turned(rotated(from.at, ray_x, ray_y) / from.at.squaredNorm(), turn), sight.distance, from.anchor,
+              rings_.index(wedge)};
   place.distance += anchor_distance(place);
-  const double to_edge = graph_.unfolding().polar(Mesh::prev(wedge.halfedge));
-  place.back = to_edge + angle_between(Vec2(-wedge.apex), Vec2(-sight.ray));
   return place;
 }
 
@@ -254,8 +283,9 @@ SiteMaps::Place SiteMaps::place_by(const Sight& sight, const Wedge& wedge, const
 bool SiteMaps::place_own(Index node, Index site, Place& place) const {
   const double most = distance_[node] * (1 + k_arc_rounding), least = (1 - slack_) * most;
   for (const Wedge& wedge : rings_.around(node)) {
-    if (label_[wedge.from] != site || label_[wedge.to] != site || !placed_[wedge.from] || !placed_[wedge.to]) continue;
+    if (label_[wedge.from] != site || label_[wedge.to] != site) continue;
     const Place &from = places_[wedge.from], &to = places_[wedge.to];
+    if (from.found_by == k_unplaced || to.found_by == k_unplaced) continue;
     Sight sight;
     if (!see(wedge, from, to, sight) || std::abs(sight.beyond) > k_least_miss) continue;
     const double distance = anchor_distance(from) + sight.distance;
@@ -266,11 +296,11 @@ bool SiteMaps::place_own(Index node, Index site, Place& place) const {
   return false;
 }
 
-/// An end of an edge as the site sees it; the site's own or, where `deep`, any that can be placed beside its own.
-bool SiteMaps::end_of_edge(Index node, Index site, Scratch* deep, Place& place) const {
-  if (label_[node] != site) return deep && beside_own(node, site, *deep, place);
-  place = places_[node];
-  return true;
+/// An end of an edge as the site sees it; the site's own or, where `deep`, any that can be placed beside its own. Null
+/// where there is none.
+const SiteMaps::Place* SiteMaps::end_of_edge(Index node, Index site, Scratch* deep, Place& place) const {
+  if (label_[node] == site) return &places_[node];
+  return deep && beside_own(node, site, *deep, place) ? &place : nullptr;
 }
 
 /// Beyond edges of the site's own cell; remembered.
@@ -294,14 +324,15 @@ bool SiteMaps::place_beside(Index node, Index site, Scratch* deep, Place& place)
   for (const Wedge& wedge : rings_.around(node)) {
     const bool owns_from = label_[wedge.from] == site, owns_to = label_[wedge.to] == site;
     if (deep ? !owns_from && !owns_to : !owns_from || !owns_to) continue;
-    Place from, to;
+    Place from_memory, to_memory;
+    const Place* const from = end_of_edge(wedge.from, site, deep, from_memory);
+    const Place* const to = from ? end_of_edge(wedge.to, site, deep, to_memory) : nullptr;
     Sight found;
-    if (!end_of_edge(wedge.from, site, deep, from) || !end_of_edge(wedge.to, site, deep, to)) continue;
-    if (!see(wedge, from, to, found)) continue;
+    if (!to || !see(wedge, *from, *to, found)) continue;
     const double beyond = std::abs(found.beyond), best_beyond = std::abs(best.beyond);
     const bool better =
         !best_wedge || beyond < best_beyond || (beyond == best_beyond && found.distance < best.distance);
-    if (better) best = found, best_wedge = &wedge, best_from = from, best_to = to;
+    if (better) best = found, best_wedge = &wedge, best_from = *from, best_to = *to;
   }
   if (!best_wedge) return false;
   place = place_by(best, *best_wedge, best_from, best_to);
@@ -314,19 +345,43 @@ SiteVector SiteMaps::vector_of(const Place& place) const {
   return {place.distance * vector_of(places_[place.anchor]).log.normalized(), place.distance};
 }
 
-bool SiteMaps::find(Index site, Index vertex, Scratch& scratch, SiteVector& vector) const {
-  const Index node = graph_.node_of(vertex);
-  Place place;
+bool SiteMaps::find(Index site, Index node, Scratch& scratch, SiteVector& vector) const {
   if (label_[node] == site) {
-    place = places_[node];
-  } else if (node == fans_[site].centre) {  // two sites on one vertex
-  } else if (const DirectArc* direct = fan_arc(site, node)) {
-    place = place_direct(*direct);
-  } else if (in_own_face(node, site, vector)) {
+    vector = vector_of(places_[node]);
     return true;
-  } else if (!place_by_cell(node, site, scratch, place)) {
-    return false;
   }
+  if (node == fans_[site].centre) {  // two sites on one vertex
+    vector = {};
+    return true;
+  }
+  const SeenNode* seen = nullptr;
+  if (scratch.site == site) {
+    const Scratch::Known known = scratch.table[node];
+    if (known.round == scratch.round && known.at < 0) {
+      vector = scratch.answers[~known.at].vector;
+      return scratch.answers[~known.at].found;
+    }
+    if (known.round == scratch.round) seen = &fans_[site].seen[known.at];
+  } else {
+    seen = seen_in_fan(site, node);
+  }
+  if (seen) {
+    vector = {seen->place, seen->length};
+    return true;
+  }
+  const bool found = place_near(node, site, scratch, vector);
+  if (scratch.site == site) {
+    scratch.table[node] = {scratch.round, ~static_cast<Index>(scratch.answers.size())};
+    scratch.answers.push_back({found, vector});
+  }
+  return found;
+}
+
+/// A node that is not seen from the site.
+bool SiteMaps::place_near(Index node, Index site, Scratch& scratch, SiteVector& vector) const {
+  if (in_own_face(node, site, vector)) return true;
+  Place place;
+  if (!place_by_cell(node, site, scratch, place)) return false;
   vector = vector_of(place);
   return true;
 }
@@ -341,11 +396,11 @@ bool SiteMaps::place_by_cell(Index node, Index site, Scratch& scratch, Place& pl
 /// The corners of its face a site sees straight, even where its fan leaves them out.
 bool SiteMaps::in_own_face(Index node, Index site, SiteVector& vector) const {
   if (fans_[site].centre != k_none) return false;
-  const Triangle& t = mesh_.triangles()[sites_[site].face];
-  const auto corner = std::find(t.begin(), t.end(), graph_.vertex_of(node));
-  if (corner == t.end()) return false;
+  const auto& corners = fans_[site].corners;
+  const auto corner = std::ranges::find(corners, node);
+  if (corner == corners.end()) return false;
   const FaceChart chart(mesh_, sites_[site].face);
-  vector.log = chart.corner[corner - t.begin()] - chart.to_plane(sites_[site].barycentric);
+  vector.log = chart.corner[corner - corners.begin()] - chart.to_plane(sites_[site].barycentric);
   vector.distance = vector.log.norm();
   return true;
 }

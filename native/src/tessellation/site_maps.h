@@ -7,7 +7,8 @@
 #include "saddleback/saddle_vertex_graph.h"
 
 #include "geodesics/arc_unfolding.h"
-#include "geodesics/window_propagation.h"
+#include "geodesics/direct_fans.h"
+#include "geodesics/graph_search.h"
 #include "tessellation/vertex_rings.h"
 
 namespace saddleback {
@@ -33,29 +34,37 @@ class SiteMaps {
   struct Place {
     Vec2 at = Vec2::Zero();  ///< from the anchor, in its plane
     double distance = 0;     ///< from the site
-    double back = 0;         ///< direction to the anchor, surface angle at the vertex
     Index anchor = k_none;   ///< node from which it is seen straight on; k_none: the site
+    Index found_by = 0;      ///< a wedge across whose edge it was placed, or one of the below
   };
+  static constexpr Index k_unplaced = -1, k_straight = -2, k_after_another = -3, k_centre = -4;
 
  public:
-  /// `reaches`: for each site a distance beyond which it is not asked for arcs of its own, which are most of the work
-  /// where cells are small; empty: none. What lies beyond is placed as what is hidden from the site. \throw Cancelled.
-  /// O(sites k log k + arcs).
-  SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, const SurfacePoints& sites,
-           std::span<const double> reaches, int threads, const JobStage& stage);
+  /// Nothing is known before label_nodes. Both must outlive the maps.
+  SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings);
 
-  const Mesh& mesh() const { return mesh_; }
-  Index site_count() const { return static_cast<Index>(fans_.size()); }
+  /// Begins with new sites. `reaches`: for each site a distance beyond which it is not asked for arcs of its own, which
+  /// are most of the work where cells are small; empty: none. What lies beyond is placed as what is hidden from the
+  /// site. \throw Cancelled. O(sites k log k + arcs).
+  void label_nodes(const SurfacePoints& sites, std::span<const double> reaches, int threads, const JobStage& stage);
+
+  // Vertices are the graph's nodes from here on.
+  const SaddleVertexGraph& graph() const { return graph_; }
+  const VertexRings& rings() const { return rings_; }
+  Index site_count() const { return static_cast<Index>(sites_.size()); }
   /// Nearest site by the graph; ties: the smaller.
-  Index label(Index vertex) const { return label_[graph_.node_of(vertex)]; }
-  /// The last of the vertices of a label, by distance; k_none where there is none.
-  Index farthest_vertex(Index site) const;
-  /// From the site of its label.
-  SiteVector own(Index vertex) const { return vector_of(places_[graph_.node_of(vertex)]); }
+  Index label(Index node) const { return label_[node]; }
+  /// The sites in an order in which cells one after the other use the same memory.
+  const std::vector<Index>& sites_along_curve() const { return order_; }
+  /// The nodes of a label; by distance, once they are placed.
+  std::span<const Index> nodes(Index site) const {
+    return {nodes_.data() + first_node_[site], nodes_.data() + first_node_[site + 1]};
+  }
 
   /// Memory of a caller that asks for more; one a thread.
   struct Scratch {
-    explicit Scratch(const SiteMaps& maps) : unfolder(maps.graph_.unfolding()), beside(k_beside) {}
+    explicit Scratch(const SiteMaps& maps)
+        : unfolder(maps.graph_.unfolding()), beside(k_beside), table(maps.graph_.mesh().vertex_count()) {}
     ArcUnfolder unfolder;
     UnfoldedArc unfolded;
 
@@ -67,20 +76,41 @@ class SiteMaps {
     };
     static constexpr std::size_t k_beside = 1024;
     std::vector<Beside> beside;
+
+    /// What is known of the nodes about the last site: which of its fan they are or, below 0, ~ of the answer.
+    struct Known {
+      std::uint32_t round = 0;
+      Index at = 0;
+    };
+    struct Answer {
+      bool found;
+      SiteVector vector;
+    };
+    Index site = k_none;      ///< placed last
+    std::uint32_t round = 0;  ///< counts them
+    std::vector<Known> table;
+    std::vector<Answer> answers;
+    /// Before other sites are labelled.
+    void forget();
   };
-  /// From a site near whose cell the vertex lies. Depends on the vertex and the site alone: faces that share an edge
-  /// get the same bits. False where the vertex is neither seen straight from the site nor next to a vertex of its
-  /// label.
-  bool find(Index site, Index vertex, Scratch& scratch, SiteVector& vector) const;
+  /// Places the nodes of a label, once. What is asked for this site next is found faster.
+  void place_cell(Index site, Scratch& scratch);
+  /// From the site of its label, which must have been placed.
+  SiteVector own(Index node) const { return vector_of(places_[node]); }
+  double own_distance(Index node) const { return places_[node].distance; }
+  /// From a site that has been placed, near whose cell the node lies. Depends on the node and the site alone: faces
+  /// that share an edge get the same bits. False where the node is neither seen straight from the site nor next to a
+  /// node of its label.
+  bool find(Index site, Index node, Scratch& scratch, SiteVector& vector) const;
   /// Beyond an edge whose ends are known, the third corner of the half-edge's face laid in the plane.
   SiteVector laid_beside(Index halfedge, const SiteVector& from, const SiteVector& to) const;
 
  private:
-  // Vertices are the graph's nodes from here on.
   using Wedge = VertexRings::Wedge;
   struct Fan {
-    std::vector<DirectArc> arcs;  ///< sorted by node; lengths rounded as the graph's, start angles scaled
-    Index centre = k_none;        ///< the node that the site is
+    std::vector<SeenNode> seen;    ///< lengths rounded as the graph's arcs
+    Index centre = k_none;         ///< the node that the site is
+    std::array<Index, 3> corners;  ///< of its face
   };
   /// The anchor of an edge's ends, both placed from it, seen across the edge from the third corner.
   struct Sight {
@@ -91,20 +121,20 @@ class SiteMaps {
 
   void make_fans(std::span<const double> reaches, int threads, const JobStage& stage);
   void make_fan_at_vertex(Fan& fan);
-  void label_nodes(const JobStage& stage);
   void group_nodes();
-  std::vector<Index> sites_along_curve() const;
-  void place_cell(Index site, Scratch& scratch);
-  const DirectArc* fan_arc(Index site, Index node) const;
-  Place place_direct(const DirectArc& arc) const;
+  void order_sites();
+  const SeenNode* seen_in_fan(Index site, Index node) const;
+  static Place place_straight(const SeenNode& seen) { return {seen.place, seen.length, k_none, k_straight}; }
   Index node_before(Index node) const;
   Place place_after(Index node, Index previous, Scratch& scratch) const;
   bool place_own(Index node, Index site, Place& place) const;
   bool place_beside(Index node, Index site, Scratch* deep, Place& place) const;
   bool beside_own(Index node, Index site, Scratch& scratch, Place& place) const;
-  bool end_of_edge(Index node, Index site, Scratch* deep, Place& place) const;
+  const Place* end_of_edge(Index node, Index site, Scratch* deep, Place& place) const;
   static bool see(const Wedge& wedge, const Place& from, const Place& to, Sight& sight);
   Place place_by(const Sight& sight, const Wedge& wedge, const Place& from, const Place& to) const;
+  double direction_back(Index node, Scratch& scratch) const;
+  bool place_near(Index node, Index site, Scratch& scratch, SiteVector& vector) const;
   bool place_by_cell(Index node, Index site, Scratch& scratch, Place& place) const;
   bool place_through_neighbour(Index node, Index site, Scratch& scratch, Place& place) const;
   bool in_own_face(Index node, Index site, SiteVector& vector) const;
@@ -117,14 +147,15 @@ class SiteMaps {
   const SaddleVertexGraph& graph_;
   const Mesh& mesh_;
   const VertexRings& rings_;
-  const SurfacePoints sites_;
   double slack_;  ///< how far below the graph's a distance may be, relative
+  SurfacePoints sites_;
+  std::vector<Index> order_;
   std::vector<Fan> fans_;
+  std::vector<NodeSeed> seeds_;
   std::vector<Index> label_;
   std::vector<double> distance_;           ///< in the graph
   std::vector<Index> nodes_, first_node_;  ///< by label
   std::vector<Place> places_;
-  std::vector<std::uint8_t> placed_;
 };
 
 }  // namespace saddleback
