@@ -22,8 +22,12 @@ def calls() -> dict[str, Call]:
     many, some = sb.sample(mesh, 2000), sb.sample(mesh, 300, seed=1)
     vertices = np.arange(0, mesh.vertex_count, 4, dtype=np.int32)
     small = sb.Mesh(*meshes.torus(40, 16))
+    squeezed = sb.Mesh(mesh.vertices * [1, 1, 0.3], mesh.triangles)
+    open_tube = sb.Mesh(*meshes.cylinder(200, 200, 1.0, 3.0))
     return {
         "exact_distances": lambda job: sb.exact_distances(mesh, [0], job=job),
+        "exact_distances_squeezed": lambda job: sb.exact_distances(squeezed, [0], job=job),
+        "exact_distances_open": lambda job: sb.exact_distances(open_tube, [0], job=job),
         "exact_nearest": lambda job: sb.exact_nearest(mesh, many, job=job),
         "exact_nearest_few": lambda job: sb.exact_nearest(mesh, some, job=job),
         "nearest": lambda job: graph.nearest(many, job=job),
@@ -76,6 +80,8 @@ def furthest_off(call: Call) -> float:
     "name",
     [
         "exact_distances",
+        "exact_distances_squeezed",
+        "exact_distances_open",
         "exact_nearest",
         "exact_nearest_few",
         "nearest",

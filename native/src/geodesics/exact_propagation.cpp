@@ -19,8 +19,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "geodesics/exact_progress.h"
-
 namespace saddleback {
 namespace {
 
@@ -76,15 +74,16 @@ ExactPropagation::ExactPropagation(const ExactSurface& surface, const SurfacePoi
       occupants_(surface.halfedge_count(), {k_far, 0}) {}
 
 void ExactPropagation::run(const JobStage& stage) {
-  DistanceProgress progress = exact_progress(surface_.mesh(), sources_, options_.limit, stage);
+  progress_ = std::make_unique<ExactProgress>(surface_, sources_, options_.limit, stage);
   start();
   while (queue_->advance() && queue_->reached() <= options_.limit) {
-    progress.reached(queue_->reached());
+    progress_->update(queue_->reached(), window_count_);
     while (WindowBlock* const block = queue_->take()) drain(block, stage);
     // Last in the bucket: by now their distances are final, nearly always.
     for (const Index vertex : due_) bend(vertex);
     due_.clear();
   }
+  progress_.reset();
 }
 
 void ExactPropagation::release() {
@@ -186,6 +185,7 @@ void ExactPropagation::offer(Index vertex, double distance, const Arrival& arriv
   }
   const bool keeps_owner =
       options_.break_ties && distance >= known * (1 - k_tie) && owns_before(arrivals_[vertex], arrival);
+  if (known == k_far) progress_->reach(vertex, distance);
   distances_[vertex] = distance;
   if (!keeps_owner) arrivals_[vertex] = arrival;
   if (surface_.may_bend(vertex) || arrival.halfedge == Arrival::k_at_source)

@@ -9,6 +9,7 @@
 #include "saddleback/job.h"
 #include "saddleback/surface_points.h"
 
+#include "geodesics/exact_progress.h"
 #include "geodesics/exact_queue.h"
 #include "geodesics/exact_surface.h"
 
@@ -75,6 +76,7 @@ class ExactPropagation {
   const SurfacePoints& sources_;
   const ExactPropagationOptions options_;
   std::unique_ptr<WindowQueue> queue_;
+  std::unique_ptr<ExactProgress> progress_;  ///< while it runs
   std::vector<double> distances_, bent_at_;
   std::vector<Arrival> arrivals_;
   std::vector<Occupant> occupants_;

@@ -302,8 +302,8 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
     for (std::size_t i = 0; i < own.size(); ++i) {
       stage.check();
       makers[thread]->append(own[i], fans[thread][i], parts[block]);
+      writing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
     }
-    writing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
   });
   GeodesicPaths paths = blocks == 1 ? std::move(parts[0]) : joined(parts, following.part(written, 1));
   stage.update(1);
