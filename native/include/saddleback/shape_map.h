@@ -2,7 +2,6 @@
 // A plane laid on the surface: flat coordinates of the vertices about a point or along a curve.
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -50,10 +49,8 @@ class ShapeMap {
   ShapeMap& operator=(ShapeMap&&) noexcept;
 
   /// The exponential map: the centre at the origin, the x axis at `angle` in the FaceChart of centre.face. At a vertex
-  /// angles are scaled so that its total angle becomes 2 pi. What is farther away than `reach` may be left out. O(n log
-  /// n) for the n vertices within the box.
-  void about_point(const SurfacePoint& centre, double angle, const PlaneBox& box,
-                   double reach = std::numeric_limits<double>::infinity());
+  /// angles are scaled so that its total angle becomes 2 pi. O(n log n) for the n vertices within the box.
+  void about_point(const SurfacePoint& centre, double angle, const PlaneBox& box);
 
   /// Along a curve of the same mesh, whose point at arc length `origin` becomes the origin, the x axis along it. Where
   /// the curve is shorter than the box the plane is laid on straight beyond its ends. O(n log n + segments).
@@ -105,7 +102,7 @@ class ShapeMap {
   Node& reach(Index vertex);
   void put(Index vertex, const Vec2& place, double key, double miss, State state);
   void put_source(Index vertex, const Vec2& place) { put(vertex, place, distance_of(place), 0, State::source); }
-  void march(const PlaneBox& box, double reach);
+  void march(const PlaneBox& box);
   void settle(Index vertex, const PlaneBox& box);
   void look_through(Index from, Index to, Index apex);
   bool is_in(const Vec2& point, Index face) const;

@@ -258,7 +258,8 @@ bool GapSearch::is_certain(const CellView& view, const Copy& copy, const Motion&
     distance = there.placement.scale * there.body->distance.exact(place / there.placement.scale);
     moved = motion.of(found.point);
   }
-  return found.radius * (1 - bending) - distance - moved * (1 + bending) > 0;
+  const double rounded = k_rounding * (copy.radius() + there.radius());
+  return found.radius * (1 - bending) - distance - moved * (1 + bending) > rounded;
 }
 
 /// Those that the smallest copies may meet, the nearest first.

@@ -42,6 +42,7 @@ Laying::Laying(const Mesh& mesh, const PlacingRules& rules, const DistributionOp
       touched_(static_cast<std::size_t>(mesh.face_count()), 0) {
   for (const Kind& kind : rules.kinds()) laid_.resize(static_cast<std::size_t>(kind.shape) + 1, 0);
   mappers_.resize(static_cast<std::size_t>(threads_));
+  surroundings_.resize(static_cast<std::size_t>(threads_));
 }
 
 bool Laying::is_any_wanted() const {
@@ -98,6 +99,10 @@ void Laying::test(Attempt& attempt, OutlineMapper& mapper) const {
     attempt.outcome = Outcome::forbidden;
   else if (!settled_.is_free(attempt.copy, attempt.outline, mapper))
     attempt.outcome = Outcome::collision;
+  if (attempt.outcome != Outcome::laid) return;
+  const ShapeMap& plane = mapper.plane();
+  attempt.plane.clear();
+  for (const Index vertex : plane.vertices()) attempt.plane.push_back({vertex, plane.coordinates(vertex)});
 }
 
 void Laying::commit(Attempt& attempt) {
@@ -113,7 +118,7 @@ void Laying::commit(Attempt& attempt) {
   }
   if (attempt.outcome == Outcome::laid) {
     attempt.copy.bend = std::max(attempt.outline.largest - 1, 1 - attempt.outline.smallest);
-    pending_.push_back(static_cast<Index>(settled_.copies().size()));
+    pending_.push_back({static_cast<Index>(settled_.copies().size()), std::move(attempt.plane)});
     settled_.add(attempt.copy, attempt.outline);
     ++laid_[attempt.copy.placement.shape];
     for (const Index face : attempt.outline.faces) touched_[face] = batch_;
@@ -123,13 +128,19 @@ void Laying::commit(Attempt& attempt) {
 }
 
 void Laying::make_pending_known(bool in_parallel) {
-  std::vector<std::vector<FacePlace>> places(pending_.size());
-  parallel_for(static_cast<Index>(pending_.size()), in_parallel ? threads_ : 1, 4, [&](Index i, int thread) {
-    auto& mapper = mappers_[thread];
-    if (!mapper) mapper = std::make_unique<OutlineMapper>(*mesh_);
-    places[i] = settled_.places_about(settled_.copies()[pending_[i]], mapper->plane());
-  });
-  for (std::size_t i = 0; i < pending_.size(); ++i) settled_.add_places(pending_[i], places[i]);
+  // A few at a time: what is about all of them is much more than what is known about each.
+  constexpr Index k_at_once = 64;
+  std::vector<std::vector<FacePlace>> places(k_at_once);
+  for (std::size_t begin = 0; begin < pending_.size(); begin += k_at_once) {
+    const auto count = static_cast<Index>(std::min<std::size_t>(k_at_once, pending_.size() - begin));
+    parallel_for(count, in_parallel ? threads_ : 1, 4, [&](Index i, int thread) {
+      auto& surroundings = surroundings_[thread];
+      if (!surroundings) surroundings = std::make_unique<Surroundings>(*mesh_, rules_->flat());
+      const Pending& pending = pending_[begin + i];
+      places[i] = surroundings->about(pending.plane, settled_.reach(settled_.copies()[pending.copy]));
+    });
+    for (Index i = 0; i < count; ++i) settled_.add_places(pending_[begin + i].copy, places[i]);
+  }
   pending_.clear();
 }
 

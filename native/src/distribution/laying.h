@@ -47,6 +47,12 @@ class Laying {
     Copy copy;
     Outcome outcome = Outcome::laid;
     SurfaceOutline outline;
+    std::vector<LaidVertex> plane;  ///< about the copy, if it has room
+  };
+  /// A copy whose surroundings are not known yet.
+  struct Pending {
+    Index copy;
+    std::vector<LaidVertex> plane;
   };
 
   void attempt(const Candidate& candidate, Attempt& attempt, int thread) const;
@@ -63,7 +69,8 @@ class Laying {
   std::array<std::int64_t, k_rejection_count> rejections_{};
   mutable std::vector<std::unique_ptr<OutlineMapper>> mappers_;  ///< one a thread
   std::vector<Attempt> attempts_;
-  std::vector<Index> pending_;          ///< copies whose surroundings are not known yet
+  mutable std::vector<std::unique_ptr<Surroundings>> surroundings_;  ///< one a thread
+  std::vector<Pending> pending_;
   std::vector<std::uint32_t> touched_;  ///< per face the last batch that laid something there
   std::uint32_t batch_ = 0;
 };

@@ -66,7 +66,8 @@ bool SettledShapes::is_within_another(const OutlinePiece& piece) const {
   const Vec2 point = flat_->place(piece.face, piece.begin);
   return visit(piece.face, piece.begin, 0, [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
     const Copy& copy = copies_[other];
-    return copy.body->shape.contains((origin + turn * point) / copy.placement.scale);
+    const Vec2 place = (origin + turn * point) / copy.placement.scale;
+    return copy.body->distance.exact(place) < k_rounding * copy.body->shape.circumradius();
   });
 }
 
@@ -108,32 +109,10 @@ void SettledShapes::add(const Copy& copy, const SurfaceOutline& outline) {
     });
 }
 
-std::vector<FacePlace> SettledShapes::places_about(const Copy& copy, ShapeMap& map) const {
-  const double reach = copy.radius() + reach_;
-  map.about_point(copy.placement.centre, copy.placement.angle, {Vec2::Constant(-reach), Vec2::Constant(reach)}, reach);
-  std::vector<FacePlace> result;
-  std::vector<Index> faces;
-  for (const Index vertex : map.vertices()) {
-    const Index first = mesh_->first_halfedge(vertex);
-    Index h = first;
-    do {
-      // Each face once: from its corner of the smallest number.
-      const Triangle& corners = mesh_->triangles()[Mesh::face_of(h)];
-      if (vertex == std::min({corners[0], corners[1], corners[2]}) && map.has(corners[0]) && map.has(corners[1]) &&
-          map.has(corners[2]))
-        faces.push_back(Mesh::face_of(h));
-      h = mesh_->rotate(h);
-    } while (h != k_none && h != first);
-  }
-  for (const Index face : faces) {
-    const Triangle& corners = mesh_->triangles()[face];
-    const Vec2& origin = map.coordinates(corners[0]);
-    const Vec2 e1 = map.coordinates(corners[1]) - origin, e2 = map.coordinates(corners[2]) - origin;
-    if (!(e1.x() * e2.y() - e1.y() * e2.x() > 0)) continue;
-    if (origin.norm() > reach + std::max(e1.norm(), e2.norm())) continue;
-    result.push_back({face, origin, flat_->turn_to(face, e1, e2)});
-  }
-  return result;
+void SettledShapes::add_place(const FacePlace& place, Index copy, Index& head) {
+  if (place_count_ % k_block == 0) places_.push_back(std::make_unique_for_overwrite<Place[]>(k_block));
+  places_.back()[place_count_ % k_block] = {place.turn.cast<float>(), place.origin.cast<float>(), copy, head};
+  head = place_count_++;
 }
 
 void SettledShapes::add_places(Index copy, const std::vector<FacePlace>& places) {
@@ -146,8 +125,7 @@ void SettledShapes::add_places(Index copy, const std::vector<FacePlace>& places)
       const double away = (place.origin + middle.x() * e1 + middle.y() * e2).norm() - share * (e1.norm() + e2.norm());
       if (away > radius + reach_) return;
       Index& head = place_heads_[static_cast<std::size_t>(bucket) * rings_ + ring_of(away - radius)];
-      places_.push_back({place.origin, place.turn, copy, head});
-      head = static_cast<Index>(places_.size()) - 1;
+      add_place(place, copy, head);
     });
   }
 }

@@ -2,6 +2,7 @@
 // The copies that lie on the surface: their outlines face by face, and where points near them are in their planes.
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "body.h"
 #include "face_buckets.h"
 #include "flat_faces.h"
+#include "surroundings.h"
 
 namespace saddleback::distribution {
 
@@ -21,13 +23,8 @@ struct Copy {
   double radius() const { return placement.scale * body->shape.circumradius(); }
 };
 
-/// How a face lies in the plane of a copy, in mesh units: a point p of the face's own plane (FaceChart) is at
-/// origin + turn * p.
-struct FacePlace {
-  Index face;
-  Vec2 origin;
-  Eigen::Matrix2d turn;
-};
+/// Where things lie in planes of copies is rounded by less than this share of what is looked at from there.
+inline constexpr double k_rounding = 1e-6;
 
 class SettledShapes {
  public:
@@ -44,9 +41,9 @@ class SettledShapes {
   /// Puts a copy there.
   void add(const Copy& copy, const SurfaceOutline& outline);
 
-  /// Where all faces lie from which a copy can be met. Safe to call from several threads with a map each.
-  std::vector<FacePlace> places_about(const Copy& copy, ShapeMap& map) const;
-  /// Makes them known for the copy of this number.
+  /// How far from its centre a copy can be met.
+  double reach(const Copy& copy) const { return copy.radius() + reach_; }
+  /// Makes known for the copy of this number where faces lie about it.
   void add_places(Index copy, const std::vector<FacePlace>& places);
 
   /// Calls visit(copy number, FacePlace's origin and turn) for copies that something of the circumradius `reach` about
@@ -56,8 +53,9 @@ class SettledShapes {
     const Index* const heads = place_heads_.data() + static_cast<std::size_t>(buckets_.at(face, weights)) * rings_;
     const int last = ring_of(reach);
     for (int ring = 0; ring <= last; ++ring)
-      for (Index i = heads[ring]; i != k_none; i = places_[i].next)
-        if (visit(places_[i].copy, places_[i].origin, places_[i].turn)) return true;
+      for (Index i = heads[ring]; i != k_none; i = place(i).next)
+        if (visit(place(i).copy, place(i).origin.template cast<double>(), place(i).turn.template cast<double>()))
+          return true;
     return false;
   }
 
@@ -66,11 +64,13 @@ class SettledShapes {
     Vec2 begin, end;
     Index next;
   };
+  /// In single precision: there are millions, and all that is decided by them allows for k_rounding.
   struct Place {
-    Vec2 origin;
-    Eigen::Matrix2d turn;
+    Eigen::Matrix2f turn;
+    Eigen::Vector2f origin;
     Index copy, next;
   };
+  static constexpr Index k_block = 1 << 15;
   struct Start {
     Index face;
     Vec2 weights;
@@ -82,6 +82,8 @@ class SettledShapes {
     for (double radius = least_; radius < reach && ring + 1 < rings_; radius *= 2) ++ring;
     return ring;
   }
+  const Place& place(Index i) const { return places_[static_cast<std::size_t>(i / k_block)][i % k_block]; }
+  void add_place(const FacePlace& place, Index copy, Index& head);
   bool meets(const OutlinePiece& piece) const;
   bool is_within_another(const OutlinePiece& piece) const;
   bool holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;
@@ -96,7 +98,8 @@ class SettledShapes {
   std::vector<Start> starts_;                     ///< a point of every loop
   std::vector<Index> piece_heads_, place_heads_;  ///< per bucket, of places per ring
   std::vector<Piece> pieces_;
-  std::vector<Place> places_;
+  std::vector<std::unique_ptr<Place[]>> places_;  ///< in blocks, which never move
+  Index place_count_ = 0;
 };
 
 }  // namespace saddleback::distribution

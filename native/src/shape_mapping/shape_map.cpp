@@ -47,7 +47,7 @@ void ShapeMap::begin() {
   queue_.clear();
 }
 
-void ShapeMap::about_point(const SurfacePoint& centre, double angle, const PlaneBox& box, double reach) {
+void ShapeMap::about_point(const SurfacePoint& centre, double angle, const PlaneBox& box) {
   begin();
   along_curve_ = false;
   centre_face_ = centre.face;
@@ -56,7 +56,7 @@ void ShapeMap::about_point(const SurfacePoint& centre, double angle, const Plane
     seed_face(centre, angle);
   else
     seed_star(centre, vertex, angle);
-  march(box, reach);
+  march(box);
 }
 
 void ShapeMap::seed_face(const SurfacePoint& centre, double angle) {
@@ -100,7 +100,7 @@ void ShapeMap::along_curve(const SurfaceCurve& curve, double origin, const Plane
     queue_.push_back({node.key, vertex});
   }
   std::make_heap(queue_.begin(), queue_.end());
-  march(box, std::numeric_limits<double>::infinity());
+  march(box);
 }
 
 /// Corners of the faces that the curve crosses take their foot on the nearest segment, run on straight where it falls
@@ -134,8 +134,8 @@ void ShapeMap::put(Index vertex, const Vec2& place, double key, double miss, Sta
   std::push_heap(queue_.begin(), queue_.end());
 }
 
-void ShapeMap::march(const PlaneBox& box, double reach) {
-  while (!queue_.empty() && queue_.front().key <= reach) {
+void ShapeMap::march(const PlaneBox& box) {
+  while (!queue_.empty()) {
     const Entry entry = queue_.front();
     std::pop_heap(queue_.begin(), queue_.end());
     queue_.pop_back();

@@ -13,6 +13,7 @@ namespace saddleback {
 struct UnfoldedTriangle {
   double edge;
   Vec2 apex;
+  UnfoldedTriangle(double length, const Vec2& top) : edge(length), apex(top) {}
   UnfoldedTriangle(const Vec3& from, const Vec3& to, const Vec3& top) {
     const Vec3 u = to - from, v = top - from;
     edge = u.norm();
