@@ -175,10 +175,7 @@ void bind_graph(py::module_& m) {
           "device_times",
           [](const SaddleVertexGraph& graph) -> py::object {
             if (!graph.built_by_cuda()) return py::none();
-            const DeviceTimes& times = graph.device_times();
-            return py::dict(py::arg("upload") = times.upload, py::arg("find") = times.find,
-                            py::arg("unite") = times.unite, py::arg("download") = times.download,
-                            py::arg("second_pass") = times.second_pass, py::arg("by_processor") = times.by_processor);
+            return as_dict(graph.device_times());
           },
           "Seconds of the device's part by its own clock (upload, find, unite, download), and the numbers of sources "
           "that were done in a second pass and by the processor; None when no device built it.")

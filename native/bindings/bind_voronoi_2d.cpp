@@ -2,6 +2,7 @@
 
 #include "saddleback/voronoi_2d.h"
 
+#include "devices.h"
 #include "planar.h"
 
 namespace saddleback::bindings {
@@ -16,20 +17,23 @@ struct Diagram {
 Diagram find_diagram(const py::object& sites, const py::object& weights, const py::object& domain,
                      const py::object& circles, const py::object& threads, const std::string& device,
                      const py::object& job) {
-  if (device != "auto" && device != "cpu" && device != "cuda")
-    throw InputError(message("device: wanted 'auto', 'cpu' or 'cuda', got '", device, "'"));
-  if (device == "cuda") throw DeviceError("device: Voronoi diagrams of the plane run on the CPU only");
   const std::vector<Vec2> points = as_points_2d(sites, "sites");
   const std::vector<double> radii = as_weights(weights, points.size());
   std::optional<PlanarDomain> within;
   if (!domain.is_none()) within = as_domain(domain, "domain");
-  const Voronoi2dOptions options{.circles = as_integer(circles, "circles"), .threads = as_integer(threads, "threads")};
+  Voronoi2dOptions options{.circles = as_integer(circles, "circles"), .threads = as_integer(threads, "threads")};
   Job* const token = as_job(job);
   ClippedCells clipped;
-  Voronoi2d diagram = without_gil([&] {
-    Voronoi2d result = radii.empty() ? voronoi_2d(points, options, token) : voronoi_2d(points, radii, options, token);
-    if (within) clipped = result.clip(*within, options.threads, token);
-    return result;
+  constexpr std::size_t k_worth_a_device = 50'000;
+  const bool has_weights = !radii.empty();
+  if (has_weights && device.starts_with("cuda")) throw DeviceError("device: weighted sites run on the CPU only");
+  Voronoi2d diagram = run_on(device, !has_weights && points.size() >= k_worth_a_device, [&](int cuda_device) {
+    options.cuda_device = cuda_device;
+    return without_gil([&] {
+      Voronoi2d result = has_weights ? voronoi_2d(points, radii, options, token) : voronoi_2d(points, options, token);
+      if (within) clipped = result.clip(*within, options.threads, token);
+      return result;
+    });
   });
   return {std::move(diagram), within ? py::cast(std::move(clipped)) : py::none()};
 }
@@ -83,7 +87,8 @@ circles : int
 threads : int
     0: all cores. The result does not depend on it.
 device : str
-    "auto" or "cpu".
+    "auto", "cpu", "cuda" or, for another than the first CUDA device, "cuda:1". The result does not depend on it; what
+    a device is not made for (weights, few or scattered sites) runs on the processor.
 job : Job, optional
 
 Returns
@@ -256,6 +261,14 @@ void bind_voronoi_2d(py::module_& m) {
                                                    as_real(extent, "extent")));
           },
           py::arg("edge"), py::arg("tolerance"), py::arg("extent") = 0.0, k_polyline_doc)
+      .def_property_readonly(
+          "device", [](const Diagram& d) { return d.result.device_times ? "cuda" : "cpu"; },
+          "Which device found the diagram: \"cpu\" or \"cuda\".")
+      .def_property_readonly(
+          "device_times",
+          [](const Diagram& d) { return d.result.device_times ? py::object(as_dict(*d.result.device_times)) : py::none(); },
+          "Seconds of the device's part by its own clock (upload, order, find, unite, download), and the numbers of sites "
+          "that took a second pass or the processor; None when no device found it.")
       .def_readonly("clipped", &Diagram::clipped, "ClippedCells within the domain given to `voronoi_2d`, or None.")
       .def(
           "clip",

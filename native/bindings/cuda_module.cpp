@@ -7,6 +7,7 @@
 #include "saddleback/cuda_twins.h"
 
 #include "geodesics/device_arcs.h"
+#include "voronoi2d/device_voronoi.h"
 
 namespace py = pybind11;
 
@@ -24,7 +25,8 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
   py::class_<CudaDevices>(module, "CudaDevices", py::module_local())
       .def_readonly("usable", &CudaDevices::usable)
       .def_readonly("reason", &CudaDevices::reason);
-  static const saddleback::CudaTwins twins{.find_arcs = &saddleback::find_arcs_on_device};
+  static const saddleback::CudaTwins twins{.find_arcs = &saddleback::find_arcs_on_device,
+                                          .find_voronoi = &saddleback::find_voronoi_on_device};
   module.attr("twins") = py::capsule(&twins);
   module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
 }

@@ -34,6 +34,12 @@ std::optional<int> cuda_device_of(const std::string& device, bool is_worth_it) {
   throw InputError(message("device: wanted 'auto', 'cpu', 'cuda' or 'cuda:' and a number, got '", device, "'"));
 }
 
+py::dict as_dict(const DeviceTimes& times) {
+  return py::dict(py::arg("upload") = times.upload, py::arg("order") = times.order, py::arg("find") = times.find,
+                  py::arg("unite") = times.unite, py::arg("download") = times.download,
+                  py::arg("second_pass") = times.second_pass, py::arg("by_processor") = times.by_processor);
+}
+
 void bind_devices(py::module_& m) {
   m.def(
       "set_cuda_twins",

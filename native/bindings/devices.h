@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "saddleback/cuda_twins.h"
+
 #include "convert.h"
 
 namespace saddleback::bindings {
@@ -12,6 +14,9 @@ namespace saddleback::bindings {
 /// second, "auto" the first where there is one and `is_worth_it`. \throw DeviceError with the reason when CUDA is asked
 /// for and cannot be used; InputError for any other word.
 std::optional<int> cuda_device_of(const std::string& device, bool is_worth_it);
+
+/// Seconds of a device's part by its own clock, and how often it needed help.
+py::dict as_dict(const DeviceTimes& times);
 
 /// Runs work(device number, or -1 for the processor); with device="auto", what a CUDA device fails at is left to the
 /// processor.

@@ -9,14 +9,22 @@ namespace saddleback {
 
 struct ArcTwinRequest;
 struct ArcTwinCaller;
+struct PlaneTwinRequest;
+struct PlaneTwinCaller;
 
-/// How long the parts of a build took, in seconds by the device's clock, and how its sources went.
+/// How long the parts of a build took, in seconds by the device's clock, and how its sources or sites went. A plane's
+/// diagram is ordered, found and united; a graph is found and united.
 struct DeviceTimes {
-  double upload = 0, find = 0, unite = 0, download = 0;
-  std::int64_t second_pass = 0, by_processor = 0;  ///< sources that overflowed: done again there, or here
+  double upload = 0, order = 0, find = 0, unite = 0, download = 0;
+  std::int64_t second_pass = 0, by_processor = 0;  ///< what overflowed: done again there, or here
 };
 
-enum class TwinStatus { done, stopped, failed };
+enum class TwinStatus {
+  done,
+  stopped,
+  failed,
+  left,  ///< to the processor, for which it is made
+};
 
 /// Why a twin failed: text that needs no common memory manager.
 struct TwinReason {
@@ -29,10 +37,12 @@ struct TwinReason {
 
 /// Functions that never throw and keep nothing of what they are given.
 struct CudaTwins {
-  static constexpr int k_version = 1;  ///< of this table and of all that it passes
+  static constexpr int k_version = 2;  ///< of this table and of all that it passes
   int version = k_version;
   /// See geodesics/arc_twin.h.
   TwinStatus (*find_arcs)(const ArcTwinRequest&, const ArcTwinCaller&, DeviceTimes&, TwinReason&) = nullptr;
+  /// See voronoi2d/plane_twin.h.
+  TwinStatus (*find_voronoi)(const PlaneTwinRequest&, const PlaneTwinCaller&, DeviceTimes&, TwinReason&) = nullptr;
 };
 
 /// Tells the library of its twins, which stay valid until the process ends. \throw DeviceError for another version.

@@ -2,9 +2,11 @@
 // Voronoi diagrams of the plane by sweep circles.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "saddleback/cuda_twins.h"
 #include "saddleback/job.h"
 #include "saddleback/large_array.h"
 #include "saddleback/planar_domain.h"
@@ -16,6 +18,8 @@ struct Voronoi2dOptions {
   Index circles =
       0;            ///< how many sweep circles share the work; 0: as many as are good. The result does not depend on it
   int threads = 0;  ///< 0: all cores. The result does not depend on it
+  int cuda_device = -1;  ///< number of a CUDA device, whose twin must be known (`cuda_twins.h`); -1: the processor. The
+                         ///< result does not depend on it
 };
 
 /// All cells in the order of their sites.
@@ -50,6 +54,8 @@ struct Voronoi2d {
   LargeArray<Vec2> vertices;                    ///< (V)
   LargeArray<std::array<Index, 2>> edges;       ///< (E) vertices; -1 at infinity: (v, -1) is a ray, (-1, -1) a line
   LargeArray<std::array<Index, 2>> edge_sites;  ///< (E) the sites left and right of the edge, first to second vertex
+
+  std::optional<DeviceTimes> device_times;  ///< none when the processor found it
 
   // Cells in memory order; `cell_vertices` and `cell_edges` find a site's.
   LargeArray<Index> cell_sites;       ///< (C) site of each cell

@@ -11,6 +11,7 @@
 #include "geodesics/device_arcs.h"
 #include "geodesics/device_union.cuh"
 #include "geodesics/device_waves.cuh"
+#include "support/device_stream.h"
 
 namespace saddleback {
 namespace {
@@ -108,9 +109,6 @@ __global__ void __launch_bounds__(32) find_large_disks(DeviceMesh mesh, Work wor
                      drafts + static_cast<std::size_t>(blockIdx.x) * k_large_draft_room, k_large_draft_room, rows);
 }
 
-/// The caller asked to stop.
-struct Stopped {};
-
 /// The request's larger tables, pinned.
 class PinnedTables {
  public:
@@ -166,50 +164,6 @@ class Tables {
   DeviceBuffer<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;
   DeviceBuffer<std::uint8_t> saddles_;
   DeviceMesh mesh_;
-};
-
-/// Time between two moments of a stream.
-class Stopwatch {
- public:
-  explicit Stopwatch(cudaStream_t stream) : stream_(stream) {
-    check_cuda(cudaEventCreate(&from_), "making an event");
-    check_cuda(cudaEventCreate(&to_), "making an event");
-    check_cuda(cudaEventRecord(from_, stream), "recording an event");
-  }
-  ~Stopwatch() {
-    (void)cudaEventDestroy(from_);
-    (void)cudaEventDestroy(to_);
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-  /// Seconds since the last lap; waits for the stream.
-  double lap() {
-    check_cuda(cudaEventRecord(to_, stream_), "recording an event");
-    check_cuda(cudaEventSynchronize(to_), "waiting for the device");
-    float milliseconds = 0;
-    check_cuda(cudaEventElapsedTime(&milliseconds, from_, to_), "reading the clock");
-    std::swap(from_, to_);
-    return milliseconds * 1e-3;
-  }
-
- private:
-  cudaStream_t stream_;
-  cudaEvent_t from_ = nullptr, to_ = nullptr;
-};
-
-class Stream {
- public:
-  Stream() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream"); }
-  ~Stream() {
-    (void)cudaStreamSynchronize(stream_);
-    (void)cudaStreamDestroy(stream_);
-  }
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-  operator cudaStream_t() const { return stream_; }
-
- private:
-  cudaStream_t stream_ = nullptr;
 };
 
 /// Words a row that memory is taken for at first; more are found to be needed when they are.
@@ -366,27 +320,9 @@ std::uint64_t bytes_needed(const ArcTwinRequest& r) {
   return edges * (sizeof(EdgeRecord) + 24) + nodes * 48 + words * (13 + 10) + k_drafts;
 }
 
-void check_room(const ArcTwinRequest& request) {
-  std::size_t free = 0, total = 0;
-  check_cuda(cudaMemGetInfo(&free, &total), "asking for free memory");
-  const std::uint64_t room = request.most_bytes > 0 ? std::min<std::uint64_t>(request.most_bytes, free) : free;
-  const std::uint64_t needed = bytes_needed(request);
-  if (needed <= room) return;
-  const auto megabytes = [](std::uint64_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20); };
-  throw std::runtime_error("the graph needs about " + megabytes(needed) + " MB of the device's memory, and " +
-                           megabytes(room) + " MB are free");
-}
-
-void keep_freed_memory(int device) {
-  cudaMemPool_t pool = nullptr;
-  check_cuda(cudaDeviceGetDefaultMemPool(&pool, device), "asking for the memory pool");
-  std::uint64_t everything = ~std::uint64_t{0};
-  check_cuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &everything), "setting up the memory pool");
-}
-
 void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, DeviceTimes& times) {
   check_cuda(cudaSetDevice(request.device), "choosing the device");
-  check_room(request);
+  check_device_room("the graph", bytes_needed(request), request.most_bytes);
   keep_freed_memory(request.device);
   const Stream stream;
   Stopwatch watch(stream);

@@ -7,10 +7,12 @@
 #include <array>
 #include <limits>
 
+#include "voronoi2d/curve_place.h"
+
 namespace saddleback::voronoi2d {
 namespace {
 
-constexpr int k_bits = 16;
+constexpr int k_bits = k_curve_bits;
 
 // Hilbert's curve, two bits of each axis at a time: state, then bits of x and y, to bits of the place and a new state.
 struct CurveTable {
@@ -22,14 +24,8 @@ struct CurveTable {
   constexpr CurveTable() {
     for (unsigned state = 0; state < 4; ++state) {
       for (unsigned xy = 0; xy < 16; ++xy) {
-        unsigned s = state, place = 0;
-        for (int bit = 1; bit >= 0; --bit) {
-          const unsigned x = (xy >> (2 + bit)) & 1, y = (xy >> bit) & 1;
-          const unsigned u = s & 2 ? 1 - x : x, v = s & 2 ? 1 - y : y;  // state: 1 swaps the axes, 2 turns around
-          const unsigned p = s & 1 ? v : u, q = s & 1 ? u : v;
-          place = 4 * place + (3 * p ^ q);
-          if (q == 0) s ^= p == 1 ? 3 : 1;
-        }
+        std::uint32_t s = state, place = 0;
+        for (int bit = 1; bit >= 0; --bit) place = 4 * place + curve_step((xy >> (2 + bit)) & 1, (xy >> bit) & 1, s);
         steps[16 * state + xy] = {static_cast<std::uint8_t>(place), static_cast<std::uint8_t>(s)};
       }
     }
@@ -124,13 +120,9 @@ class Sorter {
     // Halves, since the width of the box may be beyond the doubles.
     const double width = std::max(0.5 * box.high[0] - 0.5 * box.low[0], 0.5 * box.high[1] - 0.5 * box.low[1]);
     if (!(width > 0)) return false;
-    constexpr double k_squares = 1 << k_bits;
     for_blocks(items, stage_, [&](Placed& item) {
       std::uint32_t square[2];
-      for (int k = 0; k < 2; ++k) {
-        const double share = (0.5 * points_[item.index][k] - 0.5 * box.low[k]) / width;
-        square[k] = static_cast<std::uint32_t>(std::min(share * k_squares, k_squares - 1));
-      }
+      for (int k = 0; k < 2; ++k) square[k] = square_of(points_[item.index][k], box.low[k], width);
       item.place = place_on_curve(square[0], square[1]);
     });
     return true;

@@ -13,6 +13,7 @@
 #include "voronoi2d/edge_curve.h"
 #include "voronoi2d/find_cells.h"
 #include "voronoi2d/site_order.h"
+#include "voronoi2d/twin_voronoi.h"
 
 namespace saddleback {
 namespace {
@@ -52,6 +53,11 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
 
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage) {
   check_options(options, sites.size());
+  constexpr std::size_t k_fewest = 3;
+  if (options.cuda_device >= 0 && sites.size() >= k_fewest) {
+    std::optional<Voronoi2d> found = twin_voronoi(sites, options.cuda_device, stage);
+    if (found) return std::move(*found);
+  }
   OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
   Cells cells;
   Numbering numbering = find_numbering(ordered, options, cells, stage.part(0.1, 0.95));

@@ -1,0 +1,80 @@
+#pragma once
+// A CUDA device's work in order, its clock and its memory.
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "support/cuda_check.h"
+
+namespace saddleback {
+
+/// The caller asked to stop.
+struct Stopped {};
+
+/// Time between two moments of a stream.
+class Stopwatch {
+ public:
+  explicit Stopwatch(cudaStream_t stream) : stream_(stream) {
+    check_cuda(cudaEventCreate(&from_), "making an event");
+    check_cuda(cudaEventCreate(&to_), "making an event");
+    check_cuda(cudaEventRecord(from_, stream), "recording an event");
+  }
+  ~Stopwatch() {
+    (void)cudaEventDestroy(from_);
+    (void)cudaEventDestroy(to_);
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  /// Seconds since the last lap; waits for the stream.
+  double lap() {
+    check_cuda(cudaEventRecord(to_, stream_), "recording an event");
+    check_cuda(cudaEventSynchronize(to_), "waiting for the device");
+    float milliseconds = 0;
+    check_cuda(cudaEventElapsedTime(&milliseconds, from_, to_), "reading the clock");
+    std::swap(from_, to_);
+    return milliseconds * 1e-3;
+  }
+
+ private:
+  cudaStream_t stream_;
+  cudaEvent_t from_ = nullptr, to_ = nullptr;
+};
+
+class Stream {
+ public:
+  Stream() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream"); }
+  ~Stream() {
+    (void)cudaStreamSynchronize(stream_);
+    (void)cudaStreamDestroy(stream_);
+  }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  operator cudaStream_t() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+/// Lets the device's pool keep what is freed: asking the driver for memory takes longer than most kernels.
+inline void keep_freed_memory(int device) {
+  cudaMemPool_t pool = nullptr;
+  check_cuda(cudaDeviceGetDefaultMemPool(&pool, device), "asking for the memory pool");
+  std::uint64_t everything = ~std::uint64_t{0};
+  check_cuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &everything), "setting up the memory pool");
+}
+
+/// \throw std::runtime_error, before anything runs, when less than that is free or allowed (0: whatever is free).
+inline void check_device_room(const char* what, std::uint64_t needed, std::uint64_t allowed) {
+  std::size_t free = 0, total = 0;
+  check_cuda(cudaMemGetInfo(&free, &total), "asking for free memory");
+  const std::uint64_t room = allowed > 0 ? std::min<std::uint64_t>(allowed, free) : free;
+  if (needed <= room) return;
+  const auto megabytes = [](std::uint64_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20); };
+  throw std::runtime_error(std::string(what) + " needs about " + megabytes(needed) +
+                           " MB of the device's memory, and " + megabytes(room) + " MB are free");
+}
+
+}  // namespace saddleback

@@ -1,0 +1,464 @@
+#pragma once
+// The cells of a tile's sites, a warp each. A circle through the site and a neighbour, to the left of both, grows until
+// it touches the next site: that is the next neighbour, and so on around the cell. All lanes try a few sites each. This
+// takes a third of the instructions of cutting cells out of half-planes, and one circle per tile that sweeps the sites
+// from near to far would leave most lanes idle.
+//
+// Single precision tells nearly all of the sites that come too late; double precision, and exact arithmetic where the
+// sites lie on a lattice, decides between the others. What cannot be decided here, or not among the tile's sites, is
+// left to `device_far_cells.cuh`.
+
+#include "voronoi2d/device_boxes.cuh"
+#include "voronoi2d/device_tiles.cuh"
+
+#include "predicates/plane_predicates.h"
+
+namespace saddleback::voronoi2d {
+namespace {
+
+using predicates::Point2;
+
+constexpr int k_slots = 16;  ///< room for a cell's neighbours; the lists of larger ones are in the pool
+
+/// Neighbours as they are found, by rank.
+struct DeviceLists {
+  std::int32_t* slots;   ///< k_slots a cell; the first tells where in the pool a longer list begins
+  std::int32_t* counts;  ///< by rank
+  std::uint8_t* is_open;
+  std::int32_t* pool;
+  unsigned* pool_taken;
+  unsigned pool_room;
+  std::int32_t* far;  ///< ranks of cells that were not found yet
+  int* far_count;
+};
+
+constexpr int k_tile_threads = 128, k_tile_warps = k_tile_threads / 32;
+constexpr int k_seen_sites = 512, k_grid_cells = 640, k_frontier = 128;
+constexpr double k_sites_per_grid_cell = 1.6;
+
+struct TileMemory {
+  double2 at[k_seen_sites];  ///< by grid cell
+  std::int32_t rank[k_seen_sites];
+  std::int32_t found[k_seen_sites];  ///< ranks in any order
+  std::uint16_t cell[k_seen_sites];
+  std::uint16_t own[k_tile_sites];
+  std::uint16_t begins[k_grid_cells + 1];
+  std::int32_t frontier[2][k_frontier];
+  int frontier_count[2], found_count, own_count, is_lattice;
+  int grid_counts[k_grid_cells + 1];
+};
+
+/// The sign of the circle test for d, a, b, c, counted from d; `is_exact` when the terms have no rounding errors.
+__device__ inline int circle_sign(double ax, double ay, double bx, double by, double cx, double cy, bool is_exact,
+                                  bool& is_known) {
+  const double bxcy = bx * cy, cxby = cx * by, cxay = cx * ay, axcy = ax * cy, axby = ax * by, bxay = bx * ay;
+  const double a_lift = ax * ax + ay * ay, b_lift = bx * bx + by * by, c_lift = cx * cx + cy * cy;
+  const double det = a_lift * (bxcy - cxby) + b_lift * (cxay - axcy) + c_lift * (axby - bxay);
+  const double magnitude = (fabs(bxcy) + fabs(cxby)) * a_lift + (fabs(cxay) + fabs(axcy)) * b_lift +
+                           (fabs(axby) + fabs(bxay)) * c_lift;
+  is_known = is_exact || fabs(det) > predicates::detail::k_circle_bound * magnitude;
+  return (det > 0) - (det < 0);
+}
+
+__device__ inline unsigned ordered(float value) {
+  const unsigned bits = __float_as_uint(value);
+  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+__device__ inline float disordered(unsigned bits) {
+  return __uint_as_float(bits & 0x80000000u ? bits & 0x7fffffffu : ~bits);
+}
+
+/// A tile's sites and those about it, in a grid.
+class TileSites {
+ public:
+  __device__ TileSites(TileMemory& memory, const DeviceTree& tree) : memory_(memory), tree_(tree) {}
+
+  /// By all threads of the block. False when there are too many.
+  __device__ bool gather(std::int32_t begin, std::int32_t end) {
+    begin_ = begin;
+    end_ = end;
+    const DeviceBox box = own_box();
+    const double width = box.high[0] - box.low[0], height = box.high[1] - box.low[1];
+    const double count = end - begin;
+    constexpr double k_margin = 2.75;  // in mean distances; larger circles are left to the tree
+    double margin = k_margin * fmax(sqrt(width * height / count), fmax(width, height) / count);
+    constexpr int k_attempts = 4;
+    for (int attempt = 0; attempt < k_attempts; ++attempt, margin *= 0.4) {
+      box_ = {{box.low[0] - margin, box.low[1] - margin}, {box.high[0] + margin, box.high[1] + margin}};
+      if (!find_in_box()) continue;
+      sort_into_grid();
+      return true;
+    }
+    return false;
+  }
+
+  const TileMemory& memory() const { return memory_; }
+
+  TileMemory& memory_;
+  const DeviceTree& tree_;
+  DeviceBox box_{};
+  double grid_ = 1, inverse_grid_ = 1;
+  int width_ = 1, height_ = 1;
+
+ private:
+  __device__ DeviceBox own_box() const {
+    DeviceBox box{{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    for (std::int32_t i = begin_ + static_cast<int>(threadIdx.x % 32); i < end_; i += 32) {
+      const double2 p = tree_.sites[i];
+      box.low[0] = fmin(box.low[0], p.x);
+      box.low[1] = fmin(box.low[1], p.y);
+      box.high[0] = fmax(box.high[0], p.x);
+      box.high[1] = fmax(box.high[1], p.y);
+    }
+    return joined(box);
+  }
+
+  __device__ void append(bool is_in, std::int32_t value, std::int32_t* list, int& count, int room) const {
+    const unsigned those = __ballot_sync(k_warp, is_in);
+    if (those == 0) return;
+    const int lane = threadIdx.x % 32;
+    int first = 0;
+    if (lane == 0) first = atomicAdd(&count, __popc(those));
+    const int at = __shfl_sync(k_warp, first, 0) + __popc(those & ((1u << lane) - 1));
+    if (is_in && at < room) list[at] = value;
+  }
+
+  __device__ bool find_in_box() {
+    const int lane = threadIdx.x % 32, warp = threadIdx.x / 32;
+    __syncthreads();
+    if (threadIdx.x == 0) {
+      memory_.found_count = memory_.own_count = memory_.frontier_count[0] = memory_.frontier_count[1] = 0;
+      memory_.is_lattice = 1;
+    }
+    __syncthreads();
+    int from = 0;
+    if (warp == 0) {
+      const int top = tree_.levels - 1;
+      const bool is_in = lane < tree_.counts[top] && tree_.boxes[top][lane].meets(box_);
+      append(is_in, lane, memory_.frontier[0], memory_.frontier_count[0], k_frontier);
+    }
+    __syncthreads();
+    for (int level = tree_.levels - 2; level >= 0; --level, from ^= 1) {
+      const int count = memory_.frontier_count[from];
+      if (count > k_frontier) return false;
+      for (int i = warp; i < count; i += k_tile_warps) {
+        const std::int32_t child = memory_.frontier[from][i] * 32 + lane;
+        const bool is_in = child < tree_.counts[level] && tree_.boxes[level][child].meets(box_);
+        append(is_in, child, memory_.frontier[from ^ 1], memory_.frontier_count[from ^ 1], k_frontier);
+      }
+      __syncthreads();
+      if (threadIdx.x == 0) memory_.frontier_count[from] = 0;
+      __syncthreads();
+    }
+    const int count = memory_.frontier_count[from];
+    if (count > k_frontier) return false;
+    for (int i = warp; i < count; i += k_tile_warps) {
+      const std::int32_t rank = memory_.frontier[from][i] * 32 + lane;
+      bool is_in = rank < tree_.site_count;
+      if (is_in) {
+        const double2 p = tree_.sites[rank];
+        is_in = box_.contains(p.x, p.y);
+      }
+      append(is_in, rank, memory_.found, memory_.found_count, k_seen_sites);
+    }
+    __syncthreads();
+    return memory_.found_count <= k_seen_sites;
+  }
+
+  __device__ int column(double x) const { return min(static_cast<int>((x - box_.low[0]) * inverse_grid_), width_ - 1); }
+  __device__ int row(double y) const { return min(static_cast<int>((y - box_.low[1]) * inverse_grid_), height_ - 1); }
+
+  __device__ void sort_into_grid() {
+    const int count = memory_.found_count;
+    const double width = box_.high[0] - box_.low[0], height = box_.high[1] - box_.low[1];
+    constexpr double k_longest = 127;
+    grid_ = fmax(sqrt(width * height * k_sites_per_grid_cell / count), fmax(width, height) / k_longest);
+    if (!(grid_ > 0)) grid_ = 1;
+    inverse_grid_ = 1 / grid_;
+    width_ = static_cast<int>(width * inverse_grid_) + 1;
+    height_ = static_cast<int>(height * inverse_grid_) + 1;
+    const int cells = width_ * height_;
+    for (int i = threadIdx.x; i <= cells; i += k_tile_threads) memory_.grid_counts[i] = 0;
+    __syncthreads();
+    const double2 origin = tree_.sites[begin_];
+    const double unit = exp2(static_cast<double>(ilogb(fmax(width, height)) - 10)), per_unit = 1 / unit;
+    bool is_lattice = true;
+    for (int i = threadIdx.x; i < count; i += k_tile_threads) {
+      const double2 p = tree_.sites[memory_.found[i]];
+      const int cell = row(p.y) * width_ + column(p.x);
+      memory_.cell[i] = static_cast<std::uint16_t>(cell);
+      atomicAdd(&memory_.grid_counts[cell + 1], 1);
+      const double dx = p.x - origin.x, dy = p.y - origin.y;
+      is_lattice = is_lattice && origin.x + dx == p.x && origin.y + dy == p.y && rint(dx * per_unit) == dx * per_unit &&
+                   rint(dy * per_unit) == dy * per_unit;
+    }
+    if (!is_lattice) memory_.is_lattice = 0;
+    __syncthreads();
+    if (threadIdx.x < 32) {  // sums of the counts
+      int before = 0;
+      for (int first = 0; first <= cells; first += 32) {
+        const int i = first + static_cast<int>(threadIdx.x);
+        int sum = i <= cells ? memory_.grid_counts[i] : 0;
+        for (int step = 1; step < 32; step *= 2) {
+          const int other = __shfl_up_sync(k_warp, sum, step);
+          if (static_cast<int>(threadIdx.x) >= step) sum += other;
+        }
+        sum += before;
+        if (i <= cells) {
+          memory_.begins[i] = static_cast<std::uint16_t>(sum);
+          memory_.grid_counts[i] = sum;
+        }
+        before = __shfl_sync(k_warp, sum, 31);
+      }
+    }
+    __syncthreads();
+    for (int i = threadIdx.x; i < count; i += k_tile_threads) {
+      const std::int32_t rank = memory_.found[i];
+      const int to = atomicAdd(&memory_.grid_counts[memory_.cell[i]], 1);
+      memory_.at[to] = tree_.sites[rank];
+      memory_.rank[to] = rank;
+      if (rank >= begin_ && rank < end_)
+        memory_.own[atomicAdd(&memory_.own_count, 1)] = static_cast<std::uint16_t>(to);
+    }
+    __syncthreads();
+  }
+
+  std::int32_t begin_ = 0, end_ = 0;
+};
+
+/// Writes a list that lane k holds neighbour k of, from `first` on around.
+__device__ inline void write_list(const DeviceLists& lists, std::int32_t rank, int neighbour, int count, bool is_open,
+                                  int first) {
+  const int lane = threadIdx.x % 32;
+  if (lane < count) {
+    const int to = lane >= first ? lane - first : lane - first + count;
+    lists.slots[static_cast<std::int64_t>(rank) * k_slots + to] = neighbour;
+  }
+  if (lane == 0) {
+    lists.counts[rank] = count;
+    lists.is_open[rank] = is_open;
+  }
+}
+
+/// One warp's cell.
+class CellWinder {
+ public:
+  __device__ CellWinder(const TileSites& tile) : tile_(tile), memory_(tile.memory_) {}
+
+  /// False when it takes other means.
+  __device__ bool wind(int own, const DeviceLists& lists) {
+    site_ = memory_.at[own];
+    own_ = own;
+    if (!load_candidates()) return false;
+    const int lane = threadIdx.x % 32;
+    int neighbour = 0, count = 0;
+    const int first = nearest();
+    if (first < 0) return false;
+    for (int at = first; ;) {
+      if (lane == count) neighbour = memory_.rank[at];
+      if (++count > k_slots) return false;
+      at = next_after(at);
+      if (at < 0) return false;
+      if (at == first) break;
+    }
+    const unsigned mine = lane < count ? static_cast<unsigned>(neighbour) : ~0u;
+    const unsigned lowest = __reduce_min_sync(k_warp, mine);
+    const int begin = __ffs(static_cast<int>(__ballot_sync(k_warp, mine == lowest))) - 1;
+    write_list(lists, memory_.rank[own], neighbour, count, false, begin);
+    return true;
+  }
+
+ private:
+  static constexpr int k_each = 2, k_reach = 2;
+
+  __device__ bool load_candidates() {
+    const int lane = threadIdx.x % 32;
+    const int column = min(static_cast<int>((site_.x - tile_.box_.low[0]) * tile_.inverse_grid_), tile_.width_ - 1);
+    const int row = min(static_cast<int>((site_.y - tile_.box_.low[1]) * tile_.inverse_grid_), tile_.height_ - 1);
+    const int left = max(column - k_reach, 0), right = min(column + k_reach, tile_.width_ - 1);
+    const int bottom = max(row - k_reach, 0), top = min(row + k_reach, tile_.height_ - 1);
+    int begin = 0, length = 0;
+    if (lane <= top - bottom) {
+      const int base = (bottom + lane) * tile_.width_;
+      begin = memory_.begins[base + left];
+      length = memory_.begins[base + right + 1] - begin;
+    }
+    int index[k_each];
+    for (int j = 0; j < k_each; ++j) index[j] = -1;
+    int total = 0;
+    for (int r = 0; r <= 2 * k_reach; ++r) {
+      const int row_begin = __shfl_sync(k_warp, begin, r), row_length = __shfl_sync(k_warp, length, r);
+      for (int j = 0; j < k_each; ++j) {
+        const int k = lane + 32 * j - total;
+        if (k >= 0 && k < row_length) index[j] = row_begin + k;
+      }
+      total += row_length;
+    }
+    if (total > 32 * k_each) return false;
+
+    const double scale = __longlong_as_double(static_cast<long long>(1023 - ilogb(tile_.grid_)) << 52);
+    const auto reach = [&](double distance) { return static_cast<float>(distance * scale); };
+    const double grid = tile_.grid_;
+    to_left_ = reach(site_.x - (tile_.box_.low[0] + left * grid));
+    to_right_ = reach(fmin(tile_.box_.high[0], tile_.box_.low[0] + (right + 1) * grid) - site_.x);
+    to_bottom_ = reach(site_.y - (tile_.box_.low[1] + bottom * grid));
+    to_top_ = reach(fmin(tile_.box_.high[1], tile_.box_.low[1] + (top + 1) * grid) - site_.y);
+    for (int j = 0; j < k_each; ++j) {
+      at_[j] = index[j] == own_ ? -1 : index[j];
+      x_[j] = y_[j] = length_[j] = 0;
+      square_[j] = INFINITY;
+      if (at_[j] < 0) continue;
+      const double2 p = memory_.at[at_[j]];
+      x_[j] = static_cast<float>((p.x - site_.x) * scale);
+      y_[j] = static_cast<float>((p.y - site_.y) * scale);
+      square_[j] = x_[j] * x_[j] + y_[j] * y_[j];
+      length_[j] = sqrtf(square_[j]);
+    }
+    return true;
+  }
+
+  /// The candidate that lane `lane` holds as its j-th.
+  __device__ void show(int lane, int j, float& x, float& y, float& length, int& at) const {
+    x = __shfl_sync(k_warp, j ? x_[1] : x_[0], lane);
+    y = __shfl_sync(k_warp, j ? y_[1] : y_[0], lane);
+    length = __shfl_sync(k_warp, j ? length_[1] : length_[0], lane);
+    at = __shfl_sync(k_warp, j ? at_[1] : at_[0], lane);
+  }
+
+  /// The nearest site; of about equally near ones any, since each has a side of the cell unless they are side by side.
+  __device__ int nearest() {
+    constexpr float k_smallest = 1e-12f;
+    const float mine = fminf(square_[0], square_[1]);
+    const float least = __uint_as_float(__reduce_min_sync(k_warp, __float_as_uint(mine)));
+    if (!(least > k_smallest && least < INFINITY)) return -1;
+    const int lane = __ffs(static_cast<int>(__ballot_sync(k_warp, mine == least))) - 1;
+    const int j = __shfl_sync(k_warp, static_cast<int>(square_[0] != mine), lane);
+    int at;
+    show(lane, j, n_x_, n_y_, n_length_, at);
+    bool is_rivalled = false;
+    for (int k = 0; k < k_each; ++k)
+      is_rivalled |= square_[k] <= least * 1.00001f && at_[k] != at && x_[k] * n_x_ + y_[k] * n_y_ > 0.99f * least;
+    return __any_sync(k_warp, is_rivalled) ? -1 : at;
+  }
+
+  /// The neighbour after n, counter-clockwise; -1 when it cannot be told. Moves n there.
+  __device__ int next_after(int n) {
+    constexpr float k_error = 6e-7f, k_side = 4e-6f;  // ten and more roundings
+    float low[k_each], high[k_each];
+    bool is_doubtful = false;
+    for (int j = 0; j < k_each; ++j) {
+      const float cross = n_x_ * y_[j] - n_y_ * x_[j];
+      const float along = square_[j] - (n_x_ * x_[j] + n_y_ * y_[j]);
+      const float lengths = length_[j] * n_length_;
+      low[j] = high[j] = INFINITY;
+      if (cross > k_side * lengths) {
+        const float inverse = __fdividef(1.0f, cross), t = along * inverse;
+        const float error = k_error * length_[j] * inverse * (length_[j] + n_length_ * (1 + fabsf(t)));
+        low[j] = t - error;
+        high[j] = t + error;
+      } else if (cross >= -k_side * lengths && at_[j] >= 0 && at_[j] != n) {
+        is_doubtful |= along <= 1e-5f * length_[j] * (length_[j] + n_length_);  // on the way to n, or beside it
+      }
+    }
+    if (__any_sync(k_warp, is_doubtful)) return -1;
+    const unsigned least = __reduce_min_sync(k_warp, ordered(fminf(high[0], high[1])));
+    const float bound = disordered(least);
+    if (!(bound < INFINITY)) return -1;
+    const unsigned near[k_each] = {__ballot_sync(k_warp, low[0] <= bound), __ballot_sync(k_warp, low[1] <= bound)};
+    int winner;
+    if (__popc(near[0]) + __popc(near[1]) == 1) {
+      const int j = near[0] == 0;
+      show(__ffs(static_cast<int>(near[j])) - 1, j, w_x_, w_y_, w_length_, winner);
+    } else {
+      winner = decide(n, near);
+      if (winner < 0) return -1;
+    }
+    if (!is_covered()) return -1;
+    n_x_ = w_x_;
+    n_y_ = w_y_;
+    n_length_ = w_length_;
+    return winner;
+  }
+
+  /// The first of several that the circle touches, or the last around of those that it touches at once.
+  __device__ int decide(int n, const unsigned (&near)[2]) {
+    int best = -1;
+    double best_x = 0, best_y = 0;
+    const double n_x = memory_.at[n].x - site_.x, n_y = memory_.at[n].y - site_.y;
+    for (int j = 0; j < k_each; ++j) {
+      for (unsigned left = near[j]; left; left &= left - 1) {
+        float x, y, length;
+        int at;
+        show(__ffs(static_cast<int>(left)) - 1, j, x, y, length, at);
+        const double dx = memory_.at[at].x - site_.x, dy = memory_.at[at].y - site_.y;
+        bool is_better = best < 0;
+        if (best >= 0) {
+          bool is_known;
+          const int sign = circle_sign(n_x, n_y, best_x, best_y, dx, dy, memory_.is_lattice, is_known);
+          if (!is_known) return -1;
+          is_better = sign < 0;
+          if (sign == 0) {
+            const double cross = best_x * dy - best_y * dx;
+            if (fabs(cross) < 1e-9 * (fabs(best_x * dy) + fabs(best_y * dx))) return -1;
+            is_better = cross > 0;
+          }
+        }
+        if (!is_better) continue;
+        best = at, best_x = dx, best_y = dy;
+        w_x_ = x, w_y_ = y, w_length_ = length;
+      }
+    }
+    return best;
+  }
+
+  /// Whether all sites in the circle through the site, n and w are candidates.
+  __device__ bool is_covered() const {
+    const float cross = n_x_ * w_y_ - n_y_ * w_x_;
+    if (cross < 1e-3f * n_length_ * w_length_) return false;
+    const float n2 = n_length_ * n_length_, w2 = w_length_ * w_length_, half = __fdividef(0.5f, cross);
+    const float x = (w_y_ * n2 - n_y_ * w2) * half, y = (n_x_ * w2 - w_x_ * n2) * half;
+    const float radius = 1.003f * sqrtf(x * x + y * y);
+    return x - radius >= -to_left_ && x + radius <= to_right_ && y - radius >= -to_bottom_ && y + radius <= to_top_;
+  }
+
+  const TileSites& tile_;
+  const TileMemory& memory_;
+  double2 site_{};
+  int own_ = 0;
+  float to_left_ = 0, to_right_ = 0, to_bottom_ = 0, to_top_ = 0;
+  float x_[k_each], y_[k_each], square_[k_each], length_[k_each];
+  int at_[k_each];
+  float n_x_ = 0, n_y_ = 0, n_length_ = 0, w_x_ = 0, w_y_ = 0, w_length_ = 0;
+};
+
+__global__ void __launch_bounds__(k_tile_threads)
+    find_cells_of_tiles(DeviceTree tree, const std::int32_t* begins, const std::int32_t* tile_count, int* next_tile,
+                        DeviceLists lists) {
+  extern __shared__ __align__(16) char bytes[];
+  TileMemory& memory = *reinterpret_cast<TileMemory*>(bytes);
+  __shared__ int tile;
+  const int lane = threadIdx.x % 32, warp = threadIdx.x / 32, count = *tile_count;
+  const auto leave = [&](std::int32_t rank) {
+    if (lane == 0) lists.far[atomicAdd(lists.far_count, 1)] = rank;
+  };
+  while (true) {
+    __syncthreads();
+    if (threadIdx.x == 0) tile = atomicAdd(next_tile, 1);
+    __syncthreads();
+    if (tile >= count) return;
+    const std::int32_t begin = begins[tile], end = tile + 1 < count ? begins[tile + 1] : tree.site_count;
+    TileSites sites(memory, tree);
+    if (!sites.gather(begin, end)) {
+      for (std::int32_t rank = begin + warp; rank < end; rank += k_tile_warps) leave(rank);
+      continue;
+    }
+    CellWinder winder(sites);
+    for (int i = warp; i < memory.own_count; i += k_tile_warps) {
+      const int own = memory.own[i];
+      if (!winder.wind(own, lists)) leave(memory.rank[own]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace saddleback::voronoi2d

@@ -1,0 +1,279 @@
+#pragma once
+// The cells that a tile could not tell: those at the border of all sites, beside a gap, or with sites too many or too
+// close to a circle. Wound as in `device_cells.cuh`, but among all sites, through the tree of their boxes, and decided
+// in double precision or exactly.
+
+#include "voronoi2d/device_cells.cuh"
+
+namespace saddleback::voronoi2d {
+namespace {
+
+/// The sign of the circle test for d, a, b, c, exactly. Unknown where a difference from d has more digits than a double.
+__device__ __noinline__ int exact_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
+                                              bool& is_known) {
+  using namespace predicates;
+  is_known = true;
+  const auto away = [&](double value, double from) {
+    double sum, rest;
+    two_sum(value, -from, sum, rest);
+    is_known = is_known && rest == 0;
+    Expansion<1> result;
+    result.push(sum);
+    return result;
+  };
+  const Expansion<1> ax = away(a.x, d.x), ay = away(a.y, d.y), bx = away(b.x, d.x), by = away(b.y, d.y),
+                     cx = away(c.x, d.x), cy = away(c.y, d.y);
+  if (!is_known) return 0;
+  const auto part = [](const Expansion<1>& px, const Expansion<1>& py, const Expansion<1>& qx, const Expansion<1>& qy,
+                       const Expansion<1>& rx, const Expansion<1>& ry) {
+    return product(sum(product(px, px), product(py, py)), sum(product(qx, ry), product(qy, rx), -1));
+  };
+  return sum(sum(part(ax, ay, bx, by, cx, cy), part(bx, by, cx, cy, ax, ay)), part(cx, cy, ax, ay, bx, by)).sign();
+}
+
+struct FarMemory {
+  static constexpr int k_most = 192;
+  std::int32_t ahead[k_most], behind[k_most];  ///< neighbours from the nearest on, one way and the other
+  unsigned open[DeviceTree::k_most_levels];    ///< children not visited yet
+  std::int32_t node[DeviceTree::k_most_levels];
+};
+
+class FarWinder {
+ public:
+  __device__ FarWinder(const DeviceTree& tree, FarMemory& memory) : tree_(tree), memory_(memory) {}
+
+  __device__ bool wind(std::int32_t rank, const DeviceLists& lists) {
+    rank_ = rank;
+    visits_ = 0;
+    fails_ = false;
+    site_ = point(rank);
+    const std::int32_t first = nearest();
+    if (first < 0) return false;
+    int ahead = 0, behind = 0;
+    bool is_open = false;
+    memory_.ahead[ahead++] = first;
+    turn_ = 1;
+    for (std::int32_t at = first;;) {
+      at = next_after(at);
+      if (fails_ || ahead == FarMemory::k_most) return false;
+      is_open = at < 0;
+      if (is_open || at == first) break;
+      memory_.ahead[ahead++] = at;
+      __syncwarp();
+    }
+    if (is_open) {
+      turn_ = -1;
+      for (std::int32_t at = first;;) {
+        at = next_after(at);
+        if (fails_ || behind == FarMemory::k_most) return false;
+        if (at < 0) break;
+        memory_.behind[behind++] = at;
+        __syncwarp();
+      }
+    }
+    __syncwarp();
+    return write(ahead, behind, is_open, lists);
+  }
+
+ private:
+  static constexpr int k_most_visits = 3000;
+
+  __device__ Point2 point(std::int32_t rank) const {
+    const double2 p = tree_.sites[rank];
+    return {p.x, p.y};
+  }
+
+  /// Visits the boxes that `may_hold` does not rule out, the nearest to the site first, and calls visit(rank of the
+  /// lane's site, or -1) for the sites in them.
+  template <class MayHold, class Visit>
+  __device__ void for_boxes(MayHold&& may_hold, Visit&& visit) {
+    const int lane = threadIdx.x % 32;
+    int level = tree_.levels - 1;
+    if (lane == 0) memory_.open[level] = k_warp, memory_.node[level] = 0;
+    __syncwarp();
+    while (level < tree_.levels) {
+      const std::int32_t child = memory_.node[level] * 32 + lane;
+      bool is_open = (memory_.open[level] >> lane & 1) && child < tree_.counts[level];
+      double distance = 0;
+      if (is_open) {
+        const DeviceBox box = tree_.boxes[level][child];
+        const double dx = fmax(fmax(box.low[0] - site_.x, site_.x - box.high[0]), 0.0),
+                     dy = fmax(fmax(box.low[1] - site_.y, site_.y - box.high[1]), 0.0);
+        distance = dx * dx + dy * dy;
+        is_open = may_hold(box, distance);
+      }
+      const unsigned those = __ballot_sync(k_warp, is_open);
+      if (those == 0) {
+        ++level;
+        continue;
+      }
+      const unsigned key = is_open ? __float_as_uint(static_cast<float>(distance)) : ~0u;
+      const unsigned least = __reduce_min_sync(k_warp, key);
+      const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, is_open && key == least))) - 1;
+      __syncwarp();
+      if (lane == 0) memory_.open[level] = those & ~(1u << chosen);
+      const std::int32_t next = memory_.node[level] * 32 + chosen;
+      if (level > 0) {
+        --level;
+        if (lane == 0) memory_.open[level] = k_warp, memory_.node[level] = next;
+      } else {
+        if (++visits_ > k_most_visits) fails_ = true;
+        const std::int32_t site = next * 32 + lane;
+        visit(site < tree_.site_count && site != rank_ ? site : -1);
+      }
+      __syncwarp();
+      if (fails_) return;
+    }
+  }
+
+  /// Moves `best` to a lane's site as long as one is better.
+  template <class IsBetter, class Key, class Take>
+  __device__ void take_better(std::int32_t site, IsBetter&& is_better, Key&& key, Take&& take) {
+    const Point2 p = site >= 0 ? point(site) : site_;
+    bool mine = site >= 0 && is_better(p, site);
+    while (true) {
+      const unsigned those = __ballot_sync(k_warp, mine);
+      if (those == 0 || __any_sync(k_warp, fails_)) break;
+      const unsigned my_key = mine ? key(p) : ~0u, least = __reduce_min_sync(k_warp, my_key);
+      const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, mine && my_key == least))) - 1;
+      take(Point2{__shfl_sync(k_warp, p.x, chosen), __shfl_sync(k_warp, p.y, chosen)},
+           __shfl_sync(k_warp, site, chosen));
+      mine = mine && is_better(p, site);
+    }
+    fails_ = __any_sync(k_warp, fails_);
+  }
+
+  __device__ std::int32_t nearest() {
+    std::int32_t best = -1;
+    Point2 best_at{};
+    double best_distance = INFINITY;
+    for_boxes([&](const DeviceBox&, double distance) { return distance <= best_distance * (1 + 1e-9); },
+              [&](std::int32_t site) {
+                take_better(
+                    site,
+                    [&](const Point2& p, std::int32_t) {
+                      return best < 0 || compare_distances(site_, p, best_at) == predicates::Sign::negative;
+                    },
+                    [&](const Point2& p) {
+                      const double dx = p.x - site_.x, dy = p.y - site_.y;
+                      return __float_as_uint(static_cast<float>(dx * dx + dy * dy));
+                    },
+                    [&](const Point2& p, std::int32_t taken) {
+                      best = taken;
+                      best_at = p;
+                      const double dx = p.x - site_.x, dy = p.y - site_.y;
+                      best_distance = dx * dx + dy * dy;
+                    });
+              });
+    return fails_ ? -1 : best;
+  }
+
+  /// The neighbour after n, counter-clockwise where `turn_` is 1; -1 when the cell is open there.
+  __device__ std::int32_t next_after(std::int32_t n) {
+    const Point2 n_at = point(n);
+    const double n_x = n_at.x - site_.x, n_y = n_at.y - site_.y;
+    std::int32_t best = -1;
+    Point2 best_at{};
+    double centre_x = 0, centre_y = 0, radius2 = INFINITY;  // of the circle, from the site; large enough
+    const auto is_left = [&](const Point2& from, const Point2& p) {
+      return turn_ * static_cast<int>(orient_2d(site_, from, p)) > 0;
+    };
+    const auto is_better = [&](const Point2& p, std::int32_t site) {
+      if (site == n || site == best || !is_left(n_at, p)) return false;
+      if (best < 0) return true;
+      bool is_known;
+      int sign = circle_sign(n_x, n_y, best_at.x - site_.x, best_at.y - site_.y, p.x - site_.x, p.y - site_.y, false,
+                             is_known);
+      if (!is_known) sign = exact_circle_sign(n_at, best_at, p, site_, is_known);
+      if (!is_known) fails_ = true;
+      return sign == 0 ? is_left(best_at, p) : turn_ * sign < 0;
+    };
+    const auto key = [&](const Point2& p) {
+      const double x = p.x - site_.x, y = p.y - site_.y;
+      return ordered(static_cast<float>((x * (x - n_x) + y * (y - n_y)) / (turn_ * (n_x * y - n_y * x))));
+    };
+    const auto take = [&](const Point2& p, std::int32_t taken) {
+      best = taken;
+      best_at = p;
+      const double x = p.x - site_.x, y = p.y - site_.y, cross = n_x * y - n_y * x;
+      const double n2 = n_x * n_x + n_y * n_y, p2 = x * x + y * y;
+      radius2 = INFINITY;
+      if (fabs(cross) < 1e-9 * sqrt(n2 * p2)) return;  // too flat for the circle's place to be known
+      centre_x = (y * n2 - n_y * p2) / (2 * cross);
+      centre_y = (n_x * p2 - x * n2) / (2 * cross);
+      radius2 = (centre_x * centre_x + centre_y * centre_y) * (1 + 1e-4);
+    };
+    const auto may_hold = [&](const DeviceBox& box, double) {
+      const double low_x = box.low[0] - site_.x, low_y = box.low[1] - site_.y, high_x = box.high[0] - site_.x,
+                   high_y = box.high[1] - site_.y, t_x = turn_ * n_x, t_y = turn_ * n_y;
+      const double across = fmax(t_x * low_y, t_x * high_y), along = fmin(t_y * low_x, t_y * high_x);
+      if (across - along < -1e-14 * (fabs(across) + fabs(along))) return false;  // right of the line through n
+      if (radius2 == INFINITY) return true;
+      const double dx = fmax(fmax(low_x - centre_x, centre_x - high_x), 0.0),
+                   dy = fmax(fmax(low_y - centre_y, centre_y - high_y), 0.0);
+      return dx * dx + dy * dy <= radius2;
+    };
+    for_boxes(may_hold, [&](std::int32_t site) { take_better(site, is_better, key, take); });
+    return best;
+  }
+
+  __device__ bool write(int ahead, int behind, bool is_open, const DeviceLists& lists) const {
+    const int lane = threadIdx.x % 32, count = ahead + behind;
+    const auto at = [&](int i) { return i < behind ? memory_.behind[behind - 1 - i] : memory_.ahead[i - behind]; };
+    int first = 0;
+    if (!is_open) {
+      unsigned lowest = ~0u;
+      for (int i = lane; i < count; i += 32) lowest = min(lowest, static_cast<unsigned>(at(i)));
+      lowest = __reduce_min_sync(k_warp, lowest);
+      unsigned place = ~0u;
+      for (int i = lane; i < count; i += 32)
+        if (static_cast<unsigned>(at(i)) == lowest) place = static_cast<unsigned>(i);
+      first = static_cast<int>(__reduce_min_sync(k_warp, place));
+    }
+    std::int32_t* to = lists.slots + static_cast<std::int64_t>(rank_) * k_slots;
+    if (count > k_slots) {
+      unsigned begin = 0;
+      if (lane == 0) begin = atomicAdd(lists.pool_taken, static_cast<unsigned>(count));
+      begin = __shfl_sync(k_warp, begin, 0);
+      if (begin + static_cast<unsigned>(count) > lists.pool_room) return false;
+      if (lane == 0) *to = static_cast<std::int32_t>(begin);
+      to = lists.pool + begin;
+    }
+    for (int i = lane; i < count; i += 32) to[i] = at((i + first) % count);
+    if (lane == 0) {
+      lists.counts[rank_] = count;
+      lists.is_open[rank_] = is_open;
+    }
+    return true;
+  }
+
+  const DeviceTree& tree_;
+  FarMemory& memory_;
+  Point2 site_{};
+  std::int32_t rank_ = 0;
+  int turn_ = 1, visits_ = 0;
+  bool fails_ = false;
+};
+
+constexpr int k_far_threads = 128;
+
+__global__ void __launch_bounds__(k_far_threads)
+    find_far_cells(DeviceTree tree, const std::int32_t* far, const int* far_count, int* next, DeviceLists lists,
+                   int* failures, int most_failures) {
+  __shared__ FarMemory memory[k_far_threads / 32];
+  FarWinder winder(tree, memory[threadIdx.x / 32]);
+  const int lane = threadIdx.x % 32, count = *far_count;
+  while (true) {
+    int i = 0;
+    if (lane == 0) i = *static_cast<volatile int*>(failures) > most_failures ? count : atomicAdd(next, 1);
+    i = __shfl_sync(k_warp, i, 0);
+    if (i >= count) return;
+    if (!winder.wind(far[i], lists)) {
+      if (lane == 0) lists.far[atomicAdd(failures, 1)] = far[i];
+    }
+    __syncwarp();
+  }
+}
+
+}  // namespace
+}  // namespace saddleback::voronoi2d

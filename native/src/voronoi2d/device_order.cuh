@@ -1,0 +1,253 @@
+#pragma once
+// Distinct sites along the curve, on the device: the twin of site_order and curve_order.
+
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+
+#include "support/device_buffer.h"
+#include "voronoi2d/curve_place.h"
+#include "voronoi2d/plane_twin.h"
+
+namespace saddleback::voronoi2d {
+namespace {
+
+constexpr int k_threads = 256;
+inline unsigned blocks_for(std::int64_t count) { return static_cast<unsigned>((count + k_threads - 1) / k_threads); }
+
+__device__ inline std::int32_t thread_number() { return static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); }
+
+/// Calls cub's function(scratch, bytes) twice: for the size of its memory, and to work.
+template <class Function>
+void with_scratch(cudaStream_t stream, const char* doing, Function&& function) {
+  std::size_t bytes = 0;
+  check_cuda(function(nullptr, bytes), doing);
+  DeviceBuffer<std::uint8_t> scratch(bytes, stream);
+  check_cuda(function(static_cast<void*>(scratch.data()), bytes), doing);
+}
+
+struct Extent {
+  double low[2], high[2];
+  double smallest, largest;  ///< magnitudes other than 0
+  int is_finite;
+
+  __host__ __device__ void add(const Extent& other) {
+    for (int k = 0; k < 2; ++k) {
+      low[k] = fmin(low[k], other.low[k]);
+      high[k] = fmax(high[k], other.high[k]);
+    }
+    smallest = fmin(smallest, other.smallest);
+    largest = fmax(largest, other.largest);
+    is_finite &= other.is_finite;
+  }
+};
+constexpr Extent k_nothing{{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY, 0, 1};
+
+__global__ void __launch_bounds__(k_threads) measure(const double2* sites, std::int32_t count, Extent* parts) {
+  __shared__ Extent shared[k_threads / 32];
+  Extent mine = k_nothing;
+  for (std::int64_t i = thread_number(); i < count; i += static_cast<std::int64_t>(gridDim.x) * blockDim.x) {
+    const double2 p = sites[i];
+    const double x = fabs(p.x), y = fabs(p.y), none = INFINITY;
+    mine.add({{p.x, p.y},
+              {p.x, p.y},
+              fmin(x == 0 ? none : x, y == 0 ? none : y),
+              fmax(x, y),
+              isfinite(p.x) && isfinite(p.y)});
+  }
+  const auto gather = [&](int lanes) {
+    for (int step = lanes / 2; step > 0; step /= 2) {
+      Extent other;
+      for (int k = 0; k < 2; ++k) {
+        other.low[k] = __shfl_down_sync(0xffffffffu, mine.low[k], step);
+        other.high[k] = __shfl_down_sync(0xffffffffu, mine.high[k], step);
+      }
+      other.smallest = __shfl_down_sync(0xffffffffu, mine.smallest, step);
+      other.largest = __shfl_down_sync(0xffffffffu, mine.largest, step);
+      other.is_finite = __shfl_down_sync(0xffffffffu, mine.is_finite, step);
+      mine.add(other);
+    }
+  };
+  gather(32);
+  if (threadIdx.x % 32 == 0) shared[threadIdx.x / 32] = mine;
+  __syncthreads();
+  if (threadIdx.x < 32) {
+    mine = threadIdx.x < k_threads / 32 ? shared[threadIdx.x] : k_nothing;
+    gather(32);
+    if (threadIdx.x == 0) parts[blockIdx.x] = mine;
+  }
+}
+
+__global__ void place_sites(const double2* sites, std::int32_t count, double low_x, double low_y, double half_width,
+                            std::uint32_t* places, std::int32_t* order) {
+  const std::int32_t i = thread_number();
+  if (i >= count) return;
+  const double2 p = sites[i];
+  places[i] = place_by_bits(square_of(p.x, low_x, half_width), square_of(p.y, low_y, half_width));
+  order[i] = i;
+}
+
+/// Sites that share a square, by x, y and index. Of more than a few the processor makes a finer curve.
+constexpr int k_few = 48;
+__global__ void sort_squares(const double2* sites, std::int32_t count, const std::uint32_t* places, std::int32_t* order,
+                             int* has_full_squares) {
+  const std::int32_t begin = thread_number();
+  if (begin >= count || (begin > 0 && places[begin - 1] == places[begin])) return;
+  std::int32_t end = begin + 1;
+  while (end < count && end - begin <= k_few && places[end] == places[begin]) ++end;
+  if (end - begin > k_few) {
+    *has_full_squares = 1;
+    return;
+  }
+  const auto less = [&](std::int32_t a, std::int32_t b) {
+    const double2 p = sites[a], q = sites[b];
+    if (p.x != q.x) return p.x < q.x;
+    return p.y != q.y ? p.y < q.y : a < b;
+  };
+  for (std::int32_t i = begin + 1; i < end; ++i) {
+    const std::int32_t moved = order[i];
+    std::int32_t to = i;
+    for (; to > begin && less(moved, order[to - 1]); --to) order[to] = order[to - 1];
+    order[to] = moved;
+  }
+}
+
+__global__ void mark_distinct(const double2* sites, std::int32_t count, const std::int32_t* order,
+                              std::int32_t* is_first) {
+  const std::int32_t i = thread_number();
+  if (i >= count) return;
+  bool differs = i == 0;
+  if (i > 0) {
+    const double2 p = sites[order[i]], q = sites[order[i - 1]];
+    differs = p.x != q.x || p.y != q.y;
+  }
+  is_first[i] = differs;
+}
+
+/// What the processor keeps of the sites, by rank.
+struct RankedSites {
+  double2* at;
+  std::int32_t* original;
+  std::uint32_t* places;
+};
+
+__global__ void rank_sites(const double2* sites, std::int32_t count, const std::int32_t* order,
+                           const std::uint32_t* places, const std::int32_t* firsts_up_to, RankedSites ranked) {
+  const std::int32_t i = thread_number();
+  if (i >= count) return;
+  const std::int32_t rank = firsts_up_to[i] - 1;
+  if (i > 0 && firsts_up_to[i - 1] == rank + 1) return;
+  ranked.at[rank] = sites[order[i]];
+  ranked.original[rank] = order[i];
+  ranked.places[rank] = places[i];
+}
+
+__global__ void find_equals(std::int32_t count, const std::int32_t* order, const std::int32_t* firsts_up_to,
+                            const std::int32_t* original, std::int32_t* site_of, std::int32_t* cell_places) {
+  const std::int32_t i = thread_number();
+  if (i >= count) return;
+  const std::int32_t rank = firsts_up_to[i] - 1;
+  site_of[order[i]] = original[rank];
+  cell_places[order[i]] = rank;
+}
+
+/// The sites by rank, and for every site the rank of its place.
+class DeviceOrder {
+ public:
+  DeviceOrder(std::int32_t count, cudaStream_t stream)
+      : stream_(stream),
+        count_(count),
+        at_(size(), stream),
+        original_(size(), stream),
+        site_of_(size(), stream),
+        cell_places_(size(), stream),
+        ranked_places_(size(), stream) {}
+
+  enum class Found { order, not_for_the_device, stopped };
+
+  Found find(const double2* sites, const PlaneTwinCaller& caller) {
+    const Extent extent = measure_all(sites);
+    // Beyond that the processor scales the sites, or says what is wrong with them.
+    constexpr double k_largest = 0x1p250, k_smallest = 0x1p-216;
+    const double half_width =
+        fmax(0.5 * extent.high[0] - 0.5 * extent.low[0], 0.5 * extent.high[1] - 0.5 * extent.low[1]);
+    if (!extent.is_finite || extent.largest >= k_largest || extent.smallest < k_smallest || !(half_width > 0))
+      return Found::not_for_the_device;
+
+    DeviceBuffer<std::uint32_t> places(size(), stream_);
+    DeviceBuffer<std::int32_t> order(size(), stream_);
+    DeviceBuffer<int> has_full_squares(1, stream_);
+    has_full_squares.fill_bytes(0);
+    {
+      DeviceBuffer<std::uint32_t> unsorted_places(size(), stream_);
+      DeviceBuffer<std::int32_t> unsorted(size(), stream_);
+      place_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, extent.low[0], extent.low[1],
+                                                                 half_width, unsorted_places.data(), unsorted.data());
+      check_cuda(cudaGetLastError(), "placing sites");
+      with_scratch(stream_, "sorting sites", [&](void* scratch, std::size_t& bytes) {
+        return cub::DeviceRadixSort::SortPairs(scratch, bytes, unsorted_places.data(), places.data(), unsorted.data(),
+                                               order.data(), count_, 0, 2 * k_curve_bits, stream_);
+      });
+    }
+    sort_squares<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, places.data(), order.data(),
+                                                                has_full_squares.data());
+    check_cuda(cudaGetLastError(), "sorting sites");
+    DeviceBuffer<std::int32_t> firsts(size(), stream_);
+    int is_full = 0;
+    has_full_squares.read({&is_full, 1});
+    if (is_full) {
+      std::vector<std::uint32_t> sorted_places(size());
+      std::vector<std::int32_t> sorted(size());
+      if (!caller.sort(caller.self, sorted_places.data(), sorted.data())) return Found::stopped;
+      places = DeviceBuffer<std::uint32_t>(sorted_places, stream_);
+      order = DeviceBuffer<std::int32_t>(sorted, stream_);
+      check_cuda(cudaStreamSynchronize(stream_), "copying to the device");
+    }
+    mark_distinct<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, order.data(), firsts.data());
+    check_cuda(cudaGetLastError(), "finding equal sites");
+    with_scratch(stream_, "counting sites", [&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceScan::InclusiveSum(scratch, bytes, firsts.data(), firsts.data(), count_, stream_);
+    });
+    rank_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, order.data(), places.data(), firsts.data(),
+                                                              {at_.data(), original_.data(), ranked_places_.data()});
+    check_cuda(cudaGetLastError(), "ranking sites");
+    find_equals<<<blocks_for(count_), k_threads, 0, stream_>>>(count_, order.data(), firsts.data(), original_.data(),
+                                                               site_of_.data(), cell_places_.data());
+    check_cuda(cudaGetLastError(), "finding equal sites");
+    check_cuda(cudaMemcpyAsync(&cell_count_, firsts.data() + count_ - 1, sizeof cell_count_, cudaMemcpyDeviceToHost,
+                               stream_),
+               "counting sites");
+    check_cuda(cudaStreamSynchronize(stream_), "counting sites");
+    return Found::order;
+  }
+
+  std::int32_t cell_count() const { return cell_count_; }
+  const double2* at() const { return at_.data(); }
+  const std::int32_t* original() const { return original_.data(); }
+  const std::uint32_t* places() const { return ranked_places_.data(); }
+  const std::int32_t* site_of() const { return site_of_.data(); }
+  const std::int32_t* cell_places() const { return cell_places_.data(); }
+
+ private:
+  std::size_t size() const { return static_cast<std::size_t>(count_); }
+
+  Extent measure_all(const double2* sites) {
+    const unsigned blocks = std::min(blocks_for(count_), 1024u);
+    DeviceBuffer<Extent> parts(blocks, stream_);
+    measure<<<blocks, k_threads, 0, stream_>>>(sites, count_, parts.data());
+    check_cuda(cudaGetLastError(), "measuring the sites");
+    std::vector<Extent> found(blocks);
+    parts.read(found);
+    Extent all = k_nothing;
+    for (const Extent& part : found) all.add(part);
+    return all;
+  }
+
+  cudaStream_t stream_;
+  std::int32_t count_, cell_count_ = 0;
+  DeviceBuffer<double2> at_;
+  DeviceBuffer<std::int32_t> original_, site_of_, cell_places_;
+  DeviceBuffer<std::uint32_t> ranked_places_;
+};
+
+}  // namespace
+}  // namespace saddleback::voronoi2d

@@ -1,0 +1,179 @@
+// Voronoi diagrams of the plane on a CUDA device: order, cells by tiles, cells that these could not tell, numbers. The
+// answer is the processor's, to the bit.
+
+#include "voronoi2d/device_voronoi.h"
+
+#include <vector>
+
+#include "support/device_stream.h"
+#include "voronoi2d/device_far_cells.cuh"
+#include "voronoi2d/device_numbering.cuh"
+
+namespace saddleback {
+namespace {
+
+using namespace voronoi2d;
+
+/// The processor had better do it.
+struct LeftOver {};
+
+int blocks_of(const void* kernel, int threads, std::size_t shared, int device) {
+  int per_processor = 0, processors = 0;
+  check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, kernel, threads, shared),
+             "asking for occupancy");
+  check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
+             "asking for the number of processors");
+  return std::max(1, per_processor) * processors;
+}
+
+/// The neighbours of all cells.
+class CellFinder {
+ public:
+  CellFinder(std::int32_t count, cudaStream_t stream)
+      : stream_(stream),
+        count_(count),
+        slots_(static_cast<std::size_t>(count) * k_slots, stream),
+        counts_(static_cast<std::size_t>(count) + 1, stream),
+        far_(static_cast<std::size_t>(count), stream),
+        failed_(static_cast<std::size_t>(k_most_failures) + 4096, stream),
+        pool_(static_cast<std::size_t>(count) / 4 + 65536, stream),
+        is_open_(static_cast<std::size_t>(count), stream),
+        counters_(5, stream) {}
+
+  void find(const DeviceOrder& order, int device, DeviceTimes& times) {
+    const BoxLevels boxes(order.at(), count_, stream_);
+    const Tiles tiles(order.places(), count_, stream_);
+    counts_.fill_bytes(0);
+    counters_.fill_bytes(0);
+    constexpr std::size_t k_shared = sizeof(TileMemory);
+    check_cuda(cudaFuncSetAttribute(find_cells_of_tiles, cudaFuncAttributeMaxDynamicSharedMemorySize, k_shared),
+               "asking for shared memory");
+    check_cuda(cudaFuncSetAttribute(find_cells_of_tiles, cudaFuncAttributePreferredSharedMemoryCarveout, 100),
+               "asking for shared memory");
+    const int blocks = blocks_of(reinterpret_cast<const void*>(find_cells_of_tiles), k_tile_threads, k_shared, device);
+    find_cells_of_tiles<<<blocks, k_tile_threads, k_shared, stream_>>>(boxes.tree(), tiles.begins(), tiles.count(),
+                                                                       counters_.data() + k_next_tile, lists());
+    check_cuda(cudaGetLastError(), "finding cells");
+    const int far_blocks = blocks_of(reinterpret_cast<const void*>(find_far_cells), k_far_threads, 0, device);
+    DeviceLists far_lists = lists();
+    far_lists.far = failed_.data();
+    find_far_cells<<<far_blocks, k_far_threads, 0, stream_>>>(boxes.tree(), far_.data(), counters_.data() + k_far,
+                                                              counters_.data() + k_next_far, far_lists,
+                                                              counters_.data() + k_failed, k_most_failures);
+    check_cuda(cudaGetLastError(), "finding far cells");
+    int counters[k_counters];
+    counters_.read(counters);
+    times.second_pass = counters[k_far];
+    if (counters[k_failed] > 0) throw LeftOver();
+  }
+
+  DeviceLists lists() {
+    return {slots_.data(),
+            counts_.data(),
+            is_open_.data(),
+            pool_.data(),
+            reinterpret_cast<unsigned*>(counters_.data() + k_pool),
+            static_cast<unsigned>(pool_.size()),
+            far_.data(),
+            counters_.data() + k_far};
+  }
+
+ private:
+  enum { k_next_tile, k_far, k_next_far, k_failed, k_pool, k_counters };
+  static constexpr int k_most_failures = 64;
+  cudaStream_t stream_;
+  std::int32_t count_;
+  DeviceBuffer<std::int32_t> slots_, counts_, far_, failed_, pool_;
+  DeviceBuffer<std::uint8_t> is_open_;
+  DeviceBuffer<int> counters_;
+};
+
+/// What a diagram takes at most at once, in bytes.
+std::uint64_t bytes_needed(std::int32_t count) { return static_cast<std::uint64_t>(count) * 300 + (1 << 20); }
+
+class Builder {
+ public:
+  Builder(const PlaneTwinRequest& request, const PlaneTwinCaller& caller, DeviceTimes& times)
+      : request_(request), caller_(caller), times_(times) {}
+
+  void build() {
+    check_cuda(cudaSetDevice(request_.device), "choosing the device");
+    check_device_room("the diagram", bytes_needed(request_.count), request_.most_bytes);
+    keep_freed_memory(request_.device);
+    const Stream stream;
+    Stopwatch watch(stream);
+    const auto count = static_cast<std::size_t>(request_.count);
+    const DeviceBuffer<double2> sites = upload(stream);
+    times_.upload = watch.lap();
+    report(0.1);
+    DeviceOrder order(request_.count, stream);
+    switch (order.find(sites.data(), caller_)) {
+      case DeviceOrder::Found::order: break;
+      case DeviceOrder::Found::not_for_the_device: throw LeftOver();
+      case DeviceOrder::Found::stopped: throw Stopped();
+    }
+    times_.order = watch.lap();
+    report(0.2);
+    constexpr std::int32_t k_fewest = 3;
+    if (order.cell_count() < k_fewest) throw LeftOver();
+    DeviceDiagram diagram(order.cell_count(), stream);
+    {
+      CellFinder cells(order.cell_count(), stream);
+      cells.find(order, request_.device, times_);
+      times_.find = watch.lap();
+      report(0.6);
+      if (!diagram.number(cells.lists(), order.at(), order.original())) throw LeftOver();
+    }
+    times_.unite = watch.lap();
+    report(0.7);
+    PlaneTwinArrays to{};
+    if (!caller_.make_room(caller_.self, diagram.sizes(), &to)) throw Stopped();
+    watch.lap();
+    read(order.site_of(), to.site_of, count, stream);
+    read(order.cell_places(), to.cell_places, count, stream);
+    read(order.original(), to.cell_sites, static_cast<std::size_t>(order.cell_count()), stream);
+    diagram.read(to);
+    times_.download = watch.lap();
+  }
+
+ private:
+  DeviceBuffer<double2> upload(cudaStream_t stream) const {
+    const auto count = static_cast<std::size_t>(request_.count);
+    const PinnedRange pinned(request_.sites, count * sizeof(double2));
+    DeviceBuffer<double2> sites(count, stream);
+    check_cuda(cudaMemcpyAsync(sites.data(), request_.sites, count * sizeof(double2), cudaMemcpyHostToDevice, stream),
+               "copying to the device");
+    check_cuda(cudaStreamSynchronize(stream), "copying to the device");
+    return sites;
+  }
+  static void read(const std::int32_t* from, std::int32_t* to, std::size_t count, cudaStream_t stream) {
+    check_cuda(cudaMemcpyAsync(to, from, count * sizeof(std::int32_t), cudaMemcpyDeviceToHost, stream),
+               "copying the diagram");
+  }
+  void report(double fraction) const {
+    if (!caller_.keep_going(caller_.self, fraction)) throw Stopped();
+  }
+
+  const PlaneTwinRequest& request_;
+  const PlaneTwinCaller& caller_;
+  DeviceTimes& times_;
+};
+
+}  // namespace
+
+TwinStatus find_voronoi_on_device(const PlaneTwinRequest& request, const PlaneTwinCaller& caller, DeviceTimes& times,
+                                  TwinReason& reason) {
+  try {
+    Builder(request, caller, times).build();
+    return TwinStatus::done;
+  } catch (const Stopped&) {
+    return TwinStatus::stopped;
+  } catch (const LeftOver&) {
+    return TwinStatus::left;
+  } catch (const std::exception& failure) {
+    reason = failure.what();
+    return TwinStatus::failed;
+  }
+}
+
+}  // namespace saddleback

@@ -1,0 +1,44 @@
+#pragma once
+// What passes between the plane's diagrams and their twin on a CUDA device: plain data and calls back, since the two
+// belong to modules that are not linked with one another.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "saddleback/cuda_twins.h"
+
+namespace saddleback {
+
+/// Sites are the caller's and live through the call.
+struct PlaneTwinRequest {
+  int device = 0;                ///< the driver's number
+  std::uint64_t most_bytes = 0;  ///< of device memory; 0: what is free
+  const double* sites = nullptr;  ///< (count, 2)
+  std::int32_t count = 0;
+};
+
+struct PlaneTwinSizes {
+  std::int32_t cells, edges, vertices;
+};
+
+/// Where the diagram goes, as Voronoi2d has it.
+struct PlaneTwinArrays {
+  std::int32_t *site_of, *cell_places;            ///< by site
+  std::int32_t *cell_sites, *cell_offsets;        ///< by cell; offsets have one more
+  std::int32_t *corner_vertices, *side_edges;     ///< twice the edges
+  std::int32_t *edges, *edge_sites;               ///< two each
+  double* vertices;                               ///< two each
+};
+
+/// What the twin asks of its caller. No call throws.
+struct PlaneTwinCaller {
+  void* self = nullptr;
+  /// Tells the share done; false: stop.
+  bool (*keep_going)(void* self, double fraction) = nullptr;
+  /// Sorts the sites along the curve; `order` receives them, `places` where they lie. False: stop.
+  bool (*sort)(void* self, std::uint32_t* places, std::int32_t* order) = nullptr;
+  /// False: stop.
+  bool (*make_room)(void* self, const PlaneTwinSizes& sizes, PlaneTwinArrays* arrays) = nullptr;
+};
+
+}  // namespace saddleback

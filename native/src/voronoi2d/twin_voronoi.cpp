@@ -1,0 +1,104 @@
+#include "voronoi2d/twin_voronoi.h"
+
+#include <exception>
+
+#include "saddleback/cuda_twins.h"
+#include "saddleback/error.h"
+
+#include "voronoi2d/curve_order.h"
+#include "voronoi2d/plane_twin.h"
+
+namespace saddleback::voronoi2d {
+namespace {
+
+/// Answers the twin's calls. What they throw waits here until the twin has come back.
+class Caller {
+ public:
+  Caller(std::span<const Vec2> sites, const JobStage& stage) : sites_(sites), stage_(stage) {}
+
+  PlaneTwinCaller calls() {
+    return {this,
+            [](void* self, double fraction) {
+              return static_cast<Caller*>(self)->guard([=](Caller& caller) { caller.stage_.update(fraction); });
+            },
+            [](void* self, std::uint32_t* places, std::int32_t* order) {
+              return static_cast<Caller*>(self)->guard([=](Caller& caller) { caller.sort(places, order); });
+            },
+            [](void* self, const PlaneTwinSizes& sizes, PlaneTwinArrays* arrays) {
+              return static_cast<Caller*>(self)->guard([&](Caller& caller) { *arrays = caller.make_room(sizes); });
+            }};
+  }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+  Voronoi2d take() { return std::move(result_); }
+
+ private:
+  template <class Work>
+  bool guard(Work&& work) {
+    try {
+      work(*this);
+      return true;
+    } catch (...) {
+      failure_ = std::current_exception();
+      return false;
+    }
+  }
+
+  void sort(std::uint32_t* places, std::int32_t* order) const {
+    const LargeArray<Placed> items = curve_order(sites_, stage_.part(0.1, 0.2));
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      places[i] = items[i].place;
+      order[i] = items[i].index;
+    }
+  }
+
+  PlaneTwinArrays make_room(const PlaneTwinSizes& sizes) {
+    const auto edges = static_cast<std::size_t>(sizes.edges), cells = static_cast<std::size_t>(sizes.cells);
+    result_.site_of.resize(sites_.size());
+    result_.cell_places.resize(sites_.size());
+    result_.cell_sites.resize(cells);
+    result_.cell_offsets.resize(cells + 1);
+    result_.corner_vertices.resize(2 * edges);
+    result_.side_edges.resize(2 * edges);
+    result_.edges.resize(edges);
+    result_.edge_sites.resize(edges);
+    result_.vertices.resize(static_cast<std::size_t>(sizes.vertices));
+    return {result_.site_of.data(),         result_.cell_places.data(),
+            result_.cell_sites.data(),      result_.cell_offsets.data(),
+            result_.corner_vertices.data(), result_.side_edges.data(),
+            result_.edges.data()->data(),   result_.edge_sites.data()->data(),
+            result_.vertices.data()->data()};
+  }
+
+  std::span<const Vec2> sites_;
+  const JobStage& stage_;
+  std::exception_ptr failure_;
+  Voronoi2d result_;
+};
+
+}  // namespace
+
+std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, const JobStage& stage) {
+  const CudaTwins* const twins = cuda_twins();
+  if (!twins) throw DeviceError("device: the CUDA module is not loaded");
+  PlaneTwinRequest request;
+  request.device = device;
+  request.most_bytes = cuda_memory_limit();
+  request.sites = sites.empty() ? nullptr : sites.front().data();
+  request.count = static_cast<std::int32_t>(sites.size());
+
+  Caller caller(sites, stage);
+  DeviceTimes times;
+  TwinReason reason;
+  const TwinStatus status = twins->find_voronoi(request, caller.calls(), times, reason);
+  caller.rethrow();
+  if (status == TwinStatus::left) return std::nullopt;
+  if (status != TwinStatus::done) throw DeviceError(message("device: ", reason.text));
+  Voronoi2d result = caller.take();
+  result.sites.assign(sites.begin(), sites.end());
+  result.device_times = times;
+  return result;
+}
+
+}  // namespace saddleback::voronoi2d

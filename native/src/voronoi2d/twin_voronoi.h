@@ -1,0 +1,14 @@
+#pragma once
+// The plane's diagram found by the twin on a CUDA device.
+
+#include <optional>
+
+#include "saddleback/voronoi_2d.h"
+
+namespace saddleback::voronoi2d {
+
+/// As voronoi_2d, to the bit; none where it takes the processor: few or scattered sites, all on one line or one circle,
+/// numbers that are too large. \throw DeviceError when the device cannot do it; Cancelled.
+std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, const JobStage& stage);
+
+}  // namespace saddleback::voronoi2d
