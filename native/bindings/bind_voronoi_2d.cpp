@@ -266,8 +266,11 @@ void bind_voronoi_2d(py::module_& m) {
           "Which device found the diagram: \"cpu\" or \"cuda\".")
       .def_property_readonly(
           "device_times",
-          [](const Diagram& d) { return d.result.device_times ? py::object(as_dict(*d.result.device_times)) : py::none(); },
-          "Seconds of the device's part by its own clock (upload, order, find, unite, download), and the numbers of sites "
+          [](const Diagram& d) {
+            return d.result.device_times ? py::object(as_dict(*d.result.device_times)) : py::none();
+          },
+          "Seconds of the device's part by its own clock (upload, order, find, unite, download), and the numbers of "
+          "sites "
           "that took a second pass or the processor; None when no device found it.")
       .def_readonly("clipped", &Diagram::clipped, "ClippedCells within the domain given to `voronoi_2d`, or None.")
       .def(

@@ -26,7 +26,7 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
       .def_readonly("usable", &CudaDevices::usable)
       .def_readonly("reason", &CudaDevices::reason);
   static const saddleback::CudaTwins twins{.find_arcs = &saddleback::find_arcs_on_device,
-                                          .find_voronoi = &saddleback::find_voronoi_on_device};
+                                           .find_voronoi = &saddleback::find_voronoi_on_device};
   module.attr("twins") = py::capsule(&twins);
   module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
 }

@@ -8,10 +8,9 @@
 // sites lie on a lattice, decides between the others. What cannot be decided here, or not among the tile's sites, is
 // left to `device_far_cells.cuh`.
 
+#include "predicates/plane_predicates.h"
 #include "voronoi2d/device_boxes.cuh"
 #include "voronoi2d/device_tiles.cuh"
-
-#include "predicates/plane_predicates.h"
 
 namespace saddleback::voronoi2d {
 namespace {
@@ -54,8 +53,8 @@ __device__ inline int circle_sign(double ax, double ay, double bx, double by, do
   const double bxcy = bx * cy, cxby = cx * by, cxay = cx * ay, axcy = ax * cy, axby = ax * by, bxay = bx * ay;
   const double a_lift = ax * ax + ay * ay, b_lift = bx * bx + by * by, c_lift = cx * cx + cy * cy;
   const double det = a_lift * (bxcy - cxby) + b_lift * (cxay - axcy) + c_lift * (axby - bxay);
-  const double magnitude = (fabs(bxcy) + fabs(cxby)) * a_lift + (fabs(cxay) + fabs(axcy)) * b_lift +
-                           (fabs(axby) + fabs(bxay)) * c_lift;
+  const double magnitude =
+      (fabs(bxcy) + fabs(cxby)) * a_lift + (fabs(cxay) + fabs(axcy)) * b_lift + (fabs(axby) + fabs(bxay)) * c_lift;
   is_known = is_exact || fabs(det) > predicates::detail::k_circle_bound * magnitude;
   return (det > 0) - (det < 0);
 }
@@ -92,13 +91,13 @@ class TileSites {
     return false;
   }
 
-  const TileMemory& memory() const { return memory_; }
-
-  TileMemory& memory_;
-  const DeviceTree& tree_;
-  DeviceBox box_{};
-  double grid_ = 1, inverse_grid_ = 1;
-  int width_ = 1, height_ = 1;
+  __device__ const TileMemory& memory() const { return memory_; }
+  __device__ const DeviceBox& box() const { return box_; }  ///< all sites in it are known
+  __device__ double grid_size() const { return grid_; }
+  __device__ int width() const { return width_; }
+  __device__ int height() const { return height_; }
+  __device__ int column(double x) const { return min(static_cast<int>((x - box_.low[0]) * inverse_grid_), width_ - 1); }
+  __device__ int row(double y) const { return min(static_cast<int>((y - box_.low[1]) * inverse_grid_), height_ - 1); }
 
  private:
   __device__ DeviceBox own_box() const {
@@ -165,9 +164,6 @@ class TileSites {
     return memory_.found_count <= k_seen_sites;
   }
 
-  __device__ int column(double x) const { return min(static_cast<int>((x - box_.low[0]) * inverse_grid_), width_ - 1); }
-  __device__ int row(double y) const { return min(static_cast<int>((y - box_.low[1]) * inverse_grid_), height_ - 1); }
-
   __device__ void sort_into_grid() {
     const int count = memory_.found_count;
     const double width = box_.high[0] - box_.low[0], height = box_.high[1] - box_.low[1];
@@ -217,12 +213,16 @@ class TileSites {
       const int to = atomicAdd(&memory_.grid_counts[memory_.cell[i]], 1);
       memory_.at[to] = tree_.sites[rank];
       memory_.rank[to] = rank;
-      if (rank >= begin_ && rank < end_)
-        memory_.own[atomicAdd(&memory_.own_count, 1)] = static_cast<std::uint16_t>(to);
+      if (rank >= begin_ && rank < end_) memory_.own[atomicAdd(&memory_.own_count, 1)] = static_cast<std::uint16_t>(to);
     }
     __syncthreads();
   }
 
+  TileMemory& memory_;
+  const DeviceTree& tree_;
+  DeviceBox box_{};
+  double grid_ = 1, inverse_grid_ = 1;
+  int width_ = 1, height_ = 1;
   std::int32_t begin_ = 0, end_ = 0;
 };
 
@@ -240,156 +240,195 @@ __device__ inline void write_list(const DeviceLists& lists, std::int32_t rank, i
   }
 }
 
+/// How far along the line of centres the circle through the site and n touches another site: surely between two bounds;
+/// infinite for a site to the right.
+struct Touch {
+  float low, high;
+  bool is_doubtful;  ///< neither surely left nor surely out of the way
+};
+
+/// A site seen from the one whose cell is wound, in single precision.
+struct Near {
+  float x, y, square, length;
+};
+__device__ inline Near near_of(double2 p, double2 site, double scale) {
+  Near result;
+  result.x = static_cast<float>((p.x - site.x) * scale);
+  result.y = static_cast<float>((p.y - site.y) * scale);
+  result.square = __fmaf_rn(result.x, result.x, result.y * result.y);
+  result.length = __fsqrt_rn(result.square);
+  return result;
+}
+
+__device__ inline Touch touch(const Near& n, const Near& p) {
+  constexpr float k_error = 6e-7f, k_side = 4e-6f, k_beside = 1e-5f;  // ten and more roundings
+  const float cross = __fmaf_rn(n.x, p.y, -n.y * p.x);
+  const float along = __fmaf_rn(-n.y, p.y, __fmaf_rn(-n.x, p.x, p.square));
+  const float lengths = p.length * n.length, side = k_side * lengths, sum = p.square + lengths;
+  const float inverse = __fdividef(1.0f, cross), t = along * inverse;
+  const float error = k_error * inverse * __fmaf_rn(lengths, fabsf(t), sum);
+  const bool is_left = cross > side;
+  return {is_left ? t - error : INFINITY, is_left ? t + error : INFINITY,
+          fabsf(cross) <= side && along <= k_beside * sum};  // on the way to n, or beside it
+}
+
 /// One warp's cell.
 class CellWinder {
  public:
-  __device__ CellWinder(const TileSites& tile) : tile_(tile), memory_(tile.memory_) {}
+  __device__ explicit CellWinder(const TileSites& tile) : tile_(tile), memory_(tile.memory()) {
+    scale_ = __longlong_as_double(static_cast<long long>(1023 - ilogb(tile.grid_size())) << 52);
+  }
 
   /// False when it takes other means.
   __device__ bool wind(int own, const DeviceLists& lists) {
-    site_ = memory_.at[own];
     own_ = own;
-    if (!load_candidates()) return false;
-    const int lane = threadIdx.x % 32;
-    int neighbour = 0, count = 0;
-    const int first = nearest();
-    if (first < 0) return false;
-    for (int at = first; ;) {
-      if (lane == count) neighbour = memory_.rank[at];
-      if (++count > k_slots) return false;
-      at = next_after(at);
-      if (at < 0) return false;
-      if (at == first) break;
-    }
-    const unsigned mine = lane < count ? static_cast<unsigned>(neighbour) : ~0u;
-    const unsigned lowest = __reduce_min_sync(k_warp, mine);
-    const int begin = __ffs(static_cast<int>(__ballot_sync(k_warp, mine == lowest))) - 1;
-    write_list(lists, memory_.rank[own], neighbour, count, false, begin);
-    return true;
+    site_ = memory_.at[own];
+    return wind_among<false>(lists) || wind_among<true>(lists);
   }
 
  private:
   static constexpr int k_each = 2, k_reach = 2;
 
-  __device__ bool load_candidates() {
+  template <bool All>
+  __device__ bool wind_among(const DeviceLists& lists) {
+    if (All) {
+      const DeviceBox& box = tile_.box();
+      set_reach(box.low[0], box.high[0], box.low[1], box.high[1]);
+    } else if (!load_candidates()) {
+      return false;
+    }
     const int lane = threadIdx.x % 32;
-    const int column = min(static_cast<int>((site_.x - tile_.box_.low[0]) * tile_.inverse_grid_), tile_.width_ - 1);
-    const int row = min(static_cast<int>((site_.y - tile_.box_.low[1]) * tile_.inverse_grid_), tile_.height_ - 1);
-    const int left = max(column - k_reach, 0), right = min(column + k_reach, tile_.width_ - 1);
-    const int bottom = max(row - k_reach, 0), top = min(row + k_reach, tile_.height_ - 1);
+    const int first = nearest<All>();
+    if (first < 0) return false;
+    int neighbour = 0, count = 0;
+    Near mine{};
+    for (int at = first;;) {
+      if (lane == count) neighbour = memory_.rank[at], mine = n_;
+      if (++count > k_slots) return false;
+      at = next_after<All>(at);
+      if (at < 0) return false;
+      if (at == first) break;
+    }
+    if (!are_covered(mine, count)) return false;
+    const unsigned key = lane < count ? static_cast<unsigned>(neighbour) : ~0u;
+    const unsigned lowest = __reduce_min_sync(k_warp, key);
+    const int begin = __ffs(static_cast<int>(__ballot_sync(k_warp, key == lowest))) - 1;
+    write_list(lists, memory_.rank[own_], neighbour, count, false, begin);
+    return true;
+  }
+
+  __device__ void set_reach(double left, double right, double bottom, double top) {
+    to_left_ = static_cast<float>((site_.x - left) * scale_);
+    to_right_ = static_cast<float>((right - site_.x) * scale_);
+    to_bottom_ = static_cast<float>((site_.y - bottom) * scale_);
+    to_top_ = static_cast<float>((top - site_.y) * scale_);
+  }
+
+  /// The sites of five rows and columns of the grid, two a lane.
+  __device__ bool load_candidates() {
+    const int lane = threadIdx.x % 32, width = tile_.width();
+    const int column = tile_.column(site_.x), row = tile_.row(site_.y);
+    const int left = max(column - k_reach, 0), right = min(column + k_reach, width - 1);
+    const int bottom = max(row - k_reach, 0), top = min(row + k_reach, tile_.height() - 1);
     int begin = 0, length = 0;
     if (lane <= top - bottom) {
-      const int base = (bottom + lane) * tile_.width_;
+      const int base = (bottom + lane) * width;
       begin = memory_.begins[base + left];
       length = memory_.begins[base + right + 1] - begin;
     }
-    int index[k_each];
-    for (int j = 0; j < k_each; ++j) index[j] = -1;
+    for (int j = 0; j < k_each; ++j) at_[j] = -1;
     int total = 0;
     for (int r = 0; r <= 2 * k_reach; ++r) {
       const int row_begin = __shfl_sync(k_warp, begin, r), row_length = __shfl_sync(k_warp, length, r);
       for (int j = 0; j < k_each; ++j) {
         const int k = lane + 32 * j - total;
-        if (k >= 0 && k < row_length) index[j] = row_begin + k;
+        if (k >= 0 && k < row_length) at_[j] = row_begin + k;
       }
       total += row_length;
     }
     if (total > 32 * k_each) return false;
-
-    const double scale = __longlong_as_double(static_cast<long long>(1023 - ilogb(tile_.grid_)) << 52);
-    const auto reach = [&](double distance) { return static_cast<float>(distance * scale); };
-    const double grid = tile_.grid_;
-    to_left_ = reach(site_.x - (tile_.box_.low[0] + left * grid));
-    to_right_ = reach(fmin(tile_.box_.high[0], tile_.box_.low[0] + (right + 1) * grid) - site_.x);
-    to_bottom_ = reach(site_.y - (tile_.box_.low[1] + bottom * grid));
-    to_top_ = reach(fmin(tile_.box_.high[1], tile_.box_.low[1] + (top + 1) * grid) - site_.y);
+    const DeviceBox& box = tile_.box();
+    const double grid = tile_.grid_size();
+    set_reach(box.low[0] + left * grid, fmin(box.high[0], box.low[0] + (right + 1) * grid), box.low[1] + bottom * grid,
+              fmin(box.high[1], box.low[1] + (top + 1) * grid));
     for (int j = 0; j < k_each; ++j) {
-      at_[j] = index[j] == own_ ? -1 : index[j];
-      x_[j] = y_[j] = length_[j] = 0;
-      square_[j] = INFINITY;
-      if (at_[j] < 0) continue;
-      const double2 p = memory_.at[at_[j]];
-      x_[j] = static_cast<float>((p.x - site_.x) * scale);
-      y_[j] = static_cast<float>((p.y - site_.y) * scale);
-      square_[j] = x_[j] * x_[j] + y_[j] * y_[j];
-      length_[j] = sqrtf(square_[j]);
+      if (at_[j] == own_) at_[j] = -1;
+      near_[j] = {0, 0, INFINITY, 0};
+      if (at_[j] >= 0) near_[j] = near_of(memory_.at[at_[j]], site_, scale_);
     }
     return true;
   }
 
-  /// The candidate that lane `lane` holds as its j-th.
-  __device__ void show(int lane, int j, float& x, float& y, float& length, int& at) const {
-    x = __shfl_sync(k_warp, j ? x_[1] : x_[0], lane);
-    y = __shfl_sync(k_warp, j ? y_[1] : y_[0], lane);
-    length = __shfl_sync(k_warp, j ? length_[1] : length_[0], lane);
-    at = __shfl_sync(k_warp, j ? at_[1] : at_[0], lane);
+  /// Calls work(site in the tile, how it is seen) for the lane's share.
+  template <bool All, class Work>
+  __device__ void for_candidates(Work&& work) const {
+    if (All) {
+      for (int at = static_cast<int>(threadIdx.x % 32); at < memory_.found_count; at += 32)
+        if (at != own_) work(at, near_of(memory_.at[at], site_, scale_));
+    } else {
+      for (int j = 0; j < k_each; ++j) work(at_[j], near_[j]);
+    }
   }
 
-  /// The nearest site; of about equally near ones any, since each has a side of the cell unless they are side by side.
+  /// The nearest site, to n; of about equally near ones any, since each has a side of the cell unless they are side by
+  /// side.
+  template <bool All>
   __device__ int nearest() {
     constexpr float k_smallest = 1e-12f;
-    const float mine = fminf(square_[0], square_[1]);
-    const float least = __uint_as_float(__reduce_min_sync(k_warp, __float_as_uint(mine)));
+    int mine_at = -1;
+    Near mine{0, 0, INFINITY, 0};
+    for_candidates<All>([&](int at, const Near& p) {
+      if (p.square < mine.square) mine = p, mine_at = at;
+    });
+    const float least = __uint_as_float(__reduce_min_sync(k_warp, __float_as_uint(mine.square)));
     if (!(least > k_smallest && least < INFINITY)) return -1;
-    const int lane = __ffs(static_cast<int>(__ballot_sync(k_warp, mine == least))) - 1;
-    const int j = __shfl_sync(k_warp, static_cast<int>(square_[0] != mine), lane);
-    int at;
-    show(lane, j, n_x_, n_y_, n_length_, at);
+    const int chosen = take(mine_at, mine, __ballot_sync(k_warp, mine.square == least));
     bool is_rivalled = false;
-    for (int k = 0; k < k_each; ++k)
-      is_rivalled |= square_[k] <= least * 1.00001f && at_[k] != at && x_[k] * n_x_ + y_[k] * n_y_ > 0.99f * least;
-    return __any_sync(k_warp, is_rivalled) ? -1 : at;
+    for_candidates<All>([&](int at, const Near& p) {
+      is_rivalled |= p.square <= least * 1.00001f && at != chosen && p.x * n_.x + p.y * n_.y > 0.99f * least;
+    });
+    return __any_sync(k_warp, is_rivalled) ? -1 : chosen;
   }
 
-  /// The neighbour after n, counter-clockwise; -1 when it cannot be told. Moves n there.
+  /// To n what the first of some lanes has.
+  __device__ int take(int at, const Near& near, unsigned lanes) {
+    const int lane = __ffs(static_cast<int>(lanes)) - 1;
+    n_ = {__shfl_sync(k_warp, near.x, lane), __shfl_sync(k_warp, near.y, lane), __shfl_sync(k_warp, near.square, lane),
+          __shfl_sync(k_warp, near.length, lane)};
+    return __shfl_sync(k_warp, at, lane);
+  }
+
+  /// The neighbour after n, counter-clockwise, to n; -1 when it cannot be told.
+  template <bool All>
   __device__ int next_after(int n) {
-    constexpr float k_error = 6e-7f, k_side = 4e-6f;  // ten and more roundings
-    float low[k_each], high[k_each];
+    int mine_at = -1;
+    Near mine{};
+    float low = INFINITY, high = INFINITY, other_low = INFINITY;  // of the lane's first, and of its others
     bool is_doubtful = false;
-    for (int j = 0; j < k_each; ++j) {
-      const float cross = n_x_ * y_[j] - n_y_ * x_[j];
-      const float along = square_[j] - (n_x_ * x_[j] + n_y_ * y_[j]);
-      const float lengths = length_[j] * n_length_;
-      low[j] = high[j] = INFINITY;
-      if (cross > k_side * lengths) {
-        const float inverse = __fdividef(1.0f, cross), t = along * inverse;
-        const float error = k_error * length_[j] * inverse * (length_[j] + n_length_ * (1 + fabsf(t)));
-        low[j] = t - error;
-        high[j] = t + error;
-      } else if (cross >= -k_side * lengths && at_[j] >= 0 && at_[j] != n) {
-        is_doubtful |= along <= 1e-5f * length_[j] * (length_[j] + n_length_);  // on the way to n, or beside it
-      }
-    }
-    if (__any_sync(k_warp, is_doubtful)) return -1;
-    const unsigned least = __reduce_min_sync(k_warp, ordered(fminf(high[0], high[1])));
-    const float bound = disordered(least);
+    for_candidates<All>([&](int at, const Near& p) {
+      const Touch found = touch(n_, p);
+      is_doubtful |= found.is_doubtful && at != n && at >= 0;
+      const bool is_first = found.high < high;
+      other_low = fminf(other_low, is_first ? low : found.low);
+      if (is_first) mine = p, mine_at = at, low = found.low, high = found.high;
+    });
+    const float bound = disordered(__reduce_min_sync(k_warp, ordered(high)));
+    const unsigned near = __ballot_sync(k_warp, low <= bound);
+    const unsigned troubles = __ballot_sync(k_warp, is_doubtful || other_low <= bound);
     if (!(bound < INFINITY)) return -1;
-    const unsigned near[k_each] = {__ballot_sync(k_warp, low[0] <= bound), __ballot_sync(k_warp, low[1] <= bound)};
-    int winner;
-    if (__popc(near[0]) + __popc(near[1]) == 1) {
-      const int j = near[0] == 0;
-      show(__ffs(static_cast<int>(near[j])) - 1, j, w_x_, w_y_, w_length_, winner);
-    } else {
-      winner = decide(n, near);
-      if (winner < 0) return -1;
-    }
-    if (!is_covered()) return -1;
-    n_x_ = w_x_;
-    n_y_ = w_y_;
-    n_length_ = w_length_;
-    return winner;
+    if (__popc(near) == 1 && troubles == 0) return take(mine_at, mine, near);
+    if (All || __any_sync(k_warp, is_doubtful)) return -1;
+    return decide(n, bound);
   }
 
   /// The first of several that the circle touches, or the last around of those that it touches at once.
-  __device__ int decide(int n, const unsigned (&near)[2]) {
+  __device__ int decide(int n, float bound) {
     int best = -1;
     double best_x = 0, best_y = 0;
     const double n_x = memory_.at[n].x - site_.x, n_y = memory_.at[n].y - site_.y;
     for (int j = 0; j < k_each; ++j) {
-      for (unsigned left = near[j]; left; left &= left - 1) {
-        float x, y, length;
-        int at;
-        show(__ffs(static_cast<int>(left)) - 1, j, x, y, length, at);
+      for (unsigned left = __ballot_sync(k_warp, touch(n_, near_[j]).low <= bound); left; left &= left - 1) {
+        const int at = __shfl_sync(k_warp, at_[j], __ffs(static_cast<int>(left)) - 1);
         const double dx = memory_.at[at].x - site_.x, dy = memory_.at[at].y - site_.y;
         bool is_better = best < 0;
         if (best >= 0) {
@@ -403,32 +442,35 @@ class CellWinder {
             is_better = cross > 0;
           }
         }
-        if (!is_better) continue;
-        best = at, best_x = dx, best_y = dy;
-        w_x_ = x, w_y_ = y, w_length_ = length;
+        if (is_better) best = at, best_x = dx, best_y = dy;
       }
     }
+    n_ = near_of(memory_.at[best], site_, scale_);
     return best;
   }
 
-  /// Whether all sites in the circle through the site, n and w are candidates.
-  __device__ bool is_covered() const {
-    const float cross = n_x_ * w_y_ - n_y_ * w_x_;
-    if (cross < 1e-3f * n_length_ * w_length_) return false;
-    const float n2 = n_length_ * n_length_, w2 = w_length_ * w_length_, half = __fdividef(0.5f, cross);
-    const float x = (w_y_ * n2 - n_y_ * w2) * half, y = (n_x_ * w2 - w_x_ * n2) * half;
-    const float radius = 1.003f * sqrtf(x * x + y * y);
-    return x - radius >= -to_left_ && x + radius <= to_right_ && y - radius >= -to_bottom_ && y + radius <= to_top_;
+  /// Whether all sites in the circles through the site, a lane's neighbour and the next lane's were seen.
+  __device__ bool are_covered(const Near& a, int count) const {
+    const int lane = threadIdx.x % 32, next = lane + 1 < count ? lane + 1 : 0;
+    const float b_x = __shfl_sync(k_warp, a.x, next), b_y = __shfl_sync(k_warp, a.y, next),
+                b_square = __shfl_sync(k_warp, a.square, next), b_length = __shfl_sync(k_warp, a.length, next);
+    const float cross = a.x * b_y - a.y * b_x, half = __fdividef(0.5f, cross);
+    const float x = (b_y * a.square - a.y * b_square) * half, y = (a.x * b_square - b_x * a.square) * half;
+    constexpr float k_flat = 1e-3f, k_larger = 1.003f;
+    const float radius = k_larger * sqrtf(x * x + y * y);
+    const bool is_covered = cross > k_flat * a.length * b_length && x - radius >= -to_left_ &&
+                            x + radius <= to_right_ && y - radius >= -to_bottom_ && y + radius <= to_top_;
+    return __all_sync(k_warp, is_covered || lane >= count);
   }
 
   const TileSites& tile_;
   const TileMemory& memory_;
+  double scale_ = 1;  ///< a power of two that makes the grid's size about 1
   double2 site_{};
   int own_ = 0;
   float to_left_ = 0, to_right_ = 0, to_bottom_ = 0, to_top_ = 0;
-  float x_[k_each], y_[k_each], square_[k_each], length_[k_each];
+  Near near_[k_each], n_{};
   int at_[k_each];
-  float n_x_ = 0, n_y_ = 0, n_length_ = 0, w_x_ = 0, w_y_ = 0, w_length_ = 0;
 };
 
 __global__ void __launch_bounds__(k_tile_threads)

@@ -8,7 +8,8 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-/// The sign of the circle test for d, a, b, c, exactly. Unknown where a difference from d has more digits than a double.
+/// The sign of the circle test for d, a, b, c, exactly. Unknown where a difference from d has more digits than a
+/// double.
 __device__ __noinline__ int exact_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
                                               bool& is_known) {
   using namespace predicates;
@@ -44,7 +45,6 @@ class FarWinder {
 
   __device__ bool wind(std::int32_t rank, const DeviceLists& lists) {
     rank_ = rank;
-    visits_ = 0;
     fails_ = false;
     site_ = point(rank);
     const std::int32_t first = nearest();
@@ -76,7 +76,7 @@ class FarWinder {
   }
 
  private:
-  static constexpr int k_most_visits = 3000;
+  static constexpr int k_most_visits = 20000;  ///< of boxes for one neighbour
 
   __device__ Point2 point(std::int32_t rank) const {
     const double2 p = tree_.sites[rank];
@@ -88,7 +88,7 @@ class FarWinder {
   template <class MayHold, class Visit>
   __device__ void for_boxes(MayHold&& may_hold, Visit&& visit) {
     const int lane = threadIdx.x % 32;
-    int level = tree_.levels - 1;
+    int level = tree_.levels - 1, visits = 0;
     if (lane == 0) memory_.open[level] = k_warp, memory_.node[level] = 0;
     __syncwarp();
     while (level < tree_.levels) {
@@ -117,7 +117,7 @@ class FarWinder {
         --level;
         if (lane == 0) memory_.open[level] = k_warp, memory_.node[level] = next;
       } else {
-        if (++visits_ > k_most_visits) fails_ = true;
+        if (++visits > k_most_visits) fails_ = true;
         const std::int32_t site = next * 32 + lane;
         visit(site < tree_.site_count && site != rank_ ? site : -1);
       }
@@ -198,16 +198,22 @@ class FarWinder {
       const double x = p.x - site_.x, y = p.y - site_.y, cross = n_x * y - n_y * x;
       const double n2 = n_x * n_x + n_y * n_y, p2 = x * x + y * y;
       radius2 = INFINITY;
-      if (fabs(cross) < 1e-9 * sqrt(n2 * p2)) return;  // too flat for the circle's place to be known
       centre_x = (y * n2 - n_y * p2) / (2 * cross);
       centre_y = (n_x * p2 - x * n2) / (2 * cross);
-      radius2 = (centre_x * centre_x + centre_y * centre_y) * (1 + 1e-4);
+      const double radius = sqrt(centre_x * centre_x + centre_y * centre_y);
+      constexpr double k_rounding = 2e-15;
+      const double slack =
+          k_rounding *
+          (((fabs(x) + fabs(y)) * n2 + (fabs(n_x) + fabs(n_y)) * p2 + 2 * radius * (fabs(n_x * y) + fabs(n_y * x))) /
+               fabs(cross) +
+           4 * radius);
+      if (slack < 0.1 * radius) radius2 = (radius + slack) * (radius + slack);  // or the circle's place is not known
     };
     const auto may_hold = [&](const DeviceBox& box, double) {
       const double low_x = box.low[0] - site_.x, low_y = box.low[1] - site_.y, high_x = box.high[0] - site_.x,
                    high_y = box.high[1] - site_.y, t_x = turn_ * n_x, t_y = turn_ * n_y;
       const double across = fmax(t_x * low_y, t_x * high_y), along = fmin(t_y * low_x, t_y * high_x);
-      if (across - along < -1e-14 * (fabs(across) + fabs(along))) return false;  // right of the line through n
+      if (across - along <= -1e-14 * (fabs(across) + fabs(along))) return false;  // right of the line through n
       if (radius2 == INFINITY) return true;
       const double dx = fmax(fmax(low_x - centre_x, centre_x - high_x), 0.0),
                    dy = fmax(fmax(low_y - centre_y, centre_y - high_y), 0.0);
@@ -251,7 +257,7 @@ class FarWinder {
   FarMemory& memory_;
   Point2 site_{};
   std::int32_t rank_ = 0;
-  int turn_ = 1, visits_ = 0;
+  int turn_ = 1;
   bool fails_ = false;
 };
 

@@ -194,8 +194,8 @@ class DeviceDiagram {
     edge_sites_ = DeviceBuffer<int2>(static_cast<std::size_t>(edges_), stream_);
     vertex_places_ = DeviceBuffer<double2>(static_cast<std::size_t>(vertices_), stream_);
     const DeviceCells cells{count_, at, original, offsets_.data(), neighbours.data(), lists.is_open};
-    const DeviceNumbers numbers{next_corners.data(),   corner_vertices_.data(), side_edges_.data(),
-                                edge_vertices_.data(), edge_sites_.data(),      vertex_places_.data(), misfits.data()};
+    const DeviceNumbers numbers{next_corners.data(), corner_vertices_.data(), side_edges_.data(), edge_vertices_.data(),
+                                edge_sites_.data(),  vertex_places_.data(),   misfits.data()};
     join_sides<<<blocks_for(count_), k_threads, 0, stream_>>>(cells, before.data(), numbers);
     check_cuda(cudaGetLastError(), "joining cells");
     int misfit_count = 0;

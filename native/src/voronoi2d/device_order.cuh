@@ -14,7 +14,9 @@ namespace {
 constexpr int k_threads = 256;
 inline unsigned blocks_for(std::int64_t count) { return static_cast<unsigned>((count + k_threads - 1) / k_threads); }
 
-__device__ inline std::int32_t thread_number() { return static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); }
+__device__ inline std::int32_t thread_number() {
+  return static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
+}
 
 /// Calls cub's function(scratch, bytes) twice: for the size of its memory, and to work.
 template <class Function>
@@ -213,9 +215,9 @@ class DeviceOrder {
     find_equals<<<blocks_for(count_), k_threads, 0, stream_>>>(count_, order.data(), firsts.data(), original_.data(),
                                                                site_of_.data(), cell_places_.data());
     check_cuda(cudaGetLastError(), "finding equal sites");
-    check_cuda(cudaMemcpyAsync(&cell_count_, firsts.data() + count_ - 1, sizeof cell_count_, cudaMemcpyDeviceToHost,
-                               stream_),
-               "counting sites");
+    check_cuda(
+        cudaMemcpyAsync(&cell_count_, firsts.data() + count_ - 1, sizeof cell_count_, cudaMemcpyDeviceToHost, stream_),
+        "counting sites");
     check_cuda(cudaStreamSynchronize(stream_), "counting sites");
     return Found::order;
   }

@@ -1,13 +1,12 @@
 // Voronoi diagrams of the plane on a CUDA device: order, cells by tiles, cells that these could not tell, numbers. The
 // answer is the processor's, to the bit.
 
-#include "voronoi2d/device_voronoi.h"
-
 #include <vector>
 
 #include "support/device_stream.h"
 #include "voronoi2d/device_far_cells.cuh"
 #include "voronoi2d/device_numbering.cuh"
+#include "voronoi2d/device_voronoi.h"
 
 namespace saddleback {
 namespace {
@@ -108,9 +107,12 @@ class Builder {
     report(0.1);
     DeviceOrder order(request_.count, stream);
     switch (order.find(sites.data(), caller_)) {
-      case DeviceOrder::Found::order: break;
-      case DeviceOrder::Found::not_for_the_device: throw LeftOver();
-      case DeviceOrder::Found::stopped: throw Stopped();
+      case DeviceOrder::Found::order:
+        break;
+      case DeviceOrder::Found::not_for_the_device:
+        throw LeftOver();
+      case DeviceOrder::Found::stopped:
+        throw Stopped();
     }
     times_.order = watch.lap();
     report(0.2);

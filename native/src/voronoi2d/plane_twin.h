@@ -11,8 +11,8 @@ namespace saddleback {
 
 /// Sites are the caller's and live through the call.
 struct PlaneTwinRequest {
-  int device = 0;                ///< the driver's number
-  std::uint64_t most_bytes = 0;  ///< of device memory; 0: what is free
+  int device = 0;                 ///< the driver's number
+  std::uint64_t most_bytes = 0;   ///< of device memory; 0: what is free
   const double* sites = nullptr;  ///< (count, 2)
   std::int32_t count = 0;
 };
@@ -23,11 +23,11 @@ struct PlaneTwinSizes {
 
 /// Where the diagram goes, as Voronoi2d has it.
 struct PlaneTwinArrays {
-  std::int32_t *site_of, *cell_places;            ///< by site
-  std::int32_t *cell_sites, *cell_offsets;        ///< by cell; offsets have one more
-  std::int32_t *corner_vertices, *side_edges;     ///< twice the edges
-  std::int32_t *edges, *edge_sites;               ///< two each
-  double* vertices;                               ///< two each
+  std::int32_t *site_of, *cell_places;         ///< by site
+  std::int32_t *cell_sites, *cell_offsets;     ///< by cell; offsets have one more
+  std::int32_t *corner_vertices, *side_edges;  ///< twice the edges
+  std::int32_t *edges, *edge_sites;            ///< two each
+  double* vertices;                            ///< two each
 };
 
 /// What the twin asks of its caller. No call throws.

@@ -64,11 +64,9 @@ class Caller {
     result_.edges.resize(edges);
     result_.edge_sites.resize(edges);
     result_.vertices.resize(static_cast<std::size_t>(sizes.vertices));
-    return {result_.site_of.data(),         result_.cell_places.data(),
-            result_.cell_sites.data(),      result_.cell_offsets.data(),
-            result_.corner_vertices.data(), result_.side_edges.data(),
-            result_.edges.data()->data(),   result_.edge_sites.data()->data(),
-            result_.vertices.data()->data()};
+    return {result_.site_of.data(),       result_.cell_places.data(),        result_.cell_sites.data(),
+            result_.cell_offsets.data(),  result_.corner_vertices.data(),    result_.side_edges.data(),
+            result_.edges.data()->data(), result_.edge_sites.data()->data(), result_.vertices.data()->data()};
   }
 
   std::span<const Vec2> sites_;

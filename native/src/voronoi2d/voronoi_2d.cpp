@@ -56,7 +56,10 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
   constexpr std::size_t k_fewest = 3;
   if (options.cuda_device >= 0 && sites.size() >= k_fewest) {
     std::optional<Voronoi2d> found = twin_voronoi(sites, options.cuda_device, stage);
-    if (found) return std::move(*found);
+    if (found) {
+      stage.update(1);
+      return std::move(*found);
+    }
   }
   OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
   Cells cells;

@@ -1,0 +1,102 @@
+"""Voronoi diagrams of the plane that a CUDA device finds are the processor's, to the bit."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests.native import plane_sites
+
+ARRAYS = ("sites", "site_of", "vertices", "edges", "edge_sites", "edge_directions", "delaunay", "areas", "centroids")
+SIZES = (1, 2, 3, 4, 5, 7, 12, 40, 300, 3000, 30000)
+
+
+def make(kind: str, n: int, seed: int) -> np.ndarray:
+    return plane_sites.KINDS[kind](n, np.random.default_rng(seed))
+
+
+def expect_twins(sites: np.ndarray) -> sb.Voronoi2d:
+    twin, own = sb.voronoi_2d(sites, device="cuda"), sb.voronoi_2d(sites, device="cpu")
+    for name in ARRAYS:
+        assert getattr(twin, name).tobytes() == getattr(own, name).tobytes(), name
+    for mine, other in zip(twin.cells, own.cells, strict=True):
+        assert mine.tobytes() == other.tobytes()
+    return twin
+
+
+@pytest.mark.parametrize("n", SIZES)
+@pytest.mark.parametrize("kind", plane_sites.KINDS)
+def test_the_same_diagram(kind: str, n: int) -> None:
+    expect_twins(make(kind, n, seed=n))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_same_diagram_of_few_integers(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    expect_twins(rng.integers(-4, 5, (int(rng.integers(3, 200)), 2)).astype(float))
+
+
+@pytest.mark.parametrize("kind", ["uniform", "clusters", "grid", "duplicates"])
+def test_the_device_itself_finds_large_ones(kind: str) -> None:
+    twin = expect_twins(make(kind, 300_000, seed=7))
+    assert twin.device == "cuda"
+    times = twin.device_times
+    assert times is not None and times["find"] > 0 and times["by_processor"] == 0
+
+
+@pytest.mark.parametrize("scale", [1e-60, 1e60, 1e-80])
+def test_any_scale(scale: float) -> None:
+    expect_twins(scale * make("uniform", 5000, seed=3))
+
+
+def test_far_from_the_origin() -> None:
+    expect_twins(1e6 + make("uniform", 50_000, seed=4))
+
+
+def test_a_cluster_within_a_cluster() -> None:
+    rng = np.random.default_rng(5)
+    expect_twins(np.concatenate([rng.random((20_000, 2)), 0.5 + 1e-9 * rng.random((20_000, 2)), [[0.5, 0.5]]]))
+
+
+@pytest.mark.parametrize("sites", [[[0, 0], [1, np.nan], [2, 1]], [[0, 0], [np.inf, 1], [2, 2], [3, 1]]])
+def test_what_the_processor_refuses_is_refused_in_the_same_words(sites: list[list[float]]) -> None:
+    with pytest.raises(sb.InputError) as own:
+        sb.voronoi_2d(sites, device="cpu")
+    with pytest.raises(sb.InputError) as twin:
+        sb.voronoi_2d(sites, device="cuda")
+    assert str(own.value) == str(twin.value)
+
+
+def test_too_little_memory_is_told_before_anything_runs() -> None:
+    sites = make("uniform", 100_000, seed=1)
+    sb.limit_device_memory(1 << 20)
+    try:
+        with pytest.raises(sb.DeviceError, match=r"the diagram needs about \d+ MB of the device's memory, and 1 MB"):
+            sb.voronoi_2d(sites, device="cuda")
+        assert sb.voronoi_2d(sites, device="auto").device == "cpu"
+    finally:
+        sb.limit_device_memory(0)
+
+
+def test_cancelled_within_a_moment() -> None:
+    sites = make("uniform", 5_000_000, seed=2)
+    sb.voronoi_2d(sites[:100_000], device="cuda")  # the device is awake
+    job = sb.Job()
+    asked = [0.0]
+
+    def stop() -> None:
+        time.sleep(0.05)
+        asked[0] = time.perf_counter()
+        job.cancel()
+
+    thread = threading.Thread(target=stop)
+    thread.start()
+    with pytest.raises(sb.Cancelled):
+        while True:
+            sb.voronoi_2d(sites, device="cuda", job=job)
+    assert time.perf_counter() - asked[0] < 0.15
+    thread.join()
