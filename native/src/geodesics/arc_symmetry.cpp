@@ -25,6 +25,15 @@ class MissingArc {
   std::uint64_t word_;
 };
 
+/// The arcs found out of a node.
+struct Row {
+  const std::uint64_t* words;
+  std::int64_t first;  ///< number of arcs of the nodes before it
+};
+// Arcs whose rows are asked for ahead, and rows whose words are.
+constexpr int k_row_ahead = 12, k_words_ahead = 6;
+static_assert(k_row_ahead <= k_row_padding);
+
 class Union {
  public:
   Union(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found, Index block_size)
@@ -33,48 +42,55 @@ class Union {
         kernel_(kernel),
         found_(found),
         block_size_(block_size),
-        missing_(found.size()),
-        paired_(found.size()) {
+        missing_(found.size()) {
     const FoundArcs& last = found.back();
     node_count_ = last.first_node + static_cast<Index>(last.counts.size());
-    starts_.resize(node_count_ + 1);
+    rows_.reserve(node_count_ + 1);
+    std::int64_t first = 0;
     for (const FoundArcs& block : found) {
-      Index begin = 0;
-      for (std::size_t i = 0; i < block.counts.size(); ++i) {
-        starts_[block.first_node + static_cast<Index>(i)] = begin;
-        begin += block.counts[i];
+      const std::uint64_t* words = block.words.data();
+      for (const std::int32_t count : block.counts) {
+        rows_.push_back({words, first});
+        words += count;
+        first += count;
       }
-      paired_[block.first_node / block_size_].resize(block.words.size());
     }
+    rows_.push_back({nullptr, first});
+    paired_.resize(first);
   }
 
   /// Looks for the reverses of arcs to later nodes; where one of the two is longer, it is marked to be replaced, and
   /// where there is none, to be added. Writes nothing but marks of arcs that no other block marks.
   void pair_with_later(Index block_index) {
     const FoundArcs& block = found_[block_index];
+    const std::uint64_t* const words = block.words.data();
     std::int64_t i = 0;
     for (std::size_t row = 0; row < block.counts.size(); ++row) {
       const Index node = block.first_node + static_cast<Index>(row);
       for (const std::int64_t end = i + block.counts[row]; i < end; ++i) {
-        const std::uint64_t word = block.words[i];
+        __builtin_prefetch(&rows_[codec_.target(words[i + k_row_ahead])]);
+        __builtin_prefetch(rows_[codec_.target(words[i + k_words_ahead])].words);
+        const std::uint64_t word = words[i];
         const Index target = codec_.target(word);
         if (target < node) continue;
-        const Place reverse = find(target, node);
-        if (reverse.arc < 0) {
+        const Row& there = rows_[target];
+        const int at =
+            kernel_.find_target(there.words, count_of(target), static_cast<std::uint32_t>(codec_.target_mask()),
+                                static_cast<std::uint32_t>(node));
+        if (at < 0) {
           missing_[block_index].push_back(
               {target, MissingArc::Kind::added, packing_.reversed(node, block.back_sectors[i], word)});
           continue;
         }
-        paired_[reverse.block][reverse.arc] = 1;
-        const FoundArcs& other = found_[reverse.block];
-        const std::uint64_t back = other.words[reverse.arc];
+        paired_[there.first + at] = 1;
+        const std::uint64_t back = there.words[at];
         // The shorter one replaces its reverse: then that leaves in another direction.
         if (codec_.length_bits(word) < codec_.length_bits(back))
           missing_[block_index].push_back(
               {target, MissingArc::Kind::replaces, packing_.reversed(node, block.back_sectors[i], word)});
         if (codec_.length_bits(back) < codec_.length_bits(word))
           missing_[block_index].push_back(
-              {node, MissingArc::Kind::replaces, packing_.reversed(target, other.back_sectors[reverse.arc], back)});
+              {node, MissingArc::Kind::replaces, packing_.reversed(target, back_sector(target, at), back)});
       }
     }
   }
@@ -82,12 +98,14 @@ class Union {
   /// Arcs to earlier nodes that no reverse was paired with have none. To be called when all blocks are paired.
   void add_unpaired(Index block_index) {
     const FoundArcs& block = found_[block_index];
+    const std::uint8_t* const paired = paired_.data() + rows_[block.first_node].first;
     std::int64_t i = 0;
     for (std::size_t row = 0; row < block.counts.size(); ++row) {
       const Index node = block.first_node + static_cast<Index>(row);
       for (const std::int64_t end = i + block.counts[row]; i < end; ++i) {
+        if (paired[i]) continue;
         const Index target = codec_.target(block.words[i]);
-        if (target > node || paired_[block_index][i]) continue;
+        if (target > node) continue;
         missing_[block_index].push_back(
             {target, MissingArc::Kind::added, packing_.reversed(node, block.back_sectors[i], block.words[i])});
       }
@@ -133,47 +151,43 @@ class Union {
   };
   SameTarget same_target(std::uint64_t word) const { return {codec_.target_mask(), word & codec_.target_mask()}; }
 
-  struct Place {
-    Index block;
-    std::int64_t arc;  ///< in the block's words; negative: nowhere
-  };
-  Place find(Index node, Index target) const {
-    const Index b = node / block_size_;
-    const FoundArcs& block = found_[b];
-    const int i =
-        kernel_.find_target(block.words.data() + starts_[node], block.counts[node - block.first_node],
-                            static_cast<std::uint32_t>(codec_.target_mask()), static_cast<std::uint32_t>(target));
-    return {b, i < 0 ? -1 : starts_[node] + i};
+  std::int32_t count_of(Index node) const {
+    return static_cast<std::int32_t>(rows_[node + 1].first - rows_[node].first);
   }
 
-  /// Into the blocks of their nodes, each sorted: the order in which they were found does not matter.
+  std::uint8_t back_sector(Index node, int at) const {
+    const FoundArcs& block = found_[node / block_size_];
+    return block.back_sectors[rows_[node].first - rows_[block.first_node].first + at];
+  }
+
+  /// By their nodes, each node's sorted: the order in which they were found does not matter.
   void sort_missing(int threads, const JobStage& stage) {
-    first_missing_.assign(found_.size() + 1, 0);
+    first_missing_.assign(node_count_ + 1, 0);
     for (const auto& list : missing_)
-      for (const MissingArc& arc : list) ++first_missing_[arc.node() / block_size_ + 1];
-    for (std::size_t b = 0; b < found_.size(); ++b) first_missing_[b + 1] += first_missing_[b];
+      for (const MissingArc& arc : list) ++first_missing_[arc.node() + 1];
+    stage.check();
+    for (Index node = 0; node < node_count_; ++node) first_missing_[node + 1] += first_missing_[node];
     all_missing_.resize(first_missing_.back());
     std::vector<std::int64_t> next(first_missing_.begin(), first_missing_.end() - 1);
     for (auto& list : missing_) {
-      for (const MissingArc& arc : list) all_missing_[next[arc.node() / block_size_]++] = arc;
+      stage.check();
+      for (const MissingArc& arc : list) all_missing_[next[arc.node()]++] = arc;
       list = {};
     }
-    parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
-      stage.check();
-      std::sort(all_missing_.begin() + first_missing_[b], all_missing_.begin() + first_missing_[b + 1]);
+    parallel_for(node_count_, threads, 4 * block_size_, [&](Index node, int) {
+      if (node % block_size_ == 0) stage.check();
+      std::sort(all_missing_.begin() + first_missing_[node], all_missing_.begin() + first_missing_[node + 1]);
     });
   }
 
   template <class Use>
   void for_each_row(Index b, Use&& use) const {
     const FoundArcs& block = found_[b];
-    const MissingArc* other = all_missing_.data() + first_missing_[b];
-    const MissingArc* const last = all_missing_.data() + first_missing_[b + 1];
     for (std::size_t row = 0; row < block.counts.size(); ++row) {
       const Index node = block.first_node + static_cast<Index>(row);
-      const MissingArc* const begin = other;
-      while (other != last && other->node() == node) ++other;
-      use(node, std::span(block.words.data() + starts_[node], block.counts[row]), std::span(begin, other));
+      const std::int64_t begin = first_missing_[node], end = first_missing_[node + 1];
+      use(node, std::span(rows_[node].words, block.counts[row]),
+          std::span(all_missing_.data() + begin, static_cast<std::size_t>(end - begin)));
     }
   }
 
@@ -182,11 +196,11 @@ class Union {
   const WaveKernel& kernel_;
   std::vector<FoundArcs>& found_;
   Index block_size_, node_count_ = 0;
-  std::vector<Index> starts_;  ///< of each node's row in its block
+  std::vector<Row> rows_;  ///< per node, and the number of all arcs at the end
   std::vector<std::vector<MissingArc>> missing_;
-  std::vector<std::vector<std::uint8_t>> paired_;  ///< per block and arc: its reverse was found
-  std::vector<MissingArc> all_missing_;
-  std::vector<std::int64_t> first_missing_;  ///< per block
+  std::vector<std::uint8_t> paired_;  ///< per arc: its reverse was found
+  LargeArray<MissingArc> all_missing_;
+  std::vector<std::int64_t> first_missing_;  ///< per node
 };
 
 }  // namespace

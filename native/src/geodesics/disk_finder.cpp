@@ -57,7 +57,7 @@ void DiskFinder::begin(Sources sources) {
 void DiskFinder::add_node(int lane, Index node) {
   const std::int32_t centre = node * k_batch + lane;
   labels_[centre] = label_of(0, false);
-  touched_[lane].push_back(centre);
+  touched_[by_count() ? lane : 0].push_back(centre);
   for (Index e = mesh_.begin(node); e < mesh_.end(node); ++e) {
     const Vec2 along(mesh_.length(e), 0), apex = mesh_.apex(e), other(apex.norm(), 0);
     const Index apex_node = mesh_.records()[e].apex;
@@ -170,38 +170,54 @@ void DiskFinder::fetch_records(const std::int32_t* edges, int count) const {
   for (int i = 0; i < count; ++i) __builtin_prefetch(mesh_.records() + (edges[i] >> k_batch_bits));
 }
 
+// What is new and what is better cannot be foretold: nothing here depends on it but what is written.
 void DiskFinder::lower_labels(int from, int to) {
   const SightingRows rows = sightings();
-  for (int i = from; i < to; ++i) {
-    const std::int32_t slot = rows.slot[i], label = rows.label[i];
-    if (makes_arc(label) && label < arcs_[slot].label) arcs_[slot] = {label, i};
-    if (label >= labels_[slot]) continue;
-    if (labels_[slot] == k_unreached) touched_[slot % k_batch].push_back(slot);
-    labels_[slot] = label;
-    if (by_count()) changed_.push_back(slot);
+  std::array<std::size_t, k_batch> counts{};
+  const int lists = by_count() ? k_batch : 1;
+  for (int list = 0; list < lists; ++list) {
+    counts[list] = touched_[list].size();
+    touched_[list].resize(counts[list] + static_cast<std::size_t>(to - from) + 1);
   }
+  for (int i = from; i < to; ++i) {
+    const std::int32_t slot = rows.slot[i], label = rows.label[i], known = labels_[slot];
+    const BestArc best = arcs_[slot];
+    const bool is_better = makes_arc(label) & (label < best.label);
+    arcs_[slot] = {is_better ? label : best.label, is_better ? i : best.sighting};
+    labels_[slot] = std::min(known, label);
+    const std::int32_t list = slot & (lists - 1);
+    touched_[list][counts[list]] = slot;
+    counts[list] += known == k_unreached;
+    if (by_count() && label < known) changed_.push_back(slot);
+  }
+  for (int list = 0; list < lists; ++list) touched_[list].resize(counts[list]);
 }
 
 /// An arc that is not the shortest way stays as long as others may rely on it: no distance in the graph exceeds the
 /// shortest by more than the tolerance, so that longer arcs serve nothing.
 bool DiskFinder::is_kept(std::int32_t slot) const {
   const float reach = distance_of(arcs_[slot].label);
-  return reach < k_infinity && reach <= arc_slack(rule_) * distance_of(labels_[slot]) &&
-         reach <= limits_[slot % k_batch];
+  return (reach < k_infinity) & (reach <= arc_slack(rule_) * distance_of(labels_[slot])) &
+         (reach <= limits_[slot % k_batch]);
 }
 
-/// In the order in which they were sighted.
+/// In the order in which they were sighted. As in lower_labels, nothing but what is written depends on what is chosen.
 void DiskFinder::choose() {
   const SightingRows rows = sightings();
-  for (auto& chosen : chosen_) chosen.clear();
+  chosen_counts_.fill(0);
+  const std::size_t room = static_cast<std::size_t>(sighting_count_) + k_row_padding;
+  for (auto& chosen : chosen_)
+    if (chosen.size() < room) chosen.resize(2 * room);
   for (int i = 0; i < sighting_count_; ++i) {
-    const std::int32_t slot = rows.slot[i];
-    const bool is_shortest = arcs_[slot].sighting == i && makes_arc(rows.label[i]);
+    const std::int32_t slot = rows.slot[i], lane = slot % k_batch;
+    const bool is_shortest = (arcs_[slot].sighting == i) & makes_arc(rows.label[i]), kept = is_kept(slot);
     // Edges stay even where something shorter, but no arc, was found.
-    if (is_link(rows.root[i]) ? is_shortest || !is_kept(slot) : is_shortest && is_kept(slot))
-      chosen_[slot % k_batch].push_back(i);
+    const bool is_chosen = (is_shortest & kept) | (is_link(rows.root[i]) & (is_shortest | !kept));
+    chosen_[lane][chosen_counts_[lane]] = i;
+    chosen_counts_[lane] += is_chosen;
   }
-  for (auto& chosen : chosen_) chosen.resize(chosen.size() + k_row_padding);
+  for (int lane = 0; lane < k_batch; ++lane)
+    std::fill_n(chosen_[lane].begin() + static_cast<std::ptrdiff_t>(chosen_counts_[lane]), k_row_padding, 0);
 }
 
 void DiskFinder::clear() {

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/large_array.h"
+
 #include "geodesics/wave_columns.h"
 #include "geodesics/wave_mesh.h"
 
@@ -51,9 +53,7 @@ class DiskFinder {
   bool run(const JobStage& stage);
   /// The sightings that make a lane's arcs, in the order in which they were sighted, and k_row_padding more entries
   /// that are valid. The links are always among them.
-  std::span<const std::int32_t> chosen(int lane) const {
-    return {chosen_[lane].data(), chosen_[lane].size() - k_row_padding};
-  }
+  std::span<const std::int32_t> chosen(int lane) const { return {chosen_[lane].data(), chosen_counts_[lane]}; }
   SightingRows sightings() { return sightings_.rows(sources_ == Sources::points); }
 
   /// Sightings of what a source is linked with by mesh edges or, of a point, by the lines to its face's corners. From a
@@ -105,9 +105,10 @@ class DiskFinder {
   const WaveKernel& kernel_;
   DiskRule rule_;
   Sources sources_ = Sources::nodes;
-  std::vector<std::int32_t> labels_;  ///< per slot: bits of the distance, the lowest one set when it makes no arc
-  std::vector<BestArc> arcs_;         ///< per slot
-  std::array<std::vector<std::int32_t>, k_batch> touched_;  ///< slots with labels, per lane
+  LargeArray<std::int32_t> labels_;  ///< per slot: bits of the distance, the lowest one set when it makes no arc
+  LargeArray<BestArc> arcs_;         ///< per slot
+  /// Slots with labels: per lane where disks end by count, otherwise all in the first list.
+  std::array<std::vector<std::int32_t>, k_batch> touched_;
   std::array<Generation, 2> generations_;
   Generation* now_ = generations_.data();
   Generation* next_ = generations_.data() + 1;
@@ -117,7 +118,8 @@ class DiskFinder {
   alignas(64) std::array<float, k_batch> limits_{};
   std::vector<std::int32_t> changed_;  ///< slots whose neighbours may have to be told of their labels
   std::vector<float> radii_;
-  std::array<std::vector<std::int32_t>, k_batch> chosen_;
+  std::array<std::vector<std::int32_t>, k_batch> chosen_;  ///< with room behind what was chosen
+  std::array<std::size_t, k_batch> chosen_counts_{};
 };
 
 }  // namespace saddleback

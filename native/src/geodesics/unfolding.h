@@ -1,9 +1,8 @@
 #pragma once
 // Tables for unfolding faces into a plane, a record a half-edge.
 
-#include <vector>
-
 #include "saddleback/job.h"
+#include "saddleback/large_array.h"
 #include "saddleback/mesh.h"
 
 namespace saddleback {
@@ -26,8 +25,8 @@ class Unfolding {
 
  private:
   const Mesh* mesh_;
-  std::vector<Vec2> apexes_;
-  std::vector<double> polars_;
+  LargeArray<Vec2> apexes_;
+  LargeArray<double> polars_;
 };
 
 }  // namespace saddleback

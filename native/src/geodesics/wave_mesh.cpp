@@ -33,7 +33,7 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std
   });
   for (Index node = 0; node < count; ++node) first_[node + 1] += first_[node];
   stage.update(0.2);
-  std::vector<Index> edge_of(edges);
+  LargeArray<Index> edge_of(edges);
   parallel_for(count, threads, k_chunk, [&](Index node, int) {
     stage.check();
     Index next = first_[node];
