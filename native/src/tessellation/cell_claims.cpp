@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "saddleback/error.h"
 
@@ -101,38 +102,47 @@ void CellClaims::find(const SurfacePoints& sites, std::span<const double> reache
   stage.update(1);
 }
 
-/// Faces whose corners differ in their labels, each with the number of labels.
+/// Faces whose corners differ in their labels, each with room for as many claims as there are labels.
 void CellClaims::find_mixed_faces() {
-  struct Stretch {
-    std::vector<Row> rows;
-    Index claims = 0;
-  };
   constexpr Index k_stretch = 16384;
   const Index count = rings_.face_count(), stretches = (count + k_stretch - 1) / k_stretch;
+  struct Sum {
+    Index rows = 0, claims = 0;
+  };
+  std::vector<Sum> sums(stretches);
   shared_index_.resize(count);
-  std::vector<Stretch> found(stretches);
-  parallel_for(stretches, threads_, 1, [&](Index stretch, int) {
-    auto& [rows, claims] = found[stretch];
-    for (Index face = stretch * k_stretch; face < std::min(count, (stretch + 1) * k_stretch); ++face) {
-      const auto& nodes = rings_.face(face).nodes;
-      const Index a = maps_.label(nodes[0]), b = maps_.label(nodes[1]), c = maps_.label(nodes[2]);
-      shared_index_[face] = k_none;
-      if (a == b && b == c) continue;
-      const Index labels = a != b && b != c && c != a ? 3 : 2;
-      rows.push_back({face, claims, labels});
-      claims += labels;
-    }
+  const auto in_stretches = [&](auto&& visit) {
+    parallel_for(stretches, threads_, 1, [&](Index stretch, int) {
+      for (Index face = stretch * k_stretch; face < std::min(count, (stretch + 1) * k_stretch); ++face)
+        visit(face, sums[stretch]);
+    });
+  };
+  in_stretches([&](Index face, Sum& sum) {
+    const auto& nodes = rings_.face(face).nodes;
+    const Index a = maps_.label(nodes[0]), b = maps_.label(nodes[1]), c = maps_.label(nodes[2]);
+    const Index labels = a == b && b == c ? 1 : a != b && b != c && c != a ? 3 : 2;
+    shared_index_[face] = labels;
+    if (labels == 1) return;
+    ++sum.rows;
+    sum.claims += labels;
   });
-  rows_.clear();
-  Index claims = 0;
-  for (const Stretch& stretch : found) {
-    for (const Row& row : stretch.rows) {
-      shared_index_[row.face] = shared_count();
-      rows_.push_back({row.face, claims + row.first, row.count});
-    }
-    claims += stretch.claims;
+  Sum all;
+  for (Sum& sum : sums) {
+    std::swap(sum, all);
+    all = {all.rows + sum.rows, all.claims + sum.claims};
   }
-  claims_.resize(claims);
+  rows_.resize(all.rows);
+  in_stretches([&](Index face, Sum& next) {
+    const Index labels = std::exchange(shared_index_[face], k_none);
+    if (labels == 1) return;
+    shared_index_[face] = next.rows;
+    rows_[next.rows++] = {face, next.claims, labels};
+    next.claims += labels;
+  });
+  constexpr Index k_late_share = 8;  // one late claim for so many others there is room for
+  if (claims_.capacity() < static_cast<std::size_t>(all.claims))
+    claims_.reserve(all.claims + all.claims / k_late_share);
+  claims_.resize(all.claims);
 }
 
 /// Each label of a face's corners claims it where they differ; cell by cell, whose own vertices and those beside it
@@ -278,16 +288,33 @@ void CellClaims::visit_claims(Index face, Visit&& visit) const {
   for (Index i = late_index_[face]; i != k_none; i = late_[i].before) visit(late_[i].claim);
 }
 
-/// Whether each corner is nearest to its label, which claims the faces beyond, and no third site can be nearest between
-/// corners.
+/// Whether each corner is nearest to its label, which claims the faces beyond, and no third site is nearest, or nearly
+/// so, between corners.
 bool CellClaims::is_settled(Index face) const {
+  constexpr double k_margin = 1e-9;  // of squared distances
   if (late_index_[face] != k_none) return false;
   const auto all = claims(shared_index_[face]);
-  if (all.size() != 2) return false;
   const auto& nodes = rings_.face(face).nodes;
+  std::array<const FaceClaim*, 3> nearest;
   for (int i = 0; i < 3; ++i) {
-    const double first = all[0].squared_distance(i), second = all[1].squared_distance(i);
-    if ((second < first ? all[1] : all[0]).site != maps_.label(nodes[i])) return false;
+    nearest[i] = all.data();
+    for (const FaceClaim& claim : all)
+      if (claim.squared_distance(i) < nearest[i]->squared_distance(i)) nearest[i] = &claim;
+    if (nearest[i]->site != maps_.label(nodes[i])) return false;
+  }
+  if (all.size() == 2) return true;
+  for (int i = 0; i < 3; ++i) {
+    const int end = (i + 1) % 3;
+    const FaceClaim &a = *nearest[i], &b = *nearest[end];
+    const double at_start = b.squared_distance(i) - a.squared_distance(i),
+                 at_end = a.squared_distance(end) - b.squared_distance(end);
+    const double t = &a == &b ? 0 : at_start / (at_start + at_end);
+    const double nearer = (1 - t) * a.squared_distance(i) + t * a.squared_distance(end);
+    for (const FaceClaim& other : all) {
+      if (&other == &a || &other == &b) continue;
+      const double value = (1 - t) * other.squared_distance(i) + t * other.squared_distance(end);
+      if (!(value > (1 + k_margin) * nearer)) return false;
+    }
   }
   return true;
 }

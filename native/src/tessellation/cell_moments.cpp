@@ -4,9 +4,10 @@
 #include "tessellation/cell_moments.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 #include "support/parallel.h"
-#include "tessellation/face_partition.h"
 #include "tessellation/quadrature.h"
 
 namespace saddleback {
@@ -125,15 +126,17 @@ class Tip {
 /// The moments of the shared faces' parts.
 class SharedFace {
  public:
-  void add(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts);
+  /// Calls add(site, moments) for every part.
+  template <class Add>
+  void integrate(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add);
 
  private:
-  void add_two(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts);
-  void add_many(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts);
+  template <class Add>
+  void cut_in_two(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add);
+  CellMoments part_of(const FaceShape& shape, std::span<const FaceClaim> claims, Index rival);
 
   std::vector<Index> rivals_;  ///< claims that are nearest somewhere, as far as corners tell
-  std::vector<FacePlane> planes_;
-  FacePartition partition_;
+  std::vector<Vec3> polygon_, clipped_;
 };
 
 /// Whether one claim is nowhere nearer than another.
@@ -145,22 +148,6 @@ bool is_beaten(const FaceClaim& claim, const FaceClaim& by) {
     ties = ties && difference == 0;
   }
   return !ties || by.site < claim.site;
-}
-
-void SharedFace::add(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts) {
-  rivals_.clear();
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    bool beaten = false;
-    for (std::size_t j = 0; j < claims.size() && !beaten; ++j) beaten = j != i && is_beaten(claims[i], claims[j]);
-    if (!beaten) rivals_.push_back(static_cast<Index>(i));
-  }
-  if (rivals_.size() == 1) {
-    add_whole({shape, claims[rivals_.front()]}, parts[rivals_.front()]);
-  } else if (rivals_.size() == 2) {
-    add_two(shape, claims, parts);
-  } else {
-    add_many(shape, claims, parts);
-  }
 }
 
 CellMoments& operator+=(CellMoments& sum, const CellMoments& part) {
@@ -179,43 +166,97 @@ CellMoments& operator-=(CellMoments& sum, const CellMoments& part) {
   return sum;
 }
 
+template <class Add>
+void SharedFace::integrate(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add) {
+  rivals_.clear();
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    bool beaten = false;
+    for (std::size_t j = 0; j < claims.size() && !beaten; ++j) beaten = j != i && is_beaten(claims[i], claims[j]);
+    if (!beaten) rivals_.push_back(static_cast<Index>(i));
+  }
+  if (rivals_.size() == 1) {
+    CellMoments all;
+    add_whole({shape, claims[rivals_.front()]}, all);
+    add(claims[rivals_.front()].site, all);
+  } else if (rivals_.size() == 2) {
+    cut_in_two(shape, claims, add);
+  } else {
+    for (const Index rival : rivals_) add(claims[rival].site, part_of(shape, claims, rival));
+  }
+}
+
 /// One straight cut: a corner on one side of it, two on the other.
-void SharedFace::add_two(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts) {
+template <class Add>
+void SharedFace::cut_in_two(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add) {
   constexpr double k_most_of_it = 0.9;  // what is left is too little to be told from a difference
   const ClaimedFace first(shape, claims[rivals_[0]]), second(shape, claims[rivals_[1]]);
   const Vec3 lead = first.squared_distance - second.squared_distance;
   const Cut cut = cut_where_zero(lead);
   const bool second_is_lone = lead[cut.lone] > 0;
   const ClaimedFace &lone = second_is_lone ? second : first, &rest = second_is_lone ? first : second;
-  CellMoments &of_lone = parts[rivals_[second_is_lone ? 1 : 0]], &of_rest = parts[rivals_[second_is_lone ? 0 : 1]];
+  CellMoments of_lone, of_rest;
   if (shape.uniform && cut.on_left * cut.on_right < k_most_of_it) {
     const Tip tip(shape, cut);
-    of_lone += tip.moments(lone);
+    of_lone = tip.moments(lone);
     add_whole(rest, of_rest);
     of_rest -= tip.moments(rest);
-    return;
+  } else {
+    const Vec3 on_left = cut.left_end(), on_right = cut.right_end();
+    add_triangle(lone, Vec3::Unit(cut.lone), on_left, on_right, of_lone);
+    add_triangle(rest, on_left, Vec3::Unit(cut.left), Vec3::Unit(cut.right), of_rest);
+    add_triangle(rest, on_left, Vec3::Unit(cut.right), on_right, of_rest);
   }
-  const Vec3 on_left = cut.left_end(), on_right = cut.right_end();
-  add_triangle(lone, Vec3::Unit(cut.lone), on_left, on_right, of_lone);
-  add_triangle(rest, on_left, Vec3::Unit(cut.left), Vec3::Unit(cut.right), of_rest);
-  add_triangle(rest, on_left, Vec3::Unit(cut.right), on_right, of_rest);
+  add(lone.claim.site, of_lone);
+  add(rest.claim.site, of_rest);
 }
 
-void SharedFace::add_many(const FaceShape& shape, std::span<const FaceClaim> claims, CellMoments* parts) {
-  planes_.clear();
-  for (const Index i : rivals_) {
-    planes_.push_back(
-        {i, {claims[i].squared_distance(0), claims[i].squared_distance(1), claims[i].squared_distance(2)}});
-  }
-  partition_.build(planes_);
-  for (const FacePartition::Piece& piece : partition_.pieces()) {
-    const auto corner = [&](std::size_t i) { return partition_.vertices()[piece.loop[i]].barycentric; };
-    const ClaimedFace face(shape, claims[piece.site]);
-    for (std::size_t j = 1; j + 1 < piece.loop.size(); ++j) {
-      add_triangle(face, corner(0), corner(j), corner(j + 1), parts[piece.site]);
+/// What the other rivals leave of the face.
+CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const FaceClaim> claims, Index rival) {
+  const ClaimedFace face(shape, claims[rival]);
+  polygon_ = {Vec3::Unit(0), Vec3::Unit(1), Vec3::Unit(2)};
+  for (const Index other : rivals_) {
+    if (other == rival) continue;
+    const Vec3 lead = ClaimedFace(shape, claims[other]).squared_distance - face.squared_distance;
+    clipped_.clear();
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      const Vec3 &from = polygon_[i], &to = polygon_[(i + 1) % polygon_.size()];
+      const double at_from = lead.dot(from), at_to = lead.dot(to);
+      if (at_from >= 0) clipped_.push_back(from);
+      if ((at_from >= 0) != (at_to >= 0)) clipped_.push_back(from + at_from / (at_from - at_to) * (to - from));
     }
+    polygon_.swap(clipped_);
   }
+  CellMoments sum;
+  for (std::size_t i = 1; i + 1 < polygon_.size(); ++i)
+    add_triangle(face, polygon_[0], polygon_[i], polygon_[i + 1], sum);
+  return sum;
 }
+
+/// The sums of a stretch of shared faces, of the few cells that are met there.
+class StretchSums {
+ public:
+  using Entry = std::pair<Index, CellMoments>;
+  void begin(Index site_count) {
+    known_.resize(site_count, {0, 0});
+    ++round_;
+    entries_.clear();
+  }
+  void add(Index site, const CellMoments& part) {
+    auto& [round, at] = known_[site];
+    if (round != round_) {
+      round = round_;
+      at = static_cast<Index>(entries_.size());
+      entries_.push_back({site, {}});
+    }
+    entries_[at].second += part;
+  }
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  std::uint32_t round_ = 0;
+  std::vector<std::pair<std::uint32_t, Index>> known_;  ///< by site
+  std::vector<Entry> entries_;
+};
 
 }  // namespace
 
@@ -293,18 +334,29 @@ std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, const 
     const Index site = claims.maps().sites_along_curve()[i];
     cells[site] = whole_faces(claims, site);
   });
-  parts_.assign(claims.claim_count(), {});
-  std::vector<SharedFace> scratch(thread_count(threads_));
-  parallel_for(claims.shared_count(), threads_, 256, [&](Index shared, int thread) {
+  // By stretches of a fixed size: sums do not depend on the number of threads.
+  constexpr Index k_stretch = 2048;
+  const Index count = claims.shared_count(), stretches = (count + k_stretch - 1) / k_stretch;
+  struct Worker {
+    SharedFace face;
+    StretchSums sums;
+  };
+  std::vector<Worker> workers(thread_count(threads_));
+  std::vector<std::vector<StretchSums::Entry>> sums(stretches);
+  parallel_for(stretches, threads_, 1, [&](Index stretch, int thread) {
     stage.check();
-    const Index face = claims.face(shared);
-    const FaceShape shape(faces_[face], density_.empty() ? nullptr : &density_[face]);
-    scratch[thread].add(shape, claims.claims(shared), &parts_[claims.first_claim(shared)]);
+    auto& [shared_face, stretch_sums] = workers[thread];
+    stretch_sums.begin(claims.site_count());
+    for (Index shared = stretch * k_stretch; shared < std::min(count, (stretch + 1) * k_stretch); ++shared) {
+      const Index face = claims.face(shared);
+      const FaceShape shape(faces_[face], density_.empty() ? nullptr : &density_[face]);
+      shared_face.integrate(shape, claims.claims(shared),
+                            [&](Index site, const CellMoments& part) { stretch_sums.add(site, part); });
+    }
+    sums[stretch] = stretch_sums.entries();
   });
-  for (Index shared = 0; shared < claims.shared_count(); ++shared) {
-    const CellMoments* part = &parts_[claims.first_claim(shared)];
-    for (const FaceClaim& claim : claims.claims(shared)) cells[claim.site] += *part++;
-  }
+  for (const auto& entries : sums)
+    for (const auto& [site, part] : entries) cells[site] += part;
   return cells;
 }
 

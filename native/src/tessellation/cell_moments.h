@@ -50,7 +50,6 @@ class CellIntegrals {
   std::vector<std::array<double, 3>> density_;  ///< of their corners; empty for 1
   std::vector<Node> nodes_;
   std::vector<std::uint8_t> at_border_;  ///< by node: a face about it is shared
-  std::vector<CellMoments> parts_;       ///< by claim
 };
 
 }  // namespace saddleback

@@ -115,7 +115,7 @@ void Relaxation::accept(State next) {
 
 /// How far sites may own something: somewhat farther than before, and than they have moved. None for the first cells.
 std::vector<double> Relaxation::reaches(const SurfacePoints& sites) const {
-  constexpr double k_growth = 1.3;
+  constexpr double k_growth = 1.1;
   if (!state_.claims) return {};
   const CellClaims& before = *state_.claims;
   std::vector<double> reach(sites.size(), 0.0);

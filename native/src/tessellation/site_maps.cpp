@@ -279,9 +279,12 @@ SiteMaps::Place SiteMaps::place_by(const Sight& sight, const Wedge& wedge, const
 }
 
 /// Places a node of the site's own cell beyond an edge whose ends are placed already: the first that leads to the
-/// graph's distance or little less. False where there is none.
+/// graph's distance or little less, else the one that leads to the least more, at the graph's distance. False where
+/// there is none.
 bool SiteMaps::place_own(Index node, Index site, Place& place) const {
   const double most = distance_[node] * (1 + k_arc_rounding), least = (1 - slack_) * most;
+  double shortest = (1 + slack_) * most;
+  const Wedge* detour = nullptr;
   for (const Wedge& wedge : rings_.around(node)) {
     if (label_[wedge.from] != site || label_[wedge.to] != site) continue;
     const Place &from = places_[wedge.from], &to = places_[wedge.to];
@@ -289,11 +292,17 @@ bool SiteMaps::place_own(Index node, Index site, Place& place) const {
     Sight sight;
     if (!see(wedge, from, to, sight) || std::abs(sight.beyond) > k_least_miss) continue;
     const double distance = anchor_distance(from) + sight.distance;
-    if (distance > most || distance < least) continue;
+    if (distance < least || distance >= shortest) continue;
     place = place_by(sight, wedge, from, to);
-    return true;
+    if (distance <= most) return true;
+    shortest = distance;
+    detour = &wedge;
   }
-  return false;
+  if (!detour) return false;
+  const double straight = distance_[node] - anchor_distance(place);
+  place.at *= straight / place.at.norm();
+  place.distance = distance_[node];
+  return true;
 }
 
 /// An end of an edge as the site sees it; the site's own or, where `deep`, any that can be placed beside its own. Null
