@@ -19,7 +19,7 @@ Candidates come in a random order (or that of a sweep), and each that finds room
 Args:
     graph: a SaddleVertexGraph or a Mesh.
     shapes: a Shape or a sequence of Shapes.
-    counts: None: as many as find room; or one integer a shape (one for all where there is one shape).
+    counts: None: as many as find room; or one integer a shape (one for all where there is one shape, or with shares).
     field: DirectionField of the mesh: x axes of the shapes point along one of its directions, chosen at random among those
         that make a difference. None: the smoothest field of lines.
     density: (V,) wanted number of copies per area, only ratios matter; needs counts.
@@ -28,6 +28,9 @@ Args:
     mode: "random", or "packed": one beside the other in a front that sweeps over the surface, denser by a quarter and more;
         or a number from 0 (random) to 1 (packed).
     maximal: go on until nothing more fits, and prove it: `result.certificate`.
+    shares: one number a shape, its share of the copies, only ratios matter; kept to a hundredth and one copy even where
+        room runs out: where one class finds no more, the others stop as well. With a density those of the counts. None:
+        counts alone, or whatever finds room.
     gap: least distance between copies, mesh units.
     size_range: (smallest, largest): every copy is scaled by another factor in this range.
     forbidden: (F,) booleans: faces that nothing may touch.
@@ -40,7 +43,8 @@ Returns:
     Distribution.
 
 Raises:
-    InputError: naming the argument: no shape; counts of another number than shapes, or negative; a field of another mesh;
+    InputError: naming the argument: no shape; counts of another number than shapes, or negative; shares of another number,
+        negative, all zero, with maximal, or beside counts of each shape; a field of another mesh;
         sizes or density of the wrong length, not finite or not positive; density zero everywhere, without counts or with
         maximal; a copy larger than the surface; everything forbidden.
     Cancelled: the job was.
@@ -109,14 +113,16 @@ const DirectionField* as_field(const py::object& value) {
 
 std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& shapes, const py::object& counts,
                                   const py::object& field, const py::object& density, const py::object& size,
-                                  const py::object& seed, const py::object& mode, bool maximal, const py::object& gap,
-                                  const py::object& size_range, const py::object& forbidden, bool mirror,
-                                  const py::object& tolerance, const py::object& threads, const py::object& job) {
+                                  const py::object& seed, const py::object& mode, bool maximal,
+                                  const py::object& shares, const py::object& gap, const py::object& size_range,
+                                  const py::object& forbidden, bool mirror, const py::object& tolerance,
+                                  const py::object& threads, const py::object& job) {
   auto made = std::make_unique<Distribution>();
   const Mesh& mesh = mesh_of(graph, made->mesh);
   made->shapes = as_shapes(shapes, "shapes");
   DistributionOptions options;
   options.counts = as_counts(counts);
+  if (!shares.is_none()) options.shares = as_sizes(shares, "shares");
   options.field = as_field(field);
   if (!density.is_none()) options.density = as_sizes(density, "density");
   options.size = as_sizes(size, "size");
@@ -223,9 +229,10 @@ void bind_distribution(py::module_& m) {
       });
   m.def("distribute", &lay, py::arg("graph"), py::arg("shapes"), py::arg("counts") = py::none(),
         py::arg("field") = py::none(), py::arg("density") = py::none(), py::arg("size") = 1.0, py::arg("seed") = 0,
-        py::arg("mode") = "random", py::arg("maximal") = false, py::kw_only(), py::arg("gap") = 0.0,
-        py::arg("size_range") = py::make_tuple(1.0, 1.0), py::arg("forbidden") = py::none(), py::arg("mirror") = false,
-        py::arg("tolerance") = 0.01, py::arg("threads") = 0, py::arg("job") = py::none(), k_distribute_doc);
+        py::arg("mode") = "random", py::arg("maximal") = false, py::kw_only(), py::arg("shares") = py::none(),
+        py::arg("gap") = 0.0, py::arg("size_range") = py::make_tuple(1.0, 1.0), py::arg("forbidden") = py::none(),
+        py::arg("mirror") = false, py::arg("tolerance") = 0.01, py::arg("threads") = 0, py::arg("job") = py::none(),
+        k_distribute_doc);
 }
 
 }  // namespace saddleback::bindings

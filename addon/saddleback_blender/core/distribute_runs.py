@@ -106,7 +106,8 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
     size = settings.size or _size(settings.count, settings.packing, mesh.area, shapes, templates)
     sizes = _sizes(mesh, size, density if settings.size_by_density else None)
     options: dict[str, Any] = {
-        "counts": None if settings.maximal else _counts(settings.count, templates),
+        "counts": None if settings.maximal else settings.count,
+        "shares": None if settings.maximal else [template.share for template in templates],
         "size": sizes,
         "size_range": (1.0 - settings.size_variation, 1.0),
         "gap": settings.gap,
@@ -155,15 +156,6 @@ def _field(request: DistributeRequest, mesh: Any, progress: Progress, cache: Cac
     if isinstance(request.field, DirectionFieldRequest):
         return field_of(request.field, mesh, progress, cache).field
     return given_field(request.surface, request.field, mesh)
-
-
-def _counts(count: int, templates: Sequence[ShapeTemplate]) -> list[int]:
-    """How many of each class: whole numbers in proportion to the shares that sum to the count."""
-    shares = np.array([template.share for template in templates])
-    wanted = count * shares / shares.sum()
-    counts = np.floor(wanted).astype(int)
-    counts[np.argsort(counts - wanted, kind="stable")[: count - counts.sum()]] += 1
-    return [int(number) for number in counts]
 
 
 def _size(count: int, packing: float, area: float, shapes: Sequence[Any], templates: Sequence[ShapeTemplate]) -> float:

@@ -15,8 +15,12 @@
 namespace saddleback {
 
 struct DistributionOptions {
-  /// Per shape how many copies; empty: as many as find room.
+  /// Per shape how many copies; empty: as many as find room. With shares: one value, how many in all.
   std::vector<Index> counts;
+  /// Per shape its share of the copies, only ratios matter; empty: whatever finds room. None is ever ahead of its share
+  /// by more than a hundredth and one copy, so where one finds no more room the others stop as well. With a density the
+  /// shares are those of the counts.
+  std::vector<double> shares;
   /// Where shapes point: x axes along one of the field's directions, chosen at random among those that differ.
   const DirectionField* field = nullptr;
   /// Scale of the shapes (mesh units for one unit of their planes): one value, or one a vertex.
@@ -84,7 +88,8 @@ struct DistributionResult {
 /// \throw InputError naming the argument: no shape; counts of another number than shapes or negative; a field of
 /// another mesh; sizes, density or forbidden of the wrong length, not finite, not positive (density: negative or zero
 /// everywhere); a range of sizes that is none; a copy larger than the surface; a negative gap; packing outside 0 to 1;
-/// a tolerance outside 0.001 to 0.5; a density without counts, or with maximal; everything forbidden. Cancelled.
+/// a tolerance outside 0.001 to 0.5; shares of another number than shapes, negative, all zero, or with maximal; a
+/// density without counts, or with maximal; everything forbidden. Cancelled.
 DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
                               Job* job = nullptr);
 

@@ -998,6 +998,7 @@ def distribute(
     mode: Literal["random", "packed"] | SupportsFloat = "random",
     maximal: bool = False,
     *,
+    shares: ArrayLike | None = None,
     gap: SupportsFloat = 0.0,
     size_range: ArrayLike = ...,
     forbidden: ArrayLike | None = None,

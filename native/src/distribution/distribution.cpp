@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "saddleback/error.h"
-#include "saddleback/sample.h"
 #include "saddleback/trace.h"
 
+#include "even_places.h"
 #include "gap_search.h"
 #include "laying.h"
 #include "placing_rules.h"
@@ -34,8 +34,24 @@ void check_per_vertex(const char* name, const Mesh& mesh, const std::vector<doub
   }
 }
 
+void check_shares(std::span<const Shape> shapes, const DistributionOptions& options) {
+  const std::vector<double>& shares = options.shares;
+  if (shares.empty()) return;
+  if (shares.size() != shapes.size())
+    throw InputError(message("shares has ", shares.size(), " values, but there are ", shapes.size(), " shapes"));
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    if (!(shares[i] >= 0) || !std::isfinite(shares[i]))
+      throw InputError(message("shares: ", shares[i], " at [", i, "] is negative or not finite"));
+  if (!(*std::max_element(shares.begin(), shares.end()) > 0)) throw InputError("shares: all are zero");
+  if (options.maximal)
+    throw InputError("shares: a surface that is full of whatever finds room cannot keep them; leave maximal out");
+  if (options.counts.size() > 1 && options.counts.size() == shapes.size())
+    throw InputError("shares: counts has a value for each shape already; wanted one, how many in all");
+}
+
 void check_counts(std::span<const Shape> shapes, const DistributionOptions& options) {
   if (options.counts.empty()) return;
+  if (!options.shares.empty() && options.counts.size() == 1 && options.counts[0] >= 0) return;
   if (options.counts.size() != shapes.size())
     throw InputError(
         message("counts has ", options.counts.size(), " values, but there are ", shapes.size(), " shapes"));
@@ -71,6 +87,7 @@ void check_density(const Mesh& mesh, const DistributionOptions& options) {
 
 void check(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
   if (shapes.empty()) throw InputError("shapes: wanted at least one");
+  check_shares(shapes, options);
   check_counts(shapes, options);
   check_sizes(mesh, shapes, options);
   check_density(mesh, options);
@@ -87,6 +104,28 @@ void check(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOp
     throw InputError(message("packing is ", options.packing, ", but must be 0 to 1"));
   if (!(options.tolerance >= 0.001 && options.tolerance <= 0.5))
     throw InputError(message("tolerance is ", options.tolerance, ", but must be 0.001 to 0.5"));
+}
+
+/// Shares that sum to 1, and counts in their ratio that sum to the one given: those of the largest remainders are
+/// rounded up.
+void share_out(DistributionOptions& options) {
+  std::vector<double>& shares = options.shares;
+  if (shares.empty()) return;
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (double& share : shares) share /= sum;
+  if (options.counts.empty()) return;
+  const Index total = options.counts[0];
+  std::vector<std::pair<double, std::size_t>> remainders;
+  options.counts.clear();
+  Index given = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double wanted = shares[i] * total;
+    options.counts.push_back(static_cast<Index>(wanted));
+    given += options.counts[i];
+    remainders.push_back({options.counts[i] - wanted, i});
+  }
+  std::sort(remainders.begin(), remainders.end());
+  for (Index i = 0; i < total - given; ++i) ++options.counts[remainders[i].second];
 }
 
 /// Shapes in an order in which each comes as often, and as evenly, as it is wanted.
@@ -110,13 +149,13 @@ class DensityFollower {
 
   /// Every copy has a place of its own; one that finds no room there tries farther and farther about it.
   DistributionStop run(const JobStage& stage) {
-    constexpr int k_attempts = 16;
+    constexpr int k_attempts = 24;
     turns_ = interleaved(options_.counts);
-    places_ = sample(mesh_, static_cast<Index>(turns_.size()), options_.density, options_.seed);
+    places_ = even_places(mesh_, static_cast<Index>(turns_.size()), options_.density, options_.seed);
     std::vector<Index> missing(turns_.size());
     std::iota(missing.begin(), missing.end(), 0);
     for (int attempt = 0; attempt < k_attempts && !missing.empty(); ++attempt) {
-      const double spread = 1.5 * attempt / k_attempts;
+      const double spread = 2.0 * attempt / k_attempts;
       std::vector<Candidate> candidates;
       for (const Index which : missing) candidates.push_back(candidate(which, attempt, spread));
       const std::vector<Outcome> outcomes =
@@ -163,9 +202,11 @@ class DensityFollower {
 
 }  // namespace
 
-DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
+DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& given,
                               Job* job) {
-  check(mesh, shapes, options);
+  check(mesh, shapes, given);
+  DistributionOptions options = given;
+  share_out(options);
   const JobStage stage(job, "Shapes");
   std::optional<DirectionField> smoothest;
   if (!options.field) {

@@ -39,6 +39,7 @@ Laying::Laying(const Mesh& mesh, const PlacingRules& rules, const DistributionOp
       threads_(thread_count(options.threads)),
       settled_(mesh, rules.flat(), rules.smallest_radius(), rules.largest_radius()),
       wanted_(options.counts),
+      shares_(options.density.empty() ? options.shares : std::vector<double>()),
       touched_(static_cast<std::size_t>(mesh.face_count()), 0) {
   for (const Kind& kind : rules.kinds()) laid_.resize(static_cast<std::size_t>(kind.shape) + 1, 0);
   mappers_.resize(static_cast<std::size_t>(threads_));
@@ -47,8 +48,15 @@ Laying::Laying(const Mesh& mesh, const PlacingRules& rules, const DistributionOp
 
 bool Laying::is_any_wanted() const {
   for (Index shape = 0; shape < static_cast<Index>(laid_.size()); ++shape)
-    if (is_wanted(shape)) return true;
+    if (wanted_.empty() || laid_[shape] < wanted_[shape]) return true;
   return false;
+}
+
+double Laying::share(Index shape) const {
+  if (!wanted_.empty()) return std::max(0, wanted_[shape] - laid_[shape]);
+  if (shares_.empty()) return 1;
+  // Those that are behind are tried much more often than their share.
+  return std::max(0.0, shares_[shape] * (1.1 * laid_in_all_ + 20) - laid_[shape]);
 }
 
 bool Laying::is_foreseen_to_meet(const Copy& copy) const {
@@ -121,6 +129,7 @@ void Laying::commit(Attempt& attempt) {
     pending_.push_back({static_cast<Index>(settled_.copies().size()), std::move(attempt.plane)});
     settled_.add(attempt.copy, attempt.outline);
     ++laid_[attempt.copy.placement.shape];
+    ++laid_in_all_;
     for (const Index face : attempt.outline.faces) touched_[face] = batch_;
   } else if (attempt.outcome != Outcome::not_wanted) {
     ++rejections_[static_cast<std::size_t>(attempt.outcome) - static_cast<std::size_t>(Outcome::collision)];

@@ -30,10 +30,10 @@ class Laying {
   const SettledShapes& settled() const { return settled_; }
   std::span<const std::int64_t> rejections() const { return rejections_; }
 
-  bool is_wanted(Index shape) const { return wanted_.empty() || laid_[shape] < wanted_[shape]; }
+  bool is_wanted(Index shape) const { return (wanted_.empty() || laid_[shape] < wanted_[shape]) && !is_ahead(shape); }
   bool is_any_wanted() const;
-  /// How many more; all equal where no counts are wanted.
-  double share(Index shape) const { return wanted_.empty() ? 1.0 : std::max(0, wanted_[shape] - laid_[shape]); }
+  /// How often to try it, against others: as many as are missing; all equal where neither counts nor shares are wanted.
+  double share(Index shape) const;
 
   /// Lays those that find room, in the order of their keys. Returns what became of each, in the order given. Stops as
   /// soon as every count is met.
@@ -55,6 +55,11 @@ class Laying {
     std::vector<LaidVertex> plane;
   };
 
+  /// Whether another copy would be more than the shape's share.
+  bool is_ahead(Index shape) const {
+    constexpr double k_slack = 1.01;
+    return !shares_.empty() && laid_[shape] >= k_slack * shares_[shape] * (laid_in_all_ + 1) + 1;
+  }
   void attempt(const Candidate& candidate, Attempt& attempt, int thread) const;
   void test(Attempt& attempt, OutlineMapper& mapper) const;
   void commit(Attempt& attempt);
@@ -66,6 +71,8 @@ class Laying {
   int threads_;
   SettledShapes settled_;
   std::vector<Index> wanted_, laid_;
+  std::vector<double> shares_;  ///< sum 1; empty: any
+  Index laid_in_all_ = 0;
   std::array<std::int64_t, k_rejection_count> rejections_{};
   mutable std::vector<std::unique_ptr<OutlineMapper>> mappers_;  ///< one a thread
   std::vector<Attempt> attempts_;
