@@ -110,8 +110,9 @@ void set_twins(PlanarMesh& mesh, Index a, Index b) {
   if (b != k_none) mesh.twins[b] = a;
 }
 
-// The quadrilateral's other diagonal: triangles p q r | q p s become p s r | s q r.
-void exchange(PlanarMesh& mesh, Index half) {
+}  // namespace
+
+void exchange_pair(PlanarMesh& mesh, Index half) {
   const Index twin = mesh.twins[half];
   const Index half_next = next_half(half), half_last = previous_half(half);
   const Index twin_next = next_half(twin), twin_last = previous_half(twin);
@@ -124,8 +125,6 @@ void exchange(PlanarMesh& mesh, Index half) {
   set_twins(mesh, half_next, twin_next);
 }
 
-}  // namespace
-
 void exchange_triangles(PlanarMesh& mesh) {
   std::vector<Index> doubtful;
   for (Index half = 0; half < mesh.half_end(); ++half) {
@@ -136,7 +135,7 @@ void exchange_triangles(PlanarMesh& mesh) {
       doubtful.pop_back();
       const Index twin = mesh.twins[edge];
       if (twin == k_none || circle_test(mesh, edge) != Sign::positive) continue;
-      exchange(mesh, edge);
+      exchange_pair(mesh, edge);
       for (const Index rim : {edge, previous_half(edge), twin, previous_half(twin)}) doubtful.push_back(rim);
     }
   }

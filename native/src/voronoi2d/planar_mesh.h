@@ -39,6 +39,10 @@ bool passes_circle_tests(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat
 /// there is one of it. Exact. If the edges pass the circle test as well it is Delaunay's triangulation.
 bool is_triangulation(const PlanarMesh& mesh);
 
+/// Exchanges the triangles beside an edge for the other two: p q r | q p s become p s r | s q r, where the half-edge
+/// went from p to q.
+void exchange_pair(PlanarMesh& mesh, Index half);
+
 /// Makes a triangulation Delaunay's (C. L. Lawson, 1977): exchanges triangles until all edges pass the circle test.
 void exchange_triangles(PlanarMesh& mesh);
 

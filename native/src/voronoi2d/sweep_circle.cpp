@@ -110,16 +110,21 @@ PlanarMesh SweepCircle::sweep(std::span<const double> x, std::span<const double>
 
 PlanarMesh SweepCircle::triangulate(std::span<const double> x, std::span<const double> y, const Vec2& place,
                                     const JobStage& stage) {
-  PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.8));
+  const PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.9));
   is_flat.resize(mesh.half_end());
-  const bool is_delaunay = passes_circle_tests(mesh, is_flat), is_whole = is_triangulation(mesh);
-  stage.update(0.9);
-  if (!is_delaunay || !is_whole) {
-    if (!is_whole) triangulate_from_left(mesh);
-    exchange_triangles(mesh);
-    is_flat.resize(mesh.half_end());
-    passes_circle_tests(mesh, is_flat);
-  }
+  if (mesh.triangle_count == 0 || !passes_circle_tests(mesh, is_flat))
+    return triangulate_safely(x, y, place, stage.part(0.9, 1));
+  stage.update(1);
+  return mesh;
+}
+
+PlanarMesh SweepCircle::triangulate_safely(std::span<const double> x, std::span<const double> y, const Vec2& place,
+                                           const JobStage& stage) {
+  PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.8));
+  if (!is_triangulation(mesh)) triangulate_from_left(mesh);
+  exchange_triangles(mesh);
+  is_flat.resize(mesh.half_end());
+  passes_circle_tests(mesh, is_flat);
   stage.update(1);
   return mesh;
 }

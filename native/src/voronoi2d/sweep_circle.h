@@ -17,14 +17,18 @@ namespace saddleback::voronoi2d {
 class SweepCircle {
  public:
   /// Sweeps distinct sites until the cells of the first `own_count` are closed, or to the end. The circle grows from
-  /// the one of these nearest to a place. Triangles are right up to rounding: see `PlanarMesh` for proof and repair.
+  /// the one of these nearest to a place. Triangles are right up to rounding.
   /// The mesh counts the sites from near to far; it lives until the next call. O(n log n). \throw Cancelled
   PlanarMesh sweep(std::span<const double> x, std::span<const double> y, Index own_count, const Vec2& place,
                    const JobStage& stage);
 
-  /// Delaunay's triangulation of all sites, exactly, whatever the sites.
+  /// All edges of the triangles pass the circle test, exactly. That they are a triangulation is not proven, unless it
+  /// was in doubt; none if all sites are on one line.
   PlanarMesh triangulate(std::span<const double> x, std::span<const double> y, const Vec2& place,
                          const JobStage& stage);
+  /// Delaunay's triangulation, whatever the sites.
+  PlanarMesh triangulate_safely(std::span<const double> x, std::span<const double> y, const Vec2& place,
+                                const JobStage& stage);
 
   /// Position in the arrays given of the k-th site from near to far.
   Index position(Index k) const { return order_[k].site; }

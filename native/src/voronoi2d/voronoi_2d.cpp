@@ -11,8 +11,9 @@
 
 #include "voronoi2d/check_options.h"
 #include "voronoi2d/edge_curve.h"
-#include "voronoi2d/find_cells.h"
+#include "voronoi2d/half_edges.h"
 #include "voronoi2d/site_order.h"
+#include "voronoi2d/triangulation.h"
 #include "voronoi2d/twin_voronoi.h"
 
 namespace saddleback {
@@ -20,29 +21,10 @@ namespace {
 
 using namespace voronoi2d;
 
-// Few enough sites for a core's cache. Tiles are squares, whose numbers of sites fall by four from size to size: a
-// little more than one of these, so that a tile of evenly spread sites is one square and not a few odd ones.
-Index good_circle_size(Index count) {
-  constexpr double k_most = 20000, k_spread = 1.15;
-  double size = count;
-  while (size > k_most) size /= 4;
-  return size < count ? static_cast<Index>(k_spread * size) : count;
-}
-
-Numbering find_numbering(const OrderedSites& sites, const Voronoi2dOptions& options, Cells& cells,
-                         const JobStage& stage) {
-  const Index circle_size = options.circles > 0 ? sites.count() / options.circles : good_circle_size(sites.count());
-  const bool has_tiles = circle_size < sites.count();
-  Numbering numbering;
-  if (has_tiles) {
-    cells = find_cells_by_tiles(sites, std::max<Index>(1, circle_size), options.threads, stage.part(0, 0.6));
-    if (cells.cell_count() > 0 && number(cells, sites, options.threads, stage.part(0.6, 0.9), numbering))
-      return numbering;
-  }
-  cells = find_cells(sites, has_tiles ? stage.part(0.9, 0.97) : stage.part(0, 0.8));
-  if (!number(cells, sites, options.threads, stage.part(0.97, 1), numbering))
-    throw Error("voronoi_2d: the cells of one circle do not fit together");
-  return numbering;
+// Few enough sites for a core's cache.
+Index tile_size(Index count, const Voronoi2dOptions& options) {
+  constexpr Index k_good = 8000;
+  return options.circles > 0 ? std::max<Index>(1, count / options.circles) : k_good;
 }
 
 }  // namespace
@@ -62,8 +44,12 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
     }
   }
   OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
-  Cells cells;
-  Numbering numbering = find_numbering(ordered, options, cells, stage.part(0.1, 0.95));
+  Triangulation triangulation =
+      triangulate(ordered, tile_size(ordered.count(), options), options.threads, stage.part(0.1, 0.7));
+  LargeArray<std::uint32_t>().swap(ordered.places);
+  Numbering numbering = number(std::move(triangulation), ordered, options.threads, stage.part(0.7, 0.95));
+  LargeArray<double>().swap(ordered.x);  // the copies below can have the room
+  LargeArray<double>().swap(ordered.y);
 
   Voronoi2d result;
   result.sites.assign(sites.begin(), sites.end());
@@ -71,7 +57,7 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
   result.edges = std::move(numbering.edge_vertices);
   result.edge_sites = std::move(numbering.edge_sites);
   result.cell_places.assign(sites.size(), k_none);
-  for (Index rank = 0; rank < ordered.count(); ++rank) {
+  for (Index rank = 0; rank < static_cast<Index>(ordered.original.size()); ++rank) {
     if (rank % 65536 == 0) stage.check();
     result.cell_places[ordered.original[rank]] = rank;
   }
@@ -79,7 +65,7 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
     result.cell_places[i] = result.cell_places[ordered.site_of[i]];
   result.site_of = std::move(ordered.site_of);
   result.cell_sites = std::move(ordered.original);
-  result.cell_offsets = std::move(cells.offsets);
+  result.cell_offsets = std::move(numbering.offsets);
   result.corner_vertices = std::move(numbering.corner_vertices);
   result.side_edges = std::move(numbering.side_edges);
   stage.update(1);

@@ -10,7 +10,7 @@
 
 #include "support/parallel.h"
 #include "voronoi2d/check_options.h"
-#include "voronoi2d/find_cells.h"
+#include "voronoi2d/triangulation.h"
 #include "voronoi2d/weighted_cell.h"
 #include "voronoi2d/weighted_sites.h"
 
@@ -126,20 +126,16 @@ class CellFinder {
   std::vector<Index> rows_;
 };
 
-/// Neighbours without weights. A few may be wrong.
-voronoi2d::Cells guess_cells(const WeightedSites& sites, int threads, const JobStage& stage) {
-  constexpr Index k_circle = 6000;
+/// Neighbours without weights.
+NeighbourLists guess_neighbours(const WeightedSites& sites, int threads, const JobStage& stage) {
+  constexpr Index k_tile = 8000;
   OrderedSites places;
   places.places = sites.places;
   for (const predicates::WeightedPoint2& point : sites.points) {
     places.x.push_back(point.x);
     places.y.push_back(point.y);
   }
-  if (places.count() > k_circle) {
-    voronoi2d::Cells cells = find_cells_by_tiles(places, k_circle, threads, stage);
-    if (cells.cell_count() > 0) return cells;
-  }
-  return voronoi2d::find_cells(places, stage);
+  return neighbours_of(triangulate(places, k_tile, threads, stage), places);
 }
 
 /// The cells of all sites in the order of their ranks, as one list.
@@ -174,7 +170,7 @@ WeightedCells find_cells(const WeightedSites& sites, const Voronoi2dOptions& opt
   constexpr Index k_tile = 512;
   const Index tile_count = options.circles > 0 ? std::min(options.circles, count) : (count + k_tile - 1) / k_tile;
   const DiskTree tree(sites.points);
-  const voronoi2d::Cells guess = guess_cells(sites, options.threads, stage.part(0, 0.3));
+  const NeighbourLists guess = guess_neighbours(sites, options.threads, stage.part(0, 0.3));
   std::vector<CellLists> tiles(tile_count);
   struct Worker {
     CellFinder finder;

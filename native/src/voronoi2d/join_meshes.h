@@ -1,0 +1,62 @@
+#pragma once
+// Two triangulations side by side become one (L. Guibas and J. Stolfi, 1985, with exchanges instead of removals).
+
+#include <utility>
+#include <vector>
+
+#include "voronoi2d/planar_mesh.h"
+
+namespace saddleback::voronoi2d {
+
+/// Some of the triangles in arrays that many parts share, each over a range of sites. Without triangles when there are
+/// fewer than three sites or all are on one line.
+struct MeshPart {
+  Index begin, end;                           ///< sites
+  Index leftmost, rightmost, lowest, highest;
+  bool has_triangles = false;
+  std::vector<std::pair<Index, Index>> free;  ///< ranges of unused triangles; all parts have room for two a site
+
+  Index take_triangle() {
+    while (free.back().first == free.back().second) free.pop_back();
+    return 4 * free.back().first++;
+  }
+};
+
+/// Joins parts that a level or an upright line parts.
+class MeshJoiner {
+ public:
+  /// Of the mesh only the arrays matter; bit k of `twins[4 t + 3]` is set where edge k and the one beyond have one
+  /// circle. `leaving`: by site a half-edge from there, along the border for those on it.
+  MeshJoiner(const PlanarMesh& mesh, Index* leaving) : mesh_(mesh), leaving_(leaving) {}
+
+  /// True when `result` is Delaunay's triangulation of both; false when nothing was done, because neither has triangles
+  /// or no line parts them. O(changes) and as much as the border.
+  bool join(MeshPart& first, MeshPart& second, MeshPart& result);
+
+ private:
+  /// Which of the parts is to the left as seen from somewhere outside.
+  struct Sides {
+    MeshPart *left, *right;
+    Index left_end, right_end;  ///< the sites of each next to the line that parts them
+    bool is_upright;
+  };
+  bool find_sides(MeshPart& first, MeshPart& second, Sides& sides) const;
+  predicates::Sign turn(Index a, Index b, Index c) const {
+    return predicates::orient_2d(mesh_.point(a), mesh_.point(b), mesh_.point(c));
+  }
+  Index target(Index half) const { return mesh_.triangles[next_half(half)]; }
+  Index before_on_border(Index half) const;
+  Index add_triangle(MeshPart& part, Index a, Index b, Index c);
+  void set_twins(Index a, Index b);
+  void close_gap(MeshPart& result, Index left, Index right);
+  void join_sites(MeshPart& result, const MeshPart& sites, Index nearest, bool is_upright, bool is_ascending);
+  Index join_site(MeshPart& result, Index site, Index nearest);
+  void exchange(Index half);
+  void restore();
+
+  PlanarMesh mesh_;
+  Index* leaving_;
+  std::vector<Index> doubtful_, order_;
+};
+
+}  // namespace saddleback::voronoi2d
