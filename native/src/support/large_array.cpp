@@ -12,10 +12,11 @@ namespace saddleback {
 void* allocate_large(std::size_t size) {
 #ifdef __linux__
   constexpr std::size_t k_page = std::size_t{1} << 21;
-  if (size >= 2 * k_page) {
+  if (size >= k_page / 2) {
     void* const memory = std::aligned_alloc(k_page, (size + k_page - 1) / k_page * k_page);
     if (!memory) throw std::bad_alloc();
-    madvise(memory, size / k_page * k_page, MADV_HUGEPAGE);  // a wish: nothing is lost when it is not granted
+    // A wish: nothing is lost when it is not granted. The last page only where much of it is used.
+    madvise(memory, (size + k_page / 2) / k_page * k_page, MADV_HUGEPAGE);
     return memory;
   }
 #endif

@@ -38,48 +38,51 @@ Numbering strips_of(const OrderedSites& sites) {
   return result;
 }
 
-/// The half-edges that leave a site and are sides of its cell, counter-clockwise; of an open cell the last one comes
-/// from the last neighbour instead.
+/// The half-edges that leave a site and are sides of its cell, counter-clockwise, beginning with the lowest neighbour;
+/// of an open cell the last one comes from the last neighbour instead.
 class Star {
  public:
   void gather(const Triangulation& mesh, Index site) {
-    size_ = 0;
+    Index found = 0, lowest = 0;
     is_open = false;
     const Index first = mesh.leaving[site];
     Index half = first;
     do {
-      if ((mesh.twins[half | 3] >> (half & 3) & 1) == 0) add(half, mesh.corners[next_half(half)]);
-      const Index last = previous_half(half);
+      if (found + 2 > static_cast<Index>(around_.size())) grow();
+      const Index neighbour = mesh.corners[next_half(half)], last = previous_half(half);
+      const bool is_side = (mesh.twins[half | 3] >> (half & 3) & 1) == 0;
+      around_[found] = {half, neighbour};
+      lowest = is_side && neighbour < around_[lowest].neighbour ? found : lowest;
+      found += is_side;
       half = mesh.twins[last];
       if (half < 0) {
         is_open = true;
-        add(last, mesh.corners[last]);
+        around_[found++] = {last, mesh.corners[last]};
+        lowest = 0;
       }
     } while (half >= 0 && half != first);
-    if (!is_open) lowest_first();
+    for (Index i = 0, from = lowest; i < found; ++i) {
+      sides_[i] = around_[from];
+      from = from + 1 == found ? 0 : from + 1;
+    }
+    sides_[found] = sides_[0];
+    size = found;
   }
-  Index size() const { return size_; }
   Index half(Index i) const { return sides_[i].half; }
-  Index neighbour(Index i) const { return sides_[i].neighbour; }
+  Index neighbour(Index i) const { return sides_[i].neighbour; }  ///< after the last comes the first again
+
+  Index size = 0;
   bool is_open = false;
 
  private:
   struct Side {
     Index half, neighbour;
   };
-  void add(Index half, Index neighbour) {
-    if (size_ == static_cast<Index>(sides_.size())) sides_.resize(2 * sides_.size());
-    sides_[size_++] = {half, neighbour};
+  void grow() {
+    around_.resize(2 * around_.size());
+    sides_.resize(around_.size() + 1);
   }
-  void lowest_first() {
-    Index lowest = 0;
-    for (Index i = 1; i < size_; ++i) lowest = sides_[i].neighbour < sides_[lowest].neighbour ? i : lowest;
-    if (2 * size_ > static_cast<Index>(sides_.size())) sides_.resize(2 * size_);
-    std::copy_n(sides_.begin(), lowest, sides_.begin() + size_);
-    std::copy_n(sides_.begin() + lowest, size_, sides_.begin());
-  }
-  std::vector<Side> sides_ = std::vector<Side>(32);
-  Index size_ = 0;
+  std::vector<Side> around_ = std::vector<Side>(32), sides_ = std::vector<Side>(33);
 };
 
 /// A vertex of more than three cells, with three of them evenly about it, so that their circle is well determined.
@@ -91,15 +94,16 @@ struct LargeVertex {
 struct Piece {
   Index begin, end;
   Index corners = 0, vertices = 0, edges = 0;  ///< how many come before
-  Index corners_end = 0, edges_end = 0;
   std::vector<LargeVertex> large{};
+  std::vector<Index> late_sides{}, late_corners{}, late_ends{};  ///< whose numbers are given in other pieces; 2 e + k
 };
 
 class Numberer {
  public:
   Numberer(Triangulation& mesh, const OrderedSites& sites, int threads, Numbering& result)
       : mesh_(mesh), sites_(sites), threads_(thread_count(threads)), result_(result), scratch_(threads_) {
-    constexpr Index k_small = 2048, k_large = 8192;  // cells that stay in a core's cache; that outweigh a thread's start
+    constexpr Index k_small = 2048,
+                    k_large = 8192;  // cells that stay in a core's cache; that outweigh a thread's start
     const Index count = sites.count(), size = threads_ == 1 ? k_small : k_large;
     for (Index begin = 0; begin < count; begin += size) pieces_.push_back({begin, std::min(count, begin + size)});
   }
@@ -116,8 +120,7 @@ class Numberer {
       for (Piece& piece : pieces_) {
         stage.update(0.7 * piece.begin / static_cast<double>(count));
         start_after(piece, all);
-        add_to(all, number_piece(piece, scratch_[0]));
-        resolve(piece);
+        add_to(all, number_piece(piece, 0, scratch_[0]));
       }
     } else {
       std::vector<Counts> counts(pieces_.size());
@@ -126,7 +129,8 @@ class Numberer {
         start_after(pieces_[i], all);
         add_to(all, counts[i]);
       }
-      for_pieces(stage.part(0.2, 0.6), [&](Index i, int thread) { number_piece(pieces_[i], scratch_[thread]); });
+      for_pieces(stage.part(0.2, 0.6),
+                 [&](Index i, int thread) { number_piece(pieces_[i], pieces_[i].begin, scratch_[thread]); });
       for_pieces(stage.part(0.6, 0.7), [&](Index i, int) { resolve(pieces_[i]); });
     }
     result_.offsets.back() = all.corners;
@@ -144,7 +148,8 @@ class Numberer {
   /// A worker's memory.
   struct Scratch {
     Star star;
-    std::vector<Index> around, triangles;
+    std::vector<Index> around, triangles;  ///< of a large vertex: sites and places of its triangles' number
+    std::vector<Index> own, numbers;       ///< of a cell: corners or sides that it gives a number to; of its corners
   };
 
   static void start_after(Piece& piece, const Counts& before) {
@@ -165,16 +170,11 @@ class Numberer {
 
   bool is_flat(Index half) const { return (mesh_.twins[half | 3] >> (half & 3) & 1) != 0; }
 
-  /// Whether no site about the vertex behind side i is below the star's own. For vertices of more than three cells
-  /// fills in the sites and the triangles about them.
-  bool is_own(Index site, Index i, Scratch& scratch) const {
-    const Star& star = scratch.star;
-    const Index next = star.neighbour(i + 1 == star.size() ? 0 : i + 1), half = star.half(i);
-    if (std::min(star.neighbour(i), next) < site) return false;
+  /// The vertex behind a half-edge, of more than three cells. Returns the lowest site about it.
+  Index go_around(Index half, Scratch& scratch) const {
     scratch.around.clear();
-    if (mesh_.twins[half | 3] == 0) return true;
     scratch.triangles.clear();
-    Index walk = half, lowest = site;
+    Index walk = half, lowest = mesh_.corners[half];
     do {
       lowest = std::min(lowest, mesh_.corners[walk]);
       scratch.around.push_back(mesh_.corners[walk]);
@@ -185,75 +185,135 @@ class Numberer {
         scratch.triangles.push_back(walk | 3);
       }
     } while (walk != half);
-    return lowest == site;
+    return lowest;
+  }
+
+  bool is_large(Index half) const { return mesh_.twins[half | 3] != 0; }
+
+  /// Which of the items up to `count` satisfy a condition that is hard to predict, into `scratch.own`.
+  template <class Condition>
+  static Index select(Index count, Scratch& scratch, Condition&& is_wanted) {
+    if (count > static_cast<Index>(scratch.own.size())) scratch.own.resize(2 * count);
+    Index found = 0;
+    for (Index i = 0; i < count; ++i) {
+      scratch.own[found] = i;
+      found += is_wanted(i);
+    }
+    return found;
+  }
+  static Index select_own_corners(Index site, Scratch& scratch) {
+    const Star& star = scratch.star;
+    return select(star.size - star.is_open, scratch,
+                  [&](Index i) { return std::min(star.neighbour(i), star.neighbour(i + 1)) > site; });
+  }
+  static Index select_own_sides(Index site, Scratch& scratch) {
+    const Star& star = scratch.star;
+    return select(star.size, scratch, [&](Index i) { return star.neighbour(i) > site; });
   }
 
   Counts count_in(const Piece& piece, Scratch& scratch) const {
     Counts counts;
-    const Star& star = scratch.star;
     for (Index site = piece.begin; site < piece.end; ++site) {
       scratch.star.gather(mesh_, site);
-      counts.corners += star.size();
-      for (Index i = 0; i < star.size(); ++i) counts.edges += star.neighbour(i) > site;
-      for (Index i = 0; i < star.size() - star.is_open; ++i) counts.vertices += is_own(site, i, scratch);
+      counts.corners += scratch.star.size;
+      counts.edges += select_own_sides(site, scratch);
+      const Index own = select_own_corners(site, scratch);
+      for (Index k = 0; k < own; ++k) {
+        const Index half = scratch.star.half(scratch.own[k]);
+        counts.vertices += !is_large(half) || go_around(half, scratch) == site;
+      }
     }
     return counts;
   }
 
-  /// Until `resolve`, sides whose edge is numbered elsewhere hold ~ the half-edge where its number will be, corners and
-  /// ends of edges the place of their triangle's number.
-  Counts number_piece(Piece& piece, Scratch& scratch) {
-    const Star& star = scratch.star;
-    Index corner = piece.corners, vertex = piece.vertices, edge = piece.edges;
+  /// Cells from `known` on have their numbers when it is this piece's turn.
+  Counts number_piece(Piece& piece, Index known, Scratch& scratch) {
+    Counts at{piece.corners, piece.vertices, piece.edges};
     for (Index site = piece.begin; site < piece.end; ++site) {
       scratch.star.gather(mesh_, site);
-      result_.offsets[site] = corner;
-      Index before = star.is_open ? k_none : star.half(star.size() - 1) | 3;
-      for (Index i = 0; i < star.size(); ++i, ++corner) {
-        const Index half = star.half(i), place = star.is_open && i + 1 == star.size() ? k_none : half | 3;
-        if (place != k_none && is_own(site, i, scratch)) add_vertex(piece, place, vertex++, scratch);
-        result_.corner_vertices[corner] = place;
-        const Index other = star.neighbour(i);
-        result_.side_edges[corner] = other < site ? ~half : edge;
-        if (other > site) {
-          const Index twin = mesh_.twins[half];
-          mesh_.twins[twin < 0 ? half : twin] = ~edge;
-          result_.edge_vertices[edge] = {before, place};
-          result_.edge_sites[edge] = {sites_.original[site], sites_.original[other]};
-          ++edge;
-        }
-        before = place;
-      }
+      result_.offsets[site] = at.corners;
+      number_vertices(piece, site, at.vertices, scratch);
+      write_corners(piece, site, known, at.corners, scratch);
+      write_sides(piece, site, known, at, scratch);
+      at.corners += scratch.star.size;
     }
-    piece.corners_end = corner;
-    piece.edges_end = edge;
-    return {corner - piece.corners, vertex - piece.vertices, edge - piece.edges};
+    return {at.corners - piece.corners, at.vertices - piece.vertices, at.edges - piece.edges};
   }
 
-  void add_vertex(Piece& piece, Index place, Index vertex, const Scratch& scratch) {
-    if (scratch.around.empty()) {
-      mesh_.corners[place] = vertex;
-      return;
+  void number_vertices(Piece& piece, Index site, Index& vertex, Scratch& scratch) {
+    const Index own = select_own_corners(site, scratch);
+    for (Index k = 0; k < own; ++k) {
+      const Index half = scratch.star.half(scratch.own[k]);
+      if (!is_large(half)) {
+        mesh_.corners[half | 3] = vertex++;
+      } else if (go_around(half, scratch) == site) {
+        for (const Index place : scratch.triangles) mesh_.corners[place] = vertex;
+        const std::size_t size = scratch.around.size();
+        piece.large.push_back({vertex, {site, scratch.around[size / 3], scratch.around[2 * size / 3]}});
+        ++vertex;
+      }
     }
-    for (const Index triangle : scratch.triangles) mesh_.corners[triangle] = vertex;
-    const std::size_t size = scratch.around.size();  // the first is the cell that owns the vertex
-    piece.large.push_back({vertex, {scratch.around[0], scratch.around[size / 3], scratch.around[2 * size / 3]}});
+  }
+
+  void write_corners(Piece& piece, Index site, Index known, Index corner, Scratch& scratch) {
+    const Star& star = scratch.star;
+    if (star.size >= static_cast<Index>(scratch.numbers.size())) scratch.numbers.resize(2 * star.size + 1);
+    Index* const numbers = scratch.numbers.data() + 1;  // and the last one again before the first
+    for (Index i = 0; i < star.size - star.is_open; ++i) {
+      const Index place = star.half(i) | 3;
+      const Index lowest = is_large(place) && known > 0 ? go_around(star.half(i), scratch)
+                                                        : std::min(star.neighbour(i), star.neighbour(i + 1));
+      if (std::min(lowest, site) < known) {
+        numbers[i] = late(place);
+        piece.late_corners.push_back(corner + i);
+      } else {
+        numbers[i] = mesh_.corners[place];
+      }
+    }
+    if (star.is_open) numbers[star.size - 1] = k_none;
+    numbers[-1] = numbers[star.size - 1];
+    std::copy_n(numbers, star.size, result_.corner_vertices.begin() + corner);
+  }
+
+  static Index late(Index place) { return -2 - place; }
+
+  void write_sides(Piece& piece, Index site, Index known, Counts& at, Scratch& scratch) {
+    const Star& star = scratch.star;
+    const Index* const numbers = scratch.numbers.data() + 1;
+    for (Index i = 0; i < star.size; ++i) {
+      const bool is_late = star.neighbour(i) < known;
+      if (is_late) piece.late_sides.push_back(at.corners + i);
+      result_.side_edges[at.corners + i] = is_late ? star.half(i) : ~mesh_.twins[star.half(i)];  // or see below
+    }
+    const Index own = select_own_sides(site, scratch);
+    for (Index k = 0; k < own; ++k) {
+      const Index i = scratch.own[k], edge = at.edges++, half = star.half(i), twin = mesh_.twins[half];
+      result_.side_edges[at.corners + i] = edge;
+      mesh_.twins[twin < 0 ? half : twin] = ~edge;
+      std::array<Index, 2> ends{numbers[i - 1], numbers[i]}, beside{site, star.neighbour(i)};
+      if (ends[0] == k_none) {
+        std::swap(ends[0], ends[1]);
+        std::swap(beside[0], beside[1]);
+      }
+      for (Index end = 0; end < 2; ++end)
+        if (ends[end] < k_none) piece.late_ends.push_back(2 * edge + end);
+      result_.edge_vertices[edge] = ends;
+      result_.edge_sites[edge] = {sites_.original[beside[0]], sites_.original[beside[1]]};
+    }
   }
 
   void resolve(const Piece& piece) {
-    for (Index corner = piece.corners; corner < piece.corners_end; ++corner) {
-      Index &side = result_.side_edges[corner], &vertex = result_.corner_vertices[corner];
-      if (side < 0) side = ~mesh_.twins[~side];
-      if (vertex != k_none) vertex = mesh_.corners[vertex];
+    for (const Index side : piece.late_sides) {
+      Index& edge = result_.side_edges[side];
+      edge = ~mesh_.twins[edge];
     }
-    for (Index edge = piece.edges; edge < piece.edges_end; ++edge) {
-      std::array<Index, 2>& ends = result_.edge_vertices[edge];
-      for (Index& end : ends)
-        if (end != k_none) end = mesh_.corners[end];
-      if (ends[0] == k_none) {
-        std::swap(ends[0], ends[1]);
-        std::swap(result_.edge_sites[edge][0], result_.edge_sites[edge][1]);
-      }
+    for (const Index corner : piece.late_corners) {
+      Index& vertex = result_.corner_vertices[corner];
+      vertex = mesh_.corners[late(vertex)];
+    }
+    for (const Index end : piece.late_ends) {
+      Index& vertex = result_.edge_vertices[end / 2][end % 2];
+      vertex = mesh_.corners[late(vertex)];
     }
   }
 
@@ -264,8 +324,9 @@ class Numberer {
     if (has_large) leave_out_flat_triangles();
     LargeArray<Index>().swap(mesh_.twins);  // the vertices can have the room
     result_.vertices.resize(count);
+    const double unscale = 1 / sites_.scale;  // of a power of two: exact
     const auto place = [&](Index vertex, Index a, Index b, Index c) {
-      result_.vertices[vertex] = circumcentre(point(a), point(b), point(c)) / sites_.scale;
+      result_.vertices[vertex] = circumcentre(point(a), point(b), point(c)) * unscale;
     };
     for_pieces(stage, [&](Index i, int) {
       for (Index first = 8 * pieces_[i].begin; first < 8 * pieces_[i].end; first += 4) {

@@ -21,11 +21,16 @@ Index better(Index a, Index b, Less&& less) {
 
 bool MeshJoiner::find_sides(MeshPart& first, MeshPart& second, Sides& sides) const {
   const double *const x = mesh_.x, *const y = mesh_.y;
-  if (x[first.rightmost] < x[second.leftmost]) sides = {&first, &second, first.rightmost, second.leftmost, true};
-  else if (x[second.rightmost] < x[first.leftmost]) sides = {&second, &first, second.rightmost, first.leftmost, true};
-  else if (y[first.highest] < y[second.lowest]) sides = {&first, &second, first.highest, second.lowest, false};
-  else if (y[second.highest] < y[first.lowest]) sides = {&second, &first, second.highest, first.lowest, false};
-  else return false;
+  if (x[first.rightmost] < x[second.leftmost])
+    sides = {&first, &second, first.rightmost, second.leftmost, true};
+  else if (x[second.rightmost] < x[first.leftmost])
+    sides = {&second, &first, second.rightmost, first.leftmost, true};
+  else if (y[first.highest] < y[second.lowest])
+    sides = {&first, &second, first.highest, second.lowest, false};
+  else if (y[second.highest] < y[first.lowest])
+    sides = {&second, &first, second.highest, first.lowest, false};
+  else
+    return false;
   return true;
 }
 
@@ -97,12 +102,14 @@ void MeshJoiner::close_gap(MeshPart& result, Index left, Index right) {
     const bool sees_left = turn(left, right, left_tip) == Sign::positive,
                sees_right = turn(left, right, right_tip) == Sign::positive;
     if (!sees_left && !sees_right) break;
-    const bool is_left = sees_left && (!sees_right || predicates::in_circle(mesh_.point(left), mesh_.point(right),
-                                                                            mesh_.point(left_tip),
-                                                                            mesh_.point(right_tip)) != Sign::positive);
+    const bool is_left =
+        sees_left && (!sees_right || predicates::in_circle(mesh_.point(left), mesh_.point(right), mesh_.point(left_tip),
+                                                           mesh_.point(right_tip)) != Sign::positive);
     const Index half = add_triangle(result, left, right, is_left ? left_tip : right_tip);
-    if (base == k_none) first = half;
-    else set_twins(half, base);
+    if (base == k_none)
+      first = half;
+    else
+      set_twins(half, base);
     if (is_left) {
       set_twins(half + 2, left_side);
       base = half + 1;
@@ -143,8 +150,10 @@ Index MeshJoiner::join_site(MeshPart& result, Index site, Index nearest) {
     const Index from = mesh_.triangles[half], to = target(half), beyond = leaving_[to];
     const Index added = add_triangle(result, to, from, site);
     set_twins(added, half);
-    if (latest == k_none) first_new = added;
-    else set_twins(latest + 2, added + 1);
+    if (latest == k_none)
+      first_new = added;
+    else
+      set_twins(latest + 2, added + 1);
     latest = added;
     half = beyond;
   }

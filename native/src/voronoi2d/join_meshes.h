@@ -11,7 +11,7 @@ namespace saddleback::voronoi2d {
 /// Some of the triangles in arrays that many parts share, each over a range of sites. Without triangles when there are
 /// fewer than three sites or all are on one line.
 struct MeshPart {
-  Index begin, end;                           ///< sites
+  Index begin, end;  ///< sites
   Index leftmost, rightmost, lowest, highest;
   bool has_triangles = false;
   std::vector<std::pair<Index, Index>> free;  ///< ranges of unused triangles; all parts have room for two a site

@@ -83,31 +83,44 @@ class TileSweeper {
     return true;
   }
 
-  // From the circle's order of sites to ranks.
+  // From the circle's order of sites to ranks; triangles by their lowest ones, so that those about a site are together.
   void take(MeshPart& part, const PlanarMesh& mesh) {
-    const Index shift = 8 * part.begin;
-    Index *const corners = result_.corners.data() + shift, *const twins = result_.twins.data() + shift,
+    const Index begin = part.begin, shift = 2 * begin;
+    ranks_.resize(mesh.site_count);
+    for (Index k = 0; k < mesh.site_count; ++k) ranks_[k] = begin + circle_.position(k);
+    sort_triangles(mesh, begin);
+    Index *const corners = result_.corners.data(), *const twins = result_.twins.data(),
                  *const leaving = result_.leaving.data();
-    std::fill(leaving + part.begin, leaving + part.end, k_none);
+    std::fill(leaving + begin, leaving + part.end, k_none);
     border_.clear();
-    for (Index first = 0; first < mesh.half_end(); first += 4) {
+    for (Index t = 0; t < mesh.triangle_count; ++t) {
+      const Index to = 4 * (shift + places_[t]);
       Index flags = 0;
       for (Index k = 0; k < 3; ++k) {
-        const Index half = first + k, site = part.begin + circle_.position(mesh.triangles[half]);
-        corners[half] = site;
-        twins[half] = mesh.twins[half] + shift;
-        leaving[site] = half + shift;
+        const Index half = 4 * t + k, twin = mesh.twins[half], site = ranks_[mesh.triangles[half]];
+        corners[to + k] = site;
+        leaving[site] = to + k;
         flags |= circle_.is_flat[half] << k;
-        if (mesh.twins[half] == k_none) border_.push_back(half);
+        if (twin == k_none) border_.push_back(to + k);
+        twins[to + k] = twin == k_none ? k_none : 4 * (shift + places_[twin >> 2]) + (twin & 3);
       }
-      twins[first + 3] = flags;
+      twins[to + 3] = flags;
     }
-    for (const Index half : border_) {
-      twins[half] = k_none;
-      leaving[corners[half]] = half + shift;
-    }
+    for (const Index half : border_) leaving[corners[half]] = half;
     part.has_triangles = mesh.triangle_count > 0;
-    part.free = {{2 * part.begin + mesh.triangle_count, 2 * part.end}};
+    part.free = {{shift + mesh.triangle_count, 2 * part.end}};
+  }
+
+  void sort_triangles(const PlanarMesh& mesh, Index begin) {
+    places_.resize(mesh.triangle_count);
+    starts_.assign(mesh.site_count + 1, 0);
+    for (Index t = 0; t < mesh.triangle_count; ++t) {
+      const Index* const corners = mesh.triangles + 4 * t;
+      places_[t] = std::min(std::min(ranks_[corners[0]], ranks_[corners[1]]), ranks_[corners[2]]) - begin;
+      ++starts_[places_[t] + 1];
+    }
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+    for (Index& place : places_) place = starts_[place]++;
   }
 
   // Triangles turn counter-clockwise and are joined by their twins. So around each site inside they wind once or more
@@ -141,7 +154,7 @@ class TileSweeper {
   const OrderedSites& sites_;
   Triangulation& result_;
   SweepCircle circle_;
-  std::vector<Index> border_;
+  std::vector<Index> border_, ranks_, places_, starts_;
 };
 
 /// All tiles, then all pairs, from the lowest up.
@@ -149,8 +162,7 @@ class TileWork {
  public:
   TileWork(const OrderedSites& sites, std::vector<Square>& squares, Triangulation& result, int threads)
       : squares_(squares), threads_(std::min(thread_count(threads), static_cast<int>(squares.size()))) {
-    const PlanarMesh mesh{sites.x.data(),       sites.y.data(), sites.count(), result.corners.data(),
-                          result.twins.data(), 0};
+    const PlanarMesh mesh{sites.x.data(), sites.y.data(), sites.count(), result.corners.data(), result.twins.data(), 0};
     for (int i = 0; i < threads_; ++i) {
       sweepers_.emplace_back(sites, result);
       joiners_.emplace_back(mesh, result.leaving.data());

@@ -14,8 +14,8 @@ namespace saddleback::voronoi2d {
 /// triangle t to the next corner, counter-clockwise.
 struct Triangulation {
   LargeArray<Index> corners;  ///< ranks; k_none where no triangle is; 4 t + 3 is free for use
-  LargeArray<Index> twins;    ///< of half-edges, negative at the border; bit k of 4 t + 3: the triangle beyond half-edge
-                              ///< 4 t + k shares its circle
+  LargeArray<Index> twins;  ///< of half-edges, negative at the border; bit k of 4 t + 3: the triangle beyond half-edge
+                            ///< 4 t + k shares its circle
   LargeArray<Index> leaving;  ///< by rank: a half-edge from there; at the border the one along it, counter-clockwise
   bool is_line = false;       ///< no triangles: all sites are on one line
 };
