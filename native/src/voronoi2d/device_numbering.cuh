@@ -7,7 +7,7 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-/// Rows of neighbours, as Cells has them.
+/// Rows of neighbours, counter-clockwise; of an open cell from the border on.
 struct DeviceCells {
   std::int32_t count;
   const double2* at;
