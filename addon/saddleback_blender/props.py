@@ -437,6 +437,7 @@ DISTRIBUTE: dict[str, Any] = {
     ),
     "maximal": _switch("Fill", "Go on until nothing more fits, whatever the count, and prove it", False),
     "mirror": _switch("Mirror", "Mirror half of the shapes, by chance", False),
+    "bend": _switch("Bend", "Long shapes bend along the field; not with Fill", False),
     "seed": TESSELLATE["seed"],
     "field_source": _choice("Field", "Which way shapes point", FIELD_SOURCES, "PANEL"),
     "direction_attribute": _name("Attribute", "The vectors that shapes point along", "saddleback_direction"),

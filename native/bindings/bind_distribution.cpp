@@ -35,6 +35,8 @@ Args:
     size_range: (smallest, largest): every copy is scaled by another factor in this range.
     forbidden: (F,) booleans: faces that nothing may touch.
     mirror: half of the copies are mirrored, at random.
+    bend: copies bend along the field's curves, as `map_shapes` lays them when given the field: for long shapes. Needs a
+        field; not with maximal.
     tolerance: clearance of the proof, as a share of the circumradius of the smallest copy of a kind that might lie there.
     threads: 0: all cores. The result is the same for any number.
     job: progress and cancellation.
@@ -44,7 +46,8 @@ Returns:
 
 Raises:
     InputError: naming the argument: no shape; counts of another number than shapes, or negative; shares of another number,
-        negative, all zero, with maximal, or beside counts of each shape; a field of another mesh;
+        negative, all zero, with maximal, or beside counts of each shape; a field of another mesh; bend without a field
+        or with maximal;
         sizes or density of the wrong length, not finite or not positive; density zero everywhere, without counts or with
         maximal; a copy larger than the surface; everything forbidden.
     Cancelled: the job was.
@@ -57,7 +60,7 @@ Notes:
 
 /// The result, and what it was made of.
 struct Distribution {
-  py::object mesh;
+  py::object mesh, field;  ///< the field None unless they bend along it
   std::vector<Shape> shapes;
   DistributionResult result;
   py::object mapped;  ///< MappedShapes, once they have been asked for
@@ -115,7 +118,7 @@ std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& sha
                                   const py::object& field, const py::object& density, const py::object& size,
                                   const py::object& seed, const py::object& mode, bool maximal,
                                   const py::object& shares, const py::object& gap, const py::object& size_range,
-                                  const py::object& forbidden, bool mirror, const py::object& tolerance,
+                                  const py::object& forbidden, bool mirror, bool bend, const py::object& tolerance,
                                   const py::object& threads, const py::object& job) {
   auto made = std::make_unique<Distribution>();
   const Mesh& mesh = mesh_of(graph, made->mesh);
@@ -135,6 +138,8 @@ std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& sha
   options.largest = range.values[1];
   options.forbidden = as_mask(forbidden);
   options.mirror = mirror;
+  options.bend = bend;
+  made->field = bend ? field : py::none();
   options.tolerance = as_real(tolerance, "tolerance");
   options.threads = as_integer(threads, "threads");
   Job* const token = as_job(job);
@@ -152,7 +157,7 @@ py::list shapes_of(const Distribution& self) {
 py::object mapped_of(Distribution& self) {
   if (!self.mapped)
     self.mapped = py::cast(make_mapped(self.mesh, shapes_of(self), py::cast(Placements(self.result.placements)),
-                                       py::none(), py::make_tuple(0.5, 2.0), py::int_(0), py::none()));
+                                       self.field, py::make_tuple(0.5, 2.0), py::int_(0), py::none()));
   return self.mapped;
 }
 
@@ -196,6 +201,7 @@ void bind_distribution(py::module_& m) {
   bind_certificate(m);
   py::class_<Distribution>(m, "Distribution", py::module_local(), "Copies of shapes on a surface; see `distribute`.")
       .def_readonly("mesh", &Distribution::mesh, "The mesh.")
+      .def_readonly("field", &Distribution::field, "The DirectionField that copies bend along, or None.")
       .def_property_readonly("shapes", &shapes_of, "List of the Shapes.")
       .def_property_readonly(
           "placements", [](const Distribution& self) { return Placements(self.result.placements); },
@@ -231,8 +237,8 @@ void bind_distribution(py::module_& m) {
         py::arg("field") = py::none(), py::arg("density") = py::none(), py::arg("size") = 1.0, py::arg("seed") = 0,
         py::arg("mode") = "random", py::arg("maximal") = false, py::kw_only(), py::arg("shares") = py::none(),
         py::arg("gap") = 0.0, py::arg("size_range") = py::make_tuple(1.0, 1.0), py::arg("forbidden") = py::none(),
-        py::arg("mirror") = false, py::arg("tolerance") = 0.01, py::arg("threads") = 0, py::arg("job") = py::none(),
-        k_distribute_doc);
+        py::arg("mirror") = false, py::arg("bend") = false, py::arg("tolerance") = 0.01, py::arg("threads") = 0,
+        py::arg("job") = py::none(), k_distribute_doc);
 }
 
 }  // namespace saddleback::bindings

@@ -152,6 +152,21 @@ def test_shares_are_kept_even_where_room_runs_out(counts) -> None:
         assert result.stop_reason == "tired"
 
 
+def test_long_copies_bend_along_the_field() -> None:
+    mesh, field = plane(True)
+    strap = sb.Shape(np.array([[-1, -0.1], [1, -0.1], [1, 0.1], [-1, 0.1]]))
+    for gap in (0.0, 0.004):
+        result = sb.distribute(mesh, strap, 60, field, size=0.11, bend=True, gap=gap, seed=3)
+        assert len(result) > 40 and result.field is field
+        report = sb.check_distribution(mesh, result, samples=50_000)
+        assert report.ok, report
+        alone = sb.map_shapes(mesh, result.shapes, result.placements, field)
+        assert all(np.array_equal(result.outline(i)[0], alone.outline(i)[0]) for i in range(0, len(result), 7))
+    straight = sb.distribute(mesh, strap, 60, field, size=0.11, seed=3)
+    bent = sb.map_shapes(mesh, straight.shapes, straight.placements, field)
+    assert straight.field is None and not sb.check_distribution(mesh, bent, samples=10_000).ok
+
+
 def test_copies_point_along_the_field() -> None:
     mesh, field = ring()
     placements = sb.distribute(mesh, CRESCENT, field=field, size=0.1).placements
@@ -317,6 +332,8 @@ REFUSED = {
     "shares negative": ({"shapes": [STAR, DISK], "shares": [1, -1]}, r"shares: -1 at \[1\]"),
     "shares and maximal": ({"shares": [1], "maximal": True}, "shares: a surface that is full"),
     "shares and counts": ({"shapes": [STAR, DISK], "shares": [1, 1], "counts": [1, 1]}, "counts has a value"),
+    "bend without a field": ({"bend": True, "field": None}, "bend: wanted a field"),
+    "bend and maximal": ({"bend": True, "maximal": True}, "bend: that nothing more fits"),
     "size of another length": ({"size": [1.0, 2.0]}, "size has 2 values"),
     "size zero": ({"size": 0.0}, "size is 0"),
     "larger than the surface": ({"size": 100.0}, "larger than the surface"),

@@ -97,6 +97,12 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
     templates = tuple(sized(template) for template in request.templates)
     shapes = [sb.Shape(*[list(part) for part in template.parts]) for template in templates]
     field = _field(request, mesh, progress, cache)
+    bends = settings.bend and not settings.maximal
+    if settings.bend and settings.maximal:
+        progress.note("Shapes that fill the surface do not bend along the field")
+    if bends and field is None:
+        with progress.stage(0.2, "making a field to bend along") as job:
+            field = sb.direction_field(mesh, 2, job=job)
 
     def graph() -> Any:
         choice = GraphChoice("NORMAL", 0)
@@ -113,6 +119,7 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         "gap": settings.gap,
         "mode": settings.packing,
         "mirror": settings.mirror,
+        "bend": bends,
         "maximal": settings.maximal,
         "seed": settings.seed,
     }
@@ -144,7 +151,7 @@ def _mapped(laid: Laid, request: DistributeRequest, progress: Progress, cache: C
     def lay() -> Any:
         with progress.stage(0.85, "cutting outlines out of the surface") as job:
             return native.load().map_shapes(
-                laid.mesh, laid.shapes, laid.result.placements, threads=request.threads, job=job
+                laid.mesh, laid.shapes, laid.result.placements, laid.result.field, threads=request.threads, job=job
             )
 
     return cache.get(("mapped shapes", *laid.key), lay, lambda found: BYTES_PER_SHAPE * len(found))

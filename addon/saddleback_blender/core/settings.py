@@ -177,6 +177,7 @@ class DistributeSettings(DensitySettings):
     packing: float = 0.0  # 0 = by chance, 1 = side by side
     maximal: bool = False  # go on until nothing more fits, whatever the count
     mirror: bool = False  # half of them
+    bend: bool = False  # along the field, unless they fill the surface
     seed: int = 0
     field_source: str = "PANEL"  # PANEL, ATTRIBUTE, NONE = the smoothest lines
     direction_attribute: str = "saddleback_direction"

@@ -222,6 +222,9 @@ def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Objec
     layout.prop(settings, "gap")
     layout.prop(settings, "packing")
     layout.prop(settings, "mirror")
+    row = layout.row()
+    row.active = not settings.maximal
+    row.prop(settings, "bend")
     layout.prop(settings, "seed")
     layout.prop(settings, "field_source")
     if settings.field_source == "ATTRIBUTE":

@@ -36,6 +36,9 @@ struct DistributionOptions {
   /// 0: in random order; 1: one beside the other in a front that sweeps over the surface, denser by a quarter and more.
   double packing = 0;
   bool mirror = false;  ///< half of the copies are mirrored, at random
+  /// Copies bend along the field: they are laid along its curves (see centre_line), as map_shapes lays them when given
+  /// the field. Needs a field, and is not for maximal.
+  bool bend = false;
   /// Goes on until nothing more fits, and proves it: see Certificate.
   bool maximal = false;
   /// Clearance of that proof, as a share of the circumradius of the smallest copy of a kind that might lie there.
@@ -78,18 +81,18 @@ struct DistributionResult {
   Certificate certificate;
 };
 
-/// Lays copies of shapes on a surface, by the exponential map, so that their outlines on the mesh have no common point:
-/// every copy is accepted only after the exact test of its outline, cut at the edges of the faces, against those
-/// already there. Candidates come in a random order (or that of a sweep) and each that finds room stays, as if one
-/// after the other: the same result for any number of threads (Blelloch, Fineman and Shun, Greedy sequential maximal
-/// independent set and matching are parallel on average, 2012). Where the surface is covered is found by subdivision
-/// (after Ebeida and others, Efficient maximal Poisson-disk sampling, 2011, for outlines instead of disks). Distances
-/// are within the surface: sheets that lie close to each other know nothing of each other.
-/// \throw InputError naming the argument: no shape; counts of another number than shapes or negative; a field of
-/// another mesh; sizes, density or forbidden of the wrong length, not finite, not positive (density: negative or zero
-/// everywhere); a range of sizes that is none; a copy larger than the surface; a negative gap; packing outside 0 to 1;
-/// a tolerance outside 0.001 to 0.5; shares of another number than shapes, negative, all zero, or with maximal; a
-/// density without counts, or with maximal; everything forbidden. Cancelled.
+/// Lays copies of shapes on a surface, by the exponential map or along the field's curves, so that their outlines on
+/// the mesh have no common point: every copy is accepted only after the exact test of its outline, cut at the edges of
+/// the faces, against those already there. Candidates come in a random order (or that of a sweep) and each that finds
+/// room stays, as if one after the other: the same result for any number of threads (Blelloch, Fineman and Shun, Greedy
+/// sequential maximal independent set and matching are parallel on average, 2012). Where the surface is covered is
+/// found by subdivision (after Ebeida and others, Efficient maximal Poisson-disk sampling, 2011, for outlines instead
+/// of disks). Distances are within the surface: sheets that lie close to each other know nothing of each other. \throw
+/// InputError naming the argument: no shape; counts of another number than shapes or negative; a field of another mesh;
+/// sizes, density or forbidden of the wrong length, not finite, not positive (density: negative or zero everywhere); a
+/// range of sizes that is none; a copy larger than the surface; a negative gap; packing outside 0 to 1; a tolerance
+/// outside 0.001 to 0.5; shares of another number than shapes, negative, all zero, or with maximal; bend without a
+/// field or with maximal; a density without counts, or with maximal; everything forbidden. Cancelled.
 DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
                               Job* job = nullptr);
 

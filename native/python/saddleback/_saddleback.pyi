@@ -972,6 +972,8 @@ class Distribution:
     @property
     def mesh(self) -> Mesh: ...
     @property
+    def field(self) -> DirectionField | None: ...
+    @property
     def shapes(self) -> list[Shape]: ...
     @property
     def placements(self) -> Placements: ...
@@ -1003,6 +1005,7 @@ def distribute(
     size_range: ArrayLike = ...,
     forbidden: ArrayLike | None = None,
     mirror: bool = False,
+    bend: bool = False,
     tolerance: SupportsFloat = 0.01,
     threads: SupportsIndex = 0,
     job: Job | None = None,

@@ -98,6 +98,9 @@ void check(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOp
   if (!options.forbidden.empty() &&
       std::all_of(options.forbidden.begin(), options.forbidden.end(), [](std::uint8_t v) { return v != 0; }))
     throw InputError("forbidden: no face is left for a shape");
+  if (options.bend && !options.field) throw InputError("bend: wanted a field to bend along");
+  if (options.bend && options.maximal)
+    throw InputError("bend: that nothing more fits is proved for copies that do not bend; leave maximal out");
   if (!(options.gap >= 0) || !std::isfinite(options.gap))
     throw InputError(message("gap is ", options.gap, ", but must be finite and not negative"));
   if (!(options.packing >= 0 && options.packing <= 1))

@@ -98,8 +98,11 @@ void Laying::attempt(const Candidate& candidate, Attempt& attempt, int thread) c
 
 void Laying::test(Attempt& attempt, OutlineMapper& mapper) const {
   Placement placement = attempt.copy.placement;
+  const std::optional<CentreLine> line = rules_->line(placement);
   placement.mirrored = false;  // the body is
-  const MapFailure failure = mapper.map(attempt.copy.body->shape.loops(), placement, attempt.outline);
+  const auto loops = attempt.copy.body->shape.loops();
+  const MapFailure failure =
+      line ? mapper.map_along(loops, placement, *line, attempt.outline) : mapper.map(loops, placement, attempt.outline);
   attempt.outcome = outcome_of(failure);
   if (attempt.outcome != Outcome::laid) return;
   const auto is_forbidden = [&](Index face) { return !forbidden_.empty() && forbidden_[face]; };

@@ -26,6 +26,8 @@ PlacingRules::PlacingRules(const Mesh& mesh, std::span<const Shape> shapes, cons
     : mesh_(&mesh),
       flat_(mesh, options.threads),
       field_(&field),
+      shapes_(shapes),
+      bends_(options.bend),
       size_(options.size),
       smallest_factor_(options.smallest),
       largest_factor_(options.largest) {
@@ -88,6 +90,12 @@ Copy PlacingRules::copy(Index kind, const SurfacePoint& centre, double field_ang
   const Kind& what = kinds_[kind];
   const double angle = field_angle + 2 * std::numbers::pi * what.turn / field_->symmetry();
   return {{what.shape, centre, angle, scale, what.is_mirrored}, &body(kind, scale), 0};
+}
+
+std::optional<CentreLine> PlacingRules::line(const Placement& placement) const {
+  if (!bends_) return std::nullopt;
+  // Of the shape itself, not of what holds the gap: the line that it will be laid along in the end.
+  return centre_line(*field_, placement, box_of(shapes_[static_cast<std::size_t>(placement.shape)].loops(), placement));
 }
 
 double PlacingRules::size_at(Index face, const Vec2& weights) const {

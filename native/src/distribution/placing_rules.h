@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "saddleback/centre_line.h"
 #include "saddleback/distribution.h"
 
 #include "body.h"
@@ -69,6 +70,8 @@ class PlacingRules {
   /// A copy of the kind at a point where the field has this angle.
   Copy copy(Index kind, const SurfacePoint& centre, double field_angle, double scale) const;
   double field_angle(const SurfacePoint& point) const { return field_->angle_at(point); }
+  /// What a copy bends along; none where it does not.
+  std::optional<CentreLine> line(const Placement& placement) const;
   /// By how much the points of a copy move when its centre does within the cell.
   Motion motion(const CellView& view, double factor) const {
     return {view.radius, factor * (view.size * view.angle_spread + view.size_spread)};
@@ -81,6 +84,8 @@ class PlacingRules {
   const Mesh* mesh_;
   FlatFaces flat_;
   const DirectionField* field_;
+  std::span<const Shape> shapes_;
+  bool bends_;
   std::vector<double> size_;
   double smallest_factor_, largest_factor_;
   std::vector<double> radii_, inradii_, areas_;  ///< per shape

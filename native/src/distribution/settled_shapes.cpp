@@ -36,6 +36,7 @@ SettledShapes::SettledShapes(const Mesh& mesh, const FlatFaces& flat, double lea
       reach_(most),
       rings_(1 + std::clamp(static_cast<int>(std::ceil(std::log2(most / least) - 1e-9)), 0, k_most_rings - 1)),
       buckets_(mesh, least + most),
+      start_heads_(static_cast<std::size_t>(mesh.face_count()), k_none),
       piece_heads_(static_cast<std::size_t>(buckets_.count()), k_none),
       place_heads_(static_cast<std::size_t>(buckets_.count()) * rings_, k_none) {}
 
@@ -71,36 +72,26 @@ bool SettledShapes::is_within_another(const OutlinePiece& piece) const {
   });
 }
 
-/// Whoever lies within is met at the centre, however the outline runs.
+/// Whoever lies within begins in a face that the outline holds.
 bool SettledShapes::holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
-  const SurfacePoint& centre = copy.placement.centre;
   const ShapeMap& plane = mapper.plane();
-  return visit(centre.face, {centre.barycentric[1], centre.barycentric[2]}, copy.radius(),
-               [&](Index other, const Vec2&, const Eigen::Matrix2d&) {
-                 for (std::size_t i = start_begins_[other];
-                      i < (static_cast<std::size_t>(other) + 1 < start_begins_.size() ? start_begins_[other + 1]
-                                                                                      : starts_.size());
-                      ++i) {
-                   const auto& [face, weights] = starts_[i];
-                   const Triangle& corners = mesh_->triangles()[face];
-                   if (!plane.has(corners[0]) || !plane.has(corners[1]) || !plane.has(corners[2])) continue;
-                   const Vec2 place = plane.coordinates(corners[0]) * (1 - weights.x() - weights.y()) +
-                                      plane.coordinates(corners[1]) * weights.x() +
-                                      plane.coordinates(corners[2]) * weights.y();
-                   if (copy.body->shape.contains(place / copy.placement.scale) &&
-                       std::find(outline.faces.begin(), outline.faces.end(), face) != outline.faces.end())
-                     return true;
-                 }
-                 return false;
-               });
+  for (const Index face : outline.faces)
+    for (Index i = start_heads_[face]; i != k_none; i = starts_[i].next) {
+      const Triangle& corners = mesh_->triangles()[face];
+      const Vec2& weights = starts_[i].weights;
+      const Vec2 place = plane.coordinates(corners[0]) * (1 - weights.x() - weights.y()) +
+                         plane.coordinates(corners[1]) * weights.x() + plane.coordinates(corners[2]) * weights.y();
+      if (copy.body->shape.contains(mapper.given(place))) return true;
+    }
+  return false;
 }
 
 void SettledShapes::add(const Copy& copy, const SurfaceOutline& outline) {
   copies_.push_back(copy);
-  start_begins_.push_back(starts_.size());
   for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop) {
     const OutlinePiece& piece = outline.pieces[outline.loop_begins[loop]];
-    starts_.push_back({piece.face, piece.begin});
+    starts_.push_back({piece.begin, start_heads_[piece.face]});
+    start_heads_[piece.face] = static_cast<Index>(starts_.size()) - 1;
   }
   for (const OutlinePiece& piece : outline.pieces)
     buckets_.visit(piece.face, piece.begin.cwiseMin(piece.end), piece.begin.cwiseMax(piece.end), [&](Index bucket) {

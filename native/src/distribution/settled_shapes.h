@@ -72,8 +72,8 @@ class SettledShapes {
   };
   static constexpr Index k_block = 1 << 15;
   struct Start {
-    Index face;
     Vec2 weights;
+    Index next;
   };
 
   /// Copies are listed by how large something has to be to meet them: in ring k up to the circumradius least * 2^k.
@@ -94,8 +94,8 @@ class SettledShapes {
   int rings_;
   FaceBuckets buckets_;
   std::vector<Copy> copies_;
-  std::vector<std::size_t> start_begins_;         ///< per copy, of its loops
   std::vector<Start> starts_;                     ///< a point of every loop
+  std::vector<Index> start_heads_;                ///< per face
   std::vector<Index> piece_heads_, place_heads_;  ///< per bucket, of places per ring
   std::vector<Piece> pieces_;
   std::vector<std::unique_ptr<Place[]>> places_;  ///< in blocks, which never move

@@ -1,5 +1,7 @@
 #include "simplify_outward.h"
 
+#include <algorithm>
+#include <cmath>
 #include <queue>
 #include <tuple>
 
@@ -44,6 +46,7 @@ class Simplifier {
       is_hole_.push_back(predicates::twice_area(loops[l]) < 0);
     }
     alive_ = static_cast<Index>(corners_.size());
+    make_grid();
     for (Index i = 0; i < alive_; ++i) propose(i);
   }
 
@@ -107,6 +110,37 @@ class Simplifier {
     changes_.push({0.5 * std::abs(cross(p - place(b), place(c) - place(b))), b, version, Change::extend});
   }
 
+  /// Edges are found by the squares of a grid that their boxes meet. Those that have changed are entered again.
+  void make_grid() {
+    if (corners_.empty()) return;
+    Vec2 low = corners_[0].place, high = low;
+    for (const Corner& corner : corners_) low = low.cwiseMin(corner.place), high = high.cwiseMax(corner.place);
+    side_ = std::clamp(static_cast<Index>(std::sqrt(static_cast<double>(corners_.size()))), Index{1}, Index{128});
+    low_ = low;
+    per_unit_ = side_ / std::max(1e-300, (high - low).maxCoeff());
+    squares_.resize(static_cast<std::size_t>(side_) * side_);
+    for (Index i = 0; i < static_cast<Index>(corners_.size()); ++i) enter(i);
+  }
+
+  /// Calls visit(square) for those that meet the box, until it gives false; then returns false.
+  template <class Visit>
+  bool visit_squares(const Vec2& low, const Vec2& high, Visit visit) {
+    const auto at = [&](double x) { return static_cast<Index>(std::clamp(x * per_unit_, 0.0, side_ - 1.0)); };
+    const Index right = at(high.x() - low_.x()), top = at(high.y() - low_.y());
+    for (Index j = at(low.y() - low_.y()); j <= top; ++j)
+      for (Index i = at(low.x() - low_.x()); i <= right; ++i)
+        if (!visit(squares_[static_cast<std::size_t>(j) * side_ + i])) return false;
+    return true;
+  }
+
+  void enter(Index i) {
+    const Vec2 &s = place(i), &e = place(corners_[i].after);
+    visit_squares(s.cwiseMin(e), s.cwiseMax(e), [i](std::vector<Index>& square) {
+      square.push_back(i);
+      return true;
+    });
+  }
+
   void renew(Index i) {
     ++corners_[i].version;
     propose(i);
@@ -123,15 +157,15 @@ class Simplifier {
 
   /// Whether a triangle holds nothing of the loops but the corners named, and no edge touches its side from p to q but
   /// those that end there or at the corner `at`, which goes.
-  bool is_free(const Vec2 (&triangle)[3], const Vec2& p, const Vec2& q, Index at, Index also) const {
+  bool is_free(const Vec2 (&triangle)[3], const Vec2& p, const Vec2& q, Index at, Index also) {
     const Vec2 low = triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]);
     const Vec2 high = triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2]);
     const bool flip = turn(triangle[0], triangle[1], triangle[2]) == Sign::negative;
-    for (Index i = 0; i < static_cast<Index>(corners_.size()); ++i) {
-      if (!corners_[i].is_alive) continue;
+    const auto is_clear = [&](Index i) {
+      if (!corners_[i].is_alive) return true;
       const Vec2 &s = place(i), &e = place(corners_[i].after);
-      if ((s.array() < low.array() && e.array() < low.array()).any()) continue;
-      if ((s.array() > high.array() && e.array() > high.array()).any()) continue;
+      if ((s.array() < low.array() && e.array() < low.array()).any()) return true;
+      if ((s.array() > high.array() && e.array() > high.array()).any()) return true;
       const bool goes = i == at || i == also;
       if (!goes && s != p && s != q) {
         bool inside = true;
@@ -143,9 +177,11 @@ class Simplifier {
       }
       const bool ends_here =
           goes || corners_[i].after == at || corners_[i].after == also || s == p || s == q || e == p || e == q;
-      if (!ends_here && predicates::segments_touch(s, e, p, q)) return false;
-    }
-    return true;
+      return ends_here || !predicates::segments_touch(s, e, p, q);
+    };
+    return visit_squares(low, high, [&](const std::vector<Index>& square) {
+      return std::all_of(square.begin(), square.end(), is_clear);
+    });
   }
 
   void cut(Index b) {
@@ -153,6 +189,7 @@ class Simplifier {
     const bool is_flat = turn(place(a), place(b), place(c)) == Sign::zero;
     if (!is_flat && !is_free({place(a), place(b), place(c)}, place(a), place(c), b, b)) return;
     remove(b);
+    enter(a);
     renew(corners_[a].before);
     renew(a);
     renew(c);
@@ -166,6 +203,8 @@ class Simplifier {
     if (!is_free({place(b), p, place(c)}, p, place(d), b, c)) return;
     corners_[b].place = p;
     remove(c);
+    enter(a);
+    enter(b);
     renew(corners_[a].before);
     renew(a);
     renew(b);
@@ -184,6 +223,10 @@ class Simplifier {
   std::vector<Index> sizes_;
   std::vector<bool> is_hole_;
   Index alive_ = 0;
+  Vec2 low_;  ///< of the grid
+  double per_unit_ = 1;
+  Index side_ = 1;
+  std::vector<std::vector<Index>> squares_;
   std::priority_queue<Change, std::vector<Change>, std::greater<>> changes_;
 };
 
