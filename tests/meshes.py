@@ -183,6 +183,29 @@ def subdivide(vertices: Floats, triangles: Indices) -> Arrays:
     return np.concatenate([vertices, vertices[edges].mean(axis=1)]), split.reshape(-1, 3).astype(np.int32)
 
 
+def refined(vertices: Floats, triangles: Indices, within: NDArray[np.bool_]) -> Arrays:
+    """Edges between two vertices of a set (V,) are halved; faces with some of them become two, three or four."""
+    ends = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    edges, inverse = np.unique(ends, axis=0, return_inverse=True)
+    is_halved = within[edges].all(axis=1)
+    middle = np.where(is_halved, len(vertices) + np.cumsum(is_halved) - 1, -1)[inverse.reshape(3, -1).T]
+    count = (middle >= 0).sum(axis=1)
+    # Turned so that one halved edge comes first, or one whole edge last.
+    first = np.where(count == 2, np.argmin(middle >= 0, axis=1) + 1, np.argmax(middle >= 0, axis=1))
+    turned = (np.arange(3) + first[:, None]) % 3
+    p, q, r = np.take_along_axis(triangles, turned, 1).T
+    x, y, z = np.take_along_axis(middle, turned, 1).T
+    kinds = (
+        ((p, q, r),),
+        ((p, x, r), (x, q, r)),
+        ((x, q, y), (p, x, y), (p, y, r)),
+        ((p, x, z), (x, q, y), (z, y, r), (x, y, z)),
+    )
+    faces = [np.stack(t, axis=1)[count == number] for number, kind in enumerate(kinds) for t in kind]
+    halves = vertices[edges[is_halved]].mean(axis=1)
+    return np.concatenate([vertices, halves]), np.concatenate(faces).astype(np.int32)
+
+
 def torus(around: int = 36, tube: int = 14, radius: float = 1.0, tube_radius: float = 0.35) -> Arrays:
     """About z, outward."""
     u, v = np.meshgrid(2 * np.pi * np.arange(tube) / tube, 2 * np.pi * np.arange(around) / around)

@@ -267,10 +267,23 @@ std::vector<const SurfaceCurve*> as_curves(const py::object& curves) {
   return result;
 }
 
+/// What is shown is never written again: Python's pointer to it is not const, for want of a holder that is.
+std::shared_ptr<RelaxationStep> latest_step(const RelaxationWatch& watch) {
+  return std::const_pointer_cast<RelaxationStep>(watch.latest());
+}
+
+RelaxationWatch* as_watch(const py::object& watch) {
+  if (watch.is_none()) return nullptr;
+  if (!py::isinstance<RelaxationWatch>(watch))
+    throw InputError(message("watch: wanted a RelaxationWatch, got a ", Py_TYPE(watch.ptr())->tp_name));
+  return &py::cast<RelaxationWatch&>(watch);
+}
+
 Relaxed relax(const py::object& graph, const py::object& sites, const py::object& count, const py::object& density,
               const std::string& method, const py::object& max_iterations, const py::object& tolerance,
               const py::object& seed, const std::string& start, const py::object& fixed, const py::object& curves,
-              const py::object& held, bool return_when_cancelled, const py::object& threads, const py::object& job) {
+              const py::object& held, bool return_when_cancelled, const py::object& watch, const py::object& threads,
+              const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   ArrayIn<double> weights;
@@ -287,6 +300,7 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
                                          .max_iterations = as_integer(max_iterations, "max_iterations"),
                                          .tolerance = as_real(tolerance, "tolerance"),
                                          .return_when_cancelled = return_when_cancelled,
+                                         .watch = as_watch(watch),
                                          .threads = as_integer(threads, "threads")};
   const std::uint64_t number = as_seed(seed, "seed");
   Job* const token = as_job(job);
@@ -368,6 +382,8 @@ held : (n,) int array, optional
     With `sites`: the curve that each is held on, -1 for free ones. Held sites begin at the nearest points of their curves.
 return_when_cancelled : bool
     When the job is cancelled during the iterations, return the best found so far instead of raising.
+watch : RelaxationWatch, optional
+    Shown the start and each iteration, for another thread to look at meanwhile.
 threads : int
     0: all cores. The result does not depend on it.
 job : Job, optional
@@ -497,6 +513,22 @@ void bind_cells(py::module_& m) {
 
 void bind_tessellation(py::module_& m) {
   bind_cells(m);
+  py::class_<RelaxationStep, std::shared_ptr<RelaxationStep>>(
+      m, "RelaxationStep", py::module_local(),
+      "The sites after some iteration of a relaxation; from `RelaxationWatch.latest`.")
+      .def_property_readonly(
+          "sites", [](const RelaxationStep& step) { return step.sites; }, "(n,) SurfacePoints.")
+      .def_property_readonly(
+          "iterations", [](const RelaxationStep& step) { return step.iterations; }, "How many were done; 0: the start.")
+      .def_property_readonly(
+          "energy", [](const RelaxationStep& step) { return step.energy; }, "As in `CentroidalVoronoi.energy`.");
+  py::class_<RelaxationWatch>(m, "RelaxationWatch", py::module_local(),
+                              R"(Shows the sites of a relaxation while it goes on in another thread.
+
+Pass it as ``watch=`` to `centroidal_voronoi`. Coarse cells that make the start are not shown.)")
+      .def(py::init<>())
+      .def("latest", &latest_step, "The `RelaxationStep` that was reached, None before the first. O(1).");
+
   py::class_<Relaxed>(m, "CentroidalVoronoi", py::module_local(), "Even cells; made by `centroidal_voronoi`.")
       .def_property_readonly(
           "sites", [](const Relaxed& r) { return r.result.sites; }, "SurfacePoints (n).")
@@ -533,8 +565,8 @@ void bind_tessellation(py::module_& m) {
         py::arg("density") = py::none(), py::arg("method") = "lbfgs", py::arg("max_iterations") = 100,
         py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("start") = "auto",
         py::arg("fixed") = py::none(), py::arg("curves") = py::none(), py::arg("held") = py::none(),
-        py::arg("return_when_cancelled") = false, py::arg("threads") = 0, py::arg("job") = py::none(),
-        k_centroidal_doc);
+        py::arg("return_when_cancelled") = false, py::arg("watch") = py::none(), py::arg("threads") = 0,
+        py::arg("job") = py::none(), k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

@@ -18,7 +18,7 @@ from saddleback_blender.bridge.mesh_in import read_surface
 from saddleback_blender.core import cache
 from saddleback_blender.core.settings import DistanceSettings, TessellateSettings
 from saddleback_blender.ops.distance import SADDLEBACK_OT_distance
-from saddleback_blender.ops.tessellate import SADDLEBACK_OT_tessellate
+from saddleback_blender.ops.tessellate import SADDLEBACK_OT_relax_live, SADDLEBACK_OT_tessellate
 
 ESC = SimpleNamespace(type="ESC", value="PRESS", ctrl=False, oskey=False)
 TIMER = SimpleNamespace(type="TIMER", value="NOTHING", ctrl=False, oskey=False)
@@ -68,6 +68,22 @@ def press(kind, defaults, **options):
 
 def pressed_tessellate(**options):
     return press(SADDLEBACK_OT_tessellate, TessellateSettings(), **options)
+
+
+def pressed_live(**options):
+    return press(SADDLEBACK_OT_relax_live, TessellateSettings(), **options)
+
+
+def wait_for_lines(operator, context, seconds=60.0):
+    """Sends timer events until lines are seen; returns the object that shows them."""
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        assert operator.modal(context, TIMER) == {"PASS_THROUGH"}
+        shown = bpy.data.objects.get("Saddleback Live")
+        if shown is not None and len(shown.data.edges):
+            return shown
+        time.sleep(0.01)
+    raise AssertionError("nothing was shown")
 
 
 def run_to_end(operator, context, seconds=60.0):
@@ -243,3 +259,53 @@ def test_a_second_run_uses_what_a_stopped_one_finished():
     assert cache.shared.builds["graph"] == 1
     bpy.ops.saddleback.tessellate(count=20, iterations=2)
     assert cache.shared.builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1}
+
+
+ENTER = SimpleNamespace(type="RET", value="PRESS", ctrl=False, oskey=False)
+
+
+def test_a_live_run_shows_moving_cells_and_escape_leaves_nothing(item):
+    before = fingerprint()
+    operator, context = pressed_live(count=60, iterations=5000, method="LLOYD", k=30)
+    assert operator.invoke(context, None) == {"RUNNING_MODAL"}
+    shown = wait_for_lines(operator, context)
+
+    def places():
+        found = np.empty(3 * len(shown.data.vertices), np.float32)
+        shown.data.vertices.foreach_get("co", found)
+        return found
+
+    first = places()
+    deadline = time.monotonic() + 30
+    while np.array_equal(places(), first):
+        assert time.monotonic() < deadline, "nothing moved"
+        operator.modal(context, TIMER)
+        time.sleep(0.005)
+    assert abs(places().reshape(-1, 3)[:, 2]).max() < 1e-6  # on the grid
+    task = operator._task
+    assert operator.modal(context, ESC) == {"CANCELLED"}
+    task.join()
+    assert operator.messages == [("INFO", "Stopped; nothing was changed")]
+    assert "Saddleback Live" not in bpy.data.objects and context.timers == 0
+    assert fingerprint() == before
+
+
+def test_enter_keeps_the_cells_as_they_are(item):
+    operator, context = pressed_live(count=60, iterations=5000, method="LLOYD", k=30)
+    operator.invoke(context, None)
+    wait_for_lines(operator, context)
+    assert operator.modal(context, ENTER) == {"RUNNING_MODAL"}
+    assert run_to_end(operator, context) == {"FINISHED"}
+    assert "until it was stopped" in operator.messages[-1][1] and "60 cells" in operator.messages[-1][1]
+    assert set(attribute(item, "saddleback_cell")) == set(range(60))
+    assert "Saddleback Live" not in bpy.data.objects and "Saddleback Live" not in bpy.data.meshes
+
+
+def test_a_live_run_that_ends_by_itself_is_the_script_s(item):
+    operator, context = pressed_live(count=30, iterations=5, k=30)
+    operator.invoke(context, None)
+    assert run_to_end(operator, context) == {"FINISHED"}
+    found = attribute(item, "saddleback_cell")
+    cache.shared.clear()
+    bpy.ops.saddleback.relax_live(count=30, iterations=5, k=30)
+    np.testing.assert_array_equal(attribute(item, "saddleback_cell"), found)

@@ -108,6 +108,47 @@ def test_cancelled_with_what_there_is() -> None:
     assert relaxed.cells.areas.sum() == pytest.approx(mesh.area, rel=1e-9)
 
 
+def test_a_watch_shows_every_step() -> None:
+    mesh = sb.Mesh(*meshes.grid(30, 30))
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    watch = sb.RelaxationWatch()
+    assert watch.latest() is None
+    relaxed = sb.centroidal_voronoi(graph, count=40, max_iterations=12, tolerance=0, start="sample", watch=watch)
+    last = watch.latest()
+    assert last is not None
+    assert (last.iterations, last.energy) == (relaxed.iterations, relaxed.energy[-1])
+    np.testing.assert_array_equal(last.sites.faces, relaxed.sites.faces)
+    np.testing.assert_array_equal(last.sites.barycentric, relaxed.sites.barycentric)
+    with pytest.raises(sb.InputError, match="watch: wanted a RelaxationWatch, got a"):
+        sb.centroidal_voronoi(graph, count=40, watch=object())  # type: ignore[arg-type]
+
+
+def test_what_is_seen_on_the_way_is_a_step_of_the_run() -> None:
+    mesh = sb.Mesh(*meshes.grid(60, 60))
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    watch, job, seen = sb.RelaxationWatch(), sb.Job(), []
+
+    def look() -> None:
+        while len(seen) < 3:
+            step = watch.latest()
+            if step is not None and (not seen or step.iterations > seen[-1].iterations):
+                seen.append(step)
+            time.sleep(0.001)
+        job.cancel()
+
+    watcher = threading.Thread(target=look)
+    watcher.start()
+    relaxed = sb.centroidal_voronoi(
+        graph, count=150, max_iterations=5000, tolerance=0, start="sample", return_when_cancelled=True, watch=watch,
+        job=job,
+    )  # fmt: skip
+    watcher.join()
+    for step in seen:
+        assert step.energy == relaxed.energy[step.iterations]
+        cells = sb.geodesic_voronoi(graph, step.sites)
+        assert len(cells.areas) == 150
+
+
 def test_the_energy_is_the_integral_of_the_squared_distance() -> None:
     """One site in the middle of the unit square: 1/6. With density 1 + x: the integral of (1 + x)^2 r^2."""
     mesh = sb.Mesh(*meshes.grid(9, 9))

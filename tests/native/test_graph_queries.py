@@ -194,6 +194,29 @@ def test_between_any_points_never_too_short_and_little_too_long(case: meshes.Cas
             assert error.mean() <= 0.006
 
 
+def test_any_point_to_any_point_on_a_locally_refined_mesh() -> None:
+    """1,000 pairs against exact distances: edges of two lengths, a factor of 40 apart."""
+    vertices, triangles = meshes.icosphere(3)
+    x, y, z = vertices.T
+    vertices = vertices * (1 + 0.15 * np.sin(5 * x) * np.sin(4 * y) * np.sin(3 * z))[:, None]
+    centre = vertices[7]
+    for level in range(5):
+        near = np.linalg.norm(vertices - centre, axis=1) < 0.8 / 1.7**level
+        vertices, triangles = meshes.refined(vertices, triangles, near)
+    mesh = sb.Mesh(vertices, triangles)
+    graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3)
+    rng = np.random.default_rng(1)
+    # Any face is as likely as another: most points lie where the mesh is fine.
+    faces, weights = rng.integers(0, mesh.face_count, 65).astype(np.int32), rng.dirichlet([1, 1, 1], 65)
+    sources, targets = sb.SurfacePoints(faces[:25], weights[:25]), sb.SurfacePoints(faces[25:], weights[25:])
+    exact = np.array([sb.ExactField(mesh, one(sources, i)).distance_to(targets) for i in range(len(sources))])
+    found = np.array([graph.distances_to(one(sources, i), targets) for i in range(len(sources))])
+    error = found / exact - 1
+    assert error.min() >= -1e-7  # stored lengths are rounded
+    assert error.max() <= 5e-3 + 0.003
+    assert error.mean() <= 8e-4
+
+
 @pytest.mark.parametrize("jitter", [0.0, 0.2])
 @pytest.mark.parametrize("accuracy", [2e-2, 5e-3])
 def test_points_and_curves_keep_to_the_accuracy(accuracy: float, jitter: float) -> None:

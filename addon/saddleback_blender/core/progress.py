@@ -19,6 +19,7 @@ class Progress:
         self._job = make_job()
         self._begin, self._end, self._reached = 0.0, 0.0, 0.0
         self._cancelled = False
+        self._can_settle = False
         self.text = ""  # what is being done, for a person to read
         self.notes: list[str] = []  # what a person should know when the run is over
 
@@ -40,6 +41,12 @@ class Progress:
         self._cancelled = True
         self._job.cancel()
 
+    def settle(self) -> bool:
+        """Asks the stage for what it has so far; says whether it is one that can give that."""
+        if self._can_settle:
+            self._job.cancel()
+        return self._can_settle
+
     def note(self, text: str) -> None:
         """Adds a sentence to be told when the run is over."""
         self.notes.append(text)
@@ -50,14 +57,21 @@ class Progress:
             raise self._cancelled_error("cancelled")
 
     @contextmanager
-    def stage(self, end: float, text: str) -> Iterator[Any]:
-        """Yields the job for one native call that takes the run up to `end`, in 0 to 1."""
+    def stage(self, end: float, text: str, can_settle: bool = False) -> Iterator[Any]:
+        """Yields the job for one native call that takes the run up to `end`, in 0 to 1.
+
+        `can_settle`: cancelling that job makes the call return early what it has.
+        """
         job = self._make_job()
         self._begin = self._end = self._reached
         self._job = job
         self.check()
         self.text = text
         self._end = end
-        yield job
+        self._can_settle = can_settle
+        try:
+            yield job
+        finally:
+            self._can_settle = False
         self._begin = self._end
         self.check()

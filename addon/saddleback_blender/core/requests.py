@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .disk_cache import DiskCache
+from .live_cells import LiveCells
 from .results import Indices, Reals
 from .settings import (
     DirectionFieldSettings,
@@ -156,6 +157,7 @@ class TessellateRequest:
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only
     find_crossings: FindCrossings | None = None  # for the lamp shell, which is not made without it
+    live: LiveCells | None = None  # shown the cells while they are relaxed
 
 
 @dataclass(frozen=True)

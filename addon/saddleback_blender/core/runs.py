@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -58,7 +59,11 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
     def solve() -> _Solved:
         return _solve(request, mesh, graph, sites, density, iterations, progress)
 
-    solved = cache.get(("cells", *key), solve, _solved_bytes)
+    if request.live is None:
+        solved = cache.get(("cells", *key), solve, _solved_bytes)
+    else:  # to be looked at, however often it ran before, and perhaps stopped on the way
+        solved = solve()
+        key = (key[0], digest(what, solved.energy, "live"))
     result = _result(request, solved, density)
     if settings.make_cells or settings.write_edge_distance:
         with progress.stage(0.98, "cutting the cells out"):
@@ -178,9 +183,15 @@ def _solve(
     energy, done, reason, normalised = np.empty(0), 0, "sites kept", None
     if points is None or iterations:
         choice = {"count": settings.count} if points is None else {"sites": points}
-        with progress.stage(0.9, "evening out the cells") as job:
+        live = request.live
+        with (
+            nullcontext() if live is None else live.follow(graph) as watch,
+            progress.stage(0.9, "evening out the cells", can_settle=live is not None) as job,
+        ):
+            # To be watched from a start that is far from even; else from coarse cells that are even already.
             cvt = sb.centroidal_voronoi(
                 graph, density=density, method=settings.method.lower(), max_iterations=iterations, seed=settings.seed,
+                start="auto" if live is None else "sample", return_when_cancelled=live is not None, watch=watch,
                 threads=request.threads, job=job, **choice,
             )  # fmt: skip
         cells = cvt.cells

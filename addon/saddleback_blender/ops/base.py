@@ -44,6 +44,8 @@ class SurfaceOperator(PolledOperator):
     settings_name: str  # of the group in Object.saddleback
     report: Callable[..., None]
 
+    keys = "ESC: stop"  # what the status bar says of a run
+
     _task: jobs.Task | None = None
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], Any]:
@@ -57,6 +59,19 @@ class SurfaceOperator(PolledOperator):
     def notes(self, result: Any) -> list[str]:
         """Sentences to warn with after a run."""
         return []
+
+    def begin_look(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
+        """Begins to show a run that goes on in a thread."""
+
+    def look(self) -> None:
+        """Shows what is new, at every look at the thread."""
+
+    def end_look(self) -> None:
+        """Takes away what was shown."""
+
+    def keeps(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+        """Whether the event asks for what the run has so far."""
+        return False
 
     def figures(self, result: Any) -> list[str]:
         """Lines of numbers that the panel shows after a run."""
@@ -84,6 +99,7 @@ class SurfaceOperator(PolledOperator):
         manager = context.window_manager
         self._timer = manager.event_timer_add(TIMER_STEP, window=context.window)
         manager.modal_handler_add(self)
+        self.begin_look(context, source)
         self._show(context)
         return {"RUNNING_MODAL"}
 
@@ -100,7 +116,10 @@ class SurfaceOperator(PolledOperator):
             self._leave(context)
             return self._end(context, task)
         if event.type == "TIMER":
+            self.look()
             self._show(context)
+        if self.keeps(context, event) and task.progress.settle():
+            return {"RUNNING_MODAL"}
         # Undo would take the file from under the run; everything else (turning the view, say) goes its way.
         is_undo = event.type == "Z" and (event.ctrl or event.oskey)
         return {"RUNNING_MODAL"} if is_undo else {"PASS_THROUGH"}
@@ -169,7 +188,7 @@ class SurfaceOperator(PolledOperator):
         task = self._task
         if task is not None and context.workspace is not None:
             context.workspace.status_text_set(
-                f"Saddleback: {task.text} {100 * task.progress.fraction:.0f}%    ESC: stop"
+                f"Saddleback: {task.text} {100 * task.progress.fraction:.0f}%    {self.keys}"
             )
             jobs.redraw(context)
 
@@ -177,6 +196,7 @@ class SurfaceOperator(PolledOperator):
         """Ends the watching: timer, status bar, panel."""
         if self._task is None:
             return
+        self.end_look()
         jobs.finish(self._task)
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)

@@ -12,6 +12,7 @@ import numpy as np
 from .. import prefs
 from ..bridge.crossings import find_crossings
 from ..bridge.density import read_density
+from ..bridge.live_preview import LivePreview
 from ..bridge.mesh_in import mesh_of, read_surface
 from ..bridge.out_attributes import write_vertex_attributes
 from ..bridge.out_cells import CELLS_ROLE, vanished_cells, write_cells
@@ -26,6 +27,7 @@ from ..bridge.source import shared_mesh_warning
 from ..core import runs
 from ..core.errors import BadInputError
 from ..core.figures import faults_of, lines_of, shell_faults_of
+from ..core.live_cells import LiveCells
 from ..core.progress import Progress
 from ..core.requests import TessellateRequest
 from ..core.results import CellsResult
@@ -34,35 +36,21 @@ from ..props import TESSELLATE, keep_settings, settings_of
 from .base import SurfaceOperator
 
 # What the library's reasons to stop mean to a person; that all steps were done needs no word.
-ENDS = {"tolerance": " until nothing changed", "no step lowers the energy": " until nothing got better"}
+ENDS = {
+    "tolerance": " until nothing changed",
+    "no step lowers the energy": " until nothing got better",
+    "cancelled": " until it was stopped",
+}
 
 
-class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
-    """Makes cells."""
-
-    bl_idname = "saddleback.tessellate"
-    bl_label = "Tessellate"
-    bl_description = "Cover the surface of the active object with cells of even size, small where the density is high"
-    bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = dict(TESSELLATE)
+class CellsOperator(SurfaceOperator):
+    """Mixin: makes cells."""
 
     settings_name = "tessellate"
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
         """Reads everything from Blender."""
-        settings = settings_of(self, TessellateSettings)
-        _check(source, settings)
-        with mesh_of(context, source, settings.use_modifiers) as mesh:
-            request = TessellateRequest(
-                surface=read_surface(source, mesh),
-                settings=settings,
-                density=read_density(source, mesh, settings),
-                sites=read_sites(context, source, mesh, settings),
-                threads=prefs.threads(context),
-                disk=prefs.disk_cache(context, settings.cache_on_disk),
-                find_crossings=find_crossings,
-            )
-        return partial(runs.tessellate, request)
+        return _gather(context, source, settings_of(self, TessellateSettings))
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: CellsResult) -> str:
         """Writes the result into Blender."""
@@ -103,6 +91,86 @@ class SADDLEBACK_OT_tessellate(SurfaceOperator, bpy.types.Operator):
     def figures(self, result: CellsResult) -> list[str]:
         """How even the cells are."""
         return lines_of(result.figures)
+
+
+class SADDLEBACK_OT_tessellate(CellsOperator, bpy.types.Operator):
+    """Makes cells."""
+
+    bl_idname = "saddleback.tessellate"
+    bl_label = "Tessellate"
+    bl_description = "Cover the surface of the active object with cells of even size, small where the density is high"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = dict(TESSELLATE)
+
+
+class SADDLEBACK_OT_relax_live(CellsOperator, bpy.types.Operator):
+    """Makes cells and shows how they become even."""
+
+    bl_idname = "saddleback.relax_live"
+    bl_label = "Relax Live"
+    bl_description = "Tessellate, and watch the cells become even: ENTER or a click keeps them as they are, ESC stops"
+    bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = dict(TESSELLATE)
+
+    keys = "ENTER or click: keep    ESC: stop"
+
+    def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
+        """Reads everything from Blender."""
+        self._live = LiveCells()
+        return _gather(context, source, settings_of(self, TessellateSettings), self._live)
+
+    def begin_look(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
+        """Makes the object that shows the cells."""
+        self._preview = LivePreview(context, source, self.edge_radius)
+
+    def look(self) -> None:
+        """Shows the latest cells."""
+        step = self._live.newest()
+        if step is not None:
+            self._preview.show(step.lines)
+
+    def end_look(self) -> None:
+        """Takes the cells away."""
+        self._preview.remove()
+
+    def keeps(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+        """ENTER, or a click into a 3D view."""
+        return _keeps(context, event)
+
+
+def _gather(
+    context: bpy.types.Context, source: bpy.types.Object, settings: TessellateSettings, live: LiveCells | None = None
+) -> Callable[[Progress], CellsResult]:
+    _check(source, settings)
+    with mesh_of(context, source, settings.use_modifiers) as mesh:
+        request = TessellateRequest(
+            surface=read_surface(source, mesh),
+            settings=settings,
+            density=read_density(source, mesh, settings),
+            sites=read_sites(context, source, mesh, settings),
+            threads=prefs.threads(context),
+            disk=prefs.disk_cache(context, settings.cache_on_disk),
+            find_crossings=find_crossings,
+            live=live,
+        )
+    return partial(runs.tessellate, request)
+
+
+def _keeps(context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Whether the event asks for the cells as they are: ENTER, or a click into a 3D view, not on its panels."""
+    if event.value != "PRESS":
+        return False
+    if event.type != "LEFTMOUSE":
+        return event.type in ("RET", "NUMPAD_ENTER")
+    views = [area for area in context.screen.areas if area.type == "VIEW_3D"] if context.screen is not None else []
+    return any(
+        _is_over(region, event) for area in views for region in area.regions if region.type == "WINDOW"
+    ) and not any(_is_over(region, event) for area in views for region in area.regions if region.type != "WINDOW")
+
+
+def _is_over(region: bpy.types.Region, event: bpy.types.Event) -> bool:
+    x, y = event.mouse_x - region.x, event.mouse_y - region.y
+    return bool(0 <= x < region.width and 0 <= y < region.height)
 
 
 def _writes_density(settings: TessellateSettings) -> bool:
@@ -158,4 +226,4 @@ def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:
             raise BadInputError(f"'{source.name}' cannot be put on its own centres; choose another object for them")
 
 
-CLASSES = (SADDLEBACK_OT_tessellate,)
+CLASSES = (SADDLEBACK_OT_tessellate, SADDLEBACK_OT_relax_live)

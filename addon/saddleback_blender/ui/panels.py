@@ -114,6 +114,8 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
         settings = context.view_layer.objects.active.saddleback.tessellate
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.tessellate", "MOD_EXPLODE")
+        if not context.window_manager.saddleback_running:
+            layout.operator("saddleback.relax_live", icon="PLAY")
         rows.draw_sites(layout.column(), settings)
         rows.draw_quality(layout, settings)
         layout.prop(settings, "use_modifiers")

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "saddleback/geodesic_voronoi.h"
+#include "saddleback/relaxation_watch.h"
 #include "saddleback/surface_curve.h"
 
 namespace saddleback {
@@ -28,6 +29,7 @@ struct CentroidalVoronoiOptions {
   int max_iterations = 100;
   double tolerance = 1e-6;             ///< stop when the energy falls by less than this share of itself
   bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
+  RelaxationWatch* watch = nullptr;    ///< is shown the start and every iteration of the wanted number of sites
   int threads = 0;                     ///< 0: all cores; the result does not depend on it
 };
 

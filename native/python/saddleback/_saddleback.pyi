@@ -483,6 +483,20 @@ class CentroidalVoronoi:
     @property
     def normalised_energy(self) -> float: ...
 
+@final
+class RelaxationStep:
+    @property
+    def sites(self) -> SurfacePoints: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def energy(self) -> float: ...
+
+@final
+class RelaxationWatch:
+    def __init__(self) -> None: ...
+    def latest(self) -> RelaxationStep | None: ...
+
 def centroidal_voronoi(
     graph: SaddleVertexGraph,
     sites: _Points | None = None,
@@ -498,6 +512,7 @@ def centroidal_voronoi(
     curves: Sequence[SurfaceCurve] | None = None,
     held: ArrayLike | None = None,
     return_when_cancelled: bool = False,
+    watch: RelaxationWatch | None = None,
     threads: SupportsIndex = 0,
     job: Job | None = None,
 ) -> CentroidalVoronoi: ...

@@ -268,6 +268,10 @@ void Relaxation::shorten(TangentField& direction) const {
 /// Small falls, one after the other, that end a run. A quasi-Newton step may be poor and the next one good.
 int patience(RelaxationMethod method) { return method == RelaxationMethod::lbfgs ? 3 : 1; }
 
+void show(const Relaxation& relaxation, const CentroidalVoronoiOptions& options, const CentroidalVoronoi& result) {
+  if (options.watch) options.watch->show({relaxation.state().sites, result.iterations, relaxation.state().energy});
+}
+
 void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage,
            CentroidalVoronoi& result) {
   const double part = 1.0 / (options.max_iterations + 1);
@@ -284,6 +288,7 @@ void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, cons
     const double energy = relaxation.state().energy, fall = result.energy.back() - energy;
     result.energy.push_back(energy);
     ++result.iterations;
+    show(relaxation, options, result);
     small_falls = fall <= options.tolerance * energy ? small_falls + 1 : 0;
     if (small_falls < patience(options.method)) continue;
     result.converged = true;
@@ -357,6 +362,7 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   Relaxation relaxation(graph, sites, options, stage.part(0, part));
   CentroidalVoronoi result;
   result.energy.push_back(relaxation.state().energy);
+  show(relaxation, options, result);
   try {
     relax(relaxation, options, stage, result);
   } catch (const Cancelled&) {

@@ -93,6 +93,7 @@ SurfacePoints start(const SaddleVertexGraph& graph, Index count, const Centroida
   rough.max_iterations = std::min(options.max_iterations, k_most_coarse_iterations);
   rough.tolerance = std::max(options.tolerance, k_coarse_tolerance);
   rough.return_when_cancelled = false;
+  rough.watch = nullptr;
   const SurfacePoints sites = start(graph, coarse, options, seed, stage.part(0, 0.5));
   // Round thin parts coarse cells meet themselves or each other twice; where many do, they are no start for others.
   CentroidalVoronoiOptions first = rough;
