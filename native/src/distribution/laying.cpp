@@ -114,6 +114,13 @@ void Laying::test(Attempt& attempt, OutlineMapper& mapper) const {
   const ShapeMap& plane = mapper.plane();
   attempt.plane.clear();
   for (const Index vertex : plane.vertices()) attempt.plane.push_back({vertex, plane.coordinates(vertex)});
+  attempt.faces.clear();
+  for (const Index face : attempt.outline.faces) {
+    const Triangle& corners = mesh_->triangles()[face];
+    const Vec2& origin = plane.coordinates(corners[0]);
+    const Vec2 e1 = plane.coordinates(corners[1]) - origin, e2 = plane.coordinates(corners[2]) - origin;
+    attempt.faces.push_back({face, origin, rules_->flat().turn_to(face, e1, e2)});
+  }
 }
 
 void Laying::commit(Attempt& attempt) {
@@ -122,15 +129,16 @@ void Laying::commit(Attempt& attempt) {
   if (attempt.outcome == Outcome::laid) {
     const auto& faces = attempt.outline.faces;
     if (std::any_of(faces.begin(), faces.end(), [&](Index face) { return touched_[face] == batch_; })) {
-      make_pending_known(false);
       if (!mappers_[0]) mappers_[0] = std::make_unique<OutlineMapper>(*mesh_);
       test(attempt, *mappers_[0]);
     }
   }
   if (attempt.outcome == Outcome::laid) {
     attempt.copy.bend = std::max(attempt.outline.largest - 1, 1 - attempt.outline.smallest);
-    pending_.push_back({static_cast<Index>(settled_.copies().size()), std::move(attempt.plane)});
+    const auto number = static_cast<Index>(settled_.copies().size());
     settled_.add(attempt.copy, attempt.outline);
+    settled_.add_places(number, attempt.faces);
+    pending_.push_back({number, std::move(attempt.plane), attempt.outline.faces});
     ++laid_[attempt.copy.placement.shape];
     ++laid_in_all_;
     for (const Index face : attempt.outline.faces) touched_[face] = batch_;
@@ -139,17 +147,17 @@ void Laying::commit(Attempt& attempt) {
   }
 }
 
-void Laying::make_pending_known(bool in_parallel) {
+void Laying::make_pending_known() {
   // A few at a time: what is about all of them is much more than what is known about each.
   constexpr Index k_at_once = 64;
   std::vector<std::vector<FacePlace>> places(k_at_once);
   for (std::size_t begin = 0; begin < pending_.size(); begin += k_at_once) {
     const auto count = static_cast<Index>(std::min<std::size_t>(k_at_once, pending_.size() - begin));
-    parallel_for(count, in_parallel ? threads_ : 1, 4, [&](Index i, int thread) {
+    parallel_for(count, threads_, 4, [&](Index i, int thread) {
       auto& surroundings = surroundings_[thread];
       if (!surroundings) surroundings = std::make_unique<Surroundings>(*mesh_, rules_->flat());
       const Pending& pending = pending_[begin + i];
-      places[i] = surroundings->about(pending.plane, settled_.reach(settled_.copies()[pending.copy]));
+      places[i] = surroundings->about(pending.plane, pending.faces, settled_.reach(settled_.copies()[pending.copy]));
     });
     for (Index i = 0; i < count; ++i) settled_.add_places(pending_[begin + i].copy, places[i]);
   }
@@ -183,7 +191,7 @@ std::vector<Outcome> Laying::lay(std::vector<Candidate> candidates, const JobSta
       laid += is_laid ? 1 : 0;
       in_vain += has_room && !is_laid ? 1 : 0;
     }
-    make_pending_known(true);
+    make_pending_known();
     if (2 * in_vain > laid) size = std::max(k_least_batch, size / 2);
     if (8 * in_vain <= laid) size = std::min(k_largest_batch, size * 2);
   }

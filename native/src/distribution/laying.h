@@ -47,12 +47,15 @@ class Laying {
     Copy copy;
     Outcome outcome = Outcome::laid;
     SurfaceOutline outline;
-    std::vector<LaidVertex> plane;  ///< about the copy, if it has room
+    // If it has room:
+    std::vector<LaidVertex> plane;  ///< vertices about the copy
+    std::vector<FacePlace> faces;   ///< that it touches
   };
   /// A copy whose surroundings are not known yet.
   struct Pending {
     Index copy;
     std::vector<LaidVertex> plane;
+    std::vector<Index> faces;  ///< those that it touches are known
   };
 
   /// Whether another copy would be more than the shape's share.
@@ -63,7 +66,7 @@ class Laying {
   void attempt(const Candidate& candidate, Attempt& attempt, int thread) const;
   void test(Attempt& attempt, OutlineMapper& mapper) const;
   void commit(Attempt& attempt);
-  void make_pending_known(bool in_parallel);
+  void make_pending_known();
 
   const Mesh* mesh_;
   const PlacingRules* rules_;

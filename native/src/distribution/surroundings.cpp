@@ -19,8 +19,10 @@ Surroundings::Surroundings(const Mesh& mesh, const FlatFaces& flat)
       nodes_(static_cast<std::size_t>(mesh.vertex_count())),
       face_stamps_(static_cast<std::size_t>(mesh.face_count()), 0) {}
 
-const std::vector<FacePlace>& Surroundings::about(std::span<const LaidVertex> vertices, double reach) {
+const std::vector<FacePlace>& Surroundings::about(std::span<const LaidVertex> vertices, std::span<const Index> known,
+                                                  double reach) {
   begin(reach);
+  for (const Index face : known) face_stamps_[face] = stamp_;
   for (const LaidVertex& laid : vertices) put(laid.vertex, laid.place);
   spread();
   while (!turned_away_.empty()) {

@@ -30,10 +30,10 @@ class Surroundings {
  public:
   Surroundings(const Mesh& mesh, const FlatFaces& flat);
 
-  /// All faces of which something is within `reach` of the origin. The given vertices stay where they are; others
-  /// follow ring by ring outwards as those of a ShapeMap about a point do, but for the order within a ring, and the
-  /// first edge that will do is taken. The faces have no meaning after the next call. O(faces).
-  const std::vector<FacePlace>& about(std::span<const LaidVertex> vertices, double reach);
+  /// All faces of which something is within `reach` of the origin, but for the known ones. The given vertices stay
+  /// where they are; others follow ring by ring outwards as those of a ShapeMap about a point do, but for the order
+  /// within a ring, and the first edge that will do is taken. The faces have no meaning after the next call. O(faces).
+  const std::vector<FacePlace>& about(std::span<const LaidVertex> vertices, std::span<const Index> known, double reach);
 
  private:
   static constexpr int k_rings = 64;
