@@ -10,20 +10,11 @@
 
 #include "geodesics/arc_twin.h"
 #include "geodesics/disk_rows.h"
+#include "support/fresh_pages.h"
 #include "support/parallel.h"
 
 namespace saddleback {
 namespace {
-
-/// Makes the system lay fresh pages under an array, by all threads: the device's copy would wait for it.
-void touch(ArcWords& words, int threads) {
-  constexpr std::size_t k_stride = 512, k_piece = k_stride * 512;  // a page of 4 KB, and one of 2 MB
-  const auto pieces = static_cast<Index>((words.size() + k_piece - 1) / k_piece);
-  parallel_for(pieces, threads, 1, [&](Index piece, int) {
-    const std::size_t begin = static_cast<std::size_t>(piece) * k_piece, end = std::min(begin + k_piece, words.size());
-    for (std::size_t i = begin; i < end; i += k_stride) words[i] = 0;
-  });
-}
 
 /// Answers the twin's calls. What they throw waits here until the twin has come back.
 class Caller {
@@ -45,7 +36,7 @@ class Caller {
               return static_cast<Caller*>(self)->guard([=](Caller& caller) {
                 caller.offsets_.resize(caller.search_.vertices.size() + 1);
                 caller.words_.resize(static_cast<std::size_t>(words));
-                touch(caller.words_, caller.search_.threads);
+                lay_pages(std::as_writable_bytes(std::span(caller.words_)), caller.search_.threads);
                 *offsets_to = caller.offsets_.data();
                 *words_to = caller.words_.data();
               });

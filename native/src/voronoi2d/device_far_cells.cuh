@@ -10,8 +10,7 @@ namespace {
 
 /// The sign of the circle test for d, a, b, c, exactly. Unknown where a difference from d has more digits than a
 /// double.
-__device__ __noinline__ int exact_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
-                                              bool& is_known) {
+__device__ __noinline__ int exact_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d, bool& is_known) {
   using namespace predicates;
   is_known = true;
   const auto away = [&](double value, double from) {
@@ -35,8 +34,6 @@ __device__ __noinline__ int exact_circle_sign(const Point2& a, const Point2& b, 
 struct FarMemory {
   static constexpr int k_most = 192;
   std::int32_t ahead[k_most], behind[k_most];  ///< neighbours from the nearest on, one way and the other
-  unsigned open[DeviceTree::k_most_levels];    ///< children not visited yet
-  std::int32_t node[DeviceTree::k_most_levels];
 };
 
 class FarWinder {
@@ -89,11 +86,13 @@ class FarWinder {
   __device__ void for_boxes(MayHold&& may_hold, Visit&& visit) {
     const int lane = threadIdx.x % 32;
     int level = tree_.levels - 1, visits = 0;
-    if (lane == 0) memory_.open[level] = k_warp, memory_.node[level] = 0;
-    __syncwarp();
+    unsigned open[DeviceTree::k_most_levels];  // children not visited yet; the same in all lanes
+    std::int32_t node[DeviceTree::k_most_levels];
+    open[level] = k_warp;
+    node[level] = 0;
     while (level < tree_.levels) {
-      const std::int32_t child = memory_.node[level] * 32 + lane;
-      bool is_open = (memory_.open[level] >> lane & 1) && child < tree_.counts[level];
+      const std::int32_t child = node[level] * 32 + lane;
+      bool is_open = (open[level] >> lane & 1) && child < tree_.counts[level];
       double distance = 0;
       if (is_open) {
         const DeviceBox box = tree_.boxes[level][child];
@@ -110,19 +109,18 @@ class FarWinder {
       const unsigned key = is_open ? __float_as_uint(static_cast<float>(distance)) : ~0u;
       const unsigned least = __reduce_min_sync(k_warp, key);
       const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, is_open && key == least))) - 1;
-      __syncwarp();
-      if (lane == 0) memory_.open[level] = those & ~(1u << chosen);
-      const std::int32_t next = memory_.node[level] * 32 + chosen;
+      open[level] = those & ~(1u << chosen);
+      const std::int32_t next = node[level] * 32 + chosen;
       if (level > 0) {
         --level;
-        if (lane == 0) memory_.open[level] = k_warp, memory_.node[level] = next;
+        open[level] = k_warp;
+        node[level] = next;
       } else {
         if (++visits > k_most_visits) fails_ = true;
         const std::int32_t site = next * 32 + lane;
         visit(site < tree_.site_count && site != rank_ ? site : -1);
+        if (fails_) return;
       }
-      __syncwarp();
-      if (fails_) return;
     }
   }
 
@@ -131,9 +129,10 @@ class FarWinder {
   __device__ void take_better(std::int32_t site, IsBetter&& is_better, Key&& key, Take&& take) {
     const Point2 p = site >= 0 ? point(site) : site_;
     bool mine = site >= 0 && is_better(p, site);
-    while (true) {
+    for (int taken = 0; taken <= 32; ++taken) {  // each is better than the one before
       const unsigned those = __ballot_sync(k_warp, mine);
       if (those == 0 || __any_sync(k_warp, fails_)) break;
+      if (taken == 32) fails_ = true;
       const unsigned my_key = mine ? key(p) : ~0u, least = __reduce_min_sync(k_warp, my_key);
       const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, mine && my_key == least))) - 1;
       take(Point2{__shfl_sync(k_warp, p.x, chosen), __shfl_sync(k_warp, p.y, chosen)},

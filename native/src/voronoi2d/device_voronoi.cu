@@ -90,6 +90,21 @@ class CellFinder {
 /// What a diagram takes at most at once, in bytes.
 std::uint64_t bytes_needed(std::int32_t count) { return static_cast<std::uint64_t>(count) * 300 + (1 << 20); }
 
+/// The larger arrays of the answer, pinned.
+class PinnedArrays {
+ public:
+  PinnedArrays(const PlaneTwinArrays& to, const PlaneTwinSizes& sizes)
+      : corners_(to.corner_vertices, 2 * edges(sizes) * sizeof(std::int32_t)),
+        sides_(to.side_edges, 2 * edges(sizes) * sizeof(std::int32_t)),
+        edges_(to.edges, edges(sizes) * sizeof(int2)),
+        sites_(to.edge_sites, edges(sizes) * sizeof(int2)),
+        vertices_(to.vertices, static_cast<std::size_t>(sizes.vertices) * sizeof(double2)) {}
+
+ private:
+  static std::size_t edges(const PlaneTwinSizes& sizes) { return static_cast<std::size_t>(sizes.edges); }
+  PinnedRange corners_, sides_, edges_, sites_, vertices_;
+};
+
 class Builder {
  public:
   Builder(const PlaneTwinRequest& request, const PlaneTwinCaller& caller, DeviceTimes& times)
@@ -131,10 +146,12 @@ class Builder {
     PlaneTwinArrays to{};
     if (!caller_.make_room(caller_.self, diagram.sizes(), &to)) throw Stopped();
     watch.lap();
+    const PinnedArrays pinned(to, diagram.sizes());
     read(order.site_of(), to.site_of, count, stream);
     read(order.cell_places(), to.cell_places, count, stream);
     read(order.original(), to.cell_sites, static_cast<std::size_t>(order.cell_count()), stream);
     diagram.read(to);
+    check_cuda(cudaStreamSynchronize(stream), "copying the diagram");
     times_.download = watch.lap();
   }
 

@@ -1,10 +1,12 @@
 #include "voronoi2d/twin_voronoi.h"
 
+#include <algorithm>
 #include <exception>
 
 #include "saddleback/cuda_twins.h"
 #include "saddleback/error.h"
 
+#include "support/fresh_pages.h"
 #include "voronoi2d/curve_order.h"
 #include "voronoi2d/plane_twin.h"
 
@@ -14,7 +16,8 @@ namespace {
 /// Answers the twin's calls. What they throw waits here until the twin has come back.
 class Caller {
  public:
-  Caller(std::span<const Vec2> sites, const JobStage& stage) : sites_(sites), stage_(stage) {}
+  Caller(std::span<const Vec2> sites, int threads, const JobStage& stage)
+      : sites_(sites), threads_(threads), stage_(stage) {}
 
   PlaneTwinCaller calls() {
     return {this,
@@ -55,21 +58,28 @@ class Caller {
 
   PlaneTwinArrays make_room(const PlaneTwinSizes& sizes) {
     const auto edges = static_cast<std::size_t>(sizes.edges), cells = static_cast<std::size_t>(sizes.cells);
-    result_.site_of.resize(sites_.size());
-    result_.cell_places.resize(sites_.size());
-    result_.cell_sites.resize(cells);
-    result_.cell_offsets.resize(cells + 1);
-    result_.corner_vertices.resize(2 * edges);
-    result_.side_edges.resize(2 * edges);
-    result_.edges.resize(edges);
-    result_.edge_sites.resize(edges);
-    result_.vertices.resize(static_cast<std::size_t>(sizes.vertices));
+    make_room(result_.site_of, sites_.size());
+    make_room(result_.cell_places, sites_.size());
+    make_room(result_.cell_sites, cells);
+    make_room(result_.cell_offsets, cells + 1);
+    make_room(result_.corner_vertices, 2 * edges);
+    make_room(result_.side_edges, 2 * edges);
+    make_room(result_.edges, edges);
+    make_room(result_.edge_sites, edges);
+    make_room(result_.vertices, static_cast<std::size_t>(sizes.vertices));
     return {result_.site_of.data(),       result_.cell_places.data(),        result_.cell_sites.data(),
             result_.cell_offsets.data(),  result_.corner_vertices.data(),    result_.side_edges.data(),
             result_.edges.data()->data(), result_.edge_sites.data()->data(), result_.vertices.data()->data()};
   }
 
+  template <class T>
+  void make_room(LargeArray<T>& array, std::size_t size) const {
+    array.resize(size);
+    lay_pages(std::as_writable_bytes(std::span(array)), threads_);
+  }
+
   std::span<const Vec2> sites_;
+  int threads_;
   const JobStage& stage_;
   std::exception_ptr failure_;
   Voronoi2d result_;
@@ -77,7 +87,7 @@ class Caller {
 
 }  // namespace
 
-std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, const JobStage& stage) {
+std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, int threads, const JobStage& stage) {
   const CudaTwins* const twins = cuda_twins();
   if (!twins) throw DeviceError("device: the CUDA module is not loaded");
   PlaneTwinRequest request;
@@ -86,7 +96,7 @@ std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, c
   request.sites = sites.empty() ? nullptr : sites.front().data();
   request.count = static_cast<std::int32_t>(sites.size());
 
-  Caller caller(sites, stage);
+  Caller caller(sites, threads, stage);
   DeviceTimes times;
   TwinReason reason;
   const TwinStatus status = twins->find_voronoi(request, caller.calls(), times, reason);
@@ -94,7 +104,13 @@ std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, c
   if (status == TwinStatus::left) return std::nullopt;
   if (status != TwinStatus::done) throw DeviceError(message("device: ", reason.text));
   Voronoi2d result = caller.take();
-  result.sites.assign(sites.begin(), sites.end());
+  result.sites.resize(sites.size());
+  constexpr Index k_piece = 1 << 16;
+  parallel_for((static_cast<Index>(sites.size()) + k_piece - 1) / k_piece, threads, 1, [&](Index piece, int) {
+    const std::size_t begin = static_cast<std::size_t>(piece) * k_piece;
+    const std::span<const Vec2> part = sites.subspan(begin, std::min<std::size_t>(k_piece, sites.size() - begin));
+    std::copy(part.begin(), part.end(), result.sites.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
   result.device_times = times;
   return result;
 }
