@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 
 import saddleback as sb
@@ -45,13 +46,27 @@ def test_nobody_is_told_what_is_as_it_should_be(kind: str) -> None:
     assert watched.notes == []
 
 
-def test_where_the_device_fails_the_processor_builds_and_the_user_is_told() -> None:
+def diagram(watched: Progress, weights: Any = None) -> Any:
+    sites = np.random.default_rng(1).random((50, 2))
+    with watched.stage(1.0, "finding") as job:
+        return devices.plane_diagram(sites, weights, 1, watched, job)
+
+
+@pytest.mark.parametrize("work", [build, diagram])
+def test_where_the_device_fails_the_processor_does_it_and_the_user_is_told(work: Callable[[Progress], Any]) -> None:
     devices.choose(devices.CUDA, 63)
     watched = progress()
-    assert build(watched).device == "cpu"
+    assert work(watched).device == "cpu"
     (note,) = watched.notes
-    assert note.startswith("Built on the processor instead: ")
+    assert note.startswith("Done by the processor instead: ")
     assert "device:" not in note
+
+
+def test_weighted_sites_are_for_the_processor_and_nobody_is_told() -> None:
+    devices.choose(devices.CUDA, 63)
+    watched = progress()
+    assert diagram(watched, np.full(50, 0.01)).device == "cpu"
+    assert watched.notes == []
 
 
 def test_the_status_is_a_sentence() -> None:

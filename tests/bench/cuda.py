@@ -1,7 +1,7 @@
-"""Graphs on a CUDA device: `python -m tests.bench cuda MESH...`.
+"""A CUDA device: `python -m tests.bench cuda MESH...` for graphs of meshes and diagrams of the plane.
 
-The device's own clock for its parts, the wall clock for all from a `Mesh` to a graph, and the processor's time for the
-same graph; each the best of five. Files of both graphs are compared as well.
+The device's own clock for its parts, the wall clock for all from a `Mesh` or sites to the result, and the processor's
+time for the same; each the best of five. Both results are compared as well.
 """
 
 from __future__ import annotations
@@ -10,33 +10,48 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+import numpy as np
 
 import saddleback as sb
+from tests.native import plane_sites
 from tests.parity.test_graph_twin import saved
 
 RULES: tuple[dict[str, Any], ...] = ({"k": 100}, {"accuracy": 5e-3})
 TIMES = 5
-PARTS = ("upload", "find", "unite", "download")
+PARTS = ("upload", "order", "find", "unite", "download")
+PLANE = (("uniform", 10**5), ("uniform", 10**6), ("uniform", 10**7)) + tuple(
+    (kind, 10**6) for kind in ("clusters", "grid", "duplicates", "nearly_collinear")
+)
+HEAD = "".join(f"{part:>10}" for part in PARTS) + "   wall    CPU  ms, and who did what"
+
+Result = TypeVar("Result", sb.SaddleVertexGraph, sb.Voronoi2d)
 
 
-def best(build: Callable[[], sb.SaddleVertexGraph]) -> tuple[float, list[sb.SaddleVertexGraph]]:
-    """Seconds of the quickest, and all graphs."""
-    seconds, graphs = float("inf"), []
-    for _ in range(TIMES):
+def best(build: Callable[[int], Result]) -> tuple[float, list[Result]]:
+    """Seconds of the quickest, and all results."""
+    seconds, results = float("inf"), []
+    for number in range(TIMES):
         start = time.perf_counter()
-        graphs.append(build())
+        results.append(build(number))
         seconds = min(seconds, time.perf_counter() - start)
-    return seconds, graphs
+    return seconds, results
+
+
+def parts_of(twins: list[Any]) -> str:
+    times = [twin.device_times or dict.fromkeys(PARTS, float("nan")) for twin in twins]
+    return "".join(f"{1e3 * min(one[part] for one in times):10.2f}" for part in PARTS)
 
 
 def main(arguments: list[str]) -> int:
     if not any(device.kind == "cuda" for device in sb.devices()):
         print(f"Nothing to measure: {sb.cuda_status()}.")
         return 1
-    print(
-        f"{'mesh':<28} {'rule':<15}" + "".join(f"{part:>10}" for part in PARTS) + "   wall    CPU  ms, and who did what"
-    )
+    print(f"{'sites':<28} {'':<15}{HEAD}")
+    for kind, count in PLANE:
+        measure_plane(kind, count)
+    print(f"{'mesh':<28} {'rule':<15}{HEAD}")
     for name in arguments:
         mesh = sb.read_mesh(name)
         for rule in RULES:
@@ -44,14 +59,28 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
+def measure_plane(kind: str, count: int) -> None:
+    rng = np.random.default_rng(count)
+    inputs = [plane_sites.KINDS[kind](count, rng) for _ in range(TIMES)]
+    wall, twins = best(lambda number: sb.voronoi_2d(inputs[number], device="cuda"))
+    processor, diagrams = best(lambda number: sb.voronoi_2d(inputs[number], device="cpu"))
+    same = all(
+        getattr(twin, name).tobytes() == getattr(own, name).tobytes()
+        for twin, own in zip(twins, diagrams, strict=True)
+        for name in ("vertices", "edges", "edge_sites")
+    )
+    far = [twin.device_times["second_pass"] if twin.device_times else -1 for twin in twins]
+    done = "left to the processor" if min(far) < 0 else f"second pass {max(far)}, {'equal' if same else 'DIFFERENT'}"
+    print(f"{kind:<28} {count:<15,}{parts_of(twins)} {1e3 * wall:6.1f} {1e3 * processor:6.1f}  {done}", flush=True)
+
+
 def measure(name: str, mesh: sb.Mesh, rule: dict[str, Any]) -> None:
-    wall, twins = best(lambda: sb.SaddleVertexGraph(mesh, device="cuda", **rule))
-    processor, (graph, *_) = best(lambda: sb.SaddleVertexGraph(mesh, device="cpu", **rule))
-    times = [twin.device_times or {} for twin in twins]
-    parts = "".join(f"{1e3 * min(one[part] for one in times):10.2f}" for part in PARTS)
+    wall, twins = best(lambda _: sb.SaddleVertexGraph(mesh, device="cuda", **rule))
+    processor, (graph, *_) = best(lambda _: sb.SaddleVertexGraph(mesh, device="cpu", **rule))
+    parts, times = parts_of(twins), twins[0].device_times or {}
     with tempfile.TemporaryDirectory() as folder:
         same = saved(twins[0], Path(folder)) == saved(graph, Path(folder))
-    done = f"second pass {times[0]['second_pass']}, processor {times[0]['by_processor']}, "
+    done = f"second pass {times['second_pass']}, processor {times['by_processor']}, "
     done += "equal" if same else "DIFFERENT"
     how = ", ".join(f"{key}={value}" for key, value in rule.items())
     print(f"{name:<28} {how:<15}{parts} {1e3 * wall:6.1f} {1e3 * processor:6.1f}  {done}", flush=True)

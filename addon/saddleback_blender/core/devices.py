@@ -1,7 +1,8 @@
-"""Where graphs are built: what the preferences say, for the whole session. The result is the same to the bit."""
+"""Where graphs and diagrams are found: what the preferences say, for the whole session. The result is the same to the bit."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from . import native
@@ -13,7 +14,7 @@ _chosen = "auto"
 
 
 def choose(kind: str, index: int = 0) -> None:
-    """Takes effect with the next graph."""
+    """Takes effect with the next run."""
     global _chosen
     _chosen = f"cuda:{index}" if kind == CUDA else kind.lower()
 
@@ -31,10 +32,25 @@ def status() -> str:
 
 
 def build_graph(mesh: Any, options: dict[str, Any], threads: int, progress: Progress, job: Any) -> Any:
-    """A distance graph by the chosen device; where it fails the processor builds it, and the user is told."""
+    """A distance graph by the chosen device."""
     sb = native.load()
+    return by_chosen(
+        lambda device: sb.SaddleVertexGraph(mesh, **options, threads=threads, device=device, job=job), progress
+    )
+
+
+def plane_diagram(sites: Any, weights: Any, threads: int, progress: Progress, job: Any) -> Any:
+    """A Voronoi diagram by the chosen device; of weighted sites by the processor."""
+    sb = native.load()
+    if weights is not None:
+        return sb.voronoi_2d(sites, weights=weights, threads=threads, device="cpu", job=job)
+    return by_chosen(lambda device: sb.voronoi_2d(sites, threads=threads, device=device, job=job), progress)
+
+
+def by_chosen(work: Callable[[str], Any], progress: Progress) -> Any:
+    """Where the chosen device fails the processor does it, and the user is told."""
     try:
-        return sb.SaddleVertexGraph(mesh, **options, threads=threads, device=_chosen, job=job)
-    except sb.DeviceError as error:
-        progress.note(f"Built on the processor instead: {str(error).removeprefix('device: ')}")
-        return sb.SaddleVertexGraph(mesh, **options, threads=threads, device="cpu", job=job)
+        return work(_chosen)
+    except native.load().DeviceError as error:
+        progress.note(f"Done by the processor instead: {str(error).removeprefix('device: ')}")
+        return work("cpu")

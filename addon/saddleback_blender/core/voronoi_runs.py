@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import cache as cache_module
-from . import native
+from . import devices, native
 from .cache import Cache
 from .cell_mesh import CellShape
 from .darkness import places_by_density
@@ -40,7 +40,7 @@ def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | Non
     key = ("sites 2d", request.surface.key, what)
     sites = cache.get(key, lambda: _placed(request, space, progress), lambda s: s.nbytes)
     with progress.stage(0.8, "finding the cells") as job:
-        diagram = native.load().voronoi_2d(sites.places, weights=request.weights, threads=request.threads, job=job)
+        diagram = devices.plane_diagram(sites.places, request.weights, request.threads, progress, job)
     if space.frame is None:
         result = Voronoi2dResult(_lifted(request, space, sites, diagram, progress))
     else:
@@ -158,10 +158,10 @@ def _relaxed(
 
 def _relaxed_on_surface(request: Voronoi2dRequest, space: Space, sites: _Sites, progress: Progress) -> _Sites:
     """Cells of equal area on the surface, not in its map: centres of mass by area on the surface."""
-    sb, begin, steps = native.load(), progress.fraction, request.settings.iterations
+    begin, steps = progress.fraction, request.settings.iterations
     for number in range(steps):
         with progress.stage(begin + (0.7 - begin) * (number + 1) / steps, "relaxing the sites") as job:
-            diagram = sb.voronoi_2d(sites.places, threads=request.threads, job=job)
+            diagram = devices.plane_diagram(sites.places, None, request.threads, progress, job)
             centroids = space.chart.lift(diagram, threads=request.threads, job=job).centroids
             sites = sites.moved(space, np.where(np.isfinite(centroids), centroids, sites.places))
     return sites
