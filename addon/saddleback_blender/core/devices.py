@@ -1,4 +1,4 @@
-"""Where graphs and diagrams are found: what the preferences say, for the whole session. The result is the same to the bit."""
+"""Where graphs and diagrams are found: as the preferences say, for the whole session. The result is the same."""
 
 from __future__ import annotations
 
