@@ -87,14 +87,23 @@ SADDLEBACK_HOST_DEVICE inline void push_event(SweepState& s, const Event& event)
   s.events[place] = event;
 }
 
+/// The soonest of up to four events side by side; of four without branches, which could not be predicted.
+SADDLEBACK_HOST_DEVICE inline Index soonest_of(const Event* events, Index count) {
+  if (count >= 4) {
+    const Index a = events[1].radius < events[0].radius, b = 2 + (events[3].radius < events[2].radius);
+    return a + (b - a) * (events[b].radius < events[a].radius);
+  }
+  Index soonest = 0;
+  for (Index i = 1; i < count; ++i)
+    if (events[i].radius < events[soonest].radius) soonest = i;
+  return soonest;
+}
+
 SADDLEBACK_HOST_DEVICE inline void pop_event(SweepState& s) {
   const Event last = s.events[--s.event_count];
   Index place = 0;
   for (Index child = 1; child < s.event_count; child = 4 * place + 1) {
-    const Index end = child + 4 < s.event_count ? child + 4 : s.event_count;
-    Index soonest = child;
-    for (Index i = child + 1; i < end; ++i)
-      if (s.events[i].radius < s.events[soonest].radius) soonest = i;
+    const Index soonest = child + soonest_of(s.events + child, s.event_count - child);
     if (s.events[soonest].radius >= last.radius) break;
     s.events[place] = s.events[soonest];
     place = soonest;

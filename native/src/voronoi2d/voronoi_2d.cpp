@@ -23,7 +23,7 @@ using namespace voronoi2d;
 
 // Few enough sites for a core's cache.
 Index tile_size(Index count, const Voronoi2dOptions& options) {
-  constexpr Index k_good = 8000;
+  constexpr Index k_good = 2000;
   return options.circles > 0 ? std::max<Index>(1, count / options.circles) : k_good;
 }
 

@@ -128,7 +128,7 @@ class CellFinder {
 
 /// Neighbours without weights.
 NeighbourLists guess_neighbours(const WeightedSites& sites, int threads, const JobStage& stage) {
-  constexpr Index k_tile = 8000;
+  constexpr Index k_tile = 2000;
   OrderedSites places;
   places.places = sites.places;
   for (const predicates::WeightedPoint2& point : sites.points) {
