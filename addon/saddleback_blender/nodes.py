@@ -47,7 +47,7 @@ def set_tubes(item: bpy.types.Object, radius: float, material: bpy.types.Materia
     """Makes the object's edges into tubes of a radius (object units), which stays live in the modifier."""
     modifier = modifier_of(item, TUBES)
     if modifier is None:
-        modifier = _add_first(item, "Saddleback Tubes", _shared_group(TUBES))
+        modifier = add_first(item, "Saddleback Tubes", _shared_group(TUBES))
         compat.set_modifier_input(modifier, "Resolution", 8)
         compat.set_modifier_input(modifier, "Material", material)
     compat.set_modifier_input(modifier, "Radius", radius)
@@ -66,25 +66,10 @@ def set_instances(item: bpy.types.Object, instance: bpy.types.Object | None, sca
         return None
     if modifier is None:
         # Each output has a group of its own: the object stands on the node, which works alike in all versions.
-        modifier = _add_first(item, "Saddleback Instances", _new_instances_group())
+        modifier = add_first(item, "Saddleback Instances", _new_instances_group())
     info = next(node for node in modifier.node_group.nodes if node.type == "OBJECT_INFO")
     info.inputs["Object"].default_value = instance
     compat.set_modifier_input(modifier, "Scale", scale)
-    return modifier
-
-
-def set_shapes(item: bpy.types.Object, shapes: list[bpy.types.Object]) -> bpy.types.Modifier:
-    """Puts on each point the object of its class, turned and scaled by the point's attributes.
-
-    The objects stand on the nodes of a group of the output's own; one that is there already gets them anew.
-    """
-    modifier = modifier_of(item, SHAPES)
-    group = _new_shapes_group(shapes)
-    if modifier is None:
-        return _add_first(item, "Saddleback Shapes", group)
-    old, modifier.node_group = modifier.node_group, group
-    if old.users == 0:
-        bpy.data.node_groups.remove(old)
     return modifier
 
 
@@ -93,10 +78,10 @@ def set_sweep(item: bpy.types.Object, circle: bpy.types.Object, draws_circle: bo
 
     With `draws_circle` the circle itself is shown, too, about the object's origin.
     """
-    return _add_first(item, "Saddleback Sweep", _new_sweep_group(circle, draws_circle))
+    return add_first(item, "Saddleback Sweep", _new_sweep_group(circle, draws_circle))
 
 
-def _add_first(item: bpy.types.Object, name: str, group: bpy.types.NodeTree) -> bpy.types.Modifier:
+def add_first(item: bpy.types.Object, name: str, group: bpy.types.NodeTree) -> bpy.types.Modifier:
     """Adds our modifier before those of the artist, which expect its result."""
     modifier = item.modifiers.new(name, "NODES")
     modifier.node_group = group
@@ -112,7 +97,7 @@ def _shared_group(kind: str) -> bpy.types.NodeTree:
     return _new_tubes_group()
 
 
-def _new_group(name: str, kind: str) -> tuple[bpy.types.NodeTree, Any, Any]:
+def new_group(name: str, kind: str) -> tuple[bpy.types.NodeTree, Any, Any]:
     """An empty geometry group with its input and output node."""
     group = bpy.data.node_groups.new(name, "GeometryNodeTree")
     group[MARK] = kind
@@ -124,7 +109,7 @@ def _new_group(name: str, kind: str) -> tuple[bpy.types.NodeTree, Any, Any]:
     return group, source, sink
 
 
-def _place(*columns: Any) -> None:
+def lay_out(*columns: Any) -> None:
     """Lays nodes out from left to right so that the artist can read the group."""
     for x, column in enumerate(columns):
         for y, node in enumerate(column if isinstance(column, tuple) else (column,)):
@@ -133,7 +118,7 @@ def _place(*columns: Any) -> None:
 
 def _new_tubes_group() -> bpy.types.NodeTree:
     """Edges to tubes, with a ball at every vertex where a tube ends or several meet, so that joints are closed."""
-    group, source, sink = _new_group("Saddleback Tubes", TUBES)
+    group, source, sink = new_group("Saddleback Tubes", TUBES)
     radius = compat.new_group_socket(group, "Radius", "INPUT", "NodeSocketFloat")
     radius.default_value, radius.min_value = 0.01, 0.0
     resolution = compat.new_group_socket(group, "Resolution", "INPUT", "NodeSocketInt")
@@ -181,7 +166,7 @@ def _new_tubes_group() -> bpy.types.NodeTree:
     link(smooth.outputs["Geometry"], painted.inputs["Geometry"])
     link(source.outputs["Material"], painted.inputs["Material"])
     link(painted.outputs["Geometry"], sink.inputs["Geometry"])
-    _place(
+    lay_out(
         source, (to_curve, circle, neighbours, half), (sweep, is_joint, ball), joints, balls, real, joined, smooth,
         painted, sink,
     )  # fmt: skip
@@ -189,7 +174,7 @@ def _new_tubes_group() -> bpy.types.NodeTree:
 
 
 def _new_instances_group() -> bpy.types.NodeTree:
-    group, source, sink = _new_group("Saddleback Instances", INSTANCES)
+    group, source, sink = new_group("Saddleback Instances", INSTANCES)
     scale = compat.new_group_socket(group, "Scale", "INPUT", "NodeSocketFloat")
     scale.default_value, scale.min_value = 1.0, 0.0
     nodes, link = group.nodes, group.links.new
@@ -207,55 +192,18 @@ def _new_instances_group() -> bpy.types.NodeTree:
     link(source.outputs["Geometry"], points.inputs["Mesh"])
     link(points.outputs["Points"], placed.inputs["Points"])
     link(info.outputs["Geometry"], placed.inputs["Instance"])
-    link(_attribute_output(rotation), placed.inputs["Rotation"])
-    link(_attribute_output(size), scaled.inputs[0])
+    link(attribute_output(rotation), placed.inputs["Rotation"])
+    link(attribute_output(size), scaled.inputs[0])
     link(source.outputs["Scale"], scaled.inputs[1])
     link(scaled.outputs["Value"], placed.inputs["Scale"])
     link(placed.outputs["Instances"], sink.inputs["Geometry"])
-    _place((source, rotation, size), (points, info, scaled), placed, sink)
-    return group
-
-
-def _new_shapes_group(shapes: list[bpy.types.Object]) -> bpy.types.NodeTree:
-    """One Instance on Points for each class, since the order of a collection's children is not ours to tell."""
-    group, source, sink = _new_group("Saddleback Shapes", SHAPES)
-    nodes, link = group.nodes, group.links.new
-    points, joined = nodes.new("GeometryNodeMeshToPoints"), nodes.new("GeometryNodeJoinGeometry")
-    rotation, scale, kind = (nodes.new("GeometryNodeInputNamedAttribute") for _ in range(3))
-    for node, data_type, name in (
-        (rotation, "FLOAT_VECTOR", ROTATION_ATTRIBUTE),
-        (scale, "FLOAT_VECTOR", SCALE_ATTRIBUTE),
-        (kind, "INT", CLASS_ATTRIBUTE),
-    ):
-        node.data_type = data_type
-        node.inputs["Name"].default_value = name
-    link(source.outputs["Geometry"], points.inputs["Mesh"])
-    _place((source, rotation, scale, kind), points)
-    for number, shape in enumerate(shapes):
-        is_of_it, info = nodes.new("FunctionNodeCompare"), nodes.new("GeometryNodeObjectInfo")
-        is_of_it.data_type, is_of_it.operation = "INT", "EQUAL"
-        compared = {socket.name: socket for socket in is_of_it.inputs if socket.enabled}
-        compared["B"].default_value = number
-        info.inputs["Object"].default_value = shape
-        info.inputs["As Instance"].default_value = True
-        placed = nodes.new("GeometryNodeInstanceOnPoints")
-        link(_attribute_output(kind), compared["A"])
-        link(points.outputs["Points"], placed.inputs["Points"])
-        link(is_of_it.outputs["Result"], placed.inputs["Selection"])
-        link(info.outputs["Geometry"], placed.inputs["Instance"])
-        link(_attribute_output(rotation), placed.inputs["Rotation"])
-        link(_attribute_output(scale), placed.inputs["Scale"])
-        link(placed.outputs["Instances"], joined.inputs["Geometry"])
-        for column, node in enumerate((is_of_it, info, placed), 2):
-            node.location = (220 * column, -300 * number)
-    link(joined.outputs["Geometry"], sink.inputs["Geometry"])
-    joined.location, sink.location = (1100, 0), (1320, 0)
+    lay_out((source, rotation, size), (points, info, scaled), placed, sink)
     return group
 
 
 def _new_sweep_group(circle: bpy.types.Object, draws_circle: bool) -> bpy.types.NodeTree:
     """Keyframes of the circle's scale drive everything: an artist may move them."""
-    group, source, sink = _new_group("Saddleback Sweep", SWEEP)
+    group, source, sink = new_group("Saddleback Sweep", SWEEP)
     nodes, link = group.nodes, group.links.new
 
     info = nodes.new("GeometryNodeObjectInfo")
@@ -271,7 +219,7 @@ def _new_sweep_group(circle: bpy.types.Object, draws_circle: bool) -> bpy.types.
         node.inputs["Name"].default_value = attribute
         compare.data_type, compare.operation = "FLOAT", operation
         compared = {socket.name: socket for socket in compare.inputs if socket.enabled}
-        link(_attribute_output(node), compared["A"])
+        link(attribute_output(node), compared["A"])
         link(radius.outputs["X"], compared["B"])
     either = nodes.new("FunctionNodeBooleanMath")
     either.operation = "OR"
@@ -293,12 +241,12 @@ def _new_sweep_group(circle: bpy.types.Object, draws_circle: bool) -> bpy.types.
         shown = joined.outputs["Geometry"]
         drawn.location, edges.location, joined.location = (660, -440), (880, -440), (1100, 0)
     link(shown, sink.inputs["Geometry"])
-    _place((source, info), (begin, end, radius), (is_early, is_late), either, hidden)
+    lay_out((source, info), (begin, end, radius), (is_early, is_late), either, hidden)
     sink.location = (1320, 0)
     return group
 
 
-def _attribute_output(node: Any) -> Any:
+def attribute_output(node: Any) -> Any:
     """The output in use of a Named Attribute node, which has one for each type in older versions."""
     return next(socket for socket in node.outputs if socket.name == "Attribute" and socket.enabled)
 

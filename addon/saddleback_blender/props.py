@@ -447,6 +447,9 @@ DISTRIBUTE: dict[str, Any] = {
     "make_bent": _switch("Bent Copies", "Make one mesh of all shapes, bent onto the surface", True),
     "thickness": _length("Thickness", "Of shapes without a mesh: how far they rise; 0 means by their size", 0.0),
     "make_instances": _switch("Instances", "Make a mesh of points that carry rigid copies of the shapes", False),
+    "follow_surface": _switch(
+        "Follow", "Instances go with the mesh when it is deformed by an armature, shape keys or other modifiers", True
+    ),
     "make_outlines": _switch("Outlines", "Make a curve object of the shapes' outlines", False),
     "outline_radius": _length("Radius", "Half the thickness of the outlines", 0.005),
     "write_attributes": _switch(

@@ -3,6 +3,7 @@
 import bpy
 import numpy as np
 import pytest
+from mathutils import Euler
 from scenes import add_object, attribute, fingerprint, grid, grid_arrays, sphere
 from test_operators_direction_field import add_curve, vectors
 
@@ -192,3 +193,71 @@ def test_what_cannot_be_done_is_told_and_changes_nothing():
         with pytest.raises(RuntimeError, match=text):
             bpy.ops.saddleback.distribute(**settings)
         assert fingerprint() == before
+
+
+def placed(points):
+    """World matrices of the instances, by the number of their point: all are of one class."""
+    return np.array([matrix for _, matrix in instances(points)])
+
+
+def bend_by_key(item, move):
+    """Gives an object a shape key, fully on, that takes its vertices' places (n, 3) to others."""
+    item.shape_key_add(name="Basis")
+    key = item.shape_key_add(name="Bent")
+    places = np.array([vertex.co for vertex in item.data.vertices])
+    key.data.foreach_set("co", move(places).astype(np.float32).ravel())
+    key.value = 1.0
+
+
+def test_instances_go_with_a_mesh_that_turns():
+    item = host()
+    item.location, item.rotation_euler, item.scale = (1, 2, 3), (0.3, 0.4, 0.5), (2, 2, 2)
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.distribute(make_instances=True, make_bent=False, mirror=True, **FEW)
+    points = find_output(item, "shape instances")
+    before = placed(points)
+    turn = np.array(Euler((0.7, -0.4, 1.1)).to_matrix())
+    bend_by_key(item, lambda places: places @ turn.T + (0.2, 0.3, 0.4))
+    local = np.eye(4)
+    local[:3, :3], local[:3, 3] = turn, (0.2, 0.3, 0.4)
+    world = np.array(item.matrix_world)
+    np.testing.assert_allclose(placed(points), world @ local @ np.linalg.inv(world) @ before, atol=2e-5)
+
+
+def test_instances_stand_on_a_mesh_that_is_stretched_however_its_object_is_scaled():
+    item = host()
+    item.scale = (1, 2, 0.5)
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.distribute(make_instances=True, make_bent=False, shapes="STUDS", **FEW)
+    points = find_output(item, "shape instances")
+    rest = placed(points)
+    lift = rest[:, :3, 3] / (1, 2, 0.5)  # in the host's space: on a sphere, but for the chords of its faces
+    assert np.abs(np.linalg.norm(lift, axis=1) - 1).max() < 0.02
+    bend_by_key(item, lambda places: places * (1.5, 1.0, 2.0) + (0, 0, places[:, :1].mean()))
+    moved = placed(points)
+    on_sphere = moved[:, :3, 3] / (1.5, 2.0, 1.0)
+    assert np.abs(np.linalg.norm(on_sphere, axis=1) - 1).max() < 0.02
+    np.testing.assert_allclose(on_sphere, lift, atol=0.02)
+    # Rigid copies: turned with the faces, of the size that they had.
+    np.testing.assert_allclose(
+        np.linalg.norm(moved[:, :3, :3], axis=1), np.linalg.norm(rest[:, :3, :3], axis=1), rtol=1e-4
+    )
+    normals = moved[:, :3, 2] / np.linalg.norm(moved[:, :3, 2], axis=1, keepdims=True)
+    ellipsoid = moved[:, :3, 3] / np.square((1.5, 2.0, 1.0))
+    ellipsoid /= np.linalg.norm(ellipsoid, axis=1, keepdims=True)
+    assert (normals * ellipsoid).sum(axis=1).min() > 0.98
+
+
+def test_instances_stay_where_the_mesh_becomes_another_one_or_where_wanted():
+    item = host()
+    bpy.ops.saddleback.distribute(make_instances=True, make_bent=False, **FEW)
+    points = find_output(item, "shape instances")
+    before = placed(points)
+    item.modifiers.new("Fine", "SUBSURF").levels = 1
+    np.testing.assert_allclose(placed(points), before, atol=1e-6)
+    item.modifiers.clear()
+    cast = item.modifiers.new("Cast", "CAST")
+    cast.cast_type, cast.factor = "CUBOID", 1.0
+    assert np.abs(placed(points) - before).max() > 1e-4
+    bpy.ops.saddleback.distribute(make_instances=True, make_bent=False, follow_surface=False, **FEW)
+    np.testing.assert_allclose(placed(find_output(item, "shape instances")), before, atol=1e-6)

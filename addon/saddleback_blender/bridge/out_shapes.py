@@ -6,12 +6,24 @@ from collections.abc import Sequence
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from .. import compat, nodes
+from ..core.local_frames import in_frames, triangle_frames
 from ..core.quaternions import euler_of, quaternions_of, turned
-from ..core.results import DistributeResult, Indices, Reals
+from ..core.results import DistributeResult, Indices, PlacedShapes, Reals
+from ..core.settings import DistributeSettings
 from ..core.shape_colors import random_of, shape_colors
 from ..core.shape_templates import ShapeTemplate
+from ..shape_nodes import (
+    CORNER_ATTRIBUTES,
+    SHIFT_ATTRIBUTE,
+    WEIGHTS_ATTRIBUTE,
+    X_ATTRIBUTE,
+    Z_ATTRIBUTE,
+    Host,
+    set_shapes,
+)
 from .out_attributes import set_attribute, write_vertex_attributes
 from .out_collection import (
     NAME,
@@ -31,8 +43,8 @@ BENT_ROLE, INSTANCES_ROLE, OUTLINES_ROLE = "shapes", "shape instances", "shape o
 TEMPLATE_ROLE = "shape template"  # and a number: objects of ours that instances show, in no collection
 SHAPE_ATTRIBUTE, RANDOM_ATTRIBUTE, UV_NAME = "saddleback_shape", "saddleback_random", "UVMap"
 OUTLINE_DISTANCE, SHAPE_UV = "saddleback_outline_distance", "saddleback_shape_uv"
-# Of the points: where on the source each stands.
-FACE_ATTRIBUTE, WEIGHTS_ATTRIBUTE = "saddleback_triangle", "saddleback_barycentric"
+# Of the points: the triangle of the source on which each stands.
+FACE_ATTRIBUTE = "saddleback_triangle"
 FAR = 1e10  # instead of infinity, which shaders do not like
 
 
@@ -72,7 +84,7 @@ def write_instances(
     source: bpy.types.Object,
     result: DistributeResult,
     templates: Sequence[ShapeTemplate],
-    seed: int,
+    settings: DistributeSettings,
 ) -> bpy.types.Object:
     """Makes or replaces the source's instances object: a point for each shape, and a node group that shows it there."""
     placed, place = result.placed, level_place(source)
@@ -88,17 +100,34 @@ def write_instances(
         nodes.CLASS_ATTRIBUTE: placed.shape,
         nodes.ROTATION_ATTRIBUTE: euler_of(_to_place(place, placed.rotations)),
         nodes.SCALE_ATTRIBUTE: scales,
-        RANDOM_ATTRIBUTE: random_of(len(points), seed),
+        RANDOM_ATTRIBUTE: random_of(len(points), settings.seed),
         FACE_ATTRIBUTE: placed.faces,
         WEIGHTS_ATTRIBUTE: placed.barycentric,
+        **_by_triangles(place, placed, points),
     }
     for name, values in columns.items():
         set_attribute(mesh, name, "POINT", values)
     mesh.update()
     item = replace_object(context, source, INSTANCES_ROLE, mesh, place)
     remove_templates(source)
-    nodes.set_shapes(item, [_shown_object(source, number, template) for number, template in enumerate(templates)])
+    host = Host.of(source, place, result.vertex_count) if settings.follow_surface else None
+    shown = [_shown_object(source, number, template) for number, template in enumerate(templates)]
+    set_shapes(item, shown, host)
     return item
+
+
+def _by_triangles(place: Matrix, placed: PlacedShapes, points: Reals) -> dict[str, np.ndarray]:
+    """Where the shapes stand and how they are turned, as seen from the triangles that they stand on."""
+    frames = triangle_frames(placed.corner_points)
+    feet = np.einsum("ni,nij->nj", placed.barycentric, placed.corner_points)
+    x, z = (turned(placed.rotations, np.tile(axis, (len(points), 1))) for axis in ([1.0, 0, 0], [0, 0, 1.0]))
+    columns: dict[str, np.ndarray] = {
+        name: np.ascontiguousarray(placed.corners[:, i]) for i, name in enumerate(CORNER_ATTRIBUTES)
+    }
+    # Lengths are those of the world: an output's place has no scale.
+    for name, vectors in ((SHIFT_ATTRIBUTE, points - feet), (X_ATTRIBUTE, x), (Z_ATTRIBUTE, z)):
+        columns[name] = in_frames(frames, vectors)
+    return columns
 
 
 def write_outlines(

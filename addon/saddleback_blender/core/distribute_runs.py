@@ -57,6 +57,7 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
     placements = result.placements
     points, rotations, scales = mapped.frames()
     counts = np.bincount(placements.shape, minlength=len(laid.templates)).astype(np.int32)
+    corners = np.asarray(mesh.triangles)[placements.centre.faces]
     return DistributeResult(
         placed=PlacedShapes(
             shape=np.ascontiguousarray(placements.shape, np.int32),
@@ -65,7 +66,10 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
             scales=scales,
             faces=placements.centre.faces,
             barycentric=placements.centre.barycentric,
+            corners=corners if surface.used is None else surface.used[corners],
+            corner_points=surface.vertices[corners],
         ),
+        vertex_count=surface.vertex_count,
         class_counts=counts,
         text=_told(laid, counts),
         lines=_figures(laid, counts, settings.maximal),

@@ -210,6 +210,8 @@ class PlacedShapes:
     scales: Reals  # (n, 3) length of a unit of the shape's plane; y negative where it is mirrored
     faces: Indices  # (n,) of the surface's triangles
     barycentric: Reals  # (n, 3)
+    corners: Indices  # (n, 3) the triangles' vertices, numbered as in the Blender mesh
+    corner_points: Reals  # (n, 3, 3) where they are
 
 
 @dataclass(frozen=True)
@@ -240,6 +242,7 @@ class DistributeResult:
     """Shapes on a surface, and what is made of them."""
 
     placed: PlacedShapes
+    vertex_count: int  # of the Blender mesh
     class_counts: Indices  # (classes,) how many of each
     text: str  # how it went, for a person to read
     lines: tuple[str, ...]  # further figures

@@ -186,6 +186,7 @@ class DistributeSettings(DensitySettings):
     make_bent: bool = True
     thickness: float = 0.0  # of shapes without a mesh; 0 = by their size
     make_instances: bool = False
+    follow_surface: bool = True  # instances, where the mesh is deformed later
     make_outlines: bool = False
     outline_radius: float = 0.005
     write_attributes: bool = False

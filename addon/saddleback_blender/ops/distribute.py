@@ -76,7 +76,7 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
         else:
             remove_output(source, BENT_ROLE)
         if settings.make_instances:
-            write_instances(context, source, result, self._templates, settings.seed)
+            write_instances(context, source, result, self._templates, settings)
         else:
             remove_output(source, INSTANCES_ROLE)
             remove_templates(source)

@@ -463,6 +463,8 @@ class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
         row.active = settings.make_bent and settings.shapes in ("COLLECTION", "IMAGE")
         row.prop(settings, "thickness")
         layout.prop(settings, "make_instances")
+        if settings.make_instances:
+            layout.prop(settings, "follow_surface")
         layout.operator("saddleback.make_real", icon="OUTLINER_OB_MESH")
         layout.prop(settings, "make_outlines")
         row = layout.row()

@@ -1,0 +1,25 @@
+"""Places and directions told by the triangle that they belong to, so that they go with it when it moves and turns."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .results import Reals
+
+
+def triangle_frames(corners: Reals) -> Reals:
+    """(n, 3, 3) rows: along the first side, in the plane at right angles to it, along the normal, each of length 1.
+
+    `corners` (n, 3, 3) counter-clockwise from outside. O(n).
+    """
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normal = np.cross(first, second)
+    x, z = (v / np.linalg.norm(v, axis=1, keepdims=True) for v in (first, normal))
+    frames: Reals = np.stack([x, np.cross(z, x), z], axis=1)
+    return frames
+
+
+def in_frames(frames: Reals, vectors: Reals) -> Reals:
+    """(n, 3) vectors by the axes of their frames (n, 3, 3)."""
+    found: Reals = np.einsum("nij,nj->ni", frames, vectors)
+    return found
