@@ -24,6 +24,10 @@ void check_components(const Mesh& mesh, const SurfacePoints& sites) {
                            "; put at least one site on every part"));
 }
 
+std::uint64_t pair_key(Index site, Index other) {
+  return static_cast<std::uint64_t>(site) << 32 | static_cast<std::uint32_t>(other);
+}
+
 constexpr double k_unknown = -1;  ///< distance of a corner that is yet to be laid down
 
 EdgeLine line_along(const FaceClaim& claim, Index halfedge) {
@@ -51,29 +55,34 @@ struct CellClaims::Worker {
   explicit Worker(const SiteMaps& maps) : scratch(maps), known(k_known) {}
   SiteMaps::Scratch scratch;
   std::vector<Wish> wishes;
+  std::vector<const FaceClaim*> claims;
+  std::vector<Index> fresh;
   std::vector<EdgeLine> lines;
   std::vector<EdgePiece> pieces;
 
   /// A vertex beside a cell has several faces there: its last answers are kept.
   struct Known {
     Index node = k_none, site = k_none;
+    std::uint32_t round = 0;
     bool found = false;
     SiteVector vector;
   };
-  static constexpr std::size_t k_known = 256;
+  static constexpr std::size_t k_known = 1 << 15;
+  std::uint32_t round = 0;  ///< answers of earlier ones are forgotten
   std::vector<Known> known;
   const Known& find(const SiteMaps& maps, Index site, Index node) {
-    Known& entry = known[static_cast<std::size_t>(node) % k_known];
-    if (entry.node == node && entry.site == site) return entry;
+    Known& entry = known[SiteMaps::slot_of(site, node) % k_known];
+    if (entry.round == round && entry.node == node && entry.site == site) return entry;
     entry.node = node;
     entry.site = site;
+    entry.round = round;
     entry.found = maps.find(site, node, scratch, entry.vector);
     return entry;
   }
   /// Before others ask than the cells themselves.
   void forget() {
     scratch.forget();
-    std::ranges::fill(known, Known());
+    ++round;
   }
 };
 
@@ -81,9 +90,6 @@ struct CellClaims::Worker {
 /// that lays them decides, for all.
 struct CellClaims::Laid {
   std::unordered_map<std::uint64_t, SiteVector> vectors;
-  static std::uint64_t key(Index site, Index vertex) {
-    return static_cast<std::uint64_t>(site) << 32 | static_cast<std::uint32_t>(vertex);
-  }
 };
 
 CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads)
@@ -188,7 +194,7 @@ bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& wo
     const Worker::Known& known = worker.find(maps_, site, nodes[i]);
     claim.corner[i] = known.vector;
     if (known.found) continue;
-    const auto found = laid.vectors.find(Laid::key(site, nodes[i]));
+    const auto found = laid.vectors.find(pair_key(site, nodes[i]));
     if (found != laid.vectors.end())
       claim.corner[i] = found->second;
     else
@@ -208,7 +214,7 @@ void CellClaims::lay_corners(Index side, Laid& laid, FaceClaim& claim) const {
     claim.corner[end] = beyond.corner[twin % 3];
   });
   if (claim.corner[apex].distance != k_unknown) return;
-  const auto key = Laid::key(claim.site, face.nodes[apex]);
+  const auto key = pair_key(claim.site, face.nodes[apex]);
   const SiteVector beside = maps_.laid_beside(rings_.halfedge(side), claim.corner[start], claim.corner[end]);
   claim.corner[apex] = laid.vectors.try_emplace(key, beside).first->second;
 }
@@ -228,6 +234,7 @@ void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid) {
     Index& last = late_index_[claim.face];
     if (last == k_none) late_faces_.push_back(claim.face);
     late_.push_back({claim, last});
+    late_pairs_.insert(pair_key(claim.site, claim.face));
     last = static_cast<Index>(late_.size()) - 1;
   }
 }
@@ -240,6 +247,8 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
   late_index_.assign(rings_.face_count(), k_none);
   late_.clear();
   late_faces_.clear();
+  late_pairs_.clear();
+  first_fresh_ = 0;
   for (Worker& worker : workers_) worker.forget();
   std::vector<Wish> wishes = wishes_of_sites(sites);
   while (!changed.empty() || !wishes.empty()) {
@@ -254,6 +263,7 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
     std::sort(wishes.begin(), wishes.end());
     const auto same = [](const Wish& a, const Wish& b) { return a.face == b.face && a.site == b.site; };
     wishes.erase(std::unique(wishes.begin(), wishes.end(), same), wishes.end());
+    first_fresh_ = static_cast<Index>(late_.size());
     grant(wishes, laid);
     changed.clear();
     for (const Wish& wish : wishes) {
@@ -319,30 +329,41 @@ bool CellClaims::is_settled(Index face) const {
   return true;
 }
 
+/// Of the sites whose claims are new: others have wished for what they win here before, and have not won more since.
 void CellClaims::find_wishes(Index face, Worker& worker) const {
+  worker.claims.clear();
+  worker.fresh.clear();
+  visit_claims(face, [&](const FaceClaim& claim) { worker.claims.push_back(&claim); });
+  for (Index i = late_index_[face]; i != k_none && i >= first_fresh_; i = late_[i].before)
+    worker.fresh.push_back(late_[i].claim.site);
+  const auto wish = [&](Index site, Index twin) {
+    const bool is_fresh = first_fresh_ == 0 || std::ranges::find(worker.fresh, site) != worker.fresh.end();
+    if (is_fresh) wish_for({twin / 3, site, twin}, worker.wishes);
+  };
   for (Index side = 3 * face; side < 3 * face + 3; ++side) {
     const Index twin = rings_.face(face).twins[side % 3];
     if (twin == k_none) continue;
     worker.lines.clear();
-    visit_claims(face, [&](const FaceClaim& claim) { worker.lines.push_back(line_along(claim, side)); });
+    for (const FaceClaim* claim : worker.claims) worker.lines.push_back(line_along(*claim, side));
     if (worker.lines.size() == 2) {
-      for (const Index site : winners(worker.lines[0], worker.lines[1]))
-        wish_for({twin / 3, site, twin}, worker.wishes);
+      for (const Index site : winners(worker.lines[0], worker.lines[1])) wish(site, twin);
       continue;
     }
     lower_envelope(worker.lines, worker.pieces);
-    for (const EdgePiece& piece : worker.pieces) wish_for({twin / 3, piece.site, twin}, worker.wishes);
+    for (const EdgePiece& piece : worker.pieces) wish(piece.site, twin);
   }
+}
+
+bool CellClaims::is_claimed(Index face, Index site) const {
+  if (late_index_[face] != k_none && late_pairs_.contains(pair_key(site, face))) return true;
+  const Index shared = shared_index_[face];
+  return shared != k_none && std::ranges::find(claims(shared), site, &FaceClaim::site) != claims(shared).end();
 }
 
 /// A claim on the face unless it is there; on a face that one cell owned so far, one of that cell, too.
 void CellClaims::wish_for(const Wish& wish, std::vector<Wish>& wishes) const {
-  bool shared = false, known = false;
-  visit_claims(wish.face, [&](const FaceClaim& claim) {
-    shared = true;
-    known = known || claim.site == wish.site;
-  });
-  if (known || (!shared && face_site(wish.face) == wish.site)) return;
+  const bool shared = shared_index_[wish.face] != k_none || late_index_[wish.face] != k_none;
+  if (shared ? is_claimed(wish.face, wish.site) : face_site(wish.face) == wish.site) return;
   if (!shared) wishes.push_back({wish.face, face_site(wish.face), k_none});
   wishes.push_back(wish);
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "tessellation/edge_envelope.h"
@@ -115,6 +116,7 @@ class CellClaims {
   template <class Visit>
   void visit_claims(Index face, Visit&& visit) const;
   bool is_settled(Index face) const;
+  bool is_claimed(Index face, Index site) const;
   void find_wishes(Index face, Worker& worker) const;
   void wish_for(const Wish& wish, std::vector<Wish>& wishes) const;
   Index face_site(Index face) const { return maps_.label(rings_.face(face).nodes[0]); }
@@ -134,7 +136,9 @@ class CellClaims {
   };
   std::vector<Index> late_index_;  ///< by face: its last one in late_, or k_none
   std::vector<Late> late_;
+  Index first_fresh_ = 0;  ///< of late_, since faces were last looked at; 0: all claims are new
   std::vector<Index> late_faces_;
+  std::unordered_set<std::uint64_t> late_pairs_;  ///< of sites and faces
 };
 
 /// The same by the faces and vertices of the mesh. The cells must outlive it.

@@ -314,7 +314,7 @@ const SiteMaps::Place* SiteMaps::end_of_edge(Index node, Index site, Scratch* de
 
 /// Beyond edges of the site's own cell; remembered.
 bool SiteMaps::beside_own(Index node, Index site, Scratch& scratch, Place& place) const {
-  Scratch::Beside& entry = scratch.beside[static_cast<std::size_t>(node) % Scratch::k_beside];
+  Scratch::Beside& entry = scratch.beside[slot_of(site, node) % Scratch::k_beside];
   if (entry.node != node || entry.site != site) {
     entry.node = node;
     entry.site = site;

@@ -61,6 +61,11 @@ class SiteMaps {
     return {nodes_.data() + first_node_[site], nodes_.data() + first_node_[site + 1]};
   }
 
+  /// For tables of what is known of a site and a node: those next to each other fall into different slots.
+  static std::size_t slot_of(Index site, Index node) {
+    return static_cast<std::size_t>(node) + 97 * static_cast<std::size_t>(site);
+  }
+
   /// Memory of a caller that asks for more; one a thread.
   struct Scratch {
     explicit Scratch(const SiteMaps& maps)
