@@ -15,8 +15,8 @@ void* allocate_large(std::size_t size) {
   if (size >= k_page / 2) {
     void* const memory = std::aligned_alloc(k_page, (size + k_page - 1) / k_page * k_page);
     if (!memory) throw std::bad_alloc();
-    // A wish: nothing is lost when it is not granted. The last page only where much of it is used.
-    madvise(memory, (size + k_page / 2) / k_page * k_page, MADV_HUGEPAGE);
+    // A wish: nothing is lost when it is not granted. The last page only where most of it is used.
+    madvise(memory, (size + k_page / 8) / k_page * k_page, MADV_HUGEPAGE);
     return memory;
   }
 #endif

@@ -42,10 +42,10 @@ Numbering strips_of(const OrderedSites& sites) {
 /// of an open cell the last one comes from the last neighbour instead.
 class Star {
  public:
-  void gather(const Triangulation& mesh, Index site) {
+  /// `first`: any half-edge from the site, at the border the one along it.
+  void gather(const Triangulation& mesh, Index first) {
     Index found = 0, lowest = 0;
     is_open = false;
-    const Index first = mesh.leaving[site];
     Index half = first;
     do {
       if (found + 2 > static_cast<Index>(around_.size())) grow();
@@ -110,6 +110,7 @@ class Numberer {
 
   void run(const JobStage& stage) {
     const std::size_t count = sites_.count();
+    result_.offsets = std::move(mesh_.leaving);  // until it is a cell's turn, a half-edge from its site
     result_.offsets.resize(count + 1);
     result_.corner_vertices.resize(6 * count);
     result_.side_edges.resize(6 * count);
@@ -214,7 +215,7 @@ class Numberer {
   Counts count_in(const Piece& piece, Scratch& scratch) const {
     Counts counts;
     for (Index site = piece.begin; site < piece.end; ++site) {
-      scratch.star.gather(mesh_, site);
+      scratch.star.gather(mesh_, result_.offsets[site]);
       counts.corners += scratch.star.size;
       counts.edges += select_own_sides(site, scratch);
       const Index own = select_own_corners(site, scratch);
@@ -230,7 +231,7 @@ class Numberer {
   Counts number_piece(Piece& piece, Index known, Scratch& scratch) {
     Counts at{piece.corners, piece.vertices, piece.edges};
     for (Index site = piece.begin; site < piece.end; ++site) {
-      scratch.star.gather(mesh_, site);
+      scratch.star.gather(mesh_, result_.offsets[site]);
       result_.offsets[site] = at.corners;
       number_vertices(piece, site, at.vertices, scratch);
       write_corners(piece, site, known, at.corners, scratch);

@@ -219,6 +219,7 @@ Triangulation triangulate(const OrderedSites& sites, Index tile_size, int thread
   }
   result.corners.resize(static_cast<std::size_t>(8) * count);
   result.twins.resize(static_cast<std::size_t>(8) * count);
+  result.leaving.reserve(count + 1);  // one more, for who takes the memory over
   result.leaving.resize(count);
   SquareTree tree(sites.places, count, tile_size);
   TileWork(sites, tree.squares(), result, threads).run(stage);

@@ -46,9 +46,11 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
   OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
   Triangulation triangulation =
       triangulate(ordered, tile_size(ordered.count(), options), options.threads, stage.part(0.1, 0.7));
-  LargeArray<std::uint32_t>().swap(ordered.places);
+  LargeArray<std::uint32_t>().swap(ordered.places);  // others can have the room
+  const bool are_distinct = ordered.original.size() == sites.size();
+  if (are_distinct) LargeArray<Index>().swap(ordered.site_of);
   Numbering numbering = number(std::move(triangulation), ordered, options.threads, stage.part(0.7, 0.95));
-  LargeArray<double>().swap(ordered.x);  // the copies below can have the room
+  LargeArray<double>().swap(ordered.x);
   LargeArray<double>().swap(ordered.y);
 
   Voronoi2d result;
@@ -61,8 +63,12 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
     if (rank % 65536 == 0) stage.check();
     result.cell_places[ordered.original[rank]] = rank;
   }
-  for (std::size_t i = 0; i < sites.size() && ordered.original.size() < sites.size(); ++i)
-    result.cell_places[i] = result.cell_places[ordered.site_of[i]];
+  if (are_distinct) {
+    ordered.site_of.resize(sites.size());
+    std::iota(ordered.site_of.begin(), ordered.site_of.end(), 0);
+  } else {
+    for (std::size_t i = 0; i < sites.size(); ++i) result.cell_places[i] = result.cell_places[ordered.site_of[i]];
+  }
   result.site_of = std::move(ordered.site_of);
   result.cell_sites = std::move(ordered.original);
   result.cell_offsets = std::move(numbering.offsets);
