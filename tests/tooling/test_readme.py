@@ -30,9 +30,9 @@ def test_the_blender_example_names_what_the_addon_has():
     (example,) = (code for code in examples() if "import bpy" in code)
     compile(example, "README.md", "exec")
     (call,) = re.findall(r"bpy\.ops\.saddleback\.(\w+)\((.*?)\)\n", example)
-    source = (ROOT / "addon/saddleback_blender/ops" / f"{call[0]}.py").read_text() + (
-        ROOT / "addon/saddleback_blender/props.py"
-    ).read_text()
+    addon = ROOT / "addon/saddleback_blender"
+    files = [addon / "ops" / f"{call[0]}.py", *sorted((addon / "props").glob("*.py"))]
+    source = "".join(file.read_text() for file in files)
     for name in re.findall(r"(\w+)=", call[1]):
         assert re.search(rf"\b{name}\b", source), f"{call[0]} has no property {name}"
 

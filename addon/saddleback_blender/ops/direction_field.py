@@ -21,7 +21,8 @@ from ..core.progress import Progress
 from ..core.requests import DirectionFieldRequest
 from ..core.results import FieldResult
 from ..core.settings import DirectionFieldSettings
-from ..props import DIRECTION_FIELD, keep_settings, settings_of
+from ..props import keep_settings, settings_of
+from ..props.direction_field import DIRECTION_FIELD
 from .base import SurfaceOperator
 
 KINDS = {1: "vectors", 2: "lines", 4: "crosses"}

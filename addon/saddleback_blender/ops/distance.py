@@ -23,7 +23,8 @@ from ..core.progress import Progress
 from ..core.requests import DistanceRequest
 from ..core.results import DistanceResult
 from ..core.settings import DistanceSettings
-from ..props import DISTANCE, keep_settings, settings_of
+from ..props import keep_settings, settings_of
+from ..props.distance import DISTANCE
 from .base import SurfaceOperator
 
 

@@ -38,7 +38,8 @@ from ..core.progress import Progress
 from ..core.requests import DirectionFieldRequest, DistributeRequest, GivenDirections, Surface
 from ..core.results import CheckResult, DistributeResult
 from ..core.settings import DirectionFieldSettings, DistributeSettings
-from ..props import DISTRIBUTE, keep_settings, kept_settings, settings_of
+from ..props import keep_settings, kept_settings, settings_of
+from ..props.distribute import DISTRIBUTE
 from .base import SurfaceOperator
 from .paint import HelperOperator
 

@@ -16,7 +16,8 @@ from ..core.progress import Progress
 from ..core.requests import PathRequest
 from ..core.results import PathsResult
 from ..core.settings import PathSettings
-from ..props import PATH, keep_settings, settings_of
+from ..props import keep_settings, settings_of
+from ..props.path import PATH
 from .base import SurfaceOperator
 
 

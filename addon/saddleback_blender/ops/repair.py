@@ -17,7 +17,8 @@ from ..core.progress import Progress
 from ..core.repair_plan import plan_repair
 from ..core.results import RepairResult
 from ..core.settings import RepairSettings
-from ..props import REPAIR, keep_settings, settings_of
+from ..props import keep_settings, settings_of
+from ..props.repair import REPAIR
 from .base import SurfaceOperator
 
 

@@ -32,7 +32,8 @@ from ..core.progress import Progress
 from ..core.requests import TessellateRequest
 from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
-from ..props import TESSELLATE, keep_settings, settings_of
+from ..props import keep_settings, settings_of
+from ..props.tessellate import TESSELLATE
 from .base import SurfaceOperator
 
 # What the library's reasons to stop mean to a person; that all steps were done needs no word.

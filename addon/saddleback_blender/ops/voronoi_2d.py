@@ -23,7 +23,8 @@ from ..core.progress import Progress
 from ..core.requests import Voronoi2dRequest
 from ..core.results import FlatCells, Voronoi2dResult
 from ..core.settings import Voronoi2dSettings
-from ..props import VORONOI_2D, keep_settings, settings_of
+from ..props import keep_settings, settings_of
+from ..props.voronoi_2d import VORONOI_2D
 from .base import SurfaceOperator
 
 # Other names than tessellate's, so that an object can show both.

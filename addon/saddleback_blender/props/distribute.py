@@ -1,0 +1,66 @@
+"""The properties of `saddleback.distribute`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from bpy.props import FloatProperty, IntProperty
+
+from .density import DENSITY
+from .kinds import choice, length, name_of, switch, use_modifiers
+from .tessellate import TESSELLATE
+
+SHAPES = (
+    ("SCALES", "Scales", "Shields with a keel, their tips along the field"),
+    ("STUDS", "Studs", "Round heads with a rim"),
+    ("FEATHERS", "Feathers", "Long vanes along the field"),
+    ("LEAVES", "Leaves", "Leaves of two sizes"),
+    ("MOSAIC", "Mosaic", "Square, long and three-cornered tiles"),
+    ("COLLECTION", "Collection", "Its meshes, closed curves and images; their property 'share' says how many of each"),
+    ("IMAGE", "Image", "Where an image is opaque or, without transparency, dark"),
+)
+FIELD_SOURCES = (
+    ("PANEL", "Direction Field", "The field that the panel Direction Field says, made anew where that has changed"),
+    ("ATTRIBUTE", "Attribute", "A vector attribute of vertices or faces"),
+    ("NONE", "Smoothest", "Lines as smooth as can be, without strokes"),
+)
+
+DISTRIBUTE: dict[str, Any] = {
+    "shapes": choice("Shapes", "What is laid on the surface", SHAPES, "SCALES"),
+    "shapes_collection": name_of("Shapes Collection", "The collection whose objects are laid on the surface"),
+    "shapes_image": name_of("Shape Image", "The image whose mask is laid on the surface"),
+    "count": IntProperty(
+        name="Count", description="Number of shapes", default=500, min=1, soft_max=20000, options={"SKIP_SAVE"}
+    ),
+    "size": length("Size", "Radius of the circle around the largest shapes; 0 means by their number", 0.0),
+    "size_variation": FloatProperty(
+        name="Variation", description="By which share of the largest the smallest are smaller", default=0.0, min=0.0,
+        max=0.95, subtype="FACTOR", options={"SKIP_SAVE"},
+    ),
+    "size_by_density": switch("Size by Density", "Shapes are small where the density is high", False),
+    "gap": length("Gap", "Least distance from shape to shape", 0.0),
+    "packing": FloatProperty(
+        name="Packing", description="0 lays shapes in a random order, 1 side by side, which makes room for more",
+        default=0.0, min=0.0, max=1.0, subtype="FACTOR", options={"SKIP_SAVE"},
+    ),
+    "maximal": switch("Fill", "Go on until nothing more fits, whatever the count, and prove it", False),
+    "mirror": switch("Mirror", "Mirror half of the shapes, by chance", False),
+    "bend": switch("Bend", "Long shapes bend along the field; not with Fill", False),
+    "seed": TESSELLATE["seed"],
+    "field_source": choice("Field", "Which way shapes point", FIELD_SOURCES, "PANEL"),
+    "direction_attribute": name_of("Attribute", "The vectors that shapes point along", "saddleback_direction"),
+    "forbidden_group": name_of("Keep Off", "No shape lies where this vertex group's weights are above one half"),
+    **DENSITY,
+    "use_modifiers": use_modifiers(),
+    "make_bent": switch("Bent Copies", "Make one mesh of all shapes, bent onto the surface", True),
+    "thickness": length("Thickness", "Of shapes without a mesh: how far they rise; 0 means by their size", 0.0),
+    "make_instances": switch("Instances", "Make a mesh of points that carry rigid copies of the shapes", False),
+    "follow_surface": switch(
+        "Follow", "Instances go with the mesh when it is deformed by an armature, shape keys or other modifiers", True
+    ),
+    "make_outlines": switch("Outlines", "Make a curve object of the shapes' outlines", False),
+    "outline_radius": length("Radius", "Half the thickness of the outlines", 0.005),
+    "write_attributes": switch(
+        "Attributes", "Write on the mesh whose outline is nearest, how far it is, and where in the shape one is", False
+    ),
+}  # fmt: skip

@@ -1,0 +1,70 @@
+"""Kinds of properties that several panels have, each made anew for each of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+QUALITIES = (
+    ("FAST", "Fast", "Distances at most 2 % too long"),
+    ("NORMAL", "Normal", "Distances at most 0.5 % too long"),
+    ("FINE", "Fine", "Distances at most 0.2 % too long"),
+)
+EXACT_QUALITY = ("EXACT", "Exact", "Exact distances, with nothing kept for the next run")
+
+
+def quality(items: tuple[tuple[str, str, str], ...] = QUALITIES) -> Any:
+    """How exact distances are."""
+    return choice("Quality", "How exact distances are, and how long the first run on a mesh takes", items, "NORMAL")
+
+
+def detail() -> Any:
+    """Vertices in each neighborhood of the graph."""
+    return IntProperty(
+        name="Detail",
+        description="Vertices in each neighborhood of the distance graph; 0 means as the quality needs",
+        default=0,
+        min=0,
+        max=10000,
+        soft_max=500,
+        options={"SKIP_SAVE"},
+    )
+
+
+def on_disk() -> Any:
+    """Whether the graph is kept."""
+    return switch("Keep on Disk", "Keep the distance graph of this mesh in the folder of the preferences", False)
+
+
+def use_modifiers() -> Any:
+    """Whether the modifiers' result is worked on."""
+    return BoolProperty(
+        name="Use Modifiers",
+        description="Work on what the modifiers make of the object; where they add vertices, a new object is made",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+
+
+def name_of(label: str, description: str, default: str = "") -> Any:
+    """The name of something in the file, or of an attribute."""
+    return StringProperty(name=label, description=description, default=default, options={"SKIP_SAVE"})
+
+
+def length(label: str, description: str, default: float, least: float = 0.0) -> Any:
+    """A length in world units."""
+    return FloatProperty(
+        name=label, description=description, default=default, min=least, soft_max=10.0, precision=4, step=1,
+        subtype="DISTANCE", options={"SKIP_SAVE"},
+    )  # fmt: skip
+
+
+def switch(label: str, description: str, default: bool) -> Any:
+    """Yes or no."""
+    return BoolProperty(name=label, description=description, default=default, options={"SKIP_SAVE"})
+
+
+def choice(label: str, description: str, items: tuple[tuple[str, str, str], ...], default: str) -> Any:
+    """One of several, each with its name and what it means."""
+    return EnumProperty(name=label, description=description, items=items, default=default, options={"SKIP_SAVE"})

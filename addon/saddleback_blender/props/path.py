@@ -1,0 +1,30 @@
+"""The properties of `saddleback.path`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .distance import DISTANCE_SOURCES
+from .kinds import choice, detail, length, name_of, on_disk, quality, switch, use_modifiers
+
+PATH_POINTS = DISTANCE_SOURCES[:3]
+PATH_CONNECTIONS = (
+    ("CHAIN", "Chain", "From each point to the next: in the order of selection where it is known, empties by name"),
+    ("LOOP", "Closed Chain", "From each point to the next, and from the last back to the first"),
+    ("PAIRS", "All Pairs", "From every point to every other"),
+)
+
+PATH: dict[str, Any] = {
+    "points": choice("Through", "What the paths connect", PATH_POINTS, "SELECTED"),
+    "points_group": name_of("Vertex Group", "The group whose vertices are connected; empty means the active one"),
+    "points_collection": name_of("Collection", "Its empties are connected; empty means those parented to the object"),
+    "from_cursor": switch("From Cursor", "Begin at the point of the surface nearest to the 3D cursor", False),
+    "connect": choice("Connect", "Which points a path joins", PATH_CONNECTIONS, "CHAIN"),
+    "shorten": switch("Shorten", "Pull each path straight where the distance graph bends it a little", True),
+    "quality": quality(),
+    "k": detail(),
+    "cache_on_disk": on_disk(),
+    "use_modifiers": use_modifiers(),
+    "path_radius": length("Radius", "Half the thickness of the paths", 0.01),
+    "lift": length("Lift", "How far the paths run above the surface", 0.0),
+}

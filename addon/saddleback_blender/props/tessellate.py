@@ -1,0 +1,87 @@
+"""The properties of `saddleback.tessellate`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from bpy.props import FloatProperty, IntProperty
+
+from .density import DENSITY
+from .kinds import choice, detail, length, name_of, on_disk, quality, switch, use_modifiers
+
+SITES_SOURCES = (
+    ("COUNT", "Count", "Place this many sites, by the density"),
+    ("SELECTED", "Selected Vertices", "One cell for each vertex selected in Edit Mode"),
+    ("OBJECT", "Object", "One cell for each vertex of another object, brought to the nearest point of the surface"),
+)
+METHODS = (
+    ("LBFGS", "L-BFGS", "Each step learns from those before it: even cells in a third of the steps"),
+    ("LLOYD", "Lloyd", "Each step moves every site to the middle of its cell"),
+)
+DUAL_POLICIES = (
+    ("REPAIR", "Repair", "Add vertices where cells are too large, until the mesh has the surface's holes and handles"),
+    ("STRICT", "Strict", "One vertex a cell; where cells are too large the mesh has faults, which are told"),
+)
+EDGE_KINDS = (
+    ("MESH", "Mesh", "A mesh of edges, made into tubes by a modifier"),
+    ("CURVE", "Curve", "A curve object with a bevel"),
+)
+
+TESSELLATE: dict[str, Any] = {
+    "count": IntProperty(
+        name="Count", description="Number of cells", default=200, min=1, soft_max=20000, options={"SKIP_SAVE"}
+    ),
+    "seed": IntProperty(
+        name="Seed", description="Another number gives another pattern", default=0, min=0, options={"SKIP_SAVE"}
+    ),
+    "iterations": IntProperty(
+        name="Iterations",
+        description="Steps that make the cells even; 0 leaves the sites where chance put them",
+        default=15,
+        min=0,
+        soft_max=200,
+        options={"SKIP_SAVE"},
+    ),
+    "method": choice("Method", "How the sites find their places", METHODS, "LBFGS"),
+    "sites_source": choice("Sites", "Where the cells' centres come from", SITES_SOURCES, "COUNT"),
+    "sites_object": name_of("Sites Object", "The object whose vertices become sites"),
+    "relax_sites": switch("Relax Sites", "Move the chosen sites to even the cells out", False),
+    **DENSITY,
+    "quality": quality(),
+    "k": detail(),
+    "cache_on_disk": on_disk(),
+    "use_modifiers": use_modifiers(),
+    "make_edges": switch("Edges", "Make an object of the lines between cells", True),
+    "edge_kind": choice("Edge Object", "What the lines between cells become", EDGE_KINDS, "MESH"),
+    "edge_radius": length("Radius", "Half the thickness of the lines between cells", 0.01),
+    "make_cells": switch("Cells", "Make a mesh of the cells", False),
+    "gap": length("Gap", "Width of the gap between neighbouring cells", 0.0),
+    "inset": length("Bevel", "Width of the sloping rim of each cell; it rises by the thickness", 0.0),
+    "thickness": length("Thickness", "How far the cells stand out of the surface", 0.0),
+    "underside": switch("Closed Below", "Close each cell from below, as a 3D printer needs it", False),
+    "local_uv": switch("Local UV", "Give each cell of the mesh a UV map of its own, for materials that repeat", False),
+    "make_centres": switch("Centres", "Make an object of points at the cells' centres", False),
+    "instance_object": name_of("Instance", "The object to put on every centre"),
+    "instance_scale": FloatProperty(
+        name="Instance Scale",
+        description="Size of the instances, times the size of their cells",
+        default=1.0,
+        min=0.0,
+        soft_max=10.0,
+        options={"SKIP_SAVE"},
+    ),
+    "make_dual": switch("Dual Mesh", "Make a triangle mesh with one vertex for each cell: a remesh", False),
+    "dual_policy": choice("Policy", "What to do where cells are too large for a mesh", DUAL_POLICIES, "REPAIR"),
+    "make_shell": switch("Lamp Shell", "Make the lines between cells into one closed solid that can be printed", False),
+    "rib_width": length("Rib Width", "How wide the ribs of the lamp shell are, along the surface", 0.03, least=1e-6),
+    "rib_thickness": length(
+        "Rib Thickness", "How thick the lamp shell is, half of it to either side of the surface", 0.03, least=1e-6
+    ),
+    "cell_attribute": name_of("Cell Attribute", "Where each vertex's cell is written", "saddleback_cell"),
+    "distance_attribute": name_of("Distance Attribute", "Where distances are written", "saddleback_distance"),
+    "density_attribute": name_of("Density Attribute", "Where the density used is written", "saddleback_density"),
+    "write_edge_distance": switch("Distance to Edge", "Write how far each vertex is from the edge of its cell", False),
+    "edge_distance_attribute": name_of(
+        "Edge Distance Attribute", "Where distances to the cells' edges are written", "saddleback_edge_distance"
+    ),
+}

@@ -1,0 +1,61 @@
+"""The properties of `saddleback.voronoi_2d`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from bpy.props import IntProperty
+
+from .kinds import choice, name_of, switch, use_modifiers
+from .tessellate import SITES_SOURCES, TESSELLATE
+
+SPACES = (
+    ("OUTLINE", "Outline", "The plane of a flat mesh, within its outline and around its holes"),
+    ("UV", "UV Map", "The plane of a UV map; cells and edges are brought back to the surface"),
+    ("DISK", "Disk", "A disk that the surface is laid into; for surfaces with one border and without a UV map"),
+)
+PLANE_SITES = (
+    ("COUNT", "Count", "Place this many sites evenly on the surface"),
+    SITES_SOURCES[1],
+    SITES_SOURCES[2],
+    ("IMAGE", "Image", "Place this many sites by how dark an image is: stippling"),
+)
+
+VORONOI_2D: dict[str, Any] = {
+    "space": choice("Space", "The plane that the diagram is made in", SPACES, "OUTLINE"),
+    "uv_name": name_of("UV Map", "The UV map; empty means the active one"),
+    "sites_source": choice("Sites", "Where the cells' sites come from", PLANE_SITES, "COUNT"),
+    "count": TESSELLATE["count"],
+    "seed": TESSELLATE["seed"],
+    "sites_object": TESSELLATE["sites_object"],
+    "image_name": name_of("Image", "Sites are close together where it is dark; it fills the outline or the UV square"),
+    "image_invert": switch("Invert", "Sites are close together where the image is light", False),
+    "weights_name": name_of("Weights", "A number attribute of the sites' vertices: cells of heavier sites are larger"),
+    "iterations": IntProperty(
+        name="Iterations",
+        description="Steps that make the cells even, or follow the image; 0 leaves the sites where they are",
+        default=0,
+        min=0,
+        soft_max=200,
+        options={"SKIP_SAVE"},
+    ),
+    "use_modifiers": use_modifiers(),
+    "make_edges": TESSELLATE["make_edges"],
+    "edge_kind": TESSELLATE["edge_kind"],
+    "edge_radius": TESSELLATE["edge_radius"],
+    "make_cells": switch("Cells", "Make a mesh of the cells", True),
+    "gap": TESSELLATE["gap"],
+    "inset": TESSELLATE["inset"],
+    "thickness": TESSELLATE["thickness"],
+    "underside": TESSELLATE["underside"],
+    "make_centres": switch("Centres", "Make an object of points at the sites", False),
+    "instance_object": TESSELLATE["instance_object"],
+    "instance_scale": TESSELLATE["instance_scale"],
+    "animate": switch("Animate", "Make a sweep circle that grows and uncovers the edges, frame by frame", False),
+    "frame_start": IntProperty(
+        name="Start", description="Frame in which the sweep begins", default=1, options={"SKIP_SAVE"}
+    ),
+    "frame_end": IntProperty(
+        name="End", description="Frame in which all edges are there", default=120, options={"SKIP_SAVE"}
+    ),
+}
