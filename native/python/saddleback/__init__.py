@@ -82,6 +82,7 @@ from saddleback._saddleback import (
 from saddleback.density_match import DensityMatch, density_match
 from saddleback.placement_files import read_placements, write_placements
 from saddleback.progress import progress_bar
+from saddleback.quality_plot import quality_plot
 from saddleback.sizes import blend_by_distance, density_by_curvature, ramp_by_distance
 
 __all__ = [
@@ -159,6 +160,7 @@ __all__ = [
     "principal_curvatures",
     "progress_bar",
     "project",
+    "quality_plot",
     "ramp_by_distance",
     "read_arrays",
     "read_mesh",

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "geodesics/planar.h"
+#include "tessellation/seen_between.h"
+
 namespace saddleback {
 namespace {
 
@@ -13,7 +16,6 @@ constexpr double k_on_edge = 1e-9;
 // A vertex that is placed already is placed again when another way is shorter by more than rounding.
 constexpr double k_rounding = 1e-12;
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
 
 }  // namespace
@@ -143,23 +145,14 @@ void PatchLog::see_across(Index local, int edge) {
       const Vec2 centre(x, -std::sqrt(y)), ray = shape.apex - centre, back_a = -centre, back_b(length - x, -centre.y());
       if (cross(ray, back_a) >= 0 && cross(back_b, ray) >= 0) {
         const double distance = ray.norm();
-        if (distance < (1 - k_rounding) * known) offer(c, between(a, b, ray, back_a, back_b), distance);
+        if (distance < (1 - k_rounding) * known)
+          offer(c, seen_between(places_[a], places_[b], back_a, back_b, ray), distance);
         return;
       }
     }
   }
   if (to_a < k_far) walk(a, c, shape.left);
   if (to_b < k_far) walk(b, c, shape.right);
-}
-
-/// The direction divides the angle between those of an edge's ends as the ray does; as long as the ray.
-Vec2 PatchLog::between(Index a, Index b, const Vec2& ray, const Vec2& back_a, const Vec2& back_b) const {
-  const double angle = std::atan2(cross(back_b, back_a), back_b.dot(back_a));
-  const double share = angle > 0 ? std::atan2(cross(ray, back_a), ray.dot(back_a)) / angle : 0.5;
-  const double turn = std::atan2(cross(places_[a], places_[b]), places_[a].dot(places_[b]));
-  const double c = std::cos(share * turn), s = std::sin(share * turn);
-  const Vec2 along = places_[a] * (ray.norm() / distances_[a]);
-  return {c * along.x() - s * along.y(), s * along.x() + c * along.y()};
 }
 
 }  // namespace saddleback

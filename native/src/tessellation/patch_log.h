@@ -38,7 +38,6 @@ class PatchLog {
   void start_in_face(const SurfacePoint& centre, Index local);
   void start_at_vertex(Index vertex);
   void see_across(Index local, int edge);
-  Vec2 between(Index a, Index b, const Vec2& ray, const Vec2& back_a, const Vec2& back_b) const;
   void offer(Index vertex, const Vec2& place, double distance);
   void walk(Index from, Index to, double length);
 

@@ -11,6 +11,7 @@
 #include "geodesics/planar.h"
 #include "geodesics/query_cache.h"
 #include "support/parallel.h"
+#include "tessellation/seen_between.h"
 
 namespace saddleback {
 namespace {
@@ -31,8 +32,6 @@ constexpr double k_end_on = 1e-10;
 
 Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
 
-Vec2 rotated(const Vec2& v, double c, double s) { return {c * v.x() - s * v.y(), s * v.x() + c * v.y()}; }
-
 double angle_between(const Vec2& a, const Vec2& b) { return std::atan2(cross(a, b), a.dot(b)); }
 
 /// By how much a path that comes from direction `back` and goes on in direction `out` turns (left positive) when
@@ -49,24 +48,6 @@ double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
   if (left_side < M_PI) return left_side - M_PI;
   if (total - left_side < M_PI) return M_PI - (total - left_side);
   return 0;
-}
-
-/// The angle of (x, y) to 1e-5, where it is a share of a small one that is wanted (Abramowitz and Stegun 4.4.47).
-double rough_angle(double x, double y) {
-  const double across = std::abs(x), up = std::abs(y);
-  const double t = std::min(across, up) / std::max({across, up, std::numeric_limits<double>::min()}), s = t * t;
-  double angle = t * (0.9998660 + s * (-0.3302995 + s * (0.1801410 + s * (-0.0851330 + s * 0.0208351))));
-  if (up > across) angle = M_PI / 2 - angle;
-  if (x < 0) angle = M_PI - angle;
-  return y < 0 ? -angle : angle;
-}
-
-/// Turned by an angle that is small nearly always.
-Vec2 turned(const Vec2& v, double angle) {
-  constexpr double k_small = 1e-2;  // the next term of the series is below rounding
-  if (std::abs(angle) > k_small) return rotated(v, std::cos(angle), std::sin(angle));
-  const double s = angle * angle;
-  return rotated(v, 1 - s / 2 * (1 - s / 12 * (1 - s / 30)), angle * (1 - s / 6 * (1 - s / 20 * (1 - s / 42))));
 }
 
 }  // namespace
@@ -254,25 +235,9 @@ bool SiteMaps::see(const Wedge& wedge, const Place& from, const Place& to, Sight
   return sight.beyond == 0 || !(sight.beyond < 0 ? wedge.from_bends : wedge.to_bends);
 }
 
-/// The direction divides the angle between those of the edge's ends as the ray divides it in the edge's frame: turned
-/// from the start's as the ray is from it, and by the ray's share of what the two angles differ by.
 SiteMaps::Place SiteMaps::place_by(const Sight& sight, const Wedge& wedge, const Place& from, const Place& to) const {
   const Vec2 to_start = -sight.anchor, to_end = Vec2(wedge.length, 0) - sight.anchor;
-  const double ray_x = to_start.dot(sight.ray), ray_y = cross(to_start, sight.ray);
-  const double frame_x = to_start.dot(to_end), frame_y = cross(to_start, to_end);
-  const double plane_x = from.at.dot(to.at), plane_y = cross(from.at, to.at);
-  const double x = plane_x * frame_x + plane_y * frame_y, y = plane_y * frame_x - plane_x * frame_y;
-  constexpr double k_small = 1e-2;
-  const double ratio = y / x;
-  double turn;
-  if (x > 0 && std::abs(ratio) < k_small) {
-    const double difference = ratio * (1 - ratio * ratio / 3);
-    turn = difference == 0 ? 0 : difference * (rough_angle(ray_x, ray_y) / rough_angle(frame_x, frame_y));
-  } else {
-    turn = std::atan2(y, x) * (std::atan2(ray_y, ray_x) / std::atan2(frame_y, frame_x));
-  }
-  // The start is as far from the anchor in the plane as in the frame.
-  Place place{turned(rotated(from.at, ray_x, ray_y) / from.at.squaredNorm(), turn), sight.distance, from.anchor,
+  Place place{seen_between(from.at, to.at, to_start, to_end, sight.ray), sight.distance, from.anchor,
               rings_.index(wedge)};
   place.distance += anchor_distance(place);
   return place;
