@@ -45,8 +45,8 @@ struct CircleTest {
 
 }  // namespace
 
-bool passes_circle_tests(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat) {
-  bool passes = true;
+std::vector<Index> fail_circle_tests(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat) {
+  std::vector<Index> failing;
   std::fill(is_flat.begin(), is_flat.end(), std::uint8_t{0});
   for (Index first = 0; first < mesh.half_end(); first += 4) {
     const CircleTest circle(mesh.point(mesh.triangles[first]), mesh.point(mesh.triangles[first + 1]),
@@ -56,10 +56,10 @@ bool passes_circle_tests(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat
       if (twin < half || circle.is_outside(mesh.point(mesh.triangles[previous_half(twin)]))) continue;
       const Sign sign = circle_test(mesh, half);
       if (sign == Sign::zero) is_flat[half] = is_flat[twin] = 1;
-      if (sign == Sign::positive) passes = false;
+      if (sign == Sign::positive) failing.push_back(half);
     }
   }
-  return passes;
+  return failing;
 }
 
 namespace {
@@ -125,19 +125,14 @@ void exchange_pair(PlanarMesh& mesh, Index half) {
   set_twins(mesh, half_next, twin_next);
 }
 
-void exchange_triangles(PlanarMesh& mesh) {
-  std::vector<Index> doubtful;
-  for (Index half = 0; half < mesh.half_end(); ++half) {
-    if ((half & 3) == 3 || mesh.twins[half] < half) continue;
-    doubtful.push_back(half);
-    while (!doubtful.empty()) {
-      const Index edge = doubtful.back();
-      doubtful.pop_back();
-      const Index twin = mesh.twins[edge];
-      if (twin == k_none || circle_test(mesh, edge) != Sign::positive) continue;
-      exchange_pair(mesh, edge);
-      for (const Index rim : {edge, previous_half(edge), twin, previous_half(twin)}) doubtful.push_back(rim);
-    }
+void exchange_triangles(PlanarMesh& mesh, std::vector<Index> doubtful) {
+  while (!doubtful.empty()) {
+    const Index edge = doubtful.back();
+    doubtful.pop_back();
+    const Index twin = mesh.twins[edge];
+    if (twin == k_none || circle_test(mesh, edge) != Sign::positive) continue;
+    exchange_pair(mesh, edge);
+    for (const Index rim : {edge, previous_half(edge), twin, previous_half(twin)}) doubtful.push_back(rim);
   }
 }
 

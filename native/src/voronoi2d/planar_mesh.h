@@ -31,8 +31,9 @@ struct PlanarMesh {
 /// the other two, `zero` when they share a Voronoi vertex. Exact.
 predicates::Sign circle_test(const PlanarMesh& mesh, Index half);
 
-/// True when all edges pass the circle test; marks those (both halves) whose triangles share a Voronoi vertex. Exact.
-bool passes_circle_tests(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat);
+/// The edges, by one half each, that do not pass the circle test; marks those (both halves) whose triangles share a
+/// Voronoi vertex. Exact.
+std::vector<Index> fail_circle_tests(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat);
 
 /// Whether triangles that turn counter-clockwise and are joined by `twins` cover the convex hull of the sites once:
 /// around an inner site they wind once, around a site of the border at most half a turn, the border is convex, and
@@ -44,7 +45,8 @@ bool is_triangulation(const PlanarMesh& mesh);
 void exchange_pair(PlanarMesh& mesh, Index half);
 
 /// Makes a triangulation Delaunay's (C. L. Lawson, 1977): exchanges triangles until all edges pass the circle test.
-void exchange_triangles(PlanarMesh& mesh);
+/// `doubtful`: edges among which are all that do not.
+void exchange_triangles(PlanarMesh& mesh, std::vector<Index> doubtful);
 
 /// A triangulation of any distinct sites that are not all on one line, whatever the numbers: from the left, each site
 /// is joined to the edges of the convex hull that it sees. For the rare ones that no sweep in doubles gets through.

@@ -110,23 +110,32 @@ PlanarMesh SweepCircle::sweep(std::span<const double> x, std::span<const double>
 
 PlanarMesh SweepCircle::triangulate(std::span<const double> x, std::span<const double> y, const Vec2& place,
                                     const JobStage& stage) {
-  const PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.9));
+  PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.9));
   is_flat.resize(mesh.half_end());
-  if (mesh.triangle_count == 0 || !passes_circle_tests(mesh, is_flat))
-    return triangulate_safely(x, y, place, stage.part(0.9, 1));
+  std::vector<Index> failing = fail_circle_tests(mesh, is_flat);
+  if (!failing.empty()) repair(mesh, std::move(failing));
   stage.update(1);
   return mesh;
 }
 
 PlanarMesh SweepCircle::triangulate_safely(std::span<const double> x, std::span<const double> y, const Vec2& place,
                                            const JobStage& stage) {
-  PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.8));
-  if (!is_triangulation(mesh)) triangulate_from_left(mesh);
-  exchange_triangles(mesh);
+  PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.9));
   is_flat.resize(mesh.half_end());
-  passes_circle_tests(mesh, is_flat);
+  repair(mesh, fail_circle_tests(mesh, is_flat));
   stage.update(1);
   return mesh;
+}
+
+/// From what a sweep left to Delaunay's triangulation.
+void SweepCircle::repair(PlanarMesh& mesh, std::vector<Index> failing) {
+  if (!is_triangulation(mesh)) {
+    triangulate_from_left(mesh);
+    is_flat.resize(mesh.half_end());
+    failing = fail_circle_tests(mesh, is_flat);
+  }
+  exchange_triangles(mesh, std::move(failing));
+  fail_circle_tests(mesh, is_flat);
 }
 
 }  // namespace saddleback::voronoi2d

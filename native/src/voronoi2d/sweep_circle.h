@@ -23,7 +23,7 @@ class SweepCircle {
                    const JobStage& stage);
 
   /// All edges of the triangles pass the circle test, exactly. That they are a triangulation is not proven, unless it
-  /// was in doubt; none if all sites are on one line.
+  /// was in doubt.
   PlanarMesh triangulate(std::span<const double> x, std::span<const double> y, const Vec2& place,
                          const JobStage& stage);
   /// Delaunay's triangulation, whatever the sites.
@@ -42,6 +42,7 @@ class SweepCircle {
   };
   void sort_sites(std::span<const double> x, std::span<const double> y, Index first);
   void reserve(Index count);
+  void repair(PlanarMesh& mesh, std::vector<Index> failing);
   bool run(const JobStage& stage);
 
   std::vector<Place> order_, unsorted_;

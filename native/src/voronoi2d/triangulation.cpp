@@ -71,7 +71,7 @@ class TileSweeper {
     if (is_line(part)) return;
     const Vec2 centre(0.5 * *leftmost + 0.5 * *rightmost, 0.5 * *lowest + 0.5 * *highest);
     take(part, circle_.triangulate(x, y, centre, stage));
-    if (!part.has_triangles || is_triangulation(part)) return;
+    if (is_triangulation(part)) return;
     take(part, circle_.triangulate_safely(x, y, centre, stage));
   }
 
