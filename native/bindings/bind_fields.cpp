@@ -263,6 +263,49 @@ py::object field_from_vectors(const py::object& mesh_object, const py::object& v
   return result;
 }
 
+constexpr const char* k_of_turns_doc =
+    R"(The field that has these angles and turns, as `angles` and `turns` of another gave them.
+
+Args:
+    mesh: the Mesh that they were given for.
+    angles: (F,) radians in the chart of each face.
+    turns: (F, 3) radians, by how much the field turns across each edge, opposite for its two faces, 0 on the boundary.
+    symmetry: 1: vectors, 2: lines, 4: crosses.
+
+Returns:
+    DirectionField, the same to the bit.
+
+Raises:
+    InputError: arrays of another length, or not finite; turns that differ between the two faces of an edge; a symmetry
+        other than 1, 2 and 4.
+)";
+
+py::object field_from_turns(const py::object& mesh_object, const py::object& angles, const py::object& turns,
+                            const py::object& symmetry) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  const int wanted = as_integer(symmetry, "symmetry");
+  if (wanted != 1 && wanted != 2 && wanted != 4) throw InputError(message("symmetry: wanted 1, 2 or 4, got ", wanted));
+  const ArrayIn<double> own = as_reals(angles, "angles", static_cast<std::size_t>(mesh.face_count()));
+  const ArrayIn<double> rows = as_points3(turns, "turns");
+  if (rows.values.size() != static_cast<std::size_t>(mesh.halfedge_count()))
+    throw InputError(message("turns: wanted ", mesh.face_count(), " rows, got ", rows.values.size() / 3));
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index twin = mesh.twin(h);
+    const double sum = rows.values[h] + (twin == k_none ? 0 : rows.values[twin]);
+    if (!(std::abs(sum) < 1e-9))
+      throw InputError(message("turns: not opposite across edge ", h % 3, " of face ", h / 3));
+  }
+  for (std::size_t f = 0; f < own.values.size(); ++f)
+    if (!std::isfinite(own.values[f]))
+      throw InputError(message("angles: value ", own.values[f], " at [", f, "] is not finite"));
+  py::object result = py::cast(without_gil([&] {
+    return DirectionField(mesh, wanted, {own.values.begin(), own.values.end()},
+                          {rows.values.begin(), rows.values.end()});
+  }));
+  py::detail::keep_alive_impl(result, mesh_object);
+  return result;
+}
+
 py::dict singularities_of(const DirectionField& field) {
   py::dict result;
   for (const Singularity& s : field.singularities())
@@ -285,6 +328,8 @@ void bind_direction_field(py::module_& m) {
   py::class_<DirectionField>(m, "DirectionField", py::module_local(), k_field_doc)
       .def_static("from_vectors", &field_from_vectors, py::arg("mesh"), py::arg("vectors"), py::arg("symmetry") = 1,
                   k_of_vectors_doc)
+      .def_static("from_turns", &field_from_turns, py::arg("mesh"), py::arg("angles"), py::arg("turns"),
+                  py::arg("symmetry") = 1, k_of_turns_doc)
       .def_property_readonly("symmetry", &DirectionField::symmetry, "1: vectors, 2: lines, 4: crosses.")
       .def_property_readonly(
           "vectors", [](const DirectionField& field) { return to_array(field.vectors()); },

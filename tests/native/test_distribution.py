@@ -167,6 +167,27 @@ def test_long_copies_bend_along_the_field() -> None:
     assert straight.field is None and not sb.check_distribution(mesh, bent, samples=10_000).ok
 
 
+def test_placement_files_keep_what_copies_bend_along(tmp_path) -> None:
+    mesh, field = plane(True)
+    result = sb.distribute(mesh, NEEDLE, 20, field, size=0.1, bend=True)
+    bent, straight = tmp_path / "bent.json", tmp_path / "straight.json"
+    sb.write_placements(bent, mesh, result.shapes, result.placements, result.field)
+    sb.write_placements(straight, mesh, result.shapes, result.placements)
+    read = sb.read_placement_field(bent, mesh)
+    assert np.array_equal(read.angles, field.angles) and np.array_equal(read.turns, field.turns)
+    assert read.symmetry == 1 and read.singularities == field.singularities
+    shapes, placements = sb.read_placements(bent, mesh)
+    again = sb.map_shapes(mesh, shapes, placements, read)
+    assert all(np.array_equal(again.outline(i)[0], result.outline(i)[0]) for i in range(len(result)))
+    assert sb.read_placement_field(straight, mesh) is None
+    turns = field.turns.copy()
+    turns[3, 1] += 0.1
+    with pytest.raises(sb.InputError, match="not opposite"):
+        sb.DirectionField.from_turns(mesh, field.angles, turns)
+    with pytest.raises(sb.InputError, match="symmetry: wanted 1, 2 or 4"):
+        sb.DirectionField.from_turns(mesh, field.angles, field.turns, 3)
+
+
 def test_copies_point_along_the_field() -> None:
     mesh, field = ring()
     placements = sb.distribute(mesh, CRESCENT, field=field, size=0.1).placements

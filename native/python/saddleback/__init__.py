@@ -80,7 +80,7 @@ from saddleback._saddleback import (
     voronoi_2d,
 )
 from saddleback.density_match import DensityMatch, density_match
-from saddleback.placement_files import read_placements, write_placements
+from saddleback.placement_files import read_placement_field, read_placements, write_placements
 from saddleback.progress import progress_bar
 from saddleback.quality_plot import quality_plot
 from saddleback.sizes import blend_by_distance, density_by_curvature, ramp_by_distance
@@ -164,6 +164,7 @@ __all__ = [
     "ramp_by_distance",
     "read_arrays",
     "read_mesh",
+    "read_placement_field",
     "read_placements",
     "relax_2d",
     "repair",

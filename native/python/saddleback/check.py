@@ -18,7 +18,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         mesh = sb.read_mesh(options.mesh)
         shapes, placements = sb.read_placements(options.placements, mesh)
-        mapped = sb.map_shapes(mesh, shapes, placements)
+        mapped = sb.map_shapes(mesh, shapes, placements, sb.read_placement_field(options.placements, mesh))
         report = sb.check_distribution(mesh, mapped, samples=options.samples, seed=options.seed)
     except (sb.Error, OSError) as error:
         print(f"{parser.prog}: {error}", file=sys.stderr)

@@ -3,16 +3,21 @@
 import json
 import os
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from saddleback._saddleback import InputError, Mesh, Placements, Shape, SurfacePoints
+from saddleback._saddleback import DirectionField, InputError, Mesh, Placements, Shape, SurfacePoints
 
 _KIND = "saddleback placements"
 
 
 def write_placements(
-    path: str | os.PathLike[str], mesh: Mesh, shapes: Shape | Sequence[Shape], placements: Placements
+    path: str | os.PathLike[str],
+    mesh: Mesh,
+    shapes: Shape | Sequence[Shape],
+    placements: Placements,
+    field: DirectionField | None = None,
 ) -> None:
     """Write shapes and their placements as JSON; numbers come back to the bit.
 
@@ -21,6 +26,7 @@ def write_placements(
         mesh: what they lie on; only its size is kept, to tell another mesh.
         shapes: a Shape or several.
         placements: which index them.
+        field: what they bend along, if they do.
 
     Raises
     ------
@@ -39,6 +45,12 @@ def write_placements(
         "scale": placements.scale.tolist(),
         "mirrored": placements.mirrored.tolist(),
     }
+    if field is not None:
+        content["field"] = {
+            "symmetry": field.symmetry,
+            "angles": field.angles.tolist(),
+            "turns": field.turns.tolist(),
+        }
     with open(path, "w", encoding="utf-8") as file:
         json.dump(content, file)
 
@@ -55,6 +67,33 @@ def read_placements(path: str | os.PathLike[str], mesh: Mesh) -> tuple[list[Shap
         InputError: the file is of another kind or for another mesh, or what it says makes no shapes or placements.
         OSError: the file cannot be read.
     """
+    content = _content(path, mesh)
+    shapes = [Shape(*parts) for parts in content["shapes"]]
+    weights = np.asarray(content["barycentric"], dtype=np.float64).reshape(-1, 3)
+    centre = SurfacePoints(np.asarray(content["face"], dtype=np.int32), weights)
+    index = np.asarray(content["shape"], dtype=np.int32)
+    flags = np.asarray(content["mirrored"], dtype=np.bool_)
+    return shapes, Placements(index, centre, content["angle"], content["scale"], flags)
+
+
+def read_placement_field(path: str | os.PathLike[str], mesh: Mesh) -> DirectionField | None:
+    """Read the field that placements bend along, the same to the bit; None if they do not bend.
+
+    Raises
+    ------
+        InputError: the file is of another kind or for another mesh, or what it says makes no field.
+        OSError: the file cannot be read.
+    """
+    field = _content(path, mesh).get("field")
+    if field is None:
+        return None
+    missing = {"symmetry", "angles", "turns"} - set(field)
+    if missing:
+        raise InputError(f"{os.fspath(path)}: {min(missing)} of the field is missing")
+    return DirectionField.from_turns(mesh, field["angles"], field["turns"], field["symmetry"])
+
+
+def _content(path: str | os.PathLike[str], mesh: Mesh) -> dict[str, Any]:
     name = os.fspath(path)
     try:
         with open(path, encoding="utf-8") as file:
@@ -73,9 +112,4 @@ def read_placements(path: str | os.PathLike[str], mesh: Mesh) -> tuple[list[Shap
         raise InputError(
             f"{name}: for a mesh of {wanted[0]} vertices and {wanted[1]} faces, this one has {found[0]} and {found[1]}"
         )
-    shapes = [Shape(*parts) for parts in content["shapes"]]
-    weights = np.asarray(content["barycentric"], dtype=np.float64).reshape(-1, 3)
-    centre = SurfacePoints(np.asarray(content["face"], dtype=np.int32), weights)
-    index = np.asarray(content["shape"], dtype=np.int32)
-    flags = np.asarray(content["mirrored"], dtype=np.bool_)
-    return shapes, Placements(index, centre, content["angle"], content["scale"], flags)
+    return content

@@ -79,7 +79,11 @@ class SettledShapes {
   /// Copies are listed by how large something has to be to meet them: in ring k up to the circumradius least * 2^k.
   int ring_of(double reach) const {
     int ring = 0;
-    for (double radius = least_; radius < reach && ring + 1 < rings_; radius *= 2) ++ring;
+    double radius = least_;
+    while (radius < reach && ring + 1 < rings_) {
+      radius *= 2;
+      ++ring;
+    }
     return ring;
   }
   const Place& place(Index i) const { return places_[static_cast<std::size_t>(i / k_block)][i % k_block]; }
