@@ -249,14 +249,13 @@ struct Touch {
 
 /// A site seen from the one whose cell is wound, in single precision.
 struct Near {
-  float x, y, square, length;
+  float x, y, square;
 };
 __device__ inline Near near_of(double2 p, double2 site, double scale) {
   Near result;
   result.x = static_cast<float>((p.x - site.x) * scale);
   result.y = static_cast<float>((p.y - site.y) * scale);
   result.square = __fmaf_rn(result.x, result.x, result.y * result.y);
-  result.length = __fsqrt_rn(result.square);
   return result;
 }
 
@@ -264,7 +263,8 @@ __device__ inline Touch touch(const Near& n, const Near& p) {
   constexpr float k_error = 6e-7f, k_side = 4e-6f, k_beside = 1e-5f;  // ten and more roundings
   const float cross = __fmaf_rn(n.x, p.y, -n.y * p.x);
   const float along = __fmaf_rn(-n.y, p.y, __fmaf_rn(-n.x, p.x, p.square));
-  const float lengths = p.length * n.length, side = k_side * lengths, sum = p.square + lengths;
+  const float lengths = __fmaf_rn(0.5f, p.square, 0.5f * n.square);  // not less than the product
+  const float side = k_side * lengths, sum = p.square + lengths;
   const float inverse = __fdividef(1.0f, cross), t = along * inverse;
   const float error = k_error * inverse * __fmaf_rn(lengths, fabsf(t), sum);
   const bool is_left = cross > side;
@@ -353,7 +353,7 @@ class CellWinder {
               fmin(box.high[1], box.low[1] + (top + 1) * grid));
     for (int j = 0; j < k_each; ++j) {
       if (at_[j] == own_) at_[j] = -1;
-      near_[j] = {0, 0, INFINITY, 0};
+      near_[j] = {0, 0, INFINITY};
       if (at_[j] >= 0) near_[j] = near_of(memory_.at[at_[j]], site_, scale_);
     }
     return true;
@@ -376,7 +376,7 @@ class CellWinder {
   __device__ int nearest() {
     constexpr float k_smallest = 1e-12f;
     int mine_at = -1;
-    Near mine{0, 0, INFINITY, 0};
+    Near mine{0, 0, INFINITY};
     for_candidates<All>([&](int at, const Near& p) {
       if (p.square < mine.square) mine = p, mine_at = at;
     });
@@ -393,8 +393,7 @@ class CellWinder {
   /// To n what the first of some lanes has.
   __device__ int take(int at, const Near& near, unsigned lanes) {
     const int lane = __ffs(static_cast<int>(lanes)) - 1;
-    n_ = {__shfl_sync(k_warp, near.x, lane), __shfl_sync(k_warp, near.y, lane), __shfl_sync(k_warp, near.square, lane),
-          __shfl_sync(k_warp, near.length, lane)};
+    n_ = {__shfl_sync(k_warp, near.x, lane), __shfl_sync(k_warp, near.y, lane), __shfl_sync(k_warp, near.square, lane)};
     return __shfl_sync(k_warp, at, lane);
   }
 
@@ -453,13 +452,14 @@ class CellWinder {
   __device__ bool are_covered(const Near& a, int count) const {
     const int lane = threadIdx.x % 32, next = lane + 1 < count ? lane + 1 : 0;
     const float b_x = __shfl_sync(k_warp, a.x, next), b_y = __shfl_sync(k_warp, a.y, next),
-                b_square = __shfl_sync(k_warp, a.square, next), b_length = __shfl_sync(k_warp, a.length, next);
+                b_square = __shfl_sync(k_warp, a.square, next);
     const float cross = a.x * b_y - a.y * b_x, half = __fdividef(0.5f, cross);
     const float x = (b_y * a.square - a.y * b_square) * half, y = (a.x * b_square - b_x * a.square) * half;
     constexpr float k_flat = 1e-3f, k_larger = 1.003f;
     const float radius = k_larger * sqrtf(x * x + y * y);
-    const bool is_covered = cross > k_flat * a.length * b_length && x - radius >= -to_left_ &&
-                            x + radius <= to_right_ && y - radius >= -to_bottom_ && y + radius <= to_top_;
+    const bool is_covered = cross > 0 && cross * cross > k_flat * k_flat * a.square * b_square &&
+                            x - radius >= -to_left_ && x + radius <= to_right_ && y - radius >= -to_bottom_ &&
+                            y + radius <= to_top_;
     return __all_sync(k_warp, is_covered || lane >= count);
   }
 
