@@ -80,4 +80,35 @@ class DeviceBuffer {
   cudaStream_t stream_ = nullptr;
 };
 
+/// Copies to host memory beside the work of a stream.
+class CopiesAside {
+ public:
+  explicit CopiesAside(cudaStream_t stream) : stream_(stream) {
+    check_cuda(cudaStreamCreateWithFlags(&aside_, cudaStreamNonBlocking), "making a stream");
+    check_cuda(cudaEventCreateWithFlags(&ready_, cudaEventDisableTiming), "making an event");
+  }
+  ~CopiesAside() {
+    (void)cudaStreamSynchronize(aside_);
+    (void)cudaEventDestroy(ready_);
+    (void)cudaStreamDestroy(aside_);
+  }
+  CopiesAside(const CopiesAside&) = delete;
+  CopiesAside& operator=(const CopiesAside&) = delete;
+
+  /// Of what the stream has written so far and does not change any more.
+  template <class Number>
+  void start(const Number* from, std::size_t count, void* to) {
+    if (count == 0) return;
+    check_cuda(cudaEventRecord(ready_, stream_), "recording an event");
+    check_cuda(cudaStreamWaitEvent(aside_, ready_), "waiting for the device");
+    check_cuda(cudaMemcpyAsync(to, from, count * sizeof(Number), cudaMemcpyDeviceToHost, aside_),
+               "copying from the device");
+  }
+  void finish() const { check_cuda(cudaStreamSynchronize(aside_), "copying from the device"); }
+
+ private:
+  cudaStream_t stream_, aside_ = nullptr;
+  cudaEvent_t ready_ = nullptr;
+};
+
 }  // namespace saddleback

@@ -167,8 +167,9 @@ class DeviceDiagram {
   DeviceDiagram(std::int32_t cells, cudaStream_t stream)
       : stream_(stream), count_(cells), offsets_(static_cast<std::size_t>(cells) + 1, stream) {}
 
-  /// False when the cells do not fit together.
-  bool number(const DeviceLists& lists, const double2* at, const std::int32_t* original) {
+  /// Copies what is done as soon as it is. False when the cells do not fit together.
+  bool number(const DeviceLists& lists, const double2* at, const std::int32_t* original, CopiesAside& copies,
+              const PlaneTwinArrays& to) {
     const auto places = static_cast<std::size_t>(count_) + 1;
     add_up(lists.counts, offsets_.data());  // counts has a last entry of 0
     std::int32_t sides = 0;
@@ -188,6 +189,7 @@ class DeviceDiagram {
     edges_ = sides / 2;
     vertices_ = edges_ - count_ + 1;
     if (sides % 2 != 0 || vertices_ < 0 || last_of(before) != edges_) return false;
+    copy(copies, offsets_, to.cell_offsets);
     corner_vertices_ = DeviceBuffer<std::int32_t>(side_places, stream_);
     side_edges_ = DeviceBuffer<std::int32_t>(side_places, stream_);
     edge_vertices_ = DeviceBuffer<int2>(static_cast<std::size_t>(edges_), stream_);
@@ -201,28 +203,23 @@ class DeviceDiagram {
     int misfit_count = 0;
     misfits.read({&misfit_count, 1});
     if (misfit_count > 0) return false;
+    copy(copies, side_edges_, to.side_edges);
     count_vertices<<<blocks_for(count_), k_threads, 0, stream_>>>(cells, numbers, counts.data());
     check_cuda(cudaGetLastError(), "counting vertices");
     add_up(counts.data(), before.data());
     if (last_of(before) != vertices_) return false;
     add_vertices<<<blocks_for(count_), k_threads, 0, stream_>>>(cells, before.data(), numbers);
     check_cuda(cudaGetLastError(), "placing vertices");
+    copy(copies, vertex_places_, to.vertices);
+    copy(copies, corner_vertices_, to.corner_vertices);
     add_ends<<<blocks_for(edges_), k_threads, 0, stream_>>>(edges_, numbers);
     check_cuda(cudaGetLastError(), "numbering edges");
+    copy(copies, edge_vertices_, to.edges);
+    copy(copies, edge_sites_, to.edge_sites);
     return true;
   }
 
   PlaneTwinSizes sizes() const { return {count_, edges_, vertices_}; }
-
-  /// Does not wait.
-  void read(const PlaneTwinArrays& to) const {
-    copy(offsets_, to.cell_offsets);
-    copy(corner_vertices_, to.corner_vertices);
-    copy(side_edges_, to.side_edges);
-    copy(edge_vertices_, to.edges);
-    copy(edge_sites_, to.edge_sites);
-    copy(vertex_places_, to.vertices);
-  }
 
  private:
   void add_up(const std::int32_t* counts, std::int32_t* sums) {
@@ -237,10 +234,8 @@ class DeviceDiagram {
     return last;
   }
   template <class Number>
-  void copy(const DeviceBuffer<Number>& from, void* to) const {
-    if (from.size() > 0)
-      check_cuda(cudaMemcpyAsync(to, from.data(), from.size() * sizeof(Number), cudaMemcpyDeviceToHost, stream_),
-                 "copying the diagram");
+  static void copy(CopiesAside& copies, const DeviceBuffer<Number>& from, void* to) {
+    copies.start(from.data(), from.size(), to);
   }
 
   cudaStream_t stream_;

@@ -39,7 +39,8 @@ class CellFinder {
         is_open_(static_cast<std::size_t>(count), stream),
         counters_(5, stream) {}
 
-  void find(const DeviceOrder& order, int device, DeviceTimes& times) {
+  /// Does not wait.
+  void start(const DeviceOrder& order, int device) {
     const BoxLevels boxes(order.at(), count_, stream_);
     const Tiles tiles(order.places(), count_, stream_);
     counts_.fill_bytes(0);
@@ -60,6 +61,9 @@ class CellFinder {
                                                               counters_.data() + k_next_far, far_lists,
                                                               counters_.data() + k_failed, k_most_failures);
     check_cuda(cudaGetLastError(), "finding far cells");
+  }
+
+  void finish(DeviceTimes& times) const {
     int counters[k_counters];
     counters_.read(counters);
     times.second_pass = counters[k_far];
@@ -133,26 +137,26 @@ class Builder {
     report(0.2);
     constexpr std::int32_t k_fewest = 3;
     if (order.cell_count() < k_fewest) throw LeftOver();
+    CellFinder cells(order.cell_count(), stream);
+    cells.start(order, request_.device);
+    const PlaneTwinSizes most{order.cell_count(), 3 * order.cell_count() - 3, 2 * order.cell_count()};
+    PlaneTwinArrays to{};
+    if (!caller_.make_room(caller_.self, most, &to)) throw Stopped();
+    const PinnedArrays pinned(to, most);
     DeviceDiagram diagram(order.cell_count(), stream);
-    {
-      CellFinder cells(order.cell_count(), stream);
-      cells.find(order, request_.device, times_);
-      times_.find = watch.lap();
-      report(0.6);
-      if (!diagram.number(cells.lists(), order.at(), order.original())) throw LeftOver();
-    }
+    CopiesAside copies(stream);
+    copies.start(order.site_of(), count, to.site_of);
+    copies.start(order.cell_places(), count, to.cell_places);
+    copies.start(order.original(), static_cast<std::size_t>(order.cell_count()), to.cell_sites);
+    cells.finish(times_);
+    times_.find = watch.lap();
+    report(0.6);
+    if (!diagram.number(cells.lists(), order.at(), order.original(), copies, to)) throw LeftOver();
     times_.unite = watch.lap();
     report(0.7);
-    PlaneTwinArrays to{};
-    if (!caller_.make_room(caller_.self, diagram.sizes(), &to)) throw Stopped();
-    watch.lap();
-    const PinnedArrays pinned(to, diagram.sizes());
-    read(order.site_of(), to.site_of, count, stream);
-    read(order.cell_places(), to.cell_places, count, stream);
-    read(order.original(), to.cell_sites, static_cast<std::size_t>(order.cell_count()), stream);
-    diagram.read(to);
-    check_cuda(cudaStreamSynchronize(stream), "copying the diagram");
+    copies.finish();
     times_.download = watch.lap();
+    if (!caller_.cut(caller_.self, diagram.sizes())) throw Stopped();
   }
 
  private:
@@ -164,10 +168,6 @@ class Builder {
                "copying to the device");
     check_cuda(cudaStreamSynchronize(stream), "copying to the device");
     return sites;
-  }
-  static void read(const std::int32_t* from, std::int32_t* to, std::size_t count, cudaStream_t stream) {
-    check_cuda(cudaMemcpyAsync(to, from, count * sizeof(std::int32_t), cudaMemcpyDeviceToHost, stream),
-               "copying the diagram");
   }
   void report(double fraction) const {
     if (!caller_.keep_going(caller_.self, fraction)) throw Stopped();

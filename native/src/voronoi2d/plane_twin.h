@@ -37,8 +37,10 @@ struct PlaneTwinCaller {
   bool (*keep_going)(void* self, double fraction) = nullptr;
   /// Sorts the sites along the curve; `order` receives them, `places` where they lie. False: stop.
   bool (*sort)(void* self, std::uint32_t* places, std::int32_t* order) = nullptr;
-  /// False: stop.
-  bool (*make_room)(void* self, const PlaneTwinSizes& sizes, PlaneTwinArrays* arrays) = nullptr;
+  /// Makes room for a diagram of at most these sizes, while the device is at work. False: stop.
+  bool (*make_room)(void* self, const PlaneTwinSizes& most, PlaneTwinArrays* arrays) = nullptr;
+  /// Says how much of that is used. False: stop.
+  bool (*cut)(void* self, const PlaneTwinSizes& sizes) = nullptr;
 };
 
 }  // namespace saddleback

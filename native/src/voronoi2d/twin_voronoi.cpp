@@ -27,8 +27,11 @@ class Caller {
             [](void* self, std::uint32_t* places, std::int32_t* order) {
               return static_cast<Caller*>(self)->guard([=](Caller& caller) { caller.sort(places, order); });
             },
-            [](void* self, const PlaneTwinSizes& sizes, PlaneTwinArrays* arrays) {
-              return static_cast<Caller*>(self)->guard([&](Caller& caller) { *arrays = caller.make_room(sizes); });
+            [](void* self, const PlaneTwinSizes& most, PlaneTwinArrays* arrays) {
+              return static_cast<Caller*>(self)->guard([&](Caller& caller) { *arrays = caller.make_room(most); });
+            },
+            [](void* self, const PlaneTwinSizes& sizes) {
+              return static_cast<Caller*>(self)->guard([&](Caller& caller) { caller.resize(sizes); });
             }};
   }
   void rethrow() const {
@@ -56,26 +59,34 @@ class Caller {
     }
   }
 
-  PlaneTwinArrays make_room(const PlaneTwinSizes& sizes) {
-    const auto edges = static_cast<std::size_t>(sizes.edges), cells = static_cast<std::size_t>(sizes.cells);
-    make_room(result_.site_of, sites_.size());
-    make_room(result_.cell_places, sites_.size());
-    make_room(result_.cell_sites, cells);
-    make_room(result_.cell_offsets, cells + 1);
-    make_room(result_.corner_vertices, 2 * edges);
-    make_room(result_.side_edges, 2 * edges);
-    make_room(result_.edges, edges);
-    make_room(result_.edge_sites, edges);
-    make_room(result_.vertices, static_cast<std::size_t>(sizes.vertices));
+  PlaneTwinArrays make_room(const PlaneTwinSizes& most) {
+    resize(most);
+    const auto lay = [&](auto& array) { lay_pages(std::as_writable_bytes(std::span(array)), threads_); };
+    lay(result_.site_of);
+    lay(result_.cell_places);
+    lay(result_.cell_sites);
+    lay(result_.cell_offsets);
+    lay(result_.corner_vertices);
+    lay(result_.side_edges);
+    lay(result_.edges);
+    lay(result_.edge_sites);
+    lay(result_.vertices);
     return {result_.site_of.data(),       result_.cell_places.data(),        result_.cell_sites.data(),
             result_.cell_offsets.data(),  result_.corner_vertices.data(),    result_.side_edges.data(),
             result_.edges.data()->data(), result_.edge_sites.data()->data(), result_.vertices.data()->data()};
   }
 
-  template <class T>
-  void make_room(LargeArray<T>& array, std::size_t size) const {
-    array.resize(size);
-    lay_pages(std::as_writable_bytes(std::span(array)), threads_);
+  void resize(const PlaneTwinSizes& sizes) {
+    const auto edges = static_cast<std::size_t>(sizes.edges), cells = static_cast<std::size_t>(sizes.cells);
+    result_.site_of.resize(sites_.size());
+    result_.cell_places.resize(sites_.size());
+    result_.cell_sites.resize(cells);
+    result_.cell_offsets.resize(cells + 1);
+    result_.corner_vertices.resize(2 * edges);
+    result_.side_edges.resize(2 * edges);
+    result_.edges.resize(edges);
+    result_.edge_sites.resize(edges);
+    result_.vertices.resize(static_cast<std::size_t>(sizes.vertices));
   }
 
   std::span<const Vec2> sites_;
