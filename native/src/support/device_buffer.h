@@ -15,7 +15,7 @@ class PinnedRange {
  public:
   PinnedRange(const void* data, std::size_t size) {
     constexpr std::size_t k_worth_pinning = std::size_t{1} << 22;
-    if (size < k_worth_pinning) return;
+    if (size < k_worth_pinning || !data) return;
     if (cudaHostRegister(const_cast<void*>(data), size, cudaHostRegisterDefault) == cudaSuccess) {
       data_ = const_cast<void*>(data);
     } else {
@@ -95,10 +95,10 @@ class CopiesAside {
   CopiesAside(const CopiesAside&) = delete;
   CopiesAside& operator=(const CopiesAside&) = delete;
 
-  /// Of what the stream has written so far and does not change any more.
+  /// Of what the stream has written so far and does not change any more; none to nowhere.
   template <class Number>
   void start(const Number* from, std::size_t count, void* to) {
-    if (count == 0) return;
+    if (count == 0 || !to) return;
     check_cuda(cudaEventRecord(ready_, stream_), "recording an event");
     check_cuda(cudaStreamWaitEvent(aside_, ready_), "waiting for the device");
     check_cuda(cudaMemcpyAsync(to, from, count * sizeof(Number), cudaMemcpyDeviceToHost, aside_),

@@ -30,7 +30,13 @@ class Stopwatch {
   Stopwatch& operator=(const Stopwatch&) = delete;
   /// Seconds since the last lap; waits for the stream.
   double lap() {
-    check_cuda(cudaEventRecord(to_, stream_), "recording an event");
+    end();
+    return read();
+  }
+  void start() { check_cuda(cudaEventRecord(from_, stream_), "recording an event"); }
+  /// Where the stream is now; `read` waits for it.
+  void end() { check_cuda(cudaEventRecord(to_, stream_), "recording an event"); }
+  double read() {
     check_cuda(cudaEventSynchronize(to_), "waiting for the device");
     float milliseconds = 0;
     check_cuda(cudaEventElapsedTime(&milliseconds, from_, to_), "reading the clock");

@@ -29,7 +29,10 @@ struct DeviceNumbers {
   int2* edges;
   int2* edge_sites;
   double2* vertices;
-  int* misfits;
+  const int* misfits;  ///< found before
+  int* misfits_here;
+
+  __device__ bool failed_before() const { return *misfits != 0; }
 };
 
 /// Neighbours row after row; also counts the edges of a cell, which are those to higher ranks.
@@ -46,6 +49,11 @@ __global__ void gather_rows(DeviceLists lists, std::int32_t count, const std::in
     edges += from[k] > cell;
   }
   edge_counts[cell] = edges;
+}
+
+/// Notes a misfit when a sum is not what it has to be; nothing is done from then on.
+__global__ void expect_sum(const std::int32_t* sum, std::int32_t wanted, int* misfits) {
+  if (*sum != wanted) *misfits = 1;
 }
 
 __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
@@ -71,7 +79,7 @@ __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
 
 __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, DeviceNumbers numbers) {
   const std::int32_t cell = thread_number();
-  if (cell >= cells.count) return;
+  if (cell >= cells.count || numbers.failed_before()) return;
   const std::int32_t first = cells.offsets[cell], end = cells.offsets[cell + 1];
   bool fits = winds_once(cells, cell);
   std::int32_t edge = edges_before[cell];
@@ -94,7 +102,7 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
     ++edge;
   }
   if (cells.is_open[cell]) numbers.corner_vertices[end - 1] = -1;
-  if (!fits) atomicAdd(numbers.misfits, 1);
+  if (!fits) *numbers.misfits_here = 1;
 }
 
 /// Calls found(corner) for the corners of the vertices that belong to a cell: no lower rank is about them.
@@ -114,7 +122,7 @@ __device__ void for_own_vertices(const DeviceCells& cells, const std::int32_t* n
 
 __global__ void count_vertices(DeviceCells cells, DeviceNumbers numbers, std::int32_t* counts) {
   const std::int32_t cell = thread_number();
-  if (cell >= cells.count) return;
+  if (cell >= cells.count || numbers.failed_before()) return;
   std::int32_t mine = 0;
   for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t) { ++mine; });
   counts[cell] = mine;
@@ -122,7 +130,7 @@ __global__ void count_vertices(DeviceCells cells, DeviceNumbers numbers, std::in
 
 __global__ void add_vertices(DeviceCells cells, const std::int32_t* vertices_before, DeviceNumbers numbers) {
   const std::int32_t cell = thread_number();
-  if (cell >= cells.count) return;
+  if (cell >= cells.count || numbers.failed_before()) return;
   std::int32_t vertex = vertices_before[cell];
   for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t corner) {
     const std::int32_t second = numbers.next_corners[corner], third = numbers.next_corners[second];
@@ -149,7 +157,7 @@ __global__ void add_vertices(DeviceCells cells, const std::int32_t* vertices_bef
 
 __global__ void add_ends(std::int32_t count, DeviceNumbers numbers) {
   const std::int32_t edge = thread_number();
-  if (edge >= count) return;
+  if (edge >= count || numbers.failed_before()) return;
   const int2 corners = numbers.edges[edge];
   const int2 ends = {numbers.corner_vertices[corners.x], numbers.corner_vertices[corners.y]};
   if (ends.x < 0) {
@@ -161,54 +169,58 @@ __global__ void add_ends(std::int32_t count, DeviceNumbers numbers) {
   }
 }
 
-/// Rows, then numbers, of all cells.
+inline void add_up(const DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::int32_t>& sums, cudaStream_t stream) {
+  const auto count = static_cast<int>(counts.size());
+  with_scratch(stream, "adding up", [&](void* scratch, std::size_t& bytes) {
+    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts.data(), sums.data(), count, stream);
+  });
+}
+
+/// Rows, then numbers, of all cells. Nothing waits for the device; whether all fits is known at the end.
 class DeviceDiagram {
  public:
-  DeviceDiagram(std::int32_t cells, cudaStream_t stream)
-      : stream_(stream), count_(cells), offsets_(static_cast<std::size_t>(cells) + 1, stream) {}
+  DeviceDiagram(std::int32_t cells, std::int32_t sides, cudaStream_t stream)
+      : stream_(stream),
+        count_(cells),
+        sides_(sides),
+        edges_(sides / 2),
+        vertices_(edges_ - cells + 1),
+        neighbours_(size(sides), stream),
+        corner_vertices_(size(sides), stream),
+        side_edges_(size(sides), stream),
+        edge_vertices_(size(edges_), stream),
+        edge_sites_(size(edges_), stream),
+        vertex_places_(size(std::max(vertices_, 0)), stream),
+        misfits_(2, stream) {}
 
-  /// Copies what is done as soon as it is. False when the cells do not fit together.
-  bool number(const DeviceLists& lists, const double2* at, const std::int32_t* original, CopiesAside& copies,
-              const PlaneTwinArrays& to) {
+  /// By Euler's formula.
+  bool can_be() const { return sides_ % 2 == 0 && vertices_ >= 0 && edges_ <= 3 * static_cast<std::int64_t>(count_); }
+  const std::int32_t* neighbours() const { return neighbours_.data(); }
+  PlaneTwinSizes sizes() const { return {count_, edges_, vertices_}; }
+
+  /// Copies what is done as soon as it is.
+  void number(const DeviceCells& cells, const DeviceLists& lists, CopiesAside& copies, const PlaneTwinArrays& to) {
     const auto places = static_cast<std::size_t>(count_) + 1;
-    add_up(lists.counts, offsets_.data());  // counts has a last entry of 0
-    std::int32_t sides = 0;
-    check_cuda(cudaMemcpyAsync(&sides, offsets_.data() + count_, sizeof sides, cudaMemcpyDeviceToHost, stream_),
-               "counting sides");
-    check_cuda(cudaStreamSynchronize(stream_), "counting sides");
-    const auto side_places = static_cast<std::size_t>(sides);
-    DeviceBuffer<std::int32_t> neighbours(side_places, stream_), next_corners(side_places, stream_),
-        counts(places, stream_), before(places, stream_);
-    DeviceBuffer<int> misfits(1, stream_);
-    misfits.fill_bytes(0);
+    DeviceBuffer<std::int32_t> next_corners(size(sides_), stream_), counts(places, stream_), before(places, stream_);
+    misfits_.fill_bytes(0);
     counts.fill_bytes(0);
-    gather_rows<<<blocks_for(count_), k_threads, 0, stream_>>>(lists, count_, offsets_.data(), neighbours.data(),
-                                                               counts.data());
-    check_cuda(cudaGetLastError(), "gathering cells");
-    add_up(counts.data(), before.data());
-    edges_ = sides / 2;
-    vertices_ = edges_ - count_ + 1;
-    if (sides % 2 != 0 || vertices_ < 0 || last_of(before) != edges_) return false;
-    copy(copies, offsets_, to.cell_offsets);
-    corner_vertices_ = DeviceBuffer<std::int32_t>(side_places, stream_);
-    side_edges_ = DeviceBuffer<std::int32_t>(side_places, stream_);
-    edge_vertices_ = DeviceBuffer<int2>(static_cast<std::size_t>(edges_), stream_);
-    edge_sites_ = DeviceBuffer<int2>(static_cast<std::size_t>(edges_), stream_);
-    vertex_places_ = DeviceBuffer<double2>(static_cast<std::size_t>(vertices_), stream_);
-    const DeviceCells cells{count_, at, original, offsets_.data(), neighbours.data(), lists.is_open};
     const DeviceNumbers numbers{next_corners.data(), corner_vertices_.data(), side_edges_.data(), edge_vertices_.data(),
-                                edge_sites_.data(),  vertex_places_.data(),   misfits.data()};
-    join_sides<<<blocks_for(count_), k_threads, 0, stream_>>>(cells, before.data(), numbers);
+                                edge_sites_.data(),  vertex_places_.data(),   misfits_.data(),    misfits_.data() + 1};
+    const unsigned blocks = blocks_for(count_);
+    gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, count_, cells.offsets, neighbours_.data(), counts.data());
+    check_cuda(cudaGetLastError(), "gathering cells");
+    add_up(counts, before, stream_);
+    expect(before, edges_);
+    join_sides<<<blocks, k_threads, 0, stream_>>>(cells, before.data(), numbers);
     check_cuda(cudaGetLastError(), "joining cells");
-    int misfit_count = 0;
-    misfits.read({&misfit_count, 1});
-    if (misfit_count > 0) return false;
     copy(copies, side_edges_, to.side_edges);
-    count_vertices<<<blocks_for(count_), k_threads, 0, stream_>>>(cells, numbers, counts.data());
+    expect_sum<<<1, 1, 0, stream_>>>(misfits_.data() + 1, 0, misfits_.data());
+    check_cuda(cudaGetLastError(), "joining cells");
+    count_vertices<<<blocks, k_threads, 0, stream_>>>(cells, numbers, counts.data());
     check_cuda(cudaGetLastError(), "counting vertices");
-    add_up(counts.data(), before.data());
-    if (last_of(before) != vertices_) return false;
-    add_vertices<<<blocks_for(count_), k_threads, 0, stream_>>>(cells, before.data(), numbers);
+    add_up(counts, before, stream_);
+    expect(before, vertices_);
+    add_vertices<<<blocks, k_threads, 0, stream_>>>(cells, before.data(), numbers);
     check_cuda(cudaGetLastError(), "placing vertices");
     copy(copies, vertex_places_, to.vertices);
     copy(copies, corner_vertices_, to.corner_vertices);
@@ -216,22 +228,21 @@ class DeviceDiagram {
     check_cuda(cudaGetLastError(), "numbering edges");
     copy(copies, edge_vertices_, to.edges);
     copy(copies, edge_sites_, to.edge_sites);
-    return true;
   }
 
-  PlaneTwinSizes sizes() const { return {count_, edges_, vertices_}; }
+  /// Waits for the stream.
+  bool fits() const {
+    int misfits[2];
+    misfits_.read(misfits);
+    return misfits[0] == 0;
+  }
 
  private:
-  void add_up(const std::int32_t* counts, std::int32_t* sums) {
-    with_scratch(stream_, "adding up", [&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts, sums, count_ + 1, stream_);
-    });
-  }
-  std::int32_t last_of(const DeviceBuffer<std::int32_t>& sums) const {
-    std::int32_t last = 0;
-    check_cuda(cudaMemcpyAsync(&last, sums.data() + count_, sizeof last, cudaMemcpyDeviceToHost, stream_), "counting");
-    check_cuda(cudaStreamSynchronize(stream_), "counting");
-    return last;
+  static std::size_t size(std::int32_t count) { return static_cast<std::size_t>(count); }
+
+  void expect(const DeviceBuffer<std::int32_t>& sums, std::int32_t total) {
+    expect_sum<<<1, 1, 0, stream_>>>(sums.data() + count_, total, misfits_.data());
+    check_cuda(cudaGetLastError(), "counting");
   }
   template <class Number>
   static void copy(CopiesAside& copies, const DeviceBuffer<Number>& from, void* to) {
@@ -239,10 +250,11 @@ class DeviceDiagram {
   }
 
   cudaStream_t stream_;
-  std::int32_t count_, edges_ = 0, vertices_ = 0;
-  DeviceBuffer<std::int32_t> offsets_, corner_vertices_, side_edges_;
+  std::int32_t count_, sides_, edges_, vertices_;
+  DeviceBuffer<std::int32_t> neighbours_, corner_vertices_, side_edges_;
   DeviceBuffer<int2> edge_vertices_, edge_sites_;
   DeviceBuffer<double2> vertex_places_;
+  DeviceBuffer<int> misfits_;
 };
 
 }  // namespace

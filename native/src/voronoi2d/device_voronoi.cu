@@ -33,6 +33,7 @@ class CellFinder {
         count_(count),
         slots_(static_cast<std::size_t>(count) * k_slots, stream),
         counts_(static_cast<std::size_t>(count) + 1, stream),
+        offsets_(static_cast<std::size_t>(count) + 1, stream),
         far_(static_cast<std::size_t>(count), stream),
         failed_(static_cast<std::size_t>(k_most_failures) + 4096, stream),
         pool_(static_cast<std::size_t>(count) / 4 + 65536, stream),
@@ -61,14 +62,21 @@ class CellFinder {
                                                               counters_.data() + k_next_far, far_lists,
                                                               counters_.data() + k_failed, k_most_failures);
     check_cuda(cudaGetLastError(), "finding far cells");
+    add_up(counts_, offsets_, stream_);  // the last count is 0
   }
 
-  void finish(DeviceTimes& times) const {
+  /// Waits for the cells. \return how many neighbours they have together.
+  std::int32_t finish(DeviceTimes& times) const {
     int counters[k_counters];
+    std::int32_t sides = 0;
+    check_cuda(cudaMemcpyAsync(&sides, offsets_.data() + count_, sizeof sides, cudaMemcpyDeviceToHost, stream_),
+               "counting sides");
     counters_.read(counters);
     times.second_pass = counters[k_far];
     if (counters[k_failed] > 0) throw LeftOver();
+    return sides;
   }
+  const std::int32_t* offsets() const { return offsets_.data(); }
 
   DeviceLists lists() {
     return {slots_.data(),
@@ -86,7 +94,7 @@ class CellFinder {
   static constexpr int k_most_failures = 64;
   cudaStream_t stream_;
   std::int32_t count_;
-  DeviceBuffer<std::int32_t> slots_, counts_, far_, failed_, pool_;
+  DeviceBuffer<std::int32_t> slots_, counts_, offsets_, far_, failed_, pool_;
   DeviceBuffer<std::uint8_t> is_open_;
   DeviceBuffer<int> counters_;
 };
@@ -139,22 +147,29 @@ class Builder {
     if (order.cell_count() < k_fewest) throw LeftOver();
     CellFinder cells(order.cell_count(), stream);
     cells.start(order, request_.device);
+    watch.end();
     const PlaneTwinSizes most{order.cell_count(), 3 * order.cell_count() - 3, 2 * order.cell_count()};
     PlaneTwinArrays to{};
     if (!caller_.make_room(caller_.self, most, &to)) throw Stopped();
     const PinnedArrays pinned(to, most);
-    DeviceDiagram diagram(order.cell_count(), stream);
     CopiesAside copies(stream);
     copies.start(order.site_of(), count, to.site_of);
     copies.start(order.cell_places(), count, to.cell_places);
     copies.start(order.original(), static_cast<std::size_t>(order.cell_count()), to.cell_sites);
-    cells.finish(times_);
-    times_.find = watch.lap();
+    const std::int32_t sides = cells.finish(times_);
+    times_.find = watch.read();
     report(0.6);
-    if (!diagram.number(cells.lists(), order.at(), order.original(), copies, to)) throw LeftOver();
+    watch.start();
+    DeviceDiagram diagram(order.cell_count(), sides, stream);
+    if (!diagram.can_be()) throw LeftOver();
+    copies.start(cells.offsets(), static_cast<std::size_t>(order.cell_count()) + 1, to.cell_offsets);
+    diagram.number({order.cell_count(), order.at(), order.original(), cells.offsets(), diagram.neighbours(),
+                    cells.lists().is_open},
+                   cells.lists(), copies, to);
     times_.unite = watch.lap();
     report(0.7);
     copies.finish();
+    if (!diagram.fits()) throw LeftOver();
     times_.download = watch.lap();
     if (!caller_.cut(caller_.self, diagram.sizes())) throw Stopped();
   }
