@@ -253,56 +253,22 @@ def attribute_output(node: Any) -> Any:
 
 def cells_material() -> bpy.types.Material:
     """A plain material that shows the colour of each cell."""
-    material = _find_material(CELLS)
-    if material is not None:
-        return material
-    material, shader = new_material("Saddleback Cells", CELLS)
-    color = material.node_tree.nodes.new("ShaderNodeVertexColor")
-    color.layer_name = COLOR_ATTRIBUTE
-    color.location = (-220, 300)
-    material.node_tree.links.new(color.outputs["Color"], shader.inputs["Base Color"])
-    shader.inputs["Roughness"].default_value = 0.55
-    return material
+    return _find_material(CELLS) or _new_painted("Saddleback Cells", CELLS, 0.55)
 
 
 def shapes_material() -> bpy.types.Material:
     """A plain material that shows the colour of each shape."""
-    material = _find_material(SHAPES)
-    if material is not None:
-        return material
-    material, shader = new_material("Saddleback Shapes", SHAPES)
-    color = material.node_tree.nodes.new("ShaderNodeVertexColor")
-    color.layer_name = COLOR_ATTRIBUTE
-    color.location = (-220, 300)
-    material.node_tree.links.new(color.outputs["Color"], shader.inputs["Base Color"])
-    shader.inputs["Roughness"].default_value = 0.4
-    return material
+    return _find_material(SHAPES) or _new_painted("Saddleback Shapes", SHAPES, 0.4)
 
 
 def edges_material() -> bpy.types.Material:
     """A dark plain material for the lines between cells."""
-    material = _find_material(EDGES)
-    if material is not None:
-        return material
-    material, shader = new_material("Saddleback Edges", EDGES)
-    dark = (0.03, 0.03, 0.035, 1.0)
-    shader.inputs["Base Color"].default_value = dark
-    shader.inputs["Roughness"].default_value = 0.4
-    material.diffuse_color = dark
-    return material
+    return _find_material(EDGES) or _new_colored("Saddleback Edges", EDGES, (0.03, 0.03, 0.035, 1.0), 0.4)
 
 
 def paths_material() -> bpy.types.Material:
-    """A bright plain material for shortest paths."""
-    material = _find_material(PATHS)
-    if material is not None:
-        return material
-    material, shader = new_material("Saddleback Paths", PATHS)
-    bright = (0.0, 0.36, 0.55, 1.0)  # stands out on every color of the distance preview
-    shader.inputs["Base Color"].default_value = bright
-    shader.inputs["Roughness"].default_value = 0.4
-    material.diffuse_color = bright
-    return material
+    """A bright plain material for shortest paths, which stands out on every colour of the distance preview."""
+    return _find_material(PATHS) or _new_colored("Saddleback Paths", PATHS, (0.0, 0.36, 0.55, 1.0), 0.4)
 
 
 def field_materials() -> list[bpy.types.Material]:
@@ -312,13 +278,24 @@ def field_materials() -> list[bpy.types.Material]:
         ("Saddleback Sources", SOURCES, (0.85, 0.13, 0.06, 1.0)),
         ("Saddleback Saddles", SADDLES, (0.04, 0.2, 0.8, 1.0)),
     )
-    return [_find_material(kind) or _new_colored(name, kind, color) for name, kind, color in looks]
+    return [_find_material(kind) or _new_colored(name, kind, color, 0.45) for name, kind, color in looks]
 
 
-def _new_colored(name: str, kind: str, color: tuple[float, ...]) -> bpy.types.Material:
+def _new_painted(name: str, kind: str, roughness: float) -> bpy.types.Material:
+    """Of the colour attribute."""
+    material, shader = new_material(name, kind)
+    color = material.node_tree.nodes.new("ShaderNodeVertexColor")
+    color.layer_name = COLOR_ATTRIBUTE
+    color.location = (-220, 300)
+    material.node_tree.links.new(color.outputs["Color"], shader.inputs["Base Color"])
+    shader.inputs["Roughness"].default_value = roughness
+    return material
+
+
+def _new_colored(name: str, kind: str, color: tuple[float, ...], roughness: float) -> bpy.types.Material:
     material, shader = new_material(name, kind)
     shader.inputs["Base Color"].default_value = color
-    shader.inputs["Roughness"].default_value = 0.45
+    shader.inputs["Roughness"].default_value = roughness
     material.diffuse_color = color
     return material
 
