@@ -146,7 +146,7 @@ class SaddleVertexGraph {
 
  private:
   SaddleVertexGraph();  ///< empty, for `load`
-  void order_nodes(int threads);
+  void order_nodes(int threads, const JobStage& stage);
 
   const Mesh* mesh_ = nullptr;
   const WaveKernel* kernel_ = nullptr;

@@ -99,7 +99,7 @@ void ExactProgress::spread_flows(const ExactSurface& surface, const SurfacePoint
   flows_.assign(ways.size(), {});
   const JobStage spreading = stage.part(0.5, 1);
   Index done = 0;
-  for (const Index v : order_of(keys)) {
+  for (const Index v : order_of(keys, stage)) {
     if (std::isinf(ways[v])) break;
     if (done++ % k_vertices_a_check == 0) spreading.update(static_cast<double>(done) / mesh.vertex_count());
     Flows& flow = flows_[surface.vertex_of(v)];

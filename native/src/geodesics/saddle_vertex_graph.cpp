@@ -53,7 +53,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
       std::async(thread_count(options.threads) > 1 ? std::launch::async : std::launch::deferred, longest_path_bound,
                  std::cref(mesh), std::cref(stage));
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
-  order_nodes(options.threads);
+  order_nodes(options.threads, stage);
   std::optional<WaveTables> tables;
   if (!exact_) tables.emplace(*unfolding_, nodes_, vertices_, options.threads, stage.part(0, 0));
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest.get());
@@ -74,11 +74,14 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 
-void SaddleVertexGraph::order_nodes(int threads) {
+void SaddleVertexGraph::order_nodes(int threads, const JobStage& stage) {
   const HilbertCurve curve(mesh_->positions());
   std::vector<std::uint64_t> keys(mesh_->vertex_count());
-  parallel_for(mesh_->vertex_count(), threads, 4096, [&](Index v, int) { keys[v] = curve.key(mesh_->position(v)); });
-  vertices_ = order_of(keys);
+  parallel_for(mesh_->vertex_count(), threads, 4096, [&](Index v, int) {
+    stage.check();
+    keys[v] = curve.key(mesh_->position(v));
+  });
+  vertices_ = order_of(keys, stage);
   nodes_.resize(mesh_->vertex_count());
   for (Index node = 0; node < mesh_->vertex_count(); ++node) nodes_[vertices_[node]] = node;
 }

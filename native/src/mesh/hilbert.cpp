@@ -60,7 +60,7 @@ std::uint64_t HilbertCurve::key(const Vec3& point) const {
   return hilbert_key(cell);
 }
 
-std::vector<Index> order_of(std::span<const std::uint64_t> keys) {
+std::vector<Index> order_of(std::span<const std::uint64_t> keys, const JobStage& stage) {
   const std::size_t count = keys.size();
   std::vector<Index> order(count), sorted(count);
   std::iota(order.begin(), order.end(), 0);
@@ -70,6 +70,7 @@ std::vector<Index> order_of(std::span<const std::uint64_t> keys) {
   constexpr std::uint64_t k_mask = (1u << k_digit) - 1;
   for (int shift = 0; shift < 64; shift += k_digit) {
     if ((differing >> shift & k_mask) == 0) continue;
+    stage.check();
     std::vector<std::size_t> start(k_mask + 2, 0);
     for (const std::uint64_t key : keys) ++start[(key >> shift & k_mask) + 1];
     std::partial_sum(start.begin(), start.end(), start.begin());

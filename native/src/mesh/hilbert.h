@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -21,7 +22,7 @@ class HilbertCurve {
   double scale_ = 0;  ///< cells per unit
 };
 
-/// The indices 0 to n-1 in ascending order of key, then of index.
-std::vector<Index> order_of(std::span<const std::uint64_t> keys);
+/// The indices 0 to n-1 in ascending order of key, then of index. \throw Cancelled.
+std::vector<Index> order_of(std::span<const std::uint64_t> keys, const JobStage& stage = {});
 
 }  // namespace saddleback

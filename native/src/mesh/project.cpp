@@ -243,7 +243,7 @@ SurfacePoints project(const Mesh& mesh, std::span<const double> xyz, const Proje
   const HilbertCurve curve(mesh.positions());
   std::vector<std::uint64_t> keys(static_cast<std::size_t>(count));
   for (Index i = 0; i < count; ++i) keys[i] = curve.key(query(i));
-  const std::vector<Index> order = order_of(keys);
+  const std::vector<Index> order = order_of(keys, stage);
 
   SurfacePoints result(static_cast<std::size_t>(count));
   const Index chunks = (count + k_chunk - 1) / k_chunk;
