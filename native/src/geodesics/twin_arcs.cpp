@@ -36,7 +36,7 @@ class Caller {
               return static_cast<Caller*>(self)->guard([=](Caller& caller) {
                 caller.offsets_.resize(caller.search_.vertices.size() + 1);
                 caller.words_.resize(static_cast<std::size_t>(words));
-                lay_pages(std::as_writable_bytes(std::span(caller.words_)), caller.search_.threads);
+                lay_pages(std::as_writable_bytes(std::span(caller.words_)), caller.search_.threads, caller.stage_);
                 *offsets_to = caller.offsets_.data();
                 *words_to = caller.words_.data();
               });

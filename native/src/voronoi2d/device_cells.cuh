@@ -473,22 +473,28 @@ class CellWinder {
   int at_[k_each];
 };
 
+/// Tiles from `first` on, before `last`.
+struct TileRange {
+  const std::int32_t *begins, *count;
+  int* taken;
+  std::int32_t first, last;
+};
+
 __global__ void __launch_bounds__(k_tile_threads)
-    find_cells_of_tiles(DeviceTree tree, const std::int32_t* begins, const std::int32_t* tile_count, int* next_tile,
-                        DeviceLists lists) {
+    find_cells_of_tiles(DeviceTree tree, TileRange tiles, DeviceLists lists) {
   extern __shared__ __align__(16) char bytes[];
   TileMemory& memory = *reinterpret_cast<TileMemory*>(bytes);
   __shared__ int tile;
-  const int lane = threadIdx.x % 32, warp = threadIdx.x / 32, count = *tile_count;
+  const int lane = threadIdx.x % 32, warp = threadIdx.x / 32, count = *tiles.count;
   const auto leave = [&](std::int32_t rank) {
     if (lane == 0) lists.far[atomicAdd(lists.far_count, 1)] = rank;
   };
   while (true) {
     __syncthreads();
-    if (threadIdx.x == 0) tile = atomicAdd(next_tile, 1);
+    if (threadIdx.x == 0) tile = tiles.first + atomicAdd(tiles.taken, 1);
     __syncthreads();
-    if (tile >= count) return;
-    const std::int32_t begin = begins[tile], end = tile + 1 < count ? begins[tile + 1] : tree.site_count;
+    if (tile >= min(count, tiles.last)) return;
+    const std::int32_t begin = tiles.begins[tile], end = tile + 1 < count ? tiles.begins[tile + 1] : tree.site_count;
     TileSites sites(memory, tree);
     if (!sites.gather(begin, end)) {
       for (std::int32_t rank = begin + warp; rank < end; rank += k_tile_warps) leave(rank);

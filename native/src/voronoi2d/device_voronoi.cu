@@ -1,6 +1,7 @@
 // Voronoi diagrams of the plane on a CUDA device: order, cells by tiles, cells that these could not tell, numbers. The
 // answer is the processor's, to the bit.
 
+#include <limits>
 #include <vector>
 
 #include "support/device_stream.h"
@@ -40,8 +41,9 @@ class CellFinder {
         is_open_(static_cast<std::size_t>(count), stream),
         counters_(5, stream) {}
 
-  /// Does not wait.
-  void start(const DeviceOrder& order, int device) {
+  /// Does not wait for the last tiles; calls report() in between where there are many.
+  template <class Report>
+  void start(const DeviceOrder& order, int device, Report&& report) {
     const BoxLevels boxes(order.at(), count_, stream_);
     const Tiles tiles(order.places(), count_, stream_);
     counts_.fill_bytes(0);
@@ -52,9 +54,18 @@ class CellFinder {
     check_cuda(cudaFuncSetAttribute(find_cells_of_tiles, cudaFuncAttributePreferredSharedMemoryCarveout, 100),
                "asking for shared memory");
     const int blocks = blocks_of(reinterpret_cast<const void*>(find_cells_of_tiles), k_tile_threads, k_shared, device);
-    find_cells_of_tiles<<<blocks, k_tile_threads, k_shared, stream_>>>(boxes.tree(), tiles.begins(), tiles.count(),
-                                                                       counters_.data() + k_next_tile, lists());
-    check_cuda(cudaGetLastError(), "finding cells");
+    constexpr std::int32_t k_tiles_per_launch = 1 << 17;                                 // some tens of milliseconds
+    const std::int32_t launches = 1 + count_ / (k_tile_sites * k_tiles_per_launch) * 4;  // tiles are half full and less
+    for (std::int32_t i = 0; i < launches; ++i) {
+      const TileRange range{tiles.begins(), tiles.count(), counters_.data() + k_next_tile, i * k_tiles_per_launch,
+                            i + 1 < launches ? (i + 1) * k_tiles_per_launch : std::numeric_limits<std::int32_t>::max()};
+      check_cuda(cudaMemsetAsync(range.taken, 0, sizeof(int), stream_), "clearing a counter");
+      find_cells_of_tiles<<<blocks, k_tile_threads, k_shared, stream_>>>(boxes.tree(), range, lists());
+      check_cuda(cudaGetLastError(), "finding cells");
+      if (i + 1 == launches) break;
+      check_cuda(cudaStreamSynchronize(stream_), "finding cells");
+      report(static_cast<double>(i) / launches);
+    }
     const int far_blocks = blocks_of(reinterpret_cast<const void*>(find_far_cells), k_far_threads, 0, device);
     DeviceLists far_lists = lists();
     far_lists.far = failed_.data();
@@ -100,7 +111,7 @@ class CellFinder {
 };
 
 /// What a diagram takes at most at once, in bytes.
-std::uint64_t bytes_needed(std::int32_t count) { return static_cast<std::uint64_t>(count) * 300 + (1 << 20); }
+std::uint64_t bytes_needed(std::int32_t count) { return static_cast<std::uint64_t>(count) * 360 + (1 << 20); }
 
 /// The larger arrays of the answer, pinned.
 class PinnedArrays {
@@ -146,7 +157,7 @@ class Builder {
     constexpr std::int32_t k_fewest = 3;
     if (order.cell_count() < k_fewest) throw LeftOver();
     CellFinder cells(order.cell_count(), stream);
-    cells.start(order, request_.device);
+    cells.start(order, request_.device, [&](double done) { report(0.2 + 0.3 * done); });
     watch.end();
     const PlaneTwinSizes most{order.cell_count(), 3 * order.cell_count() - 3, 2 * order.cell_count()};
     PlaneTwinArrays to{};
@@ -179,9 +190,15 @@ class Builder {
     const auto count = static_cast<std::size_t>(request_.count);
     const PinnedRange pinned(request_.sites, count * sizeof(double2));
     DeviceBuffer<double2> sites(count, stream);
-    check_cuda(cudaMemcpyAsync(sites.data(), request_.sites, count * sizeof(double2), cudaMemcpyHostToDevice, stream),
-               "copying to the device");
-    check_cuda(cudaStreamSynchronize(stream), "copying to the device");
+    constexpr std::size_t k_piece = std::size_t{1} << 24;
+    for (std::size_t begin = 0; begin < count; begin += k_piece) {
+      const std::size_t size = std::min(k_piece, count - begin);
+      check_cuda(cudaMemcpyAsync(sites.data() + begin, request_.sites + 2 * begin, size * sizeof(double2),
+                                 cudaMemcpyHostToDevice, stream),
+                 "copying to the device");
+      check_cuda(cudaStreamSynchronize(stream), "copying to the device");
+      report(0.1 * static_cast<double>(begin + size) / static_cast<double>(count));
+    }
     return sites;
   }
   void report(double fraction) const {

@@ -61,7 +61,7 @@ class Caller {
 
   PlaneTwinArrays make_room(const PlaneTwinSizes& most) {
     resize(most);
-    const auto lay = [&](auto& array) { lay_pages(std::as_writable_bytes(std::span(array)), threads_); };
+    const auto lay = [&](auto& array) { lay_pages(std::as_writable_bytes(std::span(array)), threads_, stage_); };
     lay(result_.site_of);
     lay(result_.cell_places);
     lay(result_.cell_sites);
