@@ -111,12 +111,12 @@ class Sorter {
   /// Fills in the places; false when all points are one.
   bool place(std::span<Placed> items) {
     Box box;
-    for (const Placed& item : items) {
+    for_blocks(items, stage_, [&](const Placed& item) {
       for (int k = 0; k < 2; ++k) {
         box.low[k] = std::min(box.low[k], points_[item.index][k]);
         box.high[k] = std::max(box.high[k], points_[item.index][k]);
       }
-    }
+    });
     // Halves, since the width of the box may be beyond the doubles.
     const double width = std::max(0.5 * box.high[0] - 0.5 * box.low[0], 0.5 * box.high[1] - 0.5 * box.low[1]);
     if (!(width > 0)) return false;
@@ -142,7 +142,8 @@ class Sorter {
 
 LargeArray<Placed> curve_order(std::span<const Vec2> points, const JobStage& stage) {
   LargeArray<Placed> items(points.size()), other;
-  for (std::size_t i = 0; i < items.size(); ++i) items[i] = {0, static_cast<Index>(i)};
+  Index next = 0;
+  for_blocks(items, stage, [&](Placed& item) { item = {0, next++}; });
   Sorter sorter(points, stage);
   stage.update(0.1);
   if (items.size() > 1 && sorter.place(items)) radix_sort(items, other, stage.part(0.3, 0.9));
