@@ -57,7 +57,7 @@ __device__ void work_through(const DeviceMesh& mesh, const Work& work, typename 
   while (true) {
     std::int32_t start = 0;
     if (lane == 0) start = atomicAdd(work.next, k_sources);
-    start = __shfl_sync(k_whole_warp, start, 0);
+    start = __shfl_sync(k_warp, start, 0);
     if (start >= work.count) return;
     const int sources = min(k_sources, work.count - start);
     const auto node_of = [&](int source) {

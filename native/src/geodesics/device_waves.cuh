@@ -34,11 +34,11 @@ struct Simd {
 }  // namespace saddleback
 
 #include "geodesics/window_waves_step.h"
+#include "support/warp.cuh"
 
 namespace saddleback {
 namespace {
 
-constexpr unsigned k_whole_warp = 0xffffffffu;
 constexpr std::uint32_t k_no_key = 0xffffffffu;
 constexpr std::int32_t k_unreached_label = 0x7f800000;
 constexpr std::uint64_t k_no_arc = static_cast<std::uint64_t>(k_unreached_label) << 32 | 0xffffffffu;
@@ -222,7 +222,7 @@ class WarpWaves {
           kept = i < links_ ? shortest || !is_kept(slot, source) : shortest && is_kept(slot, source);
         }
       }
-      use(draft_[i < arcs_ ? i : 0], __ballot_sync(k_whole_warp, kept));
+      use(draft_[i < arcs_ ? i : 0], __ballot_sync(k_warp, kept));
     }
   }
 
@@ -253,7 +253,7 @@ class WarpWaves {
   }
 
  private:
-  SADDLEBACK_STEP bool overflowed() { return __any_sync(k_whole_warp, overflow_); }
+  SADDLEBACK_STEP bool overflowed() { return __any_sync(k_warp, overflow_); }
   SADDLEBACK_STEP unsigned below() const { return (1u << lane_) - 1; }
 
   /// The slot of a node, made if need be. Any lanes may call it at once.
@@ -301,7 +301,7 @@ class WarpWaves {
       target = mesh_.targets[e];
     }
     const bool boundary = active && record.left < 0;
-    const unsigned actives = __ballot_sync(k_whole_warp, active), boundaries = __ballot_sync(k_whole_warp, boundary);
+    const unsigned actives = __ballot_sync(k_warp, active), boundaries = __ballot_sync(k_warp, boundary);
     const int number = arcs_ + __popc(actives & below()) + __popc(boundaries & below());
     const double apex_x = record.a * length, apex_y = record.b * length, other = norm_of(apex_x, apex_y);
     int to = -1, apex = -1;
@@ -320,7 +320,7 @@ class WarpWaves {
       }
     }
     const bool opens = active && record.right >= 0 && to >= 0 && apex >= 0;
-    const unsigned opening = __ballot_sync(k_whole_warp, opens);
+    const unsigned opening = __ballot_sync(k_warp, opens);
     if (left_count_ + __popc(opening) > k_ring) {
       overflow_ = true;
     } else if (opens) {
@@ -413,7 +413,7 @@ class WarpWaves {
         makes_arc = apex.direct;
       }
     }
-    const unsigned making = __ballot_sync(k_whole_warp, makes_arc);
+    const unsigned making = __ballot_sync(k_warp, makes_arc);
     if (makes_arc) {
       put_arc(arcs_ + __popc(making & below()), label,
               {{apex.x, apex.y},
@@ -472,7 +472,7 @@ class WarpWaves {
                          mesh_.excess, w.most);
     }
     const bool keep = child.useful && is_within(child, most);
-    const unsigned keeping = __ballot_sync(k_whole_warp, keep);
+    const unsigned keeping = __ballot_sync(k_warp, keep);
     const int count = ring == 0 ? left_count_ : right_count_;
     if (count + __popc(keeping) > k_ring) {
       overflow_ = true;
@@ -519,7 +519,7 @@ class WarpWaves {
   SADDLEBACK_STEP int count_labels(int source, std::int32_t most) const {
     int count = 0;
     for (int i = lane_; i < k_slots; i += 32) count += table_.labels[i] <= most && is_of(i, source);
-    return __reduce_add_sync(k_whole_warp, count);
+    return warp_sum(count);
   }
 
   /// Lowers the radius of a source's disk to that of the k-th nearest vertex, as far as is known.
@@ -544,7 +544,7 @@ class WarpWaves {
     std::int32_t kth = 0;
     for (int i = lane_; i < k_slots; i += 32)
       if (table_.labels[i] <= high && is_of(i, source)) kth = max(kth, table_.labels[i]);
-    kth = __reduce_max_sync(k_whole_warp, kth);
+    kth = warp_max(kth);
     const float radius = distance_of(kth) * k_disk_as_far;
     __syncwarp();
     if (!(radius < limit)) return false;
@@ -570,7 +570,7 @@ class WarpWaves {
           done = limit < distance_of(k_unreached_label);
           tells = done && distance_of(label) < limit && ((label & 1) != 0 || mesh_.saddles[key >> k_batch_bits] != 0);
         }
-        const unsigned telling = __ballot_sync(k_whole_warp, tells), over = __ballot_sync(k_whole_warp, done);
+        const unsigned telling = __ballot_sync(k_warp, tells), over = __ballot_sync(k_warp, done);
         if (tells) table_.todo[count + __popc(telling & below())] = static_cast<std::uint16_t>(slot);
         __syncwarp();
         if (lane_ == 0) table_.changed[base / 32] = word & ~over;

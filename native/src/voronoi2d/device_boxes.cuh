@@ -2,12 +2,11 @@
 // Boxes about every 32 sites in their order, about every 32 of those, and so on.
 
 #include "support/device_buffer.h"
+#include "support/warp.cuh"
 #include "voronoi2d/device_order.cuh"
 
 namespace saddleback::voronoi2d {
 namespace {
-
-constexpr unsigned k_warp = 0xffffffffu;
 
 struct __align__(16) DeviceBox {
   double low[2], high[2];

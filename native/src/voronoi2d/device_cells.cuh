@@ -311,7 +311,7 @@ class CellWinder {
     }
     if (!are_covered(mine, count)) return false;
     const unsigned key = lane < count ? static_cast<unsigned>(neighbour) : ~0u;
-    const unsigned lowest = __reduce_min_sync(k_warp, key);
+    const unsigned lowest = warp_min(key);
     const int begin = __ffs(static_cast<int>(__ballot_sync(k_warp, key == lowest))) - 1;
     write_list(lists, memory_.rank[own_], neighbour, count, false, begin);
     return true;
@@ -380,7 +380,7 @@ class CellWinder {
     for_candidates<All>([&](int at, const Near& p) {
       if (p.square < mine.square) mine = p, mine_at = at;
     });
-    const float least = __uint_as_float(__reduce_min_sync(k_warp, __float_as_uint(mine.square)));
+    const float least = __uint_as_float(warp_min(__float_as_uint(mine.square)));
     if (!(least > k_smallest && least < INFINITY)) return -1;
     const int chosen = take(mine_at, mine, __ballot_sync(k_warp, mine.square == least));
     bool is_rivalled = false;
@@ -411,7 +411,7 @@ class CellWinder {
       other_low = fminf(other_low, is_first ? low : found.low);
       if (is_first) mine = p, mine_at = at, low = found.low, high = found.high;
     });
-    const float bound = disordered(__reduce_min_sync(k_warp, ordered(high)));
+    const float bound = disordered(warp_min(ordered(high)));
     const unsigned near = __ballot_sync(k_warp, low <= bound);
     const unsigned troubles = __ballot_sync(k_warp, is_doubtful || other_low <= bound);
     if (!(bound < INFINITY)) return -1;

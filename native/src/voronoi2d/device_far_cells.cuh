@@ -107,7 +107,7 @@ class FarWinder {
         continue;
       }
       const unsigned key = is_open ? __float_as_uint(static_cast<float>(distance)) : ~0u;
-      const unsigned least = __reduce_min_sync(k_warp, key);
+      const unsigned least = warp_min(key);
       const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, is_open && key == least))) - 1;
       open[level] = those & ~(1u << chosen);
       const std::int32_t next = node[level] * 32 + chosen;
@@ -133,7 +133,7 @@ class FarWinder {
       const unsigned those = __ballot_sync(k_warp, mine);
       if (those == 0 || __any_sync(k_warp, fails_)) break;
       if (taken == 32) fails_ = true;
-      const unsigned my_key = mine ? key(p) : ~0u, least = __reduce_min_sync(k_warp, my_key);
+      const unsigned my_key = mine ? key(p) : ~0u, least = warp_min(my_key);
       const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, mine && my_key == least))) - 1;
       take(Point2{__shfl_sync(k_warp, p.x, chosen), __shfl_sync(k_warp, p.y, chosen)},
            __shfl_sync(k_warp, site, chosen));
@@ -229,11 +229,11 @@ class FarWinder {
     if (!is_open) {
       unsigned lowest = ~0u;
       for (int i = lane; i < count; i += 32) lowest = min(lowest, static_cast<unsigned>(at(i)));
-      lowest = __reduce_min_sync(k_warp, lowest);
+      lowest = warp_min(lowest);
       unsigned place = ~0u;
       for (int i = lane; i < count; i += 32)
         if (static_cast<unsigned>(at(i)) == lowest) place = static_cast<unsigned>(i);
-      first = static_cast<int>(__reduce_min_sync(k_warp, place));
+      first = static_cast<int>(warp_min(place));
     }
     std::int32_t* to = lists.slots + static_cast<std::int64_t>(rank_) * k_slots;
     if (count > k_slots) {

@@ -1,0 +1,30 @@
+#pragma once
+// What the lanes of a warp find together. One instruction from compute capability 8.0 on.
+
+namespace saddleback {
+
+constexpr unsigned k_warp = 0xffffffffu;
+
+/// The least of all lanes' numbers.
+__device__ inline unsigned warp_min(unsigned value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_min_sync(k_warp, value);
+#else
+  for (int step = 16; step > 0; step /= 2) value = min(value, __shfl_xor_sync(k_warp, value, step));
+  return value;
+#endif
+}
+
+/// The largest; none may be negative.
+__device__ inline int warp_max(int value) { return static_cast<int>(~warp_min(~static_cast<unsigned>(value))); }
+
+__device__ inline int warp_sum(int value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_add_sync(k_warp, value);
+#else
+  for (int step = 16; step > 0; step /= 2) value += __shfl_xor_sync(k_warp, value, step);
+  return value;
+#endif
+}
+
+}  // namespace saddleback
