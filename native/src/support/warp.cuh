@@ -1,5 +1,5 @@
 #pragma once
-// What the lanes of a warp find together. One instruction from compute capability 8.0 on.
+// What the lanes of a warp find together: one instruction from compute capability 8.0 on.
 
 namespace saddleback {
 
@@ -15,8 +15,15 @@ __device__ inline unsigned warp_min(unsigned value) {
 #endif
 }
 
-/// The largest; none may be negative.
-__device__ inline int warp_max(int value) { return static_cast<int>(~warp_min(~static_cast<unsigned>(value))); }
+/// The largest.
+__device__ inline int warp_max(int value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_max_sync(k_warp, value);
+#else
+  for (int step = 16; step > 0; step /= 2) value = max(value, __shfl_xor_sync(k_warp, value, step));
+  return value;
+#endif
+}
 
 __device__ inline int warp_sum(int value) {
 #if __CUDA_ARCH__ >= 800
