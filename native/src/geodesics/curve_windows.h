@@ -25,8 +25,8 @@ class CurveWindows {
   explicit CurveWindows(const Unfolding& unfolding)
       : unfolding_(unfolding), mesh_(unfolding.mesh()), field_(unfolding) {}
 
-  /// The vertices within limits.radius, or the limits.k nearest if those are fewer, in order of distance. Exact: each
-  /// has its shortest distance, unless limits.edges says otherwise. \throw Cancelled.
+  /// The vertices within limits.radius, in any order. Exact: each has its shortest distance, unless limits.edges says
+  /// otherwise. \throw Cancelled.
   void from_curve(const SurfaceCurve& curve, const RayLimits& limits, std::vector<CurveFoot>& feet,
                   const JobStage& stage = {}, const WatchedPlaces* places = nullptr,
                   DistanceProgress* progress = nullptr);

@@ -19,6 +19,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "geodesics/common_length.h"
+
 namespace saddleback {
 namespace {
 
@@ -47,17 +49,6 @@ bool is_less(double length, double square) { return length < 0 || length * lengt
 /// What is too narrow for a window on an edge of that length.
 double least_width(double length, double sx, double sy, double b0, double b1) {
   return k_sliver * std::min(length, std::abs(std::clamp(sx, b0, b1) - sx) - sy);
-}
-
-/// About the median, which a few huge faces do not change as they do the mean.
-double common_length(const Mesh& mesh) {
-  constexpr Index k_sample = 1000;
-  std::vector<double> lengths;
-  for (Index h = 0; h < mesh.halfedge_count(); h += 1 + mesh.halfedge_count() / k_sample)
-    lengths.push_back(mesh.length(h));
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
 }
 
 }  // namespace
@@ -111,8 +102,8 @@ void ExactPropagation::drain(WindowBlock* block, const JobStage& stage) {
   while (block) {
     stage.check();
     for (Index i = 0; i < block->size; ++i) {
-      const Window& window = block->windows[i];
-      if (i + k_ahead < block->size) fetch(block->windows[i + k_ahead].halfedge);
+      const Window& window = block->items[i];
+      if (i + k_ahead < block->size) fetch(block->items[i + k_ahead].halfedge);
       if (window.halfedge >= 0) {
         if (surface_.frame(window.halfedge).holds_sources) [[unlikely]] {
           cut_at_sources(window, false, [this](const Window& part) { propagate(part); });

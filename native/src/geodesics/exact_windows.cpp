@@ -20,10 +20,10 @@ KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& pr
     choosing.update(done++ / blocks);
     Index count = 0;
     for (Index i = 0; i < block->size; ++i) {
-      const Window& window = block->windows[i];
+      const Window& window = block->items[i];
       if (window.halfedge < 0 || is_needless(window)) continue;
       ++begins_[window.halfedge + 1];
-      block->windows[count++] = window;
+      block->items[count++] = window;
     }
     block->size = count;
   }
@@ -35,7 +35,7 @@ KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& pr
   for (const WindowBlock* const block : propagation.kept()) {
     copying.update(done++ / blocks);
     for (Index i = 0; i < block->size; ++i) {
-      const Window& window = block->windows[i];
+      const Window& window = block->items[i];
       const std::int64_t place = next[window.halfedge]++;
       windows_[place] = {window.sx, window.sy, window.b0, window.b1};
       roots_[place] = window.root;

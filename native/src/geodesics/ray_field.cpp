@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <utility>
+
+#include "geodesics/common_length.h"
 
 namespace saddleback {
 namespace {
@@ -17,36 +21,65 @@ constexpr double k_shorter = 1 - 1e-12;
 // Of ways that are equally long but for rounding the one without a bend is kept.
 constexpr double k_as_short = 1 + 1e-12;
 // What a filter must win by, relative to the distance: rounding over thousands of faces stays below it.
-constexpr double k_slack = 1 - 1e-11;
+constexpr double k_slack = 1 + 1e-11;
 // Relative to the edge or, where that is less, to how far the rays have come: narrower windows are not made, see
 // exact_propagation.cpp. A ray to an apex that misses its window by no more than the gap that they leave (relative to
 // the edge), or by rounding (relative to the ray), counts with the detour round the window's end.
 constexpr double k_sliver = 1e-10, k_gap = 1e-7, k_ray_gap = 1e-13;
 // A total angle above 2 pi by no more than this is flat: what lies behind is seen past the vertex.
 constexpr double k_flat = 1e-9;
+constexpr double k_buckets_per_edge = 4;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
 Vec2 turned(const Vec2& v, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-/// What is too narrow for a window on an edge of that length.
-double sliver(const RayWindow& window, double length) {
-  if (window.rays == Rays::perpendicular) return k_sliver * length;
-  const double x = std::clamp(window.source.x(), window.b0, window.b1);
-  return k_sliver * std::min(length, std::abs(x - window.source.x()) - window.source.y());
-}
+/// Rays out of a point.
+struct Radial {
+  static constexpr bool is_parallel = false;
+  static Vec2 ray(const RayWindow& w, const Vec2& to) { return to - w.source; }
+  static double distance(const RayWindow& w, double x) { return w.offset + length_of(x - w.source.x(), w.source.y()); }
+  static double distance(const RayWindow& w, const Vec2& ray, const Vec2&) {
+    return w.offset + length_of(ray.x(), ray.y());
+  }
+  /// Whether `length` is less than the distance at x, without a root.
+  static bool is_less(double length, const RayWindow& w, double x) {
+    const double own = length - w.offset, dx = x - w.source.x();
+    return own < 0 || own * own < dx * dx + w.source.y() * w.source.y();
+  }
+  static double least(const RayWindow& w) {
+    if (w.b0 <= w.source.x() && w.source.x() <= w.b1) return w.offset - w.source.y();
+    return distance(w, w.source.x() < w.b0 ? w.b0 : w.b1);
+  }
+  /// What is too narrow for a window on an edge of that length.
+  static double sliver(const RayWindow& w, double length) {
+    const double x = std::clamp(w.source.x(), w.b0, w.b1);
+    return k_sliver * std::min(length, std::abs(x - w.source.x()) - w.source.y());
+  }
+};
+
+/// Rays at right angles to a straight piece of curve.
+struct Parallel {
+  static constexpr bool is_parallel = true;
+  static const Vec2& ray(const RayWindow& w, const Vec2&) { return w.source; }
+  static double distance(const RayWindow& w, double x) { return w.offset + w.source.x() * x; }
+  static double distance(const RayWindow& w, const Vec2&, const Vec2& to) { return w.offset + w.source.dot(to); }
+  static bool is_less(double length, const RayWindow& w, double x) { return length < distance(w, x); }
+  static double least(const RayWindow& w) { return std::max(0.0, distance(w, w.source.x() > 0 ? w.b0 : w.b1)); }
+  static double sliver(const RayWindow&, double length) { return k_sliver * length; }
+};
 
 /// Direction of increasing arc length.
 Vec2 tangent(const RayWindow& window) { return window.side * Vec2(window.source.y(), -window.source.x()); }
 
-}  // namespace
-
-double distance_at(const RayWindow& window, double x) {
-  if (window.rays == Rays::perpendicular) return window.offset + window.source.x() * x;
-  return window.offset + std::hypot(x - window.source.x(), window.source.y());
+RayWindow vertex_event(Index vertex, double distance) {
+  return {Vec2::Zero(), 0, 0, distance, 0, ~vertex, Rays::from_foot, 0, false};
 }
+
+}  // namespace
 
 bool window_of_corner(const Unfolding& unfolding, Index h, double begin, double end, RayWindow& window) {
   const Mesh& mesh = unfolding.mesh();
@@ -69,62 +102,58 @@ bool window_of_corner(const Unfolding& unfolding, Index h, double begin, double 
 RayField::RayField(const Unfolding& unfolding)
     : unfolding_(unfolding),
       mesh_(unfolding.mesh()),
+      distances_(mesh_.vertex_count(), k_infinity),
       vertices_(mesh_.vertex_count(), VertexState{}),
       occupants_(mesh_.halfedge_count(), Occupant{}),
-      barriers_(unfolding) {}
+      barriers_(unfolding),
+      queue_(common_length(mesh_) / k_buckets_per_edge) {}
 
 void RayField::begin(const WatchedPlaces* places) {
   ++epoch_;
   places_.reset(places);
-  windows_.clear();
-  free_windows_.clear();
   queue_.clear();
+  due_.clear();
   settled_.clear();
+  for (const Index vertex : reached_) distances_[vertex] = k_infinity;
+  reached_.clear();
   barriers_.clear();
   limits_ = {};
 }
 
 RayField::VertexState& RayField::state(Index vertex) {
   VertexState& result = vertices_[vertex];
-  if (result.epoch != epoch_) {
-    result.label = {};
-    result.epoch = epoch_;
-    result.settled = false;
+  if (std::isinf(distances_[vertex])) {
+    reached_.push_back(vertex);
+    result.bent_at = k_infinity;
+    result.is_source = false;
   }
   return result;
 }
 
-double RayField::distance(Index vertex) const {
-  const VertexState& v = vertices_[vertex];
-  return v.epoch == epoch_ ? v.label.distance : k_infinity;
+bool RayField::improves(Index vertex, double distance, bool shadowed) const {
+  if (distance < distances_[vertex] * k_shorter) return true;
+  return !shadowed && distance <= distances_[vertex] * k_as_short && vertices_[vertex].label.shadowed;
 }
 
-void RayField::push(const Event& event) {
-  if (event.key > limits_.radius) return;
-  queue_.push_back(event);
-  std::push_heap(queue_.begin(), queue_.end());
-}
-
-bool RayField::improve(Index vertex, const RayLabel& label, const Vec2& ray, Index halfedge) {
+void RayField::improve(Index vertex, const RayLabel& label, const Vec2& ray, Index halfedge) {
   VertexState& v = state(vertex);
-  const bool shorter = label.distance < v.label.distance * k_shorter;
-  const bool straighter = !label.shadowed && v.label.shadowed && label.distance <= v.label.distance * k_as_short;
-  if (!shorter && !straighter) return false;
   v.label = label;
+  distances_[vertex] = label.distance;
   v.ray = ray;
   v.halfedge = halfedge;
-  if (!v.settled) push({label.distance, ~vertex});
-  return true;
+  if (mesh_.is_saddle(vertex)) queue_.push(vertex_event(vertex, label.distance), label.distance);
 }
 
-void RayField::offer(Index vertex, const RayLabel& label, double back) { improve(vertex, label, {back, 0}, k_none); }
+void RayField::offer(Index vertex, const RayLabel& label, double back) {
+  if (improves(vertex, label.distance, label.shadowed)) improve(vertex, label, {back, 0}, k_none);
+}
 
 void RayField::add_source(Index vertex, const RayLabel& label) {
   VertexState& v = state(vertex);
-  if (v.settled) return;
-  settled_.push_back(vertex);
-  v.settled = true;
+  if (v.is_source) return;
+  v.is_source = true;
   v.label = label;
+  distances_[vertex] = label.distance;
 }
 
 void RayField::add_window(const RayWindow& window) {
@@ -132,22 +161,8 @@ void RayField::add_window(const RayWindow& window) {
 }
 
 void RayField::push(const RayWindow& window) {
-  double key = 0;
-  if (window.rays == Rays::perpendicular) {
-    key = std::max(0.0, std::min(distance_at(window, window.b0), distance_at(window, window.b1)));
-  } else {
-    key = distance_at(window, std::clamp(window.source.x(), window.b0, window.b1));
-  }
-  if (is_too_far(window, key)) return;
-  Index id = static_cast<Index>(windows_.size());
-  if (free_windows_.empty()) {
-    windows_.push_back(window);
-  } else {
-    id = free_windows_.back();
-    free_windows_.pop_back();
-    windows_[id] = window;
-  }
-  push({key, id});
+  const double key = window.rays == Rays::perpendicular ? Parallel::least(window) : Radial::least(window);
+  if (!is_too_far(window, key)) queue_.push(window, key);
 }
 
 bool RayField::is_too_far(const RayWindow& window, double key) const {
@@ -160,27 +175,35 @@ bool RayField::is_too_far(const RayWindow& window, double key) const {
 
 void RayField::run(const RayLimits& limits, const JobStage& stage, DistanceProgress* progress) {
   limits_ = limits;
-  int countdown = 1;
-  while (!queue_.empty() && static_cast<Index>(settled_.size()) < limits_.k) {
-    const Event event = queue_.front();
-    if (event.key > limits_.radius) break;
-    std::pop_heap(queue_.begin(), queue_.end());
-    queue_.pop_back();
-    if (--countdown <= 0) {
-      countdown = 256;
-      stage.check();
-      if (progress) progress->reached(event.key);
+  while (queue_.advance() && queue_.reached() <= limits_.radius) {
+    if (progress) progress->reached(queue_.reached());
+    while (auto* const block = queue_.take()) drain(block, stage);
+    // Last in the bucket: by now their distances are final, nearly always.
+    for (const Index vertex : due_) bend(vertex);
+    due_.clear();
+  }
+  std::ranges::copy_if(reached_, std::back_inserter(settled_),
+                       [this](Index vertex) { return distances_[vertex] <= limits_.radius; });
+}
+
+/// Propagates a chain of blocks.
+void RayField::drain(BlockQueue<RayWindow>::Block* block, const JobStage& stage) {
+  while (block) {
+    stage.check();
+    for (Index i = 0; i < block->size; ++i) {
+      const RayWindow& window = block->items[i];
+      if (window.halfedge < 0) {
+        const Index vertex = ~window.halfedge;
+        if (distances_[vertex] == window.offset) due_.push_back(vertex);
+        continue;
+      }
+      barriers_.for_each_free_part(window, RayBarriers::Side::entered, [this](const RayWindow& part) {
+        part.rays == Rays::perpendicular ? propagate<Parallel>(part) : propagate<Radial>(part);
+      });
     }
-    if (event.id >= 0) {
-      const RayWindow window = windows_[event.id];
-      free_windows_.push_back(event.id);
-      barriers_.for_each_free_part(window, RayBarriers::Side::entered,
-                                   [this](const RayWindow& part) { propagate(part); });
-    } else if (VertexState& v = vertices_[~event.id]; !v.settled && event.key <= v.label.distance) {
-      v.settled = true;
-      settled_.push_back(~event.id);
-      settle(~event.id);
-    }
+    auto* const next = block->next;
+    queue_.give_back(block);
+    block = next;
   }
 }
 
@@ -194,8 +217,10 @@ double RayField::angle_back(Index vertex) const {
 }
 
 /// A shortest path may go on from a saddle vertex in any direction that leaves at least pi on either side.
-void RayField::settle(Index vertex) {
-  if (!mesh_.is_saddle(vertex)) return;
+void RayField::bend(Index vertex) {
+  VertexState& v = vertices_[vertex];
+  if (v.is_source || v.bent_at <= v.label.distance || v.label.distance > limits_.radius) return;
+  v.bent_at = v.label.distance;
   const double total = mesh_.total_angle(vertex), back = angle_back(vertex);
   if (mesh_.is_boundary(vertex)) {
     if (back - k_pi >= -k_flat) shine_from(vertex, 0, back - k_pi);
@@ -232,26 +257,23 @@ void RayField::shine_from(Index vertex, double begin, double end) {
   } while (h != k_none && h != first);
 }
 
+template <class Front>
 void RayField::propagate(const RayWindow& window) {
   const Index h = window.halfedge;
+  const double base = mesh_.length(h);
   const Vec2& apex = unfolding_.apex(h);
-  const bool is_parallel = window.rays == Rays::perpendicular;
-  const Vec2 ray = is_parallel ? window.source : Vec2(apex - window.source);
+  const double at_from = distances_[mesh_.from(h)] * k_slack, at_to = distances_[mesh_.to(h)] * k_slack;
+  if (Front::is_less(at_from + window.b1, window, window.b1) ||
+      Front::is_less(at_to + (base - window.b0), window, window.b0))
+    return;
+  const Vec2 ray = Front::ray(window, apex);
   if (ray.y() <= 0) return;  // grazes the edge: only rounding brings it here
   if (!places_.empty()) reach_places(window);
-  const double reach = is_parallel ? window.offset + window.source.dot(apex) : window.offset + ray.norm();
-  const double least = sliver(window, mesh_.length(h)),
-               gap = k_gap * mesh_.length(h) + k_ray_gap * (reach - window.offset);
+  const double reach = Front::distance(window, ray, apex);
+  const double least = Front::sliver(window, base), gap = k_gap * base + k_ray_gap * (reach - window.offset);
   // Where the ray to the apex crosses the half-edge.
   const double split = apex.x() - ray.x() * (apex.y() / ray.y());
-  if (split >= window.b0 - gap && split <= window.b1 + gap) {
-    RayLabel label{reach, window.value, window.side, window.shadowed};
-    if (const double b = std::clamp(split, window.b0, window.b1); b != split)
-      label.distance = distance_at(window, b) + std::hypot(apex.x() - b, apex.y());
-    if (window.rays == Rays::from_point) label.value += std::atan2(ray.y(), ray.x());
-    if (is_parallel) label.value += tangent(window).dot(apex);
-    improve(mesh_.apex(h), label, ray, h);
-  }
+  if (split >= window.b0 - gap && split <= window.b1 + gap) reach_apex<Front>(window, ray, split, reach);
   const bool has_left = split > window.b0 + least, has_right = split < window.b1 - least;
   bool go_left = has_left, go_right = has_right;
   if (has_left && has_right) {
@@ -265,11 +287,26 @@ void RayField::propagate(const RayWindow& window) {
       go_right = !go_left;
     }
   }
-  if (go_left) add_child(window, side_of(window, true), window.b0, std::min(window.b1, split), has_right);
-  if (go_right) {
-    const double base = mesh_.length(h);
-    add_child(window, side_of(window, false), base - window.b1, base - std::max(window.b0, split), has_left);
-  }
+  const double at_apex = distances_[mesh_.apex(h)] * k_slack;
+  if (go_left)
+    add_child<Front>(window, {true, Mesh::prev(h), at_from, at_to, at_apex}, window.b0, std::min(window.b1, split),
+                     has_right);
+  if (go_right)
+    add_child<Front>(window, {false, Mesh::next(h), at_to, at_from, at_apex}, base - window.b1,
+                     base - std::max(window.b0, split), has_left);
+}
+
+template <class Front>
+void RayField::reach_apex(const RayWindow& window, const Vec2& ray, double split, double reach) {
+  const Index h = window.halfedge;
+  const Vec2& apex = unfolding_.apex(h);
+  if (const double b = std::clamp(split, window.b0, window.b1); b != split)
+    reach = Front::distance(window, b) + length_of(apex.x() - b, apex.y());
+  if (!improves(mesh_.apex(h), reach, window.shadowed)) return;
+  RayLabel label{reach, window.value, window.side, window.shadowed};
+  if (window.rays == Rays::from_point) label.value += std::atan2(ray.y(), ray.x());
+  if (Front::is_parallel) label.value += tangent(window).dot(apex);
+  improve(mesh_.apex(h), label, ray, h);
 }
 
 /// Of the places in the face that the window enters those that its rays meet.
@@ -287,72 +324,64 @@ void RayField::reach_places(const RayWindow& window) {
   });
 }
 
-RayField::Side RayField::side_of(const RayWindow& window, bool left) const {
-  const Index h = window.halfedge;
-  const Vec2& apex = unfolding_.apex(h);
-  const Vec2& s = window.source;
-  if (left) {
-    const double length = mesh_.length(Mesh::prev(h));
-    return {true, mesh_.from(h), mesh_.to(h), Mesh::prev(h), length, apex / length, s};
-  }
-  const double base = mesh_.length(h), length = mesh_.length(Mesh::next(h));
-  const double x = window.rays == Rays::perpendicular ? -s.x() : base - s.x();
-  return {false,     mesh_.to(h), mesh_.from(h), Mesh::next(h), length, Vec2(base - apex.x(), apex.y()) / length,
-          {x, s.y()}};
-}
-
-/// Makes the part of `parent` between `begin` and `end` (coordinates of the side) shine on the side's edge.
+/// Makes the part of `parent` between `begin` and `end` (coordinates of the side) shine on the side's edge, unless some
+/// corner of the face offers every point of it a shorter way: the three filters of Xin and Wang. They hold for
+/// perpendicular rays as well: all they need is that nothing is nearer than the rays say.
+template <class Front>
 void RayField::add_child(const RayWindow& parent, const Side& side, double begin, double end, bool to_apex) {
   const Index entered = mesh_.twin(side.edge);
   if (entered == k_none) return;
-  const bool is_parallel = parent.rays == Rays::perpendicular;
-  const Vec2 &s = side.source, &u = side.direction;
+  const double base = mesh_.length(parent.halfedge), length = mesh_.length(side.edge), to_unit = 1 / length;
+  const Vec2& apex = unfolding_.apex(parent.halfedge);
+  RayWindow child = parent;  // at first in the side's coordinates
+  double sx = parent.source.x(), ux = apex.x() * to_unit;
+  const double sy = parent.source.y(), uy = apex.y() * to_unit;
+  if (!side.left) {  // the mirror image
+    ux = (base - apex.x()) * to_unit;
+    if (Front::is_parallel) child.offset += sx * base;
+    sx = Front::is_parallel ? -sx : base - sx;
+  }
   const auto hit = [&](double b) {  // where the ray through (b, 0) meets the edge, measured from the near vertex
-    const Vec2 ray = is_parallel ? s : Vec2(b - s.x(), -s.y());
-    const double divisor = cross(u, ray);
-    return divisor > 0 ? std::min(b * ray.y() / divisor, side.length) : side.length;
+    const double rx = Front::is_parallel ? sx : b - sx, ry = Front::is_parallel ? sy : -sy;
+    const double divisor = ux * ry - uy * rx;
+    return divisor > 0 ? std::min(b * ry / divisor, length) : length;
   };
-  const double q0 = hit(std::max(begin, 0.0)), q1 = to_apex ? side.length : hit(end);
-  RayWindow child = parent;
+  const double q0 = hit(std::max(begin, 0.0)), q1 = to_apex ? length : hit(end);
   child.halfedge = entered;
   child.b0 = q0;
   child.b1 = q1;
-  child.source = {s.dot(u), cross(u, s)};
-  if (!is_parallel) child.source.y() = std::min(0.0, child.source.y());
-  if (!(q1 - q0 > sliver(child, side.length))) return;
-  const Index h = parent.halfedge;
-  // In the side's coordinates, the origin being the near vertex.
-  const double base = mesh_.length(h);
-  if (is_parallel && !side.left) child.offset += parent.source.x() * base;
-  if (is_useless(side, child, q0, q1, mesh_.apex(h), base)) return;
-  if (side.left) {
-    if (parent.rays == Rays::from_point) child.value += mesh_.corner_angle(h);
-  } else {
-    child.b0 = side.length - q1;
-    child.b1 = side.length - q0;
-    if (is_parallel) {
-      const Vec2& apex = unfolding_.apex(h);
-      child.source.x() = -child.source.x();
-      child.offset = parent.offset + parent.source.dot(apex);
-      child.value += tangent(parent).dot(apex);
-    } else {
-      child.source.x() = side.length - child.source.x();
-      if (parent.rays == Rays::from_point) child.value -= mesh_.corner_angle(Mesh::next(h));
-    }
-  }
-  if (is_parallel && child.source.y() <= 0) return;
-  push(child);
+  child.source = {sx * ux + sy * uy, ux * sy - uy * sx};
+  if (!Front::is_parallel) child.source.y() = std::min(0.0, child.source.y());
+  if (Front::is_parallel && child.source.y() <= 0) return;
+  if (!(q1 - q0 > Front::sliver(child, length))) return;
+  if (Front::is_less(side.at_near + q1, child, q1)) return;
+  if (Front::is_less(side.at_apex + (length - q0), child, q0)) return;
+  if (Front::is_less(side.at_far + length_of(base - q0 * ux, q0 * uy), child, q0)) return;
+  const double key = Front::least(child);
+  if (is_too_far(child, key)) return;
+  queue_.push(seen_from_side<Front>(parent, child, side), key);
 }
 
-/// The three filters of Xin and Wang: some corner of the face offers every point of the child a shorter way. They hold
-/// for perpendicular rays as well: all they need is that nothing is nearer than the rays say.
-bool RayField::is_useless(const Side& side, const RayWindow& child, double q0, double q1, Index apex,
-                          double base) const {
-  const double to_q0 = distance_at(child, q0), to_q1 = distance_at(child, q1);
-  if (distance(side.near) + q1 < to_q1 * k_slack) return true;
-  if (distance(apex) + (side.length - q0) < to_q0 * k_slack) return true;
-  const double across = std::hypot(base - q0 * side.direction.x(), q0 * side.direction.y());
-  return distance(side.far) + across < to_q0 * k_slack;
+/// The child, which is in the side's coordinates, in the frame of the half-edge that it enters.
+template <class Front>
+RayWindow RayField::seen_from_side(const RayWindow& parent, RayWindow child, const Side& side) const {
+  const Index h = parent.halfedge;
+  if (side.left) {
+    if (parent.rays == Rays::from_point) child.value += mesh_.corner_angle(h);
+    return child;
+  }
+  const double length = mesh_.length(side.edge);
+  child.b0 = length - std::exchange(child.b1, length - child.b0);
+  if (Front::is_parallel) {
+    const Vec2& apex = unfolding_.apex(h);
+    child.source.x() = -child.source.x();
+    child.offset = parent.offset + parent.source.dot(apex);
+    child.value += tangent(parent).dot(apex);
+  } else {
+    child.source.x() = length - child.source.x();
+    if (parent.rays == Rays::from_point) child.value -= mesh_.corner_angle(Mesh::next(h));
+  }
+  return child;
 }
 
 }  // namespace saddleback

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "geodesics/block_queue.h"
 #include "geodesics/distance_progress.h"
 #include "geodesics/ray_barriers.h"
 #include "geodesics/ray_window.h"
@@ -22,7 +23,6 @@ struct RayLabel {
 
 struct RayLimits {
   double radius = std::numeric_limits<double>::infinity();
-  Index k = std::numeric_limits<Index>::max();  ///< stop after so many vertices
   /// Rays stop so many edges away from where they set out, measured in edges of the face that they enter: near enough
   /// for what looks at a front from vertices behind it. Labels beyond are of longer ways.
   double edges = std::numeric_limits<double>::infinity();
@@ -31,7 +31,8 @@ struct RayLimits {
 /// Window propagation (Chen and Han 1990, filters of Xin and Wang 2009) of windows of any front, with saddle vertices
 /// sending out windows of their own: every label is that of a shortest path. A vertex on the very border of a window is
 /// updated by it (closed intervals), so that rays through the vertices of regular grids reach what lies behind them.
-/// Holds scratch memory of O(V + F) to be reused; one a thread.
+/// Windows come in the order of their distance, roughly (see exact_propagation.cpp): a vertex whose label falls after
+/// it sent out windows sends out others. Holds scratch memory of O(V + F) to be reused; one a thread.
 class RayField {
  public:
   explicit RayField(const Unfolding& unfolding);
@@ -50,7 +51,7 @@ class RayField {
   /// \throw Cancelled.
   void run(const RayLimits& limits, const JobStage& stage, DistanceProgress* progress = nullptr);
 
-  /// Vertices with their final labels, in order of distance; those that were reached within the limits.
+  /// Vertices with their final labels, in any order; those that were reached within the limits.
   const std::vector<Index>& settled() const { return settled_; }
   const RayLabel& label(Index vertex) const { return vertices_[vertex].label; }
   PlaceDistances& places() { return places_; }
@@ -60,53 +61,51 @@ class RayField {
   struct VertexState {
     RayLabel label;
     Vec2 ray = Vec2::Zero();  ///< in the frame of `halfedge`, where it came by a window; else x is the angle back
+    double bent_at;           ///< the distance with which it sent out windows
     Index halfedge;           ///< k_none: `ray` holds the angle
-    std::uint32_t epoch;
-    bool settled;
+    bool is_source;
   };
   struct Occupant {  // the best window that covered the angle opposite a half-edge: "one angle, one split"
     double distance, split;
     std::uint32_t epoch;
   };
-  struct Event {
-    double key;
-    Index id;  ///< window >= 0, vertex ~id
-    bool operator<(const Event& other) const { return key != other.key ? key > other.key : id > other.id; }
-  };
-  /// A child's side of its parent's face, in coordinates that start at the base vertex they share.
+  /// A child's side of its parent's face, in coordinates that start at the base vertex they share, with the parent's
+  /// half-edge on the x axis.
   struct Side {
     bool left;
-    Index near, far;  ///< base vertices: shared with the child's edge, and the other one
-    Index edge;       ///< half-edge of the parent's face
-    double length;    ///< of the child's edge
-    Vec2 direction;   ///< of the child's edge
-    Vec2 source;
+    Index edge;              ///< half-edge of the parent's face
+    double at_near, at_far;  ///< distances of the base vertices, the shared one first
+    double at_apex;
   };
 
   VertexState& state(Index vertex);
-  double distance(Index vertex) const;
-  bool improve(Index vertex, const RayLabel& label, const Vec2& ray, Index halfedge);
-  void push(const Event& event);
+  bool improves(Index vertex, double distance, bool shadowed) const;
+  void improve(Index vertex, const RayLabel& label, const Vec2& ray, Index halfedge);
   void push(const RayWindow& window);
-  void settle(Index vertex);
+  void drain(BlockQueue<RayWindow>::Block* block, const JobStage& stage);
+  void bend(Index vertex);
   double angle_back(Index vertex) const;
   void shine_from(Index vertex, double begin, double end);
+  template <class Front>
   void propagate(const RayWindow& window);
+  template <class Front>
+  void reach_apex(const RayWindow& window, const Vec2& ray, double split, double reach);
+  template <class Front>
+  void add_child(const RayWindow& parent, const Side& side, double begin, double end, bool to_apex);
+  template <class Front>
+  RayWindow seen_from_side(const RayWindow& parent, RayWindow child, const Side& side) const;
   void reach_places(const RayWindow& window);
   bool is_too_far(const RayWindow& window, double key) const;
-  Side side_of(const RayWindow& window, bool left) const;
-  void add_child(const RayWindow& parent, const Side& side, double begin, double end, bool to_apex);
-  bool is_useless(const Side& side, const RayWindow& child, double q0, double q1, Index apex, double base) const;
 
   const Unfolding& unfolding_;
   const Mesh& mesh_;
+  std::vector<double> distances_;  ///< of the vertices' labels, once more: filters need little else
   std::vector<VertexState> vertices_;
   std::vector<Occupant> occupants_;
   RayBarriers barriers_;
-  std::vector<RayWindow> windows_;
-  std::vector<Index> free_windows_;
-  std::vector<Event> queue_;
-  std::vector<Index> settled_;
+  BlockQueue<RayWindow> queue_;  ///< a window on half-edge ~v stands for vertex v, its distance being the offset
+  std::vector<Index> due_;       ///< vertices of the current bucket
+  std::vector<Index> reached_, settled_;
   PlaceDistances places_;
   RayLimits limits_;
   std::uint32_t epoch_ = 0;

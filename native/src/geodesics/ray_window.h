@@ -27,7 +27,4 @@ struct RayWindow {
   bool shadowed;     ///< the rays set out anew at a saddle vertex
 };
 
-/// Distance at a place of the window's half-edge, counted from its start.
-double distance_at(const RayWindow& window, double x);
-
 }  // namespace saddleback

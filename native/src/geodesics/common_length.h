@@ -1,0 +1,11 @@
+#pragma once
+// How long edges usually are.
+
+#include "saddleback/mesh.h"
+
+namespace saddleback {
+
+/// About the median of the edges' lengths, which a few huge faces do not change as they do the mean. O(1).
+double common_length(const Mesh& mesh);
+
+}  // namespace saddleback
