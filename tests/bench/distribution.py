@@ -2,8 +2,8 @@
 
 On a torus of 400,000 faces, four classes, certificate included: CPU and wall seconds, copies, memory. In the same run
 Blender's own node (Distribute Points on Faces, Poisson disk, 1,000 candidates for every copy; points only, no shapes)
-and rejection: even random places in the plane tried one after the other against exact polygons. Then ratios of counts:
-packed against random, stars against disks, both certified.
+and rejection: even random places in the plane tried one after the other against exact polygons. Then ratios of counts,
+all certified: packed against random, stars against disks on a torus, pentagrams against disks in fields that turn.
 """
 
 from __future__ import annotations
@@ -92,6 +92,20 @@ def ratios() -> None:
         )
 
 
+def stars_against_disks() -> None:
+    """Pentagrams and disks of one circumradius on a flat square, each the mean of six certified random layings."""
+    mesh, size, seeds = sb.Mesh(*meshes.grid(100, 100)), 0.03, range(6)
+    x, y = mesh.vertices[mesh.triangles].mean(axis=1)[:, :2].T
+    disks = np.mean([len(sb.distribute(mesh, sb.Shape.disk(48), size=size, maximal=True, seed=i)) for i in seeds])
+    star = sb.Shape.star(5, 0.381966)
+    for turn in (0.0, 1.0, 4.0, 8.0):
+        angle = turn * np.sin(2 * np.pi * x) * np.cos(2 * np.pi * y)
+        field = sb.DirectionField.from_vectors(mesh, np.stack([np.cos(angle), np.sin(angle), 0 * x], axis=1))
+        stars = np.mean([len(sb.distribute(mesh, star, field=field, size=size, maximal=True, seed=i)) for i in seeds])
+        most = turn * 2 * np.pi * size
+        print(f"pentagrams against disks, field turning by up to {most:.2f} rad a radius: {stars / disks:.3f}")
+
+
 def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--blender", default=shutil.which("blender"))
@@ -115,3 +129,4 @@ def main(arguments: list[str]) -> None:
     count, seconds = rejection(sb.Shape.star(), 0.03, 5_000)
     print(f"rejection in the plane, 5,000 tries: {count} stars, {seconds:.1f} s CPU")
     ratios()
+    stars_against_disks()

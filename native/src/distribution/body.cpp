@@ -16,6 +16,14 @@ constexpr Index k_outline_samples = 96;  ///< places looked at along the outline
 constexpr double k_least_radius = 0.02;  ///< of a disk, as a share of the circumradius
 constexpr double k_covered = 0.004;      ///< what lies this near to a disk needs no other, same unit
 constexpr Index k_most_grown_corners = 128;
+/// How far beyond a shape the grid of its distances reaches, as a share of the circumradius: middles of the disks that
+/// touch it are so far away.
+constexpr double k_least_margin = 0.6;
+
+double margin_of(const Shape& shape) {
+  constexpr double k_room = 1.02;
+  return std::max(k_least_margin * shape.circumradius(), k_room * shape.inradius());
+}
 
 double beyond(const std::vector<Disk>& disks, const Vec2& point) {
   double nearest = SignedDistance::k_far;
@@ -103,7 +111,7 @@ Body::Body(Shape its_shape)
     : shape(std::move(its_shape)),
       box_centre(middle(shape)),
       box_half(half_extent(shape, box_centre)),
-      distance(shape, 0.6 * shape.circumradius()),
+      distance(shape, margin_of(shape)),
       disks(skeleton(shape, distance)) {}
 
 Shape grown(const Shape& shape, double distance) {
