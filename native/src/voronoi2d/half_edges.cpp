@@ -1,6 +1,7 @@
-// Cell by cell, in the order of their ranks: a site's triangles in turn are its corners, the half-edges that leave it
-// its sides. A number is given at the lowest site about a vertex or beside an edge and left in the triangulation for
-// the others: a vertex's beside the corners of its triangles, an edge's in place of a twin that is not needed any more.
+// Block by block of cells, in the order of their ranks: a site's triangles in turn are its corners, the half-edges that
+// leave it its sides. A number is given at the lowest site about a vertex or beside an edge and left in the
+// triangulation for the others: a vertex's beside the corners of its triangles, an edge's in place of a twin that is
+// not needed any more.
 
 #include "voronoi2d/half_edges.h"
 
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "support/parallel.h"
+#include "voronoi2d/cell_block.h"
 #include "voronoi2d/circumcentre.h"
 #include "voronoi2d/planar_mesh.h"
 
@@ -37,53 +39,6 @@ Numbering strips_of(const OrderedSites& sites) {
   }
   return result;
 }
-
-/// The half-edges that leave a site and are sides of its cell, counter-clockwise, beginning with the lowest neighbour;
-/// of an open cell the last one comes from the last neighbour instead.
-class Star {
- public:
-  /// `first`: any half-edge from the site, at the border the one along it.
-  void gather(const Triangulation& mesh, Index first) {
-    Index found = 0, lowest = 0;
-    is_open = false;
-    Index half = first;
-    do {
-      if (found + 2 > static_cast<Index>(around_.size())) grow();
-      const Index neighbour = mesh.corners[next_half(half)], last = previous_half(half);
-      const bool is_side = (mesh.twins[half | 3] >> (half & 3) & 1) == 0;
-      around_[found] = {half, neighbour};
-      lowest = is_side && neighbour < around_[lowest].neighbour ? found : lowest;
-      found += is_side;
-      half = mesh.twins[last];
-      if (half < 0) {
-        is_open = true;
-        around_[found++] = {last, mesh.corners[last]};
-        lowest = 0;
-      }
-    } while (half >= 0 && half != first);
-    for (Index i = 0, from = lowest; i < found; ++i) {
-      sides_[i] = around_[from];
-      from = from + 1 == found ? 0 : from + 1;
-    }
-    sides_[found] = sides_[0];
-    size = found;
-  }
-  Index half(Index i) const { return sides_[i].half; }
-  Index neighbour(Index i) const { return sides_[i].neighbour; }  ///< after the last comes the first again
-
-  Index size = 0;
-  bool is_open = false;
-
- private:
-  struct Side {
-    Index half, neighbour;
-  };
-  void grow() {
-    around_.resize(2 * around_.size());
-    sides_.resize(around_.size() + 1);
-  }
-  std::vector<Side> around_ = std::vector<Side>(32), sides_ = std::vector<Side>(33);
-};
 
 /// A vertex of more than three cells, with three of them evenly about it, so that their circle is well determined.
 struct LargeVertex {
@@ -148,9 +103,10 @@ class Numberer {
   };
   /// A worker's memory.
   struct Scratch {
-    Star star;
-    std::vector<Index> around, triangles;  ///< of a large vertex: sites and places of its triangles' number
-    std::vector<Index> own, numbers;       ///< of a cell: corners or sides that it gives a number to; of its corners
+    CellBlock cells;
+    std::vector<Index> around, triangles;       ///< of a large vertex: sites and places of its triangles' number
+    std::vector<Index> own_corners, own_sides;  ///< of the block's cells, that these give a number to
+    Index own_corner_count = 0, own_side_count = 0;
   };
 
   static void start_after(Piece& piece, const Counts& before) {
@@ -191,115 +147,152 @@ class Numberer {
 
   bool is_large(Index half) const { return mesh_.twins[half | 3] != 0; }
 
-  /// Which of the items up to `count` satisfy a condition that is hard to predict, into `scratch.own`.
-  template <class Condition>
-  static Index select(Index count, Scratch& scratch, Condition&& is_wanted) {
-    if (count > static_cast<Index>(scratch.own.size())) scratch.own.resize(2 * count);
-    Index found = 0;
-    for (Index i = 0; i < count; ++i) {
-      scratch.own[found] = i;
-      found += is_wanted(i);
+  /// The corners and sides that a block's cells give a number to, which is hard to predict.
+  static void select_own(Scratch& scratch) {
+    const CellBlock& cells = scratch.cells;
+    const std::size_t count = cells.size;
+    if (count > scratch.own_sides.size()) {
+      scratch.own_corners.resize(2 * count);
+      scratch.own_sides.resize(2 * count);
     }
-    return found;
+    const Index *const neighbour = cells.neighbours.data(), *const next = cells.next_neighbours.data(),
+                       *const site = cells.sites.data();
+    Index *const corners = scratch.own_corners.data(), *const sides = scratch.own_sides.data();
+    std::size_t corner_count = 0, side_count = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      corners[corner_count] = sides[side_count] = static_cast<Index>(i);
+      corner_count += std::min(neighbour[i], next[i]) > site[i];
+      side_count += neighbour[i] > site[i];
+    }
+    scratch.own_corner_count = static_cast<Index>(corner_count);
+    scratch.own_side_count = static_cast<Index>(side_count);
   }
-  static Index select_own_corners(Index site, Scratch& scratch) {
-    const Star& star = scratch.star;
-    return select(star.size - star.is_open, scratch,
-                  [&](Index i) { return std::min(star.neighbour(i), star.neighbour(i + 1)) > site; });
-  }
-  static Index select_own_sides(Index site, Scratch& scratch) {
-    const Star& star = scratch.star;
-    return select(star.size, scratch, [&](Index i) { return star.neighbour(i) > site; });
+
+  /// Calls work() for each block of a piece's cells, which are in `scratch.cells`.
+  template <class Work>
+  void for_blocks(const Piece& piece, Scratch& scratch, Work&& work) const {
+    for (Index begin = piece.begin; begin < piece.end; begin += CellBlock::k_most) {
+      const Index count = std::min(CellBlock::k_most, piece.end - begin);
+      scratch.cells.gather(mesh_, result_.offsets.data() + begin, begin, count);
+      select_own(scratch);
+      work(begin);
+    }
   }
 
   Counts count_in(const Piece& piece, Scratch& scratch) const {
     Counts counts;
-    for (Index site = piece.begin; site < piece.end; ++site) {
-      scratch.star.gather(mesh_, result_.offsets[site]);
-      counts.corners += scratch.star.size;
-      counts.edges += select_own_sides(site, scratch);
-      const Index own = select_own_corners(site, scratch);
-      for (Index k = 0; k < own; ++k) {
-        const Index half = scratch.star.half(scratch.own[k]);
-        counts.vertices += !is_large(half) || go_around(half, scratch) == site;
+    const CellBlock& cells = scratch.cells;
+    for_blocks(piece, scratch, [&](Index) {
+      counts.corners += cells.size;
+      counts.edges += scratch.own_side_count;
+      for (Index k = 0; k < scratch.own_corner_count; ++k) {
+        const Index i = scratch.own_corners[k], half = cells.halves[i];
+        counts.vertices += !is_large(half) || go_around(half, scratch) == cells.sites[i];
       }
-    }
+    });
     return counts;
   }
 
   /// Cells from `known` on have their numbers when it is this piece's turn.
   Counts number_piece(Piece& piece, Index known, Scratch& scratch) {
     Counts at{piece.corners, piece.vertices, piece.edges};
-    for (Index site = piece.begin; site < piece.end; ++site) {
-      scratch.star.gather(mesh_, result_.offsets[site]);
-      result_.offsets[site] = at.corners;
-      number_vertices(piece, site, at.vertices, scratch);
-      write_corners(piece, site, known, at.corners, scratch);
-      write_sides(piece, site, known, at, scratch);
-      at.corners += scratch.star.size;
-    }
+    const CellBlock& cells = scratch.cells;
+    for_blocks(piece, scratch, [&](Index begin) {
+      for (Index cell = 0; cell < cells.cell_count; ++cell)
+        result_.offsets[begin + cell] = at.corners + cells.starts[cell];
+      number_vertices(piece, at.vertices, scratch);
+      write_corners(piece, known, at.corners, scratch);
+      write_sides(piece, known, at, scratch);
+      at.corners += cells.size;
+    });
     return {at.corners - piece.corners, at.vertices - piece.vertices, at.edges - piece.edges};
   }
 
-  void number_vertices(Piece& piece, Index site, Index& vertex, Scratch& scratch) {
-    const Index own = select_own_corners(site, scratch);
-    for (Index k = 0; k < own; ++k) {
-      const Index half = scratch.star.half(scratch.own[k]);
+  void number_vertices(Piece& piece, Index& vertex, Scratch& scratch) {
+    const CellBlock& cells = scratch.cells;
+    for (Index k = 0; k < scratch.own_corner_count; ++k) {
+      const Index i = scratch.own_corners[k], half = cells.halves[i];
       if (!is_large(half)) {
         mesh_.corners[half | 3] = vertex++;
-      } else if (go_around(half, scratch) == site) {
+      } else if (go_around(half, scratch) == cells.sites[i]) {
         for (const Index place : scratch.triangles) mesh_.corners[place] = vertex;
         const std::size_t size = scratch.around.size();
-        piece.large.push_back({vertex, {site, scratch.around[size / 3], scratch.around[2 * size / 3]}});
+        piece.large.push_back({vertex, {cells.sites[i], scratch.around[size / 3], scratch.around[2 * size / 3]}});
         ++vertex;
       }
     }
   }
 
-  void write_corners(Piece& piece, Index site, Index known, Index corner, Scratch& scratch) {
-    const Star& star = scratch.star;
-    if (star.size >= static_cast<Index>(scratch.numbers.size())) scratch.numbers.resize(2 * star.size + 1);
-    Index* const numbers = scratch.numbers.data() + 1;  // and the last one again before the first
-    for (Index i = 0; i < star.size - star.is_open; ++i) {
-      const Index place = star.half(i) | 3;
-      const Index lowest = is_large(place) && known > 0 ? go_around(star.half(i), scratch)
-                                                        : std::min(star.neighbour(i), star.neighbour(i + 1));
-      if (std::min(lowest, site) < known) {
-        numbers[i] = late(place);
-        piece.late_corners.push_back(corner + i);
-      } else {
-        numbers[i] = mesh_.corners[place];
+  void write_corners(Piece& piece, Index known, Index corner, Scratch& scratch) {
+    const CellBlock& cells = scratch.cells;
+    const Index *const half = cells.halves.data(), *const numbers = mesh_.corners.data();
+    Index* const to = result_.corner_vertices.data() + corner;
+    if (known == 0) {
+      for (Index i = 0; i < cells.size; ++i) to[i] = numbers[half[i] | 3];
+    } else {
+      for (Index i = 0; i < cells.size; ++i) {
+        const bool is_late = lowest_about(i, scratch) < known;
+        to[i] = is_late ? late(half[i] | 3) : numbers[half[i] | 3];
+        if (is_late) piece.late_corners.push_back(corner + i);
       }
     }
-    if (star.is_open) numbers[star.size - 1] = k_none;
-    numbers[-1] = numbers[star.size - 1];
-    std::copy_n(numbers, star.size, result_.corner_vertices.begin() + corner);
+    for (const Index cell : cells.open) to[cells.starts[cell + 1] - 1] = k_none;
+  }
+
+  /// The lowest site about a corner.
+  Index lowest_about(Index corner, Scratch& scratch) const {
+    const CellBlock& cells = scratch.cells;
+    if (cells.next_neighbours[corner] == k_none) return cells.sites[corner];  // at infinity there is only this one
+    if (is_large(cells.halves[corner])) return go_around(cells.halves[corner], scratch);
+    return std::min({cells.sites[corner], cells.neighbours[corner], cells.next_neighbours[corner]});
   }
 
   static Index late(Index place) { return -2 - place; }
 
-  void write_sides(Piece& piece, Index site, Index known, Counts& at, Scratch& scratch) {
-    const Star& star = scratch.star;
-    const Index* const numbers = scratch.numbers.data() + 1;
-    for (Index i = 0; i < star.size; ++i) {
-      const bool is_late = star.neighbour(i) < known;
-      if (is_late) piece.late_sides.push_back(at.corners + i);
-      result_.side_edges[at.corners + i] = is_late ? star.half(i) : ~mesh_.twins[star.half(i)];  // or see below
+  void write_sides(Piece& piece, Index known, Counts& at, Scratch& scratch) {
+    const CellBlock& cells = scratch.cells;
+    const Index *const half = cells.halves.data(), *const neighbour = cells.neighbours.data();
+    Index *const sides = result_.side_edges.data() + at.corners, *const twins = mesh_.twins.data();
+    for (Index k = 0; k < scratch.own_side_count; ++k) {
+      const Index side = half[scratch.own_sides[k]], twin = twins[side];
+      twins[twin < 0 ? side : twin] = ~(at.edges + k);
     }
-    const Index own = select_own_sides(site, scratch);
-    for (Index k = 0; k < own; ++k) {
-      const Index i = scratch.own[k], edge = at.edges++, half = star.half(i), twin = mesh_.twins[half];
-      result_.side_edges[at.corners + i] = edge;
-      mesh_.twins[twin < 0 ? half : twin] = ~edge;
-      std::array<Index, 2> ends{numbers[i - 1], numbers[i]}, beside{site, star.neighbour(i)};
+    if (known == 0) {
+      for (Index i = 0; i < cells.size; ++i) sides[i] = ~twins[half[i]];
+    } else {
+      for (Index i = 0; i < cells.size; ++i) {
+        const bool is_late = neighbour[i] < known;
+        sides[i] = is_late ? half[i] : ~twins[half[i]];
+        if (is_late) piece.late_sides.push_back(at.corners + i);
+      }
+    }
+    write_edges(piece, at, scratch);
+    at.edges += scratch.own_side_count;
+  }
+
+  void write_edges(Piece& piece, const Counts& at, const Scratch& scratch) {
+    const CellBlock& cells = scratch.cells;
+    const Index *const numbers = result_.corner_vertices.data() + at.corners, *const own = scratch.own_sides.data(),
+                       *const before = cells.befores.data(), *const site = cells.sites.data(),
+                       *const neighbour = cells.neighbours.data(), *const original = sites_.original.data();
+    Index* const sides = result_.side_edges.data() + at.corners;
+    std::array<Index, 2>*const edge_vertices = result_.edge_vertices.data() + at.edges, *const edge_sites =
+                                                                                            result_.edge_sites.data() +
+                                                                                            at.edges;
+    for (Index k = 0; k < scratch.own_side_count; ++k) {
+      const Index i = own[k];
+      sides[i] = at.edges + k;
+      const std::array<Index, 2> ends{numbers[before[i]], numbers[i]},
+          beside{original[site[i]], original[neighbour[i]]};
+      edge_vertices[k] = ends;
+      edge_sites[k] = beside;
+      if (std::min(ends[0], ends[1]) >= 0) continue;
       if (ends[0] == k_none) {
-        std::swap(ends[0], ends[1]);
-        std::swap(beside[0], beside[1]);
+        std::swap(edge_vertices[k][0], edge_vertices[k][1]);
+        std::swap(edge_sites[k][0], edge_sites[k][1]);
       }
       for (Index end = 0; end < 2; ++end)
-        if (ends[end] < k_none) piece.late_ends.push_back(2 * edge + end);
-      result_.edge_vertices[edge] = ends;
-      result_.edge_sites[edge] = {sites_.original[beside[0]], sites_.original[beside[1]]};
+        if (edge_vertices[k][end] < k_none) piece.late_ends.push_back(2 * (at.edges + k) + end);
     }
   }
 
@@ -330,16 +323,36 @@ class Numberer {
       result_.vertices[vertex] = circumcentre(point(a), point(b), point(c)) * unscale;
     };
     for_pieces(stage, [&](Index i, int) {
-      for (Index first = 8 * pieces_[i].begin; first < 8 * pieces_[i].end; first += 4) {
-        const Index a = mesh_.corners[first], b = mesh_.corners[first + 1], c = mesh_.corners[first + 2],
-                    vertex = mesh_.corners[first + 3];
-        if (a == k_none) continue;
-        const bool is_b = b < a && b < c, is_c = c < a && c < b;  // the lowest first, whatever the triangle's order
-        place(vertex, is_b ? b : is_c ? c : a, is_b ? c : is_c ? a : b, is_b ? a : is_c ? b : c);
-      }
+      place_in(pieces_[i], unscale);
       for (const LargeVertex& large : pieces_[i].large)
         place(large.vertex, large.sites[0], large.sites[1], large.sites[2]);
     });
+  }
+
+  void place_in(const Piece& piece, double unscale) {
+    TwoTriangles pair{};
+    Index vertices[2]{};
+    int filled = 0;
+    const auto write = [&](int k) { result_.vertices[vertices[k]] = pair.centre(k) * unscale; };
+    for (Index first = 8 * piece.begin; first < 8 * piece.end; first += 4) {
+      const Index* const corner = mesh_.corners.data() + first;
+      if (corner[0] == k_none) continue;
+      const int is_b = (corner[1] < corner[0]) & (corner[1] < corner[2]),
+                is_c = (corner[2] < corner[0]) & (corner[2] < corner[1]);
+      static constexpr Index k_around[5] = {0, 1, 2, 0, 1};
+      const Index* const around = k_around + (is_b + 2 * is_c);  // the lowest first, whatever the triangle's order
+      pair.set(filled, point(corner[around[0]]), point(corner[around[1]]), point(corner[around[2]]));
+      vertices[filled] = corner[3];
+      filled = 1 - filled;
+      if (filled == 1) continue;
+      pair.find_centres();
+      write(0);
+      write(1);
+    }
+    if (filled == 0) return;
+    pair.set(1, {pair.ax[0], pair.ay[0]}, {pair.bx[0], pair.by[0]}, {pair.cx[0], pair.cy[0]});
+    pair.find_centres();
+    write(0);
   }
 
   void leave_out_flat_triangles() {

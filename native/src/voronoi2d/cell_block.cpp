@@ -1,0 +1,172 @@
+#include "voronoi2d/cell_block.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+
+#include "voronoi2d/planar_mesh.h"
+
+namespace saddleback::voronoi2d {
+
+CellBlock::CellBlock() : few_half_(k_few * (k_most + 2)), few_neighbour_(k_few * (k_most + 2)) {
+  make_room(k_few * (k_most + 2));
+}
+
+void CellBlock::gather(const Triangulation& mesh, const Index* leaving, Index begin, Index count) {
+  cell_count = count;
+  size = 0;
+  open.clear();
+  for (Index cell = 0; cell < count; ++cell) {
+    const Found found = gather_few(mesh, leaving[cell], cell);
+    if (found == Found::flat) gather_few_flat(mesh, leaving[cell], cell);
+    if (found == Found::any) few_size_[cell] = 0;
+  }
+  for (Index cell = 0; cell < count; ++cell) {
+    starts[cell] = size;
+    if (few_size_[cell] > 0) {
+      append_few(cell, begin + cell);
+      continue;
+    }
+    const bool is_open = gather_any(mesh, leaving[cell]);
+    if (is_open) open.push_back(cell);
+    make_room(static_cast<Index>(any_half_.size()) + k_few * (count - cell + 1));
+    append_any(begin + cell, is_open);
+  }
+  starts[count] = size;
+}
+
+void CellBlock::make_room(Index more) {
+  const std::size_t wanted = size + more;
+  if (wanted <= halves.size()) return;
+  for (std::vector<Index>* values : {&halves, &sites, &neighbours, &next_neighbours, &befores})
+    values->resize(2 * wanted);
+}
+
+namespace {
+
+// From a half-edge to the next and to the previous one of its triangle, by its place there.
+constexpr std::ptrdiff_t k_next[4] = {1, 1, -2, 0}, k_previous[4] = {2, -1, -1, 0};
+
+}  // namespace
+
+// Always as many steps, since when a walk ends cannot be predicted: what comes after is the same once more.
+CellBlock::Found CellBlock::gather_few(const Triangulation& mesh, Index first, Index cell) {
+  const Index *const corners = mesh.corners.data(), *const twins = mesh.twins.data();
+  Index *const walked = few_half_.data() + k_few * cell, *const others = few_neighbour_.data() + k_few * cell;
+  std::ptrdiff_t walk = first, count = 0, is_under_way = 1;
+  std::ptrdiff_t lowest = std::numeric_limits<std::ptrdiff_t>::max();
+  Index flags = 0, twin = 0;
+#ifdef __GNUC__
+#pragma GCC unroll 8
+#endif
+  for (std::ptrdiff_t step = 0; step < k_few; ++step) {
+    const std::ptrdiff_t k = walk & 3, other = corners[walk + k_next[k]];
+    walked[step] = static_cast<Index>(walk);
+    others[step] = static_cast<Index>(other);
+    lowest = std::min(lowest, k_few * other + step);
+    flags |= twins[walk | 3];
+    count += is_under_way;
+    twin = twins[walk + k_previous[k]];
+    if (twin < 0) return Found::any;
+    walk = twin;
+    is_under_way &= static_cast<std::ptrdiff_t>(walk != first);
+  }
+  few_size_[cell] = static_cast<Index>(count);
+  few_lowest_[cell] = static_cast<Index>(lowest % k_few);
+  if (is_under_way != 0) return Found::any;
+  return flags == 0 ? Found::closed : Found::flat;
+}
+
+/// The same where some triangles share their circle.
+void CellBlock::gather_few_flat(const Triangulation& mesh, Index first, Index cell) {
+  const Index *const corners = mesh.corners.data(), *const twins = mesh.twins.data();
+  Index *const walked = few_half_.data() + k_few * cell, *const others = few_neighbour_.data() + k_few * cell;
+  Index walk = first, found = 0, lowest = 0, lowest_neighbour = std::numeric_limits<Index>::max();
+  Index is_under_way = 1;
+  for (Index step = 0; step < k_few; ++step) {
+    const Index k = walk & 3, other = corners[walk + k_next[k]];
+    const Index is_side = is_under_way & ~(twins[walk | 3] >> k);
+    walked[found] = walk;
+    others[found] = other;
+    const bool is_lowest = (is_side != 0) & (other < lowest_neighbour);
+    lowest = is_lowest ? found : lowest;
+    lowest_neighbour = is_lowest ? other : lowest_neighbour;
+    found += is_side;
+    walk = twins[walk + k_previous[k]];
+    is_under_way &= static_cast<Index>(walk != first);
+  }
+  few_size_[cell] = found;
+  few_lowest_[cell] = lowest;
+}
+
+/// Whether the cell is open.
+bool CellBlock::gather_any(const Triangulation& mesh, Index first) {
+  any_half_.clear();
+  any_neighbour_.clear();
+  any_lowest_ = 0;
+  const auto add = [&](Index half, Index neighbour) {
+    any_half_.push_back(half);
+    any_neighbour_.push_back(neighbour);
+  };
+  Index half = first;
+  do {
+    const Index last = previous_half(half), neighbour = mesh.corners[next_half(half)];
+    if ((mesh.twins[half | 3] >> (half & 3) & 1) == 0) {
+      add(half, neighbour);
+      if (neighbour < any_neighbour_[any_lowest_]) any_lowest_ = static_cast<Index>(any_half_.size()) - 1;
+    }
+    half = mesh.twins[last];
+    if (half < 0) {
+      add(last, mesh.corners[last]);
+      any_lowest_ = 0;
+      return true;
+    }
+  } while (half != first);
+  return false;
+}
+
+namespace {
+
+/// Of whatever size the rest is: what lies behind it is written later.
+void copy_few(Index* to, const Index* from) { std::memcpy(to, from, 8 * sizeof(Index)); }
+
+}  // namespace
+
+// From the lowest on, then from the first on over what that copied too much.
+void CellBlock::append_few(Index cell, Index cell_site) {
+  const Index count = few_size_[cell], lowest = few_lowest_[cell], turned = count - lowest, start = size;
+  const Index *const walked = few_half_.data() + k_few * cell, *const others = few_neighbour_.data() + k_few * cell;
+  copy_few(halves.data() + start, walked + lowest);
+  copy_few(halves.data() + start + turned, walked);
+  copy_few(neighbours.data() + start, others + lowest);
+  copy_few(neighbours.data() + start + turned, others);
+  Index* const next = next_neighbours.data() + start;
+  copy_few(next, others + lowest + 1);
+  copy_few(next + turned - 1, others);
+  next[count - 1] = others[lowest];
+  Index *const own = sites.data() + start, *const before = befores.data() + start;
+  for (Index i = 0; i < k_few; ++i) {
+    own[i] = cell_site;
+    before[i] = start + i - 1;
+  }
+  before[0] = start + count - 1;
+  size = start + count;
+}
+
+void CellBlock::append_any(Index cell_site, bool is_open) {
+  const Index count = static_cast<Index>(any_half_.size()), start = size;
+  for (Index i = 0, from = any_lowest_; i < count; ++i) {
+    halves[start + i] = any_half_[from];
+    neighbours[start + i] = any_neighbour_[from];
+    from = from + 1 == count ? 0 : from + 1;
+    next_neighbours[start + i] = any_neighbour_[from];
+    sites[start + i] = cell_site;
+    befores[start + i] = start + i - 1;
+  }
+  if (is_open) next_neighbours[start + count - 1] = k_none;
+  befores[start] = start + count - 1;
+  size = start + count;
+}
+
+}  // namespace saddleback::voronoi2d

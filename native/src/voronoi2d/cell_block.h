@@ -1,0 +1,50 @@
+#pragma once
+// The cells of some sites in a row, side by side: what is done to each of their corners and sides is then one long loop
+// instead of a short one for each cell, whose ends no processor predicts.
+
+#include <array>
+#include <vector>
+
+#include "saddleback/types.h"
+
+#include "voronoi2d/triangulation.h"
+
+namespace saddleback::voronoi2d {
+
+/// Sides of cells, counter-clockwise, beginning with the lowest neighbour; an open cell's first and last neighbours are
+/// those on the border. Corner k of a cell lies after its side k; the last one of an open cell is at infinity.
+class CellBlock {
+ public:
+  static constexpr Index k_most = 128;  ///< cells
+
+  CellBlock();
+  /// Cells of the `count` sites from `begin` on. `leaving`: for each a half-edge from there, at the border the one
+  /// along it, counter-clockwise.
+  void gather(const Triangulation& mesh, const Index* leaving, Index begin, Index count);
+
+  Index cell_count = 0, size = 0;          ///< `size`: sides of all cells
+  std::array<Index, k_most + 1> starts{};  ///< by cell: its first side
+  std::vector<Index> open;                 ///< cells that are
+  std::vector<Index> halves;               ///< by side: from the site, or to it for the last side of an open cell
+  std::vector<Index> sites, neighbours;    ///< by side: of either side
+  std::vector<Index> next_neighbours;      ///< by side: beyond the next side; k_none after the last of an open cell
+  std::vector<Index> befores;              ///< by side: the one before it
+
+ private:
+  static constexpr Index k_few = 8;  ///< triangles about most sites
+  enum class Found { closed, flat, any };
+  Found gather_few(const Triangulation& mesh, Index first, Index cell);
+  void gather_few_flat(const Triangulation& mesh, Index first, Index cell);
+  bool gather_any(const Triangulation& mesh, Index first);
+  void append_few(Index cell, Index cell_site);
+  void append_any(Index cell_site, bool is_open);
+  void make_room(Index more);
+
+  // Sides of cells with few, `k_few` places for each, before they are turned to begin with the lowest neighbour.
+  std::vector<Index> few_half_, few_neighbour_;
+  std::array<Index, k_most> few_size_{}, few_lowest_{};
+  std::vector<Index> any_half_, any_neighbour_;  ///< of a cell with any number
+  Index any_lowest_ = 0;
+};
+
+}  // namespace saddleback::voronoi2d
