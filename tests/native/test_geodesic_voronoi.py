@@ -182,6 +182,18 @@ def test_the_same_for_any_number_of_threads() -> None:
         assert found[0].split().triangles.tobytes() == other.split().triangles.tobytes()
 
 
+def test_cells_reach_through_every_threads_part_of_the_mesh() -> None:
+    """Large meshes are divided among threads: cells that lie in all parts are put together from all."""
+    mesh = sb.Mesh(*meshes.grid(160, 160, jitter=0.3))
+    graph = sb.SaddleVertexGraph(mesh, k=12)
+    sites = random_points(mesh, 5)
+    found = [sb.geodesic_voronoi(graph, sites, threads=threads) for threads in (1, 2, 3, 8)]
+    for other in found[1:]:
+        assert found[0].vertex_cell.tobytes() == other.vertex_cell.tobytes()
+        assert found[0].vertex_distance.tobytes() == other.vertex_distance.tobytes()
+        assert found[0].areas.tobytes() == other.areas.tobytes()
+
+
 GOOD = [c for c in meshes.good() if len(c.vertices) <= 400 and c.components == 1]
 GRAPHS = {case.name: graph_of(case) for case in GOOD}
 WEIGHT = st.sampled_from([0.0, 1e-12, 1e-3, 0.25, 1 / 3, 0.5, 1.0])

@@ -71,23 +71,54 @@ void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const NodeSeed> 
 template <class AnySeed>
 void GraphSearch::run_from(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const QueryOptions& options,
                            SearchLabels labels, const JobStage& stage) {
-  const auto count = static_cast<std::size_t>(graph.arcs().node_count());
   bound_ = std::nextafter(options.limit, k_infinity);
-  distances_.assign(count, bound_);
-  sources_.assign(labels == SearchLabels::none ? 0 : count, k_none);
-  predecessors_.assign(labels == SearchLabels::sources_and_predecessors ? count : 0, k_none);
+  clear(graph, labels);
   if (options.method == QueryMethod::dijkstra) {
     // With the portable loop over a row: together the search that the fast one is checked against.
     Heap heap;
     propagate(heap, relax_row_portable(), graph, seeds, stage);
   } else {
-    double span = graph.arcs().longest();
-    for (const AnySeed& seed : seeds) span = std::max(span, seed.distance);
-    if (width_ == 0) width_ = k_bucket_width * shortest_arcs_below(graph.arcs(), k_median);
-    buckets_.reset(width_, span);
-    propagate(buckets_, relax_row(), graph, seeds, stage);
+    propagate_in_buckets(graph, seeds, stage);
   }
   stage.update(1);
+}
+
+void GraphSearch::clear(const SaddleVertexGraph& graph, SearchLabels labels) {
+  const auto count = static_cast<std::size_t>(graph.arcs().node_count());
+  distances_.assign(count, bound_);
+  sources_.assign(labels == SearchLabels::none ? 0 : count, k_none);
+  predecessors_.assign(labels == SearchLabels::sources_and_predecessors ? count : 0, k_none);
+  first_ = 0;
+  last_ = static_cast<Index>(count);
+  goes_on_ = false;
+}
+
+template <class AnySeed>
+void GraphSearch::propagate_in_buckets(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds,
+                                       const JobStage& stage) {
+  double least = k_infinity, most = 0;
+  for (const AnySeed& seed : seeds) {
+    least = std::min(least, seed.distance);
+    most = std::max(most, seed.distance);
+  }
+  if (!(least <= most)) return;
+  if (width_ == 0) width_ = k_bucket_width * shortest_arcs_below(graph.arcs(), k_median);
+  buckets_.reset(width_, std::max(graph.arcs().longest(), most - least), least);
+  propagate(buckets_, relax_row(), graph, seeds, stage);
+}
+
+void GraphSearch::begin_part(const SaddleVertexGraph& graph, Index first, Index last) {
+  bound_ = k_infinity;
+  clear(graph, SearchLabels::sources);
+  first_ = first;
+  last_ = last;
+}
+
+void GraphSearch::continue_part(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds,
+                                const JobStage& stage) {
+  crossed_.clear();
+  propagate_in_buckets(graph, seeds, stage);
+  goes_on_ = true;
 }
 
 template <class Queue, class AnySeed>
@@ -133,9 +164,13 @@ void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGrap
       const auto arcs = static_cast<int>(std::min<std::int64_t>(end - first, LoweredNodes::k_most));
       relax(codec, words + first, arcs, offer, lowered);
       for (int i = 0; i < lowered.count; ++i) {
-        queue.lower(lowered.nodes[i], lowered.distances[i], lowered.before[i] == bound_ ? -1 : lowered.before[i]);
-        if (with_sources) sources_[lowered.nodes[i]] = offer.label;
-        if (with_predecessors) predecessors_[lowered.nodes[i]] = entry.node;
+        const Index node = lowered.nodes[i];
+        if (node >= first_ && node < last_)
+          queue.lower(node, lowered.distances[i], goes_on_ || lowered.before[i] == bound_ ? -1 : lowered.before[i]);
+        else
+          crossed_.push_back(node);
+        if (with_sources) sources_[node] = offer.label;
+        if (with_predecessors) predecessors_[node] = entry.node;
       }
     }
   }

@@ -39,6 +39,14 @@ class GraphSearch {
   void run(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const QueryOptions& options,
            SearchLabels labels, const JobStage& stage);
 
+  // A part of a search: expands only the nodes from `first` up to `last`. What lies beyond is reached, but goes no
+  // farther; whoever has that part goes on from there.
+  void begin_part(const SaddleVertexGraph& graph, Index first, Index last);
+  /// From more seeds of the part. \throw Cancelled.
+  void continue_part(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const JobStage& stage);
+  /// Nodes beyond the part that were reached, or better than before; some more than once. Until it goes on.
+  std::span<const Index> crossed() const { return crossed_; }
+
   // Of the last run. Distances are in the order of the vertices, infinity where nothing reached within the limit.
   void write_distances(const SaddleVertexGraph& graph, std::span<double> vertices) const;
   /// Sources, k_none where nothing reached.
@@ -55,6 +63,9 @@ class GraphSearch {
   template <class AnySeed>
   void run_from(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const QueryOptions& options,
                 SearchLabels labels, const JobStage& stage);
+  void clear(const SaddleVertexGraph& graph, SearchLabels labels);
+  template <class AnySeed>
+  void propagate_in_buckets(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const JobStage& stage);
   template <class Queue, class AnySeed>
   void propagate(Queue& queue, RelaxRow relax, const SaddleVertexGraph& graph, std::span<const AnySeed> seeds,
                  const JobStage& stage);
@@ -63,6 +74,9 @@ class GraphSearch {
   double bound_ = 0;  ///< what unreached nodes hold: the first number that is beyond the limit
   std::vector<double> distances_;
   std::vector<Index> sources_, predecessors_;
+  Index first_ = 0, last_ = 0;  ///< the nodes that are expanded
+  bool goes_on_ = false;        ///< nodes have been expanded at distances that may still fall
+  std::vector<Index> crossed_;
   BucketQueue buckets_;
 };
 

@@ -128,10 +128,12 @@ SurfacePoint centre_of(const Mesh& mesh, const CellMass& cell, SurfacePoint plac
     const Vec2 step = cell.mean(log);
     const double length = step.norm();
     if (length <= k_tolerance * size || length > k_least_shrinking * before) break;
+    const double next_length = length * (length / before);  // as long as the next step will be, going by these two
     before = length;
     const SurfacePoint next = move_sites(mesh, {place}, {step}, 1).sites.front();
     if (!std::ranges::binary_search(cell.faces(), next.face)) break;  // the cell bends round what is not its own
     place = next;
+    if (i > 0 && next_length <= k_tolerance * size) break;
   }
   return place;
 }

@@ -1,6 +1,7 @@
 #include "tessellation/cell_claims.h"
 
 #include <algorithm>
+#include <atomic>
 #include <unordered_map>
 #include <utility>
 
@@ -101,6 +102,7 @@ CellClaims::~CellClaims() = default;
 
 void CellClaims::find(const SurfacePoints& sites, std::span<const double> reaches, const JobStage& stage) {
   maps_.label_nodes(sites, reaches, threads_, stage.part(0, 0.6));
+  reach_.assign(site_count(), 0);
   find_mixed_faces();
   claim_by_cells(stage);
   stage.update(0.85);
@@ -138,12 +140,14 @@ void CellClaims::find_mixed_faces() {
     all = {all.rows + sum.rows, all.claims + sum.claims};
   }
   rows_.resize(all.rows);
+  at_border_.assign(graph_.mesh().vertex_count(), 0);
   in_stretches([&](Index face, Sum& next) {
     const Index labels = std::exchange(shared_index_[face], k_none);
     if (labels == 1) return;
     shared_index_[face] = next.rows;
     rows_[next.rows++] = {face, next.claims, labels};
     next.claims += labels;
+    mark_border(face);
   });
   constexpr Index k_late_share = 8;  // one late claim for so many others there is room for
   if (claims_.capacity() < static_cast<std::size_t>(all.claims))
@@ -159,7 +163,9 @@ void CellClaims::claim_by_cells(const JobStage& stage) {
     stage.check();
     const Index site = maps_.sites_along_curve()[i];
     maps_.place_cell(site, workers_[thread].scratch);
-    for (const Index node : maps_.nodes(site)) claim_from(node, site, workers_[thread]);
+    for (const Index node : maps_.nodes(site)) {
+      if (is_at_border(node)) claim_from(node, site, workers_[thread]);
+    }
   });
 }
 
@@ -175,7 +181,18 @@ void CellClaims::claim_from(Index node, Index site, Worker& worker) {
     claim.site = site;
     const auto& nodes = rings_.face(face).nodes;
     for (int i = 0; i < 3; ++i) maps_.find(site, nodes[i], worker.scratch, claim.corner[i]);  // each is beside the cell
+    reach_corners(claim);
   }
+}
+
+void CellClaims::reach_corners(const FaceClaim& claim) {
+  for (const SiteVector& corner : claim.corner) reach_[claim.site] = std::max(reach_[claim.site], corner.distance);
+}
+
+/// May be called by several threads at once.
+void CellClaims::mark_border(Index face) {
+  for (const Index node : rings_.face(face).nodes)
+    std::atomic_ref(at_border_[node]).store(1, std::memory_order_relaxed);
 }
 
 /// Claims of sites on the faces in which they lie.
@@ -234,8 +251,8 @@ void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid) {
     Index& last = late_index_[claim.face];
     if (last == k_none) late_faces_.push_back(claim.face);
     late_.push_back({claim, last});
-    late_pairs_.insert(pair_key(claim.site, claim.face));
     last = static_cast<Index>(late_.size()) - 1;
+    reach_corners(claim);
   }
 }
 
@@ -247,7 +264,6 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
   late_index_.assign(rings_.face_count(), k_none);
   late_.clear();
   late_faces_.clear();
-  late_pairs_.clear();
   first_fresh_ = 0;
   for (Worker& worker : workers_) worker.forget();
   std::vector<Wish> wishes = wishes_of_sites(sites);
@@ -276,17 +292,29 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
 
 /// Faces with late claims get new rows behind the others.
 void CellClaims::merge_late() {
-  std::vector<FaceClaim> row;
+  Index end = claim_count();
+  std::vector<Row> late_rows;
   for (const Index face : late_faces_) {
-    row.clear();
-    visit_claims(face, [&](const FaceClaim& claim) { row.push_back(claim); });
-    std::ranges::sort(row, {}, &FaceClaim::site);
-    if (shared_index_[face] == k_none) {
-      shared_index_[face] = shared_count();
+    Index count = 0;
+    visit_claims(face, [&](const FaceClaim&) { ++count; });
+    late_rows.push_back({face, end, count});
+    end += count;
+  }
+  claims_.resize(end);
+  parallel_for(static_cast<Index>(late_rows.size()), threads_, 64, [&](Index i, int) {
+    FaceClaim* const row = claims_.data() + late_rows[i].first;
+    FaceClaim* next = row;
+    visit_claims(late_rows[i].face, [&](const FaceClaim& claim) { *next++ = claim; });
+    std::sort(row, next, [](const FaceClaim& a, const FaceClaim& b) { return a.site < b.site; });
+  });
+  for (const Row& row : late_rows) {
+    Index& shared = shared_index_[row.face];
+    if (shared == k_none) {
+      shared = shared_count();
       rows_.emplace_back();
+      mark_border(row.face);
     }
-    rows_[shared_index_[face]] = {face, claim_count(), static_cast<Index>(row.size())};
-    claims_.insert(claims_.end(), row.begin(), row.end());
+    rows_[shared] = row;
   }
 }
 
@@ -355,7 +383,8 @@ void CellClaims::find_wishes(Index face, Worker& worker) const {
 }
 
 bool CellClaims::is_claimed(Index face, Index site) const {
-  if (late_index_[face] != k_none && late_pairs_.contains(pair_key(site, face))) return true;
+  for (Index i = late_index_[face]; i != k_none; i = late_[i].before)
+    if (late_[i].claim.site == site) return true;
   const Index shared = shared_index_[face];
   return shared != k_none && std::ranges::find(claims(shared), site, &FaceClaim::site) != claims(shared).end();
 }

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <span>
-#include <unordered_set>
 #include <vector>
 
 #include "tessellation/edge_envelope.h"
@@ -92,6 +91,10 @@ class CellClaims {
   /// All, and where those of a shared face begin; some between belong to no face.
   Index claim_count() const { return static_cast<Index>(claims_.size()); }
   Index first_claim(Index shared) const { return rows_[shared].first; }
+  /// Whether a face about the node is shared.
+  bool is_at_border(Index node) const { return at_border_[node] != 0; }
+  /// How far the site sees the farthest corner that it claims; 0 where it claims none.
+  double reach(Index site) const { return reach_[site]; }
 
  private:
   struct Worker;
@@ -110,6 +113,8 @@ class CellClaims {
   std::vector<Wish> wishes_of_sites(const SurfacePoints& sites) const;
   void spread(const SurfacePoints& sites, const JobStage& stage);
   void merge_late();
+  void reach_corners(const FaceClaim& claim);
+  void mark_border(Index face);
   void grant(const std::vector<Wish>& wishes, Laid& laid);
   bool make_claim(Index face, Index site, const Laid& laid, Worker& worker, FaceClaim& claim) const;
   void lay_corners(Index side, Laid& laid, FaceClaim& claim) const;
@@ -129,6 +134,8 @@ class CellClaims {
   std::vector<Index> shared_index_;  ///< by face
   std::vector<Row> rows_;
   std::vector<FaceClaim> claims_;
+  std::vector<std::uint8_t> at_border_;  ///< by node
+  std::vector<double> reach_;            ///< by site
   // Found while claims spread:
   struct Late {
     FaceClaim claim;
@@ -138,7 +145,6 @@ class CellClaims {
   std::vector<Late> late_;
   Index first_fresh_ = 0;  ///< of late_, since faces were last looked at; 0: all claims are new
   std::vector<Index> late_faces_;
-  std::unordered_set<std::uint64_t> late_pairs_;  ///< of sites and faces
 };
 
 /// The same by the faces and vertices of the mesh. The cells must outlive it.

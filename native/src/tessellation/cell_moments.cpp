@@ -15,6 +15,9 @@ namespace {
 
 using Face = CellIntegrals::Face;
 
+// How many nodes ahead those of a cell are fetched from memory: by distance they follow in no order of memory.
+constexpr std::size_t k_ahead = 8;
+
 /// A face that cells share, for integrals over its parts.
 struct FaceShape {
   const Face& face;
@@ -295,18 +298,18 @@ CellIntegrals::CellIntegrals(const SaddleVertexGraph& graph, const VertexRings& 
   });
 }
 
-void CellIntegrals::mark_border(const CellClaims& claims) {
-  at_border_.assign(nodes_.size(), 0);
-  for (Index shared = 0; shared < claims.shared_count(); ++shared)
-    for (const Index node : rings_.face(claims.face(shared)).nodes) at_border_[node] = 1;
-}
-
 /// The parts about a cell's own vertices of the faces that it owns whole.
 CellMoments CellIntegrals::whole_faces(const CellClaims& claims, Index site) const {
   CellMoments sum;
-  for (const Index node : claims.maps().nodes(site)) {
+  const std::span<const Index> own = claims.maps().nodes(site);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (i + k_ahead < own.size()) {
+      __builtin_prefetch(&nodes_[own[i + k_ahead]]);
+      claims.maps().fetch(own[i + k_ahead]);
+    }
+    const Index node = own[i];
     Node about;
-    if (at_border_[node]) {
+    if (claims.is_at_border(node)) {
       for (const VertexRings::Wedge& wedge : rings_.around(node)) {
         if (claims.shared_index(wedge.side / 3) != k_none) continue;
         const Face& face = faces_[wedge.side / 3];
@@ -327,7 +330,6 @@ CellMoments CellIntegrals::whole_faces(const CellClaims& claims, Index site) con
 }
 
 std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, const JobStage& stage) {
-  mark_border(claims);
   std::vector<CellMoments> cells(claims.site_count());
   parallel_for(claims.site_count(), threads_, 16, [&](Index i, int) {
     stage.check();

@@ -41,7 +41,6 @@ class CellIntegrals {
   struct Node {
     double weight = 0, bulge = 0, area = 0;
   };
-  void mark_border(const CellClaims& claims);
   CellMoments whole_faces(const CellClaims& claims, Index site) const;
 
   const VertexRings& rings_;
@@ -49,7 +48,6 @@ class CellIntegrals {
   std::vector<Face> faces_;                     ///< in the rings' order
   std::vector<std::array<double, 3>> density_;  ///< of their corners; empty for 1
   std::vector<Node> nodes_;
-  std::vector<std::uint8_t> at_border_;  ///< by node: a face about it is shared
 };
 
 }  // namespace saddleback

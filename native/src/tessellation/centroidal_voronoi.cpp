@@ -117,18 +117,14 @@ void Relaxation::accept(State next) {
 std::vector<double> Relaxation::reaches(const SurfacePoints& sites) const {
   constexpr double k_growth = 1.1;
   if (!state_.claims) return {};
-  const CellClaims& before = *state_.claims;
-  std::vector<double> reach(sites.size(), 0.0);
-  for (Index shared = 0; shared < before.shared_count(); ++shared) {
-    for (const FaceClaim& claim : before.claims(shared))
-      for (const SiteVector& corner : claim.corner) reach[claim.site] = std::max(reach[claim.site], corner.distance);
-  }
   const Mesh& mesh = graph_.mesh();
-  for (std::size_t i = 0; i < reach.size(); ++i) {
+  std::vector<double> reaches(sites.size());
+  for (Index i = 0; i < static_cast<Index>(sites.size()); ++i) {
+    const double reach = state_.claims->reach(i);
     const double moved = (position(mesh, sites[i]) - position(mesh, state_.sites[i])).norm();
-    reach[i] = reach[i] > 0 ? k_growth * (reach[i] + moved) : std::numeric_limits<double>::infinity();
+    reaches[i] = reach > 0 ? k_growth * (reach + moved) : std::numeric_limits<double>::infinity();
   }
-  return reach;
+  return reaches;
 }
 
 double Relaxation::mass() const {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geodesics/parted_search.h"
 #include "geodesics/planar.h"
-#include "geodesics/query_cache.h"
 #include "support/parallel.h"
 #include "tessellation/seen_between.h"
 
@@ -26,6 +26,9 @@ constexpr double k_arc_rounding = 2e-9;
 
 // An edge's end that a ray passes by less than this share of the edge's length it may as well hit.
 constexpr double k_least_miss = 1e-3;
+
+// How many nodes ahead what lies around a node is fetched from memory: by distance they follow in no order of memory.
+constexpr int k_ahead = 8;
 
 // Square of the least angle at which an edge must be seen: what lies beyond one seen end-on cannot be told from it.
 constexpr double k_end_on = 1e-10;
@@ -69,16 +72,17 @@ void SiteMaps::label_nodes(const SurfacePoints& sites, std::span<const double> r
   sites_ = sites;
   order_sites();
   make_fans(reaches, threads, stage.part(0, 0.5));
-  seeds_.clear();
-  for (Index site = 0; site < site_count(); ++site) {
-    const Fan& fan = fans_[site];
-    if (fan.centre != k_none) seeds_.push_back({fan.centre, site, 0});
-    for (const SeenNode& seen : fan.seen) seeds_.push_back({seen.node, site, seen.length});
-  }
-  const auto search = graph_.query_cache().field_searches.lease();
-  search->run(graph_, std::span<const NodeSeed>(seeds_), {}, SearchLabels::sources, stage.part(0.5, 1));
-  label_.assign(search->node_sources().begin(), search->node_sources().end());
-  distance_.assign(search->node_distances().begin(), search->node_distances().end());
+  const auto seeds_of = [&](Index first, Index last, std::vector<NodeSeed>& seeds) {
+    const auto add = [&](Index node, Index site, double distance) {
+      if (node >= first && node < last) seeds.push_back({node, site, distance});
+    };
+    for (Index site = 0; site < site_count(); ++site) {
+      const Fan& fan = fans_[site];
+      if (fan.centre != k_none) add(fan.centre, site, 0);
+      for (const SeenNode& seen : fan.seen) add(seen.node, site, seen.length);
+    }
+  };
+  nearest_sources(graph_, seeds_of, threads, stage.part(0.5, 1), distance_, label_);
   group_nodes();
 }
 
@@ -154,6 +158,7 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
   }
   if (fan.centre != k_none && label_[fan.centre] == site) places_[fan.centre] = {.found_by = k_centre};
   for (auto node = first; node != last; ++node) {
+    if (last - node > k_ahead) rings_.fetch(node[k_ahead]);
     if (places_[*node].found_by != k_unplaced) continue;
     Place place;
     if (!place_own(*node, site, place)) place = place_after(*node, node_before(*node), scratch);

@@ -8,7 +8,6 @@
 
 #include "geodesics/arc_unfolding.h"
 #include "geodesics/direct_fans.h"
-#include "geodesics/graph_search.h"
 #include "tessellation/vertex_rings.h"
 
 namespace saddleback {
@@ -102,6 +101,8 @@ class SiteMaps {
   void place_cell(Index site, Scratch& scratch);
   /// From the site of its label, which must have been placed.
   SiteVector own(Index node) const { return vector_of(places_[node]); }
+  /// Asks memory for the place of a node that is looked at soon.
+  void fetch(Index node) const { __builtin_prefetch(&places_[node]); }
   double own_distance(Index node) const { return places_[node].distance; }
   /// From a site that has been placed, near whose cell the node lies. Depends on the node and the site alone: faces
   /// that share an edge get the same bits. False where the node is neither seen straight from the site nor next to a
@@ -156,7 +157,6 @@ class SiteMaps {
   SurfacePoints sites_;
   std::vector<Index> order_;
   std::vector<Fan> fans_;
-  std::vector<NodeSeed> seeds_;
   std::vector<Index> label_;
   std::vector<double> distance_;           ///< in the graph
   std::vector<Index> nodes_, first_node_;  ///< by label
