@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "geodesics/planar.h"
@@ -21,21 +22,27 @@ Vec2 polar(double length, double angle) { return {length * std::cos(angle), leng
 }  // namespace
 
 PatchLog::PatchLog(const Mesh& mesh, std::span<const Index> faces) : mesh_(mesh), faces_(faces) {
-  for (const Index face : faces) {
-    const Triangle& t = mesh.triangles()[face];
-    vertices_.insert(vertices_.end(), t.begin(), t.end());
+  // Corners by their vertices: sorted as numbers, the vertex above, the corner below.
+  std::vector<std::uint64_t> order;
+  order.reserve(3 * faces.size());
+  for (const Index face : faces)
+    for (const Index vertex : mesh.triangles()[face])
+      order.push_back(static_cast<std::uint64_t>(vertex) << 32 | static_cast<std::uint64_t>(order.size()));
+  std::ranges::sort(order);
+  corners_.resize(faces.size());
+  first_.push_back(0);
+  around_.reserve(order.size());
+  for (const std::uint64_t entry : order) {
+    const auto vertex = static_cast<Index>(entry >> 32), corner = static_cast<Index>(entry & 0xFFFFFFFF);
+    if (vertices_.empty() || vertices_.back() != vertex) {
+      vertices_.push_back(vertex);
+      first_.push_back(first_.back());
+    }
+    corners_[corner / 3][corner % 3] = static_cast<Index>(vertices_.size()) - 1;
+    around_.push_back(corner / 3);
+    ++first_.back();
   }
-  std::ranges::sort(vertices_);
-  vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
-  const auto local_vertex = [&](Index vertex) {
-    return static_cast<Index>(std::ranges::lower_bound(vertices_, vertex) - vertices_.begin());
-  };
-  first_.assign(vertices_.size() + 1, 0);
-  for (const Index face : faces) {
-    const Triangle& t = mesh.triangles()[face];
-    corners_.push_back({local_vertex(t[0]), local_vertex(t[1]), local_vertex(t[2])});
-    for (const Index vertex : corners_.back()) ++first_[vertex + 1];
-  }
+  edges_.reserve(order.size());
   for (const Index face : faces) {
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
       const double length = mesh.length(h), right = mesh.length(Mesh::next(h)), left = mesh.length(Mesh::prev(h));
@@ -43,11 +50,6 @@ PatchLog::PatchLog(const Mesh& mesh, std::span<const Index> faces) : mesh_(mesh)
       edges_.push_back({length, left, right, {x, std::sqrt(std::max(0.0, left * left - x * x))}});
     }
   }
-  for (std::size_t v = 0; v < vertices_.size(); ++v) first_[v + 1] += first_[v];
-  around_.resize(first_.back());
-  std::vector<Index> next(first_.begin(), first_.end() - 1);
-  for (Index i = 0; i < static_cast<Index>(corners_.size()); ++i)
-    for (const Index vertex : corners_[i]) around_[next[vertex]++] = i;
 }
 
 Index PatchLog::local_face(Index face) const {
