@@ -53,7 +53,7 @@ bool MeshJoiner::join(MeshPart& first, MeshPart& second, MeshPart& result) {
   } else {
     close_gap(result, sides.left_end, sides.right_end);
   }
-  restore();
+  restore(doubtful_);
   return true;
 }
 
@@ -174,19 +174,19 @@ void MeshJoiner::exchange(Index half) {
 }
 
 // After C. L. Lawson, 1977.
-void MeshJoiner::restore() {
+void MeshJoiner::restore(std::vector<Index>& doubtful) {
   const auto mark = [&](Index half, bool is_flat) {
     Index& flags = mesh_.twins[half | 3];
     flags = is_flat ? flags | 1 << (half & 3) : flags & ~(1 << (half & 3));
   };
-  while (!doubtful_.empty()) {
-    const Index half = doubtful_.back(), twin = mesh_.twins[half];
-    doubtful_.pop_back();
+  while (!doubtful.empty()) {
+    const Index half = doubtful.back(), twin = mesh_.twins[half];
+    doubtful.pop_back();
     if (twin < 0) continue;
     const Sign sign = circle_test(mesh_, half);
     if (sign == Sign::positive) {
       exchange(half);
-      for (const Index rim : {half, previous_half(half), twin, previous_half(twin)}) doubtful_.push_back(rim);
+      for (const Index rim : {half, previous_half(half), twin, previous_half(twin)}) doubtful.push_back(rim);
     } else {
       mark(half, sign == Sign::zero);
       mark(twin, sign == Sign::zero);

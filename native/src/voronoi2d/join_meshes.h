@@ -32,6 +32,9 @@ class MeshJoiner {
   /// True when `result` is Delaunay's triangulation of both; false when nothing was done, because neither has triangles
   /// or no line parts them. O(changes) and as much as the border.
   bool join(MeshPart& first, MeshPart& second, MeshPart& result);
+  /// Makes a triangulation Delaunay's (C. L. Lawson, 1977). `doubtful`: half-edges among whose edges are all that do
+  /// not pass the circle test or whose triangles share a circle; used up.
+  void restore(std::vector<Index>& doubtful);
 
  private:
   /// Which of the parts is to the left as seen from somewhere outside.
@@ -52,7 +55,6 @@ class MeshJoiner {
   void join_sites(MeshPart& result, const MeshPart& sites, Index nearest, bool is_upright, bool is_ascending);
   Index join_site(MeshPart& result, Index site, Index nearest);
   void exchange(Index half);
-  void restore();
 
   PlanarMesh mesh_;
   Index* leaving_;

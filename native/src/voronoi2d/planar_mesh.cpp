@@ -16,95 +16,6 @@ Sign circle_test(const PlanarMesh& mesh, Index half) {
 
 namespace {
 
-/// The circle through three sites, ready to be asked about others: the minors of the determinant of `in_circle` along
-/// the row of the fourth site, counted from the first. Each value is off by less than 11 roundings of its terms' sizes.
-struct CircleTest {
-  double x, y;                         ///< the first site
-  double by_x, by_y, by_square;        ///< minors
-  double size_x, size_y, size_square;  ///< the same with all terms positive
-  static constexpr double k_bound = 12 * predicates::detail::k_epsilon;
-
-  CircleTest(const predicates::Point2& a, const predicates::Point2& b, const predicates::Point2& c) : x(a.x), y(a.y) {
-    const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
-    const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
-    const double byc2 = by * c2, cyb2 = cy * b2, bxc2 = bx * c2, cxb2 = cx * b2, bxcy = bx * cy, bycx = by * cx;
-    by_x = cyb2 - byc2;
-    by_y = bxc2 - cxb2;
-    by_square = bycx - bxcy;
-    size_x = std::fabs(byc2) + std::fabs(cyb2);
-    size_y = std::fabs(bxc2) + std::fabs(cxb2);
-    size_square = std::fabs(bycx) + std::fabs(bxcy);
-  }
-  /// Certainly outside the circle, if the sites turn counter-clockwise.
-  bool is_outside(const predicates::Point2& d) const {
-    const double dx = d.x - x, dy = d.y - y, d2 = dx * dx + dy * dy;
-    const double value = dx * by_x + dy * by_y + d2 * by_square;
-    return value < -k_bound * (std::fabs(dx) * size_x + std::fabs(dy) * size_y + d2 * size_square);
-  }
-};
-
-}  // namespace
-
-std::vector<Index> fail_circle_tests(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat) {
-  std::vector<Index> failing;
-  std::fill(is_flat.begin(), is_flat.end(), std::uint8_t{0});
-  for (Index first = 0; first < mesh.half_end(); first += 4) {
-    const CircleTest circle(mesh.point(mesh.triangles[first]), mesh.point(mesh.triangles[first + 1]),
-                            mesh.point(mesh.triangles[first + 2]));
-    for (Index half = first; half < first + 3; ++half) {
-      const Index twin = mesh.twins[half];
-      if (twin < half || circle.is_outside(mesh.point(mesh.triangles[previous_half(twin)]))) continue;
-      const Sign sign = circle_test(mesh, half);
-      if (sign == Sign::zero) is_flat[half] = is_flat[twin] = 1;
-      if (sign == Sign::positive) failing.push_back(half);
-    }
-  }
-  return failing;
-}
-
-namespace {
-
-/// Whether b is above a; on a level, to its right. A full turn changes this twice.
-bool is_above(const PlanarMesh& mesh, Index a, Index b) {
-  return mesh.y[b] > mesh.y[a] || (mesh.y[b] == mesh.y[a] && mesh.x[b] > mesh.x[a]);
-}
-
-// Turning from one neighbour to the next crosses the level line of a site whenever `is_above` changes; a corner is less
-// than half a turn, so it counts all crossings.
-bool winds_once(const PlanarMesh& mesh, std::vector<Index>& border) {
-  std::vector<std::uint8_t> crossings(mesh.site_count, 0);
-  for (Index half = 0; half < mesh.half_end(); half = (half & 3) == 2 ? half + 2 : half + 1) {
-    const Index site = mesh.triangles[half];
-    const Index right = mesh.triangles[next_half(half)], left = mesh.triangles[previous_half(half)];
-    if (is_above(mesh, site, right) != is_above(mesh, site, left) && ++crossings[site] > 2) return false;
-    if (mesh.twins[half] != k_none) continue;
-    if (border[site] != k_none) return false;
-    border[site] = right;
-  }
-  for (Index i = 0; i < mesh.site_count; ++i)
-    if (border[i] == k_none ? crossings[i] != 2 : crossings[i] > 1) return false;
-  return true;
-}
-
-}  // namespace
-
-bool is_triangulation(const PlanarMesh& mesh) {
-  std::vector<Index> border(mesh.site_count, k_none);  // by site: the next one along the border
-  if (!winds_once(mesh, border)) return false;
-  Index border_count = 0;
-  for (Index i = 0; i < mesh.site_count; ++i) {
-    const Index next = border[i];
-    if (next == k_none) continue;
-    ++border_count;
-    if (border[next] == k_none) return false;
-    if (predicates::orient_2d(mesh.point(i), mesh.point(next), mesh.point(border[next])) == Sign::negative)
-      return false;
-  }
-  return mesh.triangle_count == 2 * mesh.site_count - 2 - border_count;  // Euler: one disk
-}
-
-namespace {
-
 void set_twins(PlanarMesh& mesh, Index a, Index b) {
   mesh.twins[a] = b;
   if (b != k_none) mesh.twins[b] = a;
@@ -123,17 +34,6 @@ void exchange_pair(PlanarMesh& mesh, Index half) {
   set_twins(mesh, half, beyond_twin);
   set_twins(mesh, twin, beyond_half);
   set_twins(mesh, half_next, twin_next);
-}
-
-void exchange_triangles(PlanarMesh& mesh, std::vector<Index> doubtful) {
-  while (!doubtful.empty()) {
-    const Index edge = doubtful.back();
-    doubtful.pop_back();
-    const Index twin = mesh.twins[edge];
-    if (twin == k_none || circle_test(mesh, edge) != Sign::positive) continue;
-    exchange_pair(mesh, edge);
-    for (const Index rim : {edge, previous_half(edge), twin, previous_half(twin)}) doubtful.push_back(rim);
-  }
 }
 
 namespace {

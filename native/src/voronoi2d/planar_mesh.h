@@ -1,9 +1,7 @@
 #pragma once
-// Triangulations of some sites as flat arrays, and the proof that one is Delaunay's.
+// Triangulations of some sites as flat arrays.
 
-#include <cstdint>
-#include <span>
-#include <vector>
+#include <cmath>
 
 #include "saddleback/types.h"
 
@@ -31,22 +29,36 @@ struct PlanarMesh {
 /// the other two, `zero` when they share a Voronoi vertex. Exact.
 predicates::Sign circle_test(const PlanarMesh& mesh, Index half);
 
-/// The edges, by one half each, that do not pass the circle test; marks those (both halves) whose triangles share a
-/// Voronoi vertex. Exact.
-std::vector<Index> fail_circle_tests(const PlanarMesh& mesh, std::span<std::uint8_t> is_flat);
+/// The circle through three sites, ready to be asked about others: the minors of the determinant of `in_circle` along
+/// the row of the fourth site, counted from the first. Each value is off by less than 11 roundings of its terms' sizes.
+struct CircleTest {
+  double x, y;                         ///< the first site
+  double by_x, by_y, by_square;        ///< minors
+  double size_x, size_y, size_square;  ///< the same with all terms positive
+  static constexpr double k_bound = 12 * predicates::detail::k_epsilon;
 
-/// Whether triangles that turn counter-clockwise and are joined by `twins` cover the convex hull of the sites once:
-/// around an inner site they wind once, around a site of the border at most half a turn, the border is convex, and
-/// there is one of it. Exact. If the edges pass the circle test as well it is Delaunay's triangulation.
-bool is_triangulation(const PlanarMesh& mesh);
+  CircleTest(const predicates::Point2& a, const predicates::Point2& b, const predicates::Point2& c) : x(a.x), y(a.y) {
+    const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
+    const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
+    const double byc2 = by * c2, cyb2 = cy * b2, bxc2 = bx * c2, cxb2 = cx * b2, bxcy = bx * cy, bycx = by * cx;
+    by_x = cyb2 - byc2;
+    by_y = bxc2 - cxb2;
+    by_square = bycx - bxcy;
+    size_x = std::fabs(byc2) + std::fabs(cyb2);
+    size_y = std::fabs(bxc2) + std::fabs(cxb2);
+    size_square = std::fabs(bycx) + std::fabs(bxcy);
+  }
+  /// Certainly outside the circle, if the sites turn counter-clockwise.
+  bool is_outside(const predicates::Point2& d) const {
+    const double dx = d.x - x, dy = d.y - y, d2 = dx * dx + dy * dy;
+    const double value = dx * by_x + dy * by_y + d2 * by_square;
+    return value < -k_bound * (std::fabs(dx) * size_x + std::fabs(dy) * size_y + d2 * size_square);
+  }
+};
 
 /// Exchanges the triangles beside an edge for the other two: p q r | q p s become p s r | s q r, where the half-edge
 /// went from p to q.
 void exchange_pair(PlanarMesh& mesh, Index half);
-
-/// Makes a triangulation Delaunay's (C. L. Lawson, 1977): exchanges triangles until all edges pass the circle test.
-/// `doubtful`: edges among which are all that do not.
-void exchange_triangles(PlanarMesh& mesh, std::vector<Index> doubtful);
 
 /// A triangulation of any distinct sites that are not all on one line, whatever the numbers: from the left, each site
 /// is joined to the edges of the convex hull that it sees. For the rare ones that no sweep in doubles gets through.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 
@@ -36,14 +37,20 @@ struct WeightedSweep {
 }  // namespace
 
 struct SteppedSweep::State {
+  /// An arc vanishes.
+  struct Vanishing {
+    double radius;
+    Index arc;
+    bool operator>(const Vanishing& other) const { return radius > other.radius; }
+  };
+
   std::unique_ptr<WeightedSweep> weighted;  ///< then only `centre` and `radius` are used of the rest
   OrderedSites ordered;
   std::vector<double> x, y, radii;  ///< from near to far
   std::vector<Index> original;
-  std::vector<std::uint8_t> is_own;
   std::vector<voronoi2d::Arc> arcs;
-  std::vector<voronoi2d::Event> events;
-  std::vector<Index> days, near, triangles, twins;
+  std::vector<Vanishing> vanishing;  ///< a heap, the soonest first; out of date where the arc has another radius
+  std::vector<Index> near, triangles, twins;
   SweepState sweep{};
   Vec2 centre;
   double radius = 0;
@@ -52,6 +59,10 @@ struct SteppedSweep::State {
 
   void sort_sites(const Vec2& scaled_centre);
   void start_sweep();
+  SweptSite swept(Index k) const { return {x[k], y[k], k}; }
+  void touch_site(Index k);
+  void note(Index arc);
+  double vanish_next(double up_to);
   Vec2 site(Index k) const { return {x[k] - sweep.centre_x, y[k] - sweep.centre_y}; }
   Vec2 outside(const Vec2& from_centre) const { return centre + from_centre / ordered.scale; }
   double scaled_radius() const { return radius * ordered.scale; }
@@ -91,29 +102,45 @@ void SteppedSweep::State::sort_sites(const Vec2& scaled_centre) {
 
 void SteppedSweep::State::start_sweep() {
   const std::size_t count = x.size();
-  is_own.assign(count, 1);
-  arcs.resize(2 * count + 1);
-  events.resize(6 * count);
-  days.resize(count + 2);
+  arcs.resize(2 * count);
   near.resize(256);
   triangles.resize(8 * count);
   twins.resize(8 * count);
-  const double farthest = radii.back();
-  sweep = {.x = x.data(),
-           .y = y.data(),
-           .count = static_cast<Index>(count),
-           .centre_x = sweep.centre_x,
+  sweep = {.centre_x = sweep.centre_x,
            .centre_y = sweep.centre_y,
-           .is_own = is_own.data(),
-           .arcs = arcs.data() + 1,
-           .days = days.data(),
-           .day_count = static_cast<Index>(days.size()),
-           .days_per_area = farthest > 0 ? static_cast<double>(count) / (farthest * farthest) : 0,
-           .events = events.data(),
+           .arcs = arcs.data(),
            .near = near.data(),
            .near_count = static_cast<Index>(near.size()),
            .triangles = triangles.data(),
            .twins = twins.data()};
+}
+
+// Here events are in the order of the radius, so that no arc is overdue when a site is touched.
+void SteppedSweep::State::touch_site(Index k) {
+  const Index arc = touch(sweep, swept(k), -1);
+  note(arcs[arc].previous);
+  note(arcs[arc].next);
+}
+
+void SteppedSweep::State::note(Index arc) {
+  if (arcs[arc].radius == k_never) return;
+  vanishing.push_back({arcs[arc].radius, arc});
+  std::push_heap(vanishing.begin(), vanishing.end(), std::greater<>());
+}
+
+/// Lets the arc vanish that does so first, if it does up to a radius: returns its radius, or else k_never.
+double SteppedSweep::State::vanish_next(double up_to) {
+  while (!vanishing.empty() && vanishing.front().radius <= up_to) {
+    const Vanishing next = vanishing.front();
+    std::pop_heap(vanishing.begin(), vanishing.end(), std::greater<>());
+    vanishing.pop_back();
+    if (arcs[next.arc].radius != next.radius) continue;
+    const Index left = vanish(sweep, next.arc);
+    note(left);
+    note(arcs[left].next);
+    return next.radius;
+  }
+  return k_never;
 }
 
 SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& centre, std::span<const double> weights)
@@ -156,7 +183,7 @@ std::optional<SteppedSweep::Event> SteppedSweep::step() {
   const double next_touch = s.touched < count ? s.radii[s.touched] : k_latest;
   if (count == 0) return std::nullopt;
   if (is_started) {
-    const double radius = vanish_next(s.sweep, next_touch);
+    const double radius = s.vanish_next(next_touch);
     if (radius != k_never) {
       const Index triangle = s.sweep.triangle_count - 1;
       std::vector<Index> sites;
@@ -169,11 +196,15 @@ std::optional<SteppedSweep::Event> SteppedSweep::step() {
   const Index site = s.touched++;
   s.radius = std::max(s.radius, next_touch / s.ordered.scale);
   if (s.nearest >= 3 && s.touched <= s.nearest) {
-    if (s.touched == s.nearest) start_about_vertex(s.sweep, s.nearest);
+    if (s.touched == s.nearest) {
+      std::vector<SweptSite> nearest;
+      for (Index k = 0; k < s.nearest; ++k) nearest.push_back(s.swept(k));
+      start_about_vertex(s.sweep, nearest.data(), s.nearest);
+    }
   } else if (site == 0) {
-    start(s.sweep);
+    start(s.sweep, s.swept(0));
   } else {
-    touch(s.sweep, site);
+    s.touch_site(site);
   }
   return Event{true, s.radius, {s.original[site]}, s.outside(s.site(site))};
 }
@@ -193,7 +224,7 @@ void SteppedSweep::grow(double radius) {
   while (true) {
     const bool may_vanish = s.touched > 0 && (s.nearest < 3 || s.touched >= s.nearest);
     const double next_touch = s.touched < static_cast<Index>(s.x.size()) ? s.radii[s.touched] : k_never;
-    if (may_vanish && vanish_next(s.sweep, std::min(scaled, next_touch)) != k_never) continue;
+    if (may_vanish && s.vanish_next(std::min(scaled, next_touch)) != k_never) continue;
     if (next_touch > scaled) break;
     step();
   }

@@ -1,6 +1,5 @@
-// Sites from near to far, then events in the order of the radius. Where rounding made the sweep take two nearly
-// simultaneous events in the wrong order, some triangles are exchanged afterwards; where it led to no triangulation at
-// all, the sites are triangulated in another way.
+// Sites from near to far, then events in about the order of the radius: arcs vanish when the circle touches beside
+// them, the others in turns.
 
 #include "voronoi2d/sweep_circle.h"
 
@@ -14,11 +13,7 @@ namespace saddleback::voronoi2d {
 void SweepCircle::reserve(Index count) {
   if (count <= capacity_) return;
   capacity_ = count + count / 4;
-  const std::size_t n = static_cast<std::size_t>(capacity_);
-  arcs_ = std::make_unique_for_overwrite<Arc[]>(2 * n + 1);
-  events_ = std::make_unique_for_overwrite<Event[]>(6 * n);
-  triangles_ = std::make_unique_for_overwrite<Index[]>(8 * n);
-  twins_ = std::make_unique_for_overwrite<Index[]>(8 * n);
+  arcs_ = std::make_unique_for_overwrite<Arc[]>(2 * static_cast<std::size_t>(capacity_));
 }
 
 // By equal steps of the squared distance, about one site each, then within each step.
@@ -32,8 +27,8 @@ void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> 
     unsorted_[i] = {dx * dx + dy * dy, i};
     farthest = std::max(farthest, unsorted_[i].radius);
   }
-  days_per_area_ = farthest > 0 ? static_cast<double>(count) / farthest : 0;
-  const auto day = [&](const Place& place) { return static_cast<Index>(place.radius * days_per_area_); };
+  const double days_per_area = farthest > 0 ? static_cast<double>(count) / farthest : 0;
+  const auto day = [&](const Place& place) { return static_cast<Index>(place.radius * days_per_area); };
   days_.assign(count + 2, 0);
   for (const Place& place : unsorted_) ++days_[day(place) + 1];
   std::partial_sum(days_.begin(), days_.end(), days_.begin());
@@ -48,94 +43,64 @@ void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> 
   for (Place& place : order_) place.radius = std::sqrt(place.radius);
 }
 
-// True when it ended early, with all cells of its own closed.
-bool SweepCircle::run(const JobStage& stage) {
-  const Index count = state_.count;
-  Index own_left = static_cast<Index>(std::count(is_own_.begin(), is_own_.end(), std::uint8_t{1})) - state_.is_own[0];
-  constexpr Index k_block = 4096;
-  for (Index begin = 1; begin < count; begin += k_block) {
-    const Index end = std::min(count, begin + k_block);
-    for (Index site = begin; site < end; ++site) {
-      vanish_until(state_, order_[site].radius);
-      if (state_.own_open == 0 && own_left == 0) return true;
-      own_left -= state_.is_own[site];
-      touch(state_, site);
+/// All arcs that should have vanished by now.
+void SweepCircle::vanish_until(double radius) {
+  const std::size_t count = state_.arcs_used;
+  if (count > overdue_.size()) overdue_.resize(2 * count);
+  std::size_t found = 0;
+  for (std::size_t arc = 0; arc < count; ++arc) {  // without branches, which could not be predicted
+    overdue_[found] = static_cast<Index>(arc);
+    found += state_.arcs[arc].radius <= radius;
+  }
+  for (std::size_t i = 0; i < found; ++i) settle(state_, overdue_[i], radius);
+}
+
+void SweepCircle::run(const OrderedSites& sites, Index begin, const JobStage& stage) {
+  const Index count = static_cast<Index>(order_.size());
+  constexpr Index k_block = 4096, k_share = 8;  // of the arcs: sites between two turns
+  Index next_turn = 0;
+  for (Index block = 1; block < count; block += k_block) {
+    const Index end = std::min(count, block + k_block);
+    for (Index k = block; k < end; ++k) {
+      const double radius = order_[k].radius;
+      if (k >= next_turn) {
+        vanish_until(radius);
+        next_turn = k + 4 + state_.arcs_used / k_share;
+      }
+      const Index site = begin + order_[k].site;
+      touch(state_, {sites.x[site], sites.y[site], site}, radius);
     }
     stage.update(static_cast<double>(end) / static_cast<double>(count));
   }
-  vanish_until(state_, k_latest);
-  return false;
+  vanish_until(k_latest);
 }
 
-PlanarMesh SweepCircle::sweep(std::span<const double> x, std::span<const double> y, Index own_count, const Vec2& place,
-                              const JobStage& stage) {
-  const Index count = static_cast<Index>(x.size());
-  Index first = 0;
+Index SweepCircle::sweep(const OrderedSites& sites, Index begin, Index end, const Vec2& place, Index first,
+                         Index* corners, Index* twins, const JobStage& stage) {
+  const Index count = end - begin;
+  const std::span<const double> x = std::span(sites.x).subspan(begin, count),
+                                y = std::span(sites.y).subspan(begin, count);
+  Index middle = 0;
   double nearest = INFINITY;
-  for (Index i = 0; i < own_count; ++i) {
-    const double dx = x[i] - place.x(), dy = y[i] - place.y(), distance = dx * dx + dy * dy;
-    if (distance < nearest) nearest = distance, first = i;
-  }
-  sort_sites(x, y, first);
-  stage.update(0.2);
-  x_.resize(count);
-  y_.resize(count);
-  is_own_.resize(count);
   for (Index i = 0; i < count; ++i) {
-    x_[i] = x[order_[i].site];
-    y_[i] = y[order_[i].site];
-    is_own_[i] = order_[i].site < own_count;
+    const double dx = x[i] - place.x(), dy = y[i] - place.y(), distance = dx * dx + dy * dy;
+    if (distance < nearest) nearest = distance, middle = i;
   }
+  sort_sites(x, y, middle);
+  stage.update(0.2);
   reserve(count);
   near_.resize(std::bit_ceil(static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(count))) + 8));
-  state_ = {.x = x_.data(),
-            .y = y_.data(),
-            .count = count,
-            .centre_x = x_[0],
-            .centre_y = y_[0],
-            .is_own = is_own_.data(),
-            .arcs = arcs_.get() + 1,
-            .days = days_.data(),
-            .day_count = static_cast<Index>(days_.size()),
-            .days_per_area = days_per_area_,
-            .events = events_.get(),
+  state_ = {.centre_x = x[middle],
+            .centre_y = y[middle],
+            .arcs = arcs_.get(),
             .near = near_.data(),
             .near_count = static_cast<Index>(near_.size()),
-            .triangles = triangles_.get(),
-            .twins = twins_.get()};
-  start(state_);
-  run(stage.part(0.2, 1));
-  return {x_.data(), y_.data(), count, triangles_.get(), twins_.get(), state_.triangle_count};
-}
-
-PlanarMesh SweepCircle::triangulate(std::span<const double> x, std::span<const double> y, const Vec2& place,
-                                    const JobStage& stage) {
-  PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.9));
-  is_flat.resize(mesh.half_end());
-  std::vector<Index> failing = fail_circle_tests(mesh, is_flat);
-  if (!failing.empty()) repair(mesh, std::move(failing));
-  stage.update(1);
-  return mesh;
-}
-
-PlanarMesh SweepCircle::triangulate_safely(std::span<const double> x, std::span<const double> y, const Vec2& place,
-                                           const JobStage& stage) {
-  PlanarMesh mesh = sweep(x, y, static_cast<Index>(x.size()), place, stage.part(0, 0.9));
-  is_flat.resize(mesh.half_end());
-  repair(mesh, fail_circle_tests(mesh, is_flat));
-  stage.update(1);
-  return mesh;
-}
-
-/// From what a sweep left to Delaunay's triangulation.
-void SweepCircle::repair(PlanarMesh& mesh, std::vector<Index> failing) {
-  if (!is_triangulation(mesh)) {
-    triangulate_from_left(mesh);
-    is_flat.resize(mesh.half_end());
-    failing = fail_circle_tests(mesh, is_flat);
-  }
-  exchange_triangles(mesh, std::move(failing));
-  fail_circle_tests(mesh, is_flat);
+            .triangles = corners,
+            .twins = twins,
+            .triangle_count = first};
+  start(state_, {x[middle], y[middle], begin + middle});
+  run(sites, begin, stage.part(0.2, 1));
+  return state_.triangle_count;
 }
 
 }  // namespace saddleback::voronoi2d

@@ -1,14 +1,13 @@
 #pragma once
 // One sweep circle over some sites.
 
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "saddleback/job.h"
 
-#include "voronoi2d/planar_mesh.h"
+#include "voronoi2d/site_order.h"
 #include "voronoi2d/sweep_step.h"
 
 namespace saddleback::voronoi2d {
@@ -16,24 +15,11 @@ namespace saddleback::voronoi2d {
 /// Working memory of circles, kept from one to the next.
 class SweepCircle {
  public:
-  /// Sweeps distinct sites until the cells of the first `own_count` are closed, or to the end. The circle grows from
-  /// the one of these nearest to a place. Triangles are right up to rounding.
-  /// The mesh counts the sites from near to far; it lives until the next call. O(n log n). \throw Cancelled
-  PlanarMesh sweep(std::span<const double> x, std::span<const double> y, Index own_count, const Vec2& place,
-                   const JobStage& stage);
-
-  /// All edges of the triangles pass the circle test, exactly. That they are a triangulation is not proven, unless it
-  /// was in doubt.
-  PlanarMesh triangulate(std::span<const double> x, std::span<const double> y, const Vec2& place,
-                         const JobStage& stage);
-  /// Delaunay's triangulation, whatever the sites.
-  PlanarMesh triangulate_safely(std::span<const double> x, std::span<const double> y, const Vec2& place,
-                                const JobStage& stage);
-
-  /// Position in the arrays given of the k-th site from near to far.
-  Index position(Index k) const { return order_[k].site; }
-  /// Scratch by half-edge of the latest result: whether its two triangles share a Voronoi vertex.
-  std::vector<std::uint8_t> is_flat;
+  /// Sweeps the sites of these ranks. The circle grows from the one of them that is nearest to a place. Triangles, from
+  /// `first` on, go into arrays as those of a Triangulation, with room for two a site; they turn counter-clockwise and
+  /// know their twins, but are right only up to rounding. Returns the end of them. O(n log n). \throw Cancelled
+  Index sweep(const OrderedSites& sites, Index begin, Index end, const Vec2& place, Index first, Index* corners,
+              Index* twins, const JobStage& stage);
 
  private:
   struct Place {
@@ -42,17 +28,12 @@ class SweepCircle {
   };
   void sort_sites(std::span<const double> x, std::span<const double> y, Index first);
   void reserve(Index count);
-  void repair(PlanarMesh& mesh, std::vector<Index> failing);
-  bool run(const JobStage& stage);
+  void vanish_until(double radius);
+  void run(const OrderedSites& sites, Index begin, const JobStage& stage);
 
   std::vector<Place> order_, unsorted_;
-  std::vector<double> x_, y_;
-  std::vector<std::uint8_t> is_own_;
-  std::vector<Index> days_, near_;
-  double days_per_area_ = 0;
+  std::vector<Index> days_, near_, overdue_;
   std::unique_ptr<Arc[]> arcs_;
-  std::unique_ptr<Event[]> events_;
-  std::unique_ptr<Index[]> triangles_, twins_;
   Index capacity_ = 0;
   SweepState state_{};
 };

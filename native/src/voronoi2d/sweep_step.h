@@ -13,9 +13,13 @@
 // all.
 //
 // What is decided in doubles here (which arc is hit, in which order arcs vanish) can only be wrong where two answers
-// are nearly equally right; that a triangle turns counter-clockwise is exact. `mesh_checks` proves the outcome.
+// are nearly equally right; that a triangle turns counter-clockwise is exact. The outcome is proven afterwards.
 //
-// Plain functions on flat arrays, without allocation: the same code steps a circle on the device.
+// Vanishing events far from each other commute, and only where a site is touched does it matter what has vanished. So
+// an arc that is overdue may wait until the circle touches near it: no queue is needed. The few triangles that come out
+// otherwise than in the order of the radius are exchanged afterwards.
+//
+// Plain functions on flat arrays, without allocation: the same code can step a circle on a device.
 
 #include <cfloat>
 #include <cstdint>
@@ -28,88 +32,37 @@ namespace saddleback::voronoi2d {
 
 /// A part of the beach curve: an ellipse about `site`. Arcs form a ring, counter-clockwise about the centre.
 struct Arc {
-  double x, y;                   ///< the site
-  Index site;                    ///< k_none for a slot out of use
-  Index previous, next;          ///< `next` of an unused slot is the next unused one
-  Index edge;                    ///< of the breakpoint to `next`: its triangle's half-edge, or ~ the arc of its
-                                 ///< other end
-  Index sector;                  ///< where `SweepState::near` knows the arc, or k_none
-  std::uint32_t stamp;           ///< events in the heap with another stamp are out of date
-  double radius;                 ///< when it vanishes
-  Index day;                     ///< page of the calendar that lists it for that, or k_none
-  Index day_previous, day_next;  ///< others on that page
+  double x, y;           ///< the site
+  double radius;         ///< when it vanishes
+  Index site;            ///< k_none for a slot out of use
+  Index previous, next;  ///< `next` of an unused slot is the next unused one
+  Index edge;            ///< of the breakpoint to `next`: its triangle's half-edge, or ~ the arc of its
+                         ///< other end
+  Index sector;          ///< where `SweepState::near` knows the arc, or k_none
 };
 
-/// An arc vanishes soon.
-struct Event {
-  double radius;
-  Index arc;
-  std::uint32_t stamp;
-};
-
-/// A circle at work. The arrays belong to the caller: room for 2 n + 1 arcs, 6 n events and 2 n triangles of n sites.
+/// A circle at work. The arrays belong to the caller: room for 2 n arcs and 2 n triangles of n sites.
 struct SweepState {
-  const double *x, *y;  ///< sites, in the order of their distance from the centre
-  Index count;
   double centre_x, centre_y;
-  const std::uint8_t* is_own;  ///< 1 for the sites whose cells are wanted
-  Index own_open = 0;          ///< parts of the beach curve that belong to such
 
-  Arc* arcs;  ///< and one before the first, which k_none stands for
+  Arc* arcs;
   Index arcs_used = 0, free_arc = k_none, latest = 0;
-
-  // Vanishing events: by equal steps of the squared radius, as sites are where they are equally dense. The pages of
-  // the calendar up to today are in the heap, the soonest event first.
-  Index* days;  ///< the first arc on each page
-  Index day_count, today = 0;
-  double days_per_area;  ///< pages by squared radius
-  Event* events;
-  Index event_count = 0;
 
   Index* near;  ///< by direction: an arc that was seen there
   Index near_count;
 
-  Index* triangles;  ///< 4 t + k: site at corner k of triangle t, counter-clockwise; k = 3 is not used
-  Index* twins;      ///< of half-edge 4 t + k, from corner k to the next; k_none while there is none
+  Index* triangles;  ///< 4 t + k: site at corner k of triangle t, counter-clockwise
+  Index* twins;      ///< of half-edge 4 t + k, from corner k to the next; k_none while there is none; 0 for k = 3
   Index triangle_count = 0;
 };
 
+/// A site by whatever number the caller knows it.
+struct SweptSite {
+  double x, y;
+  Index site;
+};
+
 constexpr double k_never = DBL_MAX, k_latest = 0.5 * DBL_MAX;  ///< events lie before `k_latest`, or never
-
-SADDLEBACK_HOST_DEVICE inline void push_event(SweepState& s, const Event& event) {
-  Index place = s.event_count++;
-  while (place > 0) {
-    const Index parent = (place - 1) / 4;
-    if (s.events[parent].radius <= event.radius) break;
-    s.events[place] = s.events[parent];
-    place = parent;
-  }
-  s.events[place] = event;
-}
-
-/// The soonest of up to four events side by side; of four without branches, which could not be predicted.
-SADDLEBACK_HOST_DEVICE inline Index soonest_of(const Event* events, Index count) {
-  if (count >= 4) {
-    const Index a = events[1].radius < events[0].radius, b = 2 + (events[3].radius < events[2].radius);
-    return a + (b - a) * (events[b].radius < events[a].radius);
-  }
-  Index soonest = 0;
-  for (Index i = 1; i < count; ++i)
-    if (events[i].radius < events[soonest].radius) soonest = i;
-  return soonest;
-}
-
-SADDLEBACK_HOST_DEVICE inline void pop_event(SweepState& s) {
-  const Event last = s.events[--s.event_count];
-  Index place = 0;
-  for (Index child = 1; child < s.event_count; child = 4 * place + 1) {
-    const Index soonest = child + soonest_of(s.events + child, s.event_count - child);
-    if (s.events[soonest].radius >= last.radius) break;
-    s.events[place] = s.events[soonest];
-    place = soonest;
-  }
-  s.events[place] = last;
-}
 
 /// Two arcs b with the arcs a and c before and after them: what is to be known of their vanishing, side by side so that
 /// vector units compute both at once.
@@ -144,38 +97,6 @@ SADDLEBACK_HOST_DEVICE inline double radius_of(const Pair& p, int k) {
   return turns ? k_latest : k_never;  // flat: later than anything that matters
 }
 
-/// Page of the calendar for a radius; the last one holds all that comes after.
-SADDLEBACK_HOST_DEVICE inline Index day_of(const SweepState& s, double radius) {
-  const double day = radius * radius * s.days_per_area;
-  return day < s.day_count - 1 ? static_cast<Index>(day) : s.day_count - 1;
-}
-
-/// Whatever was said of when an arc vanishes is void. Without branches, which could not be predicted.
-SADDLEBACK_HOST_DEVICE inline void unschedule(SweepState& s, Arc& arc) {
-  ++arc.stamp;
-  if (arc.day == k_none) return;
-  Index* const from = arc.day_previous == k_none ? &s.days[arc.day] : &s.arcs[arc.day_previous].day_next;
-  *from = arc.day_next;
-  s.arcs[arc.day_next].day_previous = arc.day_previous;
-  arc.day = k_none;
-}
-
-/// Notes in the calendar or, for today, in the heap when an arc vanishes. One that never does is on the last page.
-SADDLEBACK_HOST_DEVICE inline void note(SweepState& s, Index arc, double radius) {
-  Arc& b = s.arcs[arc];
-  b.radius = radius;
-  const Index day = day_of(s, radius);
-  if (day <= s.today) {
-    if (radius != k_never) push_event(s, {radius, arc, b.stamp});
-    return;
-  }
-  b.day = day;
-  b.day_previous = k_none;
-  b.day_next = s.days[day];
-  s.arcs[b.day_next].day_previous = arc;
-  s.days[day] = arc;
-}
-
 /// Says anew when two arcs vanish.
 SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index first, Index second) {
   Pair pair;
@@ -187,52 +108,42 @@ SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index first, Index se
     is_parted[k] = a.site != c.site;  // between two parts of one ellipse an arc stays
   }
   find_radii(pair, s.centre_x, s.centre_y);
-  unschedule(s, s.arcs[first]);
-  unschedule(s, s.arcs[second]);
-  note(s, first, is_parted[0] ? radius_of(pair, 0) : k_never);
-  note(s, second, is_parted[1] ? radius_of(pair, 1) : k_never);
+  s.arcs[first].radius = is_parted[0] ? radius_of(pair, 0) : k_never;
+  s.arcs[second].radius = is_parted[1] ? radius_of(pair, 1) : k_never;
 }
 
 SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {
-  if (s.free_arc == k_none) {
-    s.arcs[s.arcs_used].stamp = 0;
-    return s.arcs_used++;
-  }
+  if (s.free_arc == k_none) return s.arcs_used++;
   const Index arc = s.free_arc;
   s.free_arc = s.arcs[arc].next;
   return arc;
 }
 
 /// One closed arc about the first site.
-SADDLEBACK_HOST_DEVICE inline void start(SweepState& s) {
-  s.arcs[0] = {s.x[0], s.y[0], 0, 0, 0, k_none, k_none, 0, 0, k_none, k_none, k_none};
+SADDLEBACK_HOST_DEVICE inline void start(SweepState& s, const SweptSite& first) {
+  s.arcs[0] = {first.x, first.y, k_never, first.site, 0, 0, k_none, k_none};
   s.arcs_used = 1;
   s.free_arc = k_none;
   s.latest = 0;
-  s.event_count = s.triangle_count = s.today = 0;
-  for (Index i = 0; i < s.day_count; ++i) s.days[i] = k_none;
   for (Index i = 0; i < s.near_count; ++i) s.near[i] = 0;
-  s.own_open = s.is_own[0];
 }
 
-/// Arcs about the first `count` sites, three or more, which are equally far from the centre and in counter-clockwise
-/// order about it: the centre is a Voronoi vertex, their polygon a fan of triangles.
-SADDLEBACK_HOST_DEVICE inline void start_about_vertex(SweepState& s, Index count) {
-  start(s);
-  s.own_open = 0;
-  for (Index i = 0; i < count; ++i) {
-    s.arcs[i] = {s.x[i], s.y[i], i,     i == 0 ? count - 1 : i - 1, i + 1 == count ? 0 : i + 1, k_none, k_none, 0, 0,
-                 k_none, k_none, k_none};
-    s.own_open += s.is_own[i];
-  }
+/// Arcs about `count` sites, three or more, which are equally far from the centre and in counter-clockwise order about
+/// it: the centre is a Voronoi vertex, their polygon a fan of triangles.
+SADDLEBACK_HOST_DEVICE inline void start_about_vertex(SweepState& s, const SweptSite* sites, Index count) {
+  start(s, sites[0]);
+  for (Index i = 0; i < count; ++i)
+    s.arcs[i] = {sites[i].x, sites[i].y, k_never, sites[i].site, i == 0 ? count - 1 : i - 1, i + 1 == count ? 0 : i + 1,
+                 k_none,     k_none};
   s.arcs_used = count;
   for (Index i = 1; i + 1 < count; ++i) {
     const Index half = 4 * s.triangle_count++;
     const Index corners[3] = {0, i, i + 1};
     for (int k = 0; k < 3; ++k) {
-      s.triangles[half + k] = corners[k];
+      s.triangles[half + k] = sites[corners[k]].site;
       s.twins[half + k] = k_none;
     }
+    s.twins[half + 3] = 0;
     if (i > 1) {
       s.twins[half] = half - 2;
       s.twins[half - 2] = half;
@@ -380,35 +291,6 @@ SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, const Touch& p
   return s.latest;
 }
 
-/// Touching event: the site splits the arc it is seen through.
-SADDLEBACK_HOST_DEVICE inline void touch(SweepState& s, Index site) {
-  const Touch p{s.x[site], s.y[site], s.x[site] - s.centre_x, s.y[site] - s.centre_y};
-  const Index sector = sector_of(s, p.x, p.y);
-  const Index left = hit_arc(s, p, arc_near(s, p, sector));
-  const Index middle = new_arc(s);
-  Arc& l = s.arcs[left];
-  Arc& m = s.arcs[middle];
-  m = {p.site_x, p.site_y, site, left, left, ~left, sector, m.stamp, 0, k_none, k_none, k_none};
-  s.near[sector] = middle;
-  s.latest = middle;
-  s.own_open += s.is_own[site];
-  if (l.next == left) {  // the first arc is closed: opened, not split
-    l.next = l.previous = middle;
-    l.edge = ~middle;
-    return;
-  }
-  const Index right = new_arc(s);
-  Arc& r = s.arcs[right];
-  r = {l.x, l.y, l.site, middle, l.next, l.edge, k_none, r.stamp, 0, k_none, k_none, k_none};
-  s.own_open += s.is_own[l.site];
-  if (r.edge < 0) s.arcs[~r.edge].edge = ~right;
-  s.arcs[l.next].previous = right;
-  l.next = middle;
-  m.next = right;
-  l.edge = ~middle;
-  schedule(s, left, right);
-}
-
 /// The triangle of half-edge `half` lies beyond a breakpoint whose inner side is `edge`.
 SADDLEBACK_HOST_DEVICE inline void join(SweepState& s, Index edge, Index half) {
   if (edge < 0) {
@@ -419,8 +301,8 @@ SADDLEBACK_HOST_DEVICE inline void join(SweepState& s, Index edge, Index half) {
   }
 }
 
-/// Vanishing event: the neighbours meet at a Voronoi vertex.
-SADDLEBACK_HOST_DEVICE inline void vanish(SweepState& s, Index arc) {
+/// Vanishing event: the neighbours meet at a Voronoi vertex. Returns the one before.
+SADDLEBACK_HOST_DEVICE inline Index vanish(SweepState& s, Index arc) {
   Arc& b = s.arcs[arc];
   const Index before = b.previous, after = b.next;
   Arc &a = s.arcs[before], &c = s.arcs[after];
@@ -429,43 +311,75 @@ SADDLEBACK_HOST_DEVICE inline void vanish(SweepState& s, Index arc) {
   s.triangles[half + 1] = c.site;
   s.triangles[half + 2] = b.site;
   s.twins[half] = s.twins[half + 1] = s.twins[half + 2] = k_none;
+  s.twins[half + 3] = 0;
   join(s, a.edge, half + 2);
   join(s, b.edge, half + 1);
   a.edge = half;
   a.next = after;
   c.previous = before;
-  s.own_open -= s.is_own[b.site];
-  unschedule(s, b);
   b.site = b.sector = k_none;
+  b.radius = k_never;
   b.next = s.free_arc;
   s.free_arc = arc;
   if (s.latest == arc) s.latest = after;
   schedule(s, before, after);
+  return before;
 }
 
-/// Lets the arc vanish that does so first, if it does up to a radius: returns its radius, or else k_never.
-SADDLEBACK_HOST_DEVICE inline double vanish_next(SweepState& s, double radius) {
-  const Index last = day_of(s, radius);
-  while (true) {
-    while (s.event_count > 0 && s.events[0].radius <= radius) {
-      const Event event = s.events[0];
-      pop_event(s);
-      if (s.arcs[event.arc].stamp != event.stamp) continue;
-      vanish(s, event.arc);
-      return event.radius;
+/// Lets arcs vanish about one that is overdue, the soonest first. Returns one that is left there.
+SADDLEBACK_HOST_DEVICE inline Index settle(SweepState& s, Index arc, double radius) {
+  while (s.arcs[arc].radius <= radius) {
+    const Arc& b = s.arcs[arc];
+    const double before = s.arcs[b.previous].radius, after = s.arcs[b.next].radius;
+    const Index sooner = before < after ? b.previous : b.next;
+    if ((before < after ? before : after) < b.radius) {
+      arc = sooner;
+      continue;
     }
-    if (s.today >= last) return k_never;
-    ++s.today;
-    for (Index arc = s.days[s.today]; arc != k_none; arc = s.arcs[arc].day_next) {
-      s.arcs[arc].day = k_none;
-      if (s.arcs[arc].radius != k_never) push_event(s, {s.arcs[arc].radius, arc, s.arcs[arc].stamp});
-    }
+    const Index left = vanish(s, arc), right = s.arcs[left].next;
+    arc = s.arcs[left].radius < s.arcs[right].radius ? left : right;
   }
+  return arc;
 }
 
-/// Lets all arcs vanish that do so up to a radius.
-SADDLEBACK_HOST_DEVICE inline void vanish_until(SweepState& s, double radius) {
-  while (vanish_next(s, radius) != k_never) {}
+/// An arc that should have vanished up to a radius, this one or one beside it, or k_none.
+SADDLEBACK_HOST_DEVICE inline Index overdue_at(const SweepState& s, Index arc, double radius) {
+  const Arc& b = s.arcs[arc];
+  if (b.radius <= radius) return arc;
+  if (s.arcs[b.previous].radius <= radius) return b.previous;
+  if (s.arcs[b.next].radius <= radius) return b.next;
+  return k_none;
+}
+
+/// Touching event: the site splits the arc it is seen through. Up to `radius` arcs near it vanish before. Returns its
+/// arc.
+SADDLEBACK_HOST_DEVICE inline Index touch(SweepState& s, const SweptSite& site, double radius) {
+  const Touch p{site.x, site.y, site.x - s.centre_x, site.y - s.centre_y};
+  const Index sector = sector_of(s, p.x, p.y);
+  Index left = hit_arc(s, p, arc_near(s, p, sector));
+  for (Index late = overdue_at(s, left, radius); late != k_none; late = overdue_at(s, left, radius))
+    left = hit_arc(s, p, settle(s, late, radius));
+  const Index middle = new_arc(s);
+  Arc& l = s.arcs[left];
+  Arc& m = s.arcs[middle];
+  m = {site.x, site.y, k_never, site.site, left, left, ~left, sector};
+  s.near[sector] = middle;
+  s.latest = middle;
+  if (l.next == left) {  // the first arc is closed: opened, not split
+    l.next = l.previous = middle;
+    l.edge = ~middle;
+    return middle;
+  }
+  const Index right = new_arc(s);
+  Arc& r = s.arcs[right];
+  r = {l.x, l.y, k_never, l.site, middle, l.next, l.edge, k_none};
+  if (r.edge < 0) s.arcs[~r.edge].edge = ~right;
+  s.arcs[l.next].previous = right;
+  l.next = middle;
+  m.next = right;
+  l.edge = ~middle;
+  schedule(s, left, right);
+  return middle;
 }
 
 }  // namespace saddleback::voronoi2d

@@ -55,11 +55,36 @@ class SquareTree {
 /// Triangulates tiles into the arrays of all.
 class TileSweeper {
  public:
-  TileSweeper(const OrderedSites& sites, Triangulation& result) : sites_(sites), result_(result) {}
+  TileSweeper(const OrderedSites& sites, Triangulation& result, MeshJoiner& joiner)
+      : sites_(sites), result_(result), joiner_(joiner) {}
 
   void triangulate(MeshPart& part, const JobStage& stage) {
+    find_box(part);
+    const Index first = 2 * part.begin;
+    part.free = {{first, 2 * part.end}};
+    if (is_line(part)) return;
+    const Vec2 centre(0.5 * sites_.x[part.leftmost] + 0.5 * sites_.x[part.rightmost],
+                      0.5 * sites_.y[part.lowest] + 0.5 * sites_.y[part.highest]);
+    Index *const corners = result_.corners.data(), *const twins = result_.twins.data();
+    Index end = circle_.sweep(sites_, part.begin, part.end, centre, first, corners, twins, stage);
+    doubtful_.clear();
+    link_sites(part, first, end);
+    if (is_triangulation(part, end - first)) {
+      find_doubtful(first, end);
+    } else {
+      end = triangulate_from_left(part);
+      link_sites(part, first, end);
+      for (Index half = 4 * first; half < 4 * end; ++half)
+        if ((half & 3) != 3) doubtful_.push_back(half);
+    }
+    joiner_.restore(doubtful_);
+    part.has_triangles = end > first;
+    part.free = {{end, 2 * part.end}};
+  }
+
+ private:
+  void find_box(MeshPart& part) const {
     const Index count = part.end - part.begin;
-    part.free = {{2 * part.begin, 2 * part.end}};
     const std::span<const double> x = std::span(sites_.x).subspan(part.begin, count),
                                   y = std::span(sites_.y).subspan(part.begin, count);
     const auto [leftmost, rightmost] = std::minmax_element(x.begin(), x.end());
@@ -68,14 +93,8 @@ class TileSweeper {
     part.rightmost = part.begin + static_cast<Index>(rightmost - x.begin());
     part.lowest = part.begin + static_cast<Index>(lowest - y.begin());
     part.highest = part.begin + static_cast<Index>(highest - y.begin());
-    if (is_line(part)) return;
-    const Vec2 centre(0.5 * *leftmost + 0.5 * *rightmost, 0.5 * *lowest + 0.5 * *highest);
-    take(part, circle_.triangulate(x, y, centre, stage));
-    if (is_triangulation(part)) return;
-    take(part, circle_.triangulate_safely(x, y, centre, stage));
   }
 
- private:
   bool is_line(const MeshPart& part) const {
     for (Index site = part.begin + 2; site < part.end; ++site)
       if (predicates::orient_2d(point(part.begin), point(part.begin + 1), point(site)) != predicates::Sign::zero)
@@ -83,53 +102,56 @@ class TileSweeper {
     return true;
   }
 
-  // From the circle's order of sites to ranks; triangles by their lowest ones, so that those about a site are together.
-  void take(MeshPart& part, const PlanarMesh& mesh) {
-    const Index begin = part.begin, shift = 2 * begin;
-    ranks_.resize(mesh.site_count);
-    for (Index k = 0; k < mesh.site_count; ++k) ranks_[k] = begin + circle_.position(k);
-    sort_triangles(mesh, begin);
-    Index *const corners = result_.corners.data(), *const twins = result_.twins.data(),
-                 *const leaving = result_.leaving.data();
-    std::fill(leaving + begin, leaving + part.end, k_none);
+  /// Each site's half-edge, and those along the border.
+  void link_sites(const MeshPart& part, Index first, Index end) {
+    const Index *const corners = result_.corners.data(), *const twins = result_.twins.data();
+    Index* const leaving = result_.leaving.data();
+    std::fill(leaving + part.begin, leaving + part.end, k_none);
     border_.clear();
-    for (Index t = 0; t < mesh.triangle_count; ++t) {
-      const Index to = 4 * (shift + places_[t]);
-      Index flags = 0;
-      for (Index k = 0; k < 3; ++k) {
-        const Index half = 4 * t + k, twin = mesh.twins[half], site = ranks_[mesh.triangles[half]];
-        corners[to + k] = site;
-        leaving[site] = to + k;
-        flags |= circle_.is_flat[half] << k;
-        if (twin == k_none) border_.push_back(to + k);
-        twins[to + k] = twin == k_none ? k_none : 4 * (shift + places_[twin >> 2]) + (twin & 3);
-      }
-      twins[to + 3] = flags;
+    for (Index half = 4 * first; half < 4 * end; half += 4) {
+      for (Index k = 0; k < 3; ++k) leaving[corners[half + k]] = half + k;
+      if (std::min({twins[half], twins[half + 1], twins[half + 2]}) >= 0) continue;
+      for (Index k = 0; k < 3; ++k)
+        if (twins[half + k] == k_none) border_.push_back(half + k);
     }
     for (const Index half : border_) leaving[corners[half]] = half;
-    part.has_triangles = mesh.triangle_count > 0;
-    part.free = {{shift + mesh.triangle_count, 2 * part.end}};
   }
 
-  void sort_triangles(const PlanarMesh& mesh, Index begin) {
-    places_.resize(mesh.triangle_count);
-    starts_.assign(mesh.site_count + 1, 0);
-    for (Index t = 0; t < mesh.triangle_count; ++t) {
-      const Index* const corners = mesh.triangles + 4 * t;
-      places_[t] = std::min(std::min(ranks_[corners[0]], ranks_[corners[1]]), ranks_[corners[2]]) - begin;
-      ++starts_[places_[t] + 1];
+  // The later triangle of two that meet was joined by its second or third half-edge: a test of these is one of all.
+  void find_doubtful(Index first, Index end) {
+    const Index *const corners = result_.corners.data(), *const twins = result_.twins.data();
+    for (Index half = 4 * first; half < 4 * end; half += 4) {
+      const CircleTest circle(point(corners[half]), point(corners[half + 1]), point(corners[half + 2]));
+      for (Index k = 1; k < 3; ++k) {
+        const Index twin = twins[half + k];
+        if (twin < 0 || circle.is_outside(point(corners[previous_half(twin)]))) continue;
+        doubtful_.push_back(half + k);
+      }
     }
-    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-    for (Index& place : places_) place = starts_[place]++;
+  }
+
+  // For the rare ones that no sweep in doubles gets through. Returns the triangles' end.
+  Index triangulate_from_left(const MeshPart& part) {
+    const Index begin = part.begin, first = 8 * begin;
+    PlanarMesh mesh{sites_.x.data() + begin,        sites_.y.data() + begin,      part.end - begin,
+                    result_.corners.data() + first, result_.twins.data() + first, 0};
+    voronoi2d::triangulate_from_left(mesh);
+    for (Index half = 0; half < mesh.half_end(); half += 4) {
+      for (Index k = 0; k < 3; ++k) {
+        mesh.triangles[half + k] += begin;
+        if (mesh.twins[half + k] != k_none) mesh.twins[half + k] += first;
+      }
+      mesh.twins[half + 3] = 0;
+    }
+    return 2 * begin + mesh.triangle_count;
   }
 
   // Triangles turn counter-clockwise and are joined by their twins. So around each site inside they wind once or more
   // often. With all sites in use, one border that is convex and turns once, and as many triangles as Euler says, they
   // wind once everywhere: a triangulation. Exact.
-  bool is_triangulation(const MeshPart& part) const {
+  bool is_triangulation(const MeshPart& part, Index triangle_count) const {
     for (Index site = part.begin; site < part.end; ++site)
       if (result_.leaving[site] == k_none) return false;
-    const Index triangle_count = part.free.front().first - 2 * part.begin;
     const Index border_count = static_cast<Index>(border_.size());
     if (triangle_count != 2 * (part.end - part.begin) - 2 - border_count) return false;
     const auto target = [&](Index site) { return result_.corners[next_half(result_.leaving[site])]; };
@@ -153,8 +175,9 @@ class TileSweeper {
 
   const OrderedSites& sites_;
   Triangulation& result_;
+  MeshJoiner& joiner_;
   SweepCircle circle_;
-  std::vector<Index> border_, ranks_, places_, starts_;
+  std::vector<Index> border_, doubtful_;
 };
 
 /// All tiles, then all pairs, from the lowest up.
@@ -163,9 +186,10 @@ class TileWork {
   TileWork(const OrderedSites& sites, std::vector<Square>& squares, Triangulation& result, int threads)
       : squares_(squares), threads_(std::min(thread_count(threads), static_cast<int>(squares.size()))) {
     const PlanarMesh mesh{sites.x.data(), sites.y.data(), sites.count(), result.corners.data(), result.twins.data(), 0};
+    joiners_.reserve(threads_);
     for (int i = 0; i < threads_; ++i) {
-      sweepers_.emplace_back(sites, result);
       joiners_.emplace_back(mesh, result.leaving.data());
+      sweepers_.emplace_back(sites, result, joiners_.back());
     }
     Index top = 0;
     for (const Square& square : squares) top = std::max(top, square.height);
