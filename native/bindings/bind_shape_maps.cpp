@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "saddleback/bent_copies.h"
 #include "saddleback/cut_shapes.h"
 #include "saddleback/shape_attributes.h"
 
@@ -54,6 +55,28 @@ Args:
 Raises:
     InputError: bad vertices, a shape that could not be laid.
     IndexError: i is out of range.
+)";
+
+constexpr const char* k_bend_doc =
+    R"(Meshes bent onto the surface, one for each placement, divided until they lie on it.
+
+As `conform` for all copies at once. Between the vertices of a mesh that is bent lie chords; where those leave the
+surface (they cross an edge of it, or bridge a hollow) edges and triangles are divided, and neighbours agree.
+
+Args:
+    solids: for each shape (vertices (n, 3) or (n, 2) with z = 0 in the shape's own units, triangles (t, 3)), or None
+        for a shape that has none.
+    tolerance: how far edges and triangles may leave the surface that their vertices lie on or stand above, as a share
+        of the copy's circumradius; 0 keeps the vertices as they are.
+    threads, job: as in `map_shapes`.
+
+Returns:
+    BentCopies.
+
+Raises:
+    InputError: bad vertices or triangles, another number of solids than shapes, a tolerance that is negative or not
+        finite.
+    Cancelled: the job was.
 )";
 
 constexpr const char* k_attributes_doc = R"(What each vertex of the mesh knows of the shapes.
@@ -220,6 +243,44 @@ py::array positions_on(const py::object& mesh_object, const SurfacePoints& ancho
   }));
 }
 
+/// Bent meshes, with where they are now.
+struct BentMeshes {
+  BentCopies copies;
+  std::vector<Vec3> positions;
+};
+
+std::vector<Solid> as_solids(const py::object& value, std::size_t count) {
+  if (!py::isinstance<py::sequence>(value) || py::len(value) != count)
+    throw InputError(
+        message("solids: wanted a sequence of one (vertices, triangles) or None for each of the ", count, " shapes"));
+  std::vector<Solid> result(count);
+  for (std::size_t s = 0; s < count; ++s) {
+    const py::object solid = value[py::int_(s)];
+    if (solid.is_none()) continue;
+    if (!py::isinstance<py::sequence>(solid) || py::len(solid) != 2)
+      throw InputError(message("solids: wanted (vertices, triangles) or None at [", s, "]"));
+    result[s].vertices = as_vertices(solid[py::int_(0)]);
+    const ArrayIn<Index> triangles = as_triangles(solid[py::int_(1)], "solids");
+    for (Index t = 0; t < triangles.count; ++t)
+      result[s].triangles.push_back(
+          {triangles.values[3 * t], triangles.values[3 * t + 1], triangles.values[3 * t + 2]});
+  }
+  return result;
+}
+
+BentMeshes bend_all(const MappedShapes& self, const py::object& solids, const py::object& tolerance,
+                    const py::object& threads, const py::object& job) {
+  const Mesh& mesh = self.mesh();
+  const std::vector<Solid> given = as_solids(solids, self.shapes.size());
+  const BendOptions options{{self.limits, self.field(), as_integer(threads, "threads"), as_job(job)},
+                            as_real(tolerance, "tolerance")};
+  return without_gil([&] {
+    BentMeshes result{bent_copies(mesh, self.shapes, self.placements, given, options), {}};
+    result.positions = positions_of(mesh, self.normals, result.copies.anchors, result.copies.heights);
+    return result;
+  });
+}
+
 /// A cut mesh, with where it is now.
 struct CutSurface {
   CutMesh cut;
@@ -275,6 +336,78 @@ py::tuple frames_of(const MappedShapes& self, const py::object& mesh_object) {
                         to_array(std::move(scales)));
 }
 
+void bind_bent_copies(py::module_& m) {
+  py::class_<BentMeshes>(m, "BentCopies", py::module_local(),
+                         "Meshes bent onto a surface and fixed to it, one after the other.")
+      .def_property_readonly(
+          "vertices",
+          [](const py::object& self) {
+            return view_of(std::span<const Vec3>(py::cast<const BentMeshes&>(self).positions), self);
+          },
+          "(n, 3) float64: where the vertices are.")
+      .def_property_readonly(
+          "surface", [](const BentMeshes& self) { return self.copies.anchors; },
+          "SurfacePoints that the vertices stand on.")
+      .def_property_readonly(
+          "heights",
+          [](const py::object& self) {
+            return view_of(std::span<const double>(py::cast<const BentMeshes&>(self).copies.heights), self);
+          },
+          "(n,) float64: height of the vertices above the surface along its smooth normal, mesh units.")
+      .def_property_readonly(
+          "begins",
+          [](const py::object& self) {
+            return view_of(std::span<const std::int64_t>(py::cast<const BentMeshes&>(self).copies.begins), self);
+          },
+          "(placements + 1,) int64: first vertex of each copy; those of its solid come first, then those in between.")
+      .def_property_readonly(
+          "triangles",
+          [](const py::object& self) {
+            return view_of(std::span<const Triangle>(py::cast<const BentMeshes&>(self).copies.triangles), self);
+          },
+          "(m, 3) int32; of mirrored copies the other way round, so that the outside stays outside.")
+      .def_property_readonly(
+          "triangle_copy",
+          [](const py::object& self) {
+            return view_of(std::span<const Index>(py::cast<const BentMeshes&>(self).copies.triangle_copy), self);
+          },
+          "(m,) int32: placement.")
+      .def_property_readonly(
+          "triangle_source",
+          [](const py::object& self) {
+            return view_of(std::span<const Index>(py::cast<const BentMeshes&>(self).copies.triangle_source), self);
+          },
+          "(m,) int32: triangle of the solid that it is, or is a part of.")
+      .def_property_readonly(
+          "weights",
+          [](const py::object& self) {
+            const auto& weights = py::cast<const BentMeshes&>(self).copies.weights;
+            return view_of_rows<double>(std::span<const std::array<Vec3, 3>>(weights), self).attr("reshape")(-1, 3, 3);
+          },
+          "(m, 3, 3) float64: of each corner, where it lies in that triangle (barycentric), for what the solid's "
+          "corners carry.")
+      .def_property_readonly(
+          "deviations",
+          [](const py::object& self) {
+            return view_of(std::span<const double>(py::cast<const BentMeshes&>(self).copies.deviations), self);
+          },
+          "(placements,) float64: how far edges and triangles still leave the surface, as far as samples tell, as "
+          "shares of the circumradius; not a number for those that could not be laid, or without a tolerance.")
+      .def_property_readonly(
+          "lost",
+          [](const py::object& self) {
+            return view_of(std::span<const std::int64_t>(py::cast<const BentMeshes&>(self).copies.lost), self);
+          },
+          "int64: vertices beside the outline for which there is no surface; they are put at the centre.")
+      .def(
+          "positions",
+          [](const BentMeshes& self, const py::object& mesh) {
+            return positions_on(mesh, self.copies.anchors, self.copies.heights);
+          },
+          py::arg("mesh"),
+          "(n, 3) float64: where they are on the same mesh with other positions; InputError where it has other faces.");
+}
+
 void bind_products(py::module_& m) {
   py::class_<Conformed>(m, "ConformedPoints", py::module_local(), "An object bent onto a surface and fixed to it.")
       .def_property_readonly(
@@ -305,6 +438,7 @@ void bind_products(py::module_& m) {
           },
           py::arg("mesh"),
           "(n, 3) float64: where they are on the same mesh with other positions; InputError where it has other faces.");
+  bind_bent_copies(m);
   py::class_<CutSurface>(m, "CutSurface", py::module_local(), "Surface cut along the outlines of shapes.")
       .def_property_readonly(
           "surface", [](const CutSurface& self) { return self.cut.vertices; },
@@ -386,6 +520,8 @@ void bind_shape_maps(py::module_& m) {
       .def("outline_surface", &outline_surface, py::arg("i"),
            "The same as SurfacePoints; consecutive points share the face of the first.")
       .def("conform", &conform_one, py::arg("vertices"), py::arg("i"), k_conform_doc)
+      .def("bend", &bend_all, py::arg("solids"), py::arg("tolerance") = 0.01, py::kw_only(), py::arg("threads") = 0,
+           py::arg("job") = py::none(), k_bend_doc)
       .def("patch", &patch_of, py::arg("i"), "CutSurface of the piece of surface that a placement's shape covers.")
       .def(
           "patches", [](const MappedShapes& self) { return cut_surface(self, CutPart::shapes); },

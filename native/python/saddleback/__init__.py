@@ -86,6 +86,7 @@ from saddleback.quality_plot import quality_plot
 from saddleback.sizes import blend_by_distance, density_by_curvature, ramp_by_distance
 
 __all__ = [
+    "BentCopies",
     "Cancelled",
     "CentroidalVoronoi",
     "Certificate",
