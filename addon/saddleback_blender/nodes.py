@@ -10,7 +10,7 @@ from . import compat
 
 MARK = "saddleback_made"  # custom property: which of the things below a data-block is
 
-TUBES, INSTANCES, SWEEP, SHAPES = "tubes", "instances", "sweep", "shapes"
+TUBES, INSTANCES, SWEEP, SHAPES, FOLLOW = "tubes", "instances", "sweep", "shapes", "follow"
 CELLS, EDGES, PATHS = "cells", "edges", "paths"
 ARROWS, SOURCES, SADDLES = "arrows", "field sources", "field saddles"
 

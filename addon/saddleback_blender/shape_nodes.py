@@ -1,12 +1,14 @@
-"""The node group that puts shapes on points and, where wanted, takes the points along with a mesh that is deformed.
+"""Node groups that put shapes on points, and take points along with a mesh that is deformed.
 
-Each point knows the triangle of the mesh that it stands on: its three vertices, where in it the point is, and how the
-shape is shifted and turned as seen from it. The group looks up where those vertices are now, after all modifiers. A
-mesh that has another number of vertices by then is another mesh: there the shapes stay where they were put.
+Each point knows the triangle of the mesh that it stands on: its three vertices, where in it the point is, and how it is
+shifted (and its shape turned) as seen from it. The group looks up where those vertices are now, after all modifiers. A
+mesh that has another number of vertices by then is another mesh: there the points stay where they were put. Points of
+meshes carry what they know as attributes; curve objects cannot, so that for them a hidden mesh keeps it, in order.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +18,7 @@ from mathutils import Matrix
 
 from .nodes import (
     CLASS_ATTRIBUTE,
+    FOLLOW,
     ROTATION_ATTRIBUTE,
     SCALE_ATTRIBUTE,
     SHAPES,
@@ -74,8 +77,9 @@ def _new_shapes_group(shapes: list[bpy.types.Object], host: Host | None) -> bpy.
     kind = wiring.attribute(CLASS_ATTRIBUTE, "INT")
     lay_out((source, rotation.node, scale.node, kind.node), points)
     if host is not None:
-        position, rotation = _followed(wiring, host, rotation)
-        link(position, points.inputs["Position"])
+        now = _triangle_now(wiring, host, wiring.attribute)
+        link(_place_of(wiring, now, wiring.attribute), points.inputs["Position"])
+        rotation = _turn_of(wiring, now, rotation)
     link(source.outputs["Geometry"], points.inputs["Mesh"])
     for number, shape in enumerate(shapes):
         is_of_it, info = wiring.is_equal(kind, number), nodes.new("GeometryNodeObjectInfo")
@@ -95,8 +99,71 @@ def _new_shapes_group(shapes: list[bpy.types.Object], host: Host | None) -> bpy.
     return group
 
 
-def _followed(wiring: _Wiring, host: Host, rotation: Any) -> tuple[Any, Any]:
-    """Where the points are now and how they are turned; as they were where the mesh has become another one."""
+@dataclass(frozen=True)
+class Tubes:
+    """What a curve object needs to follow: its own bevel would come before the points are moved."""
+
+    keeper: bpy.types.Object  # whose mesh has a vertex with the attributes for each point of the curve
+    radius: float
+    material: bpy.types.Material
+
+
+def set_following(item: bpy.types.Object, host: Host, tubes: Tubes | None = None) -> bpy.types.Modifier:
+    """Takes the points of a mesh, or of a curve object that becomes tubes, along with the host."""
+    modifier = modifier_of(item, FOLLOW)
+    group, source, sink = new_group("Saddleback Follow", FOLLOW)
+    wiring = _Wiring(group)
+    read = wiring.attribute if tubes is None else wiring.kept_by(tubes.keeper)
+    now = _triangle_now(wiring, host, read)
+    moved = group.nodes.new("GeometryNodeSetPosition")
+    group.links.new(source.outputs["Geometry"], moved.inputs["Geometry"])
+    group.links.new(_place_of(wiring, now, read), moved.inputs["Position"])
+    shown = moved.outputs["Geometry"] if tubes is None else _tubes(wiring, moved.outputs["Geometry"], tubes)
+    group.links.new(shown, sink.inputs["Geometry"])
+    lay_out((source,), moved, sink)
+    if modifier is None:
+        return add_first(item, "Saddleback Follow", group)
+    old, modifier.node_group = modifier.node_group, group
+    if old.users == 0:
+        bpy.data.node_groups.remove(old)
+    return modifier
+
+
+def stop_following(item: bpy.types.Object) -> None:
+    """Leaves the points where they are."""
+    modifier = modifier_of(item, FOLLOW)
+    if modifier is not None:
+        group = modifier.node_group
+        item.modifiers.remove(modifier)
+        if group.users == 0:
+            bpy.data.node_groups.remove(group)
+
+
+def _tubes(wiring: _Wiring, curve: Any, tubes: Tubes) -> Any:
+    if tubes.radius <= 0:
+        return curve
+    circle, sweep = wiring.node("GeometryNodeCurvePrimitiveCircle"), wiring.node("GeometryNodeCurveToMesh")
+    smooth, painted = wiring.node("GeometryNodeSetShadeSmooth"), wiring.node("GeometryNodeSetMaterial")
+    circle.inputs["Resolution"].default_value, circle.inputs["Radius"].default_value = 8, tubes.radius
+    painted.inputs["Material"].default_value = tubes.material
+    wiring.link(curve, sweep.inputs["Curve"])
+    wiring.link(circle.outputs["Curve"], sweep.inputs["Profile Curve"])
+    wiring.link(sweep.outputs["Mesh"], smooth.inputs["Geometry"])
+    wiring.link(smooth.outputs["Geometry"], painted.inputs["Geometry"])
+    return painted.outputs["Geometry"]
+
+
+@dataclass(frozen=True)
+class _TriangleNow:
+    """Sockets about the triangle that a point stands on."""
+
+    is_same: Any  # the mesh has as many vertices as it had
+    own: Any  # where the point was put
+    foot: Any  # where on the triangle it stands by now
+    axes: tuple[Any, Any, Any]  # of the triangle
+
+
+def _triangle_now(wiring: _Wiring, host: Host, read: Callable[[str, str], Any]) -> _TriangleNow:
     info = wiring.node("GeometryNodeObjectInfo")
     info.inputs["Object"].default_value = host.item
     mesh = info.outputs["Geometry"]
@@ -107,28 +174,28 @@ def _followed(wiring: _Wiring, host: Host, rotation: Any) -> tuple[Any, Any]:
     # All of the mesh as seen from the points, of which three vertices are looked up.
     own = wiring.node("GeometryNodeInputPosition").outputs["Position"]
     seen = wiring.vector("ADD", wiring.combined(own, host.axes), host.origin)
-    corners = []
-    for name in CORNER_ATTRIBUTES:
-        sample = wiring.node("GeometryNodeSampleIndex")
-        sample.data_type, sample.domain = "FLOAT_VECTOR", "POINT"
-        wiring.link(mesh, sample.inputs["Geometry"])
-        wiring.link(seen, wiring.enabled(sample.inputs, "Value"))
-        wiring.link(wiring.attribute(name, "INT"), sample.inputs["Index"])
-        corners.append(wiring.enabled(sample.outputs, "Value"))
-    foot = wiring.combined(wiring.attribute(WEIGHTS_ATTRIBUTE, "FLOAT_VECTOR"), corners)
+    corners = [wiring.sampled(mesh, "FLOAT_VECTOR", seen, read(name, "INT")) for name in CORNER_ATTRIBUTES]
+    foot = wiring.combined(read(WEIGHTS_ATTRIBUTE, "FLOAT_VECTOR"), corners)
 
     first, second = (wiring.vector("SUBTRACT", corner, corners[0]) for corner in corners[1:])
     x = wiring.vector("NORMALIZE", first)
     z = wiring.vector("NORMALIZE", wiring.vector("CROSS_PRODUCT", first, second))
-    axes = (x, wiring.vector("CROSS_PRODUCT", z, x), z)
-    shift, along, away = (
-        wiring.combined(wiring.attribute(name, "FLOAT_VECTOR"), axes)
-        for name in (SHIFT_ATTRIBUTE, X_ATTRIBUTE, Z_ATTRIBUTE)
+    return _TriangleNow(is_same, own, foot, (x, wiring.vector("CROSS_PRODUCT", z, x), z))
+
+
+def _place_of(wiring: _Wiring, now: _TriangleNow, read: Callable[[str, str], Any]) -> Any:
+    """Where a point is now; where it was put where the mesh has become another one."""
+    shift = wiring.combined(read(SHIFT_ATTRIBUTE, "FLOAT_VECTOR"), now.axes)
+    return wiring.chosen(now.is_same, now.own, wiring.vector("ADD", now.foot, shift))
+
+
+def _turn_of(wiring: _Wiring, now: _TriangleNow, rotation: Any) -> Any:
+    """How a shape is turned now."""
+    along, away = (
+        wiring.combined(wiring.attribute(name, "FLOAT_VECTOR"), now.axes) for name in (X_ATTRIBUTE, Z_ATTRIBUTE)
     )
     upright = wiring.aligned("Z", "AUTO", away, None)
-    turned = wiring.aligned("X", "Z", along, upright)
-    position = wiring.chosen(is_same, own, wiring.vector("ADD", foot, shift))
-    return position, wiring.chosen(is_same, rotation, turned)
+    return wiring.chosen(now.is_same, rotation, wiring.aligned("X", "Z", along, upright))
 
 
 class _Wiring:
@@ -156,6 +223,24 @@ class _Wiring:
         made.data_type = data_type
         made.inputs["Name"].default_value = name
         return attribute_output(made)
+
+    def sampled(self, geometry: Any, data_type: str, value: Any, index: Any) -> Any:
+        """A value of the vertex of a mesh that has this index."""
+        made = self.node("GeometryNodeSampleIndex")
+        made.data_type, made.domain = data_type, "POINT"
+        self.link(geometry, made.inputs["Geometry"])
+        self.link(value, self.enabled(made.inputs, "Value"))
+        self.link(index, made.inputs["Index"])
+        return self.enabled(made.outputs, "Value")
+
+    def kept_by(self, keeper: bpy.types.Object) -> Callable[[str, str], Any]:
+        """What reads attributes of another object's mesh, of the vertex with the same index."""
+        info = self.node("GeometryNodeObjectInfo")
+        info.inputs["Object"].default_value = keeper
+        index = self.node("GeometryNodeInputIndex").outputs["Index"]
+        return lambda name, data_type: self.sampled(
+            info.outputs["Geometry"], data_type, self.attribute(name, data_type), index
+        )
 
     def is_equal(self, number: Any, to: int) -> Any:
         """Whether a whole number is the one given."""

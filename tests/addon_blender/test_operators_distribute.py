@@ -89,7 +89,7 @@ def test_shapes_of_a_collection_keep_materials_scale_and_centre():
     plate.data.polygons[0].material_index = 1
     bpy.context.view_layer.objects.active = item
     settings = {"shapes": "COLLECTION", "shapes_collection": "Shapes", "make_instances": True}
-    bpy.ops.saddleback.distribute(**settings, **FEW)
+    bpy.ops.saddleback.distribute(fit=0.0, **settings, **FEW)
     assert "10 Cube, 10 Plate" in jobs.state.line
     bent = find_output(item, "shapes")
     assert [material.name for material in bent.data.materials] == ["Red", "Blue", "Green"]
@@ -107,7 +107,7 @@ def test_shapes_of_a_collection_keep_materials_scale_and_centre():
     assert sorted(output.name for output in outputs_of(item)) == names
     groups = len(bpy.data.node_groups)
     bpy.ops.saddleback.distribute(seed=4)
-    assert len(bpy.data.node_groups) == groups == 1
+    assert len(bpy.data.node_groups) == groups == 2  # of instances, of bent copies
     bpy.ops.saddleback.distribute(make_instances=False)
     assert find_output(item, "shape instances") is None
     assert item.saddleback.distribute.shapes_collection.name == "Shapes"
@@ -117,7 +117,8 @@ def test_everything_goes_with_clear_and_nothing_else():
     item = host()
     before = fingerprint()
     bpy.ops.saddleback.distribute(make_instances=True, make_outlines=True, write_attributes=True, **FEW)
-    assert len(outputs_of(item)) == 4  # one of them is what instances show
+    # One of them is what instances show, one what outlines know of the surface.
+    assert len(outputs_of(item)) == 5
     distance = attribute(item, "saddleback_outline_distance")
     assert 0.2 < (distance < 0).mean() < 0.6 and (attribute(item, "saddleback_shape")[distance < 0] >= 0).all()
     assert len(find_output(item, "shape outlines").data.splines) == 20
@@ -246,6 +247,70 @@ def test_instances_stand_on_a_mesh_that_is_stretched_however_its_object_is_scale
     ellipsoid = moved[:, :3, 3] / np.square((1.5, 2.0, 1.0))
     ellipsoid /= np.linalg.norm(ellipsoid, axis=1, keepdims=True)
     assert (normals * ellipsoid).sum(axis=1).min() > 0.98
+
+
+def shown(item):
+    """(n, 3) places of an evaluated object's vertices in the world."""
+    bpy.context.view_layer.update()
+    evaluated = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    places = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", places)
+    evaluated.to_mesh_clear()
+    matrix = np.array(item.matrix_world)
+    return places.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+@pytest.mark.parametrize("role", ["shapes", "shape outlines"])
+def test_bent_copies_and_outlines_go_with_a_mesh_that_turns(role):
+    item = host()
+    item.location, item.rotation_euler, item.scale = (1, 2, 3), (0.3, 0.4, 0.5), (2, 2, 2)
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.distribute(make_outlines=True, outline_radius=0.0, mirror=True, **FEW)
+    output = find_output(item, role)
+    before = shown(output)
+    if role == "shapes":  # until then they are where they were put
+        own, matrix = np.array([v.co for v in output.data.vertices]), np.array(output.matrix_world)
+        np.testing.assert_allclose(before, own @ matrix[:3, :3].T + matrix[:3, 3], atol=2e-5)
+    turn = np.array(Euler((0.7, -0.4, 1.1)).to_matrix())
+    bend_by_key(item, lambda places: places @ turn.T + (0.2, 0.3, 0.4))
+    local = np.eye(4)
+    local[:3, :3], local[:3, 3] = turn, (0.2, 0.3, 0.4)
+    world = np.array(item.matrix_world)
+    whole = world @ local @ np.linalg.inv(world)
+    np.testing.assert_allclose(shown(output), before @ whole[:3, :3].T + whole[:3, 3], atol=5e-5)
+
+
+def test_bent_copies_and_outlines_stay_on_a_mesh_that_is_stretched():
+    item = host()
+    bpy.ops.saddleback.distribute(make_outlines=True, shapes="MOSAIC", outline_radius=0.001, **FEW)
+    bodies, lines = find_output(item, "shapes"), find_output(item, "shape outlines")
+    bend_by_key(item, lambda places: places * (1.5, 1.0, 2.0))
+    for output, low, high in ((bodies, 0.97, 1.2), (lines, 0.98, 1.01)):
+        radius = np.linalg.norm(shown(output) / (1.5, 1.0, 2.0), axis=1)
+        assert low < radius.min() and radius.max() < high
+    # Where they stay, and where the mesh is another one.
+    bpy.ops.saddleback.distribute(make_outlines=True, shapes="MOSAIC", follow_surface=False, **FEW)
+    assert not bodies.modifiers and not find_output(item, "shape outlines").modifiers
+    assert [group.name for group in bpy.data.node_groups] == []
+
+
+def test_faces_of_bent_copies_are_divided_until_they_lie_on_the_surface():
+    item = host()
+    collection = bpy.data.collections.new("Flat")
+    plate = add_object("Plate", np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0.0)]), [(0, 1, 2, 3)], False)
+    collection.objects.link(plate)
+    bpy.context.view_layer.objects.active = item
+    deepest = []
+    for fit in (0.0, 0.05, 0.01):
+        bpy.ops.saddleback.distribute(shapes="COLLECTION", shapes_collection="Flat", fit=fit, **FEW)
+        mesh = find_output(item, "shapes").data
+        middles = np.array([polygon.center for polygon in mesh.polygons])
+        deepest.append(1 - np.linalg.norm(middles, axis=1).min())
+        uv = np.array([corner.uv for corner in mesh.uv_layers.active.data])
+        assert uv.min() == 0 and uv.max() == 1
+    radius = 0.28  # of twenty squares that cover 40 % of the sphere, about
+    assert deepest[0] > 0.1 * radius and deepest[1] < 0.07 * radius and deepest[2] < 0.025 * radius
 
 
 def test_instances_stay_where_the_mesh_becomes_another_one_or_where_wanted():

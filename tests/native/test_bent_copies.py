@@ -34,7 +34,8 @@ def cushion(shape: sb.Shape, height: float = 0.3) -> Solid:
     outline = shape.loops[0]
     count = len(outline)
     rings = [outline, outline, 0.5 * outline]
-    vertices = np.concatenate([np.column_stack([r, np.full(count, z)]) for r, z in zip(rings, (0, height / 2, height))])
+    heights = (0.0, height / 2, height)
+    vertices = np.concatenate([np.column_stack([r, np.full(count, z)]) for r, z in zip(rings, heights, strict=True)])
     vertices = np.concatenate([vertices, [[0, 0, 0], [0, 0, height]]])
     here, onward = np.arange(count), (np.arange(count) + 1) % count
     triangles = [np.stack([onward, here, np.full(count, 3 * count)], axis=1)]
@@ -124,7 +125,7 @@ def test_in_the_plane_nothing_is_divided() -> None:
 
 
 def test_a_crease_splits_edges_where_they_cross_it() -> None:
-    """Two half planes at right angles: one split of every edge that crosses, and nothing is off by more than rounding."""
+    """Two half planes at right angles: every edge that crosses is split once, and nothing is off."""
     vertices = np.array([(x, max(y, 0), max(-y, 0)) for y in (-2.0, 0.0, 2.0) for x in (-2.0, 0.0, 2.0)])
     faces = [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (3, 4, 7), (3, 7, 6), (4, 5, 8), (4, 8, 7)]
     mesh = sb.Mesh(vertices, np.array(faces))
@@ -134,7 +135,7 @@ def test_a_crease_splits_edges_where_they_cross_it() -> None:
     square = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0.0)]), np.array([(0, 1, 2), (0, 2, 3)])
     bent = mapped.bend([square], 1e-3)
     assert 4 < len(bent.vertices) < 12
-    x, y, z = samples(bent, 2000).T
+    _x, y, z = samples(bent, 2000).T
     assert np.minimum(np.abs(z), np.abs(y)).max() < 2e-3
 
 

@@ -11,7 +11,7 @@ from mathutils import Matrix
 from .. import compat, nodes
 from ..core.local_frames import in_frames, triangle_frames
 from ..core.quaternions import euler_of, quaternions_of, turned
-from ..core.results import DistributeResult, Indices, PlacedShapes, Reals
+from ..core.results import Anchors, DistributeResult, Indices, PlacedShapes, Reals
 from ..core.settings import DistributeSettings
 from ..core.shape_colors import random_of, shape_colors
 from ..core.shape_templates import ShapeTemplate
@@ -22,7 +22,10 @@ from ..shape_nodes import (
     X_ATTRIBUTE,
     Z_ATTRIBUTE,
     Host,
+    Tubes,
+    set_following,
     set_shapes,
+    stop_following,
 )
 from .out_attributes import set_attribute, write_vertex_attributes
 from .out_collection import (
@@ -30,9 +33,11 @@ from .out_collection import (
     ROLE,
     SOURCE,
     directions_to_place,
+    find_output,
     level_place,
     outputs_of,
     remove_object,
+    remove_output,
     replace_object,
     source_token,
     to_place,
@@ -40,6 +45,7 @@ from .out_collection import (
 from .out_curves import new_curve
 
 BENT_ROLE, INSTANCES_ROLE, OUTLINES_ROLE = "shapes", "shape instances", "shape outlines"
+KEEPER_ROLE = "shape outline anchors"
 TEMPLATE_ROLE = "shape template"  # and a number: objects of ours that instances show, in no collection
 SHAPE_ATTRIBUTE, RANDOM_ATTRIBUTE, UV_NAME = "saddleback_shape", "saddleback_random", "UVMap"
 OUTLINE_DISTANCE, SHAPE_UV = "saddleback_outline_distance", "saddleback_shape_uv"
@@ -55,7 +61,7 @@ def write_bent(
     templates: Sequence[ShapeTemplate],
     seed: int,
 ) -> bpy.types.Object:
-    """Makes or replaces the source's shapes object: all bent copies as one mesh.
+    """Makes or replaces the source's shapes object: all bent copies as one mesh, which may follow the source.
 
     Faces know their shape, its class and a random number of its own; corners have UV places and a colour.
     """
@@ -75,8 +81,22 @@ def write_bent(
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
     firsts = _add_materials(mesh, templates)
     mesh.polygons.foreach_set("material_index", (bent.material + firsts[bent.polygon_shape]).astype(np.int32))
+    if result.bent_anchors is not None:
+        _write_anchors(mesh, result.bent_anchors)
     mesh.update()
-    return replace_object(context, source, BENT_ROLE, mesh, place)
+    item = replace_object(context, source, BENT_ROLE, mesh, place)
+    if result.bent_anchors is not None:
+        set_following(item, Host.of(source, place, result.vertex_count))
+    else:
+        stop_following(item)
+    return item
+
+
+def _write_anchors(mesh: bpy.types.Mesh, anchors: Anchors) -> None:
+    for i, name in enumerate(CORNER_ATTRIBUTES):
+        set_attribute(mesh, name, "POINT", np.ascontiguousarray(anchors.corners[:, i]))
+    set_attribute(mesh, WEIGHTS_ATTRIBUTE, "POINT", anchors.barycentric)
+    set_attribute(mesh, SHIFT_ATTRIBUTE, "POINT", anchors.shift)
 
 
 def write_instances(
@@ -133,15 +153,45 @@ def _by_triangles(place: Matrix, placed: PlacedShapes, points: Reals) -> dict[st
 def write_outlines(
     context: bpy.types.Context, source: bpy.types.Object, result: DistributeResult, radius: float
 ) -> bpy.types.Object:
-    """Makes or replaces the source's outlines object; the radius is in world units."""
+    """Makes or replaces the source's outlines object, which may follow the source; the radius is in world units."""
     lines = result.outlines
     assert lines is not None
     place = level_place(source)
     points = to_place(place, lines.points)
     ends = zip(lines.offsets[:-1], lines.offsets[1:], strict=True)
-    curve = new_curve("Saddleback Outlines", ((points[begin:end], True) for begin, end in ends), radius)
-    curve.materials.append(nodes.edges_material())
-    return replace_object(context, source, OUTLINES_ROLE, curve, place)
+    is_followed, material = result.outline_anchors is not None, nodes.edges_material()
+    own_radius = 0.0 if is_followed else radius
+    curve = new_curve("Saddleback Outlines", ((points[begin:end], True) for begin, end in ends), own_radius)
+    curve.materials.append(material)
+    item = replace_object(context, source, OUTLINES_ROLE, curve, place)
+    stop_following(item)
+    _remove_keeper(source)
+    if result.outline_anchors is not None:
+        tubes = Tubes(_keeper(source, result.outline_anchors), radius, material)
+        set_following(item, Host.of(source, place, result.vertex_count), tubes)
+    return item
+
+
+def _keeper(source: bpy.types.Object, anchors: Anchors) -> bpy.types.Object:
+    """An object in no collection that knows where the points of the outlines stand, which curves cannot."""
+    mesh = bpy.data.meshes.new("Saddleback Outline Anchors")
+    mesh.vertices.add(len(anchors.corners))
+    _write_anchors(mesh, anchors)
+    item = bpy.data.objects.new(mesh.name, mesh)
+    item[ROLE], item[NAME], item[SOURCE] = KEEPER_ROLE, item.name, source_token(source)
+    return item
+
+
+def _remove_keeper(source: bpy.types.Object) -> None:
+    item = find_output(source, KEEPER_ROLE)
+    if item is not None:
+        remove_object(item)
+
+
+def remove_outlines(source: bpy.types.Object) -> None:
+    """Removes the outlines object, if there is one, and what belongs to it."""
+    remove_output(source, OUTLINES_ROLE)
+    _remove_keeper(source)
 
 
 def write_shape_values(surface: bpy.types.Object, result: DistributeResult) -> None:

@@ -135,7 +135,11 @@ def _solid(mesh: bpy.types.Mesh, vertices: Reals) -> Solid:
         flat = np.empty(2 * len(corners), np.float32)
         layer.data.foreach_get("uv", flat)
         uv = flat.reshape(-1, 2).astype(np.float64)
-    return Solid(vertices, corners, np.concatenate([[0], np.cumsum(totals)]).astype(np.int32), uv, smooth, material)
+    mesh.calc_loop_triangles()
+    triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("loops", triangles)
+    offsets = np.concatenate([[0], np.cumsum(totals)]).astype(np.int32)
+    return Solid(vertices, corners, offsets, uv, smooth, material, triangles.reshape(-1, 3))
 
 
 def _of_curve(source: bpy.types.Object, item: bpy.types.Object) -> tuple[Parts, None]:

@@ -12,54 +12,69 @@ from numpy.typing import NDArray
 from .normals import normals_at
 from .progress import Progress
 from .results import BentCopies, Indices, Reals
+from .settings import DistributeSettings
 from .shape_templates import ShapeTemplate, Solid
 
 THICKNESS = 0.12  # of a shape's radius: of raised pieces of surface, where none is given
 
 
 def bent_copies(
-    mesh: Any, mapped: Any, templates: Sequence[ShapeTemplate], thickness: float, progress: Progress
-) -> BentCopies:
-    """One copy for each placement that could be laid."""
-    placements, failures = mapped.placements, mapped.failures
-    shapes, scales, mirrored = placements.shape.tolist(), placements.scale, placements.mirrored
-    pieces: list[_Piece] = []
+    mesh: Any, mapped: Any, templates: Sequence[ShapeTemplate], settings: DistributeSettings, threads: int,
+    progress: Progress,
+) -> BentCopies:  # fmt: skip
+    """One copy for each placement that could be laid, those with a solid first."""
+    shapes, scales, mirrored = (
+        mapped.placements.shape.tolist(), mapped.placements.scale, mapped.placements.mirrored
+    )  # fmt: skip
+    pieces = []
+    with progress.stage(0.95, "bending shapes onto the surface") as job:
+        solids = [_triangulated(template.solid) for template in templates]
+        bent = mapped.bend(solids, settings.fit, threads=threads, job=job)
+    for shape, template in enumerate(templates):
+        if template.solid is not None:
+            pieces.append(_of_solid(bent, mapped, template.solid, shape))
     for number, shape in enumerate(shapes):
-        if number in failures:
-            continue
         if number % 32 == 0:
             progress.check()
-        solid = templates[shape].solid
-        if solid is None:
-            height = thickness or THICKNESS * float(scales[number])
+        if number not in mapped.failures and templates[shape].solid is None:
+            height = settings.thickness or THICKNESS * float(scales[number])
             pieces.append(_raised(mesh, mapped.patch(number), height, bool(mirrored[number]), number, shape))
-        else:
-            places = mapped.conform(solid.vertices, number).points
-            pieces.append(_Piece(places, _turned(solid) if mirrored[number] else solid, number, shape))
     return _joined(pieces)
+
+
+def _triangulated(solid: Solid | None) -> tuple[Reals, Indices] | None:
+    return None if solid is None else (solid.vertices, solid.corners[solid.parted()])
 
 
 @dataclass(frozen=True)
 class _Piece:
     vertices: Reals
-    solid: Solid  # all but the vertices counts
-    copy: int
+    faces: Indices
+    barycentric: Reals
+    corners: Indices
+    offsets: Indices
+    uv: Reals
+    smooth: NDArray[np.bool_]
+    material: Indices
+    copy: Indices  # (polygons,)
     shape: int
 
 
 def _joined(pieces: list[_Piece]) -> BentCopies:
-    counts = [len(piece.solid.offsets) - 1 for piece in pieces]
+    counts = [len(piece.offsets) - 1 for piece in pieces]
     firsts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
-    sizes = [np.diff(piece.solid.offsets) for piece in pieces]
-    corners = [piece.solid.corners + first for piece, first in zip(pieces, firsts, strict=False)]
+    sizes = [np.diff(piece.offsets) for piece in pieces]
+    corners = [piece.corners + first for piece, first in zip(pieces, firsts, strict=False)]
     return BentCopies(
         vertices=_rows([piece.vertices for piece in pieces], 3),
+        faces=_row([piece.faces for piece in pieces], np.int32),
+        barycentric=_rows([piece.barycentric for piece in pieces], 3),
         corners=_row(corners, np.int32),
         offsets=np.concatenate([[0], np.cumsum(_row(sizes, np.int32))]).astype(np.int32),
-        uv=_rows([piece.solid.uv for piece in pieces], 2),
-        smooth=_row([piece.solid.smooth for piece in pieces], np.bool_),
-        material=_row([piece.solid.material for piece in pieces], np.int32),
-        polygon_copy=np.repeat([piece.copy for piece in pieces], counts).astype(np.int32),
+        uv=_rows([piece.uv for piece in pieces], 2),
+        smooth=_row([piece.smooth for piece in pieces], np.bool_),
+        material=_row([piece.material for piece in pieces], np.int32),
+        polygon_copy=_row([piece.copy for piece in pieces], np.int32),
         polygon_shape=np.repeat([piece.shape for piece in pieces], counts).astype(np.int32),
     )
 
@@ -73,18 +88,57 @@ def _row(parts: list[Any], dtype: type[np.generic]) -> Any:
     return (np.concatenate(parts) if parts else np.empty(0)).astype(dtype)
 
 
-def _turned(solid: Solid) -> Solid:
-    """The same polygons run through the other way, as a mirrored copy needs them."""
-    order = _backwards(solid.offsets)
-    return Solid(solid.vertices, solid.corners[order], solid.offsets, solid.uv[order], solid.smooth, solid.material)
+def _of_solid(bent: Any, mapped: Any, solid: Solid, shape: int) -> _Piece:
+    """All copies of a class: polygons as they were where nothing of them was divided, else triangles."""
+    parted = solid.parted()
+    polygon = (np.searchsorted(solid.offsets, parted[:, 0], "right") - 1).astype(np.int32)
+    copies = np.flatnonzero((mapped.placements.shape == shape) & (np.diff(bent.begins) > 0))
+    begins, ends = bent.begins[copies], bent.begins[copies + 1]
+    used = np.concatenate([np.arange(b, e) for b, e in zip(begins, ends, strict=True)] or [np.empty(0, np.int64)])
+    order = np.zeros(len(bent.vertices), np.int64)  # of a vertex among those used
+    order[used] = np.arange(len(used))
+    rank = np.zeros(len(mapped.placements), np.int64)
+    rank[copies] = np.arange(len(copies))
+
+    mine = np.flatnonzero(np.isin(bent.triangle_copy, copies))
+    source, owner = bent.triangle_source[mine], rank[bent.triangle_copy[mine]]
+    # A polygon is whole where each of its triangles is there once.
+    parts = np.bincount(owner * len(parted) + source, minlength=len(copies) * len(parted)).reshape(-1, len(parted))
+    is_whole = np.ones((len(copies), len(solid.offsets) - 1), bool)
+    row, triangle = np.nonzero(parts != 1)
+    is_whole[row, polygon[triangle]] = False
+    whole_row, whole = np.nonzero(is_whole)
+    is_mirrored = np.asarray(mapped.placements.mirrored)[copies][whole_row]
+
+    sizes = np.diff(solid.offsets)[whole]
+    kept = _runs(solid.offsets[:-1][whole], sizes, is_mirrored)
+    kept_corners = order[np.repeat(begins[whole_row], sizes) + solid.corners[kept]]
+    cut = mine[~is_whole[owner, polygon[source]]]
+    cut_source = bent.triangle_source[cut]
+    cut_uv = np.einsum("tck,tkj->tcj", bent.weights[cut], solid.uv[parted[cut_source]]).reshape(-1, 2)
+    of_cut = polygon[cut_source]
+    all_sizes = np.concatenate([sizes, np.full(len(cut), 3)])
+    return _Piece(
+        vertices=bent.vertices[used],
+        faces=bent.surface.faces[used],
+        barycentric=bent.surface.barycentric[used],
+        corners=np.concatenate([kept_corners, order[bent.triangles[cut].ravel()]]).astype(np.int32),
+        offsets=np.concatenate([[0], np.cumsum(all_sizes)]).astype(np.int32),
+        uv=np.concatenate([solid.uv[kept], cut_uv]),
+        smooth=np.concatenate([solid.smooth[whole], solid.smooth[of_cut]]),
+        material=np.concatenate([solid.material[whole], solid.material[of_cut]]),
+        copy=np.concatenate([copies[whole_row], bent.triangle_copy[cut]]).astype(np.int32),
+        shape=shape,
+    )
 
 
-def _backwards(offsets: Indices) -> NDArray[np.int64]:
-    """(corners,) the order of the corners when each polygon is reversed."""
-    sizes = np.diff(offsets)
-    within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], sizes)
-    order: NDArray[np.int64] = np.repeat(offsets[1:] - 1, sizes) - within
-    return order
+def _runs(firsts: Indices, sizes: Indices, is_backwards: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The corners of polygons one after the other, each from its first on, or from its last back."""
+    within = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    back = np.repeat(firsts + sizes - 1, sizes) - within
+    forth = np.repeat(firsts, sizes) + within
+    runs: NDArray[np.int64] = np.where(np.repeat(is_backwards, sizes), back, forth)
+    return runs
 
 
 def _raised(mesh: Any, patch: Any, height: float, is_mirrored: bool, copy: int, shape: int) -> _Piece:
@@ -103,11 +157,18 @@ def _raised(mesh: Any, patch: Any, height: float, is_mirrored: bool, copy: int, 
     corners = np.concatenate([triangles.ravel(), walls.ravel()]).astype(np.int32)
     sizes = np.concatenate([np.full(len(triangles), 3), np.full(len(walls), 4)])
     is_top = np.arange(len(sizes)) < len(triangles)
-    solid = Solid(
-        np.empty((0, 3)), corners, np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32), uv[corners], is_top,
-        np.zeros(len(sizes), np.int32),
-    )  # fmt: skip
-    return _Piece(np.concatenate([places + height * up, places[rim]]), solid, copy, shape)
+    return _Piece(
+        vertices=np.concatenate([places + height * up, places[rim]]),
+        faces=np.concatenate([points.faces, points.faces[rim]]),
+        barycentric=np.concatenate([points.barycentric, points.barycentric[rim]]),
+        corners=corners,
+        offsets=np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32),
+        uv=uv[corners],
+        smooth=is_top,
+        material=np.zeros(len(sizes), np.int32),
+        copy=np.full(len(sizes), copy, np.int32),
+        shape=shape,
+    )
 
 
 def _border(triangles: Indices) -> tuple[Indices, Indices]:

@@ -17,9 +17,10 @@ from .errors import BadInputError
 from .field_runs import field_of
 from .given_fields import given_field
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
+from .local_frames import anchored
 from .progress import Progress
 from .requests import DirectionFieldRequest, DistributeRequest, digest
-from .results import CheckResult, DistributeResult, PathsResult, PlacedShapes, Reals, ShapeValues
+from .results import CheckResult, DistributeResult, Indices, PathsResult, PlacedShapes, Reals, ShapeValues
 from .shape_templates import ShapeTemplate, sized
 
 # Share of the surface that shapes cover when their size is left to their count: at random, and side by side.
@@ -40,10 +41,15 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
     mapped = _mapped(laid, request, progress, cache)
     bent = outlines = values = None
     if settings.make_bent:
-        with progress.stage(0.9, "bending shapes onto the surface"):
-            bent = bent_copies(mesh, mapped, laid.templates, settings.thickness, progress)
+        bent = bent_copies(mesh, mapped, laid.templates, settings, request.threads, progress)
+    bent_anchors = outline_anchors = None
+    triangles = np.asarray(mesh.triangles)
+    if bent is not None and settings.follow_surface:
+        bent_anchors = anchored(surface, triangles, bent.faces, bent.barycentric, bent.vertices)
     if settings.make_outlines:
-        outlines = _outlines(mapped, progress)
+        outlines, faces, barycentric = _outlines(mapped, progress)
+        if settings.follow_surface:
+            outline_anchors = anchored(surface, triangles, faces, barycentric, outlines.points)
     if settings.write_attributes:
         with progress.stage(0.97, "measuring the way to the outlines") as job:
             found = mapped.attributes(VALUES_REACH * laid.size, threads=request.threads, job=job)
@@ -75,7 +81,9 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         lines=_figures(laid, counts, settings.maximal),
         warnings=_warnings(laid, mapped),
         bent=bent,
+        bent_anchors=bent_anchors,
         outlines=outlines,
+        outline_anchors=outline_anchors,
         values=values,
     )
 
@@ -205,23 +213,27 @@ def _forbidden_faces(request: DistributeRequest, mesh: Any) -> np.ndarray:
     return faces
 
 
-def _outlines(mapped: Any, progress: Progress) -> PathsResult:
-    """All loops of all shapes as closed lines."""
-    lines = []
+def _outlines(mapped: Any, progress: Progress) -> tuple[PathsResult, Indices, Reals]:
+    """All loops of all shapes as closed lines, and the triangles and weights of their points."""
+    lines, faces, weights = [], [np.empty(0, np.int32)], [np.empty((0, 3))]
     for number in range(len(mapped)):
         if number % 64 == 0:
             progress.check()
         if number not in mapped.failures:
             lines += [np.asarray(loop) for loop in mapped.outline(number)]
+            for loop in mapped.outline_surface(number):
+                faces.append(loop.faces)
+                weights.append(loop.barycentric)
     lengths = [np.linalg.norm(np.diff(line, axis=0, append=line[:1]), axis=1).sum() for line in lines]
     points = np.concatenate(lines) if lines else np.empty((0, 3))
-    return PathsResult(
+    found = PathsResult(
         points=points,
         normals=np.zeros_like(points),
         offsets=np.cumsum([0, *map(len, lines)]).astype(np.int32),
         closed=np.ones(len(lines), bool),
         lengths=np.array(lengths),
     )
+    return found, np.concatenate(faces), np.concatenate(weights)
 
 
 # What the library's reasons to stop mean to a person; that every count is met needs no word.

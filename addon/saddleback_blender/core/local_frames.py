@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .results import Reals
+from .requests import Surface
+from .results import Anchors, Indices, Reals
 
 
 def triangle_frames(corners: Reals) -> Reals:
@@ -23,3 +24,18 @@ def in_frames(frames: Reals, vectors: Reals) -> Reals:
     """(n, 3) vectors by the axes of their frames (n, 3, 3)."""
     found: Reals = np.einsum("nij,nj->ni", frames, vectors)
     return found
+
+
+def anchored(surface: Surface, triangles: Indices, faces: Indices, barycentric: Reals, points: Reals) -> Anchors:
+    """Points (n, 3) as seen from the triangles of the surface that they stand on. O(n).
+
+    `triangles` are the library's, of which `faces` (n,) counts.
+    """
+    corners = triangles[faces]
+    places = surface.vertices[corners]
+    feet = np.einsum("ni,nij->nj", barycentric, places)
+    return Anchors(
+        corners=corners if surface.used is None else surface.used[corners],
+        barycentric=barycentric,
+        shift=in_frames(triangle_frames(places), points - feet),
+    )

@@ -215,10 +215,21 @@ class PlacedShapes:
 
 
 @dataclass(frozen=True)
+class Anchors:
+    """Points as seen from triangles of the surface, so that they go with them when those move and turn."""
+
+    corners: Indices  # (n, 3) the triangles' vertices, numbered as in the Blender mesh
+    barycentric: Reals  # (n, 3)
+    shift: Reals  # (n, 3) from there to the points, by the triangles' axes: lengths of the world
+
+
+@dataclass(frozen=True)
 class BentCopies:
     """Polygon i runs through corners[offsets[i]:offsets[i + 1]], counter-clockwise from outside."""
 
     vertices: Reals  # (n, 3) in the world
+    faces: Indices  # (n,) of the surface's triangles, where the vertices stand
+    barycentric: Reals  # (n, 3)
     corners: Indices
     offsets: Indices
     uv: Reals  # (corners, 2)
@@ -248,7 +259,9 @@ class DistributeResult:
     lines: tuple[str, ...]  # further figures
     warnings: tuple[str, ...]
     bent: BentCopies | None = None  # where it was wanted
+    bent_anchors: Anchors | None = None  # of its vertices, where they follow the surface
     outlines: PathsResult | None = None  # where they were wanted
+    outline_anchors: Anchors | None = None  # of their points, where they follow the surface
     values: ShapeValues | None = None  # where they were wanted
 
 

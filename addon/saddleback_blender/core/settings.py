@@ -184,9 +184,10 @@ class DistributeSettings(DensitySettings):
     forbidden_group: str = ""
     use_modifiers: bool = False
     make_bent: bool = True
+    fit: float = 0.01  # of bent copies: how far faces may leave the surface, in radii; 0 = their faces stay as they are
     thickness: float = 0.0  # of shapes without a mesh; 0 = by their size
     make_instances: bool = False
-    follow_surface: bool = True  # instances, where the mesh is deformed later
+    follow_surface: bool = True  # where the mesh is deformed later
     make_outlines: bool = False
     outline_radius: float = 0.005
     write_attributes: bool = False

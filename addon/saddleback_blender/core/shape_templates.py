@@ -23,6 +23,11 @@ class Solid:
     uv: Reals  # (corners, 2)
     smooth: NDArray[np.bool_]  # (polygons,)
     material: Indices  # (polygons,) of the shape's own list
+    triangles: Indices | None = None  # (t, 3) corners of the triangles that polygons are made of; None = fans
+
+    def parted(self) -> Indices:
+        """(t, 3) corners of the triangles that the polygons are made of, one polygon's after the other's."""
+        return fans(self.offsets) if self.triangles is None else self.triangles
 
     def moved(self, shift: Reals, scale: float) -> Solid:
         """Shifted by (2,) in the plane, then scaled."""
@@ -91,6 +96,15 @@ def dome(outline: Reals, levels: Reals, heights: Reals, lift: Reals | None = Non
         vertices, corners, np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32), box_uv(vertices)[corners],
         np.ones(len(sizes), bool), np.zeros(len(sizes), np.int32),
     )  # fmt: skip
+
+
+def fans(offsets: Indices) -> Indices:
+    """(t, 3) corners of triangles that polygons are made of, each of them convex, about its first corner."""
+    sizes = np.diff(offsets)
+    first = np.repeat(offsets[:-1], sizes - 2)
+    ends = np.cumsum(sizes - 2)
+    step = np.arange(len(first)) - np.repeat(ends - (sizes - 2), sizes - 2)
+    return np.stack([first, first + step + 1, first + step + 2], axis=1).astype(np.int32)
 
 
 def box_uv(vertices: Reals) -> Reals:

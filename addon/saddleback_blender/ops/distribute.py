@@ -17,10 +17,10 @@ from ..bridge.out_shapes import (
     BENT_ROLE,
     INSTANCES_ROLE,
     OUTLINE_DISTANCE,
-    OUTLINES_ROLE,
     SHAPE_ATTRIBUTE,
     SHAPE_UV,
     make_real,
+    remove_outlines,
     remove_templates,
     write_bent,
     write_instances,
@@ -84,7 +84,7 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
         if result.outlines is not None:
             write_outlines(context, source, result, settings.outline_radius)
         else:
-            remove_output(source, OUTLINES_ROLE)
+            remove_outlines(source)
         keep_settings(settings, source.saddleback.distribute)
         if warning:
             self.report({"WARNING"}, warning)

@@ -53,10 +53,15 @@ DISTRIBUTE: dict[str, Any] = {
     **DENSITY,
     "use_modifiers": use_modifiers(),
     "make_bent": switch("Bent Copies", "Make one mesh of all shapes, bent onto the surface", True),
+    "fit": FloatProperty(
+        name="Fit", description="How far faces of bent copies may leave the surface, as a share of the shape's radius: "
+        "those that cross its edges are divided. 0 leaves them as they are", default=0.01, min=0.0, soft_max=0.1,
+        max=1.0, precision=3, options={"SKIP_SAVE"},
+    ),
     "thickness": length("Thickness", "Of shapes without a mesh: how far they rise; 0 means by their size", 0.0),
     "make_instances": switch("Instances", "Make a mesh of points that carry rigid copies of the shapes", False),
     "follow_surface": switch(
-        "Follow", "Instances go with the mesh when it is deformed by an armature, shape keys or other modifiers", True
+        "Follow", "Shapes go with the mesh when it is deformed by an armature, shape keys or other modifiers", True
     ),
     "make_outlines": switch("Outlines", "Make a curve object of the shapes' outlines", False),
     "outline_radius": length("Radius", "Half the thickness of the outlines", 0.005),

@@ -460,16 +460,20 @@ class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
         layout = self.split_layout(context)
         layout.prop(settings, "make_bent")
         row = layout.row()
+        row.active = settings.make_bent and settings.shapes != "IMAGE"
+        row.prop(settings, "fit")
+        row = layout.row()
         row.active = settings.make_bent and settings.shapes in ("COLLECTION", "IMAGE")
         row.prop(settings, "thickness")
         layout.prop(settings, "make_instances")
-        if settings.make_instances:
-            layout.prop(settings, "follow_surface")
         layout.operator("saddleback.make_real", icon="OUTLINER_OB_MESH")
         layout.prop(settings, "make_outlines")
         row = layout.row()
         row.active = settings.make_outlines
         row.prop(settings, "outline_radius")
+        row = layout.row()
+        row.active = settings.make_bent or settings.make_instances or settings.make_outlines
+        row.prop(settings, "follow_surface")
         layout.prop(settings, "write_attributes")
 
 

@@ -2,6 +2,7 @@
 
 from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
+    BentCopies,
     Cancelled,
     CentroidalVoronoi,
     Certificate,
