@@ -102,9 +102,9 @@ void MeshJoiner::close_gap(MeshPart& result, Index left, Index right) {
     const bool sees_left = turn(left, right, left_tip) == Sign::positive,
                sees_right = turn(left, right, right_tip) == Sign::positive;
     if (!sees_left && !sees_right) break;
-    const bool is_left =
-        sees_left && (!sees_right || predicates::in_circle(mesh_.point(left), mesh_.point(right), mesh_.point(left_tip),
-                                                           mesh_.point(right_tip)) != Sign::positive);
+    const bool is_left = sees_left && (!sees_right || predicates::in_circle_by_steps(
+                                                          mesh_.point(left), mesh_.point(right), mesh_.point(left_tip),
+                                                          mesh_.point(right_tip)) != Sign::positive);
     const Index half = add_triangle(result, left, right, is_left ? left_tip : right_tip);
     if (base == k_none)
       first = half;

@@ -9,9 +9,9 @@ using predicates::Sign;
 
 Sign circle_test(const PlanarMesh& mesh, Index half) {
   const Index twin = mesh.twins[half];
-  return predicates::in_circle(mesh.point(mesh.triangles[half]), mesh.point(mesh.triangles[next_half(half)]),
-                               mesh.point(mesh.triangles[previous_half(half)]),
-                               mesh.point(mesh.triangles[previous_half(twin)]));
+  return predicates::in_circle_by_steps(mesh.point(mesh.triangles[half]), mesh.point(mesh.triangles[next_half(half)]),
+                                        mesh.point(mesh.triangles[previous_half(half)]),
+                                        mesh.point(mesh.triangles[previous_half(twin)]));
 }
 
 namespace {

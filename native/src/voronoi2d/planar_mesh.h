@@ -5,6 +5,7 @@
 
 #include "saddleback/types.h"
 
+#include "predicates/in_circle_steps.h"
 #include "predicates/predicates.h"
 
 namespace saddleback::voronoi2d {
