@@ -8,6 +8,7 @@
 #include "saddleback/saddle_vertex_graph.h"
 #include "saddleback/surface_curve.h"
 
+#include "devices.h"
 #include "points.h"
 
 namespace saddleback::bindings {
@@ -57,30 +58,50 @@ QueryOptions query_options(const py::object& limit, const std::string& method) {
   return options;
 }
 
+/// Runs work(options) where `device` says. "auto" takes a CUDA device where the graph was built by one or is kept
+/// there, and for many fields.
+template <class Work>
+auto search_on(const std::string& device, const SaddleVertexGraph& graph, QueryOptions options, std::size_t field_count,
+               Work&& work) {
+  constexpr Index k_worth_a_device = 20000;
+  constexpr std::size_t k_many = 8;
+  const bool is_near = graph.built_by_cuda() || graph.is_on_device() || field_count >= k_many;
+  const bool is_dijkstra = options.method == QueryMethod::dijkstra;
+  return run_on(device, is_near && !is_dijkstra && graph.mesh().vertex_count() >= k_worth_a_device, [&](int number) {
+    if (number >= 0 && is_dijkstra)
+      throw InputError("method: 'dijkstra' runs on the processor only; wanted device='cpu'");
+    options.cuda_device = number;
+    return without_gil([&] { return work(options); });
+  });
+}
+
 py::array distances(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
-                    const std::string& method, const py::object& job) {
+                    const std::string& method, const std::string& device, const py::object& job) {
   const SourcesIn from = as_sources(sources, graph.mesh(), "sources");
-  const QueryOptions options = query_options(limit, method);
   Job* const token = as_job(job);
-  return to_array(without_gil([&] { return graph.distances(from.sources, options, token); }));
+  return to_array(search_on(device, graph, query_options(limit, method), 1, [&](const QueryOptions& options) {
+    return graph.distances(from.sources, options, token);
+  }));
 }
 
 py::tuple nearest(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
-                  const std::string& method, const py::object& job) {
+                  const std::string& method, const std::string& device, const py::object& job) {
   const SourcesIn from = as_sources(sources, graph.mesh(), "sources");
-  const QueryOptions options = query_options(limit, method);
   Job* const token = as_job(job);
-  NearestField field = without_gil([&] { return graph.nearest(from.sources, options, token); });
+  NearestField field = search_on(device, graph, query_options(limit, method), 1, [&](const QueryOptions& options) {
+    return graph.nearest(from.sources, options, token);
+  });
   return py::make_tuple(to_array(std::move(field.distance)), to_array(std::move(field.source)));
 }
 
 py::array fields(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
-                 const py::object& threads, const py::object& job) {
+                 const py::object& threads, const std::string& device, const py::object& job) {
   const SourcesIn from = as_sources(sources, graph.mesh(), "sources");
-  const QueryOptions options = query_options(limit, "label_correcting");
   const Index thread_count = as_integer(threads, "threads");
   Job* const token = as_job(job);
-  DistanceFields result = without_gil([&] { return graph.fields(from.sources, options, thread_count, token); });
+  DistanceFields result =
+      search_on(device, graph, query_options(limit, "label_correcting"), from.sources.size(),
+                [&](const QueryOptions& options) { return graph.fields(from.sources, options, thread_count, token); });
   double* const values = result.values.release();
   const py::capsule owner(values, [](void* p) { delete[] static_cast<double*>(p); });
   return py::array_t<double>({static_cast<py::ssize_t>(result.count), static_cast<py::ssize_t>(result.vertex_count)},
@@ -121,6 +142,9 @@ limit : float
     Vertices farther than this stay at infinity. Mesh units.
 method : str
     "label_correcting" (buckets) or "dijkstra" (heap): the same bits, at different speeds.
+device : str
+    "cpu"; "cuda", or "cuda:1" for the second CUDA device, which keeps the graph's arcs from then on; "auto" takes the
+    first one for graphs that were built by one or are kept by one. The result does not depend on it, to the bit.
 job : Job, optional
 
 Returns
@@ -131,7 +155,9 @@ Returns
 Raises
 ------
 InputError
-    No sources, a source off the mesh, limit negative or not a number, an unknown method.
+    No sources, a source off the mesh, limit negative or not a number, an unknown method or device.
+DeviceError
+    device="cuda" where there is no usable CUDA device or module, too little of its memory is free, or it fails.
 Cancelled
     The job was cancelled.
 
@@ -158,6 +184,8 @@ sources, limit
     As `distances` takes them; each point and each curve is a source.
 threads : int
     0: all cores. The result does not depend on it.
+device : str
+    As `distances`; "auto" also takes the device for eight fields and more.
 job : Job, optional
 
 Returns
@@ -230,13 +258,23 @@ straight geodesic. After X. Ying, thesis, section 4.4.4.)";
 void bind_queries(py::class_<SaddleVertexGraph>& graph) {
   const auto infinity = std::numeric_limits<double>::infinity();
   const auto job = [] { return py::arg("job") = py::none(); };
+  const auto device = [] { return py::arg("device") = "auto"; };
   graph
       .def("distances", &distances, py::arg("sources"), py::arg("limit") = infinity,
-           py::arg("method") = "label_correcting", py::kw_only(), job(), k_distances_doc)
+           py::arg("method") = "label_correcting", py::kw_only(), device(), job(), k_distances_doc)
       .def("nearest", &nearest, py::arg("sources"), py::arg("limit") = infinity, py::arg("method") = "label_correcting",
-           py::kw_only(), job(), k_nearest_doc)
+           py::kw_only(), device(), job(), k_nearest_doc)
       .def("fields", &fields, py::arg("sources"), py::arg("limit") = infinity, py::kw_only(), py::arg("threads") = 0,
-           job(), k_fields_doc)
+           device(), job(), k_fields_doc)
+      .def_property_readonly(
+          "query_times",
+          [](const SaddleVertexGraph& self) -> py::object {
+            const std::optional<DeviceTimes> times = self.query_times();
+            return times ? py::object(as_dict(*times)) : py::none();
+          },
+          "Seconds of the last query by a CUDA device, by its own clock (upload, find, unite, download); None when "
+          "there "
+          "was none.")
       .def("distance", &distance, py::arg("a"), py::arg("b"), py::kw_only(), job(), k_distance_doc)
       .def("_distance_and_settled", &search_size, py::arg("a"), py::arg("b"),
            "The distance and how many vertices its search expanded; for tests and benchmarks.")

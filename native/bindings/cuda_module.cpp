@@ -7,6 +7,7 @@
 #include "saddleback/cuda_twins.h"
 
 #include "geodesics/device_arcs.h"
+#include "geodesics/device_search.h"
 #include "voronoi2d/device_voronoi.h"
 
 namespace py = pybind11;
@@ -26,7 +27,10 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
       .def_readonly("usable", &CudaDevices::usable)
       .def_readonly("reason", &CudaDevices::reason);
   static const saddleback::CudaTwins twins{.find_arcs = &saddleback::find_arcs_on_device,
-                                           .find_voronoi = &saddleback::find_voronoi_on_device};
+                                           .find_voronoi = &saddleback::find_voronoi_on_device,
+                                           .put_graph = &saddleback::put_graph_on_device,
+                                           .drop_graph = &saddleback::drop_graph_on_device,
+                                           .search = &saddleback::search_on_device};
   module.attr("twins") = py::capsule(&twins);
   module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
 }

@@ -11,9 +11,14 @@ struct ArcTwinRequest;
 struct ArcTwinCaller;
 struct PlaneTwinRequest;
 struct PlaneTwinCaller;
+struct GraphTwin;  ///< a graph's arcs on a device
+struct GraphTwinRequest;
+struct SearchTwinRequest;
+struct SearchTwinCaller;
 
 /// How long the parts of a build took, in seconds by the device's clock, and how its sources or sites went. A plane's
-/// diagram is ordered, found and united; a graph is found and united.
+/// diagram is ordered, found and united; a graph is found and united; a field is found and united into the order of the
+/// vertices.
 struct DeviceTimes {
   double upload = 0, order = 0, find = 0, unite = 0, download = 0;
   std::int64_t second_pass = 0, by_processor = 0;  ///< what overflowed: done again there, or here
@@ -35,14 +40,19 @@ struct TwinReason {
   }
 };
 
-/// Functions that never throw and keep nothing of what they are given.
+/// Functions that never throw and keep nothing of what they are given, but for graphs until they are dropped.
 struct CudaTwins {
-  static constexpr int k_version = 2;  ///< of this table and of all that it passes
+  static constexpr int k_version = 3;  ///< of this table and of all that it passes
   int version = k_version;
   /// See geodesics/arc_twin.h.
   TwinStatus (*find_arcs)(const ArcTwinRequest&, const ArcTwinCaller&, DeviceTimes&, TwinReason&) = nullptr;
   /// See voronoi2d/plane_twin.h.
   TwinStatus (*find_voronoi)(const PlaneTwinRequest&, const PlaneTwinCaller&, DeviceTimes&, TwinReason&) = nullptr;
+  /// See geodesics/search_twin.h.
+  TwinStatus (*put_graph)(const GraphTwinRequest&, GraphTwin**, double* seconds, TwinReason&) = nullptr;
+  void (*drop_graph)(GraphTwin*) = nullptr;
+  TwinStatus (*search)(const GraphTwin&, const SearchTwinRequest&, const SearchTwinCaller&, DeviceTimes&,
+                       TwinReason&) = nullptr;
 };
 
 /// Tells the library of its twins, which stay valid until the process ends. \throw DeviceError for another version.

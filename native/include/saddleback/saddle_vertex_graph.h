@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,6 +38,9 @@ enum class QueryMethod { label_correcting, dijkstra };
 struct QueryOptions {
   double limit = std::numeric_limits<double>::infinity();  ///< vertices farther than this stay at infinity
   QueryMethod method = QueryMethod::label_correcting;
+  /// Number of the CUDA device that searches, -1: the processor does. The result does not depend on it. Of `distances`,
+  /// `nearest` and `fields`.
+  int cuda_device = -1;
 };
 
 /// Where distances are measured from. Sources are counted points first, then curves.
@@ -140,6 +144,11 @@ class SaddleVertexGraph {
   /// Distance of each target from the nearest source, points that see each other included. Between two points the same
   /// bits in both directions. \throw InputError as `distances`; Cancelled. O(arcs).
   std::vector<double> distances_to(const QuerySources& sources, const SurfacePoints& targets, Job* job = nullptr) const;
+
+  /// Whether a CUDA device keeps the arcs, since a query there.
+  bool is_on_device() const;
+  /// How long the last query by a CUDA device took there; nothing when there was none.
+  std::optional<DeviceTimes> query_times() const;
 
   /// Memory that queries leave to the next.
   QueryCache& query_cache() const { return *queries_; }

@@ -206,6 +206,7 @@ class SaddleVertexGraph:
         limit: SupportsFloat = ...,
         method: _Method = "label_correcting",
         *,
+        device: _Device = "auto",
         job: Job | None = None,
     ) -> _Floats: ...
     def nearest(
@@ -214,10 +215,17 @@ class SaddleVertexGraph:
         limit: SupportsFloat = ...,
         method: _Method = "label_correcting",
         *,
+        device: _Device = "auto",
         job: Job | None = None,
     ) -> tuple[_Floats, _Indices]: ...
     def fields(
-        self, sources: _Sources, limit: SupportsFloat = ..., *, threads: SupportsIndex = 0, job: Job | None = None
+        self,
+        sources: _Sources,
+        limit: SupportsFloat = ...,
+        *,
+        threads: SupportsIndex = 0,
+        device: _Device = "auto",
+        job: Job | None = None,
     ) -> _Floats: ...
     def distance(
         self, a: SupportsIndex | SurfacePoints, b: SupportsIndex | SurfacePoints, *, job: Job | None = None
@@ -267,6 +275,8 @@ class SaddleVertexGraph:
     def device(self) -> str: ...
     @property
     def device_times(self) -> dict[str, float] | None: ...
+    @property
+    def query_times(self) -> dict[str, float] | None: ...
     @property
     def build_seconds(self) -> float: ...
 

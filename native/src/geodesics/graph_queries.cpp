@@ -12,6 +12,7 @@
 #include "geodesics/label_propagation.h"
 #include "geodesics/point_targets.h"
 #include "geodesics/query_cache.h"
+#include "geodesics/twin_search.h"
 #include "support/memory.h"
 #include "support/parallel.h"
 
@@ -26,6 +27,8 @@ void check(const SaddleVertexGraph& graph, const QuerySources& sources, const Qu
   if (std::isnan(options.limit) || options.limit < 0)
     throw InputError(message("limit: wanted a distance of 0 or more, got ", options.limit));
 }
+
+bool by_device(const QueryOptions& options) { return options.cuda_device >= 0; }
 
 /// In sentences: 12.3 GB.
 std::string in_gigabytes(double bytes) { return message(std::ceil(bytes / 1e8) / 10, " GB"); }
@@ -64,9 +67,13 @@ std::vector<double> SaddleVertexGraph::distances(const QuerySources& sources, co
   check(*this, sources, options);
   const double share = share_of_fans(*this, sources, 1);
   const SourceFans from = find_fans(*this, sources, stage.part(0, share), {.limit = options.limit});
+  std::vector<double> result(mesh_->vertex_count());
+  if (by_device(options)) {
+    twin_search(*this, {{seeds_of(from.fans)}}, options, {result.data(), nullptr}, stage.part(share, 1));
+    return result;
+  }
   const auto search = queries_->field_searches.lease();
   search->run(*this, seeds_of(from.fans), options, SearchLabels::none, stage.part(share, 1));
-  std::vector<double> result(mesh_->vertex_count());
   search->write_distances(*this, result);
   return result;
 }
@@ -76,6 +83,12 @@ NearestField SaddleVertexGraph::nearest(const QuerySources& sources, const Query
   check(*this, sources, options);
   const double share = share_of_fans(*this, sources, 1);
   const SourceFans from = find_fans(*this, sources, stage.part(0, share), {.limit = options.limit});
+  if (by_device(options)) {
+    NearestField field{std::vector<double>(mesh_->vertex_count()), std::vector<Index>(mesh_->vertex_count())};
+    const FieldsTo to{field.distance.data(), field.source.data()};
+    twin_search(*this, {{seeds_of(from.fans)}}, options, to, stage.part(share, 1));
+    return field;
+  }
   LabelField field = propagate_labels(*this, seeds_of(from.fans), options, false, stage.part(share, 1));
   return {std::move(field.distance), std::move(field.source)};
 }
@@ -90,6 +103,12 @@ DistanceFields SaddleVertexGraph::fields(const QuerySources& sources, const Quer
   const double share = share_of_fans(*this, sources, static_cast<double>(sources.size()));
   const std::vector<PointFan> fans =
       find_fans(*this, sources, stage.part(0, share), {.limit = options.limit, .threads = threads}).fans;
+  if (by_device(options)) {
+    std::vector<std::vector<Seed>> seeds;
+    for (const PointFan& fan : fans) seeds.push_back(seeds_of({&fan, 1}));
+    twin_search(*this, seeds, options, {result.values.get(), nullptr}, stage.part(share, 1));
+    return result;
+  }
   std::vector<ScratchPool<GraphSearch>::Lease> searches;
   const auto count = static_cast<Index>(fans.size());
   for (int thread = 0; thread < std::min(thread_count(threads), count); ++thread)
@@ -104,6 +123,10 @@ DistanceFields SaddleVertexGraph::fields(const QuerySources& sources, const Quer
   });
   return result;
 }
+
+bool SaddleVertexGraph::is_on_device() const { return queries_->device_graphs.any(); }
+
+std::optional<DeviceTimes> SaddleVertexGraph::query_times() const { return queries_->device_graphs.last_times(); }
 
 PointDistance SaddleVertexGraph::distance(const SurfacePoint& a, const SurfacePoint& b, Job* job) const {
   const JobStage stage(job, "Measuring a distance");

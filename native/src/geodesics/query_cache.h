@@ -10,6 +10,7 @@
 #include "geodesics/landmarks.h"
 #include "geodesics/point_fans.h"
 #include "geodesics/point_search.h"
+#include "geodesics/twin_search.h"
 #include "support/scratch_pool.h"
 
 namespace saddleback {
@@ -20,6 +21,7 @@ struct QueryCache {
   ScratchPool<PointSearch> point_searches;
   ScratchPool<DirectFanFinder> fan_finders;
   ScratchPool<CurveFanFinder> curve_fan_finders;
+  DeviceGraphs device_graphs;
 
   /// Found by the first who asks; others wait. \throw Cancelled.
   const Landmarks& landmarks(const SaddleVertexGraph& graph, const JobStage& stage);

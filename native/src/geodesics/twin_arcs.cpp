@@ -1,22 +1,19 @@
 #include "geodesics/twin_arcs.h"
 
 #include <algorithm>
-#include <exception>
 #include <memory>
 #include <span>
-
-#include "saddleback/cuda_twins.h"
-#include "saddleback/error.h"
 
 #include "geodesics/arc_twin.h"
 #include "geodesics/disk_rows.h"
 #include "support/fresh_pages.h"
 #include "support/parallel.h"
+#include "support/twin_caller.h"
 
 namespace saddleback {
 namespace {
 
-/// Answers the twin's calls. What they throw waits here until the twin has come back.
+/// Answers the twin's calls.
 class Caller {
  public:
   Caller(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, const JobStage& stage)
@@ -25,15 +22,16 @@ class Caller {
   ArcTwinCaller calls() {
     return {this,
             [](void* self, double fraction) {
-              return static_cast<Caller*>(self)->guard([=](Caller& caller) { caller.stage_.update(fraction); });
+              auto& caller = *static_cast<Caller*>(self);
+              return caller.guard_.run([&] { caller.stage_.update(fraction); });
             },
             [](void* self, const std::int32_t* nodes, std::int32_t count, FoundRows* rows) {
-              return static_cast<Caller*>(self)->guard([=](Caller& caller) {
-                *rows = caller.find_rows({nodes, static_cast<std::size_t>(count)});
-              });
+              auto& caller = *static_cast<Caller*>(self);
+              return caller.guard_.run([&] { *rows = caller.find_rows({nodes, static_cast<std::size_t>(count)}); });
             },
             [](void* self, std::int64_t words, std::int64_t** offsets_to, std::uint64_t** words_to) {
-              return static_cast<Caller*>(self)->guard([=](Caller& caller) {
+              auto& caller = *static_cast<Caller*>(self);
+              return caller.guard_.run([&] {
                 caller.offsets_.resize(caller.search_.vertices.size() + 1);
                 caller.words_.resize(static_cast<std::size_t>(words));
                 lay_pages(std::as_writable_bytes(std::span(caller.words_)), caller.search_.threads, caller.stage_);
@@ -42,23 +40,10 @@ class Caller {
               });
             }};
   }
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
+  const TwinGuard& guard() const { return guard_; }
   ArcRows take() { return {search_.codec, std::move(offsets_), std::move(words_)}; }
 
  private:
-  template <class Work>
-  bool guard(Work&& work) {
-    try {
-      work(*this);
-      return true;
-    } catch (...) {
-      failure_ = std::current_exception();
-      return false;
-    }
-  }
-
   /// In the batches in which disk_arcs finds them: what ends the windows of one is the same then.
   FoundRows find_rows(std::span<const Index> nodes) {
     std::vector<std::span<const Index>> batches;
@@ -104,7 +89,7 @@ class Caller {
   const WaveTables& tables_;
   const DiskRule& rule_;
   const JobStage& stage_;
-  std::exception_ptr failure_;
+  TwinGuard guard_;
   std::vector<std::int64_t> offsets_;
   ArcWords words_;
   std::vector<std::int32_t> counts_;
@@ -116,8 +101,7 @@ class Caller {
 
 ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, int device,
                   DeviceTimes& times, const JobStage& stage) {
-  const CudaTwins* const twins = cuda_twins();
-  if (!twins) throw DeviceError("device: the CUDA module is not loaded");
+  const CudaTwins& twins = loaded_twins();
   const WaveMesh& mesh = tables.mesh;
   const WaveSectors& sectors = tables.sectors;
   const WaveScene scene = wave_scene(mesh, rule);
@@ -144,9 +128,7 @@ ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskR
 
   Caller caller(search, tables, rule, stage);
   TwinReason reason;
-  const TwinStatus status = twins->find_arcs(request, caller.calls(), times, reason);
-  caller.rethrow();
-  if (status != TwinStatus::done) throw DeviceError(message("device: ", reason.text));
+  caller.guard().check(twins.find_arcs(request, caller.calls(), times, reason), reason);
   return caller.take();
 }
 

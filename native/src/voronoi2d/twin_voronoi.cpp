@@ -1,19 +1,16 @@
 #include "voronoi2d/twin_voronoi.h"
 
 #include <algorithm>
-#include <exception>
-
-#include "saddleback/cuda_twins.h"
-#include "saddleback/error.h"
 
 #include "support/fresh_pages.h"
+#include "support/twin_caller.h"
 #include "voronoi2d/curve_order.h"
 #include "voronoi2d/plane_twin.h"
 
 namespace saddleback::voronoi2d {
 namespace {
 
-/// Answers the twin's calls. What they throw waits here until the twin has come back.
+/// Answers the twin's calls.
 class Caller {
  public:
   Caller(std::span<const Vec2> sites, int threads, const JobStage& stage)
@@ -22,35 +19,26 @@ class Caller {
   PlaneTwinCaller calls() {
     return {this,
             [](void* self, double fraction) {
-              return static_cast<Caller*>(self)->guard([=](Caller& caller) { caller.stage_.update(fraction); });
+              auto& caller = *static_cast<Caller*>(self);
+              return caller.guard_.run([&] { caller.stage_.update(fraction); });
             },
             [](void* self, std::uint32_t* places, std::int32_t* order) {
-              return static_cast<Caller*>(self)->guard([=](Caller& caller) { caller.sort(places, order); });
+              auto& caller = *static_cast<Caller*>(self);
+              return caller.guard_.run([&] { caller.sort(places, order); });
             },
             [](void* self, const PlaneTwinSizes& most, PlaneTwinArrays* arrays) {
-              return static_cast<Caller*>(self)->guard([&](Caller& caller) { *arrays = caller.make_room(most); });
+              auto& caller = *static_cast<Caller*>(self);
+              return caller.guard_.run([&] { *arrays = caller.make_room(most); });
             },
             [](void* self, const PlaneTwinSizes& sizes) {
-              return static_cast<Caller*>(self)->guard([&](Caller& caller) { caller.resize(sizes); });
+              auto& caller = *static_cast<Caller*>(self);
+              return caller.guard_.run([&] { caller.resize(sizes); });
             }};
   }
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
+  const TwinGuard& guard() const { return guard_; }
   Voronoi2d take() { return std::move(result_); }
 
  private:
-  template <class Work>
-  bool guard(Work&& work) {
-    try {
-      work(*this);
-      return true;
-    } catch (...) {
-      failure_ = std::current_exception();
-      return false;
-    }
-  }
-
   void sort(std::uint32_t* places, std::int32_t* order) const {
     const LargeArray<Placed> items = curve_order(sites_, stage_.part(0.1, 0.2));
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -92,15 +80,14 @@ class Caller {
   std::span<const Vec2> sites_;
   int threads_;
   const JobStage& stage_;
-  std::exception_ptr failure_;
+  TwinGuard guard_;
   Voronoi2d result_;
 };
 
 }  // namespace
 
 std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, int threads, const JobStage& stage) {
-  const CudaTwins* const twins = cuda_twins();
-  if (!twins) throw DeviceError("device: the CUDA module is not loaded");
+  const CudaTwins& twins = loaded_twins();
   PlaneTwinRequest request;
   request.device = device;
   request.most_bytes = cuda_memory_limit();
@@ -110,10 +97,9 @@ std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, i
   Caller caller(sites, threads, stage);
   DeviceTimes times;
   TwinReason reason;
-  const TwinStatus status = twins->find_voronoi(request, caller.calls(), times, reason);
-  caller.rethrow();
+  const TwinStatus status = twins.find_voronoi(request, caller.calls(), times, reason);
   if (status == TwinStatus::left) return std::nullopt;
-  if (status != TwinStatus::done) throw DeviceError(message("device: ", reason.text));
+  caller.guard().check(status, reason);
   Voronoi2d result = caller.take();
   result.sites.resize(sites.size());
   constexpr Index k_piece = 1 << 16;
