@@ -56,6 +56,9 @@ def main(arguments: list[str]) -> int:
         mesh = sb.read_mesh(name)
         for rule in RULES:
             measure(Path(name).stem, mesh, rule)
+    print(f"{'mesh':<28} {'query':<15}{HEAD}")
+    for name in arguments:
+        measure_queries(Path(name).stem, sb.SaddleVertexGraph(sb.read_mesh(name), **RULES[-1]))
     return 0
 
 
@@ -72,6 +75,34 @@ def measure_plane(kind: str, count: int) -> None:
     far = [twin.device_times["second_pass"] if twin.device_times else -1 for twin in twins]
     done = "left to the processor" if min(far) < 0 else f"second pass {max(far)}, {'equal' if same else 'DIFFERENT'}"
     print(f"{kind:<28} {count:<15,}{parts_of(twins)} {1e3 * wall:6.1f} {1e3 * processor:6.1f}  {done}", flush=True)
+
+
+def measure_queries(name: str, graph: sb.SaddleVertexGraph) -> None:
+    rng = np.random.default_rng(1)
+    queries: tuple[tuple[str, int, Callable[..., Any]], ...] = (
+        ("distances", 1, graph.distances),
+        ("fields", 64, graph.fields),
+        ("nearest", 1500, graph.nearest),
+    )
+    for word, count, query in queries:
+        sources = rng.integers(0, len(graph.mesh.vertices), count).astype(np.int32)
+        twins, times, walls, processor = [], [], [], []
+        for _ in range(TIMES):
+            start = time.perf_counter()
+            twins.append(query(sources, device="cuda"))
+            walls.append(time.perf_counter() - start)
+            times.append(graph.query_times or {})
+            start = time.perf_counter()
+            own = query(sources, device="cpu")
+            processor.append(time.perf_counter() - start)
+        same = all(np.array_equal(twin, own) for twin in twins)
+        parts = "".join(f"{1e3 * min(one[part] for one in times):10.2f}" for part in PARTS)
+        how = f"{word} of {count:,}"
+        print(
+            f"{name:<28} {how:<15}{parts} {1e3 * min(walls):6.1f} {1e3 * min(processor):6.1f}  "
+            f"{'equal' if same else 'DIFFERENT'}",
+            flush=True,
+        )
 
 
 def measure(name: str, mesh: sb.Mesh, rule: dict[str, Any]) -> None:

@@ -6,6 +6,7 @@ import importlib
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import saddleback as sb
@@ -52,6 +53,20 @@ def test_without_a_device_the_reason_is_told_and_auto_takes_the_processor(
         sb.SaddleVertexGraph(mesh, device="cuda")
     assert sb.SaddleVertexGraph(mesh, device="auto").device == "cpu"
     assert [device.kind for device in sb.devices()] == ["cpu"]
+
+
+def test_queries_without_a_device_run_on_the_processor_unless_one_is_asked_for(
+    mesh: sb.Mesh, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    use_module(monkeypatch, None)
+    graph = sb.SaddleVertexGraph(mesh)
+    for query in (graph.distances, graph.nearest, graph.fields):
+        with pytest.raises(sb.DeviceError):
+            query([0], device="cuda")
+        with pytest.raises(sb.InputError, match="device: wanted 'auto'"):
+            query([0], device="gpu")
+        np.testing.assert_array_equal(query([0]), query([0], device="cpu"))
+    assert graph.query_times is None
 
 
 def test_a_device_number_that_does_not_exist_is_named(mesh: sb.Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
