@@ -75,8 +75,7 @@ class Union {
         if (target < node) continue;
         const Row& there = rows_[target];
         const int at =
-            kernel_.find_target(there.words, count_of(target), static_cast<std::uint32_t>(codec_.target_mask()),
-                                static_cast<std::uint32_t>(node));
+            kernel_.find_target(there.words, count_of(target), codec_.target_mask(), static_cast<std::uint64_t>(node));
         if (at < 0) {
           missing_[block_index].push_back(
               {target, MissingArc::Kind::added, packing_.reversed(node, block.back_sectors[i], word)});

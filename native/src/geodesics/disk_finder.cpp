@@ -167,57 +167,80 @@ void DiskFinder::advance() {
 
 /// The next generation looks these up in no order: unless they are on their way by then, that is half of all time.
 void DiskFinder::fetch_records(const std::int32_t* edges, int count) const {
-  for (int i = 0; i < count; ++i) __builtin_prefetch(mesh_.records() + (edges[i] >> k_batch_bits));
+  const EdgeRecord* const records = mesh_.records();
+  for (int i = 0; i < count; ++i) __builtin_prefetch(records + (edges[i] >> k_batch_bits));
+}
+
+void DiskFinder::lower_labels(int from, int to) {
+  if (by_count()) {
+    lower_labels_of<k_batch>(from, to);
+  } else {
+    lower_labels_of<1>(from, to);
+  }
 }
 
 // What is new and what is better cannot be foretold: nothing here depends on it but what is written.
-void DiskFinder::lower_labels(int from, int to) {
+template <int Lists>
+void DiskFinder::lower_labels_of(int from, int to) {
   const SightingRows rows = sightings();
-  std::array<std::size_t, k_batch> counts{};
-  const int lists = by_count() ? k_batch : 1;
-  for (int list = 0; list < lists; ++list) {
-    counts[list] = touched_[list].size();
-    touched_[list].resize(counts[list] + static_cast<std::size_t>(to - from) + 1);
+  const std::int32_t *const slots = rows.slot, *const seen = rows.label;
+  std::int32_t* const labels = labels_.data();
+  BestArc* const arcs = arcs_.data();
+  std::array<std::int32_t*, Lists> ends;
+  for (int list = 0; list < Lists; ++list) {
+    const std::size_t count = touched_[list].size();
+    touched_[list].resize(count + static_cast<std::size_t>(to - from) + 1);
+    ends[list] = touched_[list].data() + count;
   }
   for (int i = from; i < to; ++i) {
-    const std::int32_t slot = rows.slot[i], label = rows.label[i], known = labels_[slot];
-    const BestArc best = arcs_[slot];
+    const std::int32_t slot = slots[i], label = seen[i], known = labels[slot];
+    const BestArc best = arcs[slot];
     const bool is_better = makes_arc(label) & (label < best.label);
-    arcs_[slot] = {is_better ? label : best.label, is_better ? i : best.sighting};
-    labels_[slot] = std::min(known, label);
-    const std::int32_t list = slot & (lists - 1);
-    touched_[list][counts[list]] = slot;
-    counts[list] += known == k_unreached;
-    if (by_count() && label < known) changed_.push_back(slot);
+    arcs[slot] = {is_better ? label : best.label, is_better ? i : best.sighting};
+    labels[slot] = std::min(known, label);
+    std::int32_t*& end = ends[slot & (Lists - 1)];
+    *end = slot;
+    end += known == k_unreached;
+    if constexpr (Lists > 1)
+      if (label < known) changed_.push_back(slot);
   }
-  for (int list = 0; list < lists; ++list) touched_[list].resize(counts[list]);
-}
-
-/// An arc that is not the shortest way stays as long as others may rely on it: no distance in the graph exceeds the
-/// shortest by more than the tolerance, so that longer arcs serve nothing.
-bool DiskFinder::is_kept(std::int32_t slot) const {
-  const float reach = distance_of(arcs_[slot].label);
-  return (reach < k_infinity) & (reach <= arc_slack(rule_) * distance_of(labels_[slot])) &
-         (reach <= limits_[slot % k_batch]);
+  for (int list = 0; list < Lists; ++list)
+    touched_[list].resize(static_cast<std::size_t>(ends[list] - touched_[list].data()));
 }
 
 /// In the order in which they were sighted. As in lower_labels, nothing but what is written depends on what is chosen.
+///
+/// An arc that is not the shortest way stays as long as others may rely on it: no distance in the graph exceeds the
+/// shortest by more than the tolerance, so that longer arcs serve nothing.
 void DiskFinder::choose() {
   const SightingRows rows = sightings();
-  chosen_counts_.fill(0);
+  const std::int32_t *const slots = rows.slot, *const seen = rows.label, *const roots = rows.root;
+  const std::int32_t* const labels = labels_.data();
+  const BestArc* const arcs = arcs_.data();
+  const double slack = arc_slack(rule_);
+  std::array<float, k_batch> limits;
+  for (int lane = 0; lane < k_batch; ++lane) limits[lane] = std::min(limits_[lane], std::numeric_limits<float>::max());
   const std::size_t room = static_cast<std::size_t>(sighting_count_) + k_row_padding;
-  for (auto& chosen : chosen_)
-    if (chosen.size() < room) chosen.resize(2 * room);
-  for (int i = 0; i < sighting_count_; ++i) {
-    const std::int32_t slot = rows.slot[i], lane = slot % k_batch;
-    const bool is_shortest = (arcs_[slot].sighting == i) & makes_arc(rows.label[i]), kept = is_kept(slot);
-    // Edges stay even where something shorter, but no arc, was found.
-    const bool is_chosen = (is_shortest & kept) | (is_link(rows.root[i]) & (is_shortest | !kept));
-    chosen_[lane][chosen_counts_[lane]] = i;
-    chosen_counts_[lane] += is_chosen;
+  std::array<std::int32_t*, k_batch> ends;
+  for (int lane = 0; lane < k_batch; ++lane) {
+    if (chosen_[lane].size() < room) chosen_[lane].resize(2 * room);
+    ends[lane] = chosen_[lane].data();
   }
-  for (int lane = 0; lane < k_batch; ++lane)
-    std::fill_n(chosen_[lane].begin() + static_cast<std::ptrdiff_t>(chosen_counts_[lane]), k_row_padding, 0);
+  for (int i = 0; i < sighting_count_; ++i) {
+    const std::int32_t slot = slots[i], lane = slot & (k_batch - 1);
+    const BestArc best = arcs[slot];
+    const float reach = distance_of(best.label);
+    const bool kept = (reach <= slack * distance_of(labels[slot])) & (reach <= limits[lane]);
+    const bool is_shortest = (best.sighting == i) & makes_arc(seen[i]);
+    // Edges stay even where something shorter, but no arc, was found.
+    const bool is_chosen = (is_shortest & kept) | (is_link(roots[i]) & (is_shortest | !kept));
+    *ends[lane] = i;
+    ends[lane] += is_chosen;
+  }
+  for (int lane = 0; lane < k_batch; ++lane) {
+    chosen_counts_[lane] = static_cast<std::size_t>(ends[lane] - chosen_[lane].data());
+    std::fill_n(ends[lane], k_row_padding, 0);
+  }
 }
 
 void DiskFinder::clear() {

@@ -91,7 +91,8 @@ class DiskFinder {
   void advance();
   void fetch_records(const std::int32_t* edges, int count) const;
   void lower_labels(int from, int to);
-  bool is_kept(std::int32_t slot) const;
+  template <int Lists>
+  void lower_labels_of(int from, int to);
   void choose();
 
   bool by_count() const { return rule_.k > 0; }

@@ -28,23 +28,30 @@ void DiskRows::write_row(Index node, int lane, FoundArcs& found) {
   const std::size_t before = found.words.size();
   found.words.resize(before + count);
   found.back_sectors.resize(found.words.size());
-  const float per_radian = sectors_.per_radian(node);
+  // What is written are bytes, which might be anything's as far as a compiler knows: all that is read is at hand.
+  const WaveSectors& sectors = sectors_;
+  const ArcPacking packing = codec_.packing();
+  const double unit = mesh_.unit(), *const lengths = lengths_.data();
+  const float per_radian = sectors.per_radian(node), *const leaving_angles = leaving_.data(),
+              *const back_angles = back_.data();
+  std::uint64_t* const words = found.words.data() + before;
+  std::uint8_t* const back_sectors = found.back_sectors.data() + before;
   for (std::size_t i = 0; i < count; ++i) {
     const std::int32_t sighting = chosen[i];
-    const Index target = rows.slot[sighting] / k_batch, root = rows.root[sighting];
+    const Index target = rows.slot[sighting] >> k_batch_bits, root = rows.root[sighting];
     float leaving, back;
     if (!DiskFinder::is_link(root)) {
-      leaving = sectors_.sector(root) + leaving_[i] * per_radian;
-      back = sectors_.apex_sector(rows.edge[sighting] / k_batch) + back_[i] * sectors_.per_radian(target);
+      leaving = sectors.sector(root) + leaving_angles[i] * per_radian;
+      back = sectors.apex_sector(rows.edge[sighting] >> k_batch_bits) + back_angles[i] * sectors.per_radian(target);
     } else if (const auto [edge, other_side] = DiskFinder::link_of(rows, sighting); !other_side) {
-      leaving = sectors_.sector(edge);
-      back = sectors_.reverse_sector(edge);
+      leaving = sectors.sector(edge);
+      back = sectors.reverse_sector(edge);
     } else {  // at the boundary
       leaving = ArcCodec::k_sectors;
-      back = sectors_.apex_sector(edge);
+      back = sectors.apex_sector(edge);
     }
-    found.words[before + i] = codec_.pack(target, to_sector(leaving), lengths_[i] * mesh_.unit());
-    found.back_sectors[before + i] = static_cast<std::uint8_t>(to_sector(back));
+    words[i] = packing.pack(target, to_sector(leaving), lengths[i] * unit);
+    back_sectors[i] = static_cast<std::uint8_t>(to_sector(back));
   }
 }
 

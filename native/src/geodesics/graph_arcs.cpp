@@ -106,8 +106,14 @@ DiskRule disk_rule(Index k, double accuracy) { return {.k = k, .tolerance = k_ro
 
 WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
                        int threads, const JobStage& stage)
-    : mesh((check_mesh_size(unfolding.mesh()), unfolding), nodes, vertices, threads, stage),
-      sectors(mesh, unfolding, vertices, ArcCodec::k_sectors, threads, stage) {}
+    : WaveTables(unfolding,
+                 (check_mesh_size(unfolding.mesh()), NodeEdges(unfolding.mesh(), nodes, vertices, threads, stage)),
+                 nodes, vertices, threads, stage) {}
+
+WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+                       std::span<const Index> vertices, int threads, const JobStage& stage)
+    : mesh(unfolding, edges, nodes, vertices, threads, stage),
+      sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage) {}
 
 std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
                                  const JobStage& stage) {

@@ -20,6 +20,10 @@ struct WaveTables {
   /// \throw InputError for more triangles than slots can be numbered for; Cancelled.
   WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
              const JobStage& stage);
+
+ private:
+  WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+             std::span<const Index> vertices, int threads, const JobStage& stage);
 };
 
 /// Where arcs are looked for.

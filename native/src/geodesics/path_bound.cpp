@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace saddleback {
+namespace {
+
+// Vertices of the queue whose first half-edge is asked for ahead, and vertices whose faces are: they lie anywhere.
+constexpr std::size_t k_vertices_ahead = 16, k_faces_ahead = 8;
+
+}  // namespace
 
 double longest_path_bound(const Mesh& mesh, const JobStage& stage) {
   std::vector<double> depth(mesh.vertex_count(), -1);
@@ -20,6 +26,12 @@ double longest_path_bound(const Mesh& mesh, const JobStage& stage) {
     reach(root, 0);
     for (; next < queue.size(); ++next) {
       stage.check();
+      if (next + k_vertices_ahead < queue.size()) {
+        const Index ahead = mesh.first_halfedge(queue[next + k_faces_ahead]);
+        __builtin_prefetch(&mesh.twins()[ahead]);
+        __builtin_prefetch(&mesh.lengths()[ahead]);
+        __builtin_prefetch(&mesh.triangles()[Mesh::face_of(ahead)]);
+      }
       const Index vertex = queue[next], first = mesh.first_halfedge(vertex);
       Index h = first;
       do {

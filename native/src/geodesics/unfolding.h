@@ -16,7 +16,7 @@ class Unfolding {
   const Mesh& mesh() const { return *mesh_; }
   const Vec2& apex(Index h) const { return apexes_[h]; }
   /// Surface angle of h at its origin: counter-clockwise from first_halfedge, 0 to total_angle, radians.
-  double polar(Index h) const { return polars_[h]; }
+  const double& polar(Index h) const { return polars_[h]; }
   /// The same for the edge of h seen from to(h): also where h has no twin.
   double polar_of_reverse(Index h) const {
     const Index t = mesh_->twin(h);

@@ -1,62 +1,89 @@
 #include "geodesics/wave_mesh.h"
 
+#include <algorithm>
+
 #include "support/parallel.h"
 
 namespace saddleback {
 namespace {
 
 constexpr Index k_chunk = 1024;
+// Edges whose half-edges' records are asked for ahead, and edges whose neighbours' are.
+constexpr Index k_records_ahead = 24, k_neighbours_ahead = 12;
 
-/// Calls use(halfedge) for the half-edges out of a vertex, counter-clockwise.
-template <class Use>
-void for_each_out(const Mesh& mesh, Index vertex, Use&& use) {
-  const Index first = mesh.first_halfedge(vertex);
-  Index h = first;
-  do {
-    use(h);
-    h = mesh.rotate(h);
-  } while (h != k_none && h != first);
+/// Calls use(edge, halfedge) for the edges out of each node, a chunk of nodes to a thread. `fetch(halfedge)` and
+/// `fetch_neighbours(halfedge)` ask for what will be read: half-edges of neighbouring nodes lie anywhere.
+template <class Use, class Fetch, class FetchNeighbours>
+void for_each_edge(const NodeEdges& edges, int threads, const JobStage& stage, Use&& use, Fetch&& fetch,
+                   FetchNeighbours&& fetch_neighbours) {
+  const auto nodes = static_cast<Index>(edges.first.size()) - 1, last = static_cast<Index>(edges.halfedges.size()) - 1;
+  parallel_for((nodes + k_chunk - 1) / k_chunk, threads, 1, [&](Index chunk, int) {
+    stage.check();
+    const Index begin = chunk * k_chunk, end = std::min(nodes, begin + k_chunk);
+    for (Index node = begin; node < end; ++node) {
+      for (Index e = edges.first[node]; e < edges.first[node + 1]; ++e) {
+        fetch(edges.halfedges[std::min(e + k_records_ahead, last)]);
+        fetch_neighbours(edges.halfedges[std::min(e + k_neighbours_ahead, last)]);
+        use(node, e, edges.halfedges[e]);
+      }
+    }
+  });
 }
 
 }  // namespace
 
-WaveMesh::WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
-                   int threads, const JobStage& stage) {
-  const Mesh& mesh = unfolding.mesh();
-  const auto edges = static_cast<std::size_t>(mesh.halfedge_count());
-  unit_ = mesh.mean_edge_length();
-  first_.assign(vertices.size() + 1, 0);
+NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+                     const JobStage& stage)
+    : first(vertices.size() + 1, 0), halfedges(mesh.halfedge_count()), edge_of(mesh.halfedge_count()) {
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (f % (16 * k_chunk) == 0) stage.check();
+    for (const Index vertex : mesh.triangles()[f]) ++first[nodes[vertex] + 1];
+  }
   const auto count = static_cast<Index>(vertices.size());
+  for (Index node = 0; node < count; ++node) first[node + 1] += first[node];
   parallel_for(count, threads, k_chunk, [&](Index node, int) {
     stage.check();
-    for_each_out(mesh, vertices[node], [&](Index) { ++first_[node + 1]; });
+    Index h = mesh.first_halfedge(vertices[node]);
+    for (Index e = first[node]; e < first[node + 1]; ++e, h = mesh.rotate(h)) {
+      halfedges[e] = h;
+      edge_of[h] = e;
+    }
   });
-  for (Index node = 0; node < count; ++node) first_[node + 1] += first_[node];
-  stage.update(0.2);
-  LargeArray<Index> edge_of(edges);
-  parallel_for(count, threads, k_chunk, [&](Index node, int) {
-    stage.check();
-    Index next = first_[node];
-    for_each_out(mesh, vertices[node], [&](Index h) { edge_of[h] = next++; });
-  });
-  stage.update(0.4);
-  records_.resize(edges);
-  targets_.resize(edges);
-  lengths_.resize(edges);
+}
+
+WaveMesh::WaveMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+                   std::span<const Index> vertices, int threads, const JobStage& stage)
+    : first_(edges.first) {
+  const Mesh& mesh = unfolding.mesh();
+  unit_ = mesh.mean_edge_length();
+  records_.resize(edges.halfedges.size());
+  targets_.resize(edges.halfedges.size());
+  lengths_.resize(edges.halfedges.size());
   saddles_.resize(vertices.size());
-  const auto edge_behind = [&](Index h) { return mesh.twin(h) == k_none ? k_none : edge_of[mesh.twin(h)]; };
-  parallel_for(count, threads, k_chunk, [&](Index node, int) {
-    stage.check();
-    const Index vertex = vertices[node];
-    saddles_[node] = mesh.is_saddle(vertex);
-    for_each_out(mesh, vertex, [&](Index h) {
-      const Index e = edge_of[h], apex = mesh.apex(h);
-      const Vec2 place = unfolding.apex(h) / mesh.length(h);
-      records_[e] = {place.x(), place.y(), edge_behind(Mesh::prev(h)), edge_behind(Mesh::next(h)), nodes[apex], 0};
-      targets_[e] = nodes[mesh.to(h)];
-      lengths_[e] = mesh.length(h) / unit_;
-    });
-  });
+  const Index *const twins = mesh.twins().data(), *const edge_of = edges.edge_of.data();
+  const auto edge_behind = [&](Index h) { return twins[h] == k_none ? k_none : edge_of[twins[h]]; };
+  for_each_edge(
+      edges, threads, stage,
+      [&](Index node, Index e, Index h) {
+        if (e == first_[node]) saddles_[node] = mesh.is_saddle(vertices[node]);
+        const Index apex = mesh.apex(h);
+        const Vec2 place = unfolding.apex(h) / mesh.length(h);
+        records_[e] = {place.x(), place.y(), edge_behind(Mesh::prev(h)), edge_behind(Mesh::next(h)), nodes[apex], 0};
+        targets_[e] = nodes[mesh.to(h)];
+        lengths_[e] = mesh.length(h) / unit_;
+      },
+      [&](Index h) {
+        __builtin_prefetch(twins + h);
+        __builtin_prefetch(&mesh.triangles()[Mesh::face_of(h)]);
+        __builtin_prefetch(mesh.lengths().data() + h);
+        __builtin_prefetch(&unfolding.apex(h));
+      },
+      [&](Index h) {
+        __builtin_prefetch(edge_of + std::max(twins[Mesh::prev(h)], 0));
+        __builtin_prefetch(edge_of + std::max(twins[Mesh::next(h)], 0));
+        __builtin_prefetch(&nodes[mesh.apex(h)]);
+        __builtin_prefetch(&nodes[mesh.to(h)]);
+      });
 }
 
 Index WaveMesh::edge_between(Index from, Index to) const {
@@ -67,37 +94,44 @@ Index WaveMesh::edge_between(Index from, Index to) const {
 
 FanMesh::FanMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
                  const JobStage& stage)
-    : waves_(unfolding, nodes, vertices, threads, stage.part(0, 0.8)),
-      apex_directions_(static_cast<std::size_t>(unfolding.mesh().halfedge_count())) {
-  parallel_for(waves_.node_count(), threads, k_chunk, [&](Index node, int) {
-    stage.check();
-    Index e = waves_.begin(node);
-    for_each_out(unfolding.mesh(), vertices[node],
-                 [&](Index h) { apex_directions_[e++] = unfolding.polar(Mesh::prev(h)); });
-  });
+    : FanMesh(unfolding, NodeEdges(unfolding.mesh(), nodes, vertices, threads, stage.part(0, 0.4)), nodes, vertices,
+              threads, stage.part(0.4, 1)) {}
+
+FanMesh::FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+                 std::span<const Index> vertices, int threads, const JobStage& stage)
+    : waves_(unfolding, edges, nodes, vertices, threads, stage.part(0, 0.7)), apex_directions_(edges.halfedges.size()) {
+  for_each_edge(
+      edges, threads, stage, [&](Index, Index e, Index h) { apex_directions_[e] = unfolding.polar(Mesh::prev(h)); },
+      [&](Index h) { __builtin_prefetch(&unfolding.polar(h)); }, [](Index) {});
 }
 
-WaveSectors::WaveSectors(const WaveMesh& waves, const Unfolding& unfolding, std::span<const Index> vertices,
+WaveSectors::WaveSectors(const NodeEdges& edges, const Unfolding& unfolding, std::span<const Index> vertices,
                          int sectors, int threads, const JobStage& stage) {
   const Mesh& mesh = unfolding.mesh();
-  const auto edges = static_cast<std::size_t>(mesh.halfedge_count());
-  sectors_.resize(edges);
-  reverse_sectors_.resize(edges);
-  apex_sectors_.resize(edges);
+  sectors_.resize(edges.halfedges.size());
+  reverse_sectors_.resize(edges.halfedges.size());
+  apex_sectors_.resize(edges.halfedges.size());
   per_radian_.resize(vertices.size());
   const auto per_radian = [&](Index vertex) { return sectors / mesh.total_angle(vertex); };
-  parallel_for(waves.node_count(), threads, k_chunk, [&](Index node, int) {
-    stage.check();
-    const Index vertex = vertices[node];
-    per_radian_[node] = static_cast<float>(per_radian(vertex));
-    Index e = waves.begin(node);
-    for_each_out(mesh, vertex, [&](Index h) {
-      sectors_[e] = static_cast<float>(unfolding.polar(h) * per_radian(vertex));
-      reverse_sectors_[e] = static_cast<float>(unfolding.polar_of_reverse(h) * per_radian(mesh.to(h)));
-      apex_sectors_[e] = static_cast<float>(unfolding.polar(Mesh::prev(h)) * per_radian(mesh.apex(h)));
-      ++e;
-    });
-  });
+  for_each_edge(
+      edges, threads, stage,
+      [&](Index node, Index e, Index h) {
+        const double here = per_radian(vertices[node]);
+        if (e == edges.first[node]) per_radian_[node] = static_cast<float>(here);
+        sectors_[e] = static_cast<float>(unfolding.polar(h) * here);
+        reverse_sectors_[e] = static_cast<float>(unfolding.polar_of_reverse(h) * per_radian(mesh.to(h)));
+        apex_sectors_[e] = static_cast<float>(unfolding.polar(Mesh::prev(h)) * per_radian(mesh.apex(h)));
+      },
+      [&](Index h) {
+        __builtin_prefetch(mesh.twins().data() + h);
+        __builtin_prefetch(&mesh.triangles()[Mesh::face_of(h)]);
+        __builtin_prefetch(&unfolding.polar(h));
+      },
+      [&](Index h) {
+        __builtin_prefetch(&unfolding.polar(std::max(mesh.twin(h), 0)));
+        __builtin_prefetch(&mesh.total_angles()[mesh.to(h)]);
+        __builtin_prefetch(&mesh.total_angles()[mesh.apex(h)]);
+      });
 }
 
 }  // namespace saddleback

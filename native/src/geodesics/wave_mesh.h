@@ -12,13 +12,23 @@
 
 namespace saddleback {
 
-/// Half-edges out of one node are neighbours, counter-clockwise. Lengths are in units of the mean edge, so that
+/// A mesh's half-edges in the order of the graph's nodes.
+struct NodeEdges {
+  std::vector<Index> first;     ///< per node, and the number of edges at the end
+  LargeArray<Index> halfedges;  ///< of the edges; those out of one node are neighbours, counter-clockwise
+  LargeArray<Index> edge_of;    ///< the halfedges' inverse
+  /// `nodes` of the vertices and `vertices` of the nodes. \throw Cancelled.
+  NodeEdges(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+            const JobStage& stage);
+};
+
+/// Half-edges in the order of NodeEdges. Lengths are in units of the mean edge, so that
 /// single-precision bounds hold at any scale.
 class WaveMesh {
  public:
-  /// `nodes` of the vertices and `vertices` of the nodes. \throw Cancelled.
-  WaveMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
-           const JobStage& stage);
+  /// \throw Cancelled.
+  WaveMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+           std::span<const Index> vertices, int threads, const JobStage& stage);
 
   Index node_count() const { return static_cast<Index>(first_.size()) - 1; }
   Index begin(Index node) const { return first_[node]; }  ///< edges out of a node: [begin, end)
@@ -57,7 +67,7 @@ class WaveMesh {
 /// What the arcs of points are found with, and their directions back.
 class FanMesh {
  public:
-  /// As WaveMesh. \throw Cancelled.
+  /// `nodes` of the vertices and `vertices` of the nodes. \throw Cancelled.
   FanMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
           const JobStage& stage);
   const WaveMesh& waves() const { return waves_; }
@@ -65,6 +75,8 @@ class FanMesh {
   double apex_direction(Index edge) const { return apex_directions_[edge]; }
 
  private:
+  FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+          std::span<const Index> vertices, int threads, const JobStage& stage);
   WaveMesh waves_;
   std::vector<double> apex_directions_;
 };
@@ -73,7 +85,7 @@ class FanMesh {
 class WaveSectors {
  public:
   /// `vertices` of the nodes. \throw Cancelled.
-  WaveSectors(const WaveMesh& waves, const Unfolding& unfolding, std::span<const Index> vertices, int sectors,
+  WaveSectors(const NodeEdges& edges, const Unfolding& unfolding, std::span<const Index> vertices, int sectors,
               int threads, const JobStage& stage);
 
   float sector(Index edge) const { return sectors_[edge]; }                  ///< of the edge at its origin

@@ -82,7 +82,7 @@ struct WaveKernel {
   /// `chosen` up to its padding.
   void (*aim)(const SightingRows&, const std::int32_t* chosen, int count, double* lengths, float* leaving, float* back);
   /// Index of the first word whose bits below `mask` are `target`, -1 for none. Reads k_row_padding words more.
-  int (*find_target)(const std::uint64_t* words, int count, std::uint32_t mask, std::uint32_t target);
+  int (*find_target)(const std::uint64_t* words, int count, std::uint64_t mask, std::uint64_t target);
 };
 
 }  // namespace saddleback

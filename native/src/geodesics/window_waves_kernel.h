@@ -75,14 +75,13 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
     const Doubles to_dx = Simd::load(w.to_x + i), to_dy = Simd::load(w.to_y + i);
     const Doubles apex_dx = Simd::load(apexes.x + i), apex_dy = Simd::load(apexes.y + i);
     const Rays rays = load_rays(w, i);
-    const Ints from = Simd::load(w.from + i), to = Simd::load(w.to + i), apex_slot = Simd::load(apexes.slot + i);
     const FacePlaces face{Simd::narrow(from_dx),
                           Simd::narrow(from_dy),
                           Simd::narrow(to_dx),
                           Simd::narrow(to_dy),
-                          Simd::look_up(scene.labels, from),
-                          Simd::look_up(scene.labels, to),
-                          Simd::look_up(scene.labels, apex_slot)};
+                          Simd::look_up(scene.labels, w.from + i),
+                          Simd::look_up(scene.labels, w.to + i),
+                          Simd::look_up(scene.labels, apexes.slot + i)};
     const ApexView apex{Simd::narrow(apex_dx),
                         Simd::narrow(apex_dy),
                         Simd::load(apexes.reach + i),
@@ -130,8 +129,8 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
       packing.store(lefts.left_reach + l, rays.left_reach);
       packing.store(lefts.most + l, left_most);
       packing.store(lefts.edge + l, left_edge);
-      packing.store(lefts.from + l, from);
-      packing.store(lefts.to + l, apex_slot);
+      packing.store(lefts.from + l, Simd::load(w.from + i));
+      packing.store(lefts.to + l, Simd::load(apexes.slot + i));
       packing.store(lefts.root + l, root);
       l += packing.count();
     }
@@ -154,8 +153,8 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
       }
       packing.store(rights.most + r, right_most);
       packing.store(rights.edge + r, right_edge);
-      packing.store(rights.from + r, apex_slot);
-      packing.store(rights.to + r, to);
+      packing.store(rights.from + r, Simd::load(apexes.slot + i));
+      packing.store(rights.to + r, Simd::load(w.to + i));
       packing.store(rights.root + r, root);
       r += packing.count();
     }
@@ -177,12 +176,12 @@ void aim(const SightingRows& seen, const std::int32_t* chosen, int count, double
   }
 }
 
-int find_target(const std::uint64_t* words, int count, std::uint32_t mask, std::uint32_t target) {
-  const Ints low_bits = Simd::fill_int(static_cast<std::int32_t>(mask));
-  const Ints wanted = Simd::fill_int(static_cast<std::int32_t>(target));
+int find_target(const std::uint64_t* words, int count, std::uint64_t mask, std::uint64_t target) {
   for (int i = 0; i < count; i += Simd::width) {
-    const Mask here = ((Simd::low_words(words + i) & low_bits) == wanted) & Simd::first(count - i);
-    if (Simd::any(here)) return i + Simd::first_of(here);
+    const unsigned here = Simd::matches(words + i, mask, target);
+    if (here == 0) continue;
+    const int first = i + __builtin_ctz(here);
+    return first < count ? first : -1;
   }
   return -1;
 }

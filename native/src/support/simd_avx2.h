@@ -45,22 +45,34 @@ struct Simd : Vectors<8> {
   static constexpr const char* name = "avx2";
 
   static bool any(Mask mask) { return _mm256_movemask_ps(reinterpret_cast<__m256>(mask)) != 0; }
-  /// The number of the first lane of a mask that has one.
-  static int first_of(Mask mask) { return __builtin_ctz(_mm256_movemask_ps(reinterpret_cast<__m256>(mask))); }
-  /// Lower halves of 64-bit words.
-  static Ints low_words(const std::uint64_t* words) {
-    const __m256 low = _mm256_loadu_ps(reinterpret_cast<const float*>(words));
-    const __m256 high = _mm256_loadu_ps(reinterpret_cast<const float*>(words + 4));
-    const auto pairs = reinterpret_cast<__m256d>(_mm256_shuffle_ps(low, high, 0x88));
-    return reinterpret_cast<Ints>(_mm256_permute4x64_pd(pairs, 0xD8));
+  /// Which of `width` words from here on hold a number in the bits of a mask, a bit each.
+  static unsigned matches(const std::uint64_t* words, std::uint64_t mask, std::uint64_t number) {
+    const auto four = [&](const std::uint64_t* from) {
+      const __m256i bits = _mm256_set1_epi64x(static_cast<std::int64_t>(mask));
+      const __m256i wanted = _mm256_set1_epi64x(static_cast<std::int64_t>(number));
+      const __m256i read = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+      return static_cast<unsigned>(
+          _mm256_movemask_pd(reinterpret_cast<__m256d>(_mm256_cmpeq_epi64(_mm256_and_si256(read, bits), wanted))));
+    };
+    return four(words) | four(words + 4) << 4;
+  }
+  static Floats min(Floats a, Floats b) { return _mm256_min_ps(a, b); }
+  static Floats max(Floats a, Floats b) { return _mm256_max_ps(a, b); }
+  static Floats pick(Mask mask, Floats yes, Floats no) {
+    return _mm256_blendv_ps(no, yes, reinterpret_cast<__m256>(mask));
+  }
+  static Ints pick(Mask mask, Ints yes, Ints no) {
+    return reinterpret_cast<Ints>(_mm256_blendv_epi8(reinterpret_cast<__m256i>(no), reinterpret_cast<__m256i>(yes),
+                                                     reinterpret_cast<__m256i>(mask)));
   }
   static Floats sqrt(Floats a) { return _mm256_sqrt_ps(a); }
   static Floats narrow(Doubles a) { return _mm256_set_m128(_mm256_cvtpd_ps(a.high), _mm256_cvtpd_ps(a.low)); }
-  /// The values at table[index].
-  static Floats look_up(const std::int32_t* table, Ints index) {
+  /// The values at table[index[0]], table[index[1]] and so on; one by one, which is quicker than a gather.
+  static Floats look_up(const std::int32_t* table, const std::int32_t* index) {
     return floats_of(Ints{table[index[0]], table[index[1]], table[index[2]], table[index[3]], table[index[4]],
                           table[index[5]], table[index[6]], table[index[7]]});
   }
+  /// The values at table[index].
   static Floats look_up(const float* table, Ints index) {
     return _mm256_i32gather_ps(table, reinterpret_cast<__m256i>(index), 4);
   }

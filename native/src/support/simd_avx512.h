@@ -12,22 +12,24 @@ struct Simd : Vectors<16> {
   static constexpr const char* name = "avx512";
 
   static bool any(Mask mask) { return bits(mask) != 0; }
-  /// The number of the first lane of a mask that has one.
-  static int first_of(Mask mask) { return __builtin_ctz(bits(mask)); }
-  /// Lower halves of 64-bit words.
-  static Ints low_words(const std::uint64_t* words) {
-    const __m256i low = _mm512_cvtepi64_epi32(_mm512_loadu_si512(words));
-    const __m256i high = _mm512_cvtepi64_epi32(_mm512_loadu_si512(words + 8));
-    return reinterpret_cast<Ints>(_mm512_inserti32x8(_mm512_castsi256_si512(low), high, 1));
+  /// Which of `width` words from here on hold a number in the bits of a mask, a bit each.
+  static unsigned matches(const std::uint64_t* words, std::uint64_t mask, std::uint64_t number) {
+    const auto eight = [&](const std::uint64_t* from) {
+      const __m512i bits = _mm512_set1_epi64(static_cast<std::int64_t>(mask));
+      const __m512i wanted = _mm512_set1_epi64(static_cast<std::int64_t>(number));
+      return static_cast<unsigned>(_mm512_cmpeq_epi64_mask(_mm512_and_si512(_mm512_loadu_si512(from), bits), wanted));
+    };
+    return eight(words) | eight(words + 8) << 8;
   }
   static Floats sqrt(Floats a) { return _mm512_sqrt_ps(a); }
   static Floats narrow(Doubles a) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(a.low)), _mm512_cvtpd_ps(a.high), 1);
   }
-  /// The values at table[index].
-  static Floats look_up(const std::int32_t* table, Ints index) {
-    return _mm512_i32gather_ps(reinterpret_cast<__m512i>(index), table, 4);
+  /// The values at table[index[0]], table[index[1]] and so on.
+  static Floats look_up(const std::int32_t* table, const std::int32_t* index) {
+    return _mm512_i32gather_ps(_mm512_loadu_si512(index), table, 4);
   }
+  /// The values at table[index].
   static Floats look_up(const float* table, Ints index) {
     return _mm512_i32gather_ps(reinterpret_cast<__m512i>(index), table, 4);
   }

@@ -14,12 +14,11 @@ struct Simd : Vectors<4> {
 #endif
 
   static bool any(Mask mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
-  /// The number of the first lane of a mask that has one.
-  static int first_of(Mask mask) { return mask[0] ? 0 : mask[1] ? 1 : mask[2] ? 2 : 3; }
-  /// Lower halves of 64-bit words.
-  static Ints low_words(const std::uint64_t* words) {
-    return Ints{static_cast<std::int32_t>(words[0]), static_cast<std::int32_t>(words[1]),
-                static_cast<std::int32_t>(words[2]), static_cast<std::int32_t>(words[3])};
+  /// Which of `width` words from here on hold a number in the bits of a mask, a bit each.
+  static unsigned matches(const std::uint64_t* words, std::uint64_t mask, std::uint64_t number) {
+    unsigned here = 0;
+    for (unsigned i = 0; i < 4; ++i) here |= static_cast<unsigned>((words[i] & mask) == number) << i;
+    return here;
   }
   static Floats sqrt(Floats a) {
     return Floats{__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3])};
@@ -28,10 +27,11 @@ struct Simd : Vectors<4> {
     return Floats{static_cast<float>(a.low[0]), static_cast<float>(a.low[1]), static_cast<float>(a.high[0]),
                   static_cast<float>(a.high[1])};
   }
-  /// The values at table[index].
-  static Floats look_up(const std::int32_t* table, Ints index) {
+  /// The values at table[index[0]], table[index[1]] and so on.
+  static Floats look_up(const std::int32_t* table, const std::int32_t* index) {
     return floats_of(Ints{table[index[0]], table[index[1]], table[index[2]], table[index[3]]});
   }
+  /// The values at table[index].
   static Floats look_up(const float* table, Ints index) {
     return Floats{table[index[0]], table[index[1]], table[index[2]], table[index[3]]};
   }
