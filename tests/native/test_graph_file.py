@@ -110,7 +110,7 @@ def test_a_link_stays_a_link(torus: sb.SaddleVertexGraph, mesh: sb.Mesh, tmp_pat
 
 def test_places_that_cannot_be_written(torus: sb.SaddleVertexGraph, mesh: sb.Mesh, tmp_path: Path) -> None:
     for path, says in (
-        (tmp_path / "none" / "g", "none/g cannot be written: No such file or directory"),
+        (tmp_path / "none" / "g", "none/g cannot be written: No such file or directory; make its folder or choose"),
         (tmp_path, "is a folder; give the name of a file"),
         ("/dev/full", "/dev/full is no regular file"),
         ("", "'' names no file"),

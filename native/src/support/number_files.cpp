@@ -1,6 +1,7 @@
 #include "support/number_files.h"
 
 #include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <random>
 #ifdef _WIN32
@@ -72,8 +73,9 @@ NumberFileWriter::~NumberFileWriter() {
 
 void NumberFileWriter::fail() const {
   const int reason = errno;
-  throw InputError(message("path: ", path_, " cannot be written: ", std::strerror(reason),
-                           "; make room or choose another place (what was there before has not changed)"));
+  const char* const advice = reason == ENOENT ? "make its folder" : "make room";
+  throw InputError(message("path: ", path_, " cannot be written: ", std::strerror(reason), "; ", advice,
+                           " or choose another place (what was there before has not changed)"));
 }
 
 void NumberFileWriter::write_bytes(std::span<const std::byte> bytes) {
