@@ -98,7 +98,9 @@ def test_selection_is_missing_or_off_the_surface():
 
 def test_sources_that_do_not_exist():
     item = sphere()
-    refuse("'Sphere' has no vertex group", operator="distance", sources="VERTEX_GROUP")
+    refuse(
+        "'Sphere' has no vertex group; paint one or choose another source", operator="distance", sources="VERTEX_GROUP"
+    )
     item.vertex_groups.new(name="Empty")
     refuse("no vertex has a weight above 0.5", "'Empty'", operator="distance", sources="VERTEX_GROUP")
     refuse("no empty is parented to 'Sphere'", operator="distance", sources="EMPTIES")

@@ -184,7 +184,7 @@ def test_what_cannot_be_done_is_refused_and_nothing_changes():
     refuse("'Two': points 1 and 2 lie on parts of the surface that do not hang together")
     select(item, [3, 50])
     refuse("'Two': the point at vertex 50 belongs to no face")
-    refuse("'Two' has no vertex group", points="VERTEX_GROUP")
+    refuse("'Two' has no vertex group; paint one or choose other points", points="VERTEX_GROUP")
     item.vertex_groups.new(name="Bare")
     refuse("no vertex has a weight above 0.5 in vertex group 'Bare'", points="VERTEX_GROUP")
     refuse("no empty is parented to 'Two'", points="EMPTIES")

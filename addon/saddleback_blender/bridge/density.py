@@ -23,6 +23,7 @@ NUMBER_TYPES = {
     "INT8": ("value", np.int8),
     "BOOLEAN": ("value", np.bool_),
 }
+ANOTHER_DENSITY = "choose another density"
 
 
 def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DensitySettings) -> Density | None:
@@ -56,9 +57,11 @@ def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: Densi
         raise BadInputError(f"'{source.name}': {label} {error}") from error
 
 
-def read_vertex_group(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[NDArray[np.float64], str]:
+def read_vertex_group(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, otherwise: str = ANOTHER_DENSITY
+) -> tuple[NDArray[np.float64], str]:
     """(V,) weights, 0 for vertices outside the group, and its name for messages. About 0.7 s a million vertices."""
-    vertices, weights, label = _read_members(source, mesh, name)
+    vertices, weights, label = _read_members(source, mesh, name, otherwise)
     values = np.zeros(len(mesh.vertices))
     values[vertices] = weights
     return values, label
@@ -66,18 +69,20 @@ def read_vertex_group(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str)
 
 def read_spread(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> SpreadDensity:
     """The vertices of a group with their weights, those of weight 0 among them."""
-    vertices, weights, label = _read_members(source, mesh, name)
+    vertices, weights, label = _read_members(source, mesh, name, ANOTHER_DENSITY)
     if not vertices:
         raise BadInputError(f"'{source.name}': no vertex is in {label}; paint a few places")
     return SpreadDensity(np.array(vertices, np.int32), np.array(weights, np.float64), label)
 
 
-def _read_members(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[list[int], list[float], str]:
-    """The vertices of a group, their weights, and the group's name for messages."""
+def _read_members(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, otherwise: str
+) -> tuple[list[int], list[float], str]:
+    """The vertices of a group, their weights, and the group's name for messages. `otherwise` is what else helps."""
     group = source.vertex_groups.get(name) if name else source.vertex_groups.active
     if group is None:
         missing = f"no vertex group '{name}'" if name else "no vertex group"
-        raise BadInputError(f"'{source.name}' has {missing}; paint one or choose another density")
+        raise BadInputError(f"'{source.name}' has {missing}; paint one or {otherwise}")
     index = group.index
     vertices: list[int] = []
     weights: list[float] = []

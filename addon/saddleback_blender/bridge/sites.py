@@ -64,7 +64,7 @@ def read_path_points(
 
 def group_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, otherwise: str) -> NDArray[np.int32]:
     """(n,) vertices whose weight in a group is above one half."""
-    weights, label = read_vertex_group(source, mesh, name)
+    weights, label = read_vertex_group(source, mesh, name, otherwise)
     vertices = np.nonzero(weights > 0.5)[0].astype(np.int32)
     if not len(vertices):
         raise BadInputError(f"'{source.name}': no vertex has a weight above 0.5 in {label}; paint it, or {otherwise}")

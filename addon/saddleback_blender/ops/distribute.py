@@ -179,7 +179,7 @@ def _read_field(
 def _read_forbidden(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DistributeSettings) -> np.ndarray | None:
     if not settings.forbidden_group:
         return None
-    weights, _ = read_vertex_group(source, mesh, settings.forbidden_group)
+    weights, _ = read_vertex_group(source, mesh, settings.forbidden_group, "choose another group")
     return weights > 0.5
 
 
