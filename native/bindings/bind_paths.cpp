@@ -1,5 +1,6 @@
 // Curves on the surface, paths in the graph, log map and polar coordinates.
 
+#include "saddleback/feature_curves.h"
 #include "saddleback/geodesic_paths.h"
 #include "saddleback/polar_coordinates.h"
 #include "saddleback/surface_curve.h"
@@ -282,6 +283,47 @@ std::unique_ptr<SurfaceCurve> make_curve(const py::object& mesh_object, const py
   return without_gil([&] { return std::make_unique<SurfaceCurve>(mesh, std::move(given), closed); });
 }
 
+constexpr const char* k_feature_doc = R"(The lines of a mesh that a remesh should keep, as a list of SurfaceCurve.
+
+Edges at which the normals of the faces differ by more than `angle`, the boundary and the given edges are put together
+to curves as long as can be: they end where not two but one or several of these edges meet, and where they turn by
+more than `corner_angle`. Lines without such a place are closed. In the order of their first vertices.
+
+Args:
+    mesh: the Mesh.
+    angle: radians, 0 to pi; pi finds no edge but those of the boundary and the given ones.
+    boundary: whether the mesh's boundary is such a line.
+    edges: (n, 2) vertices of more such edges.
+    corner_angle: radians, 0 to pi.
+
+For `centroidal_voronoi(curves=...)`, whose sites then stay on these lines. O(V + F).
+
+Raises:
+    InputError: an angle out of range; two vertices in `edges` that no edge joins.)";
+
+py::list feature_curves_of(const py::object& mesh_object, const py::object& angle, bool boundary,
+                           const py::object& edges, const py::object& corner_angle) {
+  const Mesh& mesh = as_mesh(mesh_object, "mesh");
+  std::vector<std::array<Index, 2>> given;
+  if (!edges.is_none()) {
+    const ArrayIn<Index> rows = as_edges(edges, "edges");
+    for (Index i = 0; i < rows.count; ++i) given.push_back({rows.values[2 * i], rows.values[2 * i + 1]});
+  }
+  FeatureCurveOptions options;
+  options.angle = as_real(angle, "angle");
+  options.boundary = boundary;
+  options.edges = given;
+  options.corner_angle = as_real(corner_angle, "corner_angle");
+  std::vector<SurfaceCurve> found = without_gil([&] { return feature_curves(mesh, options); });
+  py::list result;
+  for (SurfaceCurve& curve : found) {
+    py::object item = py::cast(std::move(curve));
+    py::detail::keep_alive_impl(item, mesh_object);
+    result.append(std::move(item));
+  }
+  return result;
+}
+
 void bind_curve(py::module_& m) {
   py::class_<SurfaceCurve>(m, "SurfaceCurve", py::module_local(), k_curve_doc)
       .def(py::init(&make_curve), py::arg("mesh"), py::arg("points"), py::arg("closed") = false, py::keep_alive<1, 2>())
@@ -294,6 +336,10 @@ void bind_curve(py::module_& m) {
         return message("<SurfaceCurve: ", curve.points().size(), " points, ", curve.closed() ? "closed, " : "",
                        "length ", curve.length(), ">");
       });
+  const FeatureCurveOptions defaults;
+  m.def("feature_curves", &feature_curves_of, py::arg("mesh"), py::arg("angle") = defaults.angle, py::kw_only(),
+        py::arg("boundary") = defaults.boundary, py::arg("edges") = py::none(),
+        py::arg("corner_angle") = defaults.corner_angle, k_feature_doc);
 }
 
 }  // namespace

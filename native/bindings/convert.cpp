@@ -124,6 +124,10 @@ ArrayIn<Index> as_indices(const py::object& value, const char* name) {
   return integers(value, name, 0, "shape (n,) of integers");
 }
 
+ArrayIn<Index> as_edges(const py::object& value, const char* name) {
+  return integers(value, name, 2, "shape (n, 2) of integers");
+}
+
 ArrayIn<Index> as_triangles(const py::object& value, const char* name) {
   return integers(value, name, 3, "shape (n, 3) of integers");
 }

@@ -35,6 +35,7 @@ ArrayIn<double> as_points2(const py::object& value, const char* name);          
 ArrayIn<double> as_reals(const py::object& value, const char* name);               ///< (n,) reals
 ArrayIn<double> as_reals(const py::object& value, const char* name, Index count);  ///< (count,) reals
 ArrayIn<Index> as_indices(const py::object& value, const char* name);              ///< (n,) integers
+ArrayIn<Index> as_edges(const py::object& value, const char* name);                ///< (n, 2) integers
 ArrayIn<Index> as_triangles(const py::object& value, const char* name);            ///< (n, 3) integers
 Vec3 as_vec3(const py::object& value, const char* name);                           ///< three reals
 

@@ -125,3 +125,54 @@ def test_the_panel_tells_quality_and_energy_and_faults_are_a_warning(capfd):
     assert "vertices added to the dual mesh" in jobs.state.line
     bpy.ops.saddleback.clear()
     assert not jobs.state.figures
+
+
+def cut_cube(cuts):
+    """A cube of quads: `cuts` more lines across each face."""
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    source = bpy.context.object
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide(number_cuts=cuts)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return source
+
+
+def volume_of(mesh):
+    places = np.array([vertex.co for vertex in mesh.vertices])
+    a, b, c = places[triangles_of(mesh)].transpose(1, 0, 2)
+    return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+
+
+def test_sharp_edges_are_kept_where_that_is_wanted():
+    source = cut_cube(15)
+    source.data.edges.foreach_set("use_edge_sharp", np.zeros(len(source.data.edges), bool))
+    wanted = {"count": 200, "iterations": 10, "k": 0}
+    plain = remeshed(source, **wanted)
+    assert volume_of(plain.data) < 0.98 * 8
+    kept = remeshed(source, hold_sharp=True, **wanted)
+    assert len(kept.data.vertices) == 200
+    assert volume_of(kept.data) == pytest.approx(8, rel=1e-5)
+    np.testing.assert_allclose(np.abs([vertex.co for vertex in kept.data.vertices]).max(axis=1), 1, atol=1e-6)
+
+
+def test_marked_edges_and_borders_are_kept_where_that_is_wanted():
+    source = grid(n=12)
+    mesh = source.data
+    x = np.array([vertex.co.x for vertex in mesh.vertices])
+    marked = [abs(x[edge.vertices[0]] - 0.5) + abs(x[edge.vertices[1]] - 0.5) < 1e-6 for edge in mesh.edges]
+    assert sum(marked) == 12
+    mesh.edges.foreach_set("use_edge_sharp", np.array(marked))
+    made = remeshed(source, count=60, hold_marked=True, hold_boundary=True)
+    places = world_positions(made)[:, :2]
+    assert (np.abs(places[:, 0] - 0.5) < 1e-6).sum() >= 6
+    for corner in ((0, 0), (1, 0), (1, 1), (0, 1)):
+        assert (np.abs(places - corner).max(axis=1) < 1e-6).sum() == 1
+    assert sum(polygon.area for polygon in made.data.polygons) == pytest.approx(1, rel=1e-5)
+
+
+def test_too_few_cells_for_the_lines_that_are_kept():
+    source = cut_cube(3)
+    with pytest.raises(RuntimeError, match="the curves need"):
+        bpy.ops.saddleback.tessellate(**{**QUICK, "count": 6, "hold_sharp": True})
+    assert not source.children

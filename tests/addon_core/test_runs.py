@@ -185,3 +185,31 @@ def test_distance_to_the_edge_is_the_distance_to_the_bisector(cache):
     np.testing.assert_allclose(result.edge_distance[2:], abs(surface.vertices[:, 0] - 0.5), atol=1e-9)
     assert np.isinf(result.edge_distance[:2]).all() and cache.builds["edge distance"] == 1
     assert tessellate(surface, cache).edge_distance is None
+
+
+def test_chosen_lines_hold_sites_and_are_part_of_what_is_kept(cache):
+    surface = shapes.grid(16, loose=3)
+    places = surface.vertices[:, :2]
+    middle = np.flatnonzero(np.abs(places[:, 0] - 0.5) < 1e-9)
+    middle = middle[np.argsort(places[middle, 1])]
+    line = np.stack([middle[:-1], middle[1:]], axis=1)
+    in_blender = surface.used[line].astype(np.int32)
+    loose = np.array([[0, 1], [0, in_blender[0, 0]]], np.int32)  # no face has these
+
+    def sites(marked, **settings):
+        wanted = TessellateSettings(**{**QUICK, "count": 40, **settings})
+        request = TessellateRequest(surface, wanted, marked_edges=marked)
+        return runs.tessellate(request, runs.new_progress(), cache).sites_position[:, :2]
+
+    def on_border(found):
+        return int((np.minimum(found, 1 - found).min(axis=1) < 1e-12).sum())
+
+    free = sites(None)
+    assert on_border(free) == 0
+    held = sites(np.concatenate([in_blender, loose]))
+    assert (np.abs(held[:, 0] - 0.5) < 1e-12).sum() >= 5 and on_border(held) == 2  # the line's ends
+    bordered = sites(None, hold_boundary=True)
+    assert on_border(bordered) >= 16
+    assert {tuple(corner) for corner in bordered} >= {(0, 0), (1, 0), (0, 1), (1, 1)}
+    np.testing.assert_array_equal(sites(None), free)
+    assert cache.builds["cells"] == 3

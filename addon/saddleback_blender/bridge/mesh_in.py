@@ -67,6 +67,15 @@ def read_triangle_polygons(mesh: bpy.types.Mesh) -> Indices:
     return polygons
 
 
+def read_marked_edges(mesh: bpy.types.Mesh) -> Indices:
+    """(n, 2) vertices of the edges that are marked sharp."""
+    is_sharp = np.empty(len(mesh.edges), np.bool_)
+    ends = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("use_edge_sharp", is_sharp)
+    mesh.edges.foreach_get("vertices", ends)
+    return ends.reshape(-1, 2)[is_sharp]
+
+
 def to_world(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals:
     """(n, 3) object-space positions -> world space, in double precision."""
     matrix = np.array(source.matrix_world, np.float64)

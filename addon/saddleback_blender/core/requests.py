@@ -154,6 +154,7 @@ class TessellateRequest:
     settings: TessellateSettings
     density: Density | None = None
     sites: Points | None = None  # None: place `settings.count`
+    marked_edges: Indices | None = None  # (n, 2) of the Blender mesh: some of the count stay on them
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only
     find_crossings: FindCrossings | None = None  # for the lamp shell, which is not made without it

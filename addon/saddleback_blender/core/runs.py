@@ -15,6 +15,7 @@ from .cache import Cache
 from .curve_points import curves_on_surface, points_on_surface
 from .density_runs import density_of
 from .duals import dual_of, figures_of
+from .features import feature_lines
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .level_lines import LevelLines, isoline_levels, level_lines
 from .normals import normals_at
@@ -53,6 +54,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         iterations,
         settings.method if iterations else "",
         density if sites is None or iterations else None,
+        *_held(request),
     )
     key = (choice.name(surface), what)
 
@@ -169,6 +171,14 @@ class _Solved:
     normalised_energy: float | None  # None where nothing was relaxed
 
 
+def _held(request: TessellateRequest) -> tuple[object, ...]:
+    """What says on which lines sites stay."""
+    settings = request.settings
+    if request.sites is not None:
+        return ()
+    return (settings.hold_sharp and settings.sharp_angle, settings.hold_boundary, request.marked_edges)
+
+
 def _solve(
     request: TessellateRequest,
     mesh: Any,
@@ -182,7 +192,10 @@ def _solve(
     points = None if sites is None else surface_points(mesh, sites)
     energy, done, reason, normalised = np.empty(0), 0, "sites kept", None
     if points is None or iterations:
-        choice = {"count": settings.count} if points is None else {"sites": points}
+        choice: dict[str, Any] = {"sites": points}
+        if points is None:
+            curves = feature_lines(request.surface, mesh, settings, request.marked_edges)
+            choice = {"count": settings.count, "curves": curves or None}
         live = request.live
         with (
             nullcontext() if live is None else live.follow(graph) as watch,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
@@ -33,6 +34,11 @@ class TessellateSettings(DensitySettings):
     sites_source: str = "COUNT"  # COUNT, SELECTED, OBJECT
     sites_object: str = ""
     relax_sites: bool = False  # move chosen sites too (those of COUNT always move)
+    # Lines on which some sites of COUNT stay:
+    hold_sharp: bool = False  # edges at which the surface bends by more than the angle
+    sharp_angle: float = math.radians(40.0)
+    hold_marked: bool = False  # edges that are marked sharp
+    hold_boundary: bool = False
     quality: str = "NORMAL"  # FAST, NORMAL, FINE
     k: int = 0  # vertices in a neighbourhood of the graph; 0 = by quality
     cache_on_disk: bool = False

@@ -13,7 +13,7 @@ from .. import prefs
 from ..bridge.crossings import find_crossings
 from ..bridge.density import read_density
 from ..bridge.live_preview import LivePreview
-from ..bridge.mesh_in import mesh_of, read_surface
+from ..bridge.mesh_in import mesh_of, read_marked_edges, read_surface
 from ..bridge.out_attributes import write_vertex_attributes
 from ..bridge.out_cells import CELLS_ROLE, vanished_cells, write_cells
 from ..bridge.out_centres import CENTRES_ROLE, write_centres
@@ -149,6 +149,7 @@ def _gather(
             settings=settings,
             density=read_density(source, mesh, settings),
             sites=read_sites(context, source, mesh, settings),
+            marked_edges=read_marked_edges(mesh) if settings.hold_marked else None,
             threads=prefs.threads(context),
             disk=prefs.disk_cache(context, settings.cache_on_disk),
             find_crossings=find_crossings,

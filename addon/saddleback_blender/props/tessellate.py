@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from bpy.props import FloatProperty, IntProperty
@@ -46,6 +47,18 @@ TESSELLATE: dict[str, Any] = {
     "sites_source": choice("Sites", "Where the cells' centres come from", SITES_SOURCES, "COUNT"),
     "sites_object": name_of("Sites Object", "The object whose vertices become sites"),
     "relax_sites": switch("Relax Sites", "Move the chosen sites to even the cells out", False),
+    "hold_sharp": switch("Sharp Edges", "Keep sites on edges at which the surface bends much: a remesh has them", False),
+    "sharp_angle": FloatProperty(
+        name="Sharp Angle",
+        description="Edges at which the surface bends by more than this are kept",
+        default=math.radians(40.0),
+        min=math.radians(1.0),
+        max=math.pi,
+        subtype="ANGLE",
+        options={"SKIP_SAVE"},
+    ),
+    "hold_marked": switch("Marked Edges", "Keep sites on edges that are marked sharp", False),
+    "hold_boundary": switch("Border", "Keep sites on the border of an open mesh, so that a remesh has it", False),
     **DENSITY,
     "quality": quality(),
     "k": detail(),

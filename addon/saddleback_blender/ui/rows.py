@@ -30,6 +30,18 @@ def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
     column.active = settings.sites_source == "COUNT" or settings.relax_sites
     column.prop(settings, "iterations")
     column.prop(settings, "method")
+    if settings.sites_source == "COUNT":
+        _draw_held(layout.column(heading="Keep", align=True), settings)
+
+
+def _draw_held(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The lines on which sites stay."""
+    layout.prop(settings, "hold_sharp")
+    row = layout.row()
+    row.active = settings.hold_sharp
+    row.prop(settings, "sharp_angle")
+    layout.prop(settings, "hold_marked")
+    layout.prop(settings, "hold_boundary")
 
 
 def draw_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:

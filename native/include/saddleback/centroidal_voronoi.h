@@ -65,8 +65,9 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
                                      const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);
 
 /// The same for a number of cells. Without iterations the sites are the sample's. With curves the first sites lie on
-/// them, as far apart as neighbours are, the ends of open ones fixed; the others are the sample's. \throw InputError
-/// also as `initial_sites`, and for fewer cells than the curves need.
+/// them, as far apart as neighbours are, the ends of open ones fixed; the others are the sample's, and those of them
+/// whose cells reach across a curve are put onto it, before the relaxation that is reported. \throw InputError also as
+/// `initial_sites`, and for fewer cells than the curves need.
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
                                      std::uint64_t seed, const CentroidalVoronoiOptions& options = {},
                                      Job* job = nullptr);

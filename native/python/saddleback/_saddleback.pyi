@@ -129,6 +129,15 @@ class SurfaceCurve:
     def length(self) -> float: ...
     def __len__(self) -> int: ...
 
+def feature_curves(
+    mesh: Mesh,
+    angle: SupportsFloat = ...,
+    *,
+    boundary: bool = True,
+    edges: ArrayLike | None = None,
+    corner_angle: SupportsFloat = ...,
+) -> list[SurfaceCurve]: ...
+
 _Sources: TypeAlias = _Points | SurfaceCurve | Sequence[SurfaceCurve]
 
 class GeodesicPath:

@@ -12,10 +12,13 @@
 #include "tessellation/diagram.h"
 #include "tessellation/held_sites.h"
 #include "tessellation/limited_memory.h"
+#include "tessellation/stray_cells.h"
 #include "tessellation/tangent_moves.h"
 
 namespace saddleback {
 namespace {
+
+constexpr const char* k_cancelled = "cancelled";
 
 void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
   if (options.max_iterations < 0)
@@ -294,6 +297,31 @@ void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, cons
   result.stop_reason = "max_iterations";
 }
 
+/// Sites on the curves and others, relaxed. Where the cell of a free site reaches across a curve, the site is put onto
+/// it, and all are relaxed again: first a few steps, after which most such cells are known.
+CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, std::uint64_t seed,
+                                  const CentroidalVoronoiOptions& options, const JobStage& stage) {
+  constexpr int k_first_iterations = 10, k_most_rounds = 5;
+  const Mesh& mesh = graph.mesh();
+  const HeldSites checked(mesh, options.curves, {}, 0);
+  HeldStart start = held_start(mesh, count, options.curves, options.density, seed);
+  std::vector<Index> fixed(options.fixed.begin(), options.fixed.end());
+  fixed.insert(fixed.end(), start.fixed.begin(), start.fixed.end());
+  CentroidalVoronoiOptions on_curves = options;
+  on_curves.fixed = fixed;
+  for (int round = 0;; ++round) {
+    on_curves.max_iterations =
+        round == 0 ? std::min(options.max_iterations, k_first_iterations) : options.max_iterations;
+    on_curves.held = start.held;
+    const JobStage part = stage.part(1 - std::pow(0.5, round), 1 - std::pow(0.5, round + 1));
+    CentroidalVoronoi result = relax_sites(graph, start.sites, on_curves, part);
+    if (result.stop_reason == k_cancelled || options.max_iterations == 0 || round == k_most_rounds) return result;
+    start.sites = result.sites;
+    const bool changed = hold_stray_sites(mesh, result.cells, options.curves, fixed, start.sites, start.held);
+    if (!changed && on_curves.max_iterations == options.max_iterations) return result;
+  }
+}
+
 }  // namespace
 
 void check_density(const Mesh& mesh, std::span<const double> density) {
@@ -330,16 +358,7 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count
   check_count(graph.mesh(), count);
   const JobStage stage(job, "Finding cells");
   if (!options.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
-  if (!options.curves.empty()) {
-    const HeldSites checked(graph.mesh(), options.curves, {}, 0);
-    const HeldStart held = held_start(graph.mesh(), count, options.curves, options.density, seed);
-    CentroidalVoronoiOptions with_held = options;
-    std::vector<Index> fixed(options.fixed.begin(), options.fixed.end());
-    fixed.insert(fixed.end(), held.fixed.begin(), held.fixed.end());
-    with_held.fixed = fixed;
-    with_held.held = held.held;
-    return relax_sites(graph, held.sites, with_held, stage);
-  }
+  if (!options.curves.empty()) return relax_on_curves(graph, count, seed, options, stage);
   const bool coarse = start == RelaxationStart::automatic ? options.max_iterations >= k_long_run
                                                           : start == RelaxationStart::coarse_to_fine;
   if (!coarse || options.max_iterations == 0) {
@@ -363,7 +382,7 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
     relax(relaxation, options, stage, result);
   } catch (const Cancelled&) {
     if (!options.return_when_cancelled) throw;
-    result.stop_reason = "cancelled";
+    result.stop_reason = k_cancelled;
   }
   const State& best = relaxation.state();
   const JobStage last = options.return_when_cancelled ? JobStage() : stage;

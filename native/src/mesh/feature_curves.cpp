@@ -1,0 +1,160 @@
+#include "saddleback/feature_curves.h"
+
+#include <algorithm>
+
+#include "saddleback/error.h"
+
+namespace saddleback {
+namespace {
+
+void check_angle(const char* name, double angle) {
+  if (!(angle >= 0 && angle <= M_PI)) throw InputError(message(name, ": wanted radians from 0 to pi, got ", angle));
+}
+
+Vec3 normal(const Mesh& mesh, Index face) {
+  const Triangle& t = mesh.triangles()[face];
+  const Vec3 &a = mesh.position(t[0]), &b = mesh.position(t[1]), &c = mesh.position(t[2]);
+  return (b - a).cross(c - a);
+}
+
+double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+/// The half-edge that speaks for the edge between two vertices, k_none where there is none.
+Index find_edge(const Mesh& mesh, Index a, Index b) {
+  const Index first = mesh.first_halfedge(a);
+  for (Index h = first; h != k_none;) {
+    if (mesh.to(h) == b) return h;
+    if (const Index last = Mesh::prev(h); mesh.from(last) == b) return last;
+    h = mesh.rotate(h);
+    if (h == first) break;
+  }
+  return k_none;
+}
+
+/// Which edges are features, and how they meet.
+class FeatureGraph {
+ public:
+  FeatureGraph(const Mesh& mesh, const FeatureCurveOptions& options)
+      : mesh_(mesh), corner_angle_(options.corner_angle), is_feature_(mesh.halfedge_count(), 0) {
+    for (const Index h : mesh.edge_halfedges()) {
+      const Index twin = mesh.twin(h);
+      const bool wanted = twin == k_none ? options.boundary
+                                         : angle_between(normal(mesh, Mesh::face_of(h)),
+                                                         normal(mesh, Mesh::face_of(twin))) > options.angle;
+      if (wanted) mark(h);
+    }
+    for (std::size_t i = 0; i < options.edges.size(); ++i) mark_given(options.edges[i], i);
+    link();
+  }
+
+  /// Chains of vertices; of a closed one the first is not repeated.
+  struct Chain {
+    std::vector<Index> vertices;
+    bool closed;
+  };
+  std::vector<Chain> chains() {
+    std::vector<Chain> found;
+    for (Index vertex = 0; vertex < mesh_.vertex_count(); ++vertex) {
+      if (!is_end(vertex)) continue;
+      for (Index i = first_[vertex]; i < first_[vertex + 1]; ++i)
+        if (!is_walked_[i]) found.push_back({walk(i), false});
+    }
+    for (Index vertex = 0; vertex < mesh_.vertex_count(); ++vertex) {
+      if (first_[vertex] == first_[vertex + 1] || is_walked_[first_[vertex]]) continue;
+      found.push_back({walk(first_[vertex]), true});
+      found.back().vertices.pop_back();
+    }
+    std::ranges::stable_sort(found, {}, [](const Chain& chain) { return chain.vertices.front(); });
+    return found;
+  }
+
+ private:
+  void mark(Index h) {
+    is_feature_[h] = 1;
+    if (mesh_.twin(h) != k_none) is_feature_[mesh_.twin(h)] = 1;
+  }
+
+  void mark_given(const std::array<Index, 2>& edge, std::size_t number) {
+    for (const Index vertex : edge) {
+      if (vertex < 0 || vertex >= mesh_.vertex_count())
+        throw InputError(message("edges: wanted vertices from 0 to ", mesh_.vertex_count() - 1, ", got ", vertex,
+                                 " in edge ", number));
+    }
+    const Index h = find_edge(mesh_, edge[0], edge[1]);
+    if (h == k_none)
+      throw InputError(
+          message("edges: no edge of the mesh joins vertices ", edge[0], " and ", edge[1], " of edge ", number));
+    mark(h);
+  }
+
+  /// Neighbours along feature edges, by vertex.
+  void link() {
+    first_.assign(mesh_.vertex_count() + 1, 0);
+    const auto each = [&](auto&& visit) {
+      for (const Index h : mesh_.edge_halfedges()) {
+        if (!is_feature_[h]) continue;
+        visit(mesh_.from(h), mesh_.to(h));
+        visit(mesh_.to(h), mesh_.from(h));
+      }
+    };
+    each([&](Index from, Index) { ++first_[from + 1]; });
+    for (Index vertex = 0; vertex < mesh_.vertex_count(); ++vertex) first_[vertex + 1] += first_[vertex];
+    neighbours_.resize(first_.back());
+    std::vector<Index> next(first_.begin(), first_.end() - 1);
+    each([&](Index from, Index to) { neighbours_[next[from]++] = to; });
+    is_walked_.assign(neighbours_.size(), 0);
+  }
+
+  /// Where lines end: but for those that go on, and turn little.
+  bool is_end(Index vertex) const {
+    const Index count = first_[vertex + 1] - first_[vertex];
+    if (count != 2) return count > 0;
+    const Vec3& here = mesh_.position(vertex);
+    const Vec3 in = here - mesh_.position(neighbours_[first_[vertex]]);
+    const Vec3 out = mesh_.position(neighbours_[first_[vertex] + 1]) - here;
+    return angle_between(in, out) > corner_angle_;
+  }
+
+  Index link_back(Index from, Index to) const {
+    Index i = first_[to];
+    while (neighbours_[i] != from) ++i;
+    return i;
+  }
+
+  /// Along a link and on, to an end or back to the start.
+  std::vector<Index> walk(Index link) {
+    Index vertex = static_cast<Index>(std::ranges::upper_bound(first_, link) - first_.begin()) - 1;
+    const Index start = vertex;
+    std::vector<Index> chain{vertex};
+    while (true) {
+      const Index next = neighbours_[link], back = link_back(vertex, next);
+      is_walked_[link] = is_walked_[back] = 1;
+      chain.push_back(next);
+      vertex = next;
+      if (vertex == start || is_end(vertex)) return chain;
+      link = back == first_[vertex] ? back + 1 : first_[vertex];
+    }
+  }
+
+  const Mesh& mesh_;
+  const double corner_angle_;
+  std::vector<std::uint8_t> is_feature_;   ///< by half-edge
+  std::vector<Index> first_, neighbours_;  ///< by vertex
+  std::vector<std::uint8_t> is_walked_;    ///< by neighbours_
+};
+
+}  // namespace
+
+std::vector<SurfaceCurve> feature_curves(const Mesh& mesh, const FeatureCurveOptions& options) {
+  check_angle("angle", options.angle);
+  check_angle("corner_angle", options.corner_angle);
+  std::vector<SurfaceCurve> curves;
+  for (const FeatureGraph::Chain& chain : FeatureGraph(mesh, options).chains()) {
+    SurfacePoints points;
+    for (const Index vertex : chain.vertices) points.push_back(at_vertex(mesh, vertex));
+    curves.emplace_back(mesh, std::move(points), chain.closed);
+  }
+  return curves;
+}
+
+}  // namespace saddleback
