@@ -281,9 +281,9 @@ RelaxationWatch* as_watch(const py::object& watch) {
 
 Relaxed relax(const py::object& graph, const py::object& sites, const py::object& count, const py::object& density,
               const std::string& method, const py::object& max_iterations, const py::object& tolerance,
-              const py::object& seed, const std::string& start, const py::object& fixed, const py::object& curves,
-              const py::object& held, bool return_when_cancelled, const py::object& watch, const py::object& threads,
-              const py::object& job) {
+              const py::object& seed, const std::string& start, const py::object& starts, const py::object& fixed,
+              const py::object& curves, const py::object& held, bool return_when_cancelled, const py::object& watch,
+              const py::object& threads, const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   ArrayIn<double> weights;
@@ -299,6 +299,7 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
                                          .method = as_method(method),
                                          .max_iterations = as_integer(max_iterations, "max_iterations"),
                                          .tolerance = as_real(tolerance, "tolerance"),
+                                         .starts = as_integer(starts, "starts"),
                                          .return_when_cancelled = return_when_cancelled,
                                          .watch = as_watch(watch),
                                          .threads = as_integer(threads, "threads")};
@@ -373,11 +374,15 @@ start : str
     Where the sites of `count` come from. "coarse_to_fine": relaxed cells of a quarter of the number, with one more on
     each boundary between two of them, and so on down; few irregular cells remain. "sample": by density and seed. The
     same without iterations. "auto": from coarse cells when max_iterations is 50 or more.
+starts : int
+    With `count`: so many relaxations, by the seeds from `seed` on. The one with the least energy is the result: where a
+    relaxation ends depends on where it began.
 fixed : (m,) int array, optional
     Sites that stay where they are.
 curves : sequence of SurfaceCurve, optional
     Features or boundaries that sites slide along instead of leaving them. With `count`, sites are put on them as far
-    apart as neighbours in even cells; the ends of open curves stay where they are.
+    apart as neighbours in even cells; the ends of open curves stay where they are. Others whose cells reach across a
+    curve are put onto it.
 held : (n,) int array, optional
     With `sites`: the curve that each is held on, -1 for free ones. Held sites begin at the nearest points of their curves.
 return_when_cancelled : bool
@@ -564,9 +569,9 @@ Pass it as ``watch=`` to `centroidal_voronoi`. Coarse cells that make the start 
   m.def("centroidal_voronoi", &relax, py::arg("graph"), py::arg("sites") = py::none(), py::arg("count") = py::none(),
         py::arg("density") = py::none(), py::arg("method") = "lbfgs", py::arg("max_iterations") = 100,
         py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("start") = "auto",
-        py::arg("fixed") = py::none(), py::arg("curves") = py::none(), py::arg("held") = py::none(),
-        py::arg("return_when_cancelled") = false, py::arg("watch") = py::none(), py::arg("threads") = 0,
-        py::arg("job") = py::none(), k_centroidal_doc);
+        py::arg("starts") = 1, py::arg("fixed") = py::none(), py::arg("curves") = py::none(),
+        py::arg("held") = py::none(), py::arg("return_when_cancelled") = false, py::arg("watch") = py::none(),
+        py::arg("threads") = 0, py::arg("job") = py::none(), k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

@@ -293,6 +293,25 @@ def test_bad_arguments(arguments: dict[str, object], words: str) -> None:
         sb.centroidal_voronoi(graph, **arguments)
 
 
+def test_of_several_starts_the_one_with_the_least_energy() -> None:
+    mesh = sb.Mesh(*meshes.torus(40, 16))
+    graph = sb.SaddleVertexGraph(mesh, k=30)
+    one_by_one = [sb.centroidal_voronoi(graph, count=30, max_iterations=12, seed=seed) for seed in range(4, 8)]
+    energies = [relaxed.energy[-1] for relaxed in one_by_one]
+    assert len(set(energies)) == 4
+    best = int(np.argmin(energies))
+    assert best > 0  # the first alone would not do
+    relaxed = sb.centroidal_voronoi(graph, count=30, max_iterations=12, seed=4, starts=4)
+    assert relaxed.energy.tobytes() == one_by_one[best].energy.tobytes()
+    assert relaxed.sites.barycentric.tobytes() == one_by_one[best].sites.barycentric.tobytes()
+    for arguments, words in (
+        ({"count": 30, "starts": 0}, "starts: wanted 1 or more, got 0"),
+        ({"sites": [1, 2], "starts": 2}, "starts: wanted 1 where the sites are given"),
+    ):
+        with pytest.raises(sb.InputError, match=words):
+            sb.centroidal_voronoi(graph, **arguments)
+
+
 def square_sides(mesh: sb.Mesh) -> list[sb.SurfaceCurve]:
     """The sides of the unit square as open curves along the boundary."""
     loop = mesh.boundary_loops[0]

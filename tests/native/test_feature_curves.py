@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-import saddleback as sb
 from numpy.typing import NDArray
 
+import saddleback as sb
 from tests import meshes
 
 

@@ -47,7 +47,9 @@ TESSELLATE: dict[str, Any] = {
     "sites_source": choice("Sites", "Where the cells' centres come from", SITES_SOURCES, "COUNT"),
     "sites_object": name_of("Sites Object", "The object whose vertices become sites"),
     "relax_sites": switch("Relax Sites", "Move the chosen sites to even the cells out", False),
-    "hold_sharp": switch("Sharp Edges", "Keep sites on edges at which the surface bends much: a remesh has them", False),
+    "hold_sharp": switch(
+        "Sharp Edges", "Keep sites on edges at which the surface bends much: a remesh has them", False
+    ),
     "sharp_angle": FloatProperty(
         name="Sharp Angle",
         description="Edges at which the surface bends by more than this are kept",

@@ -26,8 +26,11 @@ struct CentroidalVoronoiOptions {
   /// nearest points of their curves. Not for a number of cells, which says itself.
   std::span<const Index> held;
   RelaxationMethod method = RelaxationMethod::lbfgs;
-  int max_iterations = 100;
-  double tolerance = 1e-6;             ///< stop when the energy falls by less than this share of itself
+  int max_iterations = 100;  ///< of each start
+  double tolerance = 1e-6;   ///< stop when the energy falls by less than this share of itself
+  /// Only for a number of cells: so many relaxations, by the seeds from the given one on, of which the one with the
+  /// least energy is the result. Where a relaxation ends depends on where it began.
+  int starts = 1;
   bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
   RelaxationWatch* watch = nullptr;    ///< is shown the start and every iteration of the wanted number of sites
   int threads = 0;                     ///< 0: all cores; the result does not depend on it

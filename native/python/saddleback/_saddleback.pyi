@@ -527,6 +527,7 @@ def centroidal_voronoi(
     seed: SupportsIndex = 0,
     *,
     start: Literal["auto", "coarse_to_fine", "sample"] = "auto",
+    starts: SupportsIndex = 1,
     fixed: ArrayLike | None = None,
     curves: Sequence[SurfaceCurve] | None = None,
     held: ArrayLike | None = None,

@@ -24,6 +24,7 @@ void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
   if (options.max_iterations < 0)
     throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
   if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
+  if (options.starts < 1) throw InputError(message("starts: wanted 1 or more, got ", options.starts));
   check_density(mesh, options.density);
 }
 
@@ -322,6 +323,20 @@ CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, s
   }
 }
 
+CentroidalVoronoi relax_count(const SaddleVertexGraph& graph, Index count, RelaxationStart start, std::uint64_t seed,
+                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
+  constexpr double k_start = 0.4;  // coarse cells take nearly as long as fine ones, but few iterations
+  constexpr int k_long_run = 50;
+  if (!options.curves.empty()) return relax_on_curves(graph, count, seed, options, stage);
+  const bool coarse = start == RelaxationStart::automatic ? options.max_iterations >= k_long_run
+                                                          : start == RelaxationStart::coarse_to_fine;
+  if (!coarse || options.max_iterations == 0) {
+    return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage);
+  }
+  return relax_sites(graph, coarse_to_fine_sites(graph, count, options, seed, stage.part(0, k_start)), options,
+                     stage.part(k_start, 1));
+}
+
 }  // namespace
 
 void check_density(const Mesh& mesh, std::span<const double> density) {
@@ -347,25 +362,28 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options, Job* job) {
+  if (options.starts > 1) throw InputError("starts: wanted 1 where the sites are given; others are for a count");
   return relax_sites(graph, sites, options, JobStage(job, "Finding cells"));
 }
 
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
                                      std::uint64_t seed, const CentroidalVoronoiOptions& options, Job* job) {
-  constexpr double k_start = 0.4;  // coarse cells take nearly as long as fine ones, but few iterations
-  constexpr int k_long_run = 50;
   check_options(graph.mesh(), options);
   check_count(graph.mesh(), count);
   const JobStage stage(job, "Finding cells");
   if (!options.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
-  if (!options.curves.empty()) return relax_on_curves(graph, count, seed, options, stage);
-  const bool coarse = start == RelaxationStart::automatic ? options.max_iterations >= k_long_run
-                                                          : start == RelaxationStart::coarse_to_fine;
-  if (!coarse || options.max_iterations == 0) {
-    return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage);
+  CentroidalVoronoi best;
+  for (int i = 0; i < options.starts; ++i) {
+    const double part = 1.0 / options.starts;
+    CentroidalVoronoi found = relax_count(graph, count, start, seed + static_cast<std::uint64_t>(i), options,
+                                          stage.part(i * part, (i + 1) * part));
+    const bool was_cancelled = found.stop_reason == k_cancelled;
+    if (i == 0 || found.energy.back() < best.energy.back()) best = std::move(found);
+    if (!was_cancelled) continue;
+    best.stop_reason = k_cancelled;
+    break;
   }
-  return relax_sites(graph, coarse_to_fine_sites(graph, count, options, seed, stage.part(0, k_start)), options,
-                     stage.part(k_start, 1));
+  return best;
 }
 
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
