@@ -354,6 +354,16 @@ def test_triangulations_of_one_surface_agree() -> None:
     assert max(counts) < 1.03 * min(counts)
 
 
+def test_shapes_too_large_for_a_rough_surface_are_soon_given_up() -> None:
+    """Each try lays out the whole surface: so many a shape's area are enough, however many faces there are."""
+    vertices, triangles = meshes.torus(70, 35)
+    rough = vertices * (1 + 0.03 * np.random.default_rng(0).standard_normal((len(vertices), 1)))
+    mesh = sb.Mesh(rough, triangles)
+    result = sb.distribute(mesh, STAR, [50], size=0.3 * np.sqrt(mesh.area))
+    assert result.stop_reason == "tired"
+    assert sum(result.rejections.values()) < 0.6 * len(triangles)
+
+
 def test_a_graph_stands_for_its_mesh() -> None:
     mesh, field = ring()
     graph = sb.SaddleVertexGraph(mesh, k=10)

@@ -38,7 +38,7 @@ constexpr std::array<double, 4> k_sweeping_showers{80, 40, 40, 40};
 constexpr std::size_t k_searching_showers = 6, k_searching_sweeps = 2;
 constexpr double k_most_drops = 1e6;  ///< on a face
 /// Cells smaller than this share of that square get fewer darts.
-constexpr double k_dart_area = 0.05;
+constexpr double k_dart_area = 0.05, k_free_area = 0.006;  ///< the second where the centre seems free
 /// Disks looked at before all of them are: the largest, which tell most cells.
 constexpr std::size_t k_first_disks = 6;
 
@@ -187,23 +187,27 @@ DistributionStop GapSearch::rain(const JobStage& stage) {
   return DistributionStop::tired;
 }
 
-void GapSearch::throw_dart(const OpenCell& open, Index number, Look& look) const {
+/// In every cell whose centre seems free, unless that is for numbers alone; in others by their area.
+void GapSearch::throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const {
   const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
   const Index kind = draw_kind(look.free ? look.free : look.open, uniform(key, 0));
   if (kind == k_none) return;
   double along = uniform(key, 1), up = uniform(key, 2);
   if (along + up > 1) along = 1 - along, up = 1 - up;
+  const double radius = view.size * rules_->smallest_factor() * rules_->shape_radius(rules_->kinds()[kind]);
+  const double area = mesh_->face_area(open.cell.face) * open.cell.unit() * open.cell.unit();
+  const double least = look.free ? k_free_area : k_dart_area;
+  const bool is_thinned = !look.free || !options_->maximal;
+  if (is_thinned && area < uniform(key, 5) * least * radius * radius) return;
   if (look.free) {
-    const SurfacePoint centre = point_at(open.cell.face, open.cell.centre());
+    // The first cells that may be given up learn whether they have to be: their parts would ask one by one.
+    const bool is_probe = options_->maximal && view.radius < least_stuck() && 2 * view.radius >= least_stuck();
+    const double scale = view.size * rules_->smallest_factor();
     look.has_dart = true;
-    look.dart = {order(centre, key), kind, number, centre, rules_->size_at(centre) * rules_->smallest_factor()};
+    look.dart = {order(view.centre, key), kind, number, view.centre, scale, false, is_probe};
     return;
   }
   const SurfacePoint point = point_at(open.cell.face, open.cell.weights(along, up));
-  const double radius =
-      rules_->size_at(point) * rules_->smallest_factor() * rules_->shape_radius(rules_->kinds()[kind]);
-  const double area = mesh_->face_area(open.cell.face) * open.cell.unit() * open.cell.unit();
-  if (area < uniform(key, 5) * k_dart_area * radius * radius) return;
   look.has_dart = true;
   look.dart = {order(point, key), kind, number, point, drawn_scale(point, uniform(key, 4))};
 }
@@ -344,7 +348,7 @@ void GapSearch::look(const OpenCell& open, Index number, Neighbours& near, Look&
       look.asked |= std::uint64_t{1} << kind;
     }
   }
-  if (look.open) throw_dart(open, number, look);
+  if (look.open) throw_dart(open, view, number, look);
 }
 
 void GapSearch::lose(const Cell& cell) {
@@ -397,7 +401,7 @@ void GapSearch::round(const JobStage& stage) {
   for (std::size_t i = 0; i < open_.size(); ++i) {
     if (!looks[i].open) continue;
     const CellView view = rules_->view(open_[i].cell);
-    if (is_stuck[i] && view.radius < 8 * options_->tolerance * rules_->smallest_radius()) {
+    if (is_stuck[i] && view.radius < least_stuck()) {
       lose(open_[i].cell);
       continue;
     }

@@ -57,7 +57,7 @@ class GapSearch {
   double drawn_scale(const SurfacePoint& point, double chance) const {
     return rules_->size_at(point) * (options_->smallest + (options_->largest - options_->smallest) * chance);
   }
-  void throw_dart(const OpenCell& open, Index number, Look& look) const;
+  void throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const;
   std::uint64_t centrally_covered(const CellView& view, std::uint64_t kinds, const Neighbours& near) const;
   bool is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbours& near) const;
   bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Encounter& found,
@@ -67,6 +67,8 @@ class GapSearch {
   double tolerance(const CellView& view, const Kind& kind) const {
     return options_->tolerance * rules_->smallest_factor() * view.size * rules_->shape_radius(kind);
   }
+  /// Cells so small are given up where shapes cannot be laid.
+  double least_stuck() const { return 8 * options_->tolerance * rules_->smallest_radius(); }
   void lose(const Cell& cell);
 
   const Mesh* mesh_;

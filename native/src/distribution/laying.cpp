@@ -87,7 +87,7 @@ void Laying::attempt(const Candidate& candidate, Attempt& attempt, int thread) c
     attempt.outcome = Outcome::not_wanted;
     return;
   }
-  if (!candidate.is_thorough && is_foreseen_to_meet(attempt.copy)) {
+  if (!candidate.is_thorough && !candidate.is_probe && is_foreseen_to_meet(attempt.copy)) {
     attempt.outcome = Outcome::collision;
     return;
   }

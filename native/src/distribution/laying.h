@@ -19,6 +19,8 @@ struct Candidate {
   double scale;
   /// Not turned away by what is only foreseen: its outline is tested.
   bool is_thorough = false;
+  /// As thorough, to learn whether shapes can be laid there at all.
+  bool is_probe = false;
 };
 
 enum class Outcome : std::uint8_t { laid, not_wanted, collision, boundary, forbidden, fold, stretched };
