@@ -163,8 +163,9 @@ std::vector<std::pair<Index, Index>> as_units(const py::object& value, int symme
       throw InputError(message(argument, ": ", key_name, " ", which, " has index ", wanted,
                                ", which is not finite or beyond reason"));
     if (std::abs(units - std::round(units)) > 1e-9)
-      throw InputError(message(argument, ": ", key_name, " ", which, " has index ", wanted,
-                               ", which is not a multiple of 1/", symmetry, " (symmetry ", symmetry, ")"));
+      throw InputError(message(argument, ": ", key_name, " ", which, " has index ", wanted, ", which is not a ",
+                               symmetry == 1 ? "whole number" : message("multiple of 1/", symmetry), " (symmetry ",
+                               symmetry, ")"));
     result.emplace_back(which, static_cast<Index>(std::lround(units)));
   }
   return result;

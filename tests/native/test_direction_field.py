@@ -391,7 +391,7 @@ def test_bad_input_is_told() -> None:
         "vertex 99 is out of range, the mesh has 36 vertices": lambda: sb.direction_field(mesh, 1, {99: 1}),
         "vertex -1 is out of range": lambda: sb.direction_field(mesh, 1, {-1: 1}),
         "vertex 0 lies on the boundary": lambda: sb.direction_field(mesh, 1, {0: 1}),
-        "vertex 7 has index 0.5, which is not a multiple of 1/1": lambda: sb.direction_field(mesh, 1, {7: 0.5}),
+        "vertex 7 has index 0.5, which is not a whole number": lambda: sb.direction_field(mesh, 1, {7: 0.5}),
         "vertex 7 has index nan": lambda: sb.direction_field(mesh, 1, {7: np.nan}),
         "singularities: wanted a dict": lambda: sb.direction_field(mesh, 1, [7]),
         "singularities: wanted an integer": lambda: sb.direction_field(mesh, 1, {7.5: 1}),

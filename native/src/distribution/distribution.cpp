@@ -30,7 +30,8 @@ void check_per_vertex(const char* name, const Mesh& mesh, const std::vector<doub
     if (!std::isfinite(values[i]))
       throw InputError(message(name, ": value ", values[i], " at [", i, "] is not finite"));
     if (values[i] < 0 || (values[i] == 0 && !may_be_zero))
-      throw InputError(message(name, ": value ", values[i], " at [", i, "] is not positive"));
+      throw InputError(
+          message(name, ": value ", values[i], " at [", i, may_be_zero ? "] is negative" : "] is not positive"));
   }
 }
 
