@@ -2,7 +2,7 @@
 
 Processor nanoseconds per site, medians over fresh sites in every repetition (the same ones again would train the
 branch predictor), beside CGAL's, Boost.Polygon's and SciPy's in the same run; numbers of vertices and edges against
-CGAL's; then nanoseconds by the kind of sites, and the growth of memory; then the same for weighted sites beside CGAL's
+CGAL's, or the diagram by exact tests where CGAL crashes (on a circle it may); then nanoseconds by the kind of sites, and the growth of memory; then the same for weighted sites beside CGAL's
 Apollonius graph, hidden sites and all. CGAL and Boost need a compiler and their
 headers (Debian: g++, libcgal-dev); without them their columns stay empty.
 """
@@ -42,12 +42,14 @@ def build_peers(folder: Path, name: str = "voronoi_2d_peers") -> Path | None:
 
 
 def run_peers(program: Path, sites: plane_sites.Points) -> dict[str, list[float]]:
-    """Seconds by peer; CGAL's are followed by its numbers of vertices and edges."""
+    """Seconds by peer; CGAL's are followed by its numbers of vertices and edges. Without those that crash."""
     with tempfile.NamedTemporaryFile() as file:
         file.write(np.ascontiguousarray(sites).tobytes())
         file.flush()
-        lines = subprocess.run([program, file.name], capture_output=True, text=True, check=True).stdout.splitlines()
-    return {name: [float(value) for value in values] for name, *values in map(str.split, lines)}
+        done = subprocess.run([program, file.name], capture_output=True, text=True, check=False)
+    if done.returncode > 0:
+        raise SystemExit(f"{program.name}: exit status {done.returncode}, {done.stderr.strip()}")
+    return {name: [float(value) for value in values] for name, *values in map(str.split, done.stdout.splitlines())}
 
 
 def measured(work: Callable[[], object]) -> float:
@@ -73,7 +75,10 @@ def compare(kind: str, n: int, threads: int, peers: Path | None, *, with_scipy: 
         if peers is not None:
             found = run_peers(peers, sites)
             counts = [len(diagram.vertices), len(diagram.edges)]
-            if counts != found["cgal"][1:]:
+            if "cgal" not in found:
+                wrong = plane_sites.faults(diagram)
+                print(f"{kind}, {n}, seed {seed}: CGAL crashes; by exact tests {wrong or 'nothing'} is wrong", flush=True)
+            elif counts != found["cgal"][1:]:
                 raise SystemExit(f"{kind}, {n}, seed {seed}: {counts} vertices and edges, CGAL has {found['cgal'][1:]}")
             for name, values in found.items():
                 times.setdefault(name, []).append(values[0])

@@ -71,6 +71,7 @@ int main(int count, char** arguments) {
   std::vector<Kernel::Point_2> points;
   for (double xy[2]; std::fread(xy, sizeof(double), 2, file) == 2;) points.emplace_back(xy[0], xy[1]);
   std::fclose(file);
+  std::setvbuf(stdout, nullptr, _IONBF, 0);  // what one says is not lost when another crashes
   run_cgal(points);
   run_boost(points);
 }

@@ -8,9 +8,10 @@
 
 namespace saddleback {
 
-/// Memory for `size` bytes, in huge pages if that pays; the caller frees it with `free_large`. \throw std::bad_alloc
+/// Memory for `size` bytes, in huge pages if that pays; the caller frees it with `free_large` of the same size.
+/// \throw std::bad_alloc
 void* allocate_large(std::size_t size);
-void free_large(void* memory) noexcept;
+void free_large(void* memory, std::size_t size) noexcept;
 
 /// New elements have no value until they are given one, as those of a plain array.
 template <class T>
@@ -21,7 +22,7 @@ struct LargeAllocator {
   explicit(false) LargeAllocator(const LargeAllocator<U>&) {}
 
   T* allocate(std::size_t count) { return static_cast<T*>(allocate_large(count * sizeof(T))); }
-  void deallocate(T* memory, std::size_t) noexcept { free_large(memory); }
+  void deallocate(T* memory, std::size_t count) noexcept { free_large(memory, count * sizeof(T)); }
   template <class U>
   void construct(U* place) {
     ::new (static_cast<void*>(place)) U;

@@ -1,30 +1,118 @@
-// Touching fresh memory costs a visit to the kernel for each page; with pages of 2 MiB that is nothing.
+// Touching fresh memory costs a visit to the kernel for each page; with pages of 2 MiB that is nothing. What is too
+// small for those is kept for the next array of its size. Larger arrays go back to the system at once: an ordinary heap
+// would keep what lies between others, which then counts at the peak of what follows.
 
 #include "saddleback/large_array.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
-#ifdef __linux__
+#include <mutex>
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
+#define SADDLEBACK_OWN_PAGES
 #include <sys/mman.h>
 #endif
 
 namespace saddleback {
 
-void* allocate_large(std::size_t size) {
-#ifdef __linux__
-  constexpr std::size_t k_page = std::size_t{1} << 21;
-  if (size >= k_page / 2) {
-    void* const memory = std::aligned_alloc(k_page, (size + k_page - 1) / k_page * k_page);
-    if (!memory) throw std::bad_alloc();
-    // A wish: nothing is lost when it is not granted. The last page only where most of it is used.
-    madvise(memory, (size + k_page / 8) / k_page * k_page, MADV_HUGEPAGE);
+#ifdef SADDLEBACK_OWN_PAGES
+
+namespace {
+
+constexpr std::size_t k_huge = std::size_t{1} << 21, k_step = std::size_t{1} << 16;
+constexpr std::size_t k_smallest = k_step;  // below, an ordinary heap is as good
+constexpr std::size_t k_largest_kept = 7 << 19, k_most_kept = std::size_t{24} << 20;
+
+/// What is had for a size. The last page is huge only where most of it is used.
+std::size_t rounded(std::size_t size) {
+  return std::max((size + k_step - 1) / k_step * k_step, (size + k_huge / 8) / k_huge * k_huge);
+}
+
+/// Memory from the system; what is large begins at a huge page. nullptr when there is none.
+void* map_pages(std::size_t size) {
+  const std::size_t extra = size >= k_huge / 2 ? k_huge : 0;
+  void* const memory = mmap(nullptr, size + extra, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) return nullptr;
+  if (extra == 0) return memory;
+  char* const start = static_cast<char*>(memory);
+  const std::size_t skipped = (k_huge - reinterpret_cast<std::uintptr_t>(start) % k_huge) % k_huge;
+  if (skipped > 0) munmap(start, skipped);
+  if (extra > skipped) munmap(start + skipped + size, extra - skipped);
+  madvise(start + skipped, size / k_huge * k_huge, MADV_HUGEPAGE);  // a wish: nothing is lost if it is not granted
+  return start + skipped;
+}
+
+/// Free memory of small arrays.
+class Kept {
+ public:
+  void* take(std::size_t size) {
+    const std::lock_guard lock(mutex_);
+    const auto end = blocks_.begin() + count_;
+    const auto found = std::find_if(blocks_.begin(), end, [&](const Block& block) { return block.size == size; });
+    if (found == end) return nullptr;
+    void* const memory = found->memory;
+    *found = blocks_[--count_];
+    total_ -= size;
     return memory;
   }
-#endif
+  /// False if there is enough already.
+  bool keep(void* memory, std::size_t size) {
+    const std::lock_guard lock(mutex_);
+    if (size > k_largest_kept || total_ + size > k_most_kept || count_ == blocks_.size()) return false;
+    blocks_[count_++] = {memory, size};
+    total_ += size;
+    return true;
+  }
+
+ private:
+  struct Block {
+    void* memory;
+    std::size_t size;
+  };
+  std::mutex mutex_;
+  std::array<Block, 64> blocks_{};
+  std::size_t count_ = 0, total_ = 0;
+};
+
+// Never destroyed: arrays may outlive everything else.
+Kept& kept() {
+  static Kept* const all = new Kept;
+  return *all;
+}
+
+}  // namespace
+
+void* allocate_large(std::size_t size) {
+  if (size >= k_smallest) {
+    const std::size_t wanted = rounded(size);
+    void* memory = kept().take(wanted);
+    if (!memory) memory = map_pages(wanted);
+    if (!memory) throw std::bad_alloc();
+    return memory;
+  }
   void* const memory = std::malloc(size ? size : 1);
   if (!memory) throw std::bad_alloc();
   return memory;
 }
 
-void free_large(void* memory) noexcept { std::free(memory); }
+void free_large(void* memory, std::size_t size) noexcept {
+  if (size < k_smallest)
+    std::free(memory);
+  else if (!kept().keep(memory, rounded(size)))
+    munmap(memory, rounded(size));
+}
+
+#else
+
+void* allocate_large(std::size_t size) {
+  void* const memory = std::malloc(size ? size : 1);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+void free_large(void* memory, std::size_t) noexcept { std::free(memory); }
+
+#endif
 
 }  // namespace saddleback

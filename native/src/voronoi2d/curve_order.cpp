@@ -44,12 +44,12 @@ std::uint32_t place_on_curve(std::uint32_t x, std::uint32_t y) {
   return place;
 }
 
-// Calls work(item) for all, with a look at the job from time to time.
+// Calls work(item) for all; tells the job from time to time.
 template <class Items, class Work>
 void for_blocks(Items& items, const JobStage& stage, Work&& work) {
   constexpr std::size_t k_block = std::size_t{1} << 16;
   for (std::size_t begin = 0; begin < items.size(); begin += k_block) {
-    stage.check();
+    stage.update(static_cast<double>(begin) / static_cast<double>(items.size()));
     const std::size_t end = std::min(items.size(), begin + k_block);
     for (std::size_t i = begin; i < end; ++i) work(items[i]);
   }
@@ -62,10 +62,11 @@ void radix_sort(LargeArray<Placed>& items, LargeArray<Placed>& other, const JobS
   other.resize(items.size());
   for (int shift = 0; shift < 2 * k_bits; shift += k_digit) {
     std::array<std::size_t, k_values + 1> begin{};
-    for (const Placed& item : items) ++begin[((item.place >> shift) & (k_values - 1)) + 1];
+    const JobStage pass = stage.part(shift / (2.0 * k_bits), std::min(1.0, (shift + k_digit) / (2.0 * k_bits)));
+    for_blocks(items, pass.part(0, 0.3),
+               [&](const Placed& item) { ++begin[((item.place >> shift) & (k_values - 1)) + 1]; });
     for (std::size_t i = 0; i < k_values; ++i) begin[i + 1] += begin[i];
-    stage.update((shift + 0.2 * k_digit) / (2.0 * k_bits));
-    for_blocks(items, stage,
+    for_blocks(items, pass.part(0.3, 1),
                [&](const Placed& item) { other[begin[(item.place >> shift) & (k_values - 1)]++] = item; });
     items.swap(other);
   }
@@ -89,7 +90,7 @@ class Sorter {
 
   void sort_inside(std::span<Placed> items) {
     constexpr std::size_t k_few = 48;
-    if (items.size() <= k_few || !place(items)) {
+    if (items.size() <= k_few || !place(items, stage_.part(0, 0))) {
       std::sort(items.begin(), items.end(), [&](const Placed& a, const Placed& b) { return less(a.index, b.index); });
       return;
     }
@@ -109,9 +110,9 @@ class Sorter {
   }
 
   /// Fills in the places; false when all points are one.
-  bool place(std::span<Placed> items) {
+  bool place(std::span<Placed> items, const JobStage& stage) {
     Box box;
-    for_blocks(items, stage_, [&](const Placed& item) {
+    for_blocks(items, stage.part(0, 0.3), [&](const Placed& item) {
       for (int k = 0; k < 2; ++k) {
         box.low[k] = std::min(box.low[k], points_[item.index][k]);
         box.high[k] = std::max(box.high[k], points_[item.index][k]);
@@ -120,7 +121,7 @@ class Sorter {
     // Halves, since the width of the box may be beyond the doubles.
     const double width = std::max(0.5 * box.high[0] - 0.5 * box.low[0], 0.5 * box.high[1] - 0.5 * box.low[1]);
     if (!(width > 0)) return false;
-    for_blocks(items, stage_, [&](Placed& item) {
+    for_blocks(items, stage.part(0.3, 1), [&](Placed& item) {
       std::uint32_t square[2];
       for (int k = 0; k < 2; ++k) square[k] = square_of(points_[item.index][k], box.low[k], width);
       item.place = place_on_curve(square[0], square[1]);
@@ -143,10 +144,10 @@ class Sorter {
 LargeArray<Placed> curve_order(std::span<const Vec2> points, const JobStage& stage) {
   LargeArray<Placed> items(points.size()), other;
   Index next = 0;
-  for_blocks(items, stage, [&](Placed& item) { item = {0, next++}; });
-  Sorter sorter(points, stage);
-  stage.update(0.1);
-  if (items.size() > 1 && sorter.place(items)) radix_sort(items, other, stage.part(0.3, 0.9));
+  for_blocks(items, stage.part(0, 0.1), [&](Placed& item) { item = {0, next++}; });
+  const JobStage last = stage.part(0.9, 1);
+  Sorter sorter(points, last);
+  if (items.size() > 1 && sorter.place(items, stage.part(0.1, 0.3))) radix_sort(items, other, stage.part(0.3, 0.9));
   sorter.sort_runs(items);
   stage.update(1);
   return items;

@@ -120,7 +120,7 @@ class Numberer {
   template <class Work>
   void for_pieces(const JobStage& stage, Work&& work) {
     parallel_for(static_cast<Index>(pieces_.size()), threads_, 1, [&](Index i, int thread) {
-      stage.check();
+      stage.update(i / static_cast<double>(pieces_.size()));
       work(i, thread);
     });
     stage.update(1);

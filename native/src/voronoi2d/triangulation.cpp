@@ -199,13 +199,15 @@ class TileWork {
 
   void run(const JobStage& stage) {
     const Index count = squares_.back().part.end;
-    std::atomic<Index> done{0};
+    const std::size_t pair_count = squares_.size() - levels_[0].size();
+    std::atomic<Index> done{0}, joined{0};
     for (std::size_t level = 0; level < levels_.size(); ++level) {
       parallel_for(static_cast<Index>(levels_[level].size()), threads_, 1, [&](Index i, int thread) {
         stage.check();
         Square& square = squares_[levels_[level][i]];
         if (level > 0) {
           join(square, thread, stage);
+          stage.update(0.9 + 0.1 * ++joined / static_cast<double>(pair_count));
           return;
         }
         const Index size = square.part.end - square.part.begin;

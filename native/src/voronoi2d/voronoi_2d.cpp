@@ -60,7 +60,7 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
   result.edge_sites = std::move(numbering.edge_sites);
   result.cell_places.assign(sites.size(), k_none);
   for (Index rank = 0; rank < static_cast<Index>(ordered.original.size()); ++rank) {
-    if (rank % 65536 == 0) stage.check();
+    if (rank % 65536 == 0) stage.update(0.95 + 0.05 * rank / static_cast<double>(ordered.original.size()));
     result.cell_places[ordered.original[rank]] = rank;
   }
   if (are_distinct) {
