@@ -2,9 +2,9 @@
 
 Processor nanoseconds per site, medians over fresh sites in every repetition (the same ones again would train the
 branch predictor), beside CGAL's, Boost.Polygon's and SciPy's in the same run; numbers of vertices and edges against
-CGAL's, or the diagram by exact tests where CGAL crashes (on a circle it may); then nanoseconds by the kind of sites, and the growth of memory; then the same for weighted sites beside CGAL's
-Apollonius graph, hidden sites and all. CGAL and Boost need a compiler and their
-headers (Debian: g++, libcgal-dev); without them their columns stay empty.
+CGAL's, or the diagram by exact tests where CGAL crashes (on a circle it may); then nanoseconds by the kind of sites,
+and the growth of memory; then the same for weighted sites beside CGAL's Apollonius graph, hidden sites and all. CGAL
+and Boost need a compiler and their headers (Debian: g++, libcgal-dev); without them their columns stay empty.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def compare(kind: str, n: int, threads: int, peers: Path | None, *, with_scipy: 
             counts = [len(diagram.vertices), len(diagram.edges)]
             if "cgal" not in found:
                 wrong = plane_sites.faults(diagram)
-                print(f"{kind}, {n}, seed {seed}: CGAL crashes; by exact tests {wrong or 'nothing'} is wrong", flush=True)
+                print(f"{kind}, {n}, seed {seed}: CGAL crashes; by exact tests wrong: {wrong or 'nothing'}", flush=True)
             elif counts != found["cgal"][1:]:
                 raise SystemExit(f"{kind}, {n}, seed {seed}: {counts} vertices and edges, CGAL has {found['cgal'][1:]}")
             for name, values in found.items():
