@@ -3,7 +3,6 @@
 // the caller. The answer is the processor's, to the bit.
 
 #include <algorithm>
-#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "geodesics/device_union.cuh"
 #include "geodesics/device_waves.cuh"
 #include "support/device_stream.h"
+#include "support/host_copies.h"
 
 namespace saddleback {
 namespace {
@@ -109,35 +109,19 @@ __global__ void __launch_bounds__(32) find_large_disks(DeviceMesh mesh, Work wor
                      drafts + static_cast<std::size_t>(blockIdx.x) * k_large_draft_room, k_large_draft_room, rows);
 }
 
-/// The request's larger tables, pinned.
-class PinnedTables {
- public:
-  explicit PinnedTables(const ArcTwinRequest& r)
-      : records_(r.records, edges(r) * sizeof(EdgeRecord)),
-        lengths_(r.lengths, edges(r) * sizeof(double)),
-        targets_(r.targets, edges(r) * sizeof(std::int32_t)),
-        sectors_(r.sectors, edges(r) * sizeof(float)),
-        reverse_sectors_(r.reverse_sectors, edges(r) * sizeof(float)),
-        apex_sectors_(r.apex_sectors, edges(r) * sizeof(float)) {}
-
- private:
-  static std::size_t edges(const ArcTwinRequest& r) { return static_cast<std::size_t>(r.edge_count); }
-  PinnedRange records_, lengths_, targets_, sectors_, reverse_sectors_, apex_sectors_;
-};
-
 /// Host memory of the request, on the device.
 class Tables {
  public:
   Tables(const ArcTwinRequest& r, cudaStream_t stream)
-      : records_({r.records, edges(r)}, stream),
-        first_({r.first, nodes(r) + 1}, stream),
-        targets_({r.targets, edges(r)}, stream),
-        lengths_({r.lengths, edges(r)}, stream),
-        sectors_({r.sectors, edges(r)}, stream),
-        reverse_sectors_({r.reverse_sectors, edges(r)}, stream),
-        apex_sectors_({r.apex_sectors, edges(r)}, stream),
-        per_radian_({r.per_radian, nodes(r)}, stream),
-        saddles_({r.saddles, nodes(r)}, stream),
+      : records_(edges(r), stream),
+        first_(nodes(r) + 1, stream),
+        targets_(edges(r), stream),
+        lengths_(edges(r), stream),
+        sectors_(edges(r), stream),
+        reverse_sectors_(edges(r), stream),
+        apex_sectors_(edges(r), stream),
+        per_radian_(nodes(r), stream),
+        saddles_(nodes(r), stream),
         mesh_{records_.data(),
               first_.data(),
               targets_.data(),
@@ -152,7 +136,20 @@ class Tables {
               r.k,
               r.detour,
               r.excess,
-              r.slack} {}
+              r.slack} {
+    HostCopies copies(stream);
+    const auto fill = [&](const auto* from, auto& to) { copies.to_device(from, to.size(), to.data()); };
+    fill(r.records, records_);
+    fill(r.first, first_);
+    fill(r.targets, targets_);
+    fill(r.lengths, lengths_);
+    fill(r.sectors, sectors_);
+    fill(r.reverse_sectors, reverse_sectors_);
+    fill(r.apex_sectors, apex_sectors_);
+    fill(r.per_radian, per_radian_);
+    fill(r.saddles, saddles_);
+    copies.finish();
+  }
   const DeviceMesh& mesh() const { return mesh_; }
 
  private:
@@ -326,10 +323,8 @@ void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, DeviceTim
   keep_freed_memory(request.device);
   const Stream stream;
   Stopwatch watch(stream);
-  std::optional<PinnedTables> pinned(request);
   ArcFinder finder(request, caller, stream);
   times.upload = watch.lap();
-  pinned.reset();
   finder.find(times);
   times.find = watch.lap();
   DeviceUnion arcs(request.packing, finder.rows(), stream);
@@ -339,8 +334,11 @@ void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, DeviceTim
   std::uint64_t* words = nullptr;
   if (!caller.make_room(caller.self, arcs.count(), &offsets, &words)) throw Stopped();
   watch.lap();
-  const PinnedRange pinned_words(words, static_cast<std::size_t>(arcs.count()) * sizeof(std::uint64_t));
-  arcs.read(offsets, words);
+  HostCopies copies(stream);
+  arcs.copy(copies, offsets, words);
+  copies.finish([&] {
+    if (!caller.keep_going(caller.self, 0.95)) throw Stopped();
+  });
   times.download = watch.lap();
 }
 

@@ -12,7 +12,7 @@
 #include "geodesics/device_search.h"
 #include "support/device_buffer.h"
 #include "support/device_stream.h"
-#include "support/scratch_pool.h"
+#include "support/host_copies.h"
 
 namespace saddleback {
 
@@ -41,7 +41,6 @@ class StopFlag {
 struct SearchTools {
   Stream stream;
   Stopwatch watch{stream};
-  CopiesAside copies{stream};
   StopFlag stop;
 };
 
@@ -52,7 +51,7 @@ struct GraphTwin {
       : device(r.device),
         node_count(r.node_count),
         offsets({r.offsets, static_cast<std::size_t>(r.node_count) + 1}, stream),
-        words({r.words, static_cast<std::size_t>(r.arc_count)}, stream),
+        words(static_cast<std::size_t>(r.arc_count), stream),
         nodes({r.nodes, static_cast<std::size_t>(r.node_count)}, stream),
         graph{offsets.data(),        words.data(),          r.node_count,   bits_of_words(r.node_count),
               r.packing.target_mask, r.packing.length_mask, r.packing.bias, r.packing.kept_shift} {}
@@ -135,8 +134,7 @@ class Searcher {
     DeviceBuffer<double> ordered(most * nodes, stream_);
     DeviceBuffer<unsigned> waiting(most * words, stream_);
     DeviceBuffer<TeamBoard> boards(most, stream_);
-    const PinnedRange pinned(request_.distances,
-                             static_cast<std::size_t>(request_.field_count) * nodes * sizeof(double));
+    HostCopies copies(stream_);
     for (std::int32_t begin = 0; begin < request_.field_count; begin += teams.fields) {
       const std::int32_t count = std::min(teams.fields, request_.field_count - begin);
       waiting.fill_bytes(0);
@@ -152,16 +150,18 @@ class Searcher {
                                 request_.step * teams.steps,
                                 tools_->stop.on_device()};
       search(seeds, fields);
-      copies_.finish();
+      copies.finish();
       watch_.start();
       write(fields, ordered.data(), ordered_sources.data());
       times_.unite += watch_.lap();
       const std::size_t size = static_cast<std::size_t>(count) * nodes, to = static_cast<std::size_t>(begin) * nodes;
-      copies_.start(ordered.data(), size, request_.distances ? request_.distances + to : nullptr);
-      if (request_.sources) copies_.start(ordered_sources.data(), size, request_.sources + to);
+      copies.to_host(ordered.data(), size, request_.distances ? request_.distances + to : nullptr);
+      if (request_.sources) copies.to_host(ordered_sources.data(), size, request_.sources + to);
     }
     watch_.start();
-    copies_.finish();
+    copies.finish([&] {
+      if (!keep_going(request_.field_count)) throw Stopped();
+    });
     times_.download += watch_.lap();
   }
 
@@ -193,14 +193,16 @@ class Searcher {
       if (state == cudaSuccess) break;
       if (state != cudaErrorNotReady) check_cuda(state, "searching the graph");
       if (Clock::now() - start < 3ms) continue;
-      if (!is_stopped && !caller_.keep_going(caller_.self, static_cast<double>(done) / request_.field_count)) {
+      if (!is_stopped && !keep_going(done)) {
         is_stopped = true;
         tools_->stop.raise();
       }
       std::this_thread::sleep_for(500us);
     }
-    if (is_stopped || !caller_.keep_going(caller_.self, static_cast<double>(done) / request_.field_count))
-      throw Stopped();
+    if (is_stopped || !keep_going(done)) throw Stopped();
+  }
+  bool keep_going(std::int32_t done) const {
+    return caller_.keep_going(caller_.self, static_cast<double>(done) / request_.field_count);
   }
 
   void write(const SearchFields& fields, double* distances, std::int32_t* sources) const {
@@ -218,7 +220,6 @@ class Searcher {
   ScratchPool<SearchTools>::Lease tools_;
   const cudaStream_t stream_ = tools_->stream;
   Stopwatch& watch_ = tools_->watch;
-  CopiesAside& copies_ = tools_->copies;
 };
 
 template <class Work>
@@ -242,10 +243,11 @@ TwinStatus put_graph_on_device(const GraphTwinRequest& r, GraphTwin** graph, dou
     const auto arcs = static_cast<std::uint64_t>(r.arc_count), nodes = static_cast<std::uint64_t>(r.node_count);
     check_device_room("the graph", 8 * arcs + 12 * nodes + (1 << 20), r.most_bytes);
     keep_freed_memory(r.device);
-    const PinnedRange pinned(r.words, 8 * arcs);
     auto twin = std::make_unique<GraphTwin>(r);
     Stopwatch watch(twin->stream);
-    check_cuda(cudaStreamSynchronize(twin->stream), "copying to the device");
+    HostCopies copies(twin->stream);
+    copies.to_device(r.words, static_cast<std::size_t>(arcs), twin->words.data());
+    copies.finish();
     *seconds = watch.lap();
     *graph = twin.release();
   });

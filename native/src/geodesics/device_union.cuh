@@ -6,6 +6,7 @@
 
 #include "geodesics/arc_twin.h"
 #include "support/device_buffer.h"
+#include "support/host_copies.h"
 
 namespace saddleback {
 namespace {
@@ -247,12 +248,9 @@ class DeviceUnion {
   }
 
   std::int64_t count() const { return count_; }
-  /// Waits for the stream.
-  void read(std::int64_t* offsets, std::uint64_t* words) const {
-    check_cuda(cudaMemcpyAsync(offsets, offsets_.data(), offsets_.size() * sizeof(std::int64_t), cudaMemcpyDeviceToHost,
-                               stream_),
-               "copying the graph");
-    words_.read({words, static_cast<std::size_t>(count_)});
+  void copy(HostCopies& copies, std::int64_t* offsets, std::uint64_t* words) const {
+    copies.to_host(offsets_.data(), offsets_.size(), offsets);
+    copies.to_host(words_.data(), static_cast<std::size_t>(count_), words);
   }
 
  private:

@@ -6,7 +6,6 @@
 
 #include "geodesics/arc_twin.h"
 #include "geodesics/disk_rows.h"
-#include "support/fresh_pages.h"
 #include "support/parallel.h"
 #include "support/twin_caller.h"
 
@@ -34,7 +33,6 @@ class Caller {
               return caller.guard_.run([&] {
                 caller.offsets_.resize(caller.search_.vertices.size() + 1);
                 caller.words_.resize(static_cast<std::size_t>(words));
-                lay_pages(std::as_writable_bytes(std::span(caller.words_)), caller.search_.threads, caller.stage_);
                 *offsets_to = caller.offsets_.data();
                 *words_to = caller.words_.data();
               });

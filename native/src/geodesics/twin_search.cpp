@@ -6,7 +6,6 @@
 #include "geodesics/arc_scale.h"
 #include "geodesics/query_cache.h"
 #include "geodesics/search_twin.h"
-#include "support/fresh_pages.h"
 #include "support/twin_caller.h"
 
 namespace saddleback {
@@ -79,8 +78,6 @@ void twin_search(const SaddleVertexGraph& graph, std::span<const std::vector<See
   const DeviceGraphs::Kept kept = graphs.on(options.cuda_device, graph, times);
   const double bound = std::nextafter(options.limit, std::numeric_limits<double>::infinity());
   const FlatSeeds flat(graph, seeds, bound);
-  const std::size_t values = seeds.size() * static_cast<std::size_t>(graph.arcs().node_count());
-  lay_pages(std::as_writable_bytes(std::span(to.distances, values)), 0, stage);
   SearchTwinRequest request{.most_bytes = cuda_memory_limit(),
                             .field_count = static_cast<std::int32_t>(seeds.size()),
                             .first_seed = flat.first.data(),

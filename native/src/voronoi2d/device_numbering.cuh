@@ -199,7 +199,7 @@ class DeviceDiagram {
   PlaneTwinSizes sizes() const { return {count_, edges_, vertices_}; }
 
   /// Copies what is done as soon as it is.
-  void number(const DeviceCells& cells, const DeviceLists& lists, CopiesAside& copies, const PlaneTwinArrays& to) {
+  void number(const DeviceCells& cells, const DeviceLists& lists, HostCopies& copies, const PlaneTwinArrays& to) {
     const auto places = static_cast<std::size_t>(count_) + 1;
     DeviceBuffer<std::int32_t> next_corners(size(sides_), stream_), counts(places, stream_), before(places, stream_);
     misfits_.fill_bytes(0);
@@ -245,8 +245,8 @@ class DeviceDiagram {
     check_cuda(cudaGetLastError(), "counting");
   }
   template <class Number>
-  static void copy(CopiesAside& copies, const DeviceBuffer<Number>& from, void* to) {
-    copies.start(from.data(), from.size(), to);
+  static void copy(HostCopies& copies, const DeviceBuffer<Number>& from, void* to) {
+    copies.to_host(from.data(), from.size(), to);
   }
 
   cudaStream_t stream_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "support/device_stream.h"
+#include "support/host_copies.h"
 #include "voronoi2d/device_far_cells.cuh"
 #include "voronoi2d/device_numbering.cuh"
 #include "voronoi2d/device_voronoi.h"
@@ -113,21 +114,6 @@ class CellFinder {
 /// What a diagram takes at most at once, in bytes.
 std::uint64_t bytes_needed(std::int32_t count) { return static_cast<std::uint64_t>(count) * 360 + (1 << 20); }
 
-/// The larger arrays of the answer, pinned.
-class PinnedArrays {
- public:
-  PinnedArrays(const PlaneTwinArrays& to, const PlaneTwinSizes& sizes)
-      : corners_(to.corner_vertices, 2 * edges(sizes) * sizeof(std::int32_t)),
-        sides_(to.side_edges, 2 * edges(sizes) * sizeof(std::int32_t)),
-        edges_(to.edges, edges(sizes) * sizeof(int2)),
-        sites_(to.edge_sites, edges(sizes) * sizeof(int2)),
-        vertices_(to.vertices, static_cast<std::size_t>(sizes.vertices) * sizeof(double2)) {}
-
- private:
-  static std::size_t edges(const PlaneTwinSizes& sizes) { return static_cast<std::size_t>(sizes.edges); }
-  PinnedRange corners_, sides_, edges_, sites_, vertices_;
-};
-
 class Builder {
  public:
   Builder(const PlaneTwinRequest& request, const PlaneTwinCaller& caller, DeviceTimes& times)
@@ -162,24 +148,24 @@ class Builder {
     const PlaneTwinSizes most{order.cell_count(), 3 * order.cell_count() - 3, 2 * order.cell_count()};
     PlaneTwinArrays to{};
     if (!caller_.make_room(caller_.self, most, &to)) throw Stopped();
-    const PinnedArrays pinned(to, most);
-    CopiesAside copies(stream);
-    copies.start(order.site_of(), count, to.site_of);
-    copies.start(order.cell_places(), count, to.cell_places);
-    copies.start(order.original(), static_cast<std::size_t>(order.cell_count()), to.cell_sites);
+    HostCopies copies(stream);
+    copies.to_host(order.site_of(), count, to.site_of);
+    copies.to_host(order.cell_places(), count, to.cell_places);
+    copies.to_host(order.original(), static_cast<std::size_t>(order.cell_count()), to.cell_sites);
     const std::int32_t sides = cells.finish(times_);
     times_.find = watch.read();
     report(0.6);
     watch.start();
     DeviceDiagram diagram(order.cell_count(), sides, stream);
     if (!diagram.can_be()) throw LeftOver();
-    copies.start(cells.offsets(), static_cast<std::size_t>(order.cell_count()) + 1, to.cell_offsets);
+    const HostCopies::End end(copies);
+    copies.to_host(cells.offsets(), static_cast<std::size_t>(order.cell_count()) + 1, to.cell_offsets);
     diagram.number({order.cell_count(), order.at(), order.original(), cells.offsets(), diagram.neighbours(),
                     cells.lists().is_open},
                    cells.lists(), copies, to);
     times_.unite = watch.lap();
     report(0.7);
-    copies.finish();
+    copies.finish([&] { report(0.7); });
     if (!diagram.fits()) throw LeftOver();
     times_.download = watch.lap();
     if (!caller_.cut(caller_.self, diagram.sizes())) throw Stopped();
@@ -188,17 +174,10 @@ class Builder {
  private:
   DeviceBuffer<double2> upload(cudaStream_t stream) const {
     const auto count = static_cast<std::size_t>(request_.count);
-    const PinnedRange pinned(request_.sites, count * sizeof(double2));
     DeviceBuffer<double2> sites(count, stream);
-    constexpr std::size_t k_piece = std::size_t{1} << 24;
-    for (std::size_t begin = 0; begin < count; begin += k_piece) {
-      const std::size_t size = std::min(k_piece, count - begin);
-      check_cuda(cudaMemcpyAsync(sites.data() + begin, request_.sites + 2 * begin, size * sizeof(double2),
-                                 cudaMemcpyHostToDevice, stream),
-                 "copying to the device");
-      check_cuda(cudaStreamSynchronize(stream), "copying to the device");
-      report(0.1 * static_cast<double>(begin + size) / static_cast<double>(count));
-    }
+    HostCopies copies(stream);
+    copies.to_device(reinterpret_cast<const double2*>(request_.sites), count, sites.data());
+    copies.finish([&] { report(0); });
     return sites;
   }
   void report(double fraction) const {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "support/fresh_pages.h"
+#include "support/parallel.h"
 #include "support/twin_caller.h"
 #include "voronoi2d/curve_order.h"
 #include "voronoi2d/plane_twin.h"
@@ -49,16 +49,6 @@ class Caller {
 
   PlaneTwinArrays make_room(const PlaneTwinSizes& most) {
     resize(most);
-    const auto lay = [&](auto& array) { lay_pages(std::as_writable_bytes(std::span(array)), threads_, stage_); };
-    lay(result_.site_of);
-    lay(result_.cell_places);
-    lay(result_.cell_sites);
-    lay(result_.cell_offsets);
-    lay(result_.corner_vertices);
-    lay(result_.side_edges);
-    lay(result_.edges);
-    lay(result_.edge_sites);
-    lay(result_.vertices);
     return {result_.site_of.data(),       result_.cell_places.data(),        result_.cell_sites.data(),
             result_.cell_offsets.data(),  result_.corner_vertices.data(),    result_.side_edges.data(),
             result_.edges.data()->data(), result_.edge_sites.data()->data(), result_.vertices.data()->data()};

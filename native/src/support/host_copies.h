@@ -1,0 +1,228 @@
+#pragma once
+// Copies between a device and host memory that the device cannot reach by itself, which is all memory that nobody
+// pinned. The driver copies such memory with one thread; pinning it for one copy takes longer than the copy. Here a few
+// threads do it, piece by piece, through pinned memory of their own: they also lay the pages under what is fresh.
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstring>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "support/cuda_check.h"
+#include "support/device_stream.h"
+#include "support/scratch_pool.h"
+
+namespace saddleback {
+
+/// Room for two pieces: one is filled while the other is emptied.
+class PinnedPieces {
+ public:
+  static constexpr std::size_t k_size = std::size_t{1} << 21;
+  PinnedPieces() { check_cuda(cudaHostAlloc(&memory_, 2 * k_size, cudaHostAllocPortable), "asking for pinned memory"); }
+  ~PinnedPieces() { (void)cudaFreeHost(memory_); }
+  PinnedPieces(const PinnedPieces&) = delete;
+  PinnedPieces& operator=(const PinnedPieces&) = delete;
+  char* piece(int number) const { return static_cast<char*>(memory_) + static_cast<std::size_t>(number) * k_size; }
+  /// Left to the next call: pinning takes milliseconds.
+  static ScratchPool<PinnedPieces>& pool() {
+    static ScratchPool<PinnedPieces> pieces;
+    return pieces;
+  }
+
+ private:
+  void* memory_ = nullptr;
+};
+
+/// A moment of a stream.
+class StreamEvent {
+ public:
+  StreamEvent() { check_cuda(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "making an event"); }
+  ~StreamEvent() {
+    if (event_) (void)cudaEventDestroy(event_);
+  }
+  StreamEvent(StreamEvent&& other) noexcept : event_(std::exchange(other.event_, nullptr)) {}
+  StreamEvent& operator=(StreamEvent&&) = delete;
+  operator cudaEvent_t() const { return event_; }
+  void record(cudaStream_t stream) const { check_cuda(cudaEventRecord(event_, stream), "recording an event"); }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+/// Copies beside the work of a stream. For one thread.
+class HostCopies {
+ public:
+  explicit HostCopies(cudaStream_t stream) : stream_(stream) {
+    check_cuda(cudaGetDevice(&device_), "asking for the device");
+  }
+  ~HostCopies() { close(); }
+  /// Ends all copies before what was declared earlier, and is copied, goes away.
+  class End {
+   public:
+    explicit End(HostCopies& copies) : copies_(copies) {}
+    ~End() { copies_.close(); }
+    End(const End&) = delete;
+    End& operator=(const End&) = delete;
+
+   private:
+    HostCopies& copies_;
+  };
+  HostCopies(const HostCopies&) = delete;
+  HostCopies& operator=(const HostCopies&) = delete;
+
+  /// To the host, of what the stream has written so far and does not change any more; none to nowhere.
+  template <class Number>
+  void to_host(const Number* from, std::size_t count, void* to) {
+    if (count == 0 || !to) return;
+    events_.emplace_back().record(stream_);
+    add({from, to, count * sizeof(Number), cudaMemcpyDeviceToHost, events_.back()}, to);
+  }
+  /// To the device: complete when finish() returns.
+  template <class Number>
+  void to_device(const Number* from, std::size_t count, Number* to) {
+    if (count == 0) return;
+    events_.emplace_back().record(stream_);  // the memory is the stream's from here on
+    add({from, to, count * sizeof(Number), cudaMemcpyHostToDevice, events_.back()}, from);
+  }
+  /// Waits until all is copied; calls poll() now and then, which may throw.
+  template <class Poll>
+  void finish(Poll&& poll) {
+    using namespace std::chrono_literals;
+    for (const Copy& copy : std::exchange(small_, {})) start(copy);
+    for (std::unique_lock lock(mutex_); open_ > 0 && !failure_;) {
+      if (changed_.wait_for(lock, 20ms) == std::cv_status::no_timeout) continue;
+      lock.unlock();
+      poll();
+      lock.lock();
+    }
+    if (failure_) std::rethrow_exception(failure_);
+    check_cuda(cudaStreamSynchronize(aside_), "copying between host and device");
+    events_.clear();
+  }
+  void finish() {
+    finish([] {});
+  }
+
+ private:
+  struct Copy {
+    const void* from;
+    void* to;
+    std::size_t size;
+    cudaMemcpyKind kind;
+    cudaEvent_t after;
+  };
+  static constexpr std::size_t k_small = std::size_t{1} << 19;  ///< not worth a thread
+  static constexpr std::size_t k_most_threads = 8;
+
+  static bool is_pinned(const void* host) {
+    cudaPointerAttributes attributes{};
+    if (cudaPointerGetAttributes(&attributes, host) != cudaSuccess) {
+      (void)cudaGetLastError();
+      return false;
+    }
+    return attributes.type == cudaMemoryTypeHost;
+  }
+
+  void start(const Copy& copy) {
+    check_cuda(cudaStreamWaitEvent(aside_, copy.after), "waiting for the device");
+    check_cuda(cudaMemcpyAsync(copy.to, copy.from, copy.size, copy.kind, aside_), "copying between host and device");
+  }
+
+  void add(const Copy& copy, const void* host) {
+    if (is_pinned(host)) return start(copy);
+    if (copy.size < k_small) return small_.push_back(copy);  // the driver would make the caller wait
+    const std::lock_guard lock(mutex_);
+    for (std::size_t begin = 0; begin < copy.size; begin += PinnedPieces::k_size) {
+      pieces_.push_back({static_cast<const char*>(copy.from) + begin, static_cast<char*>(copy.to) + begin,
+                         std::min(PinnedPieces::k_size, copy.size - begin), copy.kind, copy.after});
+      ++open_;
+    }
+    const std::size_t most = std::min<std::size_t>(k_most_threads, std::max(1u, std::thread::hardware_concurrency()));
+    while (threads_.size() < std::min(most, open_)) threads_.emplace_back([this] { work(); });
+    changed_.notify_all();
+  }
+
+  void close() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_closing_ = true;
+      pieces_.clear();
+    }
+    changed_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+    threads_.clear();
+    (void)cudaStreamSynchronize(aside_);
+  }
+
+  /// The next piece; nothing at the end, and when there is none and the caller has better to do than wait.
+  std::optional<Copy> take(bool waits) {
+    std::unique_lock lock(mutex_);
+    if (waits) changed_.wait(lock, [&] { return is_closing_ || !pieces_.empty(); });
+    if (pieces_.empty()) return std::nullopt;
+    const Copy piece = pieces_.front();
+    pieces_.pop_front();
+    return piece;
+  }
+
+  void work() {
+    try {
+      check_cuda(cudaSetDevice(device_), "choosing the device");
+      copy_pieces();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      failure_ = std::current_exception();
+      changed_.notify_all();
+    }
+  }
+
+  void copy_pieces() {
+    const auto pinned = PinnedPieces::pool().lease();
+    const Stream stream;
+    const StreamEvent copied[2];
+    std::optional<Copy> last;
+    for (int slot = 0;; slot ^= 1) {
+      const std::optional<Copy> piece = take(!last);
+      if (!piece && !last) return;
+      if (piece) {
+        char* const memory = pinned->piece(slot);
+        const bool is_up = piece->kind == cudaMemcpyHostToDevice;
+        if (is_up) std::memcpy(memory, piece->from, piece->size);
+        check_cuda(cudaStreamWaitEvent(stream, piece->after), "waiting for the device");
+        check_cuda(
+            cudaMemcpyAsync(is_up ? piece->to : memory, is_up ? memory : piece->from, piece->size, piece->kind, stream),
+            "copying between host and device");
+        copied[slot].record(stream);
+      }
+      if (last) {
+        check_cuda(cudaEventSynchronize(copied[slot ^ 1]), "copying between host and device");
+        if (last->kind == cudaMemcpyDeviceToHost) std::memcpy(last->to, pinned->piece(slot ^ 1), last->size);
+        const std::lock_guard lock(mutex_);
+        if (--open_ == 0) changed_.notify_all();
+      }
+      last = piece;
+    }
+  }
+
+  cudaStream_t stream_;
+  Stream aside_;
+  int device_ = 0;
+  std::vector<StreamEvent> events_;
+  std::vector<Copy> small_;
+  std::vector<std::thread> threads_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Copy> pieces_;
+  std::size_t open_ = 0;  ///< pieces not copied yet
+  std::exception_ptr failure_;
+  bool is_closing_ = false;
+};
+
+}  // namespace saddleback
