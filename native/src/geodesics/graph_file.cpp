@@ -199,11 +199,12 @@ SaddleVertexGraph SaddleVertexGraph::load(const std::string& path, const Mesh& m
     refuse_graph_file(path, "its checksum is wrong");
 
   check_build(header, path);
-  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest_path_bound(mesh, stage));
+  graph.nodes_ = inverse_order(graph.vertices_, path);
+  const double longest = longest_path_bound(mesh, graph.nodes_, graph.vertices_, 0, stage);
+  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
   if (!same_codec(header, codec)) refuse_graph_file(path, "its lengths are in another unit than this mesh needs");
   if (offsets.back() != static_cast<std::int64_t>(words.size()))
     refuse_graph_file(path, message("its rows hold ", offsets.back(), " arcs instead of ", words.size()));
-  graph.nodes_ = inverse_order(graph.vertices_, path);
   graph.arcs_ = ArcRows(codec, std::move(offsets), std::move(words));
   check_arcs(mesh, graph.arcs_, graph.vertices_, path, stage.part(0.4, 0.9));
   graph.unfolding_ = std::make_unique<Unfolding>(mesh, 0, stage.part(0.9, 1));

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
-#include <future>
 #include <optional>
 
 #include "saddleback/error.h"
@@ -48,15 +46,13 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
   const JobStage stage(job, "Building the saddle vertex graph");
-  // One thread's work, beside that of all.
-  std::future<double> longest =
-      std::async(thread_count(options.threads) > 1 ? std::launch::async : std::launch::deferred, longest_path_bound,
-                 std::cref(mesh), std::cref(stage));
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
   order_nodes(options.threads, stage);
   std::optional<WaveTables> tables;
   if (!exact_) tables.emplace(*unfolding_, nodes_, vertices_, options.threads, stage.part(0, 0));
-  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest.get());
+  const double longest = tables ? longest_path_bound(tables->mesh, options.threads, stage)
+                                : longest_path_bound(mesh, nodes_, vertices_, options.threads, stage);
+  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   if (options.cuda_device >= 0) {
     if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
