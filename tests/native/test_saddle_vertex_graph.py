@@ -51,6 +51,21 @@ def test_errors_stay_below_the_accuracy(case: meshes.Case, accuracy: float) -> N
         assert error.mean() <= accuracy / 3
 
 
+@pytest.mark.parametrize("accuracy", [2e-2, 5e-3, 2e-3])
+@pytest.mark.parametrize("stretch", [1.0, 2.0, 3.0])
+def test_errors_stay_below_the_accuracy_on_lattices(stretch: float, accuracy: float) -> None:
+    """What follows an arc has the same detour again there: nothing averages out."""
+    vertices, triangles = meshes.grid(60, 60)
+    vertices = vertices * [stretch, 1, 1]
+    graph = sb.SaddleVertexGraph(sb.Mesh(vertices, triangles), accuracy=accuracy)
+    for source in (0, 1830, 2222):
+        exact = np.linalg.norm(vertices - vertices[source], axis=1)
+        far = exact > 0
+        error = graph.distances([source])[far] / exact[far] - 1
+        assert error.max() <= accuracy
+        assert error.mean() <= accuracy / 4
+
+
 @pytest.mark.parametrize("case", SMALL, ids=str)
 def test_the_exact_graph_is_exact(case: meshes.Case) -> None:
     graph = sb.SaddleVertexGraph(case.mesh, exact=True)

@@ -18,6 +18,8 @@ namespace saddleback {
 struct DiskRule {
   Index k = 0;
   double tolerance = 0;  ///< relative
+  /// On a lattice what follows an arc has the same detour again, and nothing averages out: each must be smaller.
+  bool on_lattice = false;
 };
 
 /// What windows of the rule look up: labels and limits are still to be set.

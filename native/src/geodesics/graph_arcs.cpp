@@ -102,7 +102,9 @@ void check_mesh_size(const Mesh& mesh) {
 
 }  // namespace
 
-DiskRule disk_rule(Index k, double accuracy) { return {.k = k, .tolerance = k_room * accuracy}; }
+DiskRule disk_rule(Index k, double accuracy, bool on_lattice) {
+  return {.k = k, .tolerance = k_room * accuracy, .on_lattice = on_lattice};
+}
 
 WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
                        int threads, const JobStage& stage)

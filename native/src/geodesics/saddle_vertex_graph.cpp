@@ -12,6 +12,7 @@
 #include "geodesics/arc_symmetry.h"
 #include "geodesics/arc_unfolding.h"
 #include "geodesics/graph_arcs.h"
+#include "geodesics/lattice.h"
 #include "geodesics/path_bound.h"
 #include "geodesics/twin_arcs.h"
 #include "mesh/hilbert.h"
@@ -53,10 +54,11 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const double longest = tables ? longest_path_bound(tables->mesh, options.threads, stage)
                                 : longest_path_bound(mesh, nodes_, vertices_, options.threads, stage);
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
+  const DiskRule rule = disk_rule(k_, accuracy_, accuracy_ > 0 && has_lattice(*unfolding_, stage));
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   if (options.cuda_device >= 0) {
     if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
-    arcs_ = twin_arcs(search, *tables, disk_rule(k_, accuracy_), options.cuda_device, device_times_, stage);
+    arcs_ = twin_arcs(search, *tables, rule, options.cuda_device, device_times_, stage);
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;
@@ -64,7 +66,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   // Joining takes the rest, and next to nothing beside exact disks.
   const double found_at = exact_ ? 0.99 : 0.9;
   const JobStage finding = stage.part(0, found_at);
-  auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, *tables, disk_rule(k_, accuracy_), finding);
+  auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, *tables, rule, finding);
   tables.reset();
   arcs_ = unite_with_reverses(codec, *kernel_, found, k_block, options.threads, stage.part(found_at, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
