@@ -49,7 +49,7 @@ Raises:
         negative, all zero, with maximal, or beside counts of each shape; a field of another mesh; bend without a field
         or with maximal;
         sizes or density of the wrong length, not finite or not positive; density zero everywhere, without counts or with
-        maximal; a copy larger than the surface; everything forbidden.
+        maximal; a copy larger than the surface, alone or with half of the gap around; everything forbidden.
     Cancelled: the job was.
 
 Notes:

@@ -277,9 +277,12 @@ Returns:
     DirectionField, the same to the bit.
 
 Raises:
-    InputError: arrays of another length, or not finite; turns that differ between the two faces of an edge; a symmetry
-        other than 1, 2 and 4.
+    InputError: arrays of another length, not finite or beyond a million radians; turns that differ between the two faces
+        of an edge; a symmetry other than 1, 2 and 4.
 )";
+
+/// Beyond, sums of turns pass what counts indices, and what is left of an angle after whole turns is rounding.
+constexpr double k_most_radians = 1e6;
 
 py::object field_from_turns(const py::object& mesh_object, const py::object& angles, const py::object& turns,
                             const py::object& symmetry) {
@@ -296,9 +299,15 @@ py::object field_from_turns(const py::object& mesh_object, const py::object& ang
     if (!(std::abs(sum) < 1e-9))
       throw InputError(message("turns: not opposite across edge ", h % 3, " of face ", h / 3));
   }
-  for (std::size_t f = 0; f < own.values.size(); ++f)
+  for (std::size_t h = 0; h < rows.values.size(); ++h)
+    if (std::abs(rows.values[h]) > k_most_radians)
+      throw InputError(message("turns: value ", rows.values[h], " at [", h / 3, ", ", h % 3, "] is beyond 1e6"));
+  for (std::size_t f = 0; f < own.values.size(); ++f) {
     if (!std::isfinite(own.values[f]))
       throw InputError(message("angles: value ", own.values[f], " at [", f, "] is not finite"));
+    if (std::abs(own.values[f]) > k_most_radians)
+      throw InputError(message("angles: value ", own.values[f], " at [", f, "] is beyond 1e6"));
+  }
   py::object result = py::cast(without_gil([&] {
     return DirectionField(mesh, wanted, {own.values.begin(), own.values.end()},
                           {rows.values.begin(), rows.values.end()});

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import time
 
 import numpy as np
 import pytest
@@ -216,6 +217,18 @@ def test_placement_files_keep_what_copies_bend_along(tmp_path) -> None:
         sb.DirectionField.from_turns(mesh, field.angles, turns)
     with pytest.raises(sb.InputError, match="symmetry: wanted 1, 2 or 4"):
         sb.DirectionField.from_turns(mesh, field.angles, field.turns, 3)
+    with pytest.raises(sb.InputError, match=r"turns: value 1e\+18 at .* is beyond 1e6"):
+        sb.DirectionField.from_turns(mesh, field.angles, opposite_turns(mesh, 1e18))
+    with pytest.raises(sb.InputError, match=r"angles: value 1e\+30 at \[0\] is beyond 1e6"):
+        sb.DirectionField.from_turns(mesh, field.angles * 0 + 1e30, field.turns)
+
+
+def opposite_turns(mesh: sb.Mesh, size: float) -> np.ndarray:
+    """(F, 3) turns of one size across every edge between two faces, 0 on the boundary."""
+    ends = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=-1)
+    count = np.bincount((ends.min(axis=-1) * len(mesh.vertices) + ends.max(axis=-1)).ravel())
+    inner = count[ends.min(axis=-1) * len(mesh.vertices) + ends.max(axis=-1)] == 2
+    return np.where(inner, np.where(ends[..., 0] < ends[..., 1], size, -size), 0.0)
 
 
 def test_copies_point_along_the_field() -> None:
@@ -404,6 +417,8 @@ REFUSED = {
     "density and maximal": ({"density": np.ones(625), "counts": [1], "maximal": True}, "full everywhere"),
     "density not finite": ({"density": np.full(625, np.nan), "counts": [1]}, "not finite"),
     "negative gap": ({"gap": -1}, "gap is -1"),
+    "gap wider than the surface": ({"gap": 50.0}, "gap is 50: shape 0 .* larger than the surface, which has 1"),
+    "such a gap, maximal": ({"gap": 50.0, "maximal": True}, "gap is 50: shape 0 .* larger than the surface"),
     "unknown mode": ({"mode": "dense"}, "mode: wanted"),
     "packing beyond 1": ({"mode": 1.5}, "packing is 1.5"),
     "everything forbidden": ({"forbidden": np.ones(1152, bool)}, "no face is left"),
@@ -420,6 +435,15 @@ def test_bad_input_is_refused(case) -> None:
     given, words = REFUSED[case]
     with pytest.raises(sb.InputError, match=words):
         sb.distribute(mesh, **{"shapes": STAR, "field": field, "size": 0.1, **given})
+
+
+@pytest.mark.parametrize("more", [{}, {"counts": [40]}, {"counts": [40], "density": np.ones(625)}])
+def test_a_gap_that_hardly_anything_fits_with_ends_soon(more) -> None:
+    mesh, field = plane()
+    begin = time.process_time()
+    result = sb.distribute(mesh, STAR, field=field, size=0.01, gap=1.05, threads=1, **more)
+    assert len(result.placements) == 0 and result.rejections["boundary"] < 1000
+    assert time.process_time() - begin < 5
 
 
 def test_a_field_of_another_mesh_is_refused() -> None:

@@ -90,9 +90,10 @@ struct DistributionResult {
 /// of disks). Distances are within the surface: sheets that lie close to each other know nothing of each other. \throw
 /// InputError naming the argument: no shape; counts of another number than shapes or negative; a field of another mesh;
 /// sizes, density or forbidden of the wrong length, not finite, not positive (density: negative or zero everywhere); a
-/// range of sizes that is none; a copy larger than the surface; a negative gap; packing outside 0 to 1; a tolerance
-/// outside 0.001 to 0.5; shares of another number than shapes, negative, all zero, or with maximal; bend without a
-/// field or with maximal; a density without counts, or with maximal; everything forbidden. Cancelled.
+/// range of sizes that is none; a copy larger than the surface, alone or with half of the gap around; a negative gap;
+/// packing outside 0 to 1; a tolerance outside 0.001 to 0.5; shares of another number than shapes, negative, all zero,
+/// or with maximal; bend without a field or with maximal; a density without counts, or with maximal; everything
+/// forbidden. Cancelled.
 DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
                               Job* job = nullptr);
 

@@ -76,6 +76,21 @@ void check_sizes(const Mesh& mesh, std::span<const Shape> shapes, const Distribu
                                ", larger than the surface, which has ", mesh.area()));
 }
 
+/// That a copy finds room together with half of the gap around it. What holds both has at least the area of a disk
+/// whose radius is that much larger than that of a disk as large as the shape (Brunn and Minkowski).
+void check_gap(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
+  if (!(options.gap >= 0) || !std::isfinite(options.gap))
+    throw InputError(message("gap is ", options.gap, ", but must be finite and not negative"));
+  const double least = *std::min_element(options.size.begin(), options.size.end()) * options.smallest;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const double radius = least * std::sqrt(shapes[i].area() / std::numbers::pi) + 0.5 * options.gap;
+    const double area = std::numbers::pi * radius * radius;
+    if (options.gap > 0 && area > mesh.area())
+      throw InputError(message("gap is ", options.gap, ": shape ", i, " with half of it around has an area of ", area,
+                               " or more, larger than the surface, which has ", mesh.area()));
+  }
+}
+
 void check_density(const Mesh& mesh, const DistributionOptions& options) {
   if (options.density.empty()) return;
   check_per_vertex("density", mesh, options.density, true);
@@ -91,6 +106,7 @@ void check(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOp
   check_shares(shapes, options);
   check_counts(shapes, options);
   check_sizes(mesh, shapes, options);
+  check_gap(mesh, shapes, options);
   check_density(mesh, options);
   if (options.field && &options.field->mesh() != &mesh) throw InputError("field: is one of another mesh");
   if (!options.forbidden.empty() && options.forbidden.size() != static_cast<std::size_t>(mesh.face_count()))
@@ -102,8 +118,6 @@ void check(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOp
   if (options.bend && !options.field) throw InputError("bend: wanted a field to bend along");
   if (options.bend && options.maximal)
     throw InputError("bend: that nothing more fits is proved for copies that do not bend; leave maximal out");
-  if (!(options.gap >= 0) || !std::isfinite(options.gap))
-    throw InputError(message("gap is ", options.gap, ", but must be finite and not negative"));
   if (!(options.packing >= 0 && options.packing <= 1))
     throw InputError(message("packing is ", options.packing, ", but must be 0 to 1"));
   if (!(options.tolerance >= 0.001 && options.tolerance <= 0.5))

@@ -179,6 +179,7 @@ DistributionStop GapSearch::rain(const JobStage& stage) {
     }
     const std::size_t before = laying_->settled().copies().size();
     laying_->lay(drops, stage.part(part(0), part(1)));
+    if (laying_->is_hopeless()) break;
     const std::size_t total = laying_->settled().copies().size();
     is_tired = static_cast<double>(total - before) < k_tired * static_cast<double>(total);
     if (is_tired && !options_->maximal) break;
@@ -414,7 +415,7 @@ void GapSearch::round(const JobStage& stage) {
 DistributionStop GapSearch::run(const JobStage& stage) {
   double done = searches() ? 0.4 : 1;
   const DistributionStop rained = rain(stage.part(0, done));
-  if (rained == DistributionStop::counts || !searches()) return rained;
+  if (rained == DistributionStop::counts || !searches() || laying_->is_hopeless()) return rained;
   make_base_cells();
   while (!open_.empty()) {
     if (!laying_->is_any_wanted()) return DistributionStop::counts;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "support/parallel.h"
@@ -30,6 +31,14 @@ Outcome outcome_of(MapFailure failure) {
   }
 }
 
+/// As many as fall on the area of a copy without a gap. With a gap much wider than the shapes they would be thousands
+/// for each place, and every one spreads over all of the surface that the gap does.
+double most_in_vain(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options) {
+  constexpr double k_per_copy = 200;
+  if (options.gap <= 0 || options.maximal) return std::numeric_limits<double>::infinity();
+  return k_per_copy * std::max(1.0, mesh.area() / rules.smallest_body_area());
+}
+
 }  // namespace
 
 Laying::Laying(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options)
@@ -40,6 +49,7 @@ Laying::Laying(const Mesh& mesh, const PlacingRules& rules, const DistributionOp
       settled_(mesh, rules.flat(), rules.smallest_radius(), rules.largest_radius()),
       wanted_(options.counts),
       shares_(options.density.empty() ? options.shares : std::vector<double>()),
+      most_in_vain_(most_in_vain(mesh, rules, options)),
       touched_(static_cast<std::size_t>(mesh.face_count()), 0) {
   for (const Kind& kind : rules.kinds()) laid_.resize(static_cast<std::size_t>(kind.shape) + 1, 0);
   mappers_.resize(static_cast<std::size_t>(threads_));
@@ -50,6 +60,11 @@ bool Laying::is_any_wanted() const {
   for (Index shape = 0; shape < static_cast<Index>(laid_.size()); ++shape)
     if (wanted_.empty() || laid_[shape] < wanted_[shape]) return true;
   return false;
+}
+
+bool Laying::is_hopeless() const {
+  return laid_in_all_ == 0 &&
+         static_cast<double>(std::accumulate(rejections_.begin(), rejections_.end(), std::int64_t{0})) >= most_in_vain_;
 }
 
 double Laying::share(Index shape) const {
@@ -172,7 +187,7 @@ std::vector<Outcome> Laying::lay(std::vector<Candidate> candidates, const JobSta
     return candidates[a].key != candidates[b].key ? candidates[a].key < candidates[b].key : a < b;
   });
   std::size_t size = k_first_batch;
-  for (std::size_t begin = 0, end; begin < order.size() && is_any_wanted(); begin = end) {
+  for (std::size_t begin = 0, end; begin < order.size() && is_any_wanted() && !is_hopeless(); begin = end) {
     stage.update(static_cast<double>(begin) / static_cast<double>(order.size()));
     end = std::min(order.size(), begin + size);
     ++batch_;

@@ -34,11 +34,13 @@ class Laying {
 
   bool is_wanted(Index shape) const { return (wanted_.empty() || laid_[shape] < wanted_[shape]) && !is_ahead(shape); }
   bool is_any_wanted() const;
+  /// Whether so much was tried in vain on the bare surface that copies, with their gap, find no room at all.
+  bool is_hopeless() const;
   /// How often to try it, against others: as many as are missing; all equal where neither counts nor shares are wanted.
   double share(Index shape) const;
 
   /// Lays those that find room, in the order of their keys. Returns what became of each, in the order given. Stops as
-  /// soon as every count is met.
+  /// soon as every count is met, or nothing can be hoped for.
   std::vector<Outcome> lay(std::vector<Candidate> candidates, const JobStage& stage);
 
   /// Whether a copy meets one that lies there, as far as can be foreseen.
@@ -79,6 +81,7 @@ class Laying {
   std::vector<double> shares_;  ///< sum 1; empty: any
   Index laid_in_all_ = 0;
   std::array<std::int64_t, k_rejection_count> rejections_{};
+  double most_in_vain_;                                          ///< candidates on a bare surface
   mutable std::vector<std::unique_ptr<OutlineMapper>> mappers_;  ///< one a thread
   std::vector<Attempt> attempts_;
   mutable std::vector<std::unique_ptr<Surroundings>> surroundings_;  ///< one a thread

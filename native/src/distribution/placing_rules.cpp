@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "saddleback/error.h"
@@ -70,6 +71,10 @@ void PlacingRules::make_bodies(std::span<const Shape> shapes, const Distribution
     const double scale = least_scale_ * std::pow(k_size_step, level);
     bodies_[i][level] = std::make_unique<Body>(options.gap > 0 ? grown(side, 0.5 * options.gap / scale) : side);
   });
+  smallest_body_area_ = std::numeric_limits<double>::infinity();
+  for (const auto& sizes : bodies_)
+    if (!sizes.empty())
+      smallest_body_area_ = std::min(smallest_body_area_, sizes[0]->shape.area() * least_scale_ * least_scale_);
   for (const auto& sizes : bodies_)
     for (std::size_t level = 0; level < sizes.size(); ++level) {
       largest_body_radius_ = std::max(largest_body_radius_, sizes[level]->shape.circumradius());

@@ -51,6 +51,7 @@ class PlacingRules {
   /// Of bodies, the gap included, in units of their planes.
   double largest_body_radius() const { return largest_body_radius_; }
   double largest_shape_radius() const { return *std::max_element(radii_.begin(), radii_.end()); }
+  double smallest_body_area() const { return smallest_body_area_; }  ///< the gap included, mesh units
   double smallest_factor() const { return smallest_factor_; }
   /// The mean of the squares of the factors that copies are scaled by.
   double mean_square_factor() const {
@@ -92,7 +93,7 @@ class PlacingRules {
   std::vector<Kind> kinds_;
   std::vector<std::vector<std::unique_ptr<Body>>> bodies_;  ///< per shape and side, by size where there is a gap
   double least_scale_ = 1;
-  double largest_radius_ = 0, smallest_radius_ = 0, largest_body_radius_ = 0;
+  double largest_radius_ = 0, smallest_radius_ = 0, largest_body_radius_ = 0, smallest_body_area_ = 0;
 };
 
 }  // namespace saddleback::distribution
