@@ -97,13 +97,15 @@ Args:
         the alpha counts.
     max_corners: at least 8.
     centred: about the smallest circle, of circumradius 1; or else in pixels, the first pixel's centre at the origin.
+    job: progress and cancellation.
 
 Raises:
     InputError: another shape of array, a value that is not finite; no clear mask: nothing or everything over one half, or
         more parts and holes than there are corners for.
+    Cancelled: the job was.
 )";
 
-Shape from_mask(const py::object& image, const py::object& max_corners, bool centred) {
+Shape from_mask(const py::object& image, const py::object& max_corners, bool centred, const py::object& job) {
   py::array array = py::array::ensure(image);
   if (array && array.ndim() == 3 && array.shape(2) == 4) array = array[py::make_tuple(py::ellipsis(), 3)];
   const bool is_bytes = array && array.dtype().kind() == 'u' && array.itemsize() == 1;
@@ -114,9 +116,10 @@ Shape from_mask(const py::object& image, const py::object& max_corners, bool cen
   std::vector<double> copy(values.data(), values.data() + values.size());
   if (is_bytes)
     for (double& value : copy) value /= 255;
+  Job* const token = as_job(job);
   const MaskImage mask{copy, static_cast<Index>(values.shape(0)), static_cast<Index>(values.shape(1))};
   const Index most = as_integer(max_corners, "max_corners");
-  return without_gil([&] { return shape_from_mask(mask, most, centred); });
+  return without_gil([&] { return shape_from_mask(mask, most, centred, token); });
 }
 
 void bind_presets(py::class_<Shape>& shape) {
@@ -163,7 +166,7 @@ void bind_shapes(py::module_& m) {
   py::class_<Shape> shape(m, "Shape", py::module_local(), k_shape_doc);
   shape.def(py::init(&make_shape))
       .def_static("from_mask", &from_mask, py::arg("image"), py::arg("max_corners") = 128, py::arg("centred") = true,
-                  k_mask_doc)
+                  py::kw_only(), py::arg("job") = py::none(), k_mask_doc)
       .def_property_readonly("loops", &loops_of,
                              "Lists of (n, 2) float64: outlines counter-clockwise, holes clockwise, part by part.")
       .def_property_readonly("parts", &parts_of, "The loops as the constructor takes them: per part outline and holes.")

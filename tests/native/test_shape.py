@@ -9,6 +9,7 @@ import pytest
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 
 SQUARE = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]])
 
@@ -203,6 +204,17 @@ def test_masks_keep_holes_and_parts_and_take_alpha_and_bytes() -> None:
 def test_images_without_a_clear_mask_are_refused(image, words) -> None:
     with pytest.raises(sb.InputError, match=words):
         sb.Shape.from_mask(image)
+
+
+def test_a_mask_tells_how_far_it_is_and_can_be_cancelled() -> None:
+    mask = np.hypot(*np.mgrid[-50:51, -50:51]) < 40
+    job = sb.Job()
+    assert sb.Shape.from_mask(mask, job=job).area == sb.Shape.from_mask(mask).area and job.fraction == 1
+    # Each part of the work: reading, outlines, taking corners away.
+    image = np.kron(np.indices((150, 150)).sum(axis=0) % 2, np.ones((16, 16)))
+    image *= np.random.default_rng(0).uniform(0.6, 1, image.shape)
+    for fraction in (0.02, 0.3, 0.52):
+        check_progress_and_cancel(lambda job: sb.Shape.from_mask(image, 50_000, job=job), fraction)
 
 
 def test_placements_keep_what_they_are_given() -> None:

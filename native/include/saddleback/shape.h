@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -93,6 +94,7 @@ struct MaskImage {
 /// \throw InputError: fewer values than rows times columns, a value that is not finite, max_corners < 8; no clear mask:
 /// nothing or everything over one half, or more parts and holes than there are corners for. About O(pixels + m^2) for
 /// outlines of m corners (Lorensen and Cline, Marching cubes, 1987, in the plane).
-Shape shape_from_mask(const MaskImage& image, Index max_corners = 128, bool centred = true);
+/// Cancelled.
+Shape shape_from_mask(const MaskImage& image, Index max_corners = 128, bool centred = true, Job* job = nullptr);
 
 }  // namespace saddleback

@@ -17,16 +17,26 @@ constexpr double k_clear = 0.02;
 
 class Tracer {
  public:
-  explicit Tracer(const MaskImage& image) : image_(image), columns_(image.columns + 2) {
-    following_.assign(2 * static_cast<std::size_t>(image.rows + 2) * columns_, k_none);
-  }
+  explicit Tracer(const MaskImage& image) : image_(image), columns_(image.columns + 2) {}
 
-  std::vector<Shape::Loop> run() {
-    for (Index row = -1; row < image_.rows; ++row)
+  std::vector<Shape::Loop> run(const JobStage& stage) {
+    const double rows = image_.rows + 2;
+    const JobStage marching = stage.part(0, 0.7), following = stage.part(0.7, 1);
+    const std::size_t row_edges = 2 * static_cast<std::size_t>(columns_);
+    following_.reserve(row_edges * (image_.rows + 2));
+    for (Index row = 0; row < image_.rows + 2; ++row) {
+      stage.check();
+      following_.insert(following_.end(), row_edges, k_none);
+    }
+    for (Index row = -1; row < image_.rows; ++row) {
+      marching.update((row + 1) / rows);
       for (Index column = -1; column < image_.columns; ++column) march(row, column);
+    }
     std::vector<Shape::Loop> loops;
-    for (Index edge = 0; edge < static_cast<Index>(following_.size()); ++edge)
-      if (following_[edge] != k_none) loops.push_back(follow(edge));
+    for (Index edge = 0; edge < static_cast<Index>(following_.size()); ++edge) {
+      if (edge % (2 * columns_) == 0) following.update(edge / (2 * columns_) / rows);
+      if (following_[edge] != k_none) loops.push_back(follow(edge, stage));
+    }
     return loops;
   }
 
@@ -66,9 +76,10 @@ class Tracer {
     return down ? Vec2(column, -(row + share)) : Vec2(column + share, -row);
   }
 
-  Shape::Loop follow(Index first) {
+  Shape::Loop follow(Index first, const JobStage& stage) {
     Shape::Loop loop;
     for (Index edge = first; following_[edge] != k_none;) {
+      if (loop.size() % 4096 == 0) stage.check();
       loop.push_back(place_on(edge));
       const Index next = following_[edge];
       following_[edge] = k_none;
@@ -84,9 +95,11 @@ class Tracer {
 
 }  // namespace
 
-std::vector<Shape::Loop> mask_outlines(const MaskImage& image) { return Tracer(image).run(); }
+std::vector<Shape::Loop> mask_outlines(const MaskImage& image, const JobStage& stage) {
+  return Tracer(image).run(stage);
+}
 
-std::vector<Shape::Part> parts_of(std::vector<Shape::Loop> loops) {
+std::vector<Shape::Part> parts_of(std::vector<Shape::Loop> loops, const JobStage& stage) {
   std::vector<Shape::Loop> outlines;
   std::vector<double> areas;
   std::vector<Shape::Loop> holes;
@@ -97,6 +110,7 @@ std::vector<Shape::Part> parts_of(std::vector<Shape::Loop> loops) {
     parts.push_back({std::move(outline)});
   }
   for (Shape::Loop& hole : holes) {
+    stage.check();
     std::size_t best = parts.size();
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (predicates::is_inside(parts[i][0], hole[0]) && (best == parts.size() || areas[i] < areas[best])) best = i;

@@ -36,22 +36,29 @@ struct Change {
 
 class Simplifier {
  public:
-  explicit Simplifier(const std::vector<Shape::Loop>& loops) {
+  Simplifier(const std::vector<Shape::Loop>& loops, const JobStage& stage) : stage_(stage) {
     for (std::size_t l = 0; l < loops.size(); ++l) {
       const auto begin = static_cast<Index>(corners_.size()), count = static_cast<Index>(loops[l].size());
       for (Index i = 0; i < count; ++i)
         corners_.push_back(
             {loops[l][i], begin + (i + count - 1) % count, begin + (i + 1) % count, static_cast<Index>(l)});
+      stage_.check();
       sizes_.push_back(count);
       is_hole_.push_back(predicates::twice_area(loops[l]) < 0);
     }
     alive_ = static_cast<Index>(corners_.size());
     make_grid();
-    for (Index i = 0; i < alive_; ++i) propose(i);
+    for (Index i = 0; i < alive_; ++i) {
+      if (i % 1024 == 0) stage_.check();
+      propose(i);
+    }
   }
 
   void run(Index max_corners, double free_area) {
+    const double all = std::max(Index{1}, alive_ - max_corners);
+    const Index begin = alive_;
     while (!changes_.empty() && (alive_ > max_corners || changes_.top().area <= free_area)) {
+      stage_.update(std::min(1.0, (begin - alive_) / all));
       const Change change = changes_.top();
       changes_.pop();
       if (!corners_[change.at].is_alive || corners_[change.at].version != change.version) continue;
@@ -119,7 +126,10 @@ class Simplifier {
     low_ = low;
     per_unit_ = side_ / std::max(1e-300, (high - low).maxCoeff());
     squares_.resize(static_cast<std::size_t>(side_) * side_);
-    for (Index i = 0; i < static_cast<Index>(corners_.size()); ++i) enter(i);
+    for (Index i = 0; i < static_cast<Index>(corners_.size()); ++i) {
+      if (i % 1024 == 0) stage_.check();
+      enter(i);
+    }
   }
 
   /// Calls visit(square) for those that meet the box, until it gives false; then returns false.
@@ -219,6 +229,7 @@ class Simplifier {
     alive_ -= 3;
   }
 
+  JobStage stage_;
   std::vector<Corner> corners_;
   std::vector<Index> sizes_;
   std::vector<bool> is_hole_;
@@ -232,8 +243,8 @@ class Simplifier {
 
 }  // namespace
 
-void simplify_outward(std::vector<Shape::Loop>& loops, Index max_corners, double free_area) {
-  Simplifier simplifier(loops);
+void simplify_outward(std::vector<Shape::Loop>& loops, Index max_corners, double free_area, const JobStage& stage) {
+  Simplifier simplifier(loops, stage);
   simplifier.run(max_corners, free_area);
   loops = simplifier.loops();
 }

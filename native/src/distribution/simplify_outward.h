@@ -12,6 +12,6 @@ namespace saddleback::distribution {
 /// replaced by the continuation of their neighbours, small holes are filled. Loops have the inside on their left; they
 /// stay simple and apart, and what they enclose only grows. May end with more corners where nothing can be taken away.
 /// O(m^2) for m corners.
-void simplify_outward(std::vector<Shape::Loop>& loops, Index max_corners, double free_area);
+void simplify_outward(std::vector<Shape::Loop>& loops, Index max_corners, double free_area, const JobStage& stage = {});
 
 }  // namespace saddleback::distribution
