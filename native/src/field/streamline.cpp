@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "saddleback/error.h"
 
@@ -15,7 +16,7 @@ namespace saddleback {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-constexpr std::int64_t k_max_faces = 1'000'000;
+constexpr std::int64_t k_max_faces = 1'000'000, k_max_steps = 8'000'000;
 constexpr double k_step = 0.25;            // of a face's size
 constexpr double k_beside = 1e-9;          // share of an edge by which curves keep off its ends
 constexpr double k_inward = 1e-6;          // share of a step by which it leaves the edge that it starts on
@@ -88,7 +89,9 @@ class Walk {
 
   StreamlineEnd run() {
     std::int64_t faces = 0;
-    while (true) {
+    for (std::int64_t steps = 0;; ++steps) {
+      // Where a field turns more than once within a step, steps may come to nothing.
+      if (steps > k_max_steps) throw InputError(too_long("steps", steps));
       if (const Index v = vertex_reached(); v != k_none) {
         Vec3 corner = Vec3::Zero();
         for (int i = 0; i < 3; ++i) corner[i] = mesh_.triangles()[face_][i] == v ? 1 : 0;
@@ -118,10 +121,13 @@ class Walk {
       travelled_ += size * exit.share;
       heading_ = next_heading_;
       if (!cross_edge(exit, move)) return StreamlineEnd::boundary;
-      if (++faces > k_max_faces)
-        throw InputError(message("length ", length_, " is too long to follow: after ", faces - 1,
-                                 " faces the curve is ", travelled_, " long"));
+      if (++faces > k_max_faces) throw InputError(too_long("faces", faces));
     }
+  }
+
+  std::string too_long(const char* of_what, std::int64_t count) const {
+    return message("length ", length_, " is too long to follow: after ", count - 1, " ", of_what, " the curve is ",
+                   travelled_, " long");
   }
 
   double step_here() const {
