@@ -34,7 +34,7 @@ class Tracer {
     }
     std::vector<Shape::Loop> loops;
     for (Index edge = 0; edge < static_cast<Index>(following_.size()); ++edge) {
-      if (edge % (2 * columns_) == 0) following.update(edge / (2 * columns_) / rows);
+      if (edge % (2 * columns_) == 0) following.update(static_cast<double>(edge) / (2.0 * columns_ * rows));
       if (following_[edge] != k_none) loops.push_back(follow(edge, stage));
     }
     return loops;
