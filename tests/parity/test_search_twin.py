@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,17 +11,11 @@ import pytest
 
 import saddleback as sb
 from tests import meshes
+from tests.parity.test_graph_twin import LARGER
 
 RULES: tuple[dict[str, Any], ...] = ({"accuracy": 5e-3}, {"k": 12})
 RULE_NAMES = [next(f"{name}={value}" for name, value in rule.items()) for rule in RULES]
 CASES = [(case.name, sb.repair(case.vertices, case.triangles)[0]) for case in meshes.good() + meshes.broken()]
-LARGER: dict[str, Callable[[], meshes.Arrays]] = {
-    "needles": lambda: meshes.needles(4, 400),
-    "graded": meshes.graded_disk,
-    "sphere": lambda: meshes.icosphere(5),
-    "grid": lambda: meshes.grid(120, 90),
-    "jittered": lambda: meshes.grid(90, 80, 0.3),
-}
 
 
 def expect_twins(graph: sb.SaddleVertexGraph, sources: Any, limit: float = np.inf) -> None:
