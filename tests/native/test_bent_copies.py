@@ -81,8 +81,7 @@ def test_flat_ones_lie_on_the_surface(case: meshes.Case) -> None:
     """The 99th percentile is within 1 % of the radius, which without dividing it is not."""
     mesh, scale = case.mesh, 0.12 * np.sqrt(case.mesh.area)
     mapped = placed(mesh, 30, scale)
-    if len(mapped.failures) > 25:
-        pytest.skip("the surface is too small for the shapes")
+    assert len(mapped.failures) <= 25  # there is something to look at
     solids = [flat(shape) for shape in SHAPES]
     bent = mapped.bend(solids)
     found = off_the_surface(mesh, samples(bent, 4000)) / scale
