@@ -27,7 +27,7 @@ void WeightedCell::open(std::span<const WeightedPoint2> points, Index site, std:
 }
 
 void WeightedCell::open_plane() {
-  rivals_.assign(1, {0, 0, 0, 0, 0, k_none});
+  rivals_.assign(1, {{}, k_none});
   begins_.clear();
   has_fixed_ = true;
   for (int fixed = 0; fixed < 3; ++fixed) begins_.push_back(fixed_begin(fixed, 0));
@@ -38,7 +38,7 @@ void WeightedCell::open_plane() {
 bool WeightedCell::open_ring(std::span<const Index> ring) {
   constexpr std::size_t k_few = 32;
   if (ring.size() < 3 || ring.size() > k_few) return false;
-  rivals_.assign(1, {0, 0, 0, 0, 0, k_none});
+  rivals_.assign(1, {{}, k_none});
   for (const Index other : ring) rivals_.push_back(rival_of(other));
   const Index size = static_cast<Index>(ring.size());
   begins_.clear();
@@ -101,55 +101,29 @@ bool WeightedCell::is_envelope() const {
 }
 
 WeightedCell::Rival WeightedCell::rival_of(Index other) const {
-  const WeightedPoint2& p = points_[other];
-  return rival_at(p.x, p.y, p.weight - points_[site_].weight, 0, other);
+  return {wave_of(points_[site_], points_[other]), other};
 }
 
 bool WeightedCell::has_met(Index other) const {
   return std::any_of(rivals_.begin(), rivals_.end(), [&](const Rival& rival) { return rival.site == other; });
 }
 
-// N is off by at most 6 roundings of the sum of its terms: each difference has one, which counts twice in its square,
-// the square another, and the sums two.
-WeightedCell::Rival WeightedCell::rival_at(double x, double y, double weight_difference, double weight_doubt,
-                                           Index site) const {
-  const WeightedPoint2& here = points_[site_];
-  const double dx = x - here.x, dy = y - here.y, e = weight_difference;
-  const double terms = dx * dx + dy * dy + e * e, n = dx * dx + dy * dy - e * e;
-  const double off = 6 * k_epsilon * terms + 2 * std::fabs(e) * weight_doubt;
-  Rival result{dx / n, dy / n, e / n, 0, 0, site};
-  result.size = std::fabs(result.x) + std::fabs(result.y) + std::fabs(result.z);
-  result.doubt = off < 0.01 * n ? result.size * (4 * k_epsilon + 2 * off / n) + weight_doubt / n : k_infinity;
-  return result;
-}
-
 WeightedCell::Begin WeightedCell::fixed_begin(int fixed, Index rival) const {
   const predicates::FixedDirection& u = predicates::k_fixed_directions[fixed];
   const Rival& r = rivals_[rival];
-  Begin result{u.x / u.z, u.y / u.z, 0, 8 * k_epsilon, 0, rival, fixed};
+  Begin result{{u.x / u.z, u.y / u.z, 0, 8 * k_epsilon, 0}, rival, fixed};
   result.height = r.x * result.x + r.y * result.y + r.z;
   result.doubt = 2 * (r.doubt + r.size * result.blur);
   return result;
 }
 
-// With m = q_after - q_before, the direction is (-m_z m - sqrt(s) m') / m^2, m' being m turned left and
-// s = m_x^2 + m_y^2 - m_z^2. If m is off by d, the direction is by 2 d / sqrt(s), as long as s is far from 0.
 WeightedCell::Begin WeightedCell::begin_between(Index before, Index after) const {
   const Rival &a = rivals_[before], &b = rivals_[after];
-  const double x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
-  const double square = x * x + y * y, s = square - z * z;
-  const double off = a.doubt + b.doubt + k_epsilon * (a.size + b.size);
-  const double root = std::sqrt(std::max(s, 0.0)), share = 1 / square;
-  Begin result{(root * y - z * x) * share, (-root * x - z * y) * share, 0, k_infinity, k_infinity, after, k_none};
-  const Rival& smaller = a.size < b.size ? a : b;  // both say how high, this one more exactly
-  result.height = smaller.x * result.x + smaller.y * result.y + smaller.z;
-  if (s > 16 * off * (a.size + b.size)) {
-    result.blur = 8 * (off / root + k_epsilon);
-    result.doubt = 2 * (smaller.doubt + smaller.size * result.blur);
-  }
+  Begin result{wave_crossing(a, b), after, k_none};
   // Nearly tangent sites: without some digits every comparison there would have to be exact.
   constexpr double k_blurred = 0x1p-30, k_doubtful = 0.25;
-  if (!(result.blur < k_blurred && (smaller.size == 0 || result.doubt < k_doubtful * std::fabs(result.height)))) {
+  if (!(result.blur < k_blurred &&
+        (std::min(a.size, b.size) == 0 || result.doubt < k_doubtful * std::fabs(result.height)))) {
     const predicates::CrossingPlace place = predicates::crossing_place(points_[site_], {point(a), point(b)});
     result.x = place.x, result.y = place.y, result.height = place.height;
     result.blur = 64 * k_epsilon;
@@ -162,7 +136,7 @@ WeightedCell::Begin WeightedCell::begin_between(Index before, Index after) const
 ///
 /// Between directions u and v less than half a turn apart a wave n.u + h below 0 at both is nowhere above if it is
 /// below at the corner of the tangents there: if n.u + n.v + 2 h < h (1 - u.v).
-bool WeightedCell::is_below(const Rival& r) const {
+bool WeightedCell::is_below(const Wave& r) const {
   const double slack = most_slack(r);
   const Index arcs = count();
   double top = -k_infinity;
@@ -177,7 +151,7 @@ bool WeightedCell::is_below(const Rival& r) const {
 }
 
 /// How far a rival is above the envelope at the begins, and by how much that may be off.
-void WeightedCell::compare(const Rival& rival) const {
+void WeightedCell::compare(const Wave& rival) const {
   for (Index k = 0; k <= count(); ++k) {
     above_[k] = rival.x * x_[k] + rival.y * y_[k] + (rival.z - height_[k]);
     slack_[k] = 2 * (rival.size * blur_[k] + rival.doubt) + doubt_[k];
@@ -185,8 +159,9 @@ void WeightedCell::compare(const Rival& rival) const {
 }
 
 bool WeightedCell::may_meet(double x, double y, double radius) const {
-  const double here = points_[site_].weight;
-  const Rival rival = rival_at(x, y, radius - here, 4 * k_epsilon * (std::fabs(radius) + std::fabs(here)), k_none);
+  const WeightedPoint2& here = points_[site_];
+  const double doubt = 4 * k_epsilon * (std::fabs(radius) + std::fabs(here.weight));
+  const Wave rival = wave_at(here, x, y, radius - here.weight, doubt);
   if (!(rival.doubt < k_infinity)) return true;
   return !is_below(rival);
 }

@@ -15,6 +15,7 @@
 #include "saddleback/types.h"
 
 #include "predicates/weighted_2d.h"
+#include "voronoi2d/weighted_wave.h"
 
 namespace saddleback::voronoi2d {
 
@@ -46,19 +47,14 @@ class WeightedCell {
   void read(std::vector<Side>& sides) const;
 
  private:
-  /// Another site from here: q, the sum of its coordinates' sizes, and by how much these may be off.
-  struct Rival {
-    double x, y, z, size, doubt;
+  /// Another site from here.
+  struct Rival : Wave {
     Index site;
   };
   /// Where an arc begins and the rival of the arc before is replaced.
-  struct Begin {
-    double x, y;    ///< direction
-    double height;  ///< of the envelope
-    double blur;    ///< how far off the direction may be
-    double doubt;   ///< by how much the height may be off
-    Index rival;    ///< of the arc that begins
-    int fixed;      ///< number of the fixed direction, or k_none
+  struct Begin : WaveCrossing {
+    Index rival;  ///< of the arc that begins
+    int fixed;    ///< number of the fixed direction, or k_none
   };
   /// What the envelope is made of when a rival has come: parts of arcs, and of the rival.
   struct Piece {
@@ -72,12 +68,11 @@ class WeightedCell {
   bool is_envelope() const;
   bool is_narrow(Index arc) const;
   Rival rival_of(Index other) const;
-  Rival rival_at(double x, double y, double weight_difference, double weight_doubt, Index site) const;
   Begin begin_between(Index before, Index after) const;
   Begin fixed_begin(int fixed, Index rival) const;
-  double most_slack(const Rival& rival) const { return 2 * (rival.size * blur_most_ + rival.doubt) + doubt_most_; }
-  bool is_below(const Rival& rival) const;
-  void compare(const Rival& rival) const;
+  double most_slack(const Wave& rival) const { return 2 * (rival.size * blur_most_ + rival.doubt) + doubt_most_; }
+  bool is_below(const Wave& rival) const;
+  void compare(const Wave& rival) const;
   int sign_at(Index arc, const Rival& rival) const;
   int turn_to(Index arc, const Rival& from, const Rival& to) const;
   bool holds_top(Index arc, const Rival& from, const Rival& to) const;

@@ -1,0 +1,86 @@
+#pragma once
+// The dual of a weighted diagram, as far as doubles tell it for certain: the triangulation without weights, with edges
+// exchanged until each is dual to a piece of curve.
+//
+// Each triangle stands for the point that is equally far from its three sites, and each site's triangles in turn for
+// the corners of a cell. A cell bounded by curves towards some of the sites contains the true one. If around each
+// site the corners follow each other along these curves, once around, then the cells fit together along their sides and
+// about their corners and cover the plane once: so they are the true cells. No circle has to be tested for being empty.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/large_array.h"
+#include "saddleback/types.h"
+
+#include "predicates/weighted_2d.h"
+#include "voronoi2d/planar_mesh.h"
+#include "voronoi2d/triangulation.h"
+
+namespace saddleback::voronoi2d {
+
+class WeightedMesh {
+ public:
+  /// From a triangulation that is no line. No site may have the place of another.
+  WeightedMesh(Triangulation&& triangulation, std::span<const predicates::WeightedPoint2> points);
+
+  /// Exchanges edges, and finds out which cells are certain. O(n + exchanges). \throw Cancelled
+  void improve(int threads, const JobStage& stage);
+
+  /// Whether the corners around a site turn once: its cell is right if those of its neighbours are.
+  bool is_certain(Index site) const { return is_certain_[site] != 0; }
+  /// The neighbour at the border's sites that stands for the infinitely far.
+  Index far_away() const { return static_cast<Index>(points_.size()); }
+
+  /// Calls visit(neighbour, half) for a site's neighbours, counter-clockwise, and the half-edges towards them; the
+  /// corner behind is that of the half-edge's triangle. O(neighbours).
+  template <class Visit>
+  void visit_ring(Index site, Visit&& visit) const {
+    const Index first = mesh_.leaving[site];
+    Index half = first;
+    do {
+      visit(mesh_.corners[next_half(half)], half);
+      half = next_around(half);
+    } while (half != first);
+  }
+  Vec2 corner(Index triangle) const { return {centres_[triangle].x, centres_[triangle].y}; }
+  Index twin(Index half) const { return mesh_.twins[half]; }
+  /// The half-edge that `visit_ring` comes to last.
+  Index last_in_ring(Index site) const { return next_half(mesh_.twins[mesh_.leaving[site]]); }
+  /// Whether a triangle's corner is at infinity.
+  bool is_far(Index triangle) const { return centres_[triangle].w == 0; }
+  Index triangle_count() const { return static_cast<Index>(centres_.size()); }
+
+ private:
+  /// Equally far from three sites: (x, y) / w, which is a direction for w = 0.
+  struct Centre {
+    double x, y, w;
+    double doubt;  ///< how far off (x, y) may be; infinite where not known
+  };
+  struct Way {
+    double x, y, doubt;
+  };
+
+  Index next_around(Index half) const { return mesh_.twins[previous_half(half)]; }
+  void add_far_triangles();
+  Index free_triangle(Index from) const;
+  void find_centres(int threads, const JobStage& stage);
+  Centre centre(Index a, Index b, Index c) const;
+  Way way(Index site, const Centre& centre) const;
+  static int turn(const Way& from, const Way& to);
+  bool may_follow(Index site, Index neighbour, int turn) const;
+  bool is_piece(Index from, Index to, const Centre& right, const Centre& left) const;
+  bool is_side(Index half) const;
+  bool is_turned_once(Index site, std::vector<Index>& bad) const;
+  bool exchange(Index half);
+  void exchange_all(std::vector<Index>& bad, const JobStage& stage);
+
+  Triangulation mesh_;
+  std::span<const predicates::WeightedPoint2> points_;
+  LargeArray<Centre> centres_;
+  LargeArray<std::uint8_t> is_certain_;
+};
+
+}  // namespace saddleback::voronoi2d
