@@ -107,6 +107,18 @@ def write_polygons(mesh: bpy.types.Mesh, corners: NDArray[np.int32], offsets: ND
         mesh.polygons.foreach_set("loop_total", np.diff(offsets).astype(np.int32))
 
 
+def is_shaded_smooth(mesh: bpy.types.Mesh) -> bool:
+    """Whether any face is."""
+    smooth = np.zeros(len(mesh.polygons), bool)
+    mesh.polygons.foreach_get("use_smooth", smooth)
+    return bool(smooth.any())
+
+
+def shade_flat(mesh: bpy.types.Mesh) -> None:
+    """Flat faces: from 4.1 on new ones are smooth, before they are not."""
+    mesh.polygons.foreach_set("use_smooth", np.zeros(len(mesh.polygons), bool))
+
+
 def shade_smooth_by_angle(mesh: bpy.types.Mesh, angle: float) -> None:
     """Smooth faces, creased where they meet at more than `angle` (radians)."""
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))

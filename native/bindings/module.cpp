@@ -30,6 +30,7 @@ void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
 void bind_tessellation(py::module_& m);
 void bind_dual_mesh(py::module_& m);
+void bind_triangle_arrays(py::module_& m);
 void bind_voronoi_2d(py::module_& m);
 
 namespace {
@@ -106,6 +107,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_graph(m);
   bind_paths(m);
   bind_dual_mesh(m);
+  bind_triangle_arrays(m);
   bind_hausdorff_distance(m);
   bind_fields(m);
   bind_tessellation(m);

@@ -238,18 +238,30 @@ def test_cells_cover_the_surface_with_the_right_side_out(hard):
     assert not mesh.validate()
 
 
-def test_every_face_of_a_cell_has_its_color_and_neighbours_differ():
+@pytest.mark.parametrize(("gap", "domain"), [(0.02, "POINT"), (0.0, "CORNER")])
+def test_every_face_of_a_cell_has_its_color_and_neighbours_differ(gap, domain):
     source = sphere_source()
     result = result_of(source)
-    mesh = write_cells(bpy.context, source, result, TessellateSettings(gap=0.02)).data
+    mesh = write_cells(bpy.context, source, result, TessellateSettings(gap=gap)).data
     cell = np.repeat(read_attribute(mesh, "saddleback_cell"), 3)
+    assert mesh.color_attributes["saddleback_color"].domain == domain
     color = read_attribute(mesh, "saddleback_color")
+    color = color[triangles_of(mesh).ravel()] if domain == "POINT" else color
     first = np.array([color[cell == i][0] for i in range(25)])
     np.testing.assert_array_equal(color, first[cell])
     a, b = (first[result.edge_cells[:, i]] for i in range(2))
     assert np.abs(a - b).max(axis=1).min() > 0.03
     assert mesh.color_attributes.active_color.name == "saddleback_color"
     assert mesh.materials[0].name == "Saddleback Cells"
+
+
+@pytest.mark.parametrize("smooth", [False, True])
+def test_cells_are_shaded_as_their_surface(smooth):
+    source = sphere_source()
+    source.data.polygons.foreach_set("use_smooth", np.full(len(source.data.polygons), smooth))
+    shape = TessellateSettings(gap=0.02, inset=0.02, thickness=0.1)
+    mesh = write_cells(bpy.context, source, result_of(source), shape).data
+    assert {polygon.use_smooth for polygon in mesh.polygons} == {smooth}
 
 
 def test_gap_inset_and_thickness_are_world_lengths():

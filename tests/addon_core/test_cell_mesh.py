@@ -92,7 +92,7 @@ def test_gap_on_square_cells_leaves_squares() -> None:
 
 def test_distance_is_the_distance_to_the_own_boundary() -> None:
     vertices, triangles, cell = squares(10)
-    distance = boundary_distance(vertices, triangles, cell, find_boundary(len(vertices), triangles, cell), np.inf)
+    distance = boundary_distance(vertices, triangles, cell)
     x, y = vertices[:, 0], vertices[:, 1]
     lines = np.stack([abs(x - 1), abs(x - 2), abs(y - 1), abs(y - 2)])
     np.testing.assert_allclose(distance, lines.min(axis=0), atol=1e-12)
@@ -102,14 +102,14 @@ def test_distance_matches_brute_force_on_a_plane_of_voronoi_cells() -> None:
     vertices, triangles = synthetic_cells.grid(30, 30)
     sites = np.random.default_rng(3).choice(len(vertices), 12, replace=False).astype(np.int32)
     cells = split_cells(vertices, triangles, sites)
-    boundary = find_boundary(len(cells.split_vertices), cells.split_triangles, cells.split_cell)
-    found = boundary_distance(cells.split_vertices, cells.split_triangles, cells.split_cell, boundary, np.inf)
+    segments, beside = find_boundary(len(cells.split_vertices), cells.split_triangles, cells.split_cell)
+    found = boundary_distance(cells.split_vertices, cells.split_triangles, cells.split_cell)
     owner = np.zeros(len(found), dtype=int)
     owner[cells.split_triangles.ravel()] = np.repeat(cells.split_cell, 3)
-    a, b = (cells.split_vertices[boundary.segments[:, i]] for i in range(2))
+    a, b = (cells.split_vertices[segments[:, i]] for i in range(2))
     error = []
-    for v in np.flatnonzero(~boundary.touches):
-        own = (boundary.cells == owner[v]).any(axis=1)
+    for v in np.setdiff1d(np.arange(len(found)), segments):
+        own = (beside == owner[v]).any(axis=1)
         p, along = cells.split_vertices[v] - a[own], (b - a)[own]
         t = np.clip((p * along).sum(axis=1) / (along * along).sum(axis=1), 0, 1)
         error.append(found[v] / np.linalg.norm(p - t[:, None] * along, axis=1).min() - 1)
@@ -120,9 +120,8 @@ def test_distance_matches_brute_force_on_a_plane_of_voronoi_cells() -> None:
 
 def test_distance_beyond_the_limit_is_left_out_and_within_it_complete() -> None:
     vertices, triangles, cell = strips()
-    boundary = find_boundary(len(vertices), triangles, cell)
-    whole = boundary_distance(vertices, triangles, cell, boundary, np.inf)
-    part = boundary_distance(vertices, triangles, cell, boundary, 0.25)
+    whole = boundary_distance(vertices, triangles, cell)
+    part = boundary_distance(vertices, triangles, cell, 0.25)
     assert np.isinf(part).any()
     np.testing.assert_array_equal(part[whole <= 0.25], whole[whole <= 0.25])
 

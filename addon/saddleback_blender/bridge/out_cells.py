@@ -38,7 +38,7 @@ def write_cells(
     cells = build_cell_mesh(result.split_vertices, result.split_triangles, result.split_cell, shape)
     colors = cell_colors(len(result.sites_position), result.edge_cells)
     place = level_place(source)
-    mesh = _mesh(to_place(place, cells.vertices), cells, colors)
+    mesh = _mesh(to_place(place, cells.vertices), cells, colors, compat.is_shaded_smooth(source.data))
     if isinstance(settings, TessellateSettings) and settings.local_uv:
         places = local_uv(
             cells.vertices, cells.triangles, cells.triangle_cell, result.sites_position, result.sites_normal
@@ -63,8 +63,9 @@ def write_polygons(
     mesh = _new_mesh(to_place(place, cells.vertices))
     compat.write_polygons(mesh, cells.corners, cells.offsets)
     colors = cell_colors(count, neighbours)
-    mesh.polygons.foreach_set("use_smooth", np.zeros(len(mesh.polygons), bool))
-    _mark_cells(mesh, cells.polygon_cell, np.diff(cells.offsets), colors)
+    compat.shade_flat(mesh)
+    _mark_cells(mesh, cells.polygon_cell)
+    _write_colors(mesh, "CORNER", colors[np.repeat(cells.polygon_cell, np.diff(cells.offsets))])
     item = _shown(context, source, role, mesh, place)
     item[VANISHED] = vanished
     return item
@@ -75,11 +76,19 @@ def vanished_cells(item: bpy.types.Object) -> int:
     return int(item.get(VANISHED, 0))
 
 
-def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray) -> bpy.types.Mesh:
+def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray, is_smooth: bool) -> bpy.types.Mesh:
     mesh = _new_mesh(positions)
     compat.write_corners(mesh, cells.triangles)
-    _mark_cells(mesh, cells.triangle_cell, np.full(len(cells.triangles), 3), colors)
-    compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
+    _mark_cells(mesh, cells.triangle_cell)
+    vertex_cell = cells.vertex_cell
+    if vertex_cell is None:
+        _write_colors(mesh, "CORNER", colors[np.repeat(cells.triangle_cell, 3)])
+    else:
+        _write_colors(mesh, "POINT", colors[vertex_cell])
+    if is_smooth:
+        compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
+    else:
+        compat.shade_flat(mesh)
     return mesh
 
 
@@ -97,12 +106,14 @@ def _shown(
     return replace_object(context, source, role, mesh, place)
 
 
-def _mark_cells(mesh: bpy.types.Mesh, face_cell: np.ndarray, corner_counts: np.ndarray, colors: np.ndarray) -> None:
-    """Edges, and each face's cell and colour."""
+def _mark_cells(mesh: bpy.types.Mesh, face_cell: np.ndarray) -> None:
+    """Edges, and each face's cell."""
     mesh.update(calc_edges=True)
     set_attribute(mesh, CELL_ATTRIBUTE, "FACE", face_cell)
-    # On the corners, because Blender shows colours of corners and vertices only, and vertices may be shared by cells.
-    color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
-    rgba = np.column_stack([colors, np.ones(len(colors))]).astype(np.float32)
-    color.data.foreach_set("color", rgba[np.repeat(face_cell, corner_counts)].ravel())
+
+
+def _write_colors(mesh: bpy.types.Mesh, domain: str, colors: np.ndarray) -> None:
+    """Of vertices, or of corners where cells share vertices: Blender does not show colours of faces."""
+    color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", domain)
+    color.data.foreach_set("color", np.column_stack([colors, np.ones(len(colors))]).astype(np.float32).ravel())
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)

@@ -7,7 +7,7 @@ the triangles; the mesh is cut where it equals half the gap, and again one inset
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +62,13 @@ class CellMesh:
     triangle_cell: Ints
     vanished: Ints
 
+    @property
+    def vertex_cell(self) -> Ints | None:
+        """The cell of each vertex (n,), or None where cells share vertices."""
+        cell = np.zeros(len(self.vertices), np.int32)
+        cell[self.triangles.ravel()] = np.repeat(self.triangle_cell, 3)
+        return cell if np.array_equal(cell[self.triangles], np.repeat(self.triangle_cell, 3).reshape(-1, 3)) else None
+
 
 def build_cell_mesh(vertices: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> CellMesh:
     """Make the mesh of the cells from a split mesh: vertices (V,3), triangles (T,3), triangle_cell (T,).
@@ -91,12 +98,10 @@ def build_cell_mesh(vertices: Floats, triangles: Ints, triangle_cell: Ints, shap
 
 def _cut_cells(fields: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> tuple[Floats, Ints, Ints]:
     """Drop what lies within half the gap of a boundary, and put an edge line where the plateau begins."""
-    boundary = find_boundary(len(fields), triangles, triangle_cell)
-    opened = open_chords(fields, triangles, boundary.segments)
+    segments, _ = find_boundary(len(fields), triangles, triangle_cell)
+    opened = open_chords(fields, triangles, segments)
     fields, triangles, cells = opened.fields, opened.triangles, triangle_cell[opened.parent]
-    touches = np.pad(boundary.touches, (0, len(fields) - len(boundary.touches)))  # no new vertex is on a boundary
-    boundary = replace(boundary, touches=touches)
-    fields[:, DISTANCE] = boundary_distance(fields[:, POSITION], triangles, cells, boundary, shape.rim_end)
+    fields[:, DISTANCE] = boundary_distance(fields[:, POSITION], triangles, cells, shape.rim_end)
     if shape.gap > 0.0:
         outer = cut_at_level(fields, triangles, DISTANCE, shape.rim_start)
         fields, triangles, cells = outer.fields, outer.triangles[outer.above], cells[outer.parent[outer.above]]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from . import native
 from .level_cut import open_chords
 from .mesh_edges import border_edges
 
@@ -25,12 +26,8 @@ class Solid:
 
 def vertex_normals(vertices: Floats, triangles: Ints) -> Floats:
     """Unit normals (V,3), weighted by triangle area; zero where no triangle with an area meets the vertex."""
-    a, b, c = (vertices[triangles[:, i]] for i in range(3))
-    doubled = np.cross(b - a, c - a)
-    normals = np.empty_like(vertices)
-    for axis in range(3):
-        normals[:, axis] = np.bincount(triangles.ravel(), np.repeat(doubled[:, axis], 3), minlength=len(vertices))
-    return _unit(normals)
+    normals: Floats = native.load().vertex_normals(vertices, triangles)
+    return normals
 
 
 def _unit(vectors: Floats) -> Floats:

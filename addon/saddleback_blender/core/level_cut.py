@@ -12,14 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from . import native
 from .mesh_edges import edge_keys
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
-
-# A vertex nearer to the level than this part of the largest value is on it, so that rounding makes no needle triangles.
-SNAP = 1e-9
 
 
 @dataclass(frozen=True)
@@ -51,54 +49,7 @@ def cut_at_level(fields: Floats, triangles: Ints, column: int, level: float) -> 
 
     fields (V,k), triangles (T,3). A triangle that lies wholly on the level counts as below. O(T).
     """
-    offset = fields[:, column] - level
-    finite = np.abs(fields[np.isfinite(fields[:, column]), column])
-    snap = SNAP * max(float(finite.max(initial=0.0)), abs(level))
-    sign = np.sign(offset).astype(np.int8)
-    sign[np.abs(offset) <= snap] = 0
-    fields = fields.copy()
-    fields[sign == 0, column] = level
-
-    corner_sign = sign[triangles]
-    first, second, third = corner_sign.T
-    highest = np.maximum(np.maximum(first, second), third)
-    lowest = np.minimum(np.minimum(first, second), third)
-    crossed = (highest > 0) & (lowest < 0)
-    through_vertex = crossed & ((first == 0) | (second == 0) | (third == 0))
-    kept = np.flatnonzero(~crossed)
-
-    with_vertex = np.flatnonzero(through_vertex)
-    at_vertex = _rotate(triangles[with_vertex], np.argmax(corner_sign[with_vertex] == 0, axis=1))
-    plain = np.flatnonzero(crossed & ~through_vertex)
-    lone_sign = -np.sign(corner_sign[plain].sum(axis=1))
-    lone = _rotate(triangles[plain], np.argmax(corner_sign[plain] == lone_sign[:, None], axis=1))
-
-    pairs = np.concatenate([at_vertex[:, [1, 2]], lone[:, [0, 1]], lone[:, [0, 2]]])
-    edges, edge_of_pair = shared_midpoints(pairs, len(fields))
-    at, to = fields[edges[:, 0]], fields[edges[:, 1]]
-    position = (level - at[:, column]) / (to[:, column] - at[:, column])
-    added = at + position[:, None] * (to - at)
-    added[:, column] = level
-    new = (len(fields) + edge_of_pair).astype(np.int32)
-    x, new = new[: len(at_vertex)], new[len(at_vertex) :]
-    y, z = new[: len(lone)], new[len(lone) :]
-    fields = np.concatenate([fields, added])
-
-    quads = _split_quads(fields, y, lone[:, 1], lone[:, 2], z)
-    pieces = [
-        (triangles[kept], kept, highest[kept] > 0),
-        (np.stack([at_vertex[:, 0], at_vertex[:, 1], x], axis=1), with_vertex, sign[at_vertex[:, 1]] > 0),
-        (np.stack([at_vertex[:, 0], x, at_vertex[:, 2]], axis=1), with_vertex, sign[at_vertex[:, 2]] > 0),
-        (np.stack([lone[:, 0], y, z], axis=1), plain, lone_sign > 0),
-        (quads[0], plain, lone_sign < 0),
-        (quads[1], plain, lone_sign < 0),
-    ]
-    return Cut(
-        fields,
-        np.concatenate([piece[0] for piece in pieces]).astype(np.int32),
-        np.concatenate([piece[1] for piece in pieces]).astype(np.int32),
-        np.concatenate([piece[2] for piece in pieces]),
-    )
+    return Cut(*native.load().cut_at_level(fields, triangles, column, level))
 
 
 def _split_quads(fields: Floats, a: Ints, b: Ints, c: Ints, d: Ints) -> tuple[Ints, Ints]:

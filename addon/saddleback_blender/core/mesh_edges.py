@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from . import native
+
 Ints = NDArray[np.int32]
-Bools = NDArray[np.bool_]
 
 
 def directed_edges(triangles: Ints) -> tuple[Ints, Ints]:
@@ -19,29 +20,7 @@ def edge_keys(a: Ints, b: Ints, vertex_count: int) -> NDArray[np.int64]:
     return np.minimum(a, b).astype(np.int64) * vertex_count + np.maximum(a, b)
 
 
-def border_vertices(triangles: Ints, vertex_count: int) -> Bools:
-    """Which vertices (V,) are on the border of a consistently oriented mesh. O(T), without sorting.
-
-    Around an inner vertex each neighbour is met once coming in and once going out, so a sum of numbers given to the
-    neighbours cancels; at a border it does not. The numbers are random so that nothing cancels by chance.
-    """
-    number = np.random.default_rng(0).random(vertex_count) + 0.5
-    start, end = directed_edges(triangles)
-    out = np.bincount(start, number[end], minlength=vertex_count)
-    back = np.bincount(end, number[start], minlength=vertex_count)
-    rounding = 1e-12 * (out + back)
-    return np.asarray(np.abs(out - back) > rounding)
-
-
 def border_edges(triangles: Ints, vertex_count: int) -> tuple[Ints, Ints, Ints]:
     """Start, end and triangle (b,) of the edges that only one triangle uses, oriented as in that triangle."""
-    start, end = directed_edges(triangles)
-    is_border = border_vertices(triangles, vertex_count)
-    candidate = np.flatnonzero(is_border[start] & is_border[end])
-    key = edge_keys(start[candidate], end[candidate], vertex_count)
-    order = np.argsort(key, kind="stable")
-    key = key[order]
-    differs = np.ones(len(key) + 1, dtype=np.bool_)
-    differs[1:-1] = key[1:] != key[:-1]
-    single = candidate[np.sort(order[differs[1:] & differs[:-1]])]
-    return start[single], end[single], (single // 3).astype(np.int32)
+    ends, owners = native.load().border_edges(triangles, vertex_count)
+    return ends[:, 0], ends[:, 1], owners

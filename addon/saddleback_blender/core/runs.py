@@ -10,7 +10,7 @@ import numpy as np
 
 from . import cache as cache_module
 from . import native
-from .boundary_distance import boundary_distance, find_boundary
+from .boundary_distance import boundary_distance
 from .cache import Cache
 from .curve_points import curves_on_surface, points_on_surface
 from .density_runs import density_of
@@ -262,8 +262,7 @@ def _shell(
 def _edge_distance(surface: Surface, split: Any) -> Reals:
     """Distance (n,) of the surface's vertices to the nearest line between their cell and another."""
     triangles, cell = np.asarray(split.triangles), np.asarray(split.triangle_cell)
-    boundary = find_boundary(len(split.vertices), triangles, cell)
-    all_of_them = boundary_distance(np.asarray(split.vertices), triangles, cell, boundary, np.inf)
+    all_of_them = boundary_distance(np.asarray(split.vertices), triangles, cell)
     origin = np.asarray(split.vertex_origin)
     found = np.full(len(surface.vertices), np.inf)
     found[origin[origin >= 0]] = all_of_them[origin >= 0]

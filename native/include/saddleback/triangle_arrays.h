@@ -1,0 +1,60 @@
+#pragma once
+// What is asked of plain triangle arrays, such as those that `split` gives: no Mesh need be made of them.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+// All throw InputError naming the first triangle whose corner is out of range.
+
+/// Unit normals (V,), weighted by the areas of the triangles about a vertex; zero where none has an area. O(V + T).
+std::vector<Vec3> vertex_normals(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
+
+struct BorderEdges {
+  std::vector<std::array<Index, 2>> ends;  ///< from, to, in the triangle's orientation
+  std::vector<Index> triangles;            ///< the one that uses the edge
+};
+
+/// The edges that only one triangle uses, by triangle. O(V + T) for bounded valence.
+BorderEdges border_edges(std::span<const Triangle> triangles, Index vertex_count);
+
+/// Triangles refined along a level line.
+struct LevelCut {
+  std::vector<double> fields;        ///< (W, k) the given vertices, then the new ones
+  std::vector<Triangle> triangles;   ///< (U,) in the order of those that they are parts of
+  std::vector<Index> parents;        ///< (U,) the given triangle that each is part of
+  std::vector<std::uint8_t> aboves;  ///< (U,) whether it lies above the level
+};
+
+/// Cuts all triangles where a function, linear over each, equals `level` (marching triangles). `fields` (V, k) holds
+/// all numbers of a vertex side by side, the position first, the function in `column`: new vertices interpolate each,
+/// and are shared by both sides, so that no crack opens. A vertex nearer to the level than 1e-9 of the greatest value
+/// is on it; a triangle wholly on it counts as below. \throw InputError for a column that is not there. O(V k + T).
+LevelCut cut_at_level(std::span<const double> fields, Index width, std::span<const Triangle> triangles, Index column,
+                      double level);
+
+struct CellBoundary {
+  std::vector<std::array<Index, 2>> segments;  ///< edges between triangles of different cells
+  std::vector<std::array<Index, 2>> cells;     ///< beside each
+};
+
+/// Where the cells (T,) of triangles meet; the border of the mesh is no boundary of a cell. O(V + T).
+CellBoundary cell_boundary(std::span<const Triangle> triangles, std::span<const Index> triangle_cell,
+                           Index vertex_count);
+
+/// Distance (V,) to the boundary of the vertex's own cell, on which it is 0; infinity farther than one ring of vertices
+/// beyond `limit`, and where a cell has no boundary.
+///
+/// Every vertex remembers its nearest segment of the boundary; segments spread over the edges from the boundary
+/// inwards, as in vector distance transforms, and each vertex tries those that follow its own along the boundary, too.
+/// So the distance is a straight one to a segment that was reached on the surface, and never jumps from one fold to
+/// another. Never too short; at most a few percent too long near the middle line of a cell with a ragged boundary,
+/// where the nearest segment may be nearest to no vertex on the way. \throw InputError for a wrong number of cells.
+std::vector<double> cell_boundary_distance(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                                           std::span<const Index> triangle_cell, double limit);
+
+}  // namespace saddleback

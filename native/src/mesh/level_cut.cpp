@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cmath>
+
+#include "saddleback/error.h"
+#include "saddleback/triangle_arrays.h"
+
+#include "mesh/corner_table.h"
+
+namespace saddleback {
+namespace {
+
+// So that rounding makes no needle triangles.
+constexpr double k_snap = 1e-9;
+
+/// Triangles on their way to being cut.
+class Cutter {
+ public:
+  Cutter(std::span<const double> fields, Index width, Index column, double level)
+      : width_(width),
+        column_(column),
+        level_(level),
+        count_(static_cast<Index>(fields.size() / width)),
+        last_cut_(count_, k_none) {
+    out_.fields.reserve(fields.size() + fields.size() / 4);
+    out_.fields.assign(fields.begin(), fields.end());
+    double greatest = std::abs(level);
+    for (Index v = 0; v < count_; ++v)
+      if (const double value = std::abs(at(v)); std::isfinite(value)) greatest = std::max(greatest, value);
+    const double snap = k_snap * greatest;
+    signs_.resize(count_);
+    for (Index v = 0; v < count_; ++v) {
+      const double offset = at(v) - level;
+      signs_[v] = std::abs(offset) <= snap ? 0 : offset > 0 ? 1 : -1;
+      if (signs_[v] == 0) at(v) = level;
+    }
+  }
+
+  void expect(std::size_t triangles) {
+    out_.triangles.reserve(triangles);
+    out_.parents.reserve(triangles);
+    out_.aboves.reserve(triangles);
+  }
+
+  void add(Index parent, const Triangle& t) {
+    const auto [lowest, highest] = std::minmax({signs_[t[0]], signs_[t[1]], signs_[t[2]]});
+    if (highest <= 0 || lowest >= 0) return put(parent, t, highest > 0);
+    for (int i = 0; i < 3; ++i)
+      if (signs_[t[i]] == 0) return cut_through_vertex(parent, {t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
+    int lone = 0;
+    while (signs_[t[lone]] == signs_[t[(lone + 1) % 3]] || signs_[t[lone]] == signs_[t[(lone + 2) % 3]]) ++lone;
+    cut_off(parent, {t[lone], t[(lone + 1) % 3], t[(lone + 2) % 3]});
+  }
+
+  LevelCut take() { return std::move(out_); }
+
+ private:
+  double& at(Index vertex) { return out_.fields[static_cast<std::size_t>(vertex) * width_ + column_]; }
+
+  void put(Index parent, const Triangle& t, bool above) {
+    out_.triangles.push_back(t);
+    out_.parents.push_back(parent);
+    out_.aboves.push_back(above);
+  }
+
+  void cut_through_vertex(Index parent, const Triangle& t) {
+    const Index cut = between(t[1], t[2]);
+    put(parent, {t[0], t[1], cut}, signs_[t[1]] > 0);
+    put(parent, {t[0], cut, t[2]}, signs_[t[2]] > 0);
+  }
+
+  /// The first corner from the two others; what they keep is parted along its shorter diagonal.
+  void cut_off(Index parent, const Triangle& t) {
+    const bool lone_above = signs_[t[0]] > 0;
+    const Index y = between(t[0], t[1]), z = between(t[0], t[2]);
+    put(parent, {t[0], y, z}, lone_above);
+    if (squared_distance(y, t[2]) <= squared_distance(t[1], z)) {
+      put(parent, {y, t[1], t[2]}, !lone_above);
+      put(parent, {y, t[2], z}, !lone_above);
+    } else {
+      put(parent, {y, t[1], z}, !lone_above);
+      put(parent, {t[1], t[2], z}, !lone_above);
+    }
+  }
+
+  double squared_distance(Index a, Index b) const {
+    const double *p = row(a), *q = row(b);
+    return (Vec3(p[0], p[1], p[2]) - Vec3(q[0], q[1], q[2])).squaredNorm();
+  }
+  const double* row(Index vertex) const { return out_.fields.data() + static_cast<std::size_t>(vertex) * width_; }
+
+  /// The vertex where an edge crosses the level; the same bits from both sides.
+  Index between(Index a, Index b) {
+    if (a > b) std::swap(a, b);
+    for (Index i = last_cut_[a]; i != k_none; i = cuts_[i].before)
+      if (cuts_[i].end == b) return count_ + i;
+    const Index next = count_ + static_cast<Index>(cuts_.size());
+    cuts_.push_back({b, last_cut_[a]});
+    last_cut_[a] = next - count_;
+    const double share = (level_ - at(a)) / (at(b) - at(a));
+    out_.fields.resize(out_.fields.size() + width_);
+    const double *from = row(a), *to = row(b);
+    double* const mine = out_.fields.data() + static_cast<std::size_t>(next) * width_;
+    for (Index i = 0; i < width_; ++i) mine[i] = from[i] + share * (to[i] - from[i]);
+    mine[column_] = level_;
+    return next;
+  }
+
+  const Index width_, column_;
+  const double level_;
+  const Index count_;  ///< of the given vertices
+  std::vector<std::int8_t> signs_;
+  struct Cut {
+    Index end, before;  ///< the greater end of its edge; an earlier cut of an edge with the same smaller one
+  };
+  std::vector<Cut> cuts_;        ///< one for each new vertex
+  std::vector<Index> last_cut_;  ///< by the smaller end
+  LevelCut out_;
+};
+
+}  // namespace
+
+LevelCut cut_at_level(std::span<const double> fields, Index width, std::span<const Triangle> triangles, Index column,
+                      double level) {
+  if (width < 4) throw InputError(message("fields: wanted a position and a value for each vertex, got ", width));
+  if (column < 3 || column >= width) throw InputError(message("column: wanted 3 to ", width - 1, ", got ", column));
+  check_corners(triangles, static_cast<Index>(fields.size() / width));
+  Cutter cutter(fields, width, column, level);
+  cutter.expect(triangles.size() + triangles.size() / 2);
+  for (Index t = 0; t < static_cast<Index>(triangles.size()); ++t) cutter.add(t, triangles[t]);
+  return cutter.take();
+}
+
+}  // namespace saddleback

@@ -1,0 +1,86 @@
+"""Plain triangle arrays: closed forms on planes, and errors that name the culprit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests import meshes, synthetic_cells
+
+
+def test_border_of_a_sheet_is_its_rim_once_round() -> None:
+    vertices, triangles = meshes.grid(5, 4)
+    ends, owners = sb.border_edges(triangles, len(vertices))
+    rim = np.flatnonzero(np.isin(vertices[:, :2], [vertices[:, :2].min(0), vertices[:, :2].max(0)]).any(axis=1))
+    np.testing.assert_array_equal(np.sort(ends[:, 0]), np.sort(ends[:, 1]))
+    assert set(ends.ravel()) <= set(rim)
+    assert len(ends) == len(set(ends[:, 0]))
+    for (start, end), owner in zip(ends, owners, strict=True):
+        assert (start, end) in {(triangles[owner, i], triangles[owner, (i + 1) % 3]) for i in range(3)}
+
+
+def test_closed_surfaces_have_no_border() -> None:
+    vertices, triangles = synthetic_cells.sphere(2)
+    ends, owners = sb.border_edges(triangles, len(vertices))
+    assert ends.shape == (0, 2) and owners.shape == (0,)
+
+
+def test_normals_of_a_sphere_point_outwards_and_unused_vertices_have_none() -> None:
+    vertices, triangles = synthetic_cells.sphere(4)
+    normals = sb.vertex_normals(np.vstack([vertices, [[9.0, 9.0, 9.0]]]), triangles)
+    assert np.einsum("ij,ij->i", normals[:-1], vertices).min() > 0.999
+    np.testing.assert_array_equal(normals[-1], 0)
+
+
+@pytest.mark.parametrize("level", [0.1, 0.37, 0.5])
+def test_a_cut_parts_the_area_at_the_level_and_opens_no_crack(level: float) -> None:
+    vertices, triangles = synthetic_cells.grid(11, 11)
+    fields = np.column_stack([vertices, vertices[:, 0], vertices[:, 1] * 2])
+    out, cut, parents, aboves = sb.cut_at_level(fields, triangles, 3, level)
+    assert aboves.dtype == bool and (np.diff(parents) >= 0).all()
+    a, b, c = (out[cut[:, i], :3] for i in range(3))
+    areas = 0.5 * np.cross(b - a, c - a)[:, 2]
+    assert areas.min() >= 0
+    assert areas[aboves].sum() == pytest.approx(1 - level, rel=1e-12)
+    np.testing.assert_allclose(out[:, 3], out[:, 0], atol=1e-12)  # linear functions stay what they are
+    np.testing.assert_allclose(out[:, 4], 2 * out[:, 1], atol=1e-12)
+    ends, _ = sb.border_edges(cut, len(out))
+    on_rim = np.isin(out[ends, :2], [0.0, 1.0])
+    assert (on_rim[:, 0] & on_rim[:, 1]).any(axis=1).all()
+    side = np.where(aboves, out[cut, 0].min(axis=1), out[cut, 0].max(axis=1)) - level
+    assert (np.where(aboves, side, -side) > -1e-9).all()
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_cell_boundary_is_found_once_each_whatever_the_orientation(turned: bool) -> None:
+    vertices, triangles = synthetic_cells.grid(5, 5)
+    cell = (vertices[triangles, 0].mean(axis=1) > 0.5).astype(np.int32)
+    if turned:  # one side of the boundary the other way round
+        triangles = np.where(cell[:, None] == 1, triangles[:, ::-1], triangles)
+    segments, cells = sb.cell_boundary(triangles, cell, len(vertices))
+    assert len(segments) == 4
+    np.testing.assert_allclose(vertices[segments, 0], 0.5)
+    np.testing.assert_array_equal(np.sort(cells, axis=1), [[0, 1]] * 4)
+
+
+def test_distance_is_infinite_in_a_cell_without_a_boundary() -> None:
+    vertices, triangles = synthetic_cells.grid(4, 4)
+    cell = np.zeros(len(triangles), np.int32)
+    assert np.isinf(sb.cell_boundary_distance(vertices, triangles, cell)).all()
+
+
+def test_what_is_wrong_is_named() -> None:
+    vertices, triangles = synthetic_cells.grid(3, 3)
+    bad = triangles.copy()
+    bad[4, 1] = 9
+    with pytest.raises(sb.InputError, match="triangle 4 names vertex 9, but there are 9"):
+        sb.border_edges(bad, 9)
+    with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
+        sb.vertex_normals(vertices, bad)
+    with pytest.raises(sb.InputError, match="column: wanted 3 to 3, got 4"):
+        sb.cut_at_level(np.column_stack([vertices, vertices[:, 0]]), triangles, 4, 0.5)
+    with pytest.raises(sb.InputError, match="fields: wanted a position and a value"):
+        sb.cut_at_level(vertices, triangles, 2, 0.5)
+    with pytest.raises(sb.InputError, match="triangle_cell: wanted one cell for each of the 8 triangles, got 2"):
+        sb.cell_boundary_distance(vertices, triangles, np.zeros(2, np.int32))
