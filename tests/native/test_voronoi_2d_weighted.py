@@ -155,6 +155,23 @@ def test_a_disk_that_touches_another_from_inside_is_hidden(weight, hides):
         assert diagram.areas[1] == 0
 
 
+def test_a_disk_that_nearly_touches_a_larger_one_from_inside_near_a_line():
+    rows = np.array(
+        [
+            [0.27019392520477026, 8.940986559087143e-10, 0.00029478817356649466],
+            [0.1198973410860541, 1.7764376949126581e-10, 6.939155081855426e-05],
+            [0.025449388364391257, 4.662960410111777e-10, 0.00043183444711671613],
+            [0.8959032346430146, 7.441054593343151e-10, 0.00019837702901230738],
+            [0.11954397950976936, 3.446975444786802e-10, 0.0004225873899825667],
+        ]
+    )
+    diagram = sb.voronoi_2d(rows[:, :2], rows[:, 2])
+    # The heavy one's cell lies between lines, but for the last site far away and the light one's narrow cell inside.
+    pairs = sorted(map(sorted, diagram.edge_sites.tolist()))
+    assert pairs == [[0, 1], [0, 3], [0, 4], [0, 4], [1, 4], [2, 4], [3, 4], [3, 4]]
+    assert len(diagram.vertices) == 4
+
+
 def test_sites_at_one_place():
     diagram = sb.voronoi_2d([[0, 0], [9, 9], [0, 0], [0, 0], [9, 9], [0, 0]], [1, 0, 2, 2, 0, 1])
     assert diagram.site_of.tolist() == [0, 1, 2, 2, 1, 0]

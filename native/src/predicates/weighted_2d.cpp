@@ -184,7 +184,8 @@ CrossingPlace crossing_place(const WeightedPoint2& site, const Crossing& crossin
   AllSeen<ExactNumber> seen = exactly_seen(site, {crossing.before, crossing.after, nullptr, nullptr});
   auto &a = seen[0], &b = seen[1];
   const double scale = std::ldexp(1, -std::ilogb(std::max(largest_of(a), largest_of(b))));
-  for (auto* const one : {&a, &b}) *one = seen_from(one->x * scale, one->y * scale, one->e * scale);
+  if (crossing.before) a = seen_from(a.x * scale, a.y * scale, a.e * scale);
+  if (crossing.after) b = seen_from(b.x * scale, b.y * scale, b.e * scale);
   const std::array<ExactNumber, 3> m = from_to(a, b);
   const double x = m[0].to_double(), y = m[1].to_double(), z = m[2].to_double();
   const double root = std::sqrt(std::max(0.0, (m[0] * m[0] + m[1] * m[1] - m[2] * m[2]).to_double()));
