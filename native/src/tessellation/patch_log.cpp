@@ -1,6 +1,7 @@
 #include "tessellation/patch_log.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -16,38 +17,50 @@ constexpr double k_far = std::numeric_limits<double>::infinity();
 constexpr double k_on_edge = 1e-9;
 // A vertex that is placed already is placed again when another way is shorter by more than rounding.
 constexpr double k_rounding = 1e-12;
+// Odd, so that vertices next to each other in number fall into slots of their own.
+constexpr std::uint32_t k_spread = 2654435761U;
 
 Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
 
 }  // namespace
 
 PatchLog::PatchLog(const Mesh& mesh, std::span<const Index> faces) : mesh_(mesh), faces_(faces) {
-  // Corners by their vertices: sorted as numbers, the vertex above, the corner below.
-  std::vector<std::uint64_t> order;
-  order.reserve(3 * faces.size());
-  for (const Index face : faces)
-    for (const Index vertex : mesh.triangles()[face])
-      order.push_back(static_cast<std::uint64_t>(vertex) << 32 | static_cast<std::uint64_t>(order.size()));
-  std::ranges::sort(order);
-  corners_.resize(faces.size());
-  first_.push_back(0);
-  around_.reserve(order.size());
-  for (const std::uint64_t entry : order) {
-    const auto vertex = static_cast<Index>(entry >> 32), corner = static_cast<Index>(entry & 0xFFFFFFFF);
-    if (vertices_.empty() || vertices_.back() != vertex) {
-      vertices_.push_back(vertex);
-      first_.push_back(first_.back());
-    }
-    corners_[corner / 3][corner % 3] = static_cast<Index>(vertices_.size()) - 1;
-    around_.push_back(corner / 3);
-    ++first_.back();
-  }
-  edges_.reserve(order.size());
+  number_vertices();
+  first_.assign(vertices_.size() + 1, 0);
+  for (const auto& corners : corners_)
+    for (const Index vertex : corners) ++first_[vertex + 1];
+  for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) first_[vertex + 1] += first_[vertex];
+  around_.resize(3 * faces.size());
+  std::vector<Index> next(first_.begin(), first_.end() - 1);
+  for (Index face = 0; face < static_cast<Index>(faces.size()); ++face)
+    for (const Index vertex : corners_[face]) around_[next[vertex]++] = face;
+  edges_.reserve(3 * faces.size());
   for (const Index face : faces) {
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
       const double length = mesh.length(h), right = mesh.length(Mesh::next(h)), left = mesh.length(Mesh::prev(h));
-      const double x = (left * left - right * right + length * length) / (2 * length);
-      edges_.push_back({length, left, right, {x, std::sqrt(std::max(0.0, left * left - x * x))}});
+      const double share = 1 / (2 * length), x = (left * left - right * right + length * length) * share;
+      edges_.push_back({length, share, left, right, {x, std::sqrt(std::max(0.0, left * left - x * x))}});
+    }
+  }
+}
+
+/// In the order in which faces name them.
+void PatchLog::number_vertices() {
+  const std::size_t size = std::bit_ceil(4 * faces_.size() + 1);
+  std::vector<Index> table(size, k_none);
+  vertices_.reserve(faces_.size());
+  corners_.reserve(faces_.size());
+  for (const Index face : faces_) {
+    std::array<Index, 3>& corners = corners_.emplace_back();
+    for (int i = 0; i < 3; ++i) {
+      const Index vertex = mesh_.triangles()[face][i];
+      std::size_t slot = k_spread * static_cast<std::uint32_t>(vertex) & (size - 1);
+      while (table[slot] != k_none && vertices_[table[slot]] != vertex) slot = (slot + 1) & (size - 1);
+      if (table[slot] == k_none) {
+        table[slot] = static_cast<Index>(vertices_.size());
+        vertices_.push_back(vertex);
+      }
+      corners[i] = table[slot];
     }
   }
 }
@@ -62,6 +75,9 @@ bool PatchLog::run(const SurfacePoint& centre) {
   if (local == k_none) return false;
   places_.assign(vertices_.size(), Vec2::Zero());
   distances_.assign(vertices_.size(), k_far);
+  changed_.assign(vertices_.size(), 0);
+  visited_.assign(vertices_.size(), 0);
+  visits_ = 0;
   heap_.clear();
   if (const Index vertex = vertex_at(mesh_, centre); vertex != k_none)
     start_at_vertex(vertex);
@@ -72,11 +88,8 @@ bool PatchLog::run(const SurfacePoint& centre) {
     const auto [nearest, vertex] = heap_.back();
     heap_.pop_back();
     if (nearest > distances_[vertex]) continue;
-    for (Index i = first_[vertex]; i < first_[vertex + 1]; ++i) {
-      const Index face = around_[i];
-      for (int edge = 0; edge < 3; ++edge)
-        if (corners_[face][(edge + 2) % 3] != vertex) see_across(face, edge);
-    }
+    visited_[vertex] = ++visits_;
+    for (Index i = first_[vertex]; i < first_[vertex + 1]; ++i) visit_face(around_[i], vertex);
   }
   return true;
 }
@@ -101,7 +114,7 @@ void PatchLog::start_in_face(const SurfacePoint& centre, Index local) {
 }
 
 void PatchLog::start_at_vertex(Index vertex) {
-  const auto local = static_cast<Index>(std::ranges::lower_bound(vertices_, vertex) - vertices_.begin());
+  const auto local = static_cast<Index>(std::ranges::find(vertices_, vertex) - vertices_.begin());
   const double scale = mesh_.is_boundary(vertex) ? 1 : 2 * M_PI / mesh_.total_angle(vertex);
   distances_[local] = 0;
   double angle = 0;
@@ -122,8 +135,18 @@ void PatchLog::offer(Index vertex, const Vec2& place, double distance) {
   if (!(distance < (1 - k_rounding) * distances_[vertex])) return;
   distances_[vertex] = distance;
   places_[vertex] = place;
+  changed_[vertex] = visits_;
   heap_.push_back({distance, vertex});
   std::push_heap(heap_.begin(), heap_.end());
+}
+
+/// From a vertex across its two edges of a face, unless that was done from their other ends, from the same places.
+void PatchLog::visit_face(Index local, Index vertex) {
+  const auto& corners = corners_[local];
+  const int at = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2, next = (at + 1) % 3, last = (at + 2) % 3;
+  const auto is_done_from = [&](Index other) { return visited_[other] > std::max(changed_[other], changed_[vertex]); };
+  if (!is_done_from(corners[next])) see_across(local, at);
+  if (!is_done_from(corners[last])) see_across(local, last);
 }
 
 /// Straight on along an edge, in the direction of its start.
@@ -142,13 +165,13 @@ void PatchLog::see_across(Index local, int edge) {
   if (to_a < k_far && to_b < k_far) {
     // The edge runs along the x axis, the corner above, the centre below.
     const double square_a = to_a * to_a, length = shape.length;
-    const double x = (square_a - to_b * to_b + length * length) / (2 * length), y = square_a - x * x;
+    const double x = (square_a - to_b * to_b + length * length) * shape.share, y = square_a - x * x;
     if (y > 0) {
       const Vec2 centre(x, -std::sqrt(y)), ray = shape.apex - centre, back_a = -centre, back_b(length - x, -centre.y());
       if (cross(ray, back_a) >= 0 && cross(back_b, ray) >= 0) {
-        const double distance = ray.norm();
-        if (distance < (1 - k_rounding) * known)
-          offer(c, seen_between(places_[a], places_[b], back_a, back_b, ray), distance);
+        const double nearer = (1 - k_rounding) * known;
+        if (const double square = ray.squaredNorm(); square < nearer * nearer)
+          offer(c, seen_between(places_[a], places_[b], back_a, back_b, ray), std::sqrt(square));
         return;
       }
     }

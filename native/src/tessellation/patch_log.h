@@ -31,24 +31,29 @@ class PatchLog {
   };
   /// An edge of a face along the x axis, and the corner opposite.
   struct EdgeShape {
-    double length, left, right;  ///< left and right: from the corner to the edge's start and end
+    double length, share;  ///< share: 1 / (2 length)
+    double left, right;    ///< from the corner to the edge's start and end
     Vec2 apex;
   };
+  void number_vertices();
   Index local_face(Index face) const;
   void start_in_face(const SurfacePoint& centre, Index local);
   void start_at_vertex(Index vertex);
+  void visit_face(Index local, Index vertex);
   void see_across(Index local, int edge);
   void offer(Index vertex, const Vec2& place, double distance);
   void walk(Index from, Index to, double length);
 
   const Mesh& mesh_;
   std::span<const Index> faces_;
-  std::vector<Index> vertices_;                ///< of the mesh, increasing
+  std::vector<Index> vertices_;                ///< of the mesh
   std::vector<std::array<Index, 3>> corners_;  ///< of each face, into vertices_
   std::vector<Index> first_, around_;          ///< faces at each vertex
   std::vector<EdgeShape> edges_;               ///< by face and edge
   std::vector<Vec2> places_;
   std::vector<double> distances_;
+  Index visits_ = 0;                      ///< so far, of vertices taken from the heap
+  std::vector<Index> changed_, visited_;  ///< at which visit a vertex was last placed, and visited
   std::vector<Reached> heap_;
 };
 
