@@ -91,7 +91,7 @@ Args:
 constexpr const char* k_streamline_doc = R"(Follows a direction field: the centre line of a long shape, a hair, a seam.
 
 The field is integrated as it is inside faces, not only from edge to edge: fourth-order steps of at most a quarter of a
-face.
+face, shorter where the field turns far within one.
 
 Args:
     mesh: the field's mesh.
@@ -102,6 +102,7 @@ Args:
     heading: (3,) vector; of the field's directions at the start the nearest one is followed. None: the first one.
     max_curvature: the most by which the curve bends, radians per mesh unit. Where the field turns faster the curve lags
         behind, so that shapes that reach up to 1 / max_curvature to either side do not fold.
+    job: a Job to watch or cancel; its fraction is that of the length.
 
 Returns:
     Streamline: a GeodesicPath that knows why it ends. It has one point where the start is a singular vertex, or lies on
@@ -109,7 +110,8 @@ Returns:
 
 Raises:
     InputError: a field of another mesh, a point off the mesh, a length or curvature that is not positive, a curve over
-        more than a million faces.
+        more than a million faces or eight million steps.
+    Cancelled: the job was.
 )";
 
 constexpr const char* k_spread_doc =
@@ -277,41 +279,17 @@ Returns:
     DirectionField, the same to the bit.
 
 Raises:
-    InputError: arrays of another length, not finite or beyond a million radians; turns that differ between the two faces
-        of an edge; a symmetry other than 1, 2 and 4.
+    InputError: arrays of another length, not finite or beyond a thousand radians; turns that differ between the two
+        faces of an edge or do not lead from the one's direction to the other's; a symmetry other than 1, 2 and 4.
 )";
-
-/// Beyond, sums of turns pass what counts indices, and what is left of an angle after whole turns is rounding.
-constexpr double k_most_radians = 1e6;
 
 py::object field_from_turns(const py::object& mesh_object, const py::object& angles, const py::object& turns,
                             const py::object& symmetry) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const int wanted = as_integer(symmetry, "symmetry");
-  if (wanted != 1 && wanted != 2 && wanted != 4) throw InputError(message("symmetry: wanted 1, 2 or 4, got ", wanted));
   const ArrayIn<double> own = as_reals(angles, "angles", static_cast<std::size_t>(mesh.face_count()));
   const ArrayIn<double> rows = as_points3(turns, "turns");
-  if (rows.values.size() != static_cast<std::size_t>(mesh.halfedge_count()))
-    throw InputError(message("turns: wanted ", mesh.face_count(), " rows, got ", rows.values.size() / 3));
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    const Index twin = mesh.twin(h);
-    const double sum = rows.values[h] + (twin == k_none ? 0 : rows.values[twin]);
-    if (!(std::abs(sum) < 1e-9))
-      throw InputError(message("turns: not opposite across edge ", h % 3, " of face ", h / 3));
-  }
-  for (std::size_t h = 0; h < rows.values.size(); ++h)
-    if (std::abs(rows.values[h]) > k_most_radians)
-      throw InputError(message("turns: value ", rows.values[h], " at [", h / 3, ", ", h % 3, "] is beyond 1e6"));
-  for (std::size_t f = 0; f < own.values.size(); ++f) {
-    if (!std::isfinite(own.values[f]))
-      throw InputError(message("angles: value ", own.values[f], " at [", f, "] is not finite"));
-    if (std::abs(own.values[f]) > k_most_radians)
-      throw InputError(message("angles: value ", own.values[f], " at [", f, "] is beyond 1e6"));
-  }
-  py::object result = py::cast(without_gil([&] {
-    return DirectionField(mesh, wanted, {own.values.begin(), own.values.end()},
-                          {rows.values.begin(), rows.values.end()});
-  }));
+  py::object result = py::cast(without_gil([&] { return field_of_turns(mesh, wanted, own.values, rows.values); }));
   py::detail::keep_alive_impl(result, mesh_object);
   return result;
 }
@@ -404,7 +382,8 @@ const char* name_of(StreamlineEnd reason) {
 }
 
 StreamlinePath follow(const py::object& mesh_object, const py::object& field_object, const py::object& start,
-                      const py::object& length, bool both, const py::object& heading, const py::object& max_curvature) {
+                      const py::object& length, bool both, const py::object& heading, const py::object& max_curvature,
+                      const py::object& job) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   if (!py::isinstance<DirectionField>(field_object)) throw InputError("field: wanted a DirectionField");
   const auto& field = py::cast<const DirectionField&>(field_object);
@@ -415,6 +394,7 @@ StreamlinePath follow(const py::object& mesh_object, const py::object& field_obj
   options.both = both;
   if (!heading.is_none()) options.heading = as_vec3(heading, "heading");
   options.max_curvature = as_real(max_curvature, "max_curvature");
+  options.job = as_job(job);
   return without_gil([&] {
     Streamline line = streamline(field, point, options);
     return StreamlinePath{std::move(line.path), line.start, line.begin_reason, line.end_reason};
@@ -433,7 +413,8 @@ void bind_streamline(py::module_& m) {
           "Why it goes no farther ahead.");
   m.def("streamline", &follow, py::arg("mesh"), py::arg("field"), py::arg("start"), py::arg("length"),
         py::arg("both") = false, py::kw_only(), py::arg("heading") = py::none(),
-        py::arg("max_curvature") = std::numeric_limits<double>::infinity(), k_streamline_doc);
+        py::arg("max_curvature") = std::numeric_limits<double>::infinity(), py::arg("job") = py::none(),
+        k_streamline_doc);
 }
 
 py::array spread(const py::object& mesh_object, const py::object& places, const py::object& values,

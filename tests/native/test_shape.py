@@ -217,6 +217,14 @@ def test_a_mask_tells_how_far_it_is_and_can_be_cancelled() -> None:
         check_progress_and_cancel(lambda job: sb.Shape.from_mask(image, 50_000, job=job), fraction)
 
 
+def test_masks_of_too_many_parts_are_refused_at_once() -> None:
+    speckles = np.kron(np.indices((500, 500)).sum(axis=0) % 2, np.full((4, 4), 0.9))
+    job = sb.Job()
+    with pytest.raises(sb.InputError, match="it has 125000 parts and holes, for which 1000 corners are too few"):
+        sb.Shape.from_mask(speckles, 1000, job=job)
+    assert job.fraction <= 0.5  # before a corner is taken away
+
+
 def test_placements_keep_what_they_are_given() -> None:
     points = sb.SurfacePoints([0, 1], [[1, 0, 0], [0.2, 0.3, 0.5]])
     placements = sb.Placements([0, 1], points, [0.1, 0.2], [1.0, 2.0], [True, False])

@@ -7,7 +7,9 @@ import pytest
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 from tests.native.test_direction_field import fine
+from tests.native.test_distribution import opposite_turns
 
 
 def circles_of_latitude(level: int) -> tuple[sb.Mesh, sb.DirectionField]:
@@ -126,6 +128,30 @@ def test_limited_curvature() -> None:
     stiff = sb.streamline(mesh, field, 30 * 60 + 26, 0.4, max_curvature=1e-3)
     chords = [np.linalg.norm(line.points[-1] - line.points[0]) / line.length for line in (free, stiff)]
     assert chords[1] > 0.9999
+
+
+@pytest.mark.parametrize("turns", [0, 1, 10])
+def test_fields_that_turn_far_within_a_face_are_followed(turns) -> None:
+    mesh = sb.Mesh(*meshes.grid(8, 8))
+    field = sb.direction_field(mesh, 1, {42: 1})
+    field = sb.DirectionField.from_turns(mesh, field.angles, field.turns + opposite_turns(mesh, 2 * np.pi * turns))
+    for face in (20, 45, 77):
+        line = sb.streamline(mesh, field, sb.SurfacePoints([face], [[0.3, 0.3, 0.4]]), 0.3)
+        pieces = np.diff(line.points, axis=0)
+        lengths = np.linalg.norm(pieces, axis=1)
+        assert line.end_reason != "length" or lengths.sum() == pytest.approx(0.3, rel=0.01)
+        middles = sb.project(mesh, (line.points[1:] + line.points[:-1]) / 2)
+        along = (pieces * field.directions(middles)).sum(axis=1)
+        assert along.sum() > 0.98 * lengths.sum()
+
+
+def test_long_curves_tell_how_far_they_are_and_can_be_cancelled() -> None:
+    mesh = sb.Mesh(*meshes.torus(50, 20))
+    field, job = sb.direction_field(mesh, 1, {}), sb.Job()
+    start = sb.SurfacePoints([30], [[0.3, 0.3, 0.4]])
+    sb.streamline(mesh, field, start, 5.0, True, job=job)
+    assert job.fraction == 1
+    check_progress_and_cancel(lambda job: sb.streamline(mesh, field, start, 20_000.0, job=job), 0.05)
 
 
 def test_bad_input_is_told() -> None:

@@ -132,6 +132,13 @@ class DirectionFieldEditor {
 /// part within its face. O(F).
 DirectionField field_of_vectors(const Mesh& mesh, int symmetry, std::span<const Vec3> vectors);
 
+/// The field that has these angles and turns, as `angles` and `turns` of another gave them. \throw InputError for
+/// arrays of another length, values beyond a thousand (turns) or a million (angles) radians, turns that are not
+/// opposite for the two faces of an edge, not 0 on the boundary or do not lead from one face's direction to one of the
+/// other's. O(F).
+DirectionField field_of_turns(const Mesh& mesh, int symmetry, std::span<const double> angles,
+                              std::span<const double> turns);
+
 /// One field, as by an editor that is used once.
 DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options = {},
                                Job* job = nullptr);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "saddleback/direction_field.h"
+#include "saddleback/job.h"
 #include "saddleback/trace.h"
 
 namespace saddleback {
@@ -26,6 +27,7 @@ struct StreamlineOptions {
   /// The most by which the curve bends (geodesic curvature, radians per length). Where the field turns faster the curve
   /// lags behind, so that what is laid across it up to 1 / max_curvature on either side does not fold.
   double max_curvature = std::numeric_limits<double>::infinity();
+  Job* job = nullptr;
 };
 
 struct Streamline {
@@ -35,10 +37,11 @@ struct Streamline {
 };
 
 /// Integrates the field, continuous as DirectionField::angle_at gives it, by fourth-order steps of at most a quarter of
-/// a face, cut at edges. A start at a singular vertex, or at the boundary where the field leaves the surface, gives
-/// that point alone. Without `both` the curve begins at the start. \throw InputError for a point off the mesh, a length
-/// or curvature that is not positive (a length not finite), a heading that is not finite or across the surface, a curve
-/// over more than a million faces. O(faces crossed).
+/// a face, shorter where the field turns far within one, cut at edges. A start at a singular vertex, or at the boundary
+/// where the field leaves the surface, gives that point alone. Without `both` the curve begins at the start. \throw
+/// InputError for a point off the mesh, a length or curvature that is not positive (a length not finite), a heading
+/// that is not finite or across the surface, a curve over more than a million faces or eight million steps; Cancelled.
+/// O(steps).
 Streamline streamline(const DirectionField& field, const SurfacePoint& start, const StreamlineOptions& options);
 
 }  // namespace saddleback

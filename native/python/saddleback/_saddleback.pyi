@@ -809,6 +809,7 @@ def streamline(
     *,
     heading: ArrayLike | None = None,
     max_curvature: SupportsFloat = ...,
+    job: Job | None = None,
 ) -> Streamline: ...
 def spread_values(
     mesh: Mesh,

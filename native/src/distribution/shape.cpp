@@ -13,6 +13,7 @@ namespace saddleback {
 namespace {
 
 using Loop = Shape::Loop;
+using Box = Eigen::AlignedBox2d;
 
 /// What counts as rounding when half a turn is looked for, as a share of the circumradius.
 constexpr double k_symmetry_tolerance = 1e-9;
@@ -83,8 +84,12 @@ void Shape::check() const {
                              " meets the edge after corner ", meeting->other_corner, " of ",
                              name(meeting->other_loop)));
   // No two loops touch, so that one corner tells on which side of another loop a loop is.
+  std::vector<Box> boxes(loops_.size());
+  for (std::size_t l = 0; l < loops_.size(); ++l)
+    for (const Vec2& corner : loops_[l]) boxes[l].extend(corner);
   const auto is_within = [&](Index inner, Index outer) {
-    return predicates::is_inside(loops_[outer], loops_[inner][0]);
+    const Vec2& corner = loops_[inner][0];
+    return boxes[outer].contains(corner) && predicates::is_inside(loops_[outer], corner);
   };
   for (Index part = 0; part < part_count(); ++part) {
     const Index outline = part_begins_[part];

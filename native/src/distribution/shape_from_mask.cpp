@@ -5,6 +5,7 @@
 #include "saddleback/shape.h"
 
 #include "mask_outlines.h"
+#include "predicates/planar_loops.h"
 #include "simplify_outward.h"
 
 namespace saddleback {
@@ -39,6 +40,18 @@ void check(const MaskImage& image, Index max_corners, const JobStage& stage) {
   check_values(image, stage);
 }
 
+InputError too_many(std::size_t loops, Index max_corners) {
+  return InputError(message("image: no clear mask, it has ", loops, " parts and holes, for which ", max_corners,
+                            " corners are too few"));
+}
+
+/// Holes may be filled, but every outline keeps three corners.
+void check_outlines(const std::vector<Shape::Loop>& loops, Index max_corners) {
+  const auto outlines = std::count_if(loops.begin(), loops.end(),
+                                      [](const Shape::Loop& loop) { return predicates::twice_area(loop) > 0; });
+  if (3 * outlines > max_corners) throw too_many(loops.size(), max_corners);
+}
+
 }  // namespace
 
 Shape shape_from_mask(const MaskImage& image, Index max_corners, bool centred, Job* job) {
@@ -46,14 +59,13 @@ Shape shape_from_mask(const MaskImage& image, Index max_corners, bool centred, J
   check(image, max_corners, stage.part(0, 0.1));
   std::vector<Shape::Loop> loops = distribution::mask_outlines(image, stage.part(0.1, 0.5));
   const std::size_t count = loops.size();
+  check_outlines(loops, max_corners);
   distribution::simplify_outward(loops, max_corners, k_free_area, stage.part(0.5, 1));
   std::size_t corners = 0;
   for (const Shape::Loop& loop : loops) corners += loop.size();
-  if (corners > static_cast<std::size_t>(max_corners))
-    throw InputError(message("image: no clear mask, it has ", count, " parts and holes, for which ", max_corners,
-                             " corners are too few"));
+  if (corners > static_cast<std::size_t>(max_corners)) throw too_many(count, max_corners);
   const Shape shape(distribution::parts_of(std::move(loops), stage));
-  stage.update(1);
+  stage.update(1);  // and a last look whether to go on
   return centred ? shape.centred() : shape;
 }
 

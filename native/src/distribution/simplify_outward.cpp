@@ -37,6 +37,12 @@ struct Change {
 class Simplifier {
  public:
   Simplifier(const std::vector<Shape::Loop>& loops, const JobStage& stage) : stage_(stage) {
+    std::size_t all = 0;
+    for (const Shape::Loop& loop : loops) all += loop.size();
+    corners_.reserve(all);
+    std::vector<Change> room;
+    room.reserve(4 * all);  // a corner that goes leaves four proposals at most
+    changes_ = Queue(std::greater<>(), std::move(room));
     for (std::size_t l = 0; l < loops.size(); ++l) {
       const auto begin = static_cast<Index>(corners_.size()), count = static_cast<Index>(loops[l].size());
       for (Index i = 0; i < count; ++i)
@@ -238,7 +244,8 @@ class Simplifier {
   double per_unit_ = 1;
   Index side_ = 1;
   std::vector<std::vector<Index>> squares_;
-  std::priority_queue<Change, std::vector<Change>, std::greater<>> changes_;
+  using Queue = std::priority_queue<Change, std::vector<Change>, std::greater<>>;
+  Queue changes_;  ///< never grows beyond the room made for it: to move it takes longer than a cancelled job may
 };
 
 }  // namespace

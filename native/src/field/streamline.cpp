@@ -18,6 +18,7 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 constexpr std::int64_t k_max_faces = 1'000'000, k_max_steps = 8'000'000;
 constexpr double k_step = 0.25;            // of a face's size
+constexpr double k_most_turn = k_pi;       // within a face; where it is more, whole steps would come to nothing
 constexpr double k_beside = 1e-9;          // share of an edge by which curves keep off its ends
 constexpr double k_inward = 1e-6;          // share of a step by which it leaves the edge that it starts on
 constexpr double k_at_singularity = 0.02;  // share of the edges about it within which a curve has come to a vertex
@@ -30,11 +31,13 @@ Vec2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 class Walk {
  public:
   /// `backwards`: against the field's directions.
-  Walk(const DirectionField& field, const StreamlineOptions& options, double length, bool backwards)
+  Walk(const DirectionField& field, const StreamlineOptions& options, double length, bool backwards,
+       const JobStage& stage)
       : field_(field),
         mesh_(field.mesh()),
         length_(length),
         max_curvature_(options.max_curvature),
+        stage_(stage),
         quantum_(2 * k_pi / field.symmetry()),
         offset_(backwards ? k_pi : 0) {}
 
@@ -72,9 +75,21 @@ class Walk {
     face_ = face;
     edge_ = edge;
     chart_.emplace(mesh_, face);
-    step_ = k_step * std::sqrt(2 * mesh_.face_area(face));
+    share_ = k_step / std::max(1.0, turn_within(face) / k_most_turn);
+    step_ = share_ * std::sqrt(2 * mesh_.face_area(face));
     singular_ = false;
     for (const Index v : mesh_.triangles()[face]) singular_ = singular_ || field_.units_at(v) != 0;
+  }
+
+  /// By how much the field's angles at the corners of a face differ.
+  double turn_within(Index face) const {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      const auto [along, before] = field_.about_corner(h);
+      low = std::min({low, along, before});
+      high = std::max({high, along, before});
+    }
+    return high - low;
   }
 
   SurfacePoint point_at(const Vec2& place) const {
@@ -90,8 +105,8 @@ class Walk {
   StreamlineEnd run() {
     std::int64_t faces = 0;
     for (std::int64_t steps = 0;; ++steps) {
-      // Where a field turns more than once within a step, steps may come to nothing.
       if (steps > k_max_steps) throw InputError(too_long("steps", steps));
+      if (steps % 64 == 0) stage_.update(travelled_ / length_);
       if (const Index v = vertex_reached(); v != k_none) {
         Vec3 corner = Vec3::Zero();
         for (int i = 0; i < 3; ++i) corner[i] = mesh_.triangles()[face_][i] == v ? 1 : 0;
@@ -135,7 +150,7 @@ class Walk {
     if (!singular_) return step;
     for (int i = 0; i < 3; ++i)
       if (field_.units_at(mesh_.triangles()[face_][i]) != 0)
-        step = std::min(step, k_step * (place_ - chart_->corner[i]).norm());
+        step = std::min(step, share_ * (place_ - chart_->corner[i]).norm());
     return step;
   }
 
@@ -211,12 +226,14 @@ class Walk {
 
   const DirectionField& field_;
   const Mesh& mesh_;
-  const double length_, max_curvature_, quantum_, offset_;
+  const double length_, max_curvature_;
+  const JobStage stage_;
+  const double quantum_, offset_;
   GeodesicPath path_;
   Index face_ = 0, edge_ = k_none;
   std::optional<FaceChart> chart_;
   Vec2 place_ = Vec2::Zero();
-  double heading_ = 0, next_heading_ = 0, step_ = 0, travelled_ = 0;
+  double heading_ = 0, next_heading_ = 0, share_ = 0, step_ = 0, travelled_ = 0;
   bool singular_ = false;
 };
 
@@ -270,8 +287,8 @@ struct Side {
   StreamlineEnd reason;
 };
 Side one_side(const DirectionField& field, const SurfacePoint& start, const StreamlineOptions& options, double length,
-              bool backwards) {
-  Walk walk(field, options, length, backwards);
+              bool backwards, const JobStage& stage) {
+  Walk walk(field, options, length, backwards, stage);
   const Index vertex = vertex_at(field.mesh(), start);
   StreamlineEnd reason{};
   if (vertex == k_none) {
@@ -301,12 +318,16 @@ Streamline streamline(const DirectionField& field, const SurfacePoint& start, co
   SurfacePoint from = start;
   from.barycentric = normalised_barycentric(start.barycentric);
   const double length = options.both ? 0.5 * options.length : options.length;
+  const JobStage stage(options.job, "Stream line");
   Streamline result;
-  Side ahead = one_side(field, from, options, length, false);
+  Side ahead = one_side(field, from, options, length, false, options.both ? stage.part(0, 0.5) : stage);
   result.path = std::move(ahead.path);
   result.end_reason = ahead.reason;
-  if (!options.both) return result;
-  Side behind = one_side(field, from, options, length, true);
+  if (!options.both) {
+    stage.update(1);
+    return result;
+  }
+  Side behind = one_side(field, from, options, length, true, stage.part(0.5, 1));
   result.begin_reason = behind.reason;
   result.start = behind.path.points.size() - 1;
   std::reverse(behind.path.points.begin(), behind.path.points.end());
@@ -315,6 +336,7 @@ Streamline streamline(const DirectionField& field, const SurfacePoint& start, co
   behind.path.surface.insert(behind.path.surface.end(), result.path.surface.begin() + 1, result.path.surface.end());
   behind.path.length += result.path.length;
   result.path = std::move(behind.path);
+  stage.update(1);
   return result;
 }
 
