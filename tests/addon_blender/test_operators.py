@@ -259,11 +259,14 @@ def test_only_what_changed_is_computed():
     assert builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1}
     bpy.ops.saddleback.tessellate(**QUICK, make_cells=True)
     bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, gap=0.01)
-    assert builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1, "split": 1}
+    for inset in (0.01, 0.02):
+        bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, gap=0.01, inset=inset, thickness=0.1)
+    pieces = {"split": 1, "cell pieces": 2}
+    assert builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1, **pieces}
     bpy.ops.saddleback.tessellate(**{**QUICK, "count": 20}, make_cells=False)
-    assert builds == {"mesh": 1, "graph": 1, "cells": 2, "dual": 2, "split": 1}
+    assert builds == {"mesh": 1, "graph": 1, "cells": 2, "dual": 2, **pieces}
     bpy.ops.saddleback.tessellate(**{**QUICK, "k": 25})
-    assert builds == {"mesh": 1, "graph": 2, "cells": 3, "dual": 3, "split": 1}
+    assert builds == {"mesh": 1, "graph": 2, "cells": 3, "dual": 3, **pieces}
     select(bpy.context.active_object, [0])
     bpy.ops.saddleback.distance(k=25)
     assert builds["graph"] == 2 and builds["mesh"] == 1

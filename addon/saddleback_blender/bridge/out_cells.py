@@ -9,9 +9,11 @@ import numpy as np
 from mathutils import Matrix
 
 from .. import compat, nodes
+from ..core import cache
 from ..core.cell_colors import cell_colors
-from ..core.cell_mesh import CellMesh, CellShape, build_cell_mesh
+from ..core.cell_mesh import CellMesh, CellPieces, CellShape, cell_pieces, raise_cells
 from ..core.local_places import local_uv
+from ..core.requests import digest
 from ..core.results import CellPolygons, CellsResult, Indices
 from ..core.settings import TessellateSettings, Voronoi2dSettings
 from .out_attributes import set_attribute
@@ -35,7 +37,7 @@ def write_cells(
 ) -> bpy.types.Object:
     """Makes or replaces the source's cells object; gap, inset and thickness are in world units."""
     shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
-    cells = build_cell_mesh(result.split_vertices, result.split_triangles, result.split_cell, shape)
+    cells = raise_cells(_pieces(result, shape), shape)
     colors = cell_colors(len(result.sites_position), result.edge_cells)
     place = level_place(source)
     mesh = _mesh(to_place(place, cells.vertices), cells, colors, compat.is_shaded_smooth(source.data))
@@ -74,6 +76,13 @@ def write_polygons(
 def vanished_cells(item: bpy.types.Object) -> int:
     """How many cells are missing in a cells object because they are narrower than the gap."""
     return int(item.get(VANISHED, 0))
+
+
+def _pieces(result: CellsResult, shape: CellShape) -> CellPieces:
+    """The cells with their gap, kept for the next run: it may change no more than inset or thickness."""
+    split = (result.split_vertices, result.split_triangles, result.split_cell)
+    key = ("cell pieces", digest(*split, shape.gap, shape.cuts))
+    return cache.shared.get(key, lambda: cell_pieces(*split, shape), lambda pieces: pieces.nbytes)
 
 
 def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray, is_smooth: bool) -> bpy.types.Mesh:

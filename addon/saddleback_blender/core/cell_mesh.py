@@ -70,23 +70,60 @@ class CellMesh:
         return cell if np.array_equal(cell[self.triangles], np.repeat(self.triangle_cell, 3).reshape(-1, 3)) else None
 
 
+@dataclass(frozen=True)
+class CellPieces:
+    """What of a split mesh the gap leaves, and what its cells are raised by: all that no inset or thickness changes.
+
+    fields (n,7): position, normal, distance to the boundary of the cell; triangles (m,3), the cell of each (m,); the
+    cells (k,) that the split mesh has.
+    """
+
+    fields: Floats
+    triangles: Ints
+    cells: Ints
+    present: Ints
+
+    @property
+    def nbytes(self) -> int:
+        """What is kept in memory."""
+        return self.fields.nbytes + self.triangles.nbytes + self.cells.nbytes + self.present.nbytes
+
+
 def build_cell_mesh(vertices: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> CellMesh:
     """Make the mesh of the cells from a split mesh: vertices (V,3), triangles (T,3), triangle_cell (T,).
 
     Each cell is an island of its own when there is a gap; without gap, inset and thickness vertices stay shared. With a
-    thickness but no inset the sides are upright walls. O(T log T).
+    thickness but no inset the sides are upright walls. O(T).
     """
+    return raise_cells(cell_pieces(vertices, triangles, triangle_cell, shape), shape)
+
+
+def cell_pieces(vertices: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> CellPieces:
+    """Drop what lies within half the gap of a boundary. Of the shape only its `gap` and whether it `cuts` matter."""
     triangles = np.ascontiguousarray(triangles, dtype=np.int32)
-    triangle_cell = np.ascontiguousarray(triangle_cell, dtype=np.int32)
+    cells = np.ascontiguousarray(triangle_cell, dtype=np.int32)
     fields = np.zeros((len(vertices), 7))
     fields[:, POSITION] = vertices
-    if shape.thickness > 0.0:
-        fields[:, NORMAL] = vertex_normals(fields[:, POSITION], triangles)
-    cells = triangle_cell
+    fields[:, NORMAL] = vertex_normals(fields[:, POSITION], triangles)
+    present = np.unique(cells)
     if shape.cuts and len(triangles):
-        fields, triangles, cells = _cut_cells(fields, triangles, triangle_cell, shape)
-    present = np.unique(triangle_cell)
-    vanished = np.setdiff1d(present, cells).astype(np.int32)
+        segments, _ = find_boundary(len(fields), triangles, cells)
+        opened = open_chords(fields, triangles, segments)
+        fields, triangles, cells = opened.fields, opened.triangles, cells[opened.parent]
+        fields[:, DISTANCE] = boundary_distance(fields[:, POSITION], triangles, cells)
+        if shape.gap > 0.0:
+            outer = cut_at_level(fields, triangles, DISTANCE, shape.rim_start)
+            fields, triangles, cells = outer.fields, outer.triangles[outer.above], cells[outer.parent[outer.above]]
+    return CellPieces(fields, triangles, cells, present)
+
+
+def raise_cells(pieces: CellPieces, shape: CellShape) -> CellMesh:
+    """Put an edge line where the plateau begins, and raise it."""
+    fields, triangles, cells = pieces.fields, pieces.triangles, pieces.cells
+    if shape.inset > 0.0 and len(triangles):
+        inner = cut_at_level(fields, triangles, DISTANCE, shape.rim_end)
+        fields, triangles, cells = inner.fields, inner.triangles, cells[inner.parent]
+    vanished = np.setdiff1d(pieces.present, cells).astype(np.int32)
     if shape.thickness > 0.0:
         share = _plateau_share(fields[:, DISTANCE], shape)
         solid = raise_surface(fields[:, :6], triangles, shape.thickness * share, shape.underside)
@@ -94,21 +131,6 @@ def build_cell_mesh(vertices: Floats, triangles: Ints, triangle_cell: Ints, shap
     else:
         positions = fields[:, POSITION]
     return CellMesh(*drop_unused(positions, triangles), cells, vanished)
-
-
-def _cut_cells(fields: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> tuple[Floats, Ints, Ints]:
-    """Drop what lies within half the gap of a boundary, and put an edge line where the plateau begins."""
-    segments, _ = find_boundary(len(fields), triangles, triangle_cell)
-    opened = open_chords(fields, triangles, segments)
-    fields, triangles, cells = opened.fields, opened.triangles, triangle_cell[opened.parent]
-    fields[:, DISTANCE] = boundary_distance(fields[:, POSITION], triangles, cells, shape.rim_end)
-    if shape.gap > 0.0:
-        outer = cut_at_level(fields, triangles, DISTANCE, shape.rim_start)
-        fields, triangles, cells = outer.fields, outer.triangles[outer.above], cells[outer.parent[outer.above]]
-    if shape.inset > 0.0:
-        inner = cut_at_level(fields, triangles, DISTANCE, shape.rim_end)
-        fields, triangles, cells = inner.fields, inner.triangles, cells[inner.parent]
-    return fields, triangles, cells
 
 
 def _plateau_share(distance: Floats, shape: CellShape) -> Floats:
