@@ -145,6 +145,15 @@ def test_fields_that_turn_far_within_a_face_are_followed(turns) -> None:
         assert along.sum() > 0.98 * lengths.sum()
 
 
+@pytest.mark.parametrize("height", [1.0, 1e-3, 1e-6])
+def test_slivers_take_no_more_steps_than_other_faces(height) -> None:
+    vertices, triangles = meshes.grid(10, 10)
+    mesh = sb.Mesh(vertices * [1, height, 1], triangles)
+    field = sb.direction_field(mesh, 1, {}, [sb.SurfaceCurve(mesh, [50, 51])])
+    line = sb.streamline(mesh, field, sb.SurfacePoints([99], [[0.3, 0.3, 0.4]]), 0.3)
+    assert line.end_reason == "length" and line.length == pytest.approx(0.3) and len(line.points) < 200
+
+
 def test_long_curves_tell_how_far_they_are_and_can_be_cancelled() -> None:
     mesh = sb.Mesh(*meshes.torus(50, 20))
     field, job = sb.direction_field(mesh, 1, {}), sb.Job()

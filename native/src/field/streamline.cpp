@@ -18,6 +18,7 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 constexpr std::int64_t k_max_faces = 1'000'000, k_max_steps = 8'000'000;
 constexpr double k_step = 0.25;            // of a face's size
+constexpr double k_thin = 0.1;             // of the longest edge, a face's size at least: along slivers there is no end
 constexpr double k_most_turn = k_pi;       // within a face; where it is more, whole steps would come to nothing
 constexpr double k_beside = 1e-9;          // share of an edge by which curves keep off its ends
 constexpr double k_inward = 1e-6;          // share of a step by which it leaves the edge that it starts on
@@ -76,7 +77,9 @@ class Walk {
     edge_ = edge;
     chart_.emplace(mesh_, face);
     share_ = k_step / std::max(1.0, turn_within(face) / k_most_turn);
-    step_ = share_ * std::sqrt(2 * mesh_.face_area(face));
+    const Index h = 3 * face;
+    const double longest = std::max({mesh_.length(h), mesh_.length(h + 1), mesh_.length(h + 2)});
+    step_ = share_ * std::max(std::sqrt(2 * mesh_.face_area(face)), k_thin * longest);
     singular_ = false;
     for (const Index v : mesh_.triangles()[face]) singular_ = singular_ || field_.units_at(v) != 0;
   }
