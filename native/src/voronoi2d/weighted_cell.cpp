@@ -43,7 +43,11 @@ bool WeightedCell::open_ring(std::span<const Index> ring) {
   const Index size = static_cast<Index>(ring.size());
   begins_.clear();
   has_fixed_ = false;
-  for (Index i = 1; i <= size; ++i) begins_.push_back(begin_between(i == 1 ? size : i - 1, i));
+  for (Index i = 1; i <= size; ++i) {
+    const Index last = i == 1 ? size : i - 1;
+    if (!crosses(last, i)) return false;
+    begins_.push_back(begin_between(last, i));
+  }
   if (!drop_hidden_arcs()) return false;
   use_begins();
   return is_envelope();
@@ -53,6 +57,11 @@ bool WeightedCell::open_ring(std::span<const Index> ring) {
 bool WeightedCell::is_narrow(Index arc) const {
   const Begin &u = begins_[arc], &v = begins_[after(arc)];
   return u.x * v.y - u.y * v.x > 4 * (u.blur + v.blur);
+}
+
+/// Whether two waves certainly cross, which those of neighbours in a guess need not.
+bool WeightedCell::crosses(Index before, Index after) const {
+  return wave_crossing(rivals_[before], rivals_[after]).blur < k_infinity;
 }
 
 /// Takes out arcs that end before they begin.
@@ -66,6 +75,7 @@ bool WeightedCell::drop_hidden_arcs() {
     }
     if (count() <= 3) return false;
     const Index last = begins_[before(arc)].rival, next = begins_[after(arc)].rival;
+    if (!crosses(last, next)) return false;
     begins_[after(arc)] = begin_between(last, next);
     rivals_[begins_[arc].rival].site = k_forgotten;
     begins_.erase(begins_.begin() + arc);

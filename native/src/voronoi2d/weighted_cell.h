@@ -64,6 +64,7 @@ class WeightedCell {
 
   void open_plane();
   bool open_ring(std::span<const Index> ring);
+  bool crosses(Index before, Index after) const;
   bool drop_hidden_arcs();
   bool is_envelope() const;
   bool is_narrow(Index arc) const;

@@ -152,8 +152,11 @@ void WeightedCells::find_exactly(const std::vector<Index>& wanted, const JobStag
     worker.finder.open_block(wanted[begin], is_dense ? wanted[end - 1] + 1 : wanted[begin] + 1);
     for (Index i = begin; i < end; ++i) {
       if (i % 16 == 0) stage.check();
-      worker.guess.clear();
-      visit_guess(wanted[i], [&](Index neighbour) { worker.guess.push_back(neighbour); });
+      std::vector<Index>& guess = worker.guess;
+      guess.clear();
+      visit_guess(wanted[i], [&](Index neighbour) {
+        if (std::find(guess.begin(), guess.end(), neighbour) == guess.end()) guess.push_back(neighbour);
+      });
       worker.finder.find(wanted[i], worker.guess, worker.cell);
       worker.cell.read(exact_[first + i].sides);
     }

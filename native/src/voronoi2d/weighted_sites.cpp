@@ -77,23 +77,73 @@ LargeArray<Index> smallest_equal(const OrderedSites& ordered, std::span<const do
   return site_of;
 }
 
-/// Whether the site of a rank is hidden by another. At one place there is one site.
-bool is_hidden(const LargeArray<WeightedPoint2>& points, const DiskTree& tree, Index rank) {
-  const WeightedPoint2& point = points[rank];
-  bool result = false;
-  tree.visit(
-      [&](const DiskTree::Disk& disk) {
-        if (result || disk.radius <= point.weight) return false;
-        const double x = disk.x - point.x, y = disk.y - point.y, reach = disk.radius - point.weight;
-        return x * x + y * y <= reach * reach * (1 + 1e-12);
-      },
-      [&](Index row) {
-        const Index end = std::min(static_cast<Index>(points.size()), (row + 1) * DiskTree::k_fan);
-        for (Index i = row * DiskTree::k_fan; i < end && !result; ++i)
-          result = points[i].weight > point.weight && predicates::hides(points[i], point);
-      });
-  return result;
-}
+/// Finds hidden sites, a block of sites in a row after the other. At one place there is one site.
+class HiddenFinder {
+ public:
+  HiddenFinder(std::span<const WeightedPoint2> points, const DiskTree& tree) : points_(points), tree_(tree) {}
+
+  void find(Index begin, Index end, std::uint8_t* hidden) {
+    open_block(begin, end);
+    for (Index site = begin; site < end; ++site) hidden[site] = static_cast<std::uint8_t>(is_hidden(site));
+  }
+
+ private:
+  static constexpr double k_slack = 1e-12;  ///< far more than the rounding of a few operations
+
+  /// Collects the rows of sites whose disks reach into the block's box.
+  void open_block(Index begin, Index end) {
+    double low[2] = {points_[begin].x, points_[begin].y}, high[2] = {low[0], low[1]}, lightest = points_[begin].weight;
+    for (Index i = begin; i < end; ++i) {
+      low[0] = std::min(low[0], points_[i].x), high[0] = std::max(high[0], points_[i].x);
+      low[1] = std::min(low[1], points_[i].y), high[1] = std::max(high[1], points_[i].y);
+      lightest = std::min(lightest, points_[i].weight);
+    }
+    rows_.clear();
+    disks_.clear();
+    tree_.visit(
+        [&](const DiskTree::Disk& disk) {
+          const double x = std::max({low[0] - disk.x, disk.x - high[0], 0.0}),
+                       y = std::max({low[1] - disk.y, disk.y - high[1], 0.0});
+          return is_within(x, y, disk.radius - lightest);
+        },
+        [&](Index row) {
+          rows_.push_back(row);
+          disks_.push_back(tree_.rows()[row]);
+        });
+  }
+
+  bool is_hidden(Index site) const {
+    const WeightedPoint2& point = points_[site];
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const DiskTree::Disk& disk = disks_[i];
+      if (is_within(disk.x - point.x, disk.y - point.y, disk.radius - point.weight) && is_hidden_in(rows_[i], site))
+        return true;
+    }
+    return false;
+  }
+
+  bool is_hidden_in(Index row, Index site) const {
+    const WeightedPoint2& point = points_[site];
+    const Index begin = row * DiskTree::k_fan,
+                end = std::min(static_cast<Index>(points_.size()), begin + DiskTree::k_fan);
+    bool may_be = false;
+    for (Index i = begin; i < end; ++i)
+      may_be |= is_within(points_[i].x - point.x, points_[i].y - point.y, points_[i].weight - point.weight) & (i != site);
+    if (!may_be) return false;
+    for (Index i = begin; i < end; ++i)
+      if (i != site && predicates::hides(points_[i], point)) return true;
+    return false;
+  }
+
+  static bool is_within(double x, double y, double reach) {
+    return x * x + y * y <= reach * std::fabs(reach) * (1 + k_slack);
+  }
+
+  std::span<const WeightedPoint2> points_;
+  const DiskTree& tree_;
+  std::vector<Index> rows_;
+  std::vector<DiskTree::Disk> disks_;
+};
 
 }  // namespace
 
@@ -113,11 +163,11 @@ WeightedSites order_weighted_sites(std::span<const Vec2> sites, std::span<const 
     points[rank] = {ordered.x[rank], ordered.y[rank], weights[heaviest.original[rank]] * result.scale};
   const DiskTree tree(points);
   std::vector<std::uint8_t> hidden(count, 0);
-  constexpr Index k_block = 1024;
-  parallel_for((count + k_block - 1) / k_block, threads, 1, [&](Index block, int) {
+  constexpr Index k_block = 64, k_blocks = 16;
+  std::vector<HiddenFinder> finders(thread_count(threads), HiddenFinder(points, tree));
+  parallel_for((count + k_block - 1) / k_block, threads, k_blocks, [&](Index block, int thread) {
     stage.check();
-    for (Index rank = block * k_block; rank < std::min(count, (block + 1) * k_block); ++rank)
-      hidden[rank] = is_hidden(points, tree, rank);
+    finders[thread].find(block * k_block, std::min(count, (block + 1) * k_block), hidden.data());
   });
   stage.update(0.9);
   for (Index rank = 0; rank < count; ++rank) {
