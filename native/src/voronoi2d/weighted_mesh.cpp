@@ -13,16 +13,7 @@ using predicates::WeightedPoint2;
 
 namespace {
 
-constexpr Index k_block = 4096;  ///< sites, a thread's work at a time
-
-template <class Work>
-void for_blocks(Index count, int threads, const JobStage& stage, Work&& work) {
-  const Index blocks = (count + k_block - 1) / k_block;
-  parallel_for(blocks, threads, 1, [&](Index block, int thread) {
-    stage.update(block / static_cast<double>(blocks));
-    work(block * k_block, std::min(count, (block + 1) * k_block), thread);
-  });
-}
+constexpr Index k_block = 4096;  ///< triangles that stay in a core's cache
 
 }  // namespace
 
@@ -117,91 +108,165 @@ bool WeightedMesh::is_side(Index half) const {
                   centres_[half / 4]);
 }
 
-/// Adds the half-edges that are in the way. Not certain, too, is where a cell begins that has several sides towards its
-/// lowest neighbour.
-bool WeightedMesh::is_turned_once(Index site, std::vector<Index>& bad) const {
-  const Index first = mesh_.leaving[site];
-  const std::size_t bad_before = bad.size();
-  Way last = way(site, centres_[first / 4]);
-  Index half = first, turn_count = 0, lowest = far_away(), lowest_count = 0;
-  do {
-    half = next_around(half);
-    const Index neighbour = mesh_.corners[next_half(half)];
-    const Way next = way(site, centres_[half / 4]);
-    const int sign = turn(last, next);
-    if (!may_follow(site, neighbour, sign)) bad.push_back(half);
-    const bool was_low = last.y < 0, is_low = next.y < 0;  // passes the x axis if it does so, or is more than half
-    turn_count += static_cast<Index>(sign > 0 ? was_low && !is_low : was_low || !is_low);
-    lowest_count = neighbour < lowest ? 1 : lowest_count + static_cast<Index>(neighbour == lowest);
-    lowest = std::min(lowest, neighbour);
-    last = next;
-  } while (half != first);
-  return turn_count == 1 && lowest_count == 1 && bad.size() == bad_before;
+/// Whether a way that turns with some sign, by less than once, passes the x axis.
+bool WeightedMesh::passes(const Way& from, const Way& to, int sign) {
+  const bool was_low = from.y < 0, is_low = to.y < 0;
+  return sign > 0 ? was_low && !is_low : was_low || !is_low;
 }
 
-void WeightedMesh::find_centres(int threads, const JobStage& stage) {
-  for_blocks(static_cast<Index>(centres_.size()), threads, stage, [&](Index begin, Index end, int) {
+/// `is_side`, and how often the ways of the sites at both ends pass the x axis.
+bool WeightedMesh::is_side(Index half, std::int64_t& passed) const {
+  const Index from = mesh_.corners[half], to = mesh_.corners[next_half(half)];
+  const Centre &right = centres_[mesh_.twins[half] / 4], &left = centres_[half / 4];
+  bool result = true;
+  const auto see = [&](Index site, Index neighbour, const Centre& first, const Centre& last) {
+    if (site == far_away()) return;
+    const Way begin = way(site, first), end = way(site, last);
+    const int sign = turn(begin, end);
+    result &= may_follow(site, neighbour, sign);
+    passed += static_cast<std::int64_t>(passes(begin, end, sign));
+  };
+  see(from, to, right, left);
+  see(to, from, left, right);
+  return result;
+}
+
+WeightedMesh::Ring WeightedMesh::ring(Index site) const {
+  Way last = way(site, centres_[last_in_ring(site) / 4]);
+  Ring result{0, 0};
+  Index lowest = far_away();
+  visit_ring(site, [&](Index neighbour, Index half) {
+    const Way next = way(site, centres_[half / 4]);
+    result.turns += static_cast<Index>(passes(last, next, turn(last, next)));
+    result.begins = neighbour < lowest ? 1 : result.begins + static_cast<Index>(neighbour == lowest);
+    lowest = std::min(lowest, neighbour);
+    last = next;
+  });
+  return result;
+}
+
+void WeightedMesh::find_centres(Index begin, Index end) {
+  for (Index triangle = begin; triangle < end; ++triangle) {
+    const Index* const corner = mesh_.corners.data() + 4 * static_cast<std::size_t>(triangle);
+    if (corner[0] != k_none) centres_[triangle] = centre(corner[0], corner[1], corner[2]);
+  }
+}
+
+/// Finds all centres, and half-edges that are no sides. Returns how often the ways of all sites pass the x axis.
+std::int64_t WeightedMesh::find_sides(std::vector<Index>& bad, int threads, const JobStage& stage) {
+  struct Worker {
+    std::vector<Index> bad{}, late{};  ///< half-edges; `late` lead from block to block
+    std::int64_t passed = 0;
+  };
+  std::vector<Worker> workers(thread_count(threads));
+  const Index count = triangle_count(), blocks = (count + k_block - 1) / k_block;
+  parallel_for(blocks, threads, 1, [&](Index block, int thread) {
+    stage.update(block / static_cast<double>(blocks));
+    const Index begin = block * k_block, end = std::min(count, begin + k_block);
+    find_centres(begin, end);
+    Worker& worker = workers[thread];
     for (Index triangle = begin; triangle < end; ++triangle) {
-      const Index* const corner = mesh_.corners.data() + 4 * static_cast<std::size_t>(triangle);
-      if (corner[0] != k_none) centres_[triangle] = centre(corner[0], corner[1], corner[2]);
+      if (mesh_.corners[4 * triangle] == k_none) continue;
+      for (Index half = 4 * triangle; half < 4 * triangle + 3; ++half) {
+        if (mesh_.twins[half] < half) continue;
+        if (mesh_.twins[half] >= 4 * end) {
+          worker.late.push_back(half);
+        } else if (!is_side(half, worker.passed)) {
+          worker.bad.push_back(half);
+        }
+      }
     }
   });
+  std::int64_t passed = 0;
+  for (Worker& worker : workers) {
+    stage.check();
+    for (const Index half : worker.late)
+      if (!is_side(half, worker.passed)) bad.push_back(half);
+    bad.insert(bad.end(), worker.bad.begin(), worker.bad.end());
+    passed += worker.passed;
+  }
+  return passed;
+}
+
+bool WeightedMesh::are_neighbours(Index a, Index b) const {
+  const Index site = std::min(a, b), other = std::max(a, b);
+  bool result = false;
+  visit_ring(site, [&](Index neighbour, Index) { result |= neighbour == other; });
+  return result;
+}
+
+/// How often ways pass the x axis between the centres beside and about a half-edge.
+std::int64_t WeightedMesh::passed_about(Index half) const {
+  const Index twin = mesh_.twins[half];
+  std::int64_t result = 0;
+  for (const Index one : {half, next_half(half), previous_half(half), next_half(twin), previous_half(twin)})
+    is_side(one, result);
+  return result;
 }
 
 /// Exchanges two triangles if there is a piece of curve between the new ones.
-bool WeightedMesh::exchange(Index half) {
+bool WeightedMesh::exchange(Index half, Exchanges& all) {
   const Index twin = mesh_.twins[half], from = mesh_.corners[half], to = mesh_.corners[twin];
   const Index left = mesh_.corners[previous_half(half)], right = mesh_.corners[previous_half(twin)];
   if (left == right) return false;
   const Centre near_from = centre(from, right, left), near_to = centre(to, left, right);
   if (!is_piece(right, left, near_to, near_from)) return false;
+  if (are_neighbours(left, right)) all.repeated.insert(all.repeated.end(), {left, right});
+  all.turns -= passed_about(half);
   PlanarMesh view{nullptr, nullptr, far_away(), mesh_.corners.data(), mesh_.twins.data(), 0};
   exchange_pair(view, half);
   centres_[half / 4] = near_from;
   centres_[twin / 4] = near_to;
   if (from != far_away()) mesh_.leaving[from] = half;
   if (to != far_away()) mesh_.leaving[to] = twin;
+  all.turns += passed_about(next_half(half));
   return true;
 }
 
-/// Leaves the sites about exchanged edges in place of the bad ones.
-void WeightedMesh::exchange_all(std::vector<Index>& bad, const JobStage& stage) {
-  std::vector<Index> touched;
-  const std::size_t most = 16 * points_.size();  // exchanges: never seen, but not shown that they must end
-  while (!bad.empty() && touched.size() < 4 * most) {
-    if (touched.size() % k_block == 0) stage.check();
-    const Index half = bad.back();
-    bad.pop_back();
+/// Leaves in `all.bad` what cannot be exchanged.
+void WeightedMesh::exchange_all(Exchanges& all, const JobStage& stage) {
+  std::vector<Index> wanted;
+  wanted.swap(all.bad);
+  std::size_t done = 0;
+  const std::size_t most = 64 * points_.size();  // never seen, but not shown that there must be an end
+  while (!wanted.empty() && done < most) {
+    if (++done % k_block == 0) stage.check();
+    const Index half = wanted.back(), twin = mesh_.twins[half];
+    wanted.pop_back();
     if (is_side(half)) continue;
-    const Index twin = mesh_.twins[half];
-    if (!exchange(half)) continue;
-    for (const Index one : {half, twin}) {
-      touched.push_back(mesh_.corners[one]);
-      touched.push_back(mesh_.corners[previous_half(one)]);
-      bad.push_back(one);
-      bad.push_back(previous_half(one));
+    if (exchange(half, all)) {
+      wanted.insert(wanted.end(), {half, previous_half(half), twin, previous_half(twin)});
+    } else {
+      all.bad.push_back(half);
     }
   }
-  bad.swap(touched);
+  all.bad.insert(all.bad.end(), wanted.begin(), wanted.end());
 }
 
+// Around a site with sides only, the ways turn once or more often: if together they turn as often as there are such
+// sites, then around each of them they turn once.
 void WeightedMesh::improve(int threads, const JobStage& stage) {
-  const Index count = far_away();
-  find_centres(threads, stage.part(0, 0.4));
-  std::vector<std::vector<Index>> bad(thread_count(threads));
-  for_blocks(count, threads, stage.part(0.4, 0.8), [&](Index begin, Index end, int thread) {
-    for (Index site = begin; site < end; ++site)
-      is_certain_[site] = static_cast<std::uint8_t>(is_turned_once(site, bad[thread]));
-  });
-  std::vector<Index> all;
-  for (const std::vector<Index>& some : bad) all.insert(all.end(), some.begin(), some.end());
+  Exchanges all;
+  all.turns = find_sides(all.bad, threads, stage.part(0, 0.8));
   exchange_all(all, stage);
-  bad[0].clear();
-  for (const Index site : all)
-    if (site != count) is_certain_[site] = 0;
-  for (const Index site : all)
-    if (site != count && is_certain_[site] == 0)
-      is_certain_[site] = static_cast<std::uint8_t>(is_turned_once(site, bad[0]));
+  std::fill(is_certain_.begin(), is_certain_.end(), std::uint8_t{1});
+  std::int64_t certain = far_away();
+  const auto doubt = [&](Index site) {
+    if (site == far_away() || is_certain_[site] == 0) return;
+    is_certain_[site] = 0;
+    --certain;
+    all.turns -= ring(site).turns;
+  };
+  for (const Index half : all.bad) {
+    if (is_side(half)) continue;
+    doubt(mesh_.corners[half]);
+    doubt(mesh_.corners[next_half(half)]);
+  }
+  for (const Index site : all.repeated)
+    if (site != far_away() && ring(site).begins > 1) doubt(site);
+  if (all.turns != certain)
+    for (Index site = 0; site < far_away(); ++site)
+      if (is_certain_[site] != 0 && ring(site).turns != 1) is_certain_[site] = 0;
   stage.update(1);
 }
 

@@ -63,19 +63,35 @@ class WeightedMesh {
     double x, y, doubt;
   };
 
+  /// The corners around a site in turn.
+  struct Ring {
+    Index turns;   ///< how often the ways to them pass the x axis
+    Index begins;  ///< sides towards the lowest neighbour: with several it would have to be told where a cell begins
+  };
+  struct Exchanges {
+    std::vector<Index> bad{};       ///< half-edges that are no sides
+    std::vector<Index> repeated{};  ///< sites with several sides towards another
+    std::int64_t turns = 0;         ///< how often the ways of all sites to their corners pass the x axis
+  };
+
   Index next_around(Index half) const { return mesh_.twins[previous_half(half)]; }
   void add_far_triangles();
   Index free_triangle(Index from) const;
-  void find_centres(int threads, const JobStage& stage);
+  void find_centres(Index begin, Index end);
+  std::int64_t find_sides(std::vector<Index>& bad, int threads, const JobStage& stage);
   Centre centre(Index a, Index b, Index c) const;
   Way way(Index site, const Centre& centre) const;
   static int turn(const Way& from, const Way& to);
+  static bool passes(const Way& from, const Way& to, int sign);
   bool may_follow(Index site, Index neighbour, int turn) const;
   bool is_piece(Index from, Index to, const Centre& right, const Centre& left) const;
   bool is_side(Index half) const;
-  bool is_turned_once(Index site, std::vector<Index>& bad) const;
-  bool exchange(Index half);
-  void exchange_all(std::vector<Index>& bad, const JobStage& stage);
+  bool is_side(Index half, std::int64_t& passed) const;
+  Ring ring(Index site) const;
+  bool are_neighbours(Index a, Index b) const;
+  std::int64_t passed_about(Index half) const;
+  bool exchange(Index half, Exchanges& all);
+  void exchange_all(Exchanges& all, const JobStage& stage);
 
   Triangulation mesh_;
   std::span<const predicates::WeightedPoint2> points_;

@@ -128,7 +128,8 @@ class HiddenFinder {
                 end = std::min(static_cast<Index>(points_.size()), begin + DiskTree::k_fan);
     bool may_be = false;
     for (Index i = begin; i < end; ++i)
-      may_be |= is_within(points_[i].x - point.x, points_[i].y - point.y, points_[i].weight - point.weight) & (i != site);
+      may_be |=
+          is_within(points_[i].x - point.x, points_[i].y - point.y, points_[i].weight - point.weight) & (i != site);
     if (!may_be) return false;
     for (Index i = begin; i < end; ++i)
       if (i != site && predicates::hides(points_[i], point)) return true;
