@@ -40,14 +40,11 @@ bool WeightedCell::open_ring(std::span<const Index> ring) {
   if (ring.size() < 3 || ring.size() > k_few) return false;
   rivals_.assign(1, {{}, k_none});
   for (const Index other : ring) rivals_.push_back(rival_of(other));
-  const Index size = static_cast<Index>(ring.size());
+  if (!drop_lower_waves()) return false;
+  const Index size = static_cast<Index>(waves_.size());
   begins_.clear();
   has_fixed_ = false;
-  for (Index i = 1; i <= size; ++i) {
-    const Index last = i == 1 ? size : i - 1;
-    if (!crosses(last, i)) return false;
-    begins_.push_back(begin_between(last, i));
-  }
+  for (Index i = 0; i < size; ++i) begins_.push_back(begin_between(waves_[i == 0 ? size - 1 : i - 1], waves_[i]));
   if (!drop_hidden_arcs()) return false;
   use_begins();
   return is_envelope();
@@ -62,6 +59,27 @@ bool WeightedCell::is_narrow(Index arc) const {
 /// Whether two waves certainly cross, which those of neighbours in a guess need not.
 bool WeightedCell::crosses(Index before, Index after) const {
   return wave_crossing(rivals_[before], rivals_[after]).blur < k_infinity;
+}
+
+/// In `waves_`, those of the ring without such as lie below the next or the last one everywhere.
+bool WeightedCell::drop_lower_waves() {
+  waves_.clear();
+  for (Index i = 1; i < static_cast<Index>(rivals_.size()); ++i) waves_.push_back(i);
+  for (std::size_t at = 0, good = 0; good < waves_.size();) {
+    const std::size_t next = at + 1 == waves_.size() ? 0 : at + 1;
+    if (crosses(waves_[at], waves_[next])) {
+      ++good;
+      at = next;
+      continue;
+    }
+    if (waves_.size() <= 3) return false;
+    const std::size_t lower = rivals_[waves_[at]].z < rivals_[waves_[next]].z ? at : next;
+    rivals_[waves_[lower]].site = k_forgotten;
+    waves_.erase(waves_.begin() + static_cast<std::ptrdiff_t>(lower));
+    at = (lower == 0 ? waves_.size() : lower) - 1;
+    good = 0;
+  }
+  return true;
 }
 
 /// Takes out arcs that end before they begin.

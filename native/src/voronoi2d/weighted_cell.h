@@ -65,6 +65,7 @@ class WeightedCell {
   void open_plane();
   bool open_ring(std::span<const Index> ring);
   bool crosses(Index before, Index after) const;
+  bool drop_lower_waves();
   bool drop_hidden_arcs();
   bool is_envelope() const;
   bool is_narrow(Index arc) const;
@@ -100,6 +101,7 @@ class WeightedCell {
   std::vector<Rival> rivals_;  ///< the first is infinitely far
   std::vector<Begin> begins_;  ///< of the arcs
   std::vector<Begin> joined_;
+  std::vector<Index> waves_;  ///< rivals in a ring
   std::vector<Piece> pieces_;
   std::vector<int> signs_;
   // By begin, the first once more at the end, one array each for vector units.

@@ -54,25 +54,38 @@ void WeightedMesh::add_far_triangles() {
   mesh_.twins[first + 1] = last + 2, mesh_.twins[last + 2] = first + 1;
 }
 
-/// Of a triangle that turns counter-clockwise. Seen from the lowest site, as coordinates of vertices are.
+/// A triangle's corners, counter-clockwise: its centre is seen from the lowest, as coordinates of vertices are.
+std::array<Index, 3> WeightedMesh::from_lowest(Index a, Index b, Index c) {
+  if (b < a && b < c) return {b, c, a};
+  if (c < a && c < b) return {c, a, b};
+  return {a, b, c};
+}
+
 WeightedMesh::Centre WeightedMesh::centre(Index a, Index b, Index c) const {
-  constexpr double k_good = 0x1p-36, k_epsilon = predicates::detail::k_epsilon;
-  if (b < a && b < c) {
-    std::swap(a, b), std::swap(b, c);
-  } else if (c < a && c < b) {
-    std::swap(a, c), std::swap(b, c);
-  }
-  const WeightedPoint2& here = points_[a];
+  constexpr double k_known = 0x1p-20, k_good = 0x1p-36, k_epsilon = predicates::detail::k_epsilon;
+  const std::array<Index, 3> sites = from_lowest(a, b, c);
+  const WeightedPoint2& here = points_[sites[0]];
   const auto wave = [&](Index site) { return site == far_away() ? Wave{} : wave_of(here, points_[site]); };
-  const WaveCrossing crossing = wave_crossing(wave(b), wave(c));
-  if (!(crossing.blur < k_good)) return {0, 0, 0, std::numeric_limits<double>::infinity()};
-  if (std::max(b, c) == far_away()) return {crossing.x, crossing.y, 0, crossing.blur};
-  if (!(crossing.doubt < k_good * crossing.height)) return {0, 0, 0, std::numeric_limits<double>::infinity()};
+  const WaveCrossing crossing = wave_crossing(wave(sites[1]), wave(sites[2]));
+  const bool is_far = std::max(sites[1], sites[2]) == far_away();
+  if (!(crossing.blur < k_known) || !(is_far || crossing.doubt < k_known * crossing.height))
+    return {0, 0, std::numeric_limits<double>::infinity(), 0, true};
+  if (is_far) return {crossing.x, crossing.y, crossing.blur, 0, true};
   const double x = here.x + 0.5 * crossing.x / crossing.height, y = here.y + 0.5 * crossing.y / crossing.height;
   const double away = 0.5 / crossing.height;
-  return {x, y, 1,
-          2 * away * (crossing.blur + crossing.doubt / crossing.height) +
-              8 * k_epsilon * (std::fabs(x) + std::fabs(y) + away)};
+  const double doubt = 2 * away * (crossing.blur + crossing.doubt / crossing.height) +
+                       8 * k_epsilon * (std::fabs(x) + std::fabs(y) + away);
+  return {x, y, doubt, 1, !(crossing.blur < k_good && crossing.doubt < k_good * crossing.height)};
+}
+
+Vec2 WeightedMesh::corner(Index triangle) const {
+  const Centre& centre = centres_[triangle];
+  if (!centre.is_rough) return {centre.x, centre.y};
+  const Index* const corner = mesh_.corners.data() + 4 * static_cast<std::size_t>(triangle);
+  const std::array<Index, 3> sites = from_lowest(corner[0], corner[1], corner[2]);
+  const WeightedPoint2& here = points_[sites[0]];
+  const predicates::CrossingPlace place = predicates::crossing_place(here, {&points_[sites[1]], &points_[sites[2]]});
+  return {here.x + 0.5 * place.x / place.height, here.y + 0.5 * place.y / place.height};
 }
 
 WeightedMesh::Way WeightedMesh::way(Index site, const Centre& centre) const {
@@ -262,8 +275,11 @@ void WeightedMesh::improve(int threads, const JobStage& stage) {
     doubt(mesh_.corners[half]);
     doubt(mesh_.corners[next_half(half)]);
   }
-  for (const Index site : all.repeated)
-    if (site != far_away() && ring(site).begins > 1) doubt(site);
+  for (const Index site : all.repeated) {
+    if (site == far_away()) continue;
+    const Ring found = ring(site);
+    if (found.turns != 1 || found.begins != 1) doubt(site);
+  }
   if (all.turns != certain)
     for (Index site = 0; site < far_away(); ++site)
       if (is_certain_[site] != 0 && ring(site).turns != 1) is_certain_[site] = 0;

@@ -7,6 +7,7 @@
 // site the corners follow each other along these curves, once around, then the cells fit together along their sides and
 // about their corners and cover the plane once: so they are the true cells. No circle has to be tested for being empty.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,7 +46,8 @@ class WeightedMesh {
       half = next_around(half);
     } while (half != first);
   }
-  Vec2 corner(Index triangle) const { return {centres_[triangle].x, centres_[triangle].y}; }
+  /// Where a triangle's corner lies, which is not far.
+  Vec2 corner(Index triangle) const;
   Index twin(Index half) const { return mesh_.twins[half]; }
   /// The half-edge that `visit_ring` comes to last.
   Index last_in_ring(Index site) const { return next_half(mesh_.twins[mesh_.leaving[site]]); }
@@ -56,8 +58,10 @@ class WeightedMesh {
  private:
   /// Equally far from three sites: (x, y) / w, which is a direction for w = 0.
   struct Centre {
-    double x, y, w;
+    double x, y;
     double doubt;  ///< how far off (x, y) may be; infinite where not known
+    float w;
+    bool is_rough;  ///< not to be read as a vertex
   };
   struct Way {
     double x, y, doubt;
@@ -79,6 +83,7 @@ class WeightedMesh {
   Index free_triangle(Index from) const;
   void find_centres(Index begin, Index end);
   std::int64_t find_sides(std::vector<Index>& bad, int threads, const JobStage& stage);
+  static std::array<Index, 3> from_lowest(Index a, Index b, Index c);
   Centre centre(Index a, Index b, Index c) const;
   Way way(Index site, const Centre& centre) const;
   static int turn(const Way& from, const Way& to);
