@@ -75,6 +75,17 @@ def test_fixed_sites_stay_and_settings_of_the_count_do_not_matter(cache):
     assert cache.builds["cells"] == 2
 
 
+def test_of_several_starts_the_best_is_taken(cache):
+    surface = shapes.grid(16)
+    alone = [tessellate(surface, cache, count=20, iterations=6, seed=seed) for seed in (4, 5, 6)]
+    best = tessellate(surface, cache, count=20, iterations=6, seed=4, starts=3)
+    assert best.energy[-1] == min(result.energy[-1] for result in alone)
+    # Sites that are given begin where they are.
+    sites = np.array([2, 14, 170], np.int32)
+    kept = [tessellate(surface, cache, sites=sites, relax_sites=True, starts=starts) for starts in (1, 3)]
+    np.testing.assert_array_equal(kept[0].sites_position, kept[1].sites_position)
+
+
 def test_more_cells_than_vertices(cache):
     surface = shapes.grid(3, loose=1)
     result = tessellate(surface, cache, count=90, iterations=8, k=15, make_cells=True)

@@ -53,6 +53,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         settings.seed if sites is None else 0,
         iterations,
         settings.method if iterations else "",
+        _starts(request),
         density if sites is None or iterations else None,
         *_held(request),
     )
@@ -179,6 +180,12 @@ def _held(request: TessellateRequest) -> tuple[object, ...]:
     return (settings.hold_sharp and settings.sharp_angle, settings.hold_boundary, request.marked_edges)
 
 
+def _starts(request: TessellateRequest) -> int:
+    """How many relaxations to choose from: one of sites that are given, or that is watched, is the only one."""
+    settings = request.settings
+    return settings.starts if settings.iterations and request.sites is None and request.live is None else 1
+
+
 def _solve(
     request: TessellateRequest,
     mesh: Any,
@@ -204,8 +211,8 @@ def _solve(
             # To be watched from a start that is far from even; else from coarse cells that are even already.
             cvt = sb.centroidal_voronoi(
                 graph, density=density, method=settings.method.lower(), max_iterations=iterations, seed=settings.seed,
-                start="auto" if live is None else "sample", return_when_cancelled=live is not None, watch=watch,
-                threads=request.threads, job=job, **choice,
+                starts=_starts(request), start="auto" if live is None else "sample",
+                return_when_cancelled=live is not None, watch=watch, threads=request.threads, job=job, **choice,
             )  # fmt: skip
         cells = cvt.cells
         energy, done, reason = np.asarray(cvt.energy, np.float64), int(cvt.iterations), str(cvt.stop_reason)

@@ -31,6 +31,7 @@ class TessellateSettings(DensitySettings):
     seed: int = 0
     method: str = "LBFGS"  # LBFGS, LLOYD
     iterations: int = 15
+    starts: int = 1  # relaxations from so many samples; the best is taken
     sites_source: str = "COUNT"  # COUNT, SELECTED, OBJECT
     sites_object: str = ""
     relax_sites: bool = False  # move chosen sites too (those of COUNT always move)

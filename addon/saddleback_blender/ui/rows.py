@@ -29,6 +29,8 @@ def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
     column = layout.column()
     column.active = settings.sites_source == "COUNT" or settings.relax_sites
     column.prop(settings, "iterations")
+    if settings.sites_source == "COUNT":
+        column.prop(settings, "starts")
     column.prop(settings, "method")
     if settings.sites_source == "COUNT":
         _draw_held(layout.column(heading="Keep", align=True), settings)
