@@ -32,8 +32,8 @@ std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, con
     }
   }
   Job* const token = as_job(job);
-  return run_on(device, !exact && mesh.vertex_count() >= k_worth_a_device, [&](int cuda_device) {
-    options.cuda_device = cuda_device;
+  return run_on(device, !exact && mesh.vertex_count() >= k_worth_a_device, [&](const std::vector<int>& devices) {
+    options.cuda_devices = devices;
     return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });
   });
 }
@@ -71,8 +71,9 @@ exact : bool
 threads : int
     0: all cores. The result does not depend on it.
 device : str
-    "cpu"; "cuda", or "cuda:1" for the second CUDA device; "auto" takes the first one where there is one and the mesh is
-    large enough to gain by it, and the CPU otherwise. The result does not depend on it, to the bit.
+    "cpu"; "cuda", or "cuda:1" for the second CUDA device; "cuda:0,1" and "cuda:all" let several share the work; "auto"
+    takes the first one where there is one and the mesh is large enough to gain by it, and the CPU otherwise. The result
+    does not depend on it, to the bit.
 instructions : str
     "auto", or one of "avx512", "avx2", "plain" and "neon" that the machine has. The result does not depend on it.
 job : Job, optional

@@ -67,12 +67,13 @@ auto search_on(const std::string& device, const SaddleVertexGraph& graph, QueryO
   constexpr std::size_t k_many = 8;
   const bool is_near = graph.built_by_cuda() || graph.is_on_device() || field_count >= k_many;
   const bool is_dijkstra = options.method == QueryMethod::dijkstra;
-  return run_on(device, is_near && !is_dijkstra && graph.mesh().vertex_count() >= k_worth_a_device, [&](int number) {
-    if (number >= 0 && is_dijkstra)
-      throw InputError("method: 'dijkstra' runs on the processor only; wanted device='cpu'");
-    options.cuda_device = number;
-    return without_gil([&] { return work(options); });
-  });
+  return run_on(device, is_near && !is_dijkstra && graph.mesh().vertex_count() >= k_worth_a_device,
+                [&](const std::vector<int>& devices) {
+                  if (!devices.empty() && is_dijkstra)
+                    throw InputError("method: 'dijkstra' runs on the processor only; wanted device='cpu'");
+                  options.cuda_device = devices.empty() ? -1 : devices.front();
+                  return without_gil([&] { return work(options); });
+                });
 }
 
 py::array distances(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
@@ -143,8 +144,9 @@ limit : float
 method : str
     "label_correcting" (buckets) or "dijkstra" (heap): the same bits, at different speeds.
 device : str
-    "cpu"; "cuda", or "cuda:1" for the second CUDA device, which keeps the graph's arcs from then on; "auto" takes the
-    first one for graphs that were built by one or are kept by one. The result does not depend on it, to the bit.
+    "cpu"; "cuda", or "cuda:1" for the second CUDA device, which keeps the graph's arcs from then on (of several that
+    are named, the first); "auto" takes the first one for graphs that were built by one or are kept by one. The result
+    does not depend on it, to the bit.
 job : Job, optional
 
 Returns

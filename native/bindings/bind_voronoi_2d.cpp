@@ -27,14 +27,16 @@ Diagram find_diagram(const py::object& sites, const py::object& weights, const p
   constexpr std::size_t k_worth_a_device = 50'000;
   const bool has_weights = !radii.empty();
   if (has_weights && device.starts_with("cuda")) throw DeviceError("device: weighted sites run on the CPU only");
-  Voronoi2d diagram = run_on(device, !has_weights && points.size() >= k_worth_a_device, [&](int cuda_device) {
-    options.cuda_device = cuda_device;
-    return without_gil([&] {
-      Voronoi2d result = has_weights ? voronoi_2d(points, radii, options, token) : voronoi_2d(points, options, token);
-      if (within) clipped = result.clip(*within, options.threads, token);
-      return result;
-    });
-  });
+  Voronoi2d diagram =
+      run_on(device, !has_weights && points.size() >= k_worth_a_device, [&](const std::vector<int>& devices) {
+        options.cuda_devices = devices;
+        return without_gil([&] {
+          Voronoi2d result =
+              has_weights ? voronoi_2d(points, radii, options, token) : voronoi_2d(points, options, token);
+          if (within) clipped = result.clip(*within, options.threads, token);
+          return result;
+        });
+      });
   return {std::move(diagram), within ? py::cast(std::move(clipped)) : py::none()};
 }
 
@@ -87,8 +89,9 @@ circles : int
 threads : int
     0: all cores. The result does not depend on it.
 device : str
-    "auto", "cpu", "cuda" or, for another than the first CUDA device, "cuda:1". The result does not depend on it; what
-    a device is not made for (weights, few or scattered sites) runs on the processor.
+    "auto", "cpu", "cuda" or, for another than the first CUDA device, "cuda:1"; "cuda:0,1" and "cuda:all" let several
+    share the work. The result does not depend on it; what a device is not made for (weights, few or scattered sites)
+    runs on the processor.
 job : Job, optional
 
 Returns

@@ -1,6 +1,8 @@
 #include "devices.h"
 
 #include <charconv>
+#include <optional>
+#include <pybind11/stl.h>
 #include <string_view>
 
 #include "saddleback/cuda_twins.h"
@@ -10,28 +12,44 @@
 namespace saddleback::bindings {
 namespace {
 
-/// The package knows how to find the CUDA module; it answers with a device's number, or a sentence.
-std::optional<int> ask_package(int wanted, bool is_asked_for) {
-  const py::object answer = py::module_::import("saddleback._devices").attr("_usable_cuda_device")(wanted);
-  if (!py::isinstance<py::str>(answer)) return answer.cast<int>();
+/// The package knows how to find the CUDA module; it answers with the devices' numbers, or a sentence.
+/// \param wanted which of the usable ones; null: all
+std::vector<int> ask_package(const std::optional<std::vector<int>>& wanted, bool is_asked_for) {
+  const py::object answer = py::module_::import("saddleback._devices").attr("_usable_cuda_devices")(wanted);
+  if (!py::isinstance<py::str>(answer)) return answer.cast<std::vector<int>>();
   if (is_asked_for) throw DeviceError(message("device: ", answer.cast<std::string>()));
-  return std::nullopt;
+  return {};
+}
+
+/// "0,2"; nothing when it is no such list.
+std::optional<std::vector<int>> numbers_in(std::string_view list) {
+  std::vector<int> numbers;
+  for (const char *at = list.data(), *const end = at + list.size();; ++at) {
+    int number = -1;
+    const auto [rest, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || number < 0) return std::nullopt;
+    numbers.push_back(number);
+    if (rest == end) return numbers;
+    if (*rest != ',') return std::nullopt;
+    at = rest;
+  }
 }
 
 }  // namespace
 
-std::optional<int> cuda_device_of(const std::string& device, bool is_worth_it) {
-  constexpr std::string_view k_cuda = "cuda";
-  if (device == "cpu") return std::nullopt;
-  if (device == "auto") return is_worth_it ? ask_package(0, false) : std::nullopt;
-  if (device == k_cuda) return ask_package(0, true);
-  if (device.starts_with("cuda:")) {
-    int number = -1;
-    const char *const begin = device.data() + k_cuda.size() + 1, *const end = device.data() + device.size();
-    const auto [rest, error] = std::from_chars(begin, end, number);
-    if (error == std::errc() && rest == end && number >= 0) return ask_package(number, true);
+std::vector<int> cuda_devices_of(const std::string& device, bool is_worth_it) {
+  constexpr std::string_view k_cuda = "cuda", k_listed = "cuda:";
+  const std::vector<int> first{0};
+  if (device == "cpu") return {};
+  if (device == "auto") return is_worth_it ? ask_package(first, false) : std::vector<int>();
+  if (device == k_cuda) return ask_package(first, true);
+  if (device == "cuda:all") return ask_package(std::nullopt, true);
+  if (device.starts_with(k_listed)) {
+    const auto numbers = numbers_in(std::string_view(device).substr(k_listed.size()));
+    if (numbers) return ask_package(numbers, true);
   }
-  throw InputError(message("device: wanted 'auto', 'cpu', 'cuda' or 'cuda:' and a number, got '", device, "'"));
+  throw InputError(message("device: wanted 'auto', 'cpu', 'cuda', 'cuda:all' or 'cuda:' and numbers like '0,1', got '",
+                           device, "'"));
 }
 
 py::dict as_dict(const DeviceTimes& times) {

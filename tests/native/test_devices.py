@@ -73,9 +73,13 @@ def test_a_device_number_that_does_not_exist_is_named(mesh: sb.Mesh, monkeypatch
     use_module(monkeypatch, module_with(2))
     with pytest.raises(sb.DeviceError, match=r"no CUDA device 7; the usable ones are 0 to 1"):
         sb.SaddleVertexGraph(mesh, device="cuda:7")
+    with pytest.raises(sb.DeviceError, match=r"no CUDA device 2; the usable ones are 0 to 1"):
+        sb.SaddleVertexGraph(mesh, device="cuda:0,2")
 
 
-@pytest.mark.parametrize("word", ["gpu", "CUDA", "cuda:", "cuda:-1", "cuda:x", "cuda:1x", ""])
+@pytest.mark.parametrize(
+    "word", ["gpu", "CUDA", "cuda:", "cuda:-1", "cuda:x", "cuda:1x", "cuda:0,", "cuda:,1", "cuda:0 1", ""]
+)
 def test_any_other_word_is_refused(mesh: sb.Mesh, word: str) -> None:
     with pytest.raises(sb.InputError, match="device: wanted 'auto'"):
         sb.SaddleVertexGraph(mesh, device=word)

@@ -13,6 +13,7 @@ import saddleback as sb
 from tests import meshes
 
 RULES: tuple[dict[str, Any], ...] = ({"accuracy": 0.05}, {"accuracy": 5e-3}, {"accuracy": 1e-3}, {"k": 6}, {"k": 40})
+DEVICES = ("cuda", "cuda:0,0,0", "cuda:all")  # one, one in three parts, and all, a part each
 RULE_NAMES = [next(f"{name}={value}" for name, value in rule.items()) for rule in RULES]
 
 
@@ -27,9 +28,11 @@ def saved(graph: sb.SaddleVertexGraph, folder: Path) -> bytes:
 def expect_twins(mesh: sb.Mesh, folder: Path, **rule: Any) -> None:
     if "k" in rule:
         rule["k"] = min(rule["k"], len(mesh.vertices))
-    twin = sb.SaddleVertexGraph(mesh, device="cuda", **rule)
-    assert twin.device == "cuda"
-    assert saved(twin, folder) == saved(sb.SaddleVertexGraph(mesh, device="cpu", **rule), folder)
+    own = saved(sb.SaddleVertexGraph(mesh, device="cpu", **rule), folder)
+    for device in DEVICES:
+        twin = sb.SaddleVertexGraph(mesh, device=device, **rule)
+        assert twin.device == "cuda"
+        assert saved(twin, folder) == own, device
 
 
 @pytest.mark.parametrize("rule", RULES, ids=RULE_NAMES)
@@ -105,6 +108,8 @@ def test_too_little_memory_is_refused_with_the_figure() -> None:
 def test_a_device_that_does_not_exist() -> None:
     with pytest.raises(sb.DeviceError, match="no CUDA device 99"):
         sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()), device="cuda:99")
+    with pytest.raises(sb.DeviceError, match="no CUDA device 99"):
+        sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()), device="cuda:0,99")
 
 
 def test_exact_graphs_stay_on_the_processor() -> None:
@@ -112,11 +117,12 @@ def test_exact_graphs_stay_on_the_processor() -> None:
         sb.SaddleVertexGraph(sb.Mesh(*meshes.cube()), exact=True, device="cuda")
 
 
-def test_progress_and_cancel() -> None:
+@pytest.mark.parametrize("device", DEVICES)
+def test_progress_and_cancel(device: str) -> None:
     mesh = sb.Mesh(*meshes.grid(100, 100, 0.3))
     job = sb.Job()
-    sb.SaddleVertexGraph(mesh, device="cuda", job=job)
+    sb.SaddleVertexGraph(mesh, device=device, job=job)
     assert job.fraction > 0.8
     job.cancel()
     with pytest.raises(sb.Cancelled):
-        sb.SaddleVertexGraph(mesh, device="cuda", job=job)
+        sb.SaddleVertexGraph(mesh, device=device, job=job)

@@ -11,6 +11,7 @@ import pytest
 import saddleback as sb
 from tests.native import plane_sites
 
+DEVICES = ("cuda", "cuda:0,0,0", "cuda:all")  # one, one in three parts, and all, a part each
 ARRAYS = ("sites", "site_of", "vertices", "edges", "edge_sites", "edge_directions", "delaunay", "areas", "centroids")
 SIZES = (1, 2, 3, 4, 5, 7, 12, 40, 300, 3000, 30000)
 
@@ -20,11 +21,13 @@ def make(kind: str, n: int, seed: int) -> np.ndarray:
 
 
 def expect_twins(sites: np.ndarray) -> sb.Voronoi2d:
-    twin, own = sb.voronoi_2d(sites, device="cuda"), sb.voronoi_2d(sites, device="cpu")
-    for name in ARRAYS:
-        assert getattr(twin, name).tobytes() == getattr(own, name).tobytes(), name
-    for mine, other in zip(twin.cells, own.cells, strict=True):
-        assert mine.tobytes() == other.tobytes()
+    own = sb.voronoi_2d(sites, device="cpu")
+    for device in DEVICES:
+        twin = sb.voronoi_2d(sites, device=device)
+        for name in ARRAYS:
+            assert getattr(twin, name).tobytes() == getattr(own, name).tobytes(), (device, name)
+        for mine, other in zip(twin.cells, own.cells, strict=True):
+            assert mine.tobytes() == other.tobytes()
     return twin
 
 
@@ -82,9 +85,10 @@ def test_too_little_memory_is_told_before_anything_runs() -> None:
         sb.limit_device_memory(0)
 
 
-def test_cancelled_within_a_moment() -> None:
+@pytest.mark.parametrize("device", DEVICES)
+def test_cancelled_within_a_moment(device: str) -> None:
     sites = make("uniform", 5_000_000, seed=2)
-    sb.voronoi_2d(sites[:100_000], device="cuda")  # the device is awake
+    sb.voronoi_2d(sites[:100_000], device=device)  # the device is awake
     job = sb.Job()
     asked = [0.0]
 
@@ -97,6 +101,6 @@ def test_cancelled_within_a_moment() -> None:
     thread.start()
     with pytest.raises(sb.Cancelled):
         while True:
-            sb.voronoi_2d(sites, device="cuda", job=job)
+            sb.voronoi_2d(sites, device=device, job=job)
     assert time.perf_counter() - asked[0] < 0.15
     thread.join()

@@ -24,12 +24,12 @@ struct WaveKernel;
 
 /// How a graph is built: by one of k, accuracy and exact; by k_default_accuracy when none is given.
 struct SaddleVertexGraphOptions {
-  Index k = 0;                        ///< vertices per geodesic disk, not counting the centre
-  double accuracy = 0;                ///< largest relative error of a distance that is accepted
-  bool exact = false;                 ///< all straight geodesics: exact between vertices, and much larger
-  int threads = 0;                    ///< 0: all cores; the result does not depend on it
-  int cuda_device = -1;               ///< number of the CUDA device that finds the arcs; -1: the processor does
-  std::string instructions = "auto";  ///< "avx512", "avx2", "plain", "neon": the result does not depend on it
+  Index k = 0;                         ///< vertices per geodesic disk, not counting the centre
+  double accuracy = 0;                 ///< largest relative error of a distance that is accepted
+  bool exact = false;                  ///< all straight geodesics: exact between vertices, and much larger
+  int threads = 0;                     ///< 0: all cores; the result does not depend on it
+  std::vector<int> cuda_devices = {};  ///< numbers of those that find the arcs, a part each; none: the processor does
+  std::string instructions = "auto";   ///< "avx512", "avx2", "plain", "neon": the result does not depend on it
   static constexpr double k_default_accuracy = 5e-3;
 };
 

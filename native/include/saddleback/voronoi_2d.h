@@ -18,8 +18,9 @@ struct Voronoi2dOptions {
   Index circles =
       0;            ///< how many sweep circles share the work; 0: as many as are good. The result does not depend on it
   int threads = 0;  ///< 0: all cores. The result does not depend on it
-  int cuda_device = -1;  ///< number of a CUDA device, whose twin must be known (`cuda_twins.h`); -1: the processor. The
-                         ///< result does not depend on it
+  /// Numbers of CUDA devices that share the work, whose twin must be known (`cuda_twins.h`); none: the processor. The
+  /// result does not depend on it.
+  std::vector<int> cuda_devices = {};
 };
 
 /// All cells in the order of their sites.

@@ -51,18 +51,22 @@ def cuda_status() -> str:
     return f"{len(found)} CUDA device{'s' if len(found) != 1 else ''} can be used"
 
 
-def _usable_cuda_device(wanted: int) -> int | str:
-    """Return the driver's number of the wanted one of the usable CUDA devices, or a sentence telling why there is none.
+def _usable_cuda_devices(wanted: list[int] | None) -> list[int] | str:
+    """Return the driver's numbers of the wanted ones of the usable CUDA devices, or a sentence telling why not.
+
+    None wants all.
 
     The library is told what the CUDA module offers: from here on it can be called.
     """
     found, reason = _cuda()
     if not found:
         return reason
-    if wanted >= len(found):
-        return f"there is no CUDA device {wanted}; the usable ones are 0 to {len(found) - 1}"
+    places = range(len(found)) if wanted is None else wanted
+    for place in places:
+        if place >= len(found):
+            return f"there is no CUDA device {place}; the usable ones are 0 to {len(found) - 1}"
     set_cuda_twins(_cuda_module().twins)
-    return found[wanted].index
+    return [found[place].index for place in places]
 
 
 def _processor() -> Device:

@@ -11,7 +11,7 @@ _Floats: TypeAlias = NDArray[np.float64]
 _Indices: TypeAlias = NDArray[np.int32]
 _Path: TypeAlias = str | bytes | os.PathLike[str] | os.PathLike[bytes]
 _Method: TypeAlias = Literal["label_correcting", "dijkstra"]
-_Device: TypeAlias = str  # "auto", "cpu", "cuda", "cuda:1"
+_Device: TypeAlias = str  # "auto", "cpu", "cuda", "cuda:1", "cuda:0,1", "cuda:all"
 
 __version__: str
 

@@ -14,8 +14,9 @@ namespace saddleback {
 
 /// Where and how arcs are to be found. Arrays are the caller's and live through the call.
 struct ArcTwinRequest {
-  int device = 0;                ///< the driver's number
-  std::uint64_t most_bytes = 0;  ///< of device memory; 0: what is free
+  const int* devices = nullptr;  ///< the driver's numbers; one that is named twice takes two parts
+  int device_count = 0;
+  std::uint64_t most_bytes = 0;  ///< of each device's memory; 0: what is free
 
   // The rule, as DiskRule and WaveScene have it.
   std::int32_t k = 0;
@@ -43,7 +44,7 @@ struct FoundRows {
   std::size_t word_count;
 };
 
-/// What the twin asks of its caller. No call throws.
+/// What the twin asks of its caller, from any thread, one call at a time. No call throws.
 struct ArcTwinCaller {
   void* self = nullptr;
   /// Tells the share done; false: stop.

@@ -3,14 +3,19 @@
 // the caller. The answer is the processor's, to the bit.
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "geodesics/device_arcs.h"
+#include "geodesics/device_boundary.cuh"
 #include "geodesics/device_union.cuh"
 #include "geodesics/device_waves.cuh"
 #include "support/device_stream.h"
+#include "support/device_team.h"
 #include "support/host_copies.h"
 
 namespace saddleback {
@@ -163,22 +168,29 @@ class Tables {
   DeviceMesh mesh_;
 };
 
-/// Words a row that memory is taken for at first; more are found to be needed when they are.
-std::int64_t first_guess(const ArcTwinRequest& r) {
+/// Words that memory is taken for at first; more are found to be needed when they are.
+std::int64_t first_guess(const ArcTwinRequest& r, IndexRange nodes) {
   const std::int64_t per_row = r.k > 0 ? r.k + r.k / 8 + 24 : 96;
-  return per_row * r.node_count + 4096;
+  return per_row * nodes.count() + 4096;
 }
+
+/// Which part of the work one of a team's devices has.
+struct Part {
+  int member, device;
+  IndexRange nodes;
+};
 
 class ArcFinder {
  public:
-  ArcFinder(const ArcTwinRequest& request, const ArcTwinCaller& caller, cudaStream_t stream)
+  ArcFinder(const ArcTwinRequest& request, const Part& part, TeamCaller<ArcTwinCaller>& caller, cudaStream_t stream)
       : request_(request),
+        part_(part),
         caller_(caller),
         stream_(stream),
         tables_(request, stream),
-        failed_(static_cast<std::size_t>(request.node_count), stream),
+        failed_(static_cast<std::size_t>(part.nodes.count()), stream),
         counters_(2, stream),
-        rows_(request.node_count, first_guess(request), request.packing.target_mask, stream) {}
+        rows_(request.node_count, first_guess(request, part.nodes), request.packing.target_mask, stream) {}
 
   void find(DeviceTimes& times) {
     while (true) {
@@ -228,7 +240,7 @@ class ArcFinder {
     const int blocks = blocks_of(reinterpret_cast<const void*>(kernel), Room::shared_bytes);
     DeviceBuffer<Sighting> drafts(static_cast<std::size_t>(blocks) * k_draft_room, stream_);
     DeviceBuffer<typename Room::Rings> rings(Room::rings_are_shared ? 0 : static_cast<std::size_t>(blocks), stream_);
-    const std::int32_t all = nodes ? static_cast<std::int32_t>(nodes->size()) : request_.node_count;
+    const std::int32_t all = nodes ? static_cast<std::int32_t>(nodes->size()) : part_.nodes.count();
     const DeviceBuffer<std::int32_t> list(
         nodes ? std::span<const std::int32_t>(*nodes) : std::span<const std::int32_t>(), stream_);
     counters_.fill_bytes(0);
@@ -236,7 +248,7 @@ class ArcFinder {
       report(nodes ? 0.99 : static_cast<double>(begin) / all);
       const std::int32_t count = std::min(k_sources_per_launch, all - begin);
       check_cuda(cudaMemsetAsync(counters_.data(), 0, sizeof(std::int32_t), stream_), "clearing a counter");
-      const Work part = work(nodes ? list.data() + begin : nullptr, begin, count, failed_);
+      const Work part = work(nodes ? list.data() + begin : nullptr, part_.nodes.begin + begin, count, failed_);
       kernel<<<std::min(blocks, count), 32, Room::shared_bytes, stream_>>>(tables_.mesh(), part, rings.data(),
                                                                            drafts.data(), rows_.view());
       check_cuda(cudaGetLastError(), "finding arcs");
@@ -265,16 +277,19 @@ class ArcFinder {
     times.by_processor = static_cast<std::int64_t>(left.size());
     if (left.empty()) return;
     std::ranges::sort(left);
-    FoundRows found{};
-    if (!caller_.find_rows(caller_.self, left.data(), static_cast<std::int32_t>(left.size()), &found)) throw Stopped();
-    rows_.append(left, found);
+    caller_.ask([&](const ArcTwinCaller& caller) {
+      FoundRows found{};
+      if (!caller.find_rows(caller.self, left.data(), static_cast<std::int32_t>(left.size()), &found)) return false;
+      rows_.append(left, found);
+      return true;
+    });
   }
 
   int blocks_of(const void* kernel, std::size_t shared) const {
     int per_processor = 0, processors = 0;
     check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, kernel, 32, shared),
                "asking for occupancy");
-    check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, request_.device),
+    check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, part_.device),
                "asking for the number of processors");
     return std::max(1, per_processor) * processors;
   }
@@ -297,64 +312,117 @@ class ArcFinder {
     return nodes;
   }
 
-  void report(double fraction) const {
-    if (!caller_.keep_going(caller_.self, 0.9 * fraction)) throw Stopped();
-  }
+  void report(double fraction) const { caller_.report(part_.member, 0.9 * fraction); }
 
   const ArcTwinRequest& request_;
-  const ArcTwinCaller& caller_;
+  Part part_;
+  TeamCaller<ArcTwinCaller>& caller_;
   cudaStream_t stream_;
   Tables tables_;
   DeviceBuffer<std::int32_t> failed_, counters_;
   RowStore rows_;
 };
 
-/// What a build takes at most, in bytes; rows once more for the union.
-std::uint64_t bytes_needed(const ArcTwinRequest& r) {
+/// What a build takes at most of a device that has these nodes, in bytes; rows once more for the union.
+std::uint64_t bytes_needed(const ArcTwinRequest& r, IndexRange range) {
   const auto edges = static_cast<std::uint64_t>(r.edge_count), nodes = static_cast<std::uint64_t>(r.node_count);
-  const auto words = static_cast<std::uint64_t>(first_guess(r));
+  const auto words = static_cast<std::uint64_t>(first_guess(r, range));
   constexpr std::uint64_t k_drafts = std::uint64_t{96} << 20;
   return edges * (sizeof(EdgeRecord) + 24) + nodes * 48 + words * (13 + 10) + k_drafts;
 }
 
-void build(const ArcTwinRequest& request, const ArcTwinCaller& caller, DeviceTimes& times) {
-  check_cuda(cudaSetDevice(request.device), "choosing the device");
-  check_device_room("the graph", bytes_needed(request), request.most_bytes);
-  keep_freed_memory(request.device);
-  const Stream stream;
-  Stopwatch watch(stream);
-  ArcFinder finder(request, caller, stream);
-  times.upload = watch.lap();
-  finder.find(times);
-  times.find = watch.lap();
-  DeviceUnion arcs(request.packing, finder.rows(), stream);
-  times.unite = watch.lap();
-  if (!caller.keep_going(caller.self, 0.95)) throw Stopped();
-  std::int64_t* offsets = nullptr;
-  std::uint64_t* words = nullptr;
-  if (!caller.make_room(caller.self, arcs.count(), &offsets, &words)) throw Stopped();
-  watch.lap();
-  HostCopies copies(stream);
-  arcs.copy(copies, offsets, words);
-  copies.finish([&] {
-    if (!caller.keep_going(caller.self, 0.95)) throw Stopped();
-  });
-  times.download = watch.lap();
-}
+/// A graph found by one or several devices, each the rows of a range of nodes.
+class Builder {
+ public:
+  Builder(const ArcTwinRequest& request, const ArcTwinCaller& caller)
+      : request_(request),
+        team_({request.devices, static_cast<std::size_t>(std::min(request.device_count, request.node_count))}),
+        caller_(caller, team_),
+        across_(members()),
+        counts_(members()),
+        times_(members()) {}
+
+  DeviceTimes build() {
+    team_.run([&](int member) { build_part(part(member)); });
+    return slowest(times_);
+  }
+
+ private:
+  std::size_t members() const { return static_cast<std::size_t>(team_.members()); }
+  Part part(int member) const {
+    const auto begin_of = [&](std::int64_t i) {
+      return static_cast<std::int32_t>(request_.node_count * i / team_.members());
+    };
+    return {member, team_.device(member), {begin_of(member), begin_of(member + 1)}};
+  }
+
+  void build_part(const Part& mine) {
+    check_cuda(cudaSetDevice(mine.device), "choosing the device");
+    check_device_room("the graph", bytes_needed(request_, mine.nodes), request_.most_bytes);
+    keep_freed_memory(mine.device);
+    const auto at = static_cast<std::size_t>(mine.member);
+    DeviceTimes& times = times_[at];
+    const Stream stream;
+    Stopwatch watch(stream);
+    ArcFinder finder(request_, mine, caller_, stream);
+    times.upload = watch.lap();
+    finder.find(times);
+    times.find = watch.lap();
+    exchange(mine, finder.rows(), stream);
+    DeviceUnion arcs(request_.packing, finder.rows(), mine.nodes, stream);
+    times.unite = watch.lap();
+    caller_.report(mine.member, 0.95);
+    counts_[at] = arcs.count();
+    team_.meet();
+    if (mine.member == 0) {
+      const std::int64_t all = std::accumulate(counts_.begin(), counts_.end(), std::int64_t{0});
+      caller_.ask([&](const ArcTwinCaller& c) { return c.make_room(c.self, all, &offsets_, &words_); });
+    }
+    team_.meet();
+    watch.lap();
+    HostCopies copies(stream);
+    arcs.copy(copies, std::accumulate(counts_.begin(), counts_.begin() + mine.member, std::int64_t{0}), offsets_,
+              words_);
+    copies.finish([&] { caller_.report(mine.member, 0.95); });
+    times.download = watch.lap();
+  }
+
+  /// Gets from the others what pairing needs of their rows.
+  void exchange(const Part& mine, RowStore& rows, cudaStream_t stream) {
+    if (team_.members() == 1) return;
+    std::vector<std::optional<RowStore>>& chosen = across_[static_cast<std::size_t>(mine.member)];
+    chosen.resize(members());
+    for (int other = 0; other < team_.members(); ++other)
+      if (other != mine.member)
+        chosen[static_cast<std::size_t>(other)] = rows_across(rows, mine.nodes, part(other).nodes, stream);
+    team_.meet();
+    std::vector<RowsThere> there;
+    for (int other = 0; other < team_.members(); ++other) {
+      if (other == mine.member) continue;
+      const Part theirs = part(other);
+      there.push_back({theirs.device, theirs.nodes,
+                       &*across_[static_cast<std::size_t>(other)][static_cast<std::size_t>(mine.member)]});
+    }
+    add_rows(rows, mine.device, there, stream);
+    team_.meet();
+    chosen.clear();
+  }
+
+  const ArcTwinRequest& request_;
+  DeviceTeam team_;
+  TeamCaller<ArcTwinCaller> caller_;
+  std::vector<std::vector<std::optional<RowStore>>> across_;  ///< by member and by whom they are chosen for
+  std::vector<std::int64_t> counts_;                          ///< words, by member
+  std::vector<DeviceTimes> times_;
+  std::int64_t* offsets_ = nullptr;
+  std::uint64_t* words_ = nullptr;
+};
 
 }  // namespace
 
 TwinStatus find_arcs_on_device(const ArcTwinRequest& request, const ArcTwinCaller& caller, DeviceTimes& times,
                                TwinReason& reason) {
-  try {
-    build(request, caller, times);
-    return TwinStatus::done;
-  } catch (const Stopped&) {
-    return TwinStatus::stopped;
-  } catch (const std::exception& failure) {
-    reason = failure.what();
-    return TwinStatus::failed;
-  }
+  return twin_status(reason, [&] { times = Builder(request, caller).build(); });
 }
 
 }  // namespace saddleback

@@ -222,23 +222,10 @@ class Searcher {
   Stopwatch& watch_ = tools_->watch;
 };
 
-template <class Work>
-TwinStatus tell(TwinReason& reason, Work&& work) {
-  try {
-    work();
-    return TwinStatus::done;
-  } catch (const Stopped&) {
-    return TwinStatus::stopped;
-  } catch (const std::exception& failure) {
-    reason = failure.what();
-    return TwinStatus::failed;
-  }
-}
-
 }  // namespace
 
 TwinStatus put_graph_on_device(const GraphTwinRequest& r, GraphTwin** graph, double* seconds, TwinReason& reason) {
-  return tell(reason, [&] {
+  return twin_status(reason, [&] {
     check_cuda(cudaSetDevice(r.device), "choosing the device");
     const auto arcs = static_cast<std::uint64_t>(r.arc_count), nodes = static_cast<std::uint64_t>(r.node_count);
     check_device_room("the graph", 8 * arcs + 12 * nodes + (1 << 20), r.most_bytes);
@@ -260,7 +247,7 @@ void drop_graph_on_device(GraphTwin* graph) {
 
 TwinStatus search_on_device(const GraphTwin& graph, const SearchTwinRequest& request, const SearchTwinCaller& caller,
                             DeviceTimes& times, TwinReason& reason) {
-  return tell(reason, [&] {
+  return twin_status(reason, [&] {
     check_cuda(cudaSetDevice(graph.device), "choosing the device");
     Searcher(graph, request, caller, times).run();
   });

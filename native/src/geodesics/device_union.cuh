@@ -7,6 +7,7 @@
 #include "geodesics/arc_twin.h"
 #include "support/device_buffer.h"
 #include "support/host_copies.h"
+#include "support/index_range.cuh"
 
 namespace saddleback {
 namespace {
@@ -50,12 +51,13 @@ struct DeviceRows {
 
 /// A reverse that its row lacks: it is the `number`-th that the row gets.
 struct AddedArc {
-  std::int32_t node, number;
+  std::int32_t row, number;
   std::uint64_t word;
 };
 
-/// Puts each arc, or its reverse where that is shorter, into `own`; counts and lists the reverses that are missing.
-__global__ void pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t nodes, std::uint64_t* own,
+/// Puts each arc, or its reverse where that is shorter, into `own`; counts and lists the reverses that rows of `range`
+/// lack. Of other nodes' rows it is enough to have the arcs that end in there.
+__global__ void pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t nodes, IndexRange range, std::uint64_t* own,
                           std::int32_t* added_counts, AddedArc* added, unsigned long long* added_count,
                           std::int64_t added_room) {
   const int lane = threadIdx.x & 31;
@@ -91,41 +93,47 @@ __global__ void pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t node
       const std::uint64_t back = rows.words[reverse];
       if ((back & packing.length_mask) < (word & packing.length_mask))
         kept = packing.reversed(target, rows.back_sectors[reverse], back);
-    } else {
-      const std::int32_t number = atomicAdd(&added_counts[target], 1);
+    } else if (range.holds(target)) {
+      const std::int32_t number = atomicAdd(&added_counts[target - range.begin], 1);
       const auto at = static_cast<std::int64_t>(atomicAdd(added_count, 1ull));
-      if (at < added_room) added[at] = {target, number, packing.reversed(node, rows.back_sectors[first + mine], word)};
+      if (at < added_room)
+        added[at] = {target - range.begin, number, packing.reversed(node, rows.back_sectors[first + mine], word)};
     }
     own[first + mine] = kept;
   }
 }
 
-__global__ void add_counts(const std::int32_t* counts, const std::int32_t* added, std::int32_t nodes,
+__global__ void add_counts(const std::int32_t* counts, const std::int32_t* added, IndexRange range,
                            std::int64_t* totals, std::int64_t* added_totals) {
-  const auto node = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (node > nodes) return;
-  totals[node] = node < nodes ? counts[node] + added[node] : 0;  // the scan's last entry becomes the sum
-  added_totals[node] = node < nodes ? added[node] : 0;
+  const auto row = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (row > range.count()) return;
+  totals[row] = row < range.count() ? counts[range.begin + row] + added[row] : 0;  // the scan's last becomes the sum
+  added_totals[row] = row < range.count() ? added[row] : 0;
 }
 
 __global__ void gather_added(const AddedArc* added, std::int64_t count, const std::int64_t* first,
                              std::uint64_t* words) {
   const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-  if (i < count) words[first[added[i].node] + added[i].number] = added[i].word;
+  if (i < count) words[first[added[i].row] + added[i].number] = added[i].word;
+}
+
+__global__ void shift_offsets(std::int64_t* offsets, std::size_t count, std::int64_t by) {
+  const std::size_t i = static_cast<std::size_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i < count) offsets[i] += by;
 }
 
 /// A row's own arcs in their order, then those that were added, sorted.
-__global__ void write_rows(DeviceRows rows, std::int32_t nodes, const std::uint64_t* own, const std::uint64_t* added,
+__global__ void write_rows(DeviceRows rows, IndexRange range, const std::uint64_t* own, const std::uint64_t* added,
                            const std::int64_t* added_first, const std::int64_t* offsets, std::uint64_t* words) {
   const int lane = threadIdx.x & 31;
-  const std::int32_t node =
+  const std::int32_t row =
       static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
-  if (node >= nodes) return;
-  const std::int64_t first = rows.firsts[node], to = offsets[node];
-  const int count = rows.counts[node];
+  if (row >= range.count()) return;
+  const std::int64_t first = rows.firsts[range.begin + row], to = offsets[row];
+  const int count = rows.counts[range.begin + row];
   for (int i = lane; i < count; i += 32) words[to + i] = own[first + i];
-  const std::uint64_t* const others = added + added_first[node];
-  const int other_count = static_cast<int>(added_first[node + 1] - added_first[node]);
+  const std::uint64_t* const others = added + added_first[row];
+  const int other_count = static_cast<int>(added_first[row + 1] - added_first[row]);
   for (int i = lane; i < other_count; i += 32) {
     int rank = 0;
     for (int j = 0; j < other_count; ++j) rank += others[j] < others[i];
@@ -158,6 +166,7 @@ class RowStore {
   }
   std::int32_t nodes() const { return nodes_; }
   std::int64_t room() const { return room_; }
+  std::uint64_t target_mask() const { return target_mask_; }
   /// Waits for the stream.
   std::int64_t words_wanted() const {
     unsigned long long taken = 0;
@@ -165,11 +174,30 @@ class RowStore {
     return static_cast<std::int64_t>(taken);
   }
 
+  void set_taken(std::int64_t words) {
+    const auto taken = static_cast<unsigned long long>(words);
+    copy(taken_.data(), &taken, 1);
+    check_cuda(cudaStreamSynchronize(stream_), "copying rows");
+  }
+  /// For `room` words, of which `taken` are there.
+  void make_room(std::int64_t taken, std::int64_t room) {
+    if (room <= room_) return;
+    const auto grow = [&](auto& buffer) {
+      std::remove_reference_t<decltype(buffer)> larger(static_cast<std::size_t>(room), stream_);
+      copy(larger.data(), buffer.data(), static_cast<std::size_t>(taken));
+      buffer = std::move(larger);
+    };
+    grow(words_);
+    grow(targets_);
+    grow(back_sectors_);
+    room_ = room;
+  }
+
   /// Adds rows that were found elsewhere.
   void append(const std::vector<std::int32_t>& nodes, const FoundRows& found) {
     const std::int64_t first = words_wanted();
     const auto taken = static_cast<unsigned long long>(first) + found.word_count;
-    check_cuda(cudaMemcpyAsync(taken_.data(), &taken, sizeof taken, cudaMemcpyHostToDevice, stream_), "copying rows");
+    copy(taken_.data(), &taken, 1);
     if (static_cast<std::int64_t>(taken) <= room_) {
       std::vector<std::int32_t> targets(found.word_count);
       for (std::size_t i = 0; i < targets.size(); ++i)
@@ -191,7 +219,7 @@ class RowStore {
  private:
   template <class Number>
   void copy(Number* to, const Number* from, std::size_t count) {
-    check_cuda(cudaMemcpyAsync(to, from, count * sizeof(Number), cudaMemcpyHostToDevice, stream_), "copying rows");
+    check_cuda(cudaMemcpyAsync(to, from, count * sizeof(Number), cudaMemcpyDefault, stream_), "copying rows");
   }
 
   cudaStream_t stream_;
@@ -206,13 +234,13 @@ class RowStore {
   DeviceBuffer<unsigned long long> taken_;
 };
 
-/// A graph's arcs in compressed rows, on the device.
+/// The arcs of a range of a graph's nodes in compressed rows, on the device.
 class DeviceUnion {
  public:
-  DeviceUnion(const ArcPacking& packing, RowStore& rows, cudaStream_t stream)
-      : stream_(stream), nodes_(rows.nodes()), offsets_(static_cast<std::size_t>(nodes_) + 1, stream) {
+  DeviceUnion(const ArcPacking& packing, RowStore& rows, IndexRange range, cudaStream_t stream)
+      : stream_(stream), range_(range), offsets_(static_cast<std::size_t>(range.count()) + 1, stream) {
     const std::int64_t found = rows.words_wanted();
-    const auto places = static_cast<std::size_t>(nodes_) + 1;
+    const auto places = static_cast<std::size_t>(range.count()) + 1;
     DeviceBuffer<std::uint64_t> own(static_cast<std::size_t>(found), stream);
     DeviceBuffer<std::int32_t> added_counts(places, stream);
     DeviceBuffer<AddedArc> added(static_cast<std::size_t>(found), stream);
@@ -220,18 +248,18 @@ class DeviceUnion {
     DeviceBuffer<std::int64_t> totals(places, stream), added_totals(places, stream), added_first(places, stream);
     added_counts.fill_bytes(0);
     added_count.fill_bytes(0);
-    const auto row_blocks = static_cast<unsigned>((nodes_ + k_rows_per_block - 1) / k_rows_per_block);
-    pair_arcs<<<row_blocks, k_block_threads, 0, stream>>>(rows.view(), packing, nodes_, own.data(), added_counts.data(),
-                                                          added.data(), added_count.data(), found);
+    pair_arcs<<<row_blocks(rows.nodes()), k_block_threads, 0, stream>>>(rows.view(), packing, rows.nodes(), range,
+                                                                        own.data(), added_counts.data(), added.data(),
+                                                                        added_count.data(), found);
     check_cuda(cudaGetLastError(), "pairing arcs");
-    const auto place_blocks = static_cast<unsigned>(nodes_ / k_block_threads + 1);
-    add_counts<<<place_blocks, k_block_threads, 0, stream>>>(rows.view().counts, added_counts.data(), nodes_,
+    const auto place_blocks = static_cast<unsigned>(range.count() / k_block_threads + 1);
+    add_counts<<<place_blocks, k_block_threads, 0, stream>>>(rows.view().counts, added_counts.data(), range,
                                                              totals.data(), added_totals.data());
     check_cuda(cudaGetLastError(), "counting arcs");
     scan(totals, offsets_);
     scan(added_totals, added_first);
     unsigned long long missing = 0;
-    check_cuda(cudaMemcpyAsync(&count_, offsets_.data() + nodes_, sizeof count_, cudaMemcpyDeviceToHost, stream),
+    check_cuda(cudaMemcpyAsync(&count_, offsets_.data() + range.count(), sizeof count_, cudaMemcpyDeviceToHost, stream),
                "counting arcs");
     added_count.read({&missing, 1});
     words_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(count_), stream);
@@ -242,18 +270,29 @@ class DeviceUnion {
                                                            added_first.data(), others.data());
       check_cuda(cudaGetLastError(), "gathering reverses");
     }
-    write_rows<<<row_blocks, k_block_threads, 0, stream>>>(rows.view(), nodes_, own.data(), others.data(),
-                                                           added_first.data(), offsets_.data(), words_.data());
+    if (range.count() == 0) return;
+    write_rows<<<row_blocks(range.count()), k_block_threads, 0, stream>>>(
+        rows.view(), range, own.data(), others.data(), added_first.data(), offsets_.data(), words_.data());
     check_cuda(cudaGetLastError(), "writing rows");
   }
 
   std::int64_t count() const { return count_; }
-  void copy(HostCopies& copies, std::int64_t* offsets, std::uint64_t* words) const {
-    copies.to_host(offsets_.data(), offsets_.size(), offsets);
-    copies.to_host(words_.data(), static_cast<std::size_t>(count_), words);
+  /// To a whole graph's arrays, of which `before` words belong to earlier ranges.
+  void copy(HostCopies& copies, std::int64_t before, std::int64_t* offsets, std::uint64_t* words) {
+    if (before > 0) {
+      const auto blocks = static_cast<unsigned>(range_.count() / k_block_threads + 1);
+      shift_offsets<<<blocks, k_block_threads, 0, stream_>>>(offsets_.data(), offsets_.size(), before);
+      check_cuda(cudaGetLastError(), "placing rows");
+    }
+    const std::size_t first = range_.begin == 0 ? 0 : 1;  // the first is the last of the range before
+    copies.to_host(offsets_.data() + first, offsets_.size() - first, offsets + range_.begin + first);
+    copies.to_host(words_.data(), static_cast<std::size_t>(count_), words + before);
   }
 
  private:
+  static unsigned row_blocks(std::int32_t rows) {
+    return static_cast<unsigned>((rows + k_rows_per_block - 1) / k_rows_per_block);
+  }
   void scan(const DeviceBuffer<std::int64_t>& from, DeviceBuffer<std::int64_t>& to) {
     const int count = static_cast<int>(from.size());
     std::size_t bytes = 0;
@@ -264,7 +303,7 @@ class DeviceUnion {
   }
 
   cudaStream_t stream_;
-  std::int32_t nodes_;
+  IndexRange range_;
   DeviceBuffer<std::int64_t> offsets_;
   DeviceBuffer<std::uint64_t> words_;
   std::int64_t count_ = 0;

@@ -56,9 +56,9 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
   const DiskRule rule = disk_rule(k_, accuracy_, accuracy_ > 0 && has_lattice(*unfolding_, stage));
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
-  if (options.cuda_device >= 0) {
+  if (!options.cuda_devices.empty()) {
     if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
-    arcs_ = twin_arcs(search, *tables, rule, options.cuda_device, device_times_, stage);
+    arcs_ = twin_arcs(search, *tables, rule, options.cuda_devices, device_times_, stage);
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;

@@ -97,14 +97,15 @@ class Caller {
 
 }  // namespace
 
-ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, int device,
+ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, std::span<const int> devices,
                   DeviceTimes& times, const JobStage& stage) {
   const CudaTwins& twins = loaded_twins();
   const WaveMesh& mesh = tables.mesh;
   const WaveSectors& sectors = tables.sectors;
   const WaveScene scene = wave_scene(mesh, rule);
   ArcTwinRequest request;
-  request.device = device;
+  request.devices = devices.data();
+  request.device_count = static_cast<int>(devices.size());
   request.most_bytes = cuda_memory_limit();
   request.k = rule.k;
   request.detour = scene.detour;

@@ -1,6 +1,8 @@
 #pragma once
 // A graph's arcs found by the twin on a CUDA device.
 
+#include <span>
+
 #include "saddleback/cuda_twins.h"
 
 #include "geodesics/graph_arcs.h"
@@ -8,7 +10,7 @@
 namespace saddleback {
 
 /// As unite_with_reverses(disk_arcs(...)), to the bit. \throw DeviceError when the device cannot do it; Cancelled.
-ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, int device,
+ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, std::span<const int> devices,
                   DeviceTimes& times, const JobStage& stage);
 
 }  // namespace saddleback

@@ -46,6 +46,15 @@ class DeviceBuffer {
     check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
   }
 
+  /// One of them; waits for the stream.
+  Number value_at(std::size_t place) const {
+    Number value{};
+    check_cuda(cudaMemcpyAsync(&value, data_ + place, sizeof value, cudaMemcpyDeviceToHost, stream_),
+               "copying from the device");
+    check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
+    return value;
+  }
+
  private:
   void swap(DeviceBuffer& other) noexcept {
     std::swap(data_, other.data_);

@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "saddleback/cuda_twins.h"
 
 #include "support/cuda_check.h"
 
@@ -13,6 +16,39 @@ namespace saddleback {
 
 /// The caller asked to stop.
 struct Stopped {};
+/// The processor had better do it.
+struct LeftOver {};
+
+/// Runs a twin's work: nothing that it throws crosses the module's border.
+template <class Work>
+TwinStatus twin_status(TwinReason& reason, Work&& work) {
+  try {
+    work();
+    return TwinStatus::done;
+  } catch (const Stopped&) {
+    return TwinStatus::stopped;
+  } catch (const LeftOver&) {
+    return TwinStatus::left;
+  } catch (const std::exception& failure) {
+    reason = failure.what();
+    return TwinStatus::failed;
+  }
+}
+
+/// What several devices took together: of each part, the longest.
+inline DeviceTimes slowest(const std::vector<DeviceTimes>& parts) {
+  DeviceTimes all;
+  for (const DeviceTimes& part : parts) {
+    all.upload = std::max(all.upload, part.upload);
+    all.order = std::max(all.order, part.order);
+    all.find = std::max(all.find, part.find);
+    all.unite = std::max(all.unite, part.unite);
+    all.download = std::max(all.download, part.download);
+    all.second_pass += part.second_pass;
+    all.by_processor += part.by_processor;
+  }
+  return all;
+}
 
 /// Time between two moments of a stream.
 class Stopwatch {

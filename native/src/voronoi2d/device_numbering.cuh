@@ -1,15 +1,25 @@
 #pragma once
 // The cells as one half-edge structure on the device, numbered as by half_edges.
 
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "support/device_team.h"
+#include "support/index_range.cuh"
 #include "voronoi2d/circumcentre_point.h"
 #include "voronoi2d/device_cells.cuh"
+#include "voronoi2d/plane_twin.h"
 
 namespace saddleback::voronoi2d {
 namespace {
 
-/// Rows of neighbours, counter-clockwise; of an open cell from the border on.
+/// Rows of neighbours, counter-clockwise; of an open cell from the border on. All of them, of which some are numbered
+/// here and the others elsewhere.
 struct DeviceCells {
   std::int32_t count;
+  IndexRange mine;
   const double2* at;
   const std::int32_t* original;
   const std::int32_t* offsets;
@@ -19,6 +29,18 @@ struct DeviceCells {
   __device__ Point2 point(std::int32_t rank) const {
     const double2 p = at[rank];
     return {p.x, p.y};
+  }
+  /// By one thread for each cell.
+  __device__ std::int32_t of_thread() const { return mine.begin + thread_number(); }
+  /// The side of `other` towards `cell`; the end of its row when it has none.
+  __device__ std::int32_t twin_side(std::int32_t cell, std::int32_t other) const {
+    std::int32_t twin = offsets[other];
+    while (twin < offsets[other + 1] && neighbours[twin] != cell) ++twin;
+    return twin;
+  }
+  /// The corner before a side, in the cell that has it.
+  __device__ std::int32_t corner_before(std::int32_t cell, std::int32_t side) const {
+    return side == offsets[cell] ? offsets[cell + 1] - 1 : side - 1;
   }
 };
 
@@ -36,10 +58,10 @@ struct DeviceNumbers {
 };
 
 /// Neighbours row after row; also counts the edges of a cell, which are those to higher ranks.
-__global__ void gather_rows(DeviceLists lists, std::int32_t count, const std::int32_t* offsets,
-                            std::int32_t* neighbours, std::int32_t* edge_counts) {
-  const std::int32_t cell = thread_number();
-  if (cell >= count) return;
+__global__ void gather_rows(DeviceLists lists, IndexRange cells, const std::int32_t* offsets, std::int32_t* neighbours,
+                            std::int32_t* edge_counts) {
+  const std::int32_t cell = cells.begin + thread_number();
+  if (cell >= cells.end) return;
   const std::int32_t begin = offsets[cell], size = offsets[cell + 1] - begin;
   const std::int32_t* from = lists.slots + static_cast<std::int64_t>(cell) * k_slots;
   if (size > k_slots) from = lists.pool + *from;
@@ -77,24 +99,29 @@ __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
                                      cells.point(cells.neighbours[first])) != predicates::Sign::negative;
 }
 
+/// Edges belong to the lower of their cells.
 __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, DeviceNumbers numbers) {
-  const std::int32_t cell = thread_number();
-  if (cell >= cells.count || numbers.failed_before()) return;
+  const std::int32_t cell = cells.of_thread();
+  if (cell >= cells.mine.end || numbers.failed_before()) return;
   const std::int32_t first = cells.offsets[cell], end = cells.offsets[cell + 1];
   bool fits = winds_once(cells, cell);
   std::int32_t edge = edges_before[cell];
   for (std::int32_t side = first; side < end; ++side) {
     const std::int32_t other = cells.neighbours[side];
-    if (other < cell) continue;
-    const std::int32_t other_first = cells.offsets[other], other_end = cells.offsets[other + 1];
-    std::int32_t twin = other_first;
-    while (twin < other_end && cells.neighbours[twin] != cell) ++twin;
-    if (twin == other_end) {
+    if (other < cell && cells.mine.holds(other)) continue;
+    const std::int32_t twin = cells.twin_side(cell, other);
+    if (twin == cells.offsets[other + 1]) {
       fits = false;
       break;
     }
-    numbers.next_corners[side] = twin == other_first ? other_end - 1 : twin - 1;
-    const std::int32_t before = side == first ? end - 1 : side - 1;
+    numbers.next_corners[side] = cells.corner_before(other, twin);
+    if (other < cell) {  // numbered elsewhere
+      std::int32_t theirs = edges_before[other];
+      for (std::int32_t k = cells.offsets[other]; k < twin; ++k) theirs += cells.neighbours[k] > other;
+      numbers.side_edges[side] = theirs;
+      continue;
+    }
+    const std::int32_t before = cells.corner_before(cell, side);
     numbers.next_corners[twin] = before;
     numbers.edges[edge] = {before, side};
     numbers.side_edges[side] = numbers.side_edges[twin] = edge;
@@ -105,6 +132,29 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
   if (!fits) *numbers.misfits_here = 1;
 }
 
+/// From a cell's corner to the same vertex's corner of the next cell about it, and so on.
+struct CornerWalk {
+  const DeviceCells& cells;
+  const std::int32_t* next_corners;
+  std::int32_t cell, corner;
+
+  __device__ void step() {
+    const std::int32_t next = cells.neighbours[corner];
+    corner = cells.mine.holds(cell) ? next_corners[corner] : cells.corner_before(next, cells.twin_side(cell, next));
+    cell = next;
+  }
+};
+
+/// The cell that a corner's vertex belongs to, the lowest about it, and its corner.
+__device__ inline CornerWalk owner_of(const DeviceCells& cells, const std::int32_t* next_corners, std::int32_t cell,
+                                      std::int32_t corner) {
+  CornerWalk walk{cells, next_corners, cell, corner};
+  std::int32_t lowest = cell, at = corner;
+  for (walk.step(); walk.corner != corner; walk.step())
+    if (walk.cell < lowest) lowest = walk.cell, at = walk.corner;
+  return {cells, next_corners, lowest, at};
+}
+
 /// Calls found(corner) for the corners of the vertices that belong to a cell: no lower rank is about them.
 template <class Found>
 __device__ void for_own_vertices(const DeviceCells& cells, const std::int32_t* next_corners, std::int32_t cell,
@@ -113,51 +163,65 @@ __device__ void for_own_vertices(const DeviceCells& cells, const std::int32_t* n
   for (std::int32_t corner = first; corner <= last - cells.is_open[cell]; ++corner) {
     const std::int32_t other = cells.neighbours[corner], third = cells.neighbours[corner == last ? first : corner + 1];
     if (min(other, third) < cell) continue;
-    std::int32_t lowest = cell;
-    for (std::int32_t walk = next_corners[corner]; walk != corner; walk = next_corners[walk])
-      lowest = min(lowest, cells.neighbours[walk]);
-    if (lowest == cell) found(corner);
+    if (owner_of(cells, next_corners, cell, corner).cell == cell) found(corner);
   }
 }
 
 __global__ void count_vertices(DeviceCells cells, DeviceNumbers numbers, std::int32_t* counts) {
-  const std::int32_t cell = thread_number();
-  if (cell >= cells.count || numbers.failed_before()) return;
+  const std::int32_t cell = cells.of_thread();
+  if (cell >= cells.mine.end || numbers.failed_before()) return;
   std::int32_t mine = 0;
   for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t) { ++mine; });
   counts[cell] = mine;
 }
 
 __global__ void add_vertices(DeviceCells cells, const std::int32_t* vertices_before, DeviceNumbers numbers) {
-  const std::int32_t cell = thread_number();
-  if (cell >= cells.count || numbers.failed_before()) return;
+  const std::int32_t cell = cells.of_thread();
+  if (cell >= cells.mine.end || numbers.failed_before()) return;
   std::int32_t vertex = vertices_before[cell];
   for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t corner) {
-    const std::int32_t second = numbers.next_corners[corner], third = numbers.next_corners[second];
-    std::int32_t about[3] = {cell, cells.neighbours[corner], cells.neighbours[second]};
-    numbers.corner_vertices[corner] = numbers.corner_vertices[second] = numbers.corner_vertices[third] = vertex;
-    if (numbers.next_corners[third] != corner) {  // three of many, evenly about it
-      int size = 0;
-      std::int32_t walk = corner;
-      do {
-        numbers.corner_vertices[walk] = vertex;
-        ++size;
-        walk = numbers.next_corners[walk];
-      } while (walk != corner);
-      for (int k = 0; k < size; ++k, walk = numbers.next_corners[walk]) {
-        if (k == size - 1) about[0] = cells.neighbours[walk];
-        if (k == size / 3 - 1) about[1] = cells.neighbours[walk];
-        if (k == 2 * size / 3 - 1) about[2] = cells.neighbours[walk];
-      }
+    CornerWalk walk{cells, numbers.next_corners, cell, corner};
+    std::int32_t about[3];
+    int size = 0;
+    do {
+      numbers.corner_vertices[walk.corner] = vertex;
+      if (size < 3) about[size] = walk.cell;
+      ++size;
+      walk.step();
+    } while (walk.corner != corner);
+    for (int k = 0; size > 3 && k < size; ++k) {  // three of many, evenly about it
+      walk.step();
+      if (k == size - 1) about[0] = walk.cell;
+      if (k == size / 3 - 1) about[1] = walk.cell;
+      if (k == 2 * size / 3 - 1) about[2] = walk.cell;
     }
     const Point2 centre = circumcentre_point(cells.point(about[0]), cells.point(about[1]), cells.point(about[2]));
     numbers.vertices[vertex++] = {centre.x, centre.y};
   });
 }
 
-__global__ void add_ends(std::int32_t count, DeviceNumbers numbers) {
-  const std::int32_t edge = thread_number();
-  if (edge >= count || numbers.failed_before()) return;
+constexpr int k_unknown_byte = 0xfe;
+constexpr std::int32_t k_unknown = static_cast<std::int32_t>(0xfefefefeu);  ///< vertices that belong elsewhere
+
+/// The numbers of those, from the counts of all cells.
+__global__ void add_vertices_from_elsewhere(DeviceCells cells, const std::int32_t* vertices_before,
+                                            DeviceNumbers numbers) {
+  const std::int32_t cell = cells.of_thread();
+  if (cell >= cells.mine.end || numbers.failed_before()) return;
+  for (std::int32_t corner = cells.offsets[cell]; corner < cells.offsets[cell + 1]; ++corner) {
+    if (numbers.corner_vertices[corner] != k_unknown) continue;
+    const CornerWalk owner = owner_of(cells, numbers.next_corners, cell, corner);
+    std::int32_t vertex = vertices_before[owner.cell];
+    for_own_vertices(cells, numbers.next_corners, owner.cell, [&](std::int32_t theirs) {
+      if (theirs == owner.corner) numbers.corner_vertices[corner] = vertex;
+      ++vertex;
+    });
+  }
+}
+
+__global__ void add_ends(IndexRange edges, DeviceNumbers numbers) {
+  const std::int32_t edge = edges.begin + thread_number();
+  if (edge >= edges.end || numbers.failed_before()) return;
   const int2 corners = numbers.edges[edge];
   const int2 ends = {numbers.corner_vertices[corners.x], numbers.corner_vertices[corners.y]};
   if (ends.x < 0) {
@@ -176,11 +240,33 @@ inline void add_up(const DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::i
   });
 }
 
-/// Rows, then numbers, of all cells. Nothing waits for the device; whether all fits is known at the end.
+/// A member of a team that finds one diagram: it has the cells from begins[member] to begins[member + 1].
+struct PlanePart {
+  TeamArrays& arrays;
+  int member;
+  std::vector<std::int32_t> begins;  ///< of all members' cells, and the end of the last
+
+  bool is_all() const { return begins.size() == 2; }
+  IndexRange cells() const { return range(begins); }
+  IndexRange range(std::span<const std::int32_t> bounds) const {
+    return {bounds[static_cast<std::size_t>(member)], bounds[static_cast<std::size_t>(member) + 1]};
+  }
+  /// Where the members' parts of rows begin. Waits for the stream where there are several.
+  std::vector<std::int32_t> rows(const DeviceBuffer<std::int32_t>& offsets, std::int32_t total) const {
+    if (is_all()) return {0, total};
+    std::vector<std::int32_t> bounds;
+    for (const std::int32_t cell : begins) bounds.push_back(offsets.value_at(static_cast<std::size_t>(cell)));
+    return bounds;
+  }
+};
+
+/// Rows, then numbers, of a part of the cells. With one part nothing waits for the device; whether all fits is known at
+/// the end.
 class DeviceDiagram {
  public:
-  DeviceDiagram(std::int32_t cells, std::int32_t sides, cudaStream_t stream)
-      : stream_(stream),
+  DeviceDiagram(const PlanePart& part, std::int32_t cells, std::int32_t sides, cudaStream_t stream)
+      : part_(part),
+        stream_(stream),
         count_(cells),
         sides_(sides),
         edges_(sides / 2),
@@ -198,57 +284,75 @@ class DeviceDiagram {
   const std::int32_t* neighbours() const { return neighbours_.data(); }
   PlaneTwinSizes sizes() const { return {count_, edges_, vertices_}; }
 
-  /// Copies what is done as soon as it is.
-  void number(const DeviceCells& cells, const DeviceLists& lists, HostCopies& copies, const PlaneTwinArrays& to) {
+  /// Copies what is done as soon as it is. \throw LeftOver
+  void number(const DeviceCells& cells, const DeviceBuffer<std::int32_t>& offsets, const DeviceLists& lists,
+              HostCopies& copies, const PlaneTwinArrays& to) {
     const auto places = static_cast<std::size_t>(count_) + 1;
     DeviceBuffer<std::int32_t> next_corners(size(sides_), stream_), counts(places, stream_), before(places, stream_);
     misfits_.fill_bytes(0);
     counts.fill_bytes(0);
+    if (!part_.is_all()) corner_vertices_.fill_bytes(k_unknown_byte);
     const DeviceNumbers numbers{next_corners.data(), corner_vertices_.data(), side_edges_.data(), edge_vertices_.data(),
                                 edge_sites_.data(),  vertex_places_.data(),   misfits_.data(),    misfits_.data() + 1};
-    const unsigned blocks = blocks_for(count_);
-    gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, count_, cells.offsets, neighbours_.data(), counts.data());
+    const std::vector<std::int32_t> sides = part_.rows(offsets, sides_);
+    const unsigned blocks = blocks_for(cells.mine.count());
+    gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, neighbours_.data(), counts.data());
     check_cuda(cudaGetLastError(), "gathering cells");
-    add_up(counts, before, stream_);
-    expect(before, edges_);
+    part_.arrays.share(part_.member, neighbours_.data(), sides, stream_);
+    add_up_all(counts, before, edges_);
+    const std::vector<std::int32_t> edges = part_.rows(before, edges_);
     join_sides<<<blocks, k_threads, 0, stream_>>>(cells, before.data(), numbers);
     check_cuda(cudaGetLastError(), "joining cells");
-    copy(copies, side_edges_, to.side_edges);
+    copy<1>(copies, side_edges_, part_.range(sides), to.side_edges);
     expect_sum<<<1, 1, 0, stream_>>>(misfits_.data() + 1, 0, misfits_.data());
     check_cuda(cudaGetLastError(), "joining cells");
+    agree();
     count_vertices<<<blocks, k_threads, 0, stream_>>>(cells, numbers, counts.data());
     check_cuda(cudaGetLastError(), "counting vertices");
-    add_up(counts, before, stream_);
-    expect(before, vertices_);
+    add_up_all(counts, before, vertices_);
+    const std::vector<std::int32_t> vertices = part_.rows(before, vertices_);
+    agree();
     add_vertices<<<blocks, k_threads, 0, stream_>>>(cells, before.data(), numbers);
     check_cuda(cudaGetLastError(), "placing vertices");
-    copy(copies, vertex_places_, to.vertices);
-    copy(copies, corner_vertices_, to.corner_vertices);
-    add_ends<<<blocks_for(edges_), k_threads, 0, stream_>>>(edges_, numbers);
+    copy<2>(copies, vertex_places_, part_.range(vertices), to.vertices);
+    if (!part_.is_all()) {
+      add_vertices_from_elsewhere<<<blocks, k_threads, 0, stream_>>>(cells, before.data(), numbers);
+      check_cuda(cudaGetLastError(), "numbering vertices");
+    }
+    copy<1>(copies, corner_vertices_, part_.range(sides), to.corner_vertices);
+    const IndexRange own = part_.range(edges);
+    add_ends<<<blocks_for(own.count()), k_threads, 0, stream_>>>(own, numbers);
     check_cuda(cudaGetLastError(), "numbering edges");
-    copy(copies, edge_vertices_, to.edges);
-    copy(copies, edge_sites_, to.edge_sites);
+    copy<2>(copies, edge_vertices_, own, to.edges);
+    copy<2>(copies, edge_sites_, own, to.edge_sites);
   }
 
   /// Waits for the stream.
-  bool fits() const {
-    int misfits[2];
-    misfits_.read(misfits);
-    return misfits[0] == 0;
-  }
+  bool fits() const { return misfits_.value_at(0) == 0; }
 
  private:
   static std::size_t size(std::int32_t count) { return static_cast<std::size_t>(count); }
 
-  void expect(const DeviceBuffer<std::int32_t>& sums, std::int32_t total) {
+  /// Sums of what all members have counted; the last is the total.
+  void add_up_all(DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::int32_t>& sums, std::int32_t total) {
+    part_.arrays.share(part_.member, counts.data(), part_.begins, stream_);
+    add_up(counts, sums, stream_);
     expect_sum<<<1, 1, 0, stream_>>>(sums.data() + count_, total, misfits_.data());
     check_cuda(cudaGetLastError(), "counting");
   }
-  template <class Number>
-  static void copy(HostCopies& copies, const DeviceBuffer<Number>& from, void* to) {
-    copies.to_host(from.data(), from.size(), to);
+  /// Several go on only where all fits with all: a walk about a vertex would not end otherwise.
+  void agree() const {
+    if (part_.is_all()) return;
+    if (!fits()) throw LeftOver();
+    part_.arrays.meet();
+  }
+  template <int Width, class Number, class To>
+  static void copy(HostCopies& copies, const DeviceBuffer<Number>& from, IndexRange part, To* to) {
+    copies.to_host(from.data() + part.begin, size(part.count()),
+                   to ? to + Width * static_cast<std::size_t>(part.begin) : to);
   }
 
+  const PlanePart& part_;
   cudaStream_t stream_;
   std::int32_t count_, sides_, edges_, vertices_;
   DeviceBuffer<std::int32_t> neighbours_, corner_vertices_, side_edges_;

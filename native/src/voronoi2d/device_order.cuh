@@ -1,18 +1,21 @@
 #pragma once
 // Distinct sites along the curve, on the device: the twin of site_order and curve_order.
 
+#include <algorithm>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 
 #include "support/device_buffer.h"
 #include "voronoi2d/curve_place.h"
-#include "voronoi2d/plane_twin.h"
 
 namespace saddleback::voronoi2d {
 namespace {
 
 constexpr int k_threads = 256;
-inline unsigned blocks_for(std::int64_t count) { return static_cast<unsigned>((count + k_threads - 1) / k_threads); }
+/// At least one, which finds nothing to do where there is nothing.
+inline unsigned blocks_for(std::int64_t count) {
+  return static_cast<unsigned>(std::max<std::int64_t>(1, (count + k_threads - 1) / k_threads));
+}
 
 __device__ inline std::int32_t thread_number() {
   return static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -164,9 +167,11 @@ class DeviceOrder {
         cell_places_(size(), stream),
         ranked_places_(size(), stream) {}
 
-  enum class Found { order, not_for_the_device, stopped };
+  enum class Found { order, not_for_the_device };
 
-  Found find(const double2* sites, const PlaneTwinCaller& caller) {
+  /// sort(places, order) is the processor's, see PlaneTwinCaller; it may throw.
+  template <class Sort>
+  Found find(const double2* sites, Sort&& sort) {
     const Extent extent = measure_all(sites);
     // Beyond that the processor scales the sites, or says what is wrong with them.
     constexpr double k_largest = 0x1p250, k_smallest = 0x1p-216;
@@ -199,7 +204,7 @@ class DeviceOrder {
     if (is_full) {
       std::vector<std::uint32_t> sorted_places(size());
       std::vector<std::int32_t> sorted(size());
-      if (!caller.sort(caller.self, sorted_places.data(), sorted.data())) return Found::stopped;
+      sort(sorted_places.data(), sorted.data());
       places = DeviceBuffer<std::uint32_t>(sorted_places, stream_);
       order = DeviceBuffer<std::int32_t>(sorted, stream_);
       check_cuda(cudaStreamSynchronize(stream_), "copying to the device");

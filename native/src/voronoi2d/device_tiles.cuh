@@ -2,7 +2,9 @@
 // Tiles: the largest rectangles of the curve that hold no more sites than a block takes.
 
 #include <cub/device/device_select.cuh>
+#include <limits>
 #include <thrust/iterator/counting_iterator.h>
+#include <vector>
 
 #include "voronoi2d/device_order.cuh"
 
@@ -66,6 +68,23 @@ class Tiles {
       return cub::DeviceSelect::Flagged(scratch, bytes, thrust::counting_iterator<std::int32_t>(0), is_first.data(),
                                         begins_.data(), count_.data(), count, stream);
     });
+  }
+  /// The tiles and sites that each of several parts has: where it begins, and where the last ends.
+  struct Parts {
+    std::vector<std::int32_t> tiles, sites;
+  };
+  Parts parts(int number, std::int32_t site_count) const {
+    if (number == 1) return {{0, std::numeric_limits<std::int32_t>::max()}, {0, site_count}};  // as many as there are
+    std::int32_t count = 0;
+    count_.read({&count, 1});
+    Parts parts;
+    for (int i = 0; i < number; ++i) {
+      parts.tiles.push_back(static_cast<std::int32_t>(static_cast<std::int64_t>(count) * i / number));
+      parts.sites.push_back(begins_.value_at(static_cast<std::size_t>(parts.tiles.back())));
+    }
+    parts.tiles.push_back(count);
+    parts.sites.push_back(site_count);
+    return parts;
   }
   const std::int32_t* begins() const { return begins_.data(); }  ///< the end of the last is the number of sites
   const std::int32_t* count() const { return count_.data(); }

@@ -1,7 +1,6 @@
 // Voronoi diagrams of the plane on a CUDA device: order, cells by tiles, cells that these could not tell, numbers. The
 // answer is the processor's, to the bit.
 
-#include <limits>
 #include <vector>
 
 #include "support/device_stream.h"
@@ -15,9 +14,6 @@ namespace {
 
 using namespace voronoi2d;
 
-/// The processor had better do it.
-struct LeftOver {};
-
 int blocks_of(const void* kernel, int threads, std::size_t shared, int device) {
   int per_processor = 0, processors = 0;
   check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, kernel, threads, shared),
@@ -27,26 +23,33 @@ int blocks_of(const void* kernel, int threads, std::size_t shared, int device) {
   return std::max(1, per_processor) * processors;
 }
 
-/// The neighbours of all cells.
+/// The neighbours of a part of the cells.
 class CellFinder {
  public:
-  CellFinder(std::int32_t count, cudaStream_t stream)
+  CellFinder(const DeviceOrder& order, int members, cudaStream_t stream)
       : stream_(stream),
-        count_(count),
-        slots_(static_cast<std::size_t>(count) * k_slots, stream),
-        counts_(static_cast<std::size_t>(count) + 1, stream),
-        offsets_(static_cast<std::size_t>(count) + 1, stream),
-        far_(static_cast<std::size_t>(count), stream),
+        count_(order.cell_count()),
+        order_(order),
+        tiles_(order.places(), count_, stream),
+        parts_(tiles_.parts(members, count_)),
+        slots_(static_cast<std::size_t>(count_) * k_slots, stream),
+        counts_(static_cast<std::size_t>(count_) + 1, stream),
+        offsets_(static_cast<std::size_t>(count_) + 1, stream),
+        far_(static_cast<std::size_t>(count_), stream),
         failed_(static_cast<std::size_t>(k_most_failures) + 4096, stream),
-        pool_(static_cast<std::size_t>(count) / 4 + 65536, stream),
-        is_open_(static_cast<std::size_t>(count), stream),
+        pool_(static_cast<std::size_t>(count_) / 4 + 65536, stream),
+        is_open_(static_cast<std::size_t>(count_), stream),
         counters_(5, stream) {}
+
+  /// Where the members' cells begin, and the last one's end.
+  const std::vector<std::int32_t>& begins() const { return parts_.sites; }
 
   /// Does not wait for the last tiles; calls report() in between where there are many.
   template <class Report>
-  void start(const DeviceOrder& order, int device, Report&& report) {
-    const BoxLevels boxes(order.at(), count_, stream_);
-    const Tiles tiles(order.places(), count_, stream_);
+  void start(int member, int device, Report&& report) {
+    const BoxLevels boxes(order_.at(), count_, stream_);
+    const auto at = static_cast<std::size_t>(member);
+    const std::int32_t sites = parts_.sites[at + 1] - parts_.sites[at];
     counts_.fill_bytes(0);
     counters_.fill_bytes(0);
     constexpr std::size_t k_shared = sizeof(TileMemory);
@@ -55,15 +58,18 @@ class CellFinder {
     check_cuda(cudaFuncSetAttribute(find_cells_of_tiles, cudaFuncAttributePreferredSharedMemoryCarveout, 100),
                "asking for shared memory");
     const int blocks = blocks_of(reinterpret_cast<const void*>(find_cells_of_tiles), k_tile_threads, k_shared, device);
-    constexpr std::int32_t k_tiles_per_launch = 1 << 17;                                 // some tens of milliseconds
-    const std::int32_t launches = 1 + count_ / (k_tile_sites * k_tiles_per_launch) * 4;  // tiles are half full and less
+    constexpr std::int32_t k_tiles_per_launch = 1 << 17;  // some tens of milliseconds
+    // Of one part the number of tiles is not known here: they are half full and less.
+    const std::int32_t launches = 1 + sites / (k_tile_sites * k_tiles_per_launch) * 4, last = parts_.tiles[at + 1];
     for (std::int32_t i = 0; i < launches; ++i) {
-      const TileRange range{tiles.begins(), tiles.count(), counters_.data() + k_next_tile, i * k_tiles_per_launch,
-                            i + 1 < launches ? (i + 1) * k_tiles_per_launch : std::numeric_limits<std::int32_t>::max()};
+      const std::int32_t first = parts_.tiles[at] + i * k_tiles_per_launch;
+      const bool is_last = i + 1 == launches || last - first <= k_tiles_per_launch;
+      const TileRange range{tiles_.begins(), tiles_.count(), counters_.data() + k_next_tile, first,
+                            is_last ? last : first + k_tiles_per_launch};
       check_cuda(cudaMemsetAsync(range.taken, 0, sizeof(int), stream_), "clearing a counter");
       find_cells_of_tiles<<<blocks, k_tile_threads, k_shared, stream_>>>(boxes.tree(), range, lists());
       check_cuda(cudaGetLastError(), "finding cells");
-      if (i + 1 == launches) break;
+      if (is_last) break;
       check_cuda(cudaStreamSynchronize(stream_), "finding cells");
       report(static_cast<double>(i) / launches);
     }
@@ -74,10 +80,16 @@ class CellFinder {
                                                               counters_.data() + k_next_far, far_lists,
                                                               counters_.data() + k_failed, k_most_failures);
     check_cuda(cudaGetLastError(), "finding far cells");
+  }
+
+  /// All members' cells, where there are several.
+  void share(const PlanePart& part) {
+    part.arrays.share(part.member, counts_.data(), part.begins, stream_);
+    part.arrays.share(part.member, is_open_.data(), part.begins, stream_);
     add_up(counts_, offsets_, stream_);  // the last count is 0
   }
 
-  /// Waits for the cells. \return how many neighbours they have together.
+  /// Waits for the cells. \return how many neighbours all have together.
   std::int32_t finish(DeviceTimes& times) const {
     int counters[k_counters];
     std::int32_t sides = 0;
@@ -88,7 +100,7 @@ class CellFinder {
     if (counters[k_failed] > 0) throw LeftOver();
     return sides;
   }
-  const std::int32_t* offsets() const { return offsets_.data(); }
+  const DeviceBuffer<std::int32_t>& offsets() const { return offsets_; }
 
   DeviceLists lists() {
     return {slots_.data(),
@@ -106,6 +118,9 @@ class CellFinder {
   static constexpr int k_most_failures = 64;
   cudaStream_t stream_;
   std::int32_t count_;
+  const DeviceOrder& order_;
+  const Tiles tiles_;
+  const Tiles::Parts parts_;
   DeviceBuffer<std::int32_t> slots_, counts_, offsets_, far_, failed_, pool_;
   DeviceBuffer<std::uint8_t> is_open_;
   DeviceBuffer<int> counters_;
@@ -114,65 +129,70 @@ class CellFinder {
 /// What a diagram takes at most at once, in bytes.
 std::uint64_t bytes_needed(std::int32_t count) { return static_cast<std::uint64_t>(count) * 360 + (1 << 20); }
 
+/// A diagram found by one or several devices. All have all sites, each finds and numbers the cells of some tiles.
 class Builder {
  public:
-  Builder(const PlaneTwinRequest& request, const PlaneTwinCaller& caller, DeviceTimes& times)
-      : request_(request), caller_(caller), times_(times) {}
+  Builder(const PlaneTwinRequest& request, const PlaneTwinCaller& caller)
+      : request_(request),
+        team_({request.devices, static_cast<std::size_t>(request.device_count)}),
+        caller_(caller, team_),
+        arrays_(team_),
+        times_(static_cast<std::size_t>(request.device_count)) {}
 
-  void build() {
-    check_cuda(cudaSetDevice(request_.device), "choosing the device");
-    check_device_room("the diagram", bytes_needed(request_.count), request_.most_bytes);
-    keep_freed_memory(request_.device);
-    const Stream stream;
-    Stopwatch watch(stream);
-    const auto count = static_cast<std::size_t>(request_.count);
-    const DeviceBuffer<double2> sites = upload(stream);
-    times_.upload = watch.lap();
-    report(0.1);
-    DeviceOrder order(request_.count, stream);
-    switch (order.find(sites.data(), caller_)) {
-      case DeviceOrder::Found::order:
-        break;
-      case DeviceOrder::Found::not_for_the_device:
-        throw LeftOver();
-      case DeviceOrder::Found::stopped:
-        throw Stopped();
-    }
-    times_.order = watch.lap();
-    report(0.2);
-    constexpr std::int32_t k_fewest = 3;
-    if (order.cell_count() < k_fewest) throw LeftOver();
-    CellFinder cells(order.cell_count(), stream);
-    cells.start(order, request_.device, [&](double done) { report(0.2 + 0.3 * done); });
-    watch.end();
-    const PlaneTwinSizes most{order.cell_count(), 3 * order.cell_count() - 3, 2 * order.cell_count()};
-    PlaneTwinArrays to{};
-    if (!caller_.make_room(caller_.self, most, &to)) throw Stopped();
-    HostCopies copies(stream);
-    copies.to_host(order.site_of(), count, to.site_of);
-    copies.to_host(order.cell_places(), count, to.cell_places);
-    copies.to_host(order.original(), static_cast<std::size_t>(order.cell_count()), to.cell_sites);
-    const std::int32_t sides = cells.finish(times_);
-    times_.find = watch.read();
-    report(0.6);
-    watch.start();
-    DeviceDiagram diagram(order.cell_count(), sides, stream);
-    if (!diagram.can_be()) throw LeftOver();
-    const HostCopies::End end(copies);
-    copies.to_host(cells.offsets(), static_cast<std::size_t>(order.cell_count()) + 1, to.cell_offsets);
-    diagram.number({order.cell_count(), order.at(), order.original(), cells.offsets(), diagram.neighbours(),
-                    cells.lists().is_open},
-                   cells.lists(), copies, to);
-    times_.unite = watch.lap();
-    report(0.7);
-    copies.finish([&] { report(0.7); });
-    if (!diagram.fits()) throw LeftOver();
-    times_.download = watch.lap();
-    if (!caller_.cut(caller_.self, diagram.sizes())) throw Stopped();
+  DeviceTimes build() {
+    team_.run([&](int member) { build_part(member); });
+    return slowest(times_);
   }
 
  private:
-  DeviceBuffer<double2> upload(cudaStream_t stream) const {
+  void build_part(int member) {
+    const int device = team_.device(member);
+    check_cuda(cudaSetDevice(device), "choosing the device");
+    check_device_room("the diagram", bytes_needed(request_.count), request_.most_bytes);
+    keep_freed_memory(device);
+    const auto report = [&](double fraction) { caller_.report(member, fraction); };
+    DeviceTimes& times = times_[static_cast<std::size_t>(member)];
+    const Stream stream;
+    Stopwatch watch(stream);
+    const DeviceBuffer<double2> sites = upload(stream, report);
+    times.upload = watch.lap();
+    report(0.1);
+    const DeviceOrder order = ordered(sites, stream);
+    times.order = watch.lap();
+    report(0.2);
+    CellFinder cells(order, team_.members(), stream);
+    const PlanePart part{arrays_, member, cells.begins()};
+    cells.start(member, device, [&](double done) { report(0.2 + 0.3 * done); });
+    cells.share(part);
+    watch.end();
+    if (member == 0) make_room(order.cell_count());
+    team_.meet();
+    HostCopies copies(stream);
+    copy_order(order, part, copies);
+    const std::int32_t sides = cells.finish(times);
+    times.find = watch.read();
+    report(0.6);
+    watch.start();
+    DeviceDiagram diagram(part, order.cell_count(), sides, stream);
+    if (!diagram.can_be()) throw LeftOver();
+    const HostCopies::End end(copies);
+    if (member == 0)
+      copies.to_host(cells.offsets().data(), static_cast<std::size_t>(order.cell_count()) + 1, to_.cell_offsets);
+    diagram.number({order.cell_count(), part.cells(), order.at(), order.original(), cells.offsets().data(),
+                    diagram.neighbours(), cells.lists().is_open},
+                   cells.offsets(), cells.lists(), copies, to_);
+    times.unite = watch.lap();
+    report(0.7);
+    copies.finish([&] { report(0.7); });
+    if (!diagram.fits()) throw LeftOver();
+    times.download = watch.lap();
+    team_.meet();
+    if (member == 0)
+      caller_.ask([&](const PlaneTwinCaller& caller) { return caller.cut(caller.self, diagram.sizes()); });
+  }
+
+  template <class Report>
+  DeviceBuffer<double2> upload(cudaStream_t stream, Report&& report) const {
     const auto count = static_cast<std::size_t>(request_.count);
     DeviceBuffer<double2> sites(count, stream);
     HostCopies copies(stream);
@@ -180,30 +200,48 @@ class Builder {
     copies.finish([&] { report(0); });
     return sites;
   }
-  void report(double fraction) const {
-    if (!caller_.keep_going(caller_.self, fraction)) throw Stopped();
+
+  DeviceOrder ordered(const DeviceBuffer<double2>& sites, cudaStream_t stream) {
+    DeviceOrder order(request_.count, stream);
+    const DeviceOrder::Found found = order.find(sites.data(), [&](std::uint32_t* places, std::int32_t* sorted) {
+      caller_.ask([&](const PlaneTwinCaller& caller) { return caller.sort(caller.self, places, sorted); });
+    });
+    constexpr std::int32_t k_fewest = 3;
+    if (found == DeviceOrder::Found::not_for_the_device || order.cell_count() < k_fewest) throw LeftOver();
+    return order;
+  }
+
+  void make_room(std::int32_t cells) {
+    const PlaneTwinSizes most{cells, 3 * cells - 3, 2 * cells};
+    caller_.ask([&](const PlaneTwinCaller& caller) { return caller.make_room(caller.self, most, &to_); });
+  }
+
+  /// Each member copies its share.
+  void copy_order(const DeviceOrder& order, const PlanePart& part, HostCopies& copies) const {
+    const auto copy = [&](const std::int32_t* from, std::int32_t count, std::int32_t* to) {
+      const auto begin = static_cast<std::ptrdiff_t>(static_cast<std::int64_t>(count) * part.member / team_.members());
+      const auto end =
+          static_cast<std::ptrdiff_t>(static_cast<std::int64_t>(count) * (part.member + 1) / team_.members());
+      copies.to_host(from + begin, static_cast<std::size_t>(end - begin), to ? to + begin : to);
+    };
+    copy(order.site_of(), request_.count, to_.site_of);
+    copy(order.cell_places(), request_.count, to_.cell_places);
+    copy(order.original(), order.cell_count(), to_.cell_sites);
   }
 
   const PlaneTwinRequest& request_;
-  const PlaneTwinCaller& caller_;
-  DeviceTimes& times_;
+  DeviceTeam team_;
+  TeamCaller<PlaneTwinCaller> caller_;
+  TeamArrays arrays_;
+  std::vector<DeviceTimes> times_;
+  PlaneTwinArrays to_{};
 };
 
 }  // namespace
 
 TwinStatus find_voronoi_on_device(const PlaneTwinRequest& request, const PlaneTwinCaller& caller, DeviceTimes& times,
                                   TwinReason& reason) {
-  try {
-    Builder(request, caller, times).build();
-    return TwinStatus::done;
-  } catch (const Stopped&) {
-    return TwinStatus::stopped;
-  } catch (const LeftOver&) {
-    return TwinStatus::left;
-  } catch (const std::exception& failure) {
-    reason = failure.what();
-    return TwinStatus::failed;
-  }
+  return twin_status(reason, [&] { times = Builder(request, caller).build(); });
 }
 
 }  // namespace saddleback

@@ -11,8 +11,9 @@ namespace saddleback {
 
 /// Sites are the caller's and live through the call.
 struct PlaneTwinRequest {
-  int device = 0;                 ///< the driver's number
-  std::uint64_t most_bytes = 0;   ///< of device memory; 0: what is free
+  const int* devices = nullptr;  ///< the driver's numbers; one that is named twice takes two parts
+  int device_count = 0;
+  std::uint64_t most_bytes = 0;   ///< of each device's memory; 0: what is free
   const double* sites = nullptr;  ///< (count, 2)
   std::int32_t count = 0;
 };

@@ -76,10 +76,12 @@ class Caller {
 
 }  // namespace
 
-std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, int threads, const JobStage& stage) {
+std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const int> devices, int threads,
+                                      const JobStage& stage) {
   const CudaTwins& twins = loaded_twins();
   PlaneTwinRequest request;
-  request.device = device;
+  request.devices = devices.data();
+  request.device_count = static_cast<int>(devices.size());
   request.most_bytes = cuda_memory_limit();
   request.sites = sites.empty() ? nullptr : sites.front().data();
   request.count = static_cast<std::int32_t>(sites.size());

@@ -2,6 +2,7 @@
 // The plane's diagram found by the twin on a CUDA device.
 
 #include <optional>
+#include <span>
 
 #include "saddleback/voronoi_2d.h"
 
@@ -9,6 +10,7 @@ namespace saddleback::voronoi2d {
 
 /// As voronoi_2d, to the bit; none where it takes the processor: few or scattered sites, all on one line or one circle,
 /// numbers that are too large. \throw DeviceError when the device cannot do it; Cancelled.
-std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, int device, int threads, const JobStage& stage);
+std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const int> devices, int threads,
+                                      const JobStage& stage);
 
 }  // namespace saddleback::voronoi2d

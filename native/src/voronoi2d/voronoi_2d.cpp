@@ -36,8 +36,8 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage) {
   check_options(options, sites.size());
   constexpr std::size_t k_fewest = 3;
-  if (options.cuda_device >= 0 && sites.size() >= k_fewest) {
-    std::optional<Voronoi2d> found = twin_voronoi(sites, options.cuda_device, options.threads, stage);
+  if (!options.cuda_devices.empty() && sites.size() >= k_fewest) {
+    std::optional<Voronoi2d> found = twin_voronoi(sites, options.cuda_devices, options.threads, stage);
     if (found) {
       stage.update(1);
       return std::move(*found);

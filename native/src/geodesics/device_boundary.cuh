@@ -1,0 +1,97 @@
+#pragma once
+// Rows of arcs that several devices found, each those of its own range of nodes. To pair its arcs with their reverses a
+// device needs of the others' rows only the arcs that end in its range: few, since nodes are numbered by place.
+
+#include <vector>
+
+#include "geodesics/device_union.cuh"
+
+namespace saddleback {
+namespace {
+
+/// Of the rows of `nodes`, the arcs that end in `ends`, as rows of their own.
+__global__ void select_arcs(DeviceRows rows, IndexRange nodes, IndexRange ends, DeviceRows chosen) {
+  const int lane = threadIdx.x & 31;
+  const std::int32_t node =
+      nodes.begin + static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
+  if (node >= nodes.end) return;
+  const std::int64_t first = rows.firsts[node];
+  const int count = rows.counts[node];
+  const auto chosen_of = [&](int base) {
+    const bool is_chosen = base + lane < count && ends.holds(rows.targets[first + base + lane]);
+    return __ballot_sync(0xffffffffu, is_chosen);
+  };
+  int total = 0;
+  for (int base = 0; base < count; base += 32) total += __popc(chosen_of(base));
+  const RowPlace row = chosen.reserve(node, total);
+  if (!row.fits) return;
+  std::int64_t at = row.first;
+  for (int base = 0; base < count; base += 32) {
+    const unsigned taken = chosen_of(base);
+    const std::int64_t mine = first + base + lane;
+    if (taken >> lane & 1)
+      chosen.put(at + __popc(taken & ((1u << lane) - 1)), rows.words[mine], rows.back_sectors[mine]);
+    at += __popc(taken);
+  }
+}
+
+__global__ void shift_firsts(std::int64_t* firsts, IndexRange nodes, std::int64_t by) {
+  const std::int32_t node = nodes.begin + static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (node < nodes.end) firsts[node] += by;
+}
+
+/// Of the rows of `nodes`, what another device needs whose range is `ends`. Complete on return.
+inline RowStore rows_across(RowStore& rows, IndexRange nodes, IndexRange ends, cudaStream_t stream) {
+  const auto blocks = static_cast<unsigned>((nodes.count() + k_rows_per_block - 1) / k_rows_per_block);
+  const auto choose = [&](std::int64_t room) {
+    RowStore chosen(rows.nodes(), room, rows.target_mask(), stream);
+    chosen.clear();
+    select_arcs<<<blocks, k_block_threads, 0, stream>>>(rows.view(), nodes, ends, chosen.view());
+    check_cuda(cudaGetLastError(), "choosing arcs");
+    return chosen;
+  };
+  RowStore counted = choose(0);
+  RowStore chosen = choose(counted.words_wanted());
+  check_cuda(cudaStreamSynchronize(stream), "choosing arcs");
+  return chosen;
+}
+
+/// What `there`, on another device, holds of the rows of `nodes`.
+struct RowsThere {
+  int device;
+  IndexRange nodes;
+  RowStore* rows;
+};
+
+/// Adds to `rows`, of `device`, what others have chosen for it. Complete on return.
+inline void add_rows(RowStore& rows, int device, const std::vector<RowsThere>& others, cudaStream_t stream) {
+  std::int64_t taken = rows.words_wanted(), more = 0;
+  for (const RowsThere& other : others) more += other.rows->room();
+  rows.make_room(taken, taken + more);
+  const DeviceRows to = rows.view();
+  const auto copy = [&]<class Number>(Number* into, const Number* from, std::int64_t count, int from_device) {
+    if (count == 0) return;
+    check_cuda(
+        cudaMemcpyPeerAsync(into, device, from, from_device, static_cast<std::size_t>(count) * sizeof(Number), stream),
+        "copying between devices");
+  };
+  for (const RowsThere& other : others) {
+    const IndexRange nodes = other.nodes;
+    if (nodes.count() == 0) continue;
+    const DeviceRows from = other.rows->view();
+    copy(to.words + taken, from.words, other.rows->room(), other.device);
+    copy(to.targets + taken, from.targets, other.rows->room(), other.device);
+    copy(to.back_sectors + taken, from.back_sectors, other.rows->room(), other.device);
+    copy(to.counts + nodes.begin, from.counts + nodes.begin, nodes.count(), other.device);
+    copy(to.firsts + nodes.begin, from.firsts + nodes.begin, nodes.count(), other.device);
+    const auto blocks = static_cast<unsigned>((nodes.count() + k_block_threads - 1) / k_block_threads);
+    shift_firsts<<<blocks, k_block_threads, 0, stream>>>(to.firsts, nodes, taken);
+    check_cuda(cudaGetLastError(), "placing rows");
+    taken += other.rows->room();
+  }
+  rows.set_taken(taken);
+  check_cuda(cudaStreamSynchronize(stream), "copying between devices");
+}
+
+}  // namespace
+}  // namespace saddleback

@@ -1,0 +1,159 @@
+#pragma once
+// One job on several CUDA devices: a thread for each, and moments at which all wait for all.
+
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <numeric>
+#include <span>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "support/cuda_check.h"
+#include "support/device_stream.h"
+
+namespace saddleback {
+
+/// Lets `device` read, over whatever links the two, what another's pool holds; where nothing does, copies go through
+/// the host.
+inline void let_read(int device, int other) {
+  int is_linked = 0;
+  if (device == other) return;
+  check_cuda(cudaDeviceCanAccessPeer(&is_linked, device, other), "asking for links between devices");
+  if (!is_linked) return;
+  cudaMemPool_t pool = nullptr;
+  check_cuda(cudaDeviceGetDefaultMemPool(&pool, other), "asking for the memory pool");
+  cudaMemAccessDesc access{};
+  access.location = {cudaMemLocationTypeDevice, device};
+  access.flags = cudaMemAccessFlagsProtReadWrite;
+  check_cuda(cudaMemPoolSetAccess(pool, &access, 1), "linking devices");
+}
+
+class DeviceTeam {
+ public:
+  explicit DeviceTeam(std::span<const int> devices) : devices_(devices.begin(), devices.end()) {}
+  int members() const { return static_cast<int>(devices_.size()); }
+  int device(int member) const { return devices_[static_cast<std::size_t>(member)]; }
+
+  /// Runs part(member) for all, the first in the calling thread, until all have ended. \throw what the first to fail
+  /// threw.
+  template <class Part>
+  void run(Part&& part) {
+    const auto guarded = [&](int member) {
+      try {
+        part(member);
+      } catch (...) {
+        fail(std::current_exception());
+      }
+    };
+    for (const int device : devices_)
+      for (const int other : devices_) let_read(device, other);
+    {
+      std::vector<std::jthread> others;
+      try {
+        for (int member = 1; member < members(); ++member) others.emplace_back(guarded, member);
+      } catch (...) {
+        fail(std::current_exception());  // or those that run would wait for who never came
+      }
+      guarded(0);
+    }
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+  /// Waits until all are here. \throw Stopped when one of them failed.
+  void meet() {
+    std::unique_lock lock(mutex_);
+    if (++here_ == members()) {
+      here_ = 0;
+      ++meetings_;
+      changed_.notify_all();
+    } else {
+      changed_.wait(lock, [&, met = meetings_] { return meetings_ != met || failure_; });
+    }
+    if (failure_) throw Stopped();
+  }
+  /// \throw Stopped when one of them failed.
+  void check() {
+    const std::lock_guard lock(mutex_);
+    if (failure_) throw Stopped();
+  }
+
+ private:
+  void fail(std::exception_ptr failure) {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::move(failure);
+    changed_.notify_all();
+  }
+
+  std::vector<int> devices_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int here_ = 0, meetings_ = 0;
+  std::exception_ptr failure_;
+};
+
+/// A twin's caller, asked by a team's threads, one at a time.
+template <class Caller>
+class TeamCaller {
+ public:
+  TeamCaller(const Caller& caller, DeviceTeam& team)
+      : caller_(caller), team_(team), done_(static_cast<std::size_t>(team.members())) {}
+
+  /// Tells the share that all have done. \throw Stopped
+  void report(int member, double fraction) {
+    team_.check();
+    ask([&](const Caller& caller) {
+      done_[static_cast<std::size_t>(member)] = fraction;
+      return caller.keep_going(caller.self, std::accumulate(done_.begin(), done_.end(), 0.0) / team_.members());
+    });
+  }
+  /// \throw Stopped when the answer is false.
+  template <class Question>
+  void ask(Question&& question) {
+    const std::lock_guard lock(mutex_);
+    if (!question(caller_)) throw Stopped();
+  }
+
+ private:
+  const Caller& caller_;
+  DeviceTeam& team_;
+  std::mutex mutex_;
+  std::vector<double> done_;  ///< by member
+};
+
+/// Arrays of which every member of a team fills a part, and then has the whole.
+class TeamArrays {
+ public:
+  explicit TeamArrays(DeviceTeam& team) : team_(team), arrays_(static_cast<std::size_t>(team.members())) {}
+
+  void meet() { team_.meet(); }
+  /// By all members: `mine` is the member's own copy of the array, `begins` tell where the parts begin and where the
+  /// last ends. Complete on return.
+  template <class Number>
+  void share(int member, Number* mine, std::span<const std::int32_t> begins, cudaStream_t stream) {
+    const int members = team_.members();
+    if (members == 1) return;
+    arrays_[static_cast<std::size_t>(member)] = mine;
+    check_cuda(cudaStreamSynchronize(stream), "waiting for the device");
+    team_.meet();
+    for (int step = 1; step < members; ++step) {  // each reads from another
+      const int other = (member + step) % members;
+      const auto at = static_cast<std::size_t>(other);
+      const auto begin = static_cast<std::size_t>(begins[at]), end = static_cast<std::size_t>(begins[at + 1]);
+      if (begin == end) continue;
+      check_cuda(
+          cudaMemcpyPeerAsync(mine + begin, team_.device(member), static_cast<const Number*>(arrays_[at]) + begin,
+                              team_.device(other), (end - begin) * sizeof(Number), stream),
+          "copying between devices");
+    }
+    check_cuda(cudaStreamSynchronize(stream), "copying between devices");
+    team_.meet();
+  }
+
+ private:
+  DeviceTeam& team_;
+  std::vector<const void*> arrays_;  ///< by member
+};
+
+}  // namespace saddleback
