@@ -22,10 +22,22 @@ constexpr int k_generations_per_bound = 3;
 // more of both; more lets errors exceed the accuracy here and there.
 constexpr double k_radius_tolerance = 1.5;
 // The same on lattices, and what two shorter arcs may be longer by, as parts of the tolerance. Found on grids of cells
-// from 1 : 1 to 10 : 1, sheared ones too.
-constexpr double k_lattice_radius_tolerance = 0.6, k_lattice_detour = 0.7;
+// from 1 : 1 to 20 : 1.
+constexpr double k_lattice_radius_tolerance = 0.6, k_stretched_radius_tolerance = 0.3, k_lattice_detour = 0.7;
 
-double detour_of(const DiskRule& rule) { return rule.tolerance * (rule.on_lattice ? k_lattice_detour : 1); }
+double radius_tolerance(Lattice lattice) {
+  switch (lattice) {
+    case Lattice::even:
+      return k_lattice_radius_tolerance;
+    case Lattice::stretched:
+      return k_stretched_radius_tolerance;
+    default:
+      return k_radius_tolerance;
+  }
+}
+double detour_of(const DiskRule& rule) {
+  return rule.tolerance * (rule.lattice == Lattice::none ? 1 : k_lattice_detour);
+}
 
 float distance_of(std::int32_t label) { return std::bit_cast<float>(label); }
 std::int32_t label_of(float distance, bool makes_arc) {
@@ -37,9 +49,8 @@ bool makes_arc(std::int32_t label) { return (label & 1) == 0; }
 }  // namespace
 
 WaveScene wave_scene(const WaveMesh& mesh, const DiskRule& rule) {
-  const double radius_tolerance = rule.on_lattice ? k_lattice_radius_tolerance : k_radius_tolerance;
   return {mesh.records(), nullptr, nullptr, static_cast<float>(1 + detour_of(rule)),
-          static_cast<float>(radius_tolerance * rule.tolerance)};
+          static_cast<float>(radius_tolerance(rule.lattice) * rule.tolerance)};
 }
 
 double arc_slack(const DiskRule& rule) { return 1 + std::max(detour_of(rule), k_rounding); }

@@ -8,6 +8,7 @@
 
 #include "saddleback/large_array.h"
 
+#include "geodesics/lattice.h"
 #include "geodesics/wave_columns.h"
 #include "geodesics/wave_mesh.h"
 
@@ -19,7 +20,7 @@ struct DiskRule {
   Index k = 0;
   double tolerance = 0;  ///< relative
   /// On a lattice what follows an arc has the same detour again, and nothing averages out: each must be smaller.
-  bool on_lattice = false;
+  Lattice lattice = Lattice::none;
 };
 
 /// What windows of the rule look up: labels and limits are still to be set.

@@ -102,8 +102,8 @@ void check_mesh_size(const Mesh& mesh) {
 
 }  // namespace
 
-DiskRule disk_rule(Index k, double accuracy, bool on_lattice) {
-  return {.k = k, .tolerance = k_room * accuracy, .on_lattice = on_lattice};
+DiskRule disk_rule(Index k, double accuracy, Lattice lattice) {
+  return {.k = k, .tolerance = k_room * accuracy, .lattice = lattice};
 }
 
 WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,

@@ -36,7 +36,7 @@ struct ArcSearch {
 };
 
 /// What a graph of the given options keeps, of vertices and of other points.
-DiskRule disk_rule(Index k, double accuracy, bool on_lattice = false);
+DiskRule disk_rule(Index k, double accuracy, Lattice lattice = Lattice::none);
 
 /// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
 std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,

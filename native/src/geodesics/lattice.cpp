@@ -2,56 +2,80 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace saddleback {
 namespace {
 
-constexpr double k_straight = 1e-5;  ///< radians: what is rounded counts, what is merely nearly regular does not
+// Radians. What is rounded counts; what is merely nearly regular only where it is stretched: there detours are alike
+// for long enough, as on wavy oblong grids.
+constexpr double k_straight = 1e-5, k_nearly_straight = 0.05;
 constexpr Index k_most_sampled = 1 << 13;
 /// Parts of mechanical shapes are such, too; curved meshes have none but by chance.
 constexpr double k_share = 0.01;
+/// Of what is nearly a lattice. Scans and remeshed models have up to a half.
+constexpr double k_nearly_share = 0.6;
+/// A vertex' longest edge, in its shortest ones, from which on cells are stretched: between those of squares divided by
+/// diagonals and of oblongs of 3 : 1.
+constexpr double k_stretched = 2.5;
 
-/// Whether another edge leaves the target of h in the direction in which h arrives, where nothing bends the surface.
-bool goes_straight_on(const Unfolding& unfolding, Index h) {
+/// What a vertex is part of, if only to k_nearly_straight.
+struct Surroundings {
+  Lattice lattice = Lattice::none;
+  bool nearly = false;
+};
+
+/// Whether another edge leaves the target of h in the direction in which h arrives, where nothing bends the surface;
+/// each to `angle` radians.
+bool goes_straight_on(const Unfolding& unfolding, Index h, double angle) {
   const Mesh& mesh = unfolding.mesh();
   const Index vertex = mesh.to(h);
   constexpr double k_turn = 2 * std::numbers::pi;
-  if (mesh.is_boundary(vertex) || std::abs(mesh.total_angle(vertex) - k_turn) > k_straight) return false;
+  if (mesh.is_boundary(vertex) || std::abs(mesh.total_angle(vertex) - k_turn) > angle) return false;
   const double back = unfolding.polar_of_reverse(h);
   const Index first = mesh.first_halfedge(vertex);
   Index out = first;
   do {
     const double turn = std::abs(unfolding.polar(out) - back);
-    if (std::abs(turn - std::numbers::pi) < k_straight) return true;
+    if (std::abs(turn - std::numbers::pi) < angle) return true;
     out = mesh.rotate(out);
   } while (out != k_none && out != first);
   return false;
 }
 
-bool is_lattice_vertex(const Unfolding& unfolding, Index vertex) {
+Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
   const Mesh& mesh = unfolding.mesh();
-  int edges = 0, straight = 0;
+  int edges = 0, straight = 0, nearly_straight = 0;
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
   const Index first = mesh.first_halfedge(vertex);
   Index h = first;
   do {
     ++edges;
-    straight += goes_straight_on(unfolding, h);
+    straight += goes_straight_on(unfolding, h, k_straight);
+    nearly_straight += goes_straight_on(unfolding, h, k_nearly_straight);
+    shortest = std::min(shortest, mesh.length(h));
+    longest = std::max(longest, mesh.length(h));
     h = mesh.rotate(h);
   } while (h != k_none && h != first);
-  return 2 * straight >= edges;
+  if (2 * nearly_straight < edges) return {};
+  return {longest < k_stretched * shortest ? Lattice::even : Lattice::stretched, 2 * straight < edges};
 }
 
 }  // namespace
 
-bool has_lattice(const Unfolding& unfolding, const JobStage& stage) {
+Lattice lattice_of(const Unfolding& unfolding, const JobStage& stage) {
   const Index count = unfolding.mesh().vertex_count(), stride = std::max<Index>(1, count / k_most_sampled);
-  Index looked_at = 0, found = 0;
+  Index looked_at = 0, even = 0, stretched = 0, nearly_stretched = 0;
   for (Index vertex = 0; vertex < count; vertex += stride, ++looked_at) {
     if (looked_at % 1024 == 0) stage.check();
-    found += is_lattice_vertex(unfolding, vertex);
+    const auto [found, nearly] = surroundings_of(unfolding, vertex);
+    even += found == Lattice::even && !nearly;
+    stretched += found == Lattice::stretched && !nearly;
+    nearly_stretched += found == Lattice::stretched;
   }
-  return found > k_share * looked_at;
+  if (stretched > k_share * looked_at || nearly_stretched > k_nearly_share * looked_at) return Lattice::stretched;
+  return even + stretched > k_share * looked_at ? Lattice::even : Lattice::none;
 }
 
 }  // namespace saddleback

@@ -7,8 +7,14 @@
 
 namespace saddleback {
 
-/// Whether part of the mesh is a lattice: most edges of its vertices go straight on at the next vertex, where the
-/// surface is flat. Looks at a sample of the vertices. O(1). \throw Cancelled.
-bool has_lattice(const Unfolding& unfolding, const JobStage& stage);
+enum class Lattice {
+  none,
+  even,       ///< of cells about as long as wide
+  stretched,  ///< of longer ones
+};
+
+/// What lattice part of the mesh is, the more stretched one of several: most edges of its vertices go straight on at
+/// the next vertex, where the surface is flat. Looks at a sample of the vertices. O(1). \throw Cancelled.
+Lattice lattice_of(const Unfolding& unfolding, const JobStage& stage);
 
 }  // namespace saddleback

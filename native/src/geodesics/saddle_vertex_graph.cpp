@@ -54,7 +54,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const double longest = tables ? longest_path_bound(tables->mesh, options.threads, stage)
                                 : longest_path_bound(mesh, nodes_, vertices_, options.threads, stage);
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
-  const DiskRule rule = disk_rule(k_, accuracy_, accuracy_ > 0 && has_lattice(*unfolding_, stage));
+  const DiskRule rule = disk_rule(k_, accuracy_, accuracy_ > 0 ? lattice_of(*unfolding_, stage) : Lattice::none);
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   if (!options.cuda_devices.empty()) {
     if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
