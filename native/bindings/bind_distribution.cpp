@@ -37,7 +37,8 @@ Args:
     mirror: half of the copies are mirrored, at random.
     bend: copies bend along the field's curves, as `map_shapes` lays them when given the field: for long shapes. Needs a
         field; not with maximal.
-    tolerance: clearance of the proof, as a share of the circumradius of the smallest copy of a kind that might lie there.
+    tolerance: clearance of the proof, as a share of the circumradius, and half of the gap, of the smallest copy of a kind
+        that might lie there.
     threads: 0: all cores. The result is the same for any number.
     job: progress and cancellation.
 

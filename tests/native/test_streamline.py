@@ -135,7 +135,7 @@ def test_fields_that_turn_far_within_a_face_are_followed(turns) -> None:
     mesh = sb.Mesh(*meshes.grid(8, 8))
     field = sb.direction_field(mesh, 1, {42: 1})
     field = sb.DirectionField.from_turns(mesh, field.angles, field.turns + opposite_turns(mesh, 2 * np.pi * turns))
-    for face in (20, 45, 77):
+    for face in range(5, len(mesh.triangles), 9):
         line = sb.streamline(mesh, field, sb.SurfacePoints([face], [[0.3, 0.3, 0.4]]), 0.3)
         pieces = np.diff(line.points, axis=0)
         lengths = np.linalg.norm(pieces, axis=1)

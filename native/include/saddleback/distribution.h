@@ -41,7 +41,8 @@ struct DistributionOptions {
   bool bend = false;
   /// Goes on until nothing more fits, and proves it: see Certificate.
   bool maximal = false;
-  /// Clearance of that proof, as a share of the circumradius of the smallest copy of a kind that might lie there.
+  /// Clearance of that proof, as a share of the circumradius, and half of the gap, of the smallest copy of a kind that
+  /// might lie there.
   double tolerance = 0.01;
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0: all cores; the result is the same for any number

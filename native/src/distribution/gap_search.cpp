@@ -55,9 +55,10 @@ Eigen::Matrix2d turn_of(const Copy& copy) {
 GapSearch::GapSearch(const Mesh& mesh, const PlacingRules& rules, Laying& laying, const DistributionOptions& options)
     : mesh_(&mesh), rules_(&rules), laying_(&laying), options_(&options) {
   if (options.packing > 0) front_ = sweep_coordinate(mesh);
-  if (options.maximal)
-    certificate_.tolerance = options.tolerance * options.smallest *
-                             *std::max_element(options.size.begin(), options.size.end()) * rules.largest_shape_radius();
+  if (options.maximal) {
+    const double size = options.smallest * *std::max_element(options.size.begin(), options.size.end());
+    certificate_.tolerance = options.tolerance * (size * rules.largest_shape_radius() + 0.5 * options.gap);
+  }
   flag_borders();
 }
 

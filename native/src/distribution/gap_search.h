@@ -65,10 +65,11 @@ class GapSearch {
   bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const;
   double order(const SurfacePoint& point, std::uint64_t key) const;
   double tolerance(const CellView& view, const Kind& kind) const {
-    return options_->tolerance * rules_->smallest_factor() * view.size * rules_->shape_radius(kind);
+    const double radius = rules_->smallest_factor() * view.size * rules_->shape_radius(kind);
+    return options_->tolerance * (radius + 0.5 * options_->gap);
   }
   /// Cells so small are given up where shapes cannot be laid.
-  double least_stuck() const { return 8 * options_->tolerance * rules_->smallest_radius(); }
+  double least_stuck() const { return 8 * options_->tolerance * (rules_->smallest_radius() + 0.5 * options_->gap); }
   void lose(const Cell& cell);
 
   const Mesh* mesh_;

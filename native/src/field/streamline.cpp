@@ -19,7 +19,8 @@ constexpr double k_pi = std::numbers::pi;
 constexpr std::int64_t k_max_faces = 1'000'000, k_max_steps = 8'000'000;
 constexpr double k_step = 0.25;            // of a face's size
 constexpr double k_thin = 0.1;             // of the longest edge, a face's size at least: along slivers there is no end
-constexpr double k_most_turn = k_pi;       // within a face; where it is more, whole steps would come to nothing
+constexpr double k_most_turn = k_pi;       // within a face; where it is more, steps are shorter
+constexpr double k_straight = 0.8;         // of its length, how far a step must lead: of a whole turn nothing is left
 constexpr double k_beside = 1e-9;          // share of an edge by which curves keep off its ends
 constexpr double k_inward = 1e-6;          // share of a step by which it leaves the edge that it starts on
 constexpr double k_at_singularity = 0.02;  // share of the edges about it within which a curve has come to a vertex
@@ -119,7 +120,10 @@ class Walk {
       const double left = length_ - travelled_;
       if (left <= 0) return StreamlineEnd::length;
       double length = std::min(left, step_here());
-      Vec2 move = inward(step(length), length);
+      Vec2 move = step(length);
+      while (move.norm() < k_straight * length && length > k_inward * step_) move = step(length *= 0.5);
+      if (move.norm() < k_straight * length) move = straight_step(length = std::min(left, step_here()));
+      move = inward(move, length);
       Exit exit = find_exit(move);
       if (exit.share < 1) {  // once more, only so far as the edge
         length = std::max(length * exit.share, k_inward * step_);
@@ -182,6 +186,12 @@ class Walk {
     const double d = direction(place_ + length * unit(c), c);
     next_heading_ = d;
     return length / 6 * (unit(a) + 2 * unit(b) + 2 * unit(c) + unit(d));
+  }
+
+  /// Through faces so thin that no step is short enough.
+  Vec2 straight_step(double length) {
+    next_heading_ = direction(place_, heading_);
+    return length * unit(next_heading_);
   }
 
   /// A step that starts on an edge leads into the face: where the field runs along the edge rounding must not decide.
