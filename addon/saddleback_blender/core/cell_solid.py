@@ -43,22 +43,25 @@ def raise_surface(fields: Floats, triangles: Ints, height: Floats, underside: bo
     by a copy that was not moved, so that every edge has two triangles; where the border was not raised it is shared.
     """
     parent = np.arange(len(triangles), dtype=np.int32)
-    fields = np.column_stack([fields[:, :6], height])
     if underside:
         start, end, _ = border_edges(triangles, len(fields))
         flat = (height[start] <= 0.0) & (height[end] <= 0.0)
+        fields = np.column_stack([fields[:, :6], height])
         opened = open_chords(fields, triangles, np.stack([start[flat], end[flat]], axis=1))
-        fields, triangles, parent = opened.fields, opened.triangles, opened.parent
+        fields, triangles, parent, height = opened.fields, opened.triangles, opened.parent, opened.fields[:, 6]
     size = len(fields)
-    base, height = fields[:, :3], fields[:, 6]
+    base = fields[:, :3]
     raised = base + height[:, None] * _unit(fields[:, 3:6])
 
-    # Below each vertex stands its foot: a vertex at height zero, or itself where the border was not raised.
+    # Below each vertex that needs one stands its foot, a vertex at height zero; one that was not raised is its own.
     start, end, owner = border_edges(triangles, size)
     is_border = np.zeros(size, dtype=np.bool_)
     is_border[start] = True
-    top = np.arange(size, dtype=np.int32)
-    foot = np.where(is_border & (height <= 0.0), top, top + size).astype(np.int32)
+    stands = is_border & (height > 0.0)
+    if underside:
+        stands |= ~is_border
+    foot = np.arange(size, dtype=np.int32)
+    foot[stands] = size + np.arange(stands.sum(), dtype=np.int32)
 
     first = foot[start] != start
     second = foot[end] != end
@@ -71,4 +74,4 @@ def raise_surface(fields: Floats, triangles: Ints, height: Floats, underside: bo
     if underside:
         pieces.append(foot[triangles[:, ::-1]])
         parents.append(parent)
-    return Solid(np.concatenate([raised, base]), np.concatenate(pieces), np.concatenate(parents))
+    return Solid(np.concatenate([raised, base[stands]]), np.concatenate(pieces), np.concatenate(parents))
