@@ -308,7 +308,8 @@ void WeightedCells::read(Index site, std::vector<Side>& sides) const {
     const Index twin = previous_half(last);
     last = half;
     if (neighbour == far_away()) return;
-    if (neighbour < lowest) lowest = neighbour, first = static_cast<Index>(sides.size());
+    first = neighbour < lowest ? static_cast<Index>(sides.size()) : first;
+    lowest = std::min(lowest, neighbour);
     sides.push_back({neighbour, site < neighbour ? twin : half, mesh_->is_far(half / 4) ? k_none : half / 4});
   });
   std::rotate(sides.begin(), sides.begin() + first, sides.end());

@@ -1,4 +1,4 @@
-// From weighted sites to the numbered diagram: order, find each site's cell for itself, stitch.
+// From weighted sites to the numbered diagram: order, find the cells, number what they share.
 
 #include <algorithm>
 #include <cmath>
