@@ -38,6 +38,21 @@ void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
 }
 
+/// How the time of a build is spread: shares at which the tables are laid and all arcs found.
+struct BuildTimes {
+  double laid = 0, found = 0.99;
+};
+// Microseconds a vertex on one machine, of which only ratios matter; nothing is much beside exact disks.
+BuildTimes build_times(Index k, double accuracy, bool exact) {
+  if (exact) return {};
+  constexpr double k_laying = 0.75;
+  const double fineness = SaddleVertexGraphOptions::k_default_accuracy / accuracy;
+  const double finding = k > 0 ? 0.25 * k : 9.5 * std::pow(fineness, 0.65);
+  const double joining = k > 0 ? 0.014 * k : 0.65 * std::pow(fineness, 0.45);
+  const double all = k_laying + finding + joining;
+  return {k_laying / all, (k_laying + finding) / all};
+}
+
 }  // namespace
 
 SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options, Job* job)
@@ -47,8 +62,11 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
   const JobStage stage(job, "Building the saddle vertex graph");
+  const BuildTimes times = build_times(k_, accuracy_, exact_);
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
+  stage.update(times.laid / 4);
   order_nodes(options.threads, stage);
+  stage.update(times.laid / 2);
   std::optional<WaveTables> tables;
   if (!exact_) tables.emplace(*unfolding_, nodes_, vertices_, options.threads, stage.part(0, 0));
   const double longest = tables ? longest_path_bound(tables->mesh, options.threads, stage)
@@ -63,12 +81,10 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;
   }
-  // Joining takes the rest, and next to nothing beside exact disks.
-  const double found_at = exact_ ? 0.99 : 0.9;
-  const JobStage finding = stage.part(0, found_at);
+  const JobStage finding = stage.part(times.laid, times.found);
   auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, *tables, rule, finding);
   tables.reset();
-  arcs_ = unite_with_reverses(codec, *kernel_, found, k_block, options.threads, stage.part(found_at, 1));
+  arcs_ = unite_with_reverses(codec, *kernel_, found, k_block, options.threads, stage.part(times.found, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 
