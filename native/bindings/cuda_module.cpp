@@ -28,6 +28,8 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
       .def_readonly("reason", &CudaDevices::reason);
   static const saddleback::CudaTwins twins{.find_arcs = &saddleback::find_arcs_on_device,
                                            .find_voronoi = &saddleback::find_voronoi_on_device,
+                                           .drop_voronoi = &saddleback::drop_voronoi_on_device,
+                                           .copy_back = &saddleback::copy_back_from_device,
                                            .put_graph = &saddleback::put_graph_on_device,
                                            .drop_graph = &saddleback::drop_graph_on_device,
                                            .search = &saddleback::search_on_device};

@@ -31,6 +31,7 @@ void bind_graph(py::module_& m);
 void bind_tessellation(py::module_& m);
 void bind_dual_mesh(py::module_& m);
 void bind_triangle_arrays(py::module_& m);
+void bind_device_voronoi_2d(py::module_& m);
 void bind_voronoi_2d(py::module_& m);
 
 namespace {
@@ -111,6 +112,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_hausdorff_distance(m);
   bind_fields(m);
   bind_tessellation(m);
+  bind_device_voronoi_2d(m);
   bind_voronoi_2d(m);
   bind_devices(m);
   bind_charts(m);

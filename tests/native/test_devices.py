@@ -69,6 +69,39 @@ def test_queries_without_a_device_run_on_the_processor_unless_one_is_asked_for(
     assert graph.query_times is None
 
 
+def test_what_stays_on_a_device_needs_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    use_module(monkeypatch, None)
+    sites = np.random.default_rng(0).random((10, 2))
+    with pytest.raises(sb.DeviceError):
+        sb.voronoi_2d_on_device(sites)
+    for device in ("cpu", "auto", "gpu"):
+        with pytest.raises(sb.InputError, match="device: wanted"):
+            sb.voronoi_2d_on_device(sites, device=device)
+    with pytest.raises(sb.InputError, match="sites: wanted"):
+        sb.voronoi_2d_on_device(sites.ravel())
+
+
+class OnSomeDevice:
+    """Describes an array as CuPy would."""
+
+    def __init__(self, **described: Any) -> None:
+        self.__cuda_array_interface__ = {"data": (4096, False), "version": 3} | described
+
+
+@pytest.mark.parametrize(
+    "described",
+    [
+        {"shape": (9,), "typestr": "<f8"},
+        {"shape": (9, 3), "typestr": "<f8"},
+        {"shape": (9, 2), "typestr": "<f4"},
+        {"shape": (9, 2), "typestr": "<f8", "strides": (8, 72)},
+    ],
+)
+def test_sites_on_a_device_have_the_right_shape_and_type(described: dict[str, Any]) -> None:
+    with pytest.raises(sb.InputError, match=r"sites: wanted an \(n, 2\) float64 array"):
+        sb.voronoi_2d_on_device(OnSomeDevice(**described))
+
+
 def test_a_device_number_that_does_not_exist_is_named(mesh: sb.Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
     use_module(monkeypatch, module_with(2))
     with pytest.raises(sb.DeviceError, match=r"no CUDA device 7; the usable ones are 0 to 1"):

@@ -51,6 +51,70 @@ def test_the_device_itself_finds_large_ones(kind: str) -> None:
     assert times is not None and times["find"] > 0 and times["by_processor"] == 0
 
 
+def expect_kept(kept: sb.DeviceVoronoi2d, own: sb.Voronoi2d) -> None:
+    for name in ("vertices", "edges", "edge_sites", "site_of"):
+        assert getattr(kept, name).numpy().tobytes() == getattr(own, name).tobytes(), name
+    offsets, places = kept.cell_offsets.numpy(), kept.cell_places.numpy()
+    corners, sides = kept.corner_vertices.numpy(), kept.side_edges.numpy()
+    for site in np.flatnonzero(own.site_of == np.arange(len(places)))[:2000]:
+        cell = slice(*offsets[places[site] : places[site] + 2])
+        assert kept.cell_sites.numpy()[places[site]] == site
+        np.testing.assert_array_equal(corners[cell], own.cell_vertices(site))
+        np.testing.assert_array_equal(sides[cell], own.cell_edges(site))
+
+
+@pytest.mark.parametrize("n", [300, 3000])
+@pytest.mark.parametrize("kind", ["uniform", "clusters", "grid", "duplicates"])
+def test_what_stays_on_the_device_is_the_same(kind: str, n: int) -> None:
+    sites = make(kind, n, seed=n)
+    own = sb.voronoi_2d(sites, device="cpu")
+    expect_kept(sb.voronoi_2d_on_device(sites), own)
+    assert sb.voronoi_2d_on_device(sites, only_triangles=True).triangles.numpy().tobytes() == own.delaunay.tobytes()
+
+
+def test_the_triangles_alone_of_a_large_one() -> None:
+    sites = make("uniform", 300_000, seed=8)
+    kept = sb.voronoi_2d_on_device(sites, only_triangles=True)
+    np.testing.assert_array_equal(kept.triangles.numpy(), sb.voronoi_2d(sites, device="cpu").delaunay)
+    assert len(kept.vertices) == len(kept.cell_offsets) == 0
+
+
+class There:
+    """Numbers that are on a device, as others tell of them."""
+
+    def __init__(self, array: sb.DeviceArray) -> None:
+        self.__cuda_array_interface__ = array.__cuda_array_interface__
+
+
+def test_sites_that_are_there_already() -> None:
+    dual = sb.voronoi_2d_on_device(make("uniform", 20_000, seed=9))
+    sites = dual.vertices.numpy()
+    expect_kept(sb.voronoi_2d_on_device(There(dual.vertices)), sb.voronoi_2d(sites, device="cpu"))
+
+
+def test_other_libraries_take_what_stays() -> None:
+    cupy = pytest.importorskip("cupy")
+    kept = sb.voronoi_2d_on_device(make("uniform", 5000, seed=10))
+    for name in ("vertices", "edges", "cell_offsets"):
+        array = getattr(kept, name)
+        there, packed = cupy.asarray(array), cupy.from_dlpack(array)
+        copy = array.numpy()
+        assert there.shape == packed.shape == copy.shape == array.shape
+        del array
+        np.testing.assert_array_equal(cupy.asnumpy(there), copy)
+        np.testing.assert_array_equal(cupy.asnumpy(packed), copy)
+    vertices = cupy.from_dlpack(kept.vertices)
+    copy = kept.vertices.numpy()
+    del kept  # what was taken lives on
+    np.testing.assert_array_equal(cupy.asnumpy(vertices), copy)
+
+
+def test_what_a_device_is_not_made_for_does_not_stay() -> None:
+    for sites in (make("collinear", 50, seed=1), [[0, 0], [1, 0]], [[0, 0], [1, np.nan], [2, 1]]):
+        with pytest.raises(sb.DeviceError, match="not made for such sites"):
+            sb.voronoi_2d_on_device(sites)
+
+
 @pytest.mark.parametrize("scale", [1e-60, 1e60, 1e-80])
 def test_any_scale(scale: float) -> None:
     expect_twins(scale * make("uniform", 5000, seed=3))

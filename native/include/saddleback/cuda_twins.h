@@ -11,6 +11,7 @@ struct ArcTwinRequest;
 struct ArcTwinCaller;
 struct PlaneTwinRequest;
 struct PlaneTwinCaller;
+struct KeptPlane;  ///< a diagram's arrays on a device
 struct GraphTwin;  ///< a graph's arcs on a device
 struct GraphTwinRequest;
 struct SearchTwinRequest;
@@ -42,12 +43,15 @@ struct TwinReason {
 
 /// Functions that never throw and keep nothing of what they are given, but for graphs until they are dropped.
 struct CudaTwins {
-  static constexpr int k_version = 4;  ///< of this table and of all that it passes
+  static constexpr int k_version = 5;  ///< of this table and of all that it passes
   int version = k_version;
   /// See geodesics/arc_twin.h.
   TwinStatus (*find_arcs)(const ArcTwinRequest&, const ArcTwinCaller&, DeviceTimes&, TwinReason&) = nullptr;
   /// See voronoi2d/plane_twin.h.
   TwinStatus (*find_voronoi)(const PlaneTwinRequest&, const PlaneTwinCaller&, DeviceTimes&, TwinReason&) = nullptr;
+  void (*drop_voronoi)(KeptPlane*) = nullptr;
+  /// Copies bytes from a device's memory to the host's.
+  TwinStatus (*copy_back)(int device, const void* from, void* to, std::uint64_t bytes, TwinReason&) = nullptr;
   /// See geodesics/search_twin.h.
   TwinStatus (*put_graph)(const GraphTwinRequest&, GraphTwin**, double* seconds, TwinReason&) = nullptr;
   void (*drop_graph)(GraphTwin*) = nullptr;

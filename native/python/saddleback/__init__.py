@@ -11,7 +11,9 @@ from saddleback._saddleback import (
     ClippedCells,
     ConformedPoints,
     CutSurface,
+    DeviceArray,
     DeviceError,
+    DeviceVoronoi2d,
     DirectionField,
     DirectionFieldEditor,
     Distribution,
@@ -85,6 +87,7 @@ from saddleback._saddleback import (
     triangle_quality,
     vertex_normals,
     voronoi_2d,
+    voronoi_2d_on_device,
 )
 from saddleback.density_match import DensityMatch, density_match
 from saddleback.placement_files import read_placement_field, read_placements, write_placements
@@ -104,7 +107,9 @@ __all__ = [
     "CutSurface",
     "DensityMatch",
     "Device",
+    "DeviceArray",
     "DeviceError",
+    "DeviceVoronoi2d",
     "DirectionField",
     "DirectionFieldEditor",
     "Distribution",
@@ -188,5 +193,6 @@ __all__ = [
     "triangle_quality",
     "vertex_normals",
     "voronoi_2d",
+    "voronoi_2d_on_device",
     "write_placements",
 ]

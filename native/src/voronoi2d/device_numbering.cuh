@@ -10,6 +10,7 @@
 #include "support/index_range.cuh"
 #include "voronoi2d/circumcentre_point.h"
 #include "voronoi2d/device_cells.cuh"
+#include "voronoi2d/device_kept.cuh"
 #include "voronoi2d/plane_twin.h"
 
 namespace saddleback::voronoi2d {
@@ -240,6 +241,43 @@ inline void add_up(const DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::i
   });
 }
 
+/// A vertex about which d cells lie has d - 2 triangles.
+__global__ void count_triangles(DeviceCells cells, DeviceNumbers numbers, std::int32_t* counts) {
+  const std::int32_t cell = cells.of_thread();
+  if (cell >= cells.mine.end || numbers.failed_before()) return;
+  std::int32_t mine = 0;
+  for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t corner) {
+    CornerWalk walk{cells, numbers.next_corners, cell, corner};
+    for (walk.step(); walk.corner != corner; walk.step()) ++mine;
+    --mine;
+  });
+  counts[cell] = mine;
+}
+
+/// As Voronoi2d::delaunay: vertex after vertex, fans from the site with the smallest index.
+__global__ void add_triangles(DeviceCells cells, const std::int32_t* triangles_before, DeviceNumbers numbers,
+                              std::int32_t* triangles) {
+  const std::int32_t cell = cells.of_thread();
+  if (cell >= cells.mine.end || numbers.failed_before()) return;
+  std::int64_t at = 3 * static_cast<std::int64_t>(triangles_before[cell]);
+  for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t corner) {
+    CornerWalk walk{cells, numbers.next_corners, cell, corner};
+    CornerWalk first = walk;
+    for (walk.step(); walk.corner != corner; walk.step())
+      if (cells.original[walk.cell] < cells.original[first.cell]) first.cell = walk.cell, first.corner = walk.corner;
+    walk.cell = first.cell, walk.corner = first.corner;
+    walk.step();
+    std::int32_t before = cells.original[walk.cell];
+    for (walk.step(); walk.corner != first.corner; walk.step()) {
+      const std::int32_t next = cells.original[walk.cell];
+      triangles[at++] = cells.original[first.cell];
+      triangles[at++] = before;
+      triangles[at++] = next;
+      before = next;
+    }
+  });
+}
+
 /// A member of a team that finds one diagram: it has the cells from begins[member] to begins[member + 1].
 struct PlanePart {
   TeamArrays& arrays;
@@ -277,6 +315,9 @@ class DeviceDiagram {
         edge_vertices_(size(edges_), stream),
         edge_sites_(size(edges_), stream),
         vertex_places_(size(std::max(vertices_, 0)), stream),
+        next_corners_(size(sides), stream),
+        counts_(size(cells) + 1, stream),
+        before_(size(cells) + 1, stream),
         misfits_(2, stream) {}
 
   /// By Euler's formula.
@@ -284,47 +325,69 @@ class DeviceDiagram {
   const std::int32_t* neighbours() const { return neighbours_.data(); }
   PlaneTwinSizes sizes() const { return {count_, edges_, vertices_}; }
 
-  /// Copies what is done as soon as it is. \throw LeftOver
-  void number(const DeviceCells& cells, const DeviceBuffer<std::int32_t>& offsets, const DeviceLists& lists,
-              HostCopies& copies, const PlaneTwinArrays& to) {
-    const auto places = static_cast<std::size_t>(count_) + 1;
-    DeviceBuffer<std::int32_t> next_corners(size(sides_), stream_), counts(places, stream_), before(places, stream_);
+  /// Joins the cells. \throw LeftOver
+  void join(const DeviceCells& cells, const DeviceBuffer<std::int32_t>& offsets, const DeviceLists& lists) {
     misfits_.fill_bytes(0);
-    counts.fill_bytes(0);
-    if (!part_.is_all()) corner_vertices_.fill_bytes(k_unknown_byte);
-    const DeviceNumbers numbers{next_corners.data(), corner_vertices_.data(), side_edges_.data(), edge_vertices_.data(),
-                                edge_sites_.data(),  vertex_places_.data(),   misfits_.data(),    misfits_.data() + 1};
-    const std::vector<std::int32_t> sides = part_.rows(offsets, sides_);
+    counts_.fill_bytes(0);
+    side_parts_ = part_.rows(offsets, sides_);
     const unsigned blocks = blocks_for(cells.mine.count());
-    gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, neighbours_.data(), counts.data());
+    gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, neighbours_.data(),
+                                                   counts_.data());
     check_cuda(cudaGetLastError(), "gathering cells");
-    part_.arrays.share(part_.member, neighbours_.data(), sides, stream_);
-    add_up_all(counts, before, edges_);
-    const std::vector<std::int32_t> edges = part_.rows(before, edges_);
-    join_sides<<<blocks, k_threads, 0, stream_>>>(cells, before.data(), numbers);
+    part_.arrays.share(part_.member, neighbours_.data(), side_parts_, stream_);
+    add_up_all(edges_);
+    edge_parts_ = part_.rows(before_, edges_);
+    if (!part_.is_all()) corner_vertices_.fill_bytes(k_unknown_byte);
+    join_sides<<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
     check_cuda(cudaGetLastError(), "joining cells");
-    copy<1>(copies, side_edges_, part_.range(sides), to.side_edges);
     expect_sum<<<1, 1, 0, stream_>>>(misfits_.data() + 1, 0, misfits_.data());
     check_cuda(cudaGetLastError(), "joining cells");
     agree();
-    count_vertices<<<blocks, k_threads, 0, stream_>>>(cells, numbers, counts.data());
+  }
+
+  /// Copies what is done as soon as it is. \throw LeftOver
+  void number(const DeviceCells& cells, HostCopies& copies, const PlaneTwinArrays& to) {
+    const unsigned blocks = blocks_for(cells.mine.count());
+    copy<1>(copies, side_edges_, part_.range(side_parts_), to.side_edges);
+    count_vertices<<<blocks, k_threads, 0, stream_>>>(cells, numbers(), counts_.data());
     check_cuda(cudaGetLastError(), "counting vertices");
-    add_up_all(counts, before, vertices_);
-    const std::vector<std::int32_t> vertices = part_.rows(before, vertices_);
+    add_up_all(vertices_);
+    const std::vector<std::int32_t> vertices = part_.rows(before_, vertices_);
     agree();
-    add_vertices<<<blocks, k_threads, 0, stream_>>>(cells, before.data(), numbers);
+    add_vertices<<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
     check_cuda(cudaGetLastError(), "placing vertices");
     copy<2>(copies, vertex_places_, part_.range(vertices), to.vertices);
     if (!part_.is_all()) {
-      add_vertices_from_elsewhere<<<blocks, k_threads, 0, stream_>>>(cells, before.data(), numbers);
+      add_vertices_from_elsewhere<<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
       check_cuda(cudaGetLastError(), "numbering vertices");
     }
-    copy<1>(copies, corner_vertices_, part_.range(sides), to.corner_vertices);
-    const IndexRange own = part_.range(edges);
-    add_ends<<<blocks_for(own.count()), k_threads, 0, stream_>>>(own, numbers);
+    copy<1>(copies, corner_vertices_, part_.range(side_parts_), to.corner_vertices);
+    const IndexRange own = part_.range(edge_parts_);
+    add_ends<<<blocks_for(own.count()), k_threads, 0, stream_>>>(own, numbers());
     check_cuda(cudaGetLastError(), "numbering edges");
     copy<2>(copies, edge_vertices_, own, to.edges);
     copy<2>(copies, edge_sites_, own, to.edge_sites);
+  }
+
+  /// The Delaunay triangles of joined cells. Waits for the device. \throw LeftOver
+  DeviceBuffer<std::int32_t> triangles(const DeviceCells& cells) {
+    const unsigned blocks = blocks_for(cells.mine.count());
+    count_triangles<<<blocks, k_threads, 0, stream_>>>(cells, numbers(), counts_.data());
+    check_cuda(cudaGetLastError(), "counting triangles");
+    add_up(counts_, before_, stream_);
+    if (!fits()) throw LeftOver();
+    DeviceBuffer<std::int32_t> found(3 * size(before_.value_at(size(count_))), stream_);
+    add_triangles<<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers(), found.data());
+    check_cuda(cudaGetLastError(), "listing triangles");
+    return found;
+  }
+
+  void hand_over(KeptPlane& to) {
+    to.corner_vertices = std::move(corner_vertices_);
+    to.side_edges = std::move(side_edges_);
+    to.edges = std::move(edge_vertices_);
+    to.edge_sites = std::move(edge_sites_);
+    to.vertices = std::move(vertex_places_);
   }
 
   /// Waits for the stream.
@@ -333,11 +396,15 @@ class DeviceDiagram {
  private:
   static std::size_t size(std::int32_t count) { return static_cast<std::size_t>(count); }
 
+  DeviceNumbers numbers() {
+    return {next_corners_.data(), corner_vertices_.data(), side_edges_.data(), edge_vertices_.data(),
+            edge_sites_.data(),   vertex_places_.data(),   misfits_.data(),    misfits_.data() + 1};
+  }
   /// Sums of what all members have counted; the last is the total.
-  void add_up_all(DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::int32_t>& sums, std::int32_t total) {
-    part_.arrays.share(part_.member, counts.data(), part_.begins, stream_);
-    add_up(counts, sums, stream_);
-    expect_sum<<<1, 1, 0, stream_>>>(sums.data() + count_, total, misfits_.data());
+  void add_up_all(std::int32_t total) {
+    part_.arrays.share(part_.member, counts_.data(), part_.begins, stream_);
+    add_up(counts_, before_, stream_);
+    expect_sum<<<1, 1, 0, stream_>>>(before_.data() + count_, total, misfits_.data());
     check_cuda(cudaGetLastError(), "counting");
   }
   /// Several go on only where all fits with all: a walk about a vertex would not end otherwise.
@@ -358,7 +425,9 @@ class DeviceDiagram {
   DeviceBuffer<std::int32_t> neighbours_, corner_vertices_, side_edges_;
   DeviceBuffer<int2> edge_vertices_, edge_sites_;
   DeviceBuffer<double2> vertex_places_;
+  DeviceBuffer<std::int32_t> next_corners_, counts_, before_;
   DeviceBuffer<int> misfits_;
+  std::vector<std::int32_t> side_parts_, edge_parts_;  ///< where the members' sides and edges begin
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "support/device_buffer.h"
 #include "voronoi2d/curve_place.h"
+#include "voronoi2d/device_kept.cuh"
 
 namespace saddleback::voronoi2d {
 namespace {
@@ -227,6 +228,11 @@ class DeviceOrder {
     return Found::order;
   }
 
+  void hand_over(KeptPlane& to) {
+    to.site_of = std::move(site_of_);
+    to.cell_places = std::move(cell_places_);
+    to.cell_sites = std::move(original_);
+  }
   std::int32_t cell_count() const { return cell_count_; }
   const double2* at() const { return at_.data(); }
   const std::int32_t* original() const { return original_.data(); }

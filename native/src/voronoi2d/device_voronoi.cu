@@ -1,6 +1,10 @@
 // Voronoi diagrams of the plane on a CUDA device: order, cells by tiles, cells that these could not tell, numbers. The
 // answer is the processor's, to the bit.
 
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "support/device_stream.h"
@@ -101,6 +105,7 @@ class CellFinder {
     return sides;
   }
   const DeviceBuffer<std::int32_t>& offsets() const { return offsets_; }
+  DeviceBuffer<std::int32_t> take_offsets() { return std::move(offsets_); }
 
   DeviceLists lists() {
     return {slots_.data(),
@@ -152,12 +157,19 @@ class Builder {
     keep_freed_memory(device);
     const auto report = [&](double fraction) { caller_.report(member, fraction); };
     DeviceTimes& times = times_[static_cast<std::size_t>(member)];
-    const Stream stream;
+    auto own_stream = std::make_unique<Stream>();
+    const cudaStream_t stream = *own_stream;
     Stopwatch watch(stream);
-    const DeviceBuffer<double2> sites = upload(stream, report);
+    DeviceBuffer<double2> uploaded;
+    if (request_.sites_are_there) {
+      expect_sites_on(device);
+    } else {
+      uploaded = upload(stream, report);
+    }
     times.upload = watch.lap();
     report(0.1);
-    const DeviceOrder order = ordered(sites, stream);
+    DeviceOrder order =
+        ordered(request_.sites_are_there ? reinterpret_cast<const double2*>(request_.sites) : uploaded.data(), stream);
     times.order = watch.lap();
     report(0.2);
     CellFinder cells(order, team_.members(), stream);
@@ -165,7 +177,7 @@ class Builder {
     cells.start(member, device, [&](double done) { report(0.2 + 0.3 * done); });
     cells.share(part);
     watch.end();
-    if (member == 0) make_room(order.cell_count());
+    if (member == 0 && !request_.kept) make_room(order.cell_count());
     team_.meet();
     HostCopies copies(stream);
     copy_order(order, part, copies);
@@ -178,17 +190,43 @@ class Builder {
     const HostCopies::End end(copies);
     if (member == 0)
       copies.to_host(cells.offsets().data(), static_cast<std::size_t>(order.cell_count()) + 1, to_.cell_offsets);
-    diagram.number({order.cell_count(), part.cells(), order.at(), order.original(), cells.offsets().data(),
-                    diagram.neighbours(), cells.lists().is_open},
-                   cells.offsets(), cells.lists(), copies, to_);
+    const DeviceCells rows{order.cell_count(),     part.cells(),         order.at(),           order.original(),
+                           cells.offsets().data(), diagram.neighbours(), cells.lists().is_open};
+    diagram.join(rows, cells.offsets(), cells.lists());
+    DeviceBuffer<std::int32_t> triangles;
+    if (request_.kept && request_.only_triangles) {
+      triangles = diagram.triangles(rows);
+    } else {
+      diagram.number(rows, copies, to_);
+    }
     times.unite = watch.lap();
     report(0.7);
     copies.finish([&] { report(0.7); });
     if (!diagram.fits()) throw LeftOver();
     times.download = watch.lap();
+    if (request_.kept) {
+      auto kept = std::make_unique<KeptPlane>(std::move(own_stream), device);
+      kept->triangles = std::move(triangles);
+      if (!request_.only_triangles) {
+        diagram.hand_over(*kept);
+        order.hand_over(*kept);
+        kept->cell_offsets = cells.take_offsets();
+      }
+      return tell_kept(std::move(kept), diagram.sizes());
+    }
     team_.meet();
     if (member == 0)
       caller_.ask([&](const PlaneTwinCaller& caller) { return caller.cut(caller.self, diagram.sizes()); });
+  }
+
+  /// Whoever wrote them there may still be at it.
+  void expect_sites_on(int device) const {
+    cudaPointerAttributes attributes{};
+    check_cuda(cudaPointerGetAttributes(&attributes, request_.sites), "looking for the sites");
+    if (attributes.type != cudaMemoryTypeManaged && attributes.device != device)
+      throw std::runtime_error("the sites are on device " + std::to_string(attributes.device) + ", not on " +
+                               std::to_string(device));
+    check_cuda(cudaDeviceSynchronize(), "waiting for the sites");
   }
 
   template <class Report>
@@ -201,9 +239,32 @@ class Builder {
     return sites;
   }
 
-  DeviceOrder ordered(const DeviceBuffer<double2>& sites, cudaStream_t stream) {
+  /// What stays, and its stream, outlive all else.
+  void tell_kept(std::unique_ptr<KeptPlane> kept, const PlaneTwinSizes& sizes) const {
+    check_cuda(cudaStreamSynchronize(*kept->stream), "waiting for the device");
+    *request_.kept = {kept.get(),
+                      sizes.cells,
+                      2 * sizes.edges,
+                      sizes.edges,
+                      sizes.vertices,
+                      static_cast<std::int32_t>(kept->triangles.size() / 3),
+                      kept->site_of.data(),
+                      kept->cell_places.data(),
+                      kept->cell_sites.data(),
+                      kept->cell_offsets.data(),
+                      kept->corner_vertices.data(),
+                      kept->side_edges.data(),
+                      reinterpret_cast<const std::int32_t*>(kept->edges.data()),
+                      reinterpret_cast<const std::int32_t*>(kept->edge_sites.data()),
+                      reinterpret_cast<const double*>(kept->vertices.data()),
+                      kept->triangles.data()};
+    kept.release();
+  }
+
+  DeviceOrder ordered(const double2* sites, cudaStream_t stream) {
     DeviceOrder order(request_.count, stream);
-    const DeviceOrder::Found found = order.find(sites.data(), [&](std::uint32_t* places, std::int32_t* sorted) {
+    const DeviceOrder::Found found = order.find(sites, [&](std::uint32_t* places, std::int32_t* sorted) {
+      if (request_.sites_are_there) throw LeftOver();
       caller_.ask([&](const PlaneTwinCaller& caller) { return caller.sort(caller.self, places, sorted); });
     });
     constexpr std::int32_t k_fewest = 3;
@@ -242,6 +303,21 @@ class Builder {
 TwinStatus find_voronoi_on_device(const PlaneTwinRequest& request, const PlaneTwinCaller& caller, DeviceTimes& times,
                                   TwinReason& reason) {
   return twin_status(reason, [&] { times = Builder(request, caller).build(); });
+}
+
+void drop_voronoi_on_device(KeptPlane* kept) {
+  if (cudaSetDevice(kept->device) != cudaSuccess) (void)cudaGetLastError();
+  delete kept;
+}
+
+TwinStatus copy_back_from_device(int device, const void* from, void* to, std::uint64_t bytes, TwinReason& reason) {
+  return twin_status(reason, [&] {
+    check_cuda(cudaSetDevice(device), "choosing the device");
+    const Stream stream;
+    HostCopies copies(stream);
+    copies.to_host(static_cast<const char*>(from), static_cast<std::size_t>(bytes), to);
+    copies.finish();
+  });
 }
 
 }  // namespace saddleback

@@ -9,6 +9,19 @@
 
 namespace saddleback {
 
+struct KeptPlane;  ///< the owner of what stays on a device
+
+/// A diagram, or its Delaunay triangles alone, left on a device, as Voronoi2d has them. Complete: there is nothing to
+/// wait for.
+struct DevicePlane {
+  KeptPlane* owner;  ///< until drop_voronoi
+  std::int32_t cells, sides, edges, vertices, triangles;
+  const std::int32_t *site_of, *cell_places, *cell_sites, *cell_offsets, *corner_vertices, *side_edges;
+  const std::int32_t *edge_vertices, *edge_sites;  ///< two each
+  const double* vertex_places;                     ///< two each
+  const std::int32_t* triangle_sites;              ///< three each
+};
+
 /// Sites are the caller's and live through the call.
 struct PlaneTwinRequest {
   const int* devices = nullptr;  ///< the driver's numbers; one that is named twice takes two parts
@@ -16,6 +29,9 @@ struct PlaneTwinRequest {
   std::uint64_t most_bytes = 0;   ///< of each device's memory; 0: what is free
   const double* sites = nullptr;  ///< (count, 2)
   std::int32_t count = 0;
+  bool sites_are_there = false;  ///< in the memory of the one device
+  DevicePlane* kept = nullptr;   ///< where the diagram is told that stays on the one device; null: it comes back
+  bool only_triangles = false;   ///< of what stays
 };
 
 struct PlaneTwinSizes {
