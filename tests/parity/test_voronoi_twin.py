@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import importlib.util
+import subprocess
+import sys
 import threading
 import time
 
@@ -87,26 +90,36 @@ class There:
 
 
 def test_sites_that_are_there_already() -> None:
-    dual = sb.voronoi_2d_on_device(make("uniform", 20_000, seed=9))
+    dual = sb.voronoi_2d_on_device(make("grid", 20_000, seed=9))
     sites = dual.vertices.numpy()
     expect_kept(sb.voronoi_2d_on_device(There(dual.vertices)), sb.voronoi_2d(sites, device="cpu"))
 
 
-def test_other_libraries_take_what_stays() -> None:
-    cupy = pytest.importorskip("cupy")
-    kept = sb.voronoi_2d_on_device(make("uniform", 5000, seed=10))
-    for name in ("vertices", "edges", "cell_offsets"):
-        array = getattr(kept, name)
-        there, packed = cupy.asarray(array), cupy.from_dlpack(array)
-        copy = array.numpy()
-        assert there.shape == packed.shape == copy.shape == array.shape
-        del array
-        np.testing.assert_array_equal(cupy.asnumpy(there), copy)
-        np.testing.assert_array_equal(cupy.asnumpy(packed), copy)
-    vertices = cupy.from_dlpack(kept.vertices)
-    copy = kept.vertices.numpy()
-    del kept  # what was taken lives on
-    np.testing.assert_array_equal(cupy.asnumpy(vertices), copy)
+TAKES = """
+import numpy as np
+import {library}
+import saddleback as sb
+
+kept = sb.voronoi_2d_on_device(np.random.default_rng(10).random((5000, 2)))
+for array in (kept.vertices, kept.edges, kept.cell_offsets):
+    for taken in ({library}.{take}, {library}.from_dlpack(array)):
+        assert tuple(taken.shape) == array.shape
+        np.testing.assert_array_equal(taken.{back}(), array.numpy())
+vertices, copy = {library}.from_dlpack(kept.vertices), kept.vertices.numpy()
+del kept, array, taken  # what was taken lives on
+np.testing.assert_array_equal(vertices.{back}(), copy)
+"""
+
+
+@pytest.mark.parametrize(
+    ("library", "take", "back"),
+    [("cupy", "asarray(array)", "get"), ("torch", "as_tensor(array, device='cuda')", "cpu().numpy")],
+)
+def test_other_libraries_take_what_stays(library: str, take: str, back: str) -> None:
+    if importlib.util.find_spec(library) is None:
+        pytest.skip(f"{library} is not installed")
+    code = TAKES.format(library=library, take=take, back=back)
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 
 def test_what_a_device_is_not_made_for_does_not_stay() -> None:
