@@ -34,7 +34,9 @@ SitesIn as_sites_anywhere(const py::object& value) {
     throw InputError(message("sites: wanted an (n, 2) float64 array in row order on the device, got one of shape ",
                              py::str(described["shape"]).cast<std::string>(), " and type ", type));
   }
-  sites.data = reinterpret_cast<const double*>(described["data"].cast<py::tuple>()[0].cast<std::uintptr_t>());
+  const py::object address = described["data"].cast<py::tuple>()[0];
+  sites.data = static_cast<const double*>(PyLong_AsVoidPtr(address.ptr()));
+  if (PyErr_Occurred()) throw py::error_already_set();
   sites.count = shape[0];
   sites.are_there = true;
   return sites;

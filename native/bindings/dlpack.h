@@ -52,7 +52,6 @@ inline py::capsule dlpack_of(const DeviceArray& array) {
                           .shape = held->shape.data(),
                           .strides = nullptr,
                           .byte_offset = 0};
-  held->managed.context = held.get();
   held->managed.deleter = [](DlpackManagedTensor* managed) { delete static_cast<DlpackArray*>(managed->context); };
   // Who takes it renames the capsule, and calls the deleter when done.
   const auto destroy = [](PyObject* capsule) {
@@ -60,9 +59,10 @@ inline py::capsule dlpack_of(const DeviceArray& array) {
     auto* const managed = static_cast<DlpackManagedTensor*>(PyCapsule_GetPointer(capsule, "dltensor"));
     managed->deleter(managed);
   };
-  PyObject* const capsule = PyCapsule_New(&held->managed, "dltensor", destroy);
+  DlpackManagedTensor* const managed = &held->managed;
+  PyObject* const capsule = PyCapsule_New(managed, "dltensor", destroy);
   if (!capsule) throw py::error_already_set();
-  held.release();
+  managed->context = held.release();  // the taker's, or the capsule's
   return py::reinterpret_steal<py::capsule>(capsule);
 }
 

@@ -77,14 +77,15 @@ QUIT = """
     import bpy
     bpy.ops.preferences.addon_enable(module="saddleback_blender")
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    bpy.context.preferences.addons["saddleback_blender"].preferences.threads = 1
     from scenes import grid
     from test_modal import pressed_tessellate
-    grid(n=150)
-    operator, context = pressed_tessellate(count=200, iterations=200, k=80)
+    grid(n=300)
+    operator, context = pressed_tessellate(count=200, iterations=200, k=600)
     assert operator.invoke(context, None) == {{"RUNNING_MODAL"}}
     time.sleep({moment})
     assert not operator._task.done
-    print("still computing", flush=True)
+    print("quits at", time.monotonic(), flush=True)
 """
 
 
@@ -96,10 +97,10 @@ def test_quitting_during_a_run_is_clean_and_quick(tmp_path, moment):
     script.write_text(textwrap.dedent(QUIT.format(folders=folders, moment=moment)))
     binary = bpy.app.binary_path
     command = [binary, "-b", "--factory-startup", "--python-exit-code", "9", "--python"] if binary else [sys.executable]
-    start = time.monotonic()
     done = subprocess.run(
         [*command, str(script)], capture_output=True, text=True, timeout=120, env={**os.environ}, check=False
     )
     assert done.returncode == 0, done.stderr[-2000:]
-    assert "still computing" in done.stdout
-    assert time.monotonic() - start < 60  # the run itself would take minutes
+    ended = time.monotonic()
+    quits_at = next(line.split()[-1] for line in done.stdout.splitlines() if line.startswith("quits at"))
+    assert ended - float(quits_at) < 8  # the run itself takes longer
