@@ -102,6 +102,14 @@ def test_sites_on_a_device_have_the_right_shape_and_type(described: dict[str, An
         sb.voronoi_2d_on_device(OnSomeDevice(**described))
 
 
+def test_sites_on_a_device_have_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(sb.InputError, match="sites: their address"):
+        sb.voronoi_2d_on_device(OnSomeDevice(shape=(9, 2), typestr="<f8", data=(None, False)))
+    use_module(monkeypatch, None)  # a right one is read, and only then is the device asked for
+    with pytest.raises(sb.DeviceError):
+        sb.voronoi_2d_on_device(OnSomeDevice(shape=(9, 2), typestr="<f8"))
+
+
 def test_a_device_number_that_does_not_exist_is_named(mesh: sb.Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
     use_module(monkeypatch, module_with(2))
     with pytest.raises(sb.DeviceError, match=r"no CUDA device 7; the usable ones are 0 to 1"):

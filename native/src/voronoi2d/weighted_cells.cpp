@@ -26,21 +26,16 @@ class CellFinder {
 
   /// Collects the rows of sites that matter to the sites of a block, if their cells are not larger than usual.
   void open_block(Index begin, Index end) {
-    double low[2] = {points_[begin].x, points_[begin].y}, high[2] = {low[0], low[1]}, lightest = points_[begin].weight;
-    for (Index i = begin; i < end; ++i) {
-      low[0] = std::min(low[0], points_[i].x), high[0] = std::max(high[0], points_[i].x);
-      low[1] = std::min(low[1], points_[i].y), high[1] = std::max(high[1], points_[i].y);
-      lightest = std::min(lightest, points_[i].weight);
-    }
-    const double width = high[0] - low[0], height = high[1] - low[1], x = 0.5 * (low[0] + high[0]),
-                 y = 0.5 * (low[1] + high[1]);
+    const WeightedBox block(points_.subspan(begin, end - begin));
+    const double width = block.high[0] - block.low[0], height = block.high[1] - block.low[1],
+                 x = 0.5 * (block.low[0] + block.high[0]), y = 0.5 * (block.low[1] + block.high[1]);
     constexpr double k_usual = 4;  // mean distances: a cell's farthest point, twice
     usual_far_ = k_usual * std::sqrt(width / (end - begin) * height);
     const double around = 0.5 * std::sqrt(width * width + height * height) + usual_far_;
     rows_.clear();
     tree_.visit(
         [&](const DiskTree::Disk& disk) {
-          return is_within(disk.x - x, disk.y - y, around + slack_ + (disk.radius - lightest));
+          return is_within(disk.x - x, disk.y - y, around + slack_ + (disk.radius - block.lightest));
         },
         [&](Index row) { rows_.push_back(row); });
   }

@@ -92,19 +92,14 @@ class HiddenFinder {
 
   /// Collects the rows of sites whose disks reach into the block's box.
   void open_block(Index begin, Index end) {
-    double low[2] = {points_[begin].x, points_[begin].y}, high[2] = {low[0], low[1]}, lightest = points_[begin].weight;
-    for (Index i = begin; i < end; ++i) {
-      low[0] = std::min(low[0], points_[i].x), high[0] = std::max(high[0], points_[i].x);
-      low[1] = std::min(low[1], points_[i].y), high[1] = std::max(high[1], points_[i].y);
-      lightest = std::min(lightest, points_[i].weight);
-    }
+    const WeightedBox block(points_.subspan(begin, end - begin));
     rows_.clear();
     disks_.clear();
     tree_.visit(
         [&](const DiskTree::Disk& disk) {
-          const double x = std::max({low[0] - disk.x, disk.x - high[0], 0.0}),
-                       y = std::max({low[1] - disk.y, disk.y - high[1], 0.0});
-          return is_within(x, y, disk.radius - lightest);
+          const double x = std::max({block.low[0] - disk.x, disk.x - block.high[0], 0.0}),
+                       y = std::max({block.low[1] - disk.y, disk.y - block.high[1], 0.0});
+          return is_within(x, y, disk.radius - block.lightest);
         },
         [&](Index row) {
           rows_.push_back(row);

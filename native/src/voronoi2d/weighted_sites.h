@@ -27,6 +27,21 @@ struct WeightedSites {
   Index count() const { return static_cast<Index>(points.size()); }
 };
 
+/// The box about some sites, and the least of their weights.
+struct WeightedBox {
+  double low[2], high[2], lightest;
+
+  /// Of at least one.
+  explicit WeightedBox(std::span<const predicates::WeightedPoint2> points)
+      : low{points[0].x, points[0].y}, high{low[0], low[1]}, lightest(points[0].weight) {
+    for (const predicates::WeightedPoint2& point : points) {
+      low[0] = std::min(low[0], point.x), high[0] = std::max(high[0], point.x);
+      low[1] = std::min(low[1], point.y), high[1] = std::max(high[1], point.y);
+      lightest = std::min(lightest, point.weight);
+    }
+  }
+};
+
 /// \throw InputError naming the first wrong coordinate or weight. O(n log n). \throw Cancelled
 WeightedSites order_weighted_sites(std::span<const Vec2> sites, std::span<const double> weights, int threads,
                                    const JobStage& stage);
