@@ -67,7 +67,7 @@ def write_polygons(
     colors = cell_colors(count, neighbours)
     compat.shade_flat(mesh)
     _mark_cells(mesh, cells.polygon_cell)
-    _write_colors(mesh, "CORNER", colors[np.repeat(cells.polygon_cell, np.diff(cells.offsets))])
+    _write_colors(mesh, colors[np.repeat(cells.polygon_cell, np.diff(cells.offsets))])
     item = _shown(context, source, role, mesh, place)
     item[VANISHED] = vanished
     return item
@@ -89,11 +89,7 @@ def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray, is_smooth:
     mesh = _new_mesh(positions)
     compat.write_corners(mesh, cells.triangles)
     _mark_cells(mesh, cells.triangle_cell)
-    vertex_cell = cells.vertex_cell
-    if vertex_cell is None:
-        _write_colors(mesh, "CORNER", colors[np.repeat(cells.triangle_cell, 3)])
-    else:
-        _write_colors(mesh, "POINT", colors[vertex_cell])
+    _write_colors(mesh, colors[np.repeat(cells.triangle_cell, 3)])
     if is_smooth:
         compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
     else:
@@ -121,8 +117,8 @@ def _mark_cells(mesh: bpy.types.Mesh, face_cell: np.ndarray) -> None:
     set_attribute(mesh, CELL_ATTRIBUTE, "FACE", face_cell)
 
 
-def _write_colors(mesh: bpy.types.Mesh, domain: str, colors: np.ndarray) -> None:
-    """Of vertices, or of corners where cells share vertices: Blender does not show colours of faces."""
-    color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", domain)
+def _write_colors(mesh: bpy.types.Mesh, colors: np.ndarray) -> None:
+    """Of corners, as scripts find them whether cells share vertices or not; Blender does not show colours of faces."""
+    color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
     color.data.foreach_set("color", np.column_stack([colors, np.ones(len(colors))]).astype(np.float32).ravel())
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)

@@ -62,13 +62,6 @@ class CellMesh:
     triangle_cell: Ints
     vanished: Ints
 
-    @property
-    def vertex_cell(self) -> Ints | None:
-        """The cell of each vertex (n,), or None where cells share vertices."""
-        cell = np.zeros(len(self.vertices), np.int32)
-        cell[self.triangles.ravel()] = np.repeat(self.triangle_cell, 3)
-        return cell if np.array_equal(cell[self.triangles], np.repeat(self.triangle_cell, 3).reshape(-1, 3)) else None
-
 
 @dataclass(frozen=True)
 class CellPieces:
