@@ -4,7 +4,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from scenes import add_object, fingerprint, grid, grid_arrays, select, sphere
+from scenes import add_object, fingerprint, grid, grid_arrays, positions, select, sphere
 
 from saddleback_blender import jobs
 from saddleback_blender.bridge.out_collection import find_output, outputs_of
@@ -159,6 +159,19 @@ def test_with_modifiers_it_runs_on_what_they_make():
     bpy.ops.saddleback.path(use_modifiers=True, k=20)
     ((points, _),) = splines(find_output(item, "paths"))
     assert np.linalg.norm(points, axis=1).max() == pytest.approx(3.0, rel=0.05)
+
+
+def test_exact_paths_are_the_shortest():
+    item = sphere(subdivisions=4)
+    select(item, [0, 200])
+    lengths = {}
+    for quality in ("FAST", "EXACT"):
+        bpy.ops.saddleback.path(quality=quality, shorten=False)
+        lengths[quality] = find_output(item, "paths")["saddleback_length"]
+    assert item.saddleback.path.quality == "EXACT"
+    assert lengths["EXACT"] <= lengths["FAST"] <= 1.02 * lengths["EXACT"]
+    places = positions(item.data)
+    assert lengths["EXACT"] == pytest.approx(np.arccos(places[0] @ places[200]), rel=0.01)
 
 
 def refuse(*sentences, **options):

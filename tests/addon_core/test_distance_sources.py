@@ -7,7 +7,7 @@ import pytest
 from saddleback_blender.core import runs
 from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.curve_points import places_along
-from saddleback_blender.core.requests import DistanceRequest, Polyline
+from saddleback_blender.core.requests import DistanceRequest, Polyline, Surface
 from saddleback_blender.core.settings import DistanceSettings
 
 
@@ -34,6 +34,17 @@ def test_distance_to_a_curve_and_not_to_its_points(quality):
     line = Polyline(np.array([[-0.2, 0.33, 0.5], [1.3, 0.33, 0.5]]), False)
     values = distance(surface, (line,), quality=quality).vertex_distance
     np.testing.assert_allclose(values, np.abs(surface.vertices[:, 1] - 0.33), atol=5e-3)
+
+
+def test_a_curve_is_the_same_for_exact_distances():
+    """A line through the air above a ditch leaps from wall to wall; the little way between is joined for both."""
+    surface = shapes.grid(40)
+    places = np.column_stack([surface.vertices[:, :2], 0.3 * np.abs(surface.vertices[:, 0] - 0.5)])
+    surface = Surface("Ditch", places, surface.triangles, len(places))
+    line = (Polyline(np.array([[0.1, 0.52, 0.25], [0.9, 0.52, 0.25]]), False),)
+    exact = distance(surface, line, quality="EXACT").vertex_distance
+    near = distance(surface, line, quality="FINE").vertex_distance
+    np.testing.assert_allclose(near, exact, rtol=2e-3, atol=1 / 40 / 16)
 
 
 def test_several_curves_and_closed_ones():

@@ -4,6 +4,7 @@ import meshes_of_core as shapes
 import numpy as np
 import pytest
 
+import saddleback as sb
 from saddleback_blender.core import path_runs, runs
 from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.errors import BadInputError
@@ -89,6 +90,26 @@ def test_no_path_is_shorter_than_the_distance(shorten):
     for length, (a, b) in zip(result.lengths, ((0, 40), (0, 300), (40, 300)), strict=True):
         angle = np.arccos(np.clip(vertices[a] @ vertices[b], -1, 1))
         assert 0.99 * angle <= length <= 1.02 * angle
+
+
+@pytest.mark.parametrize("connect", ["CHAIN", "LOOP", "PAIRS"])
+def test_exact_paths_are_exact_and_need_no_graph(connect):
+    vertices, triangles = meshes.torus()
+    surface = Surface("Shape", vertices, triangles, len(vertices))
+    points, cache = np.array([0, 40, 300], np.int32), Cache(2**30)
+    result = paths(surface, points, cache, connect=connect, quality="EXACT")
+    assert cache.builds == {"mesh": 1, "paths": 1}
+    mesh = sb.Mesh(vertices, triangles)
+    far = {(a, b): sb.exact_distances(mesh, np.array([a], np.int32))[b] for a, b in ((0, 40), (40, 300), (0, 300))}
+    wanted = {
+        "CHAIN": [far[0, 40] + far[40, 300]],
+        "LOOP": [sum(far.values())],
+        "PAIRS": [far[0, 40], far[0, 300], far[40, 300]],
+    }[connect]
+    np.testing.assert_allclose(result.lengths, wanted, rtol=1e-12)
+    drawn = [length_of(line, closed=connect == "LOOP") for line in lines_of(result)]
+    np.testing.assert_allclose(drawn, wanted, rtol=1e-9)
+    assert paths(surface, points, cache, connect=connect, quality="EXACT", shorten=False) is result
 
 
 def test_a_second_run_computes_nothing():

@@ -41,10 +41,14 @@ def curves_on_surface(mesh: Any, graph: Any, curves: tuple[Polyline, ...]) -> tu
     return found, lone
 
 
-def points_on_surface(mesh: Any, curves: tuple[Polyline, ...]) -> Any:
-    """Points of the surface all along the curves, close together."""
+def points_along(mesh: Any, curves: list[Any], lone: Any | None) -> Any:
+    """Points of the surface close together all along curves on it, and the lone ones: what exact distances take."""
     step = float(mesh.mean_edge_length) / POINTS_PER_EDGE
-    return native.load().project(mesh, np.concatenate([places_along(curve, step) for curve in curves]))
+    lines = [Polyline(curve.points.positions(mesh), curve.closed) for curve in curves]
+    places = [places_along(line, step) for line in lines]
+    if lone is not None:
+        places.append(lone.positions(mesh))
+    return native.load().project(mesh, np.concatenate(places))
 
 
 def places_along(curve: Polyline, step: float) -> Reals:

@@ -13,7 +13,7 @@ from .requests import Surface
 
 # Quality -> the largest relative error of a distance.
 ACCURACY = {"FAST": 2e-2, "NORMAL": 5e-3, "FINE": 2e-3}
-EXACT = "EXACT"  # no graph at all, for distances only
+EXACT = "EXACT"  # no graph at all, for distances and paths
 
 # Bytes that the native mesh holds beside its input: half-edge twins, lengths, angles, areas, flags.
 MESH_BYTES_PER_VERTEX, MESH_BYTES_PER_FACE = 48, 84

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,16 +35,21 @@ def paths(request: PathRequest, progress: Progress, cache: Cache | None = None) 
     order = _different(mesh, points, settings.connect == "LOOP")
     _check(surface, mesh, points, order, settings.connect)
     choice = GraphChoice(settings.quality, settings.k)
-    graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
+    ways: _Ways
+    if choice.is_exact:
+        ways = _ExactWays(mesh)
+    else:
+        graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
+        ways = _GraphWays(graph, settings.shorten)
 
     def solve() -> PathsResult:
-        legs = list(_legs(graph, points, order, settings.connect, settings.shorten, progress))
+        legs = list(_legs(ways, points, order, settings.connect, progress))
         if settings.connect == "PAIRS":
             return _result(mesh, legs, False)
         closed = settings.connect == "LOOP" and len(order) > 2
         return _result(mesh, [_joined(legs, closed)], closed)
 
-    key = ("paths", choice.name(surface), digest(chosen, settings.connect, settings.shorten))
+    key = ("paths", choice.name(surface), digest(chosen, settings.connect, settings.shorten and not choice.is_exact))
     result = cache.get(key, solve, lambda result: result.nbytes)
     progress.check()
     return result
@@ -62,25 +67,47 @@ class _Line:
         return cls(path.points, path.surface.faces, path.surface.barycentric, float(path.length))
 
 
-def _legs(
-    graph: Any, points: Any, order: NDArray[np.int64], connect: str, shorten: bool, progress: Progress
-) -> Iterator[_Line]:
-    """The paths one by one; each is a step of the progress."""
-    count = len(order)
-    begin = progress.fraction
+class _Ways(Protocol):
+    """Where shortest paths come from."""
+
+    def paths(self, source: Any, targets: Any, job: Any) -> list[Any]:
+        """One path of the library's from the source to each of the targets."""
+
+
+class _GraphWays:
+    """Over the arcs of a distance graph, pulled straight where that is asked for."""
+
+    def __init__(self, graph: Any, shorten: bool) -> None:
+        self._graph, self._shorten = graph, shorten
+
+    def paths(self, source: Any, targets: Any, job: Any) -> list[Any]:
+        if len(targets) == 1:  # looks at a part of the graph only
+            return [self._graph.path(source[0], targets[0], shorten=self._shorten, job=job)]
+        return list(self._graph.paths(source, targets, shorten=self._shorten, job=job))
+
+
+class _ExactWays:
+    """Back through the windows of an exact field, a new one for each source."""
+
+    def __init__(self, mesh: Any) -> None:
+        self._mesh = mesh
+
+    def paths(self, source: Any, targets: Any, job: Any) -> list[Any]:
+        return list(native.load().ExactField(self._mesh, source, job=job).paths(targets))
+
+
+def _legs(ways: _Ways, points: Any, order: NDArray[np.int64], connect: str, progress: Progress) -> Iterator[_Line]:
+    """The paths one by one; those from one point are a step of the progress."""
     if connect == "PAIRS":
-        for i in range(count - 1):
-            with progress.stage(_share(begin, i + 1, count - 1), "following the shortest paths") as job:
-                here, others = _take(points, order[i : i + 1]), _take(points, order[i + 1 :])
-                found = graph.paths(here, others, shorten=shorten, job=job)
-            yield from (_Line.of(path) for path in found)
-        return
-    is_loop = connect == "LOOP" and count > 2
-    ends = list(zip(order, np.roll(order, -1), strict=True))[: count if is_loop else count - 1]
-    for number, (a, b) in enumerate(ends):
-        with progress.stage(_share(begin, number + 1, len(ends)), "following the shortest paths") as job:
-            path = graph.path(points[int(a)], points[int(b)], shorten=shorten, job=job)
-        yield _Line.of(path)
+        steps = [(order[i : i + 1], order[i + 1 :]) for i in range(len(order) - 1)]
+    else:
+        ends = order if connect == "LOOP" and len(order) > 2 else order[:-1]
+        steps = [(order[i : i + 1], np.roll(order, -1)[i : i + 1]) for i in range(len(ends))]
+    begin = progress.fraction
+    for number, (source, targets) in enumerate(steps):
+        with progress.stage(_share(begin, number + 1, len(steps)), "following the shortest paths") as job:
+            found = ways.paths(_take(points, source), _take(points, targets), job)
+        yield from (_Line.of(path) for path in found)
 
 
 def _take(points: Any, chosen: NDArray[np.int64]) -> Any:

@@ -12,7 +12,7 @@ from . import cache as cache_module
 from . import native
 from .boundary_distance import boundary_distance
 from .cache import Cache
-from .curve_points import curves_on_surface, points_on_surface
+from .curve_points import curves_on_surface, points_along
 from .density_runs import density_of
 from .duals import dual_of, figures_of
 from .features import feature_lines
@@ -107,25 +107,28 @@ def distance(request: DistanceRequest, progress: Progress, cache: Cache | None =
         sources = compact_points(surface, sources, "source")
     mesh = mesh_of_surface(surface, progress, cache)
     choice = GraphChoice(settings.quality, settings.k)
-    graph = None
-    if not choice.is_exact:
-        graph = graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
+    # Exact distances need no graph; curves are joined on the surface by one, and a quick one will do for that.
+    graph: Any = None
+    if not choice.is_exact or isinstance(sources, tuple):
+        guide = GraphChoice("FAST", 0) if choice.is_exact else choice
+        graph = graph_of_surface(surface, mesh, guide, request.threads, request.disk, progress, cache)
     limit = settings.limit if settings.limit > 0 else np.inf
 
     def solve() -> Reals:
-        if graph is None:
-            points = points_on_surface(mesh, sources) if isinstance(sources, tuple) else surface_points(mesh, sources)
-            with progress.stage(0.9, "measuring distances") as job:
-                exact: Reals = native.load().exact_distances(mesh, points, limit=limit, job=job)
-            return exact
-        lone: Any | None
+        curves: list[Any] = []
+        points: Any | None
         if isinstance(sources, tuple):
             with progress.stage(0.6, "following the curves"):
-                chosen, lone = curves_on_surface(mesh, graph, sources)
+                curves, points = curves_on_surface(mesh, graph, sources)
         else:
-            chosen, lone = surface_points(mesh, sources), None
+            points = surface_points(mesh, sources)
+        if choice.is_exact:
+            with progress.stage(0.9, "measuring distances") as job:
+                places = points_along(mesh, curves, points) if curves else points
+                exact: Reals = native.load().exact_distances(mesh, places, limit=limit, job=job)
+            return exact
         values = np.full(len(surface.vertices), np.inf)
-        for number, part in enumerate((chosen, lone)):
+        for number, part in enumerate((curves, points)):
             if part is not None and len(part):
                 with progress.stage(0.8 + 0.1 * number, "measuring distances") as job:
                     values = np.minimum(values, graph.distances(part, limit=limit, job=job))

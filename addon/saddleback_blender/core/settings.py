@@ -101,7 +101,7 @@ class PathSettings:
     from_cursor: bool = False  # the 3D cursor is a point, too: the first
     connect: str = "CHAIN"  # CHAIN, LOOP, PAIRS
     shorten: bool = True
-    quality: str = "NORMAL"  # FAST, NORMAL, FINE
+    quality: str = "NORMAL"  # FAST, NORMAL, FINE, EXACT
     k: int = 0  # vertices in a neighbourhood of the graph; 0 = by quality
     cache_on_disk: bool = False
     use_modifiers: bool = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .distance import DISTANCE_SOURCES
-from .kinds import choice, detail, length, name_of, on_disk, quality, switch, use_modifiers
+from .kinds import EXACT_QUALITY, QUALITIES, choice, detail, length, name_of, on_disk, quality, switch, use_modifiers
 
 PATH_POINTS = DISTANCE_SOURCES[:3]
 PATH_CONNECTIONS = (
@@ -21,7 +21,7 @@ PATH: dict[str, Any] = {
     "from_cursor": switch("From Cursor", "Begin at the point of the surface nearest to the 3D cursor", False),
     "connect": choice("Connect", "Which points a path joins", PATH_CONNECTIONS, "CHAIN"),
     "shorten": switch("Shorten", "Pull each path straight where the distance graph bends it a little", True),
-    "quality": quality(),
+    "quality": quality((*QUALITIES, EXACT_QUALITY)),
     "k": detail(),
     "cache_on_disk": on_disk(),
     "use_modifiers": use_modifiers(),

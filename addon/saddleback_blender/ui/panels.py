@@ -286,7 +286,9 @@ class SADDLEBACK_PT_path(SaddlebackSubPanel, bpy.types.Panel):
         rows.draw_path_points(layout.column(), settings, item)
         layout.prop(settings, "path_radius")
         layout.prop(settings, "lift")
-        layout.prop(settings, "shorten")
+        row = layout.row()
+        row.active = settings.k > 0 or settings.quality != "EXACT"  # exact paths are straight
+        row.prop(settings, "shorten")
         rows.draw_quality(layout, settings)
         layout.prop(settings, "use_modifiers")
 
