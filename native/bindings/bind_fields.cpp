@@ -348,6 +348,17 @@ void bind_direction_field(py::module_& m) {
       .def_property_readonly("largest_turn", &DirectionField::largest_turn,
                              "The largest of `turns`, radians. Below pi / symmetry the vectors alone tell the "
                              "singularities; beyond, faces are too large for how fast the field has to turn.")
+      .def_property_readonly(
+          "sharp_edges",
+          [](const DirectionField& field) {
+            std::vector<Index> result;
+            for (const Index h : field.sharp_edges())
+              result.insert(result.end(), {Mesh::face_of(h), Mesh::face_of(field.mesh().twin(h))});
+            return to_array(std::move(result)).attr("reshape")(-1, 2);
+          },
+          "(n, 2) int32: pairs of neighbouring faces between which the field turns by pi / symmetry or more, where the "
+          "vectors alone do not tell the singularities. With given singularities only what no other choice of turns "
+          "around handles was found to avoid: faces there are too large. O(F).")
       .def("directions", &directions_at, py::arg("points"),
            "(n, 3) float64: the field at vertices or SurfacePoints, unit vectors in the planes of the points' faces; "
            "continuous but at vertices, about which it turns evenly (there a mean is given).")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 import saddleback as sb
 from tests import meshes
 from tests.native.cancelling import check_progress_and_cancel
-from tests.native.field_indices import euler_characteristic, indices, loop_indices, turns
+from tests.native.field_indices import euler_characteristic, indices, loop_indices, turns, twins
 
 Floats = NDArray[np.float64]
 SYMMETRIES = (1, 2, 4)
@@ -95,6 +95,35 @@ def test_the_vectors_alone_tell_the_indices(arrays: meshes.Arrays, symmetry: int
         field = sb.direction_field(mesh, symmetry, wanted)
         assert field.largest_turn < np.pi / symmetry
         assert indices(mesh, field.vectors, symmetry) == wanted
+
+
+# Least turning of these would turn once around the tube of three edges, faster than its faces can tell.
+NARROW = {35: -1, 3: 1, 18: -1, 10: 1, 2: -1, 4: 1, 32: -1, 13: 1}
+
+
+def test_narrow_handles_are_not_turned_around_faster_than_their_faces_tell() -> None:
+    mesh = sb.Mesh(*meshes.torus(12, 3))
+    for symmetry in SYMMETRIES:
+        wanted = {vertex: unit / symmetry for vertex, unit in NARROW.items()}
+        field = sb.direction_field(mesh, symmetry, wanted)
+        assert field.largest_turn < np.pi / symmetry and len(field.sharp_edges) == 0
+        assert indices(mesh, field.vectors, symmetry) == wanted
+
+
+def test_a_vertex_that_has_to_turn_too_fast_is_named() -> None:
+    """Five edges share a turn of more than twice 2 pi: each turns by more than pi / 2, whatever one does."""
+    mesh = sb.Mesh(*meshes.icosphere(3))
+    vertex, far = 0, int(np.argmin(mesh.vertices @ mesh.vertices[0]))
+    field = sb.direction_field(mesh, 2, {vertex: -2, far: 4})
+    assert field.singularities == {vertex: -2, far: 4} != indices(mesh, field.vectors, 2)
+    named = {frozenset(pair) for pair in field.sharp_edges.tolist()}
+    about = [set(np.flatnonzero((mesh.triangles == v).any(axis=1)).tolist()) for v in (vertex, far)]
+    across = twins(mesh.triangles)
+    for faces in about:
+        edges = {frozenset((f, int(t) // 3)) for f in faces for t in across[f] if int(t) // 3 in faces}
+        assert len(edges) == 5 and edges <= named
+    sharp = np.abs(field.turns) >= np.pi / 2
+    assert named == {frozenset((f, int(across[f, i]) // 3)) for f, i in np.argwhere(sharp).tolist()}
 
 
 def test_a_sphere_has_a_source_and_a_sink_or_eight_quarters() -> None:

@@ -46,6 +46,9 @@ class DirectionField {
   /// The largest of the turns, radians. While it is below pi / symmetry the directions of the faces alone tell the
   /// singularities; beyond, faces are too large for how fast the field has to turn there.
   double largest_turn() const { return largest_turn_; }
+  /// Half-edges, of two twins the one of the smaller face, across which the field turns by pi / symmetry or more:
+  /// empty while the directions of the faces alone tell the singularities. O(F).
+  std::vector<Index> sharp_edges() const;
 
   /// The field at a point, radians in the chart of its face. Continuous inside and across faces: within the surface
   /// only the vertices are left out, about which it turns evenly (there a mean is given). Exactly the face's own angle

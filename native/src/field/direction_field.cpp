@@ -49,6 +49,13 @@ DirectionField::DirectionField(const Mesh& mesh, int symmetry, std::vector<doubl
   }
 }
 
+std::vector<Index> DirectionField::sharp_edges() const {
+  std::vector<Index> result;
+  for (Index h = 0; h < mesh_->halfedge_count(); ++h)
+    if (mesh_->twin(h) > h && std::abs(turns_[h]) >= std::numbers::pi / symmetry_) result.push_back(h);
+  return result;
+}
+
 Index DirectionField::units_at(Index vertex) const {
   const auto found = std::lower_bound(singularities_.begin(), singularities_.end(), vertex,
                                       [](const Singularity& s, Index v) { return s.vertex < v; });

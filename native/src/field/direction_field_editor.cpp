@@ -1,6 +1,7 @@
 // Two ways to a field. With given singularities: a trivial connection, integrated over a tree of faces, then turned by
 // a single-valued angle per face so as to follow strokes. Without: powers of directions, which are linear.
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -10,6 +11,7 @@
 
 #include "prescribed_indices.h"
 #include "shape_operator.h"
+#include "sharp_loops.h"
 #include "smooth_powers.h"
 #include "stroke_targets.h"
 #include "untangle_turns.h"
@@ -86,6 +88,8 @@ struct DirectionFieldEditor::Kept {
   DirectionField automatic(const DirectionFieldOptions& options, const JobStage& stage);
 
  private:
+  std::vector<std::vector<Index>> eager_loops(const std::vector<double>& some_turns) const;
+  std::vector<double> gentle_turns(const std::vector<Index>& wanted, const JobStage& stage) const;
   void connect(const DirectionFieldOptions& options, const JobStage& stage);
   std::vector<double> turn_onto_curvature(const FaceSprings<double>& springs, std::vector<double> turned, double weight,
                                           const JobStage& stage) const;
@@ -102,12 +106,43 @@ void DirectionFieldEditor::Kept::prepare(const JobStage& stage) {
   filled = std::move(made);
 }
 
+/// Loops along which the field turns too fast for its faces to tell, and need not: they go round handles.
+std::vector<std::vector<Index>> DirectionFieldEditor::Kept::eager_loops(const std::vector<double>& some_turns) const {
+  if (loops.loops.empty()) return {};
+  std::vector<std::vector<Index>> result = sharp_loops(mesh, symmetry, some_turns);
+  std::erase_if(result, [this](const std::vector<Index>& loop) {
+    const std::vector<double> windings = trivial->windings_of(loop);
+    return std::all_of(windings.begin(), windings.end(), [](double winding) { return winding == 0; });
+  });
+  return result;
+}
+
+/// Those of least turning, with other whole turns around handles where that leaves fewer of such loops.
+std::vector<double> DirectionFieldEditor::Kept::gentle_turns(const std::vector<Index>& wanted,
+                                                             const JobStage& stage) const {
+  constexpr int k_rounds = 12;
+  std::vector<double> best = trivial->turns(wanted, symmetry, {}, stage.part(0, 0.9)), last = best;
+  std::vector<std::vector<Index>> eager = eager_loops(best), gentle;
+  std::size_t fewest = eager.size();
+  for (int round = 0; round < k_rounds && !eager.empty(); ++round) {
+    gentle.insert(gentle.end(), eager.begin(), eager.end());
+    std::vector<double> next = trivial->turns(wanted, symmetry, gentle, stage.part(0.9, 1));
+    if (next == last) break;
+    last = std::move(next);
+    eager = eager_loops(last);
+    if (eager.size() >= fewest) continue;
+    fewest = eager.size();
+    best = last;
+  }
+  return best;
+}
+
 void DirectionFieldEditor::Kept::connect(const DirectionFieldOptions& options, const JobStage& stage) {
   if (!trivial) trivial = std::make_unique<TrivialConnection>(mesh, connection, *filled, loops, stage.part(0, 0.1));
   std::vector<Index> wanted = prescribed_units(mesh, *filled, symmetry, options, *trivial, stage.part(0.1, 0.15));
   if (wanted == units) return;
   units.clear();
-  turns = trivial->turns(wanted, symmetry, stage.part(0.15, 1));
+  turns = gentle_turns(wanted, stage.part(0.15, 1));
   stage.check();
   angles = integrate(mesh, connection, loops, symmetry, turns);
   shift.clear();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sharp_loops.h"
 #include "support/parallel.h"
 
 namespace saddleback {
@@ -34,7 +35,7 @@ GraphMatrix<double> node_laplacian(const Mesh& mesh, const SurfaceConnection& co
 }
 
 /// Moves each residual by whole quanta while the energy residual^T inverse residual falls.
-void choose_branches(Vector& residual, const Matrix& inverse, double quantum) {
+void choose_branches(Vector& residual, const Eigen::Ref<const Matrix>& inverse, double quantum) {
   constexpr int k_sweeps = 20;
   Vector gradient = inverse * residual;
   bool changed = true;
@@ -49,6 +50,47 @@ void choose_branches(Vector& residual, const Matrix& inverse, double quantum) {
       gradient += step * inverse.col(i);
       changed = true;
     }
+  }
+}
+
+/// A loop that shall turn by `most` at most; it turns by `turn` now, and by `effect` more for each residual.
+struct LoopLimit {
+  Vector effect;
+  double turn, most;
+
+  double excess(double more) const { return std::pow(std::max(0.0, std::abs(turn + more) - most), 2); }
+};
+
+/// Moves one or two residuals at a time by a quantum, the best move first, while loops turn too far that need not, or
+/// the energy falls and no loop turns farther.
+void ease_loops(Vector& residual, const Eigen::Ref<const Matrix>& inverse, double quantum,
+                std::vector<LoopLimit>& limits) {
+  constexpr int k_moves = 200;
+  constexpr double k_priority = 1e4;  // of loops over energy
+  const Eigen::Index count = residual.size();
+  const double weight = k_priority * inverse.diagonal().maxCoeff(), least = 1e-9 * quantum * quantum * weight;
+  for (int move = 0; move < k_moves; ++move) {
+    const Vector gradient = inverse * residual;
+    double best = -least;
+    Eigen::Index best_i = -1, best_j = -1;
+    double step_i = 0, step_j = 0;
+    const auto consider = [&](Eigen::Index i, double di, Eigen::Index j, double dj) {
+      double gain = 2 * (di * gradient[i] + dj * gradient[j]) + di * di * inverse(i, i) + dj * dj * inverse(j, j) +
+                    2 * di * dj * inverse(i, j);
+      for (const LoopLimit& limit : limits)
+        gain += weight * (limit.excess(di * limit.effect[i] + dj * limit.effect[j]) - limit.excess(0));
+      if (gain < best) best = gain, best_i = i, best_j = j, step_i = di, step_j = dj;
+    };
+    for (Eigen::Index i = 0; i < count; ++i)
+      for (const double di : {-quantum, quantum}) {
+        consider(i, di, i, 0);
+        for (Eigen::Index j = 0; j < i; ++j)
+          for (const double dj : {-quantum, quantum}) consider(i, di, j, dj);
+      }
+    if (best_i < 0) return;
+    residual[best_i] += step_i;
+    residual[best_j] += step_j;
+    for (LoopLimit& limit : limits) limit.turn += step_i * limit.effect[best_i] + step_j * limit.effect[best_j];
   }
 }
 
@@ -73,14 +115,15 @@ std::vector<double> TrivialConnection::potential_turns(const std::vector<double>
   return result;
 }
 
-std::vector<double> TrivialConnection::turns(std::span<const Index> units, int symmetry, const JobStage& stage) {
+std::vector<double> TrivialConnection::turns(std::span<const Index> units, int symmetry,
+                                             const std::vector<std::vector<Index>>& gentle, const JobStage& stage) {
   const bool has_handles = !loops_.loops.empty();
   if (has_handles && harmonic_potentials_.empty()) find_harmonic_forms(stage.part(0, 0.8));
   std::vector<double> right(filled_.node_count);
   for (Index i = 0; i < filled_.node_count; ++i) right[i] = filled_.curvature[i] - k_turn * units[i] / symmetry;
   std::vector<double> result =
       potential_turns(solver_->solve(right, {}, k_accuracy, stage.part(has_handles ? 0.8 : 0, 1)));
-  if (has_handles) add_harmonic_part(result, symmetry);
+  if (has_handles) add_harmonic_part(result, symmetry, gentle);
   return result;
 }
 
@@ -105,18 +148,34 @@ void TrivialConnection::find_harmonic_forms(const JobStage& stage) {
     ++done;
   });
   harmonic_potentials_ = std::move(potentials);
-  periods_.assign(static_cast<std::size_t>(count) * count, 0.0);
+  Matrix periods = Matrix::Zero(count, count);
   std::vector<double> crossings(mesh_.halfedge_count(), 0.0);
   for (Index j = 0; j < count; ++j) {
     for (const Index h : loops_.loops[j]) crossings[h] += 1, crossings[mesh_.twin(h)] -= 1;
     for (Index i = 0; i < count; ++i)
-      for (const Index h : loops_.loops[i])
-        periods_[static_cast<std::size_t>(i) * count + j] += connection_.weight[h] * (crossings[h] + harmonic(j, h));
+      for (const Index h : loops_.loops[i]) periods(i, j) += connection_.weight[h] * (crossings[h] + harmonic(j, h));
     for (const Index h : loops_.loops[j]) crossings[h] = crossings[mesh_.twin(h)] = 0;
   }
+  const Matrix symmetric = 0.5 * (periods + periods.transpose());
+  const Matrix inverse = symmetric.ldlt().solve(Matrix::Identity(count, count));
+  inverse_periods_.assign(inverse.data(), inverse.data() + inverse.size());
 }
 
-void TrivialConnection::add_harmonic_part(std::vector<double>& turns, int symmetry) const {
+std::vector<double> TrivialConnection::windings_of(const std::vector<Index>& loop) const {
+  const auto count = static_cast<Eigen::Index>(loops_.loops.size());
+  Vector periods = Vector::Zero(count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    for (const Index h : loop) periods[j] += connection_.weight[h] * harmonic(j, h);
+    for (const Index across : loops_.loops[j])
+      for (const Index h : loop)
+        periods[j] += connection_.weight[h] * ((h == across ? 1 : 0) - (mesh_.twin(h) == across ? 1 : 0));
+  }
+  const Vector result = (Eigen::Map<const Matrix>(inverse_periods_.data(), count, count) * periods).array().round();
+  return {result.begin(), result.end()};
+}
+
+void TrivialConnection::add_harmonic_part(std::vector<double>& turns, int symmetry,
+                                          const std::vector<std::vector<Index>>& gentle) const {
   const auto count = static_cast<Eigen::Index>(loops_.loops.size());
   const double quantum = k_turn / symmetry;
   Vector lacking(count);
@@ -125,10 +184,17 @@ void TrivialConnection::add_harmonic_part(std::vector<double>& turns, int symmet
     for (const Index h : loops_.loops[i]) holonomy += connection_.transport[h] + turns[h];
     lacking[i] = -std::remainder(holonomy, quantum);
   }
-  const Eigen::Map<const Matrix> periods(periods_.data(), count, count);
-  const Matrix symmetric = 0.5 * (periods + periods.transpose());
-  const Matrix inverse = symmetric.ldlt().solve(Matrix::Identity(count, count));
+  const Eigen::Map<const Matrix> inverse(inverse_periods_.data(), count, count);
   choose_branches(lacking, inverse, quantum);
+  std::vector<LoopLimit> limits;
+  for (const std::vector<Index>& loop : gentle) {
+    const std::vector<double> windings = windings_of(loop);
+    const Vector effect = Eigen::Map<const Vector>(windings.data(), count);
+    double turn = effect.dot(lacking);
+    for (const Index h : loop) turn += turns[h];
+    limits.push_back({effect, turn, k_told_share * std::numbers::pi / symmetry * static_cast<double>(loop.size())});
+  }
+  if (!limits.empty()) ease_loops(lacking, inverse, quantum, limits);
   const Vector shares = inverse * lacking;
   std::vector<double> potential(filled_.node_count, 0.0);
   for (Eigen::Index i = 0; i < count; ++i) {

@@ -24,9 +24,16 @@ class TrivialConnection {
 
   /// Per half-edge, what a field turns by (besides the transport) where it crosses from its face to the twin's,
   /// opposite for the twin. `units`: of each node of the filled surface the index times the symmetry; around handles
-  /// the turning is the smallest that closes. \pre units sum to symmetry (2 - 2 genus) in each component. \throw
-  /// Cancelled.
-  std::vector<double> turns(std::span<const Index> units, int symmetry, const JobStage& stage);
+  /// the turning is the smallest that closes. `gentle`: loops of half-edges around which it shall not turn by more than
+  /// k_told_share of pi / symmetry an edge, where whole turns around handles can see to that. \pre units sum to
+  /// symmetry (2 - 2 genus) in each component. \throw Cancelled.
+  std::vector<double> turns(std::span<const Index> units, int symmetry, const std::vector<std::vector<Index>>& gentle,
+                            const JobStage& stage);
+
+  /// How often a loop of half-edges goes round each of the loops around handles, in whole numbers; all 0 where it
+  /// bounds a part of the surface, and the turning along it is nobody's choice. \pre turns() was called. O(loop
+  /// handles).
+  std::vector<double> windings_of(const std::vector<Index>& loop) const;
 
   /// The same, but for units of the nodes in `free`: they may be any reals that sum to what is missing in the
   /// component. Gives those reals, the ones of least turning.
@@ -37,7 +44,7 @@ class TrivialConnection {
   std::vector<double> potential_turns(const std::vector<double>& potential) const;
   double harmonic(std::size_t loop, Index h) const;
   void find_harmonic_forms(const JobStage& stage);
-  void add_harmonic_part(std::vector<double>& turns, int symmetry) const;
+  void add_harmonic_part(std::vector<double>& turns, int symmetry, const std::vector<std::vector<Index>>& gentle) const;
 
   const Mesh& mesh_;
   const SurfaceConnection& connection_;
@@ -45,7 +52,7 @@ class TrivialConnection {
   const DualLoops& loops_;
   std::unique_ptr<MultigridSolver<double>> solver_;
   std::vector<std::vector<double>> harmonic_potentials_;  ///< per loop, over nodes
-  std::vector<double> periods_;                           ///< loops x loops: what each form adds up to along each loop
+  std::vector<double> inverse_periods_;  ///< loops x loops; periods: what each form adds up to along each loop
 };
 
 }  // namespace saddleback
