@@ -150,10 +150,100 @@ def test_empties_are_singularities_by_property_and_name():
     assert (numbers == 1).sum() == 4 * 128 and not (numbers == 2).any()
 
 
+@pytest.mark.parametrize("kind", ["POLY", "BEZIER", "NURBS"])
+def test_splines_of_every_kind_are_strokes(kind):
+    item = grid(n=16)
+    curve = add_curve("Stroke", across(), item).data
+    if kind == "BEZIER":
+        curve.splines.clear()
+        points = curve.splines.new(kind).bezier_points
+        points.add(1)
+        for point, place in zip(points, across()[[0, 2]], strict=True):
+            point.co, point.handle_left_type, point.handle_right_type = place, "AUTO", "AUTO"
+    else:
+        curve.splines[0].type = kind
+        curve.splines[0].use_endpoint_u = True
+    bpy.ops.saddleback.direction_field(strokes="COLLECTION", make_arrows=False)
+    np.testing.assert_allclose(vectors(item), np.tile([1.0, 0, 0], (17 * 17, 1)), atol=0.02)
+
+
+def test_modifiers_of_strokes_count():
+    item = grid(n=16)
+    # Far above, and thick: a shrinkwrap brings it down, and its tube is no stroke.
+    curve = add_curve("Stroke", across() + (0, 0, 3), item)
+    curve.data.bevel_depth = 0.05
+    before = fingerprint()
+    with pytest.raises(RuntimeError, match="no stroke comes within"):
+        bpy.ops.saddleback.direction_field(strokes="COLLECTION")
+    assert fingerprint() == before
+    curve.modifiers.new("Down", "SHRINKWRAP").target = item
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.direction_field(strokes="COLLECTION", make_arrows=False)
+    np.testing.assert_allclose(vectors(item), np.tile([1.0, 0, 0], (17 * 17, 1)), atol=0.02)
+    assert len(bpy.data.objects) == 2 and len(bpy.data.curves) == 1
+    # Two lines, side by side, of one; and what makes a surface of it is passed over.
+    array = curve.modifiers.new("Twice", "ARRAY")
+    array.relative_offset_displace = (0, 0, 0)
+    array.use_constant_offset, array.constant_offset_displace = True, (0, 0.2, 0)
+    bpy.ops.saddleback.direction_field()
+    assert "along 2 strokes" in jobs.state.line
+    curve.modifiers.clear()
+    curve.location = (0, 0, -3)
+    bpy.context.view_layer.update()
+    curve.modifiers.new("Sheet", "SCREW")
+    bpy.ops.saddleback.direction_field()
+    assert "along 1 stroke" in jobs.state.line
+
+
+def test_modifiers_of_grease_pencil_count():
+    item = grid(n=16)
+    pencil = add_grease_pencil("Pencil", {"Lines": across() * (1, 0, 0)})
+    if pencil.type == "GPENCIL":
+        offset = pencil.grease_pencil_modifiers.new("Offset", "GP_OFFSET")
+    else:
+        offset = pencil.modifiers.new("Offset", "GREASE_PENCIL_OFFSET")
+    offset.location, offset.rotation = (0.5, 0, 0), (0, 0, np.pi / 2)
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.direction_field(strokes="OBJECT", strokes_object="Pencil", make_arrows=False)
+    np.testing.assert_allclose(vectors(item), np.tile([0, 1.0, 0], (17 * 17, 1)), atol=0.02)
+
+
+def test_strokes_off_the_surface_are_told_and_not_counted(capfd):
+    item = grid(n=16)
+    add_curve("Stroke", across(), item)
+    add_curve("Away", across() + (0, 0, 5), item)
+    bpy.ops.saddleback.direction_field(strokes="COLLECTION", make_arrows=False)
+    assert "along 1 stroke" in jobs.state.line and "strokes" not in jobs.state.line
+    assert "One stroke is too far from the surface and was left out: a stroke of 'Away'" in capfd.readouterr().out
+    bpy.ops.saddleback.direction_field()  # from the cache
+    assert "was left out" in capfd.readouterr().out
+    for curve in item.children:
+        for point in curve.data.splines[0].points:
+            point.co = (0.5, 0.5, 0, 1)
+    with pytest.raises(RuntimeError, match="no stroke of any length is parented"):
+        bpy.ops.saddleback.direction_field(strokes="COLLECTION")
+
+
+def test_singularities_keep_their_colors_and_the_artists_when_run_again():
+    item = sphere(subdivisions=3)
+    for name, place in (("North", (0, 0, 1)), ("South", (0, 0, -1))):
+        add_empty(name, place, item, 2)
+    add_empty("East", (1, 0, 0), item, -2)
+    mine = bpy.data.materials.new("Mine")
+    for turn in (0.0, 0.5):
+        bpy.ops.saddleback.direction_field(singularities="EMPTIES", turn=turn)
+        arrows = find_output(item, "arrows")
+        numbers = np.empty(len(arrows.data.polygons), np.int32)
+        arrows.data.polygons.foreach_get("material_index", numbers)
+        assert [int((numbers == kind).sum()) for kind in (1, 2)] == [2 * 128, 128]
+        assert (arrows.data.materials[0] == mine) == (turn == 0.5)
+        arrows.data.materials[0] = mine
+
+
 def test_what_is_missing_is_told():
     item = grid(n=6)
     calls = [
-        ({"strokes": "COLLECTION"}, "no stroke is parented to 'Grid'"),
+        ({"strokes": "COLLECTION"}, "no stroke of any length is parented to 'Grid'"),
         ({"strokes": "COLLECTION", "strokes_collection": "Nope"}, "there is no collection 'Nope'"),
         ({"strokes": "OBJECT"}, "no object is chosen to take strokes from"),
         ({"strokes": "OBJECT", "strokes_object": "Nope"}, "there is no object 'Nope'"),

@@ -113,6 +113,64 @@ def test_shapes_of_a_collection_keep_materials_scale_and_centre():
     assert item.saddleback.distribute.shapes_collection.name == "Shapes"
 
 
+def class_materials(bent):
+    """The name of the material that the faces of each class show."""
+    slots, classes = (np.empty(len(bent.data.polygons), np.int32) for _ in range(2))
+    bent.data.polygons.foreach_get("material_index", slots)
+    bent.data.attributes["saddleback_class"].data.foreach_get("value", classes)
+    shown = sorted(set(zip(classes.tolist(), slots.tolist(), strict=True)))
+    return [bent.data.materials[slot].name for _, slot in shown]
+
+
+def test_materials_go_with_their_classes_when_the_collection_changes():
+    item = host()
+    cube, plate = add_shapes()
+    for shape, name in ((cube, "Red"), (plate, "Blue")):
+        shape.data.materials.append(bpy.data.materials.new(name))
+    bpy.context.view_layer.objects.active = item
+    settings = {"shapes": "COLLECTION", "shapes_collection": "Shapes", "fit": 0.0, **FEW}
+    bpy.ops.saddleback.distribute(**settings)
+    bent = find_output(item, "shapes")
+    assert class_materials(bent) == ["Red", "Blue"]
+    bpy.ops.saddleback.distribute(seed=1)
+    assert class_materials(bent) == ["Red", "Blue"]
+    # The artist's own in the place of one, and one more slot: both stay, whichever classes there are.
+    gold = bpy.data.materials.new("Gold")
+    bent.data.materials[0] = gold
+    bent.data.materials.append(bpy.data.materials.new("Spare"))
+    collection = bpy.data.collections["Shapes"]
+    collection.objects.unlink(plate)
+    bpy.ops.saddleback.distribute(seed=2)
+    assert class_materials(bent) == ["Gold"] and bent.data.materials[-1].name == "Spare"
+    collection.objects.link(plate)
+    collection.objects.unlink(cube)
+    bpy.ops.saddleback.distribute(seed=3)
+    assert class_materials(bent) == ["Blue"]
+    bent.data.materials[0] = gold
+    bpy.ops.saddleback.distribute(shapes="MOSAIC")
+    assert class_materials(bent) == ["Saddleback Shapes"] * 3
+    bent.data.materials[0] = gold
+    bpy.ops.saddleback.distribute(shapes="SCALES")
+    assert class_materials(bent) == ["Gold"]
+
+
+def test_hidden_instances_are_made_real_and_unreachable_ones_are_not_lost():
+    item = host()
+    bpy.ops.saddleback.distribute(make_instances=True, make_bent=False, **FEW)
+    points = find_output(item, "shape instances")
+    layer = bpy.context.view_layer.layer_collection.children["Saddleback"]
+    for layer.exclude, layer.hide_viewport in ((True, False), (False, True)):
+        before = fingerprint()
+        with pytest.raises(RuntimeError, match="is hidden with its collection; show that first"):
+            bpy.ops.saddleback.make_real()
+        assert fingerprint() == before
+    layer.exclude = layer.hide_viewport = False
+    points.hide_viewport = True
+    points.hide_set(True)
+    assert bpy.ops.saddleback.make_real() == {"FINISHED"}
+    assert len(bpy.data.objects) == 21 and find_output(item, "shape instances") is None
+
+
 def test_everything_goes_with_clear_and_nothing_else():
     item = host()
     before = fingerprint()

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from .. import compat
+from ..core.edge_chains import chains
 from ..core.errors import BadInputError
 from ..core.requests import Polyline
 from .mesh_in import to_world
@@ -50,35 +51,50 @@ def _curve_objects(source: bpy.types.Object, name: str, collection: str) -> tupl
 
 
 def polylines_of(item: bpy.types.Object) -> list[Polyline]:
-    """The splines of a curve object as Blender draws them without bevel; its modifiers do not count.
+    """The splines of a curve object as Blender draws them without bevel, its modifiers included.
 
-    The curve is copied for a moment, since its own bevel would make it a tube.
+    The curve is copied for a moment, since its own bevel would make it a tube. Modifiers that make a surface of it do
+    not count.
     """
     plain = item.data.copy()
     plain.bevel_mode, plain.bevel_object = "ROUND", None
     plain.bevel_depth = plain.extrude = plain.offset = 0.0
     plain.dimensions, plain.twist_mode = "3D", item.data.twist_mode
+    try:
+        lines = _modified(item, plain) if any(modifier.show_viewport for modifier in item.modifiers) else None
+        return _plain(item, plain) if lines is None else lines
+    finally:
+        bpy.data.curves.remove(plain)
+
+
+def _plain(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline]:
     holder = bpy.data.objects.new("Saddleback", plain)
     try:
-        mesh = holder.to_mesh()
-        places = to_world(item, compat.read_positions(mesh))
-        edges = compat.read_edge_vertices(mesh)
+        lines = _lines(item, holder.to_mesh())
         holder.to_mesh_clear()
     finally:
         bpy.data.objects.remove(holder)
-        bpy.data.curves.remove(plain)
-    return _chained(places, edges)
-
-
-def _chained(places: np.ndarray, edges: np.ndarray) -> list[Polyline]:
-    """Blender numbers the points of a spline in order; a closed one has an edge back to its first."""
-    is_onward = edges[:, 1] == edges[:, 0] + 1
-    joined = np.zeros(len(places), bool)
-    joined[edges[is_onward, 1]] = True
-    firsts = np.flatnonzero(~joined)
-    back = {tuple(sorted(edge)) for edge in edges[~is_onward].tolist()}
-    lines = []
-    for first, end in zip(firsts, [*firsts[1:], len(places)], strict=True):
-        if end - first >= 2:
-            lines.append(Polyline(places[first:end], (int(first), int(end) - 1) in back))
     return lines
+
+
+def _modified(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline] | None:
+    """What modifiers make of the curve, None where that has faces. Only what is in a scene is modified."""
+    scene = bpy.context.scene.collection
+    holder = item.copy()
+    holder.data, holder.hide_viewport = plain, False
+    scene.objects.link(holder)
+    try:
+        evaluated = holder.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        mesh = evaluated.to_mesh()
+        lines = None if len(mesh.polygons) else _lines(item, mesh)
+        evaluated.to_mesh_clear()
+    finally:
+        bpy.data.objects.remove(holder)
+    return lines
+
+
+def _lines(item: bpy.types.Object, mesh: bpy.types.Mesh) -> list[Polyline]:
+    places = to_world(item, compat.read_positions(mesh))
+    return [
+        Polyline(places[numbers], closed) for numbers, closed in chains(len(places), compat.read_edge_vertices(mesh))
+    ]

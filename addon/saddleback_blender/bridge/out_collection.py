@@ -22,6 +22,7 @@ SOURCE = "saddleback_source"  # on outputs: the token of their source
 ROLE = "saddleback_role"  # on outputs: what it shows
 NAME = "saddleback_name"  # on outputs: the name that we gave it
 PLACE = "saddleback_place"  # on outputs: the matrix that we gave it
+MATERIALS = "saddleback_materials"  # on outputs: the names of the materials that we gave it, one a line
 COLLECTION = "saddleback_outputs"  # on our collections
 
 COLLECTION_NAME = "Saddleback"
@@ -61,9 +62,12 @@ def replace_object(
         item = bpy.data.objects.new(f"{source.name} {role.title()}", data)
         item[ROLE], item[NAME] = role, item.name
         moved = Matrix.Identity(4)
+        given = _names(data)
     else:
         moved = _artists_move(item)
+        given = _names(data)
         _swap_data(item, data)
+    item[MATERIALS] = "\n".join(given)
     if not item.users_collection:
         output_collection(context, source).objects.link(item)
     item[SOURCE] = source_token(source)
@@ -176,15 +180,31 @@ def _object_type(data: bpy.types.ID) -> str:
     return "CURVE" if isinstance(data, bpy.types.Curve) else "MESH"
 
 
+def _names(data: bpy.types.ID) -> list[str]:
+    return [material.name if material is not None else "" for material in data.materials]
+
+
 def _swap_data(item: bpy.types.Object, data: bpy.types.ID) -> None:
-    """Gives the object new data; the materials that it shows stay."""
+    """Gives the object new data; materials that the artist put in the place of ours, or added, stay.
+
+    Slots are filled one by one: `materials.clear` would forget which faces show which.
+    """
     old = item.data
-    if len(old.materials):
-        data.materials.clear()
-        for material in old.materials:
-            data.materials.append(material)
+    before = str(item.get(MATERIALS, "\n".join(_names(data))))  # older files have no list
+    given = _counted(before.split("\n") if before else [])
+    chosen = dict(zip(given, old.materials, strict=False))
+    for slot, (name, number) in enumerate(_counted(_names(data))):
+        material = chosen.get((name, number), chosen.get((name, 0), data.materials[slot]))
+        data.materials[slot] = material
+    for material in old.materials[len(given) :]:
+        data.materials.append(material)
     item.data = data
     _remove_data(old)
+
+
+def _counted(names: list[str]) -> list[tuple[str, int]]:
+    """Each name and how often it came before."""
+    return [(name, names[:i].count(name)) for i, name in enumerate(names)]
 
 
 def _remove_data(data: bpy.types.ID) -> None:

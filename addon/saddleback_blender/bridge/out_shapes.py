@@ -9,6 +9,7 @@ import numpy as np
 from mathutils import Matrix
 
 from .. import compat, nodes
+from ..core.errors import BadInputError
 from ..core.local_frames import in_frames, triangle_frames
 from ..core.quaternions import euler_of, quaternions_of, turned
 from ..core.results import Anchors, DistributeResult, Indices, PlacedShapes, Reals
@@ -205,12 +206,15 @@ def write_shape_values(surface: bpy.types.Object, result: DistributeResult) -> N
 
 
 def make_real(context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object) -> int:
-    """Turns instances into objects beside them, which are the artist's from then on; returns how many."""
+    """Turns instances into objects beside them, which are the artist's from then on; returns how many.
+
+    Raises BadInputError where they cannot be shown, and so not be found.
+    """
     active, selected = context.view_layer.objects.active, list(context.selected_objects)
+    _show(context, source, item)
     before = set(bpy.data.objects.keys())
     for other in selected:
         other.select_set(False)
-    item.hide_set(False)
     item.select_set(True)
     context.view_layer.objects.active = item
     bpy.ops.object.duplicates_make_real()
@@ -227,6 +231,20 @@ def make_real(context: bpy.types.Context, source: bpy.types.Object, item: bpy.ty
             other.select_set(True)
     context.view_layer.objects.active = active
     return len(made)
+
+
+def _show(context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object) -> None:
+    """Makes instances visible, which Blender leaves out otherwise."""
+    if item.name in context.view_layer.objects:
+        was_hidden = item.hide_viewport, item.hide_get()
+        item.hide_viewport = False
+        item.hide_set(False)
+        context.view_layer.update()
+        if item.visible_get():
+            return
+        item.hide_viewport = was_hidden[0]
+        item.hide_set(was_hidden[1])
+    raise BadInputError(f"'{source.name}': '{item.name}' is hidden with its collection; show that first")
 
 
 def remove_templates(source: bpy.types.Object) -> None:

@@ -19,16 +19,16 @@ HARD = "hard"  # in the name of a layer or object: its strokes are met exactly
 def read_strokes(
     context: bpy.types.Context, source: bpy.types.Object, settings: DirectionFieldSettings
 ) -> tuple[StrokeLine, ...]:
-    """The chosen strokes of two points or more. Raises BadInputError where there are none."""
+    """The chosen strokes of two places or more. Raises BadInputError where there are none."""
     if settings.strokes == "NONE":
         return ()
     if settings.strokes == "ANNOTATIONS":
         lines, remedy = _of_annotations(context.scene), "no annotation is drawn in this scene; draw strokes on the mesh"
     elif settings.strokes == "OBJECT":
-        lines, remedy = _of_object(source, settings.strokes_object)
+        lines, remedy = _of_object(context, source, settings.strokes_object)
     else:
-        lines, remedy = _of_collection(source, settings.strokes_collection)
-    lines = [line for line in lines if len(line.points) > 1]
+        lines, remedy = _of_collection(context, source, settings.strokes_collection)
+    lines = [line for line in lines if len(line.points) > 1 and np.ptp(line.points, axis=0).max() > 0]
     if not lines:
         raise BadInputError(f"'{source.name}': {remedy}")
     for line in lines:
@@ -44,17 +44,17 @@ def _of_annotations(scene: bpy.types.Scene) -> list[StrokeLine]:
     ]
 
 
-def _of_object(source: bpy.types.Object, name: str) -> tuple[list[StrokeLine], str]:
+def _of_object(context: bpy.types.Context, source: bpy.types.Object, name: str) -> tuple[list[StrokeLine], str]:
     item = bpy.data.objects.get(name) if name else None
     if item is None:
         missing = f"there is no object '{name}'" if name else "no object is chosen"
         raise BadInputError(f"'{source.name}': {missing} to take strokes from; choose a curve or grease pencil")
     if not _has_strokes(item):
         raise BadInputError(f"'{source.name}': '{name}' has no strokes; choose a curve or grease pencil object")
-    return _lines_of(item), f"'{name}' has no stroke of two points; draw one"
+    return _lines_of(context, item), f"'{name}' has no stroke of two points; draw one"
 
 
-def _of_collection(source: bpy.types.Object, name: str) -> tuple[list[StrokeLine], str]:
+def _of_collection(context: bpy.types.Context, source: bpy.types.Object, name: str) -> tuple[list[StrokeLine], str]:
     if name:
         group = bpy.data.collections.get(name)
         if group is None:
@@ -64,21 +64,24 @@ def _of_collection(source: bpy.types.Object, name: str) -> tuple[list[StrokeLine
         candidates, where = list(source.children), f"parented to '{source.name}'"
     # What we made ourselves, streamlines and the like, is no stroke.
     items = sorted((item for item in candidates if _has_strokes(item) and SOURCE not in item), key=lambda i: i.name)
-    return [line for item in items for line in _lines_of(item)], f"no stroke is {where}; draw a curve on the mesh"
+    return [
+        line for item in items for line in _lines_of(context, item)
+    ], f"no stroke of any length is {where}; draw a curve on the mesh"
 
 
 def _has_strokes(item: bpy.types.Object) -> bool:
     return item.type == "CURVE" or compat.is_grease_pencil(item)
 
 
-def _lines_of(item: bpy.types.Object) -> list[StrokeLine]:
+def _lines_of(context: bpy.types.Context, item: bpy.types.Object) -> list[StrokeLine]:
     label = f"a stroke of '{item.name}'"
     if item.type == "CURVE":
         hard = _is_hard(item.name)
         return [StrokeLine(line.points, line.closed, hard, label) for line in polylines_of(item)]
+    shown = item.evaluated_get(context.evaluated_depsgraph_get())  # with its modifiers
     return [
         StrokeLine(to_world(item, places), closed, _is_hard(item.name) or _is_hard(layer), label)
-        for layer, places, closed in compat.grease_pencil_strokes(item)
+        for layer, places, closed in compat.grease_pencil_strokes(shown)
     ]
 
 

@@ -22,6 +22,7 @@ from .requests import DirectionFieldRequest, SingularPlace, digest
 from .results import FieldResult, Indices, Reals, SurfaceArrows
 from .stream_lines import even_streamlines
 
+MOST_NAMED = 3  # of strokes that a warning tells
 ARROW_LENGTH = 0.75  # of the distance from one to the next
 # What a field and an editor hold, roughly: angles, turns, the multigrid's levels.
 FIELD_BYTES_PER_FACE, EDITOR_BYTES_PER_FACE = 120, 900
@@ -60,6 +61,7 @@ def direction_field(request: DirectionFieldRequest, progress: Progress, cache: C
         singular_indices=np.array([field.singularities[vertex] for vertex in singular.tolist()]),
         largest_turn=float(field.largest_turn),
         stroke_count=made.stroke_count,
+        warnings=made.notes,
         arrows=arrows,
         streamlines=streamlines,
     )
@@ -67,10 +69,22 @@ def direction_field(request: DirectionFieldRequest, progress: Progress, cache: C
 
 @dataclass(frozen=True)
 class MadeField:
-    """The library's field, and how many strokes it follows."""
+    """The library's field, how many strokes it follows, and whose are too far from the surface."""
 
     field: Any
     stroke_count: int
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to warn of."""
+        if not self.left_out:
+            return ()
+        many = len(self.left_out)
+        whose = ", ".join(sorted(set(self.left_out))[:MOST_NAMED])
+        if many == 1:
+            return (f"One stroke is too far from the surface and was left out: {whose}",)
+        return (f"{many} strokes are too far from the surface and were left out, among them {whose}",)
 
 
 def field_of(request: DirectionFieldRequest, mesh: Any, progress: Progress, cache: Cache) -> MadeField:
@@ -96,15 +110,15 @@ def field_of(request: DirectionFieldRequest, mesh: Any, progress: Progress, cach
             lambda _: EDITOR_BYTES_PER_FACE * faces,
         )
         with progress.stage(0.2, "bringing strokes to the surface"):
-            strokes, labels = strokes_of(request, mesh)
+            drawn = strokes_of(request, mesh)
         with progress.stage(0.8, "combing the surface") as job:
             try:
                 field = editor.field(
-                    indices, strokes, settings.align.lower(), align_weight=settings.align_weight, job=job
+                    indices, drawn.strokes, settings.align.lower(), align_weight=settings.align_weight, job=job
                 )
             except native.load().InputError as error:
-                raise BadInputError(f"'{surface.name}': {_told(str(error), labels)}") from error
-        return MadeField(field.turned(settings.turn) if settings.turn else field, len(request.strokes))
+                raise BadInputError(f"'{surface.name}': {_told(str(error), drawn.labels)}") from error
+        return MadeField(field.turned(settings.turn) if settings.turn else field, drawn.followed, drawn.left_out)
 
     return cache.get(("field", surface.key, key), make, lambda _: FIELD_BYTES_PER_FACE * faces)
 

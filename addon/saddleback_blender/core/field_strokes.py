@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,10 +20,20 @@ REACH = 0.05  # of the surface's extent: the farthest that a line may be from it
 SMOOTHING_ROUNDS = 4
 
 
-def strokes_of(request: DirectionFieldRequest, mesh: Any) -> tuple[list[Any], list[str]]:
-    """The library's strokes, and whose each is. Raises BadInputError where no line comes near the surface."""
+@dataclass(frozen=True)
+class SurfaceStrokes:
+    """Drawn lines brought to the surface."""
+
+    strokes: list[Any]  # the library's; several for a line that leaves the surface and comes back
+    labels: list[str]  # whose each of them is
+    followed: int  # lines of which something is on the surface
+    left_out: tuple[str, ...] = ()  # whose lines are too far from it
+
+
+def strokes_of(request: DirectionFieldRequest, mesh: Any) -> SurfaceStrokes:
+    """The library's strokes. Raises BadInputError where no line comes near the surface."""
     if not request.strokes:
-        return [], []
+        return SurfaceStrokes([], [], 0)
     sb, settings = native.load(), request.settings
     reach = settings.stroke_reach or REACH * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
     step = float(mesh.mean_edge_length) / STEPS_PER_EDGE
@@ -45,7 +56,10 @@ def strokes_of(request: DirectionFieldRequest, mesh: Any) -> tuple[list[Any], li
             f"'{request.surface.name}': no stroke comes within {reach:.3g} of the surface; draw on it "
             "(placement Surface), or allow a larger reach"
         )
-    return strokes, labels
+    left_out = np.setdiff1d(np.arange(len(lines)), owner[starts])
+    return SurfaceStrokes(
+        strokes, labels, len(lines) - len(left_out), tuple(request.strokes[number].label for number in left_out)
+    )
 
 
 def _smoothed(places: Reals, closed: bool) -> Reals:

@@ -196,6 +196,7 @@ class FieldResult:
     singular_indices: Reals  # (k,)
     largest_turn: float  # radians from face to face
     stroke_count: int
+    warnings: tuple[str, ...] = ()
     arrows: SurfaceArrows | None = None  # where they were wanted
     streamlines: PathsResult | None = None  # where they were wanted
 

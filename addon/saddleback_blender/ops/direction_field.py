@@ -74,10 +74,11 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
         return f"'{source.name}': {KINDS[result.symmetry]}, {_told(result)}"
 
     def notes(self, result: FieldResult) -> list[str]:
-        """Says where faces are too large for the field."""
-        if result.largest_turn < math.pi / result.symmetry:
-            return []
-        return ["The field turns faster than the faces can show; subdivide the mesh where it is singular"]
+        """Says which strokes were left out, and where faces are too large for the field."""
+        notes = list(result.warnings)
+        if result.largest_turn >= math.pi / result.symmetry:
+            notes.append("The field turns faster than the faces can show; subdivide the mesh where it is singular")
+        return notes
 
 
 def _told(result: FieldResult) -> str:
