@@ -15,9 +15,15 @@ to a turn) and strips (256 to a shape), so that what it tells can only be too la
 
 Args:
     a, b: Shapes.
+    threads: 0 for all cores; never changes the result.
+    job: progress and cancellation.
 
 Raises:
     InputError: anything but Shapes.
+    Cancelled: the job was.
+
+Notes:
+    Some 20 ms of one core and 2.5 MB; a multiple with thousands of corners.
 )";
 
 constexpr const char* k_distance_doc = R"(A distance between the centres from which on the shapes have no common point.
@@ -76,11 +82,13 @@ py::object distance_of(const SafeDistanceTable& table, const py::object& alpha, 
 
 void bind_safe_distance(py::module_& m) {
   py::class_<SafeDistanceTable>(m, "SafeDistanceTable", py::module_local(), k_table_doc)
-      .def(py::init([](const py::object& a, const py::object& b) {
+      .def(py::init([](const py::object& a, const py::object& b, const py::object& threads, const py::object& job) {
              const Shape first = as_shape(a, "a"), second = as_shape(b, "b");
-             return without_gil([&] { return std::make_unique<SafeDistanceTable>(first, second); });
+             const int team = as_integer(threads, "threads");
+             Job* const token = as_job(job);
+             return without_gil([&] { return std::make_unique<SafeDistanceTable>(first, second, team, token); });
            }),
-           py::arg("a"), py::arg("b"))
+           py::arg("a"), py::arg("b"), py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none())
       .def("distance", &distance_of, py::arg("alpha"), py::arg("beta"), py::arg("scale_a") = 1.0,
            py::arg("scale_b") = 1.0, k_distance_doc)
       .def_property_readonly("nbytes", &SafeDistanceTable::byte_count, "Memory of the table and its fronts.");

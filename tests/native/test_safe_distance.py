@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import saddleback as sb
+from tests.native.cancelling import check_progress_and_cancel
 from tests.native.plane_collisions import last_contact
 
 SQUARE = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]])
@@ -63,6 +64,22 @@ def test_the_last_contact_is_found_beyond_a_gap() -> None:
     assert not crescent.overlaps(dot.moved(1, 0, [0.3, 0]))
     assert table.distance(0.0, np.pi) == 0.0
     assert table.distance(0.86, np.pi) > 0.8
+
+
+def test_threads_do_not_change_the_table() -> None:
+    alpha, beta, scale, ratio = poses(20_000, 4)
+    tables = [sb.SafeDistanceTable(SHAPES["star"], SHAPES["crescent"], threads=threads) for threads in (1, 2, 8)]
+    for scale_b in (scale, scale * ratio):
+        one, *others = (table.distance(alpha, beta, scale, scale_b).tobytes() for table in tables)
+        assert all(other == one for other in others)
+
+
+def test_a_table_of_many_corners_can_be_watched_and_stopped() -> None:
+    job = sb.Job()
+    sb.SafeDistanceTable(SHAPES["star"], SHAPES["needle"], job=job)
+    assert job.fraction == 1
+    fine = sb.Shape.disk(20_000)
+    check_progress_and_cancel(lambda job: sb.SafeDistanceTable(fine, fine, threads=1, job=job), 0.1)
 
 
 def test_disks_are_apart_at_the_sum_of_their_radii() -> None:

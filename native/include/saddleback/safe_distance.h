@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/shape.h"
 
 namespace saddleback {
@@ -16,8 +17,9 @@ class FrontProfiles {
  public:
   static constexpr Index k_angles = 720, k_columns = 256;
 
-  /// Strips from -half_width to half_width across the view. O(k_angles (corners + strips crossed)).
-  FrontProfiles(const Shape& shape, double half_width);
+  /// Strips from -half_width to half_width across the view. The same for any number of threads (0: all cores).
+  /// O(k_angles (corners + strips crossed)). \throw Cancelled.
+  FrontProfiles(const Shape& shape, double half_width, int threads = 0, const JobStage& stage = {});
 
   double half_width() const { return half_width_; }
   static Index range_of(double angle);
@@ -38,8 +40,9 @@ class FrontProfiles {
 /// the outside, and scales enter exactly.
 class SafeDistanceTable {
  public:
-  /// O(k_angles^2 k_columns): tens of milliseconds, 2.5 MB.
-  SafeDistanceTable(const Shape& a, const Shape& b);
+  /// The same for any number of threads (0: all cores). O(k_angles (k_angles k_columns + corners)): some 20
+  /// milliseconds of one core, 2.5 MB. \throw Cancelled.
+  SafeDistanceTable(const Shape& a, const Shape& b, int threads = 0, Job* job = nullptr);
 
   /// A distance between the centres from which on the shapes have no common point. `alpha`: where the centre of b is,
   /// seen in the plane of a: angle from a's x axis, radians. `beta`: where the centre of a is, seen from b. Equal
@@ -50,7 +53,8 @@ class SafeDistanceTable {
   std::size_t byte_count() const;
 
  private:
-  void fill(const FrontProfiles& a, const FrontProfiles& b);
+  SafeDistanceTable(const Shape& a, const Shape& b, int threads, const JobStage& stage);
+  void fill(const FrontProfiles& a, const FrontProfiles& b, int threads, const JobStage& stage);
 
   double table_unit_;  ///< of the whole numbers in the table
   FrontProfiles a_, b_;

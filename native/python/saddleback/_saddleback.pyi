@@ -910,7 +910,7 @@ _Reals: TypeAlias = SupportsFloat | ArrayLike
 
 @final
 class SafeDistanceTable:
-    def __init__(self, a: Shape, b: Shape) -> None: ...
+    def __init__(self, a: Shape, b: Shape, *, threads: SupportsIndex = 0, job: Job | None = None) -> None: ...
     @overload
     def distance(
         self,

@@ -6,6 +6,8 @@
 
 #include "saddleback/error.h"
 
+#include "support/parallel.h"
+
 namespace saddleback {
 namespace {
 
@@ -60,25 +62,31 @@ double largest_sum(const FrontProfiles& a, Index alpha, double scale_a, const Fr
 
 }  // namespace
 
-SafeDistanceTable::SafeDistanceTable(const Shape& a, const Shape& b)
+SafeDistanceTable::SafeDistanceTable(const Shape& a, const Shape& b, int threads, Job* job)
+    : SafeDistanceTable(a, b, threads, JobStage(job, "Measuring safe distances")) {}
+
+SafeDistanceTable::SafeDistanceTable(const Shape& a, const Shape& b, int threads, const JobStage& stage)
     : table_unit_((a.circumradius() + b.circumradius()) * (1 + k_rounding) / (k_largest - 1)),
-      a_(a, a.circumradius()),
-      b_(b, b.circumradius()) {
+      a_(a, a.circumradius(), threads, stage.part(0, 0.2)),
+      b_(b, b.circumradius(), threads, stage.part(0.2, 0.4)) {
   // At equal scales only strips that both shapes have can meet.
   const double shared = std::min(a.circumradius(), b.circumradius());
   if (a.circumradius() == b.circumradius())
-    fill(a_, b_);
+    fill(a_, b_, threads, stage.part(0.8, 1));
   else
-    fill(FrontProfiles(a, shared), FrontProfiles(b, shared));
+    fill(FrontProfiles(a, shared, threads, stage.part(0.4, 0.6)),
+         FrontProfiles(b, shared, threads, stage.part(0.6, 0.8)), threads, stage.part(0.8, 1));
 }
 
-void SafeDistanceTable::fill(const FrontProfiles& a, const FrontProfiles& b) {
+void SafeDistanceTable::fill(const FrontProfiles& a, const FrontProfiles& b, int threads, const JobStage& stage) {
+  constexpr Index k_chunk = 16;
   table_.resize(static_cast<std::size_t>(k_angles) * k_angles);
   std::vector<float> reversed(static_cast<std::size_t>(k_angles) * k_columns);
   for (Index beta = 0; beta < k_angles; ++beta)
     std::reverse_copy(b.columns(beta).begin(), b.columns(beta).end(),
                       reversed.begin() + static_cast<std::ptrdiff_t>(beta) * k_columns);
-  for (Index alpha = 0; alpha < k_angles; ++alpha)
+  parallel_for(k_angles, threads, k_chunk, [&](Index alpha, int) {
+    stage.update(static_cast<double>(alpha) / k_angles);
     for (Index beta = 0; beta < k_angles; ++beta) {
       const double sum = static_cast<double>(
           largest_sum(a.columns(alpha).data(), reversed.data() + static_cast<std::ptrdiff_t>(beta) * k_columns));
@@ -86,6 +94,8 @@ void SafeDistanceTable::fill(const FrontProfiles& a, const FrontProfiles& b) {
       table_[static_cast<std::size_t>(alpha) * k_angles + beta] =
           static_cast<std::uint16_t>(std::min(units, k_largest));
     }
+  });
+  stage.update(1);
 }
 
 double SafeDistanceTable::distance(double alpha, double beta, double scale_a, double scale_b) const {
