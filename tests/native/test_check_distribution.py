@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 import saddleback as sb
 from saddleback import check
 from tests import meshes
+from tests.native.plane_collisions import last_contact
 
 DISK, STAR, LEAF, NEEDLE = sb.Shape.disk(48), sb.Shape.star(5), sb.Shape.leaf(), sb.Shape.needle(8)
 RING = sb.Shape([DISK.loops[0], 0.6 * DISK.loops[0]])
@@ -115,6 +116,49 @@ def test_every_planted_collision_is_found(name: str) -> None:
     assert found["nesting"] >= {(2 * i, 2 * i + 1) for i in range(1, len(pairs), 3)}
     # The samples alone find most of those that are not too small for them.
     assert found["covered_twice"] <= wanted and len(found["covered_twice"]) > 20
+
+
+@pytest.mark.parametrize("name", ["plane", "cylinder"])
+def test_every_pair_pushed_together_by_two_percent_is_found(name: str) -> None:
+    """Where polygons of the plane touch last is known from their corners and edges; these lie 2 % of r nearer.
+
+    Half of the pairs overlap so, a quarter lie one in the other, a quarter across each other. As many that are 2 % of r
+    apart are no fault.
+    """
+    mesh, rng = surfaces()[name], np.random.default_rng(11)
+    scale = 0.008 * mesh.area**0.5
+    centres = spots(mesh, scale, 6.3)
+    kinds = ["overlap", "nesting", "overlap", "crossing"] * 25
+    pairs: list[tuple[Copy, Copy]] = []
+    for kind, near, centre in zip(kinds * 2, [True] * 100 + [False] * 100, centres, strict=False):
+        one, other = (3, 3) if kind == "crossing" else (0, 2) if kind == "nesting" else rng.integers(0, 4, 2).tolist()
+        small = scale * float(rng.uniform(0.1, 0.4) if kind == "nesting" else rng.uniform(0.5, 1))
+        angle, turn, towards = rng.uniform(0, 2 * np.pi, 3)
+        reach = last_contact(
+            SHAPES[one], SHAPES[other], *(np.array([x]) for x in (towards - angle, turn, scale, small))
+        )
+        distance = float(reach[0]) + (-0.02 if near else 0.02) * small
+        if near and kind != "overlap":
+            distance = rng.uniform(0, 0.5) * scale if kind == "nesting" else 0.0
+            turn = angle - towards + (np.pi / 2 if kind == "crossing" else 0.3)  # needles across each other
+        line = sb.trace(mesh, centre, float(towards), max(distance, 1e-9 * scale))
+        pairs.append(
+            (
+                (one, centre, float(angle), scale),
+                (other, line.surface[-1:], float(line.end_angle + np.pi - turn), small),
+            )
+        )
+    copies = [copy for pair in pairs for copy in pair]
+    assert len(pairs) == 200
+    shape, points, angles, scales = zip(*copies, strict=True)
+    faces, weights = [p.faces[0] for p in points], [p.barycentric[0] for p in points]
+    placements = sb.Placements(shape, sb.SurfacePoints(faces, weights), angles, scales)
+    report = sb.check_distribution(mesh, sb.map_shapes(mesh, SHAPES, placements), samples=0)
+    found = {kind: {fault[1:3] for fault in report.faults if fault[0] == kind} for kind, *_ in report.faults}
+    planted = {kind: {(2 * i, 2 * i + 1) for i in range(100) if kinds[i] == kind} for kind in set(kinds)}
+    assert found.keys() == {"crossing", "nesting"}
+    assert found["crossing"] == planted["overlap"] | planted["crossing"]
+    assert found["nesting"] - found["crossing"] == planted["nesting"]
 
 
 def test_what_could_not_be_laid_is_a_fault() -> None:
