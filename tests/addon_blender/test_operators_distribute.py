@@ -10,7 +10,7 @@ from test_operators_direction_field import add_curve, vectors
 from saddleback_blender import jobs
 from saddleback_blender.bridge.out_collection import find_output, outputs_of
 
-FEW = {"count": 20}
+FEW = {"count": 20, "packing": 0.0}
 
 
 def host():

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import saddleback as sb
-from saddleback_blender.core import distribute_runs, runs
+from saddleback_blender.core import distribute_runs, distribute_texts, runs
 from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.quaternions import turned
@@ -17,7 +16,7 @@ from saddleback_blender.core.shape_templates import fitted
 from tests import meshes
 
 BALL = meshes.icosphere(4)
-FEW = {"count": 60}
+FEW = {"count": 60, "packing": 0.0}
 
 
 def surface_of(vertices, triangles):
@@ -165,11 +164,11 @@ def test_outputs_do_not_compute_the_placements_again():
 
 
 def test_shapes_are_checked_by_other_mathematics():
-    request = DistributeRequest(surface_of(*BALL), DistributeSettings(count=40), tuple(preset("SCALES")))
+    request = DistributeRequest(surface_of(*BALL), DistributeSettings(count=40, packing=0.0), tuple(preset("SCALES")))
     report = distribute_runs.check(request, runs.new_progress(), Cache(2**28))
     assert report.text == "40 shapes checked: none touches another" and not report.faults
     assert 0.35 < float(report.lines[0].split()[1].rstrip("%")) / 100 < 0.45
-    assert distribute_runs._fault("crossing", 3, 5, (1.0, 2.0, 0.5)) == "Shape 3 crosses shape 5 at (1, 2, 0.5)"
+    assert distribute_texts.fault("crossing", 3, 5, (1.0, 2.0, 0.5)) == "Shape 3 crosses shape 5 at (1, 2, 0.5)"
 
 
 def test_filling_is_proved():
@@ -183,5 +182,51 @@ def test_filling_is_proved():
 def test_counts_that_do_not_fit_are_told():
     result = run(preset("STUDS"), size=0.3, count=500)
     assert len(result.placed.shape) < 100 and "no more room" in result.text
-    with pytest.raises(sb.InputError, match="larger"):
-        run(size=50.0)
+    assert result.text.startswith(f"{len(result.placed.shape)} of 500 shapes, no more")
+    assert result.warnings == (
+        f"{500 - len(result.placed.shape)} of 500 shapes found no room; make them smaller, or raise Packing",
+    )
+    # None at all is no result.
+    with pytest.raises(
+        BadInputError, match=r"'Thing': no shape found room at a radius of 1.9 \(tries refused: .* stretched"
+    ):
+        run(preset("STUDS"), size=1.9)
+    with pytest.raises(
+        BadInputError, match=r"'Thing': 'Stud' has an area of 7\d{3}, larger than the surface.*; make Size"
+    ):
+        run(preset("STUDS"), size=50.0)
+    with pytest.raises(BadInputError, match=r"gap is 100: 'Scale' with half of it around .*; make Gap or Size smaller"):
+        run(gap=100.0, size=0.1)
+    with pytest.raises(BadInputError, match="the group Keep Off leaves no place for a shape"):
+        run(options={"forbidden": np.ones(len(BALL[0]), bool)})
+
+
+STAR = np.stack([np.cos(np.arange(10) * np.pi / 5), np.sin(np.arange(10) * np.pi / 5)], axis=1)
+STAR[1::2] *= 0.38
+
+
+@pytest.mark.parametrize("packing", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("maximal", [False, True])
+def test_so_many_are_as_large_as_fits_them(packing, maximal):
+    star = fitted("Star", [[STAR]], np.zeros(2))
+    result = run([star], packing=packing, maximal=maximal, make_bent=False)
+    count = len(result.placed.shape)
+    if packing or maximal:
+        assert abs(count - 60) <= 3 and not result.warnings and " of " not in result.text
+        # All over the surface: none of its octants is bare.
+        octants = np.bincount((result.placed.points > 0) @ [1, 2, 4], minlength=8)
+        assert octants.min() >= 4
+    else:
+        assert count == 60
+
+
+def test_a_gap_makes_so_many_smaller():
+    plain, apart = (run(preset("STUDS"), count=40, gap=gap, make_bent=False) for gap in (0.0, 0.2))
+    assert len(plain.placed.shape) == len(apart.placed.shape) == 40
+    assert apart.placed.scales.max() < 0.9 * plain.placed.scales.max()
+
+
+def test_a_count_that_leaves_a_part_bare_is_told():
+    result = run(preset("STUDS"), packing=1.0, size=0.1, make_bent=False)
+    assert len(result.placed.shape) == 60 and "what they did not reach is bare" in result.warnings[0]
+    assert not run(preset("STUDS"), packing=0.0, size=0.1, make_bent=False).warnings

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -13,18 +12,18 @@ from . import native
 from .bent_copies import bent_copies
 from .cache import Cache
 from .density_runs import density_of
+from .distribute_texts import MOST_FAULTS, fault, figures, no_room, refusal, told, warnings_of
 from .errors import BadInputError
-from .field_runs import field_of
+from .field_runs import MadeField, field_of
 from .given_fields import given_field
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .local_frames import anchored
 from .progress import Progress
 from .requests import DirectionFieldRequest, DistributeRequest, digest
 from .results import CheckResult, DistributeResult, Indices, PathsResult, PlacedShapes, Reals, ShapeValues
-from .shape_templates import ShapeTemplate, sized
+from .shape_sizes import Laid, Placed, fitted_to_count, size_of, sizes
+from .shape_templates import sized
 
-# Share of the surface that shapes cover when their size is left to their count: at random, and side by side.
-COVERAGE, PACKED_COVERAGE = 0.40, 0.55
 BYTES_PER_SHAPE = 4000  # of a placement and its outline
 VALUES_REACH = 1.0  # radii of the largest shapes: how far beyond outlines vertices know of them
 
@@ -77,9 +76,9 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         ),
         vertex_count=surface.vertex_count,
         class_counts=counts,
-        text=_told(laid, counts),
-        lines=_figures(laid, counts, settings.maximal),
-        warnings=_warnings(laid, mapped),
+        text=told(laid, counts, settings),
+        lines=figures(laid, settings.maximal),
+        warnings=(*laid.warnings, *warnings_of(laid, mapped, settings)),
         bent=bent,
         bent_anchors=bent_anchors,
         outlines=outlines,
@@ -88,20 +87,8 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
     )
 
 
-@dataclass(frozen=True)
-class Laid:
-    """What the library answered, and what it was asked with."""
-
-    mesh: Any
-    templates: tuple[ShapeTemplate, ...]
-    shapes: list[Any]
-    size: float  # scale of the largest
-    result: Any
-    key: tuple[str, ...]
-
-
 def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Laid:
-    """The placements, from the cache or new."""
+    """The placements, from the cache or new. Raises BadInputError where not one shape finds room."""
     settings, surface, sb = request.settings, request.surface, native.load()
     if not any(template.share > 0 for template in request.templates):
         raise BadInputError(f"'{surface.name}': the shares of all shapes are 0; give one of them more")
@@ -114,19 +101,15 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         progress.note("Shapes that fill the surface do not bend along the field")
     if bends and field is None:
         with progress.stage(0.2, "making a field to bend along") as job:
-            field = sb.direction_field(mesh, 2, job=job)
+            field = MadeField(sb.direction_field(mesh, 2, job=job), 0)
 
     def graph() -> Any:
         choice = GraphChoice("NORMAL", 0)
         return graph_of_surface(surface, mesh, choice, request.threads, request.disk, progress, cache)
 
     density = density_of(request.density, surface, settings, mesh, graph, progress)
-    size = settings.size or _size(settings.count, settings.packing, mesh.area, shapes, templates)
-    sizes = _sizes(mesh, size, density if settings.size_by_density else None)
+    forbidden = None if request.forbidden is None else _forbidden_faces(request, mesh)
     options: dict[str, Any] = {
-        "counts": None if settings.maximal else settings.count,
-        "shares": None if settings.maximal else [template.share for template in templates],
-        "size": sizes,
         "size_range": (1.0 - settings.size_variation, 1.0),
         "gap": settings.gap,
         "mode": settings.packing,
@@ -134,29 +117,50 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         "bend": bends,
         "maximal": settings.maximal,
         "seed": settings.seed,
+        "shares": None if settings.maximal else [template.share for template in templates],
     }
     if density is not None and settings.maximal and not settings.size_by_density:
         progress.note("Where shapes fill the surface the density has no say in their number; let it rule their size")
     elif density is not None and not (settings.size_by_density and (settings.maximal or settings.packing > 0)):
         options["density"] = density  # where shapes fill the surface their sizes alone say how many there are
-    if request.forbidden is not None:
-        options["forbidden"] = _forbidden_faces(request, mesh)
-    key = (
-        surface.key,
-        digest(
-            *(value for item in sorted(options.items(), key=lambda item: item[0]) for value in item),
-            None if field is None else field.angles, None if field is None else field.symmetry,
-            *(loop for template in templates for part in template.parts for loop in part),
-        ),
-    )  # fmt: skip
+    if forbidden is not None:
+        options["forbidden"] = forbidden
+    field_key = (None, None) if field is None else (field.field.angles, field.field.symmetry)
+    loops = [loop for template in templates for part in template.parts for loop in part]
+    shared = digest(
+        *(value for item in sorted(options.items(), key=itemgetter(0)) for value in item), *field_key, *loops
+    )
 
-    def place() -> Any:
-        with progress.stage(0.75, "laying shapes on the surface") as job:
-            return sb.distribute(mesh, shapes, field=field, threads=request.threads, job=job, **options)
+    def place(size: float, count: int | None) -> Placed:
+        wanted = sizes(mesh, size, density if settings.size_by_density else None)
+        key = (surface.key, digest(shared, wanted, count))
 
-    result = cache.get(("shapes", *key), place, lambda found: BYTES_PER_SHAPE * len(found.placements))
-    progress.check()
-    return Laid(mesh, templates, shapes, size, result, key)
+        def lay() -> Any:
+            with progress.stage(0.75, "laying shapes on the surface") as job:
+                return sb.distribute(
+                    mesh, shapes, count, field=None if field is None else field.field, size=wanted,
+                    threads=request.threads, job=job, **options,
+                )  # fmt: skip
+
+        try:
+            result = cache.get(("shapes", *key), lay, lambda found: BYTES_PER_SHAPE * len(found.placements))
+        except sb.InputError as error:
+            raise BadInputError(f"'{surface.name}': {refusal(str(error), templates)}") from error
+        progress.check()
+        return Placed(size, result, key)
+
+    fills = settings.maximal or (settings.packing > 0 and "density" not in options)
+    if settings.size:
+        placed = place(settings.size, None if settings.maximal else settings.count)
+    else:
+        free = mesh.area if forbidden is None else float(np.asarray(mesh.face_areas)[~forbidden].sum()) or mesh.area
+        first = size_of(settings.count, settings.packing if fills else 0.0, fills, free, shapes, templates)
+        placed = fitted_to_count(place, first, settings.count, fills, settings.maximal)
+    warnings = () if field is None else field.notes
+    laid = Laid(mesh, templates, shapes, placed.size, placed.result, placed.key, fills and not settings.size, warnings)
+    if not len(placed.result.placements):
+        raise BadInputError(f"'{surface.name}': {no_room(laid)}")
+    return laid
 
 
 def _mapped(laid: Laid, request: DistributeRequest, progress: Progress, cache: Cache) -> Any:
@@ -169,39 +173,12 @@ def _mapped(laid: Laid, request: DistributeRequest, progress: Progress, cache: C
     return cache.get(("mapped shapes", *laid.key), lay, lambda found: BYTES_PER_SHAPE * len(found))
 
 
-def _field(request: DistributeRequest, mesh: Any, progress: Progress, cache: Cache) -> Any:
+def _field(request: DistributeRequest, mesh: Any, progress: Progress, cache: Cache) -> MadeField | None:
     if request.field is None:
         return None
     if isinstance(request.field, DirectionFieldRequest):
-        return field_of(request.field, mesh, progress, cache).field
-    return given_field(request.surface, request.field, mesh)
-
-
-def _size(count: int, packing: float, area: float, shapes: Sequence[Any], templates: Sequence[ShapeTemplate]) -> float:
-    """The scale at which so many shapes cover a fair share of the surface."""
-    shares = np.array([template.share for template in templates])
-    mean = float((shares * [shape.area for shape in shapes]).sum() / shares.sum())
-    cover = COVERAGE + packing * (PACKED_COVERAGE - COVERAGE)
-    return float(np.sqrt(cover * area / (count * mean)))
-
-
-def _sizes(mesh: Any, size: float, density: Reals | None) -> float | Reals:
-    """One scale, or one a vertex: by the density's square root, so that shapes fill the same share everywhere."""
-    if density is None:
-        return size
-    middle = float(np.average(density, weights=_vertex_areas(mesh)))
-    shrunk = np.sqrt(middle / np.maximum(density, middle / MOST_GROWTH**2))
-    sizes: Reals = size * np.maximum(shrunk, 1.0 / MOST_GROWTH)
-    return sizes
-
-
-MOST_GROWTH = 4.0  # of a size by the density, up or down
-
-
-def _vertex_areas(mesh: Any) -> Reals:
-    thirds = np.repeat(np.asarray(mesh.face_areas, np.float64) / 3.0, 3)
-    areas: Reals = np.bincount(mesh.triangles.ravel(), thirds, minlength=len(mesh.vertices)).astype(np.float64)
-    return areas
+        return field_of(request.field, mesh, progress, cache)
+    return MadeField(given_field(request.surface, request.field, mesh), 0)
 
 
 def _forbidden_faces(request: DistributeRequest, mesh: Any) -> np.ndarray:
@@ -236,65 +213,6 @@ def _outlines(mapped: Any, progress: Progress) -> tuple[PathsResult, Indices, Re
     return found, np.concatenate(faces), np.concatenate(weights)
 
 
-# What the library's reasons to stop mean to a person; that every count is met needs no word.
-STOPS = {"full": "nothing more fits", "tired": "no more room was found"}
-REJECTIONS = {
-    "collision": "met another",
-    "boundary": "went over the border",
-    "forbidden": "lay where none may",
-    "fold": "would have folded",
-    "stretched": "would have been stretched",
-}
-
-
-def _told(laid: Laid, counts: np.ndarray) -> str:
-    total = int(counts.sum())
-    text = "1 shape" if total == 1 else f"{total:,} shapes"
-    if len(counts) > 1:
-        names = (f"{count} {template.name}" for count, template in zip(counts, laid.templates, strict=True))
-        text += f" ({', '.join(names)})"
-    stop = STOPS.get(str(laid.result.stop_reason), "")
-    return f"{text}, {stop}" if stop else text
-
-
-def _figures(laid: Laid, counts: np.ndarray, is_maximal: bool) -> tuple[str, ...]:
-    placements = laid.result.placements
-    areas = np.array([shape.area for shape in laid.shapes])[placements.shape] * placements.scale**2
-    lines = [f"Covered: {areas.sum() / laid.mesh.area:.1%}; radius of the largest {laid.size:.3g}"]
-    tried = {REJECTIONS[name]: number for name, number in laid.result.rejections.items() if number}
-    if tried:
-        lines.append("Tries that " + ", ".join(f"{words}: {number:,}" for words, number in tried.items()))
-    certificate = laid.result.certificate
-    if is_maximal and certificate is not None:
-        share = certificate.uncertified_area / laid.mesh.area
-        lines.append(
-            f"Proved full but for gaps under {certificate.tolerance:.2g}"
-            + (f", on all but {share:.2%} of the surface" if share > 0 else "")
-        )
-    return tuple(lines)
-
-
-def _warnings(laid: Laid, mapped: Any) -> tuple[str, ...]:
-    found = []
-    if len(mapped.failures):
-        found.append(f"{len(mapped.failures)} shapes could not be laid out and are missing in what was made")
-    if not len(laid.result.placements):
-        found.append("No shape found room; make them smaller, or forbid less")
-    return tuple(found)
-
-
-FAULTS = {
-    "not_laid": "could not be laid on the surface",
-    "open": "has no closed outline",
-    "crossing": "crosses",
-    "nesting": "lies within",
-    "overturned": "is turned over in a place",
-    "incomplete": "is not all there",
-    "covered_twice": "overlaps",
-}
-MOST_FAULTS = 8  # that are told
-
-
 def check(request: DistributeRequest, progress: Progress, cache: Cache | None = None) -> CheckResult:
     """Lays the same shapes again, or finds them in the cache, and has them checked by other mathematics.
 
@@ -306,19 +224,13 @@ def check(request: DistributeRequest, progress: Progress, cache: Cache | None = 
     with progress.stage(0.98, "checking the shapes") as job:
         report = native.load().check_distribution(laid.mesh, mapped, threads=request.threads, job=job)
     count = len(laid.result.placements)
-    told = f"{count:,} shapes checked: "
-    told += f"{report.fault_count:,} faults" if report.fault_count else "none touches another"
+    text = f"{count:,} shapes checked: "
+    text += f"{report.fault_count:,} faults" if report.fault_count else "none touches another"
     return CheckResult(
-        text=told,
-        faults=tuple(_fault(*fault) for fault in report.faults[:MOST_FAULTS]),
+        text=text,
+        faults=tuple(fault(*found) for found in report.faults[:MOST_FAULTS]),
         lines=(
             f"Covered: {report.coverage:.2%} by {report.sample_count:,} samples",
             f"{report.piece_count:,} pieces of outlines compared, {report.triangle_count:,} triangles",
         ),
     )
-
-
-def _fault(kind: str, first: int, second: int | None, where: tuple[float, float, float]) -> str:
-    other = "" if second is None else f" shape {second}"
-    place = ", ".join(f"{coordinate:.4g}" for coordinate in where)
-    return f"Shape {first} {FAULTS[kind]}{other} at ({place})"

@@ -181,7 +181,7 @@ class DistributeSettings(DensitySettings):
     size_variation: float = 0.0  # by which share of the largest the smallest are smaller
     size_by_density: bool = False  # small where the density is high, instead of by chance
     gap: float = 0.0
-    packing: float = 0.0  # 0 = by chance, 1 = side by side
+    packing: float = 1.0  # 0 = by chance, 1 = side by side
     maximal: bool = False  # go on until nothing more fits, whatever the count
     mirror: bool = False  # half of them
     bend: bool = False  # along the field, unless they fill the surface

@@ -30,9 +30,10 @@ DISTRIBUTE: dict[str, Any] = {
     "shapes_collection": name_of("Shapes Collection", "The collection whose objects are laid on the surface"),
     "shapes_image": name_of("Shape Image", "The image whose mask is laid on the surface"),
     "count": IntProperty(
-        name="Count", description="Number of shapes", default=500, min=1, soft_max=20000, options={"SKIP_SAVE"}
+        name="Count", description="Number of shapes; about so many where they fill the surface and Size is 0",
+        default=500, min=1, soft_max=20000, options={"SKIP_SAVE"},
     ),
-    "size": length("Size", "Radius of the circle around the largest shapes; 0 means by their number", 0.0),
+    "size": length("Size", "Radius of the circle around the largest shapes; 0 means as large as so many may be", 0.0),
     "size_variation": FloatProperty(
         name="Variation", description="By which share of the largest the smallest are smaller", default=0.0, min=0.0,
         max=0.95, subtype="FACTOR", options={"SKIP_SAVE"},
@@ -40,8 +41,8 @@ DISTRIBUTE: dict[str, Any] = {
     "size_by_density": switch("Size by Density", "Shapes are small where the density is high", False),
     "gap": length("Gap", "Least distance from shape to shape", 0.0),
     "packing": FloatProperty(
-        name="Packing", description="0 lays shapes in a random order, 1 side by side, which makes room for more",
-        default=0.0, min=0.0, max=1.0, subtype="FACTOR", options={"SKIP_SAVE"},
+        name="Packing", description="0 scatters shapes by chance, 1 lays them side by side, which makes room for more",
+        default=1.0, min=0.0, max=1.0, subtype="FACTOR", options={"SKIP_SAVE"},
     ),
     "maximal": switch("Fill", "Go on until nothing more fits, whatever the count, and prove it", False),
     "mirror": switch("Mirror", "Mirror half of the shapes, by chance", False),
