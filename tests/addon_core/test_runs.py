@@ -86,6 +86,22 @@ def test_of_several_starts_the_best_is_taken(cache):
     np.testing.assert_array_equal(kept[0].sites_position, kept[1].sites_position)
 
 
+def test_annealed_before_the_iterations(cache):
+    """Where sites move; those that stay are the same cells, found once."""
+    surface = shapes.grid(16)
+    plain, annealed = (tessellate(surface, cache, count=20, iterations=6, seed=4, annealing=steps) for steps in (0, 30))
+    assert annealed.energy[-1] < plain.energy[-1]
+    assert annealed.iterations <= 6
+    assert cache.builds["cells"] == 2
+    sites = np.array([2, 14, 170], np.int32)
+    for steps in (0, 30):
+        tessellate(surface, cache, sites=sites, annealing=steps)
+    assert cache.builds["cells"] == 3
+    moved = tessellate(surface, cache, sites=sites, relax_sites=True, annealing=30)
+    assert cache.builds["cells"] == 4
+    assert (moved.sites_position != surface.vertices[sites]).any()
+
+
 def test_more_cells_than_vertices(cache):
     surface = shapes.grid(3, loose=1)
     result = tessellate(surface, cache, count=90, iterations=8, k=15, make_cells=True)

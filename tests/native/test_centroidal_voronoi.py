@@ -284,6 +284,8 @@ def test_progress_rises_and_cancel_is_quick() -> None:
         ({"count": 2, "seed": -1}, "seed"),
         ({"count": 2, "fixed": [2]}, "fixed: wanted sites from 0 to 1, got 2"),
         ({"count": 2, "fixed": [-1]}, "fixed"),
+        ({"count": 2, "annealing": -1}, "annealing: wanted 0 or more, got -1"),
+        ({"count": 2, "annealing": 0.5}, "annealing"),
         ({"count": 2, "start": "guess"}, "start: wanted 'auto', 'coarse_to_fine' or 'sample', got 'guess'"),
     ],
 )
@@ -310,6 +312,91 @@ def test_of_several_starts_the_one_with_the_least_energy() -> None:
     ):
         with pytest.raises(sb.InputError, match=words):
             sb.centroidal_voronoi(graph, **arguments)
+
+
+def test_annealed_cells_are_more_even_than_relaxed_ones() -> None:
+    """At equal numbers of steps, from the same samples: a relaxation ends at the next rest, which luck decides."""
+    mesh = sb.Mesh(*meshes.torus(72, 30))
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    irregular, energy = np.empty((2, 4)), np.empty((2, 4))
+    for row, (annealing, iterations) in enumerate(((0, 200), (150, 50))):
+        for seed in range(4):
+            relaxed = sb.centroidal_voronoi(
+                graph,
+                count=400,
+                annealing=annealing,
+                max_iterations=iterations,
+                tolerance=0,
+                seed=seed,
+                start="sample",
+                threads=1,
+            )
+            assert len(relaxed.sites) == 400
+            assert (np.diff(relaxed.energy) <= 0).all()
+            dual = relaxed.cells.dual("strict")
+            irregular[row, seed] = sb.triangle_quality(dual.vertices, dual.triangles).irregular
+            energy[row, seed] = relaxed.normalised_energy
+    assert irregular[1].mean() < 0.85 * irregular[0].mean()
+    assert energy[1].mean() < energy[0].mean() - 0.001
+    assert energy[1].max() < 1.009 < energy[0].max()
+
+
+def test_annealing_never_ends_with_more_energy_than_it_began_with() -> None:
+    """Two cells at rest and a hundred, with as few steps as leave no time to cool: the sites are returned to."""
+    mesh = sb.Mesh(*meshes.torus(40, 16))
+    graph = sb.SaddleVertexGraph(mesh, k=30)
+    for count in (2, 100):
+        rest = sb.centroidal_voronoi(graph, count=count, max_iterations=300, tolerance=1e-9, threads=1)
+        shaken = sb.centroidal_voronoi(graph, sites=rest.sites, annealing=3, max_iterations=0, threads=1)
+        assert shaken.energy.tobytes() == rest.energy[-1:].tobytes()
+        assert shaken.sites.barycentric.tobytes() == rest.sites.barycentric.tobytes()
+
+
+def test_annealing_holds_what_is_held_and_depends_on_no_thread() -> None:
+    mesh = sb.Mesh(*meshes.grid(30, 30))
+    graph = sb.SaddleVertexGraph(mesh, k=40)
+    sides = square_sides(mesh)
+    start = sb.sample(mesh, 60, seed=1)
+    held = np.repeat(np.array([0, -1], np.int32), [8, 52])
+
+    def annealed(threads: int) -> sb.CentroidalVoronoi:
+        return sb.centroidal_voronoi(
+            graph, sites=start, annealing=20, max_iterations=4, fixed=[50, 55], curves=sides, held=held, threads=threads
+        )
+
+    first = annealed(1)
+    for threads in (2, 8):
+        again = annealed(threads)
+        assert again.sites.barycentric.tobytes() == first.sites.barycentric.tobytes()
+        assert again.energy.tobytes() == first.energy.tobytes()
+    places, begun = first.sites.positions(mesh), start.positions(mesh)
+    np.testing.assert_array_equal(places[[50, 55]], begun[[50, 55]])
+    side = sides[0].points.positions(mesh)
+    flat = int(np.argmin(np.ptp(side[:, :2], axis=0)))
+    np.testing.assert_allclose(places[:8, flat], side[0, flat], atol=1e-9)
+    assert (np.linalg.norm((places - begun)[8:50], axis=1) > 0).all()
+
+
+def test_annealing_is_stopped_and_gives_what_there_is() -> None:
+    mesh = sb.Mesh(*meshes.grid(80, 80))
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    job = sb.Job()
+
+    def stop() -> None:
+        while "Annealing" not in job.text or job.fraction < 0.01:
+            time.sleep(0.001)
+        job.cancel()
+
+    start = sb.sample(mesh, 100, seed=2)
+    watcher = threading.Thread(target=stop)
+    watcher.start()
+    found = sb.centroidal_voronoi(graph, sites=start, annealing=2000, return_when_cancelled=True, job=job)
+    watcher.join()
+    assert found.stop_reason == "cancelled"
+    assert found.iterations == 0
+    assert len(found.energy) == 1
+    assert found.energy[0] <= sb.centroidal_voronoi(graph, sites=start, max_iterations=0).energy[0]
+    check_progress_and_cancel(lambda job: sb.centroidal_voronoi(graph, count=100, annealing=2000, job=job), 0.005)
 
 
 def square_sides(mesh: sb.Mesh) -> list[sb.SurfaceCurve]:

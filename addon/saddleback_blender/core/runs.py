@@ -54,6 +54,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         iterations,
         settings.method if iterations else "",
         _starts(request),
+        _annealing(request, iterations),
         density if sites is None or iterations else None,
         *_held(request),
     )
@@ -189,6 +190,11 @@ def _starts(request: TessellateRequest) -> int:
     return settings.starts if settings.iterations and request.sites is None and request.live is None else 1
 
 
+def _annealing(request: TessellateRequest, iterations: int) -> int:
+    """Steps before the first one that is counted: none where sites stay, or are watched."""
+    return request.settings.annealing if iterations and request.live is None else 0
+
+
 def _solve(
     request: TessellateRequest,
     mesh: Any,
@@ -214,7 +220,8 @@ def _solve(
             # To be watched from a start that is far from even; else from coarse cells that are even already.
             cvt = sb.centroidal_voronoi(
                 graph, density=density, method=settings.method.lower(), max_iterations=iterations, seed=settings.seed,
-                starts=_starts(request), start="auto" if live is None else "sample",
+                starts=_starts(request), annealing=_annealing(request, iterations),
+                start="auto" if live is None else "sample",
                 return_when_cancelled=live is not None, watch=watch, threads=request.threads, job=job, **choice,
             )  # fmt: skip
         cells = cvt.cells

@@ -32,6 +32,7 @@ class TessellateSettings(DensitySettings):
     method: str = "LBFGS"  # LBFGS, LLOYD
     iterations: int = 15
     starts: int = 1  # relaxations from so many samples; the best is taken
+    annealing: int = 0  # steps in which the sites are shaken before the iterations
     sites_source: str = "COUNT"  # COUNT, SELECTED, OBJECT
     sites_object: str = ""
     relax_sites: bool = False  # move chosen sites too (those of COUNT always move)

@@ -51,6 +51,15 @@ TESSELLATE: dict[str, Any] = {
         soft_max=10,
         options={"SKIP_SAVE"},
     ),
+    "annealing": IntProperty(
+        name="Annealing",
+        description="Steps in which the sites are shaken, less and less, before the iterations: fewer cells with more "
+        "or less than six neighbours, for a remesh that may take a while (200)",
+        default=0,
+        min=0,
+        soft_max=400,
+        options={"SKIP_SAVE"},
+    ),
     "method": choice("Method", "How the sites find their places", METHODS, "LBFGS"),
     "sites_source": choice("Sites", "Where the cells' centres come from", SITES_SOURCES, "COUNT"),
     "sites_object": name_of("Sites Object", "The object whose vertices become sites"),

@@ -31,6 +31,7 @@ def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
     column.prop(settings, "iterations")
     if settings.sites_source == "COUNT":
         column.prop(settings, "starts")
+    column.prop(settings, "annealing")
     column.prop(settings, "method")
     if settings.sites_source == "COUNT":
         _draw_held(layout.column(heading="Keep", align=True), settings)

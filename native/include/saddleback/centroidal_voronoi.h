@@ -31,6 +31,9 @@ struct CentroidalVoronoiOptions {
   /// Only for a number of cells: so many relaxations, by the seeds from the given one on, of which the one with the
   /// least energy is the result. Where a relaxation ends depends on where it began.
   int starts = 1;
+  /// So many steps of simulated annealing before the iterations, each as long as one of those: fewer irregular cells
+  /// than any number of iterations leaves. 200 are many. Sites that would end with more energy are left as they were.
+  int annealing = 0;
   bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
   RelaxationWatch* watch = nullptr;    ///< is shown the start and every iteration of the wanted number of sites
   int threads = 0;                     ///< 0: all cores; the result does not depend on it
@@ -40,7 +43,7 @@ struct CentroidalVoronoi {
   SurfacePoints sites;
   std::vector<Index> held;  ///< (n,) the curve that each site is held on, k_none for free ones; empty: all are free
   GeodesicVoronoi cells;
-  std::vector<double> energy;  ///< of the start and after each iteration; never rises
+  std::vector<double> energy;  ///< of the (annealed) start and after each iteration; never rises
   int iterations = 0;
   bool converged = false;
   std::string stop_reason;  ///< "tolerance", "no step lowers the energy", "max_iterations", "cancelled"
@@ -60,10 +63,11 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 /// of the weight). Lloyd's step goes along the exponential map to the weighted mean of the cell in the site's tangent
 /// plane; L-BFGS (Liu, Wang, Levy, Sun, Yan, Lu, Yang: On centroidal Voronoi tessellation, 2009) makes of several such
 /// steps a better one, on the product of the tangent planes. No step is accepted that would raise the energy. A site
-/// that coincides with another, and so has no cell, is put where the most energy is. \throw InputError for a density of
-/// wrong length, with a negative, infinite or not-a-number value, or zero everywhere; for a fixed site out of range;
-/// for what geodesic_voronoi refuses; Cancelled unless the best is to be returned. Per iteration O(sites k log k +
-/// arcs).
+/// that coincides with another, and so has no cell, is put where the most energy is. Where it all ends depends on where
+/// it began: annealing (see the options; Kirkpatrick, Gelatt, Vecchi: Optimization by simulated annealing, 1983) and
+/// several starts end with less. \throw InputError for a density of wrong length, with a negative, infinite or
+/// not-a-number value, or zero everywhere; for a fixed site out of range; for what geodesic_voronoi refuses; Cancelled
+/// unless the best is to be returned. Per iteration O(sites k log k + arcs).
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);
 

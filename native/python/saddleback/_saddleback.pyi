@@ -539,6 +539,7 @@ def centroidal_voronoi(
     *,
     start: Literal["auto", "coarse_to_fine", "sample"] = "auto",
     starts: SupportsIndex = 1,
+    annealing: SupportsIndex = 0,
     fixed: ArrayLike | None = None,
     curves: Sequence[SurfaceCurve] | None = None,
     held: ArrayLike | None = None,

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 
 #include "saddleback/error.h"
 #include "saddleback/sample.h"
 
-#include "tessellation/cell_moments.h"
+#include "tessellation/annealing.h"
 #include "tessellation/diagram.h"
-#include "tessellation/held_sites.h"
-#include "tessellation/limited_memory.h"
+#include "tessellation/relaxation.h"
 #include "tessellation/stray_cells.h"
-#include "tessellation/tangent_moves.h"
 
 namespace saddleback {
 namespace {
@@ -25,6 +21,7 @@ void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
     throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
   if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
   if (options.starts < 1) throw InputError(message("starts: wanted 1 or more, got ", options.starts));
+  if (options.annealing < 0) throw InputError(message("annealing: wanted 0 or more, got ", options.annealing));
   check_density(mesh, options.density);
 }
 
@@ -43,226 +40,22 @@ void check_fixed(const CentroidalVoronoiOptions& options, const SurfacePoints& s
   }
 }
 
-/// Sites with their cells and what is needed to move on.
-struct State {
-  SurfacePoints sites;
-  std::vector<double> along;  ///< of held sites, see HeldSites
-  std::unique_ptr<CellClaims> claims;
-  std::vector<CellMoments> moments;
-  double energy = 0;
-};
-
-/// The sites on their way.
-class Relaxation {
- public:
-  Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& sites, const CentroidalVoronoiOptions& options,
-             const JobStage& stage);
-  /// One step that lowers the energy; false when there is none. \throw Cancelled, the state as it was.
-  bool advance(const JobStage& stage);
-  const State& state() const { return state_; }
-  double mass() const;
-
- private:
-  std::vector<double> reaches(const SurfacePoints& sites) const;
-  State evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage);
-  void accept(State next);
-  bool revive_empty_cells(const JobStage& stage);
-  SurfacePoint far_place(Index site) const;
-  bool advance_by(const TangentField& direction, const TangentField& gradient, const JobStage& stage);
-  TangentField gradient(const State& state) const;
-  TangentField lloyd_direction() const;
-  TangentField quasi_newton_direction(const TangentField& gradient) const;
-  void shorten(TangentField& direction) const;
-
-  const SaddleVertexGraph& graph_;
-  const CentroidalVoronoiOptions& options_;
-  const VertexRings rings_;
-  CellIntegrals integrals_;
-  std::unique_ptr<CellClaims> spare_;  ///< memory for the next cells
-  std::vector<std::uint8_t> is_fixed_;
-  const HeldSites held_;
-  State state_;
-  LimitedMemory memory_;
-};
-
-Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& sites,
-                       const CentroidalVoronoiOptions& options, const JobStage& stage)
-    : graph_(graph),
-      options_(options),
-      rings_(graph, options.threads),
-      integrals_(graph, rings_, options.density, options.threads),
-      is_fixed_(sites.size(), 0),
-      held_(graph.mesh(), options.curves, options.held, sites.size()) {
-  for (const Index site : options.fixed) is_fixed_[site] = 1;
-  SurfacePoints start = sites;
-  std::vector<double> along = held_.bring(start);
-  state_ = evaluate(std::move(start), std::move(along), stage);
-  while (revive_empty_cells(stage)) {}
-}
-
-State Relaxation::evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage) {
-  State state;
-  state.sites = std::move(sites);
-  state.along = std::move(along);
-  state.claims = spare_ ? std::move(spare_) : std::make_unique<CellClaims>(graph_, rings_, options_.threads);
-  state.claims->find(state.sites, reaches(state.sites), stage.part(0, 0.8));
-  state.moments = integrals_.moments(*state.claims, stage);
-  for (const CellMoments& cell : state.moments) state.energy += cell.energy;
-  return state;
-}
-
-/// Takes the better of two states; the other's memory is for the next.
-void Relaxation::accept(State next) {
-  spare_ = std::move(state_.claims);
-  state_ = std::move(next);
-}
-
-/// How far sites may own something: somewhat farther than before, and than they have moved. None for the first cells.
-std::vector<double> Relaxation::reaches(const SurfacePoints& sites) const {
-  constexpr double k_growth = 1.1;
-  if (!state_.claims) return {};
-  const Mesh& mesh = graph_.mesh();
-  std::vector<double> reaches(sites.size());
-  for (Index i = 0; i < static_cast<Index>(sites.size()); ++i) {
-    const double reach = state_.claims->reach(i);
-    const double moved = (position(mesh, sites[i]) - position(mesh, state_.sites[i])).norm();
-    reaches[i] = reach > 0 ? k_growth * (reach + moved) : std::numeric_limits<double>::infinity();
+/// Shakes the sites, unless they had less energy before.
+void shake(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage) {
+  if (options.annealing == 0) return;
+  const SurfacePoints sites = relaxation.state().sites;
+  const std::vector<double> along = relaxation.state().along;
+  const double energy = relaxation.state().energy;
+  const auto keep_the_better = [&](const JobStage& last) {
+    if (!(relaxation.state().energy < energy)) relaxation.go_to(sites, along, last);
+  };
+  try {
+    anneal(relaxation, options.annealing, stage);
+  } catch (const Cancelled&) {
+    if (options.return_when_cancelled) keep_the_better(JobStage());
+    throw;
   }
-  return reaches;
-}
-
-double Relaxation::mass() const {
-  double sum = 0;
-  for (Index face = 0; face < graph_.mesh().face_count(); ++face) {
-    const double area = graph_.mesh().face_area(face);
-    const Triangle& t = graph_.mesh().triangles()[face];
-    if (options_.density.empty())
-      sum += area;
-    else
-      sum += area * (options_.density[t[0]] + options_.density[t[1]] + options_.density[t[2]]) / 3;
-  }
-  return sum;
-}
-
-/// Puts sites without a cell into the cells with the most energy, one each. False when there is nothing to do.
-bool Relaxation::revive_empty_cells(const JobStage& stage) {
-  std::vector<Index> empty, rich;
-  for (Index i = 0; i < static_cast<Index>(state_.moments.size()); ++i) {
-    if (state_.moments[i].area > 0)
-      rich.push_back(i);
-    else if (!is_fixed_[i] && !held_.is_held(i))
-      empty.push_back(i);
-  }
-  if (empty.empty()) return false;
-  std::sort(rich.begin(), rich.end(), [&](Index a, Index b) {
-    const double of_a = state_.moments[a].energy, of_b = state_.moments[b].energy;
-    return of_a != of_b ? of_a > of_b : a < b;
-  });
-  SurfacePoints sites = state_.sites;
-  for (std::size_t i = 0; i < std::min(empty.size(), rich.size()); ++i) sites[empty[i]] = far_place(rich[i]);
-  State next = evaluate(std::move(sites), state_.along, stage);
-  if (!(next.energy < state_.energy)) {  // nothing is far enough to be told apart
-    spare_ = std::move(next.claims);
-    return false;
-  }
-  accept(std::move(next));
-  memory_.forget();
-  return true;
-}
-
-/// Far from the site, in its cell: the last of its vertices, else on the way to a corner of its face.
-SurfacePoint Relaxation::far_place(Index site) const {
-  const auto nodes = state_.claims->maps().nodes(site);
-  if (!nodes.empty()) {
-    const Index farthest = graph_.vertex_of(nodes.back());
-    if (vertex_at(graph_.mesh(), state_.sites[site]) != farthest) return at_vertex(graph_.mesh(), farthest);
-  }
-  SurfacePoint place = state_.sites[site];
-  const int corner = place.barycentric[0] < place.barycentric[1] ? 0 : 1;
-  place.barycentric = 0.5 * (place.barycentric + Vec3::Unit(corner));
-  return place;
-}
-
-bool Relaxation::advance(const JobStage& stage) {
-  const TangentField slope = gradient(state_);
-  if (options_.method == RelaxationMethod::lbfgs && !memory_.empty()) {
-    if (advance_by(quasi_newton_direction(slope), slope, stage)) return true;
-    memory_.forget();
-  }
-  return advance_by(lloyd_direction(), slope, stage);
-}
-
-/// Takes the first of shorter and shorter steps that lowers the energy by a share of what its slope promises.
-bool Relaxation::advance_by(const TangentField& direction, const TangentField& slope, const JobStage& stage) {
-  constexpr double k_least_share = 1e-4;
-  constexpr int k_most_halvings = 6;
-  const double promise = dot(slope, direction);
-  if (!(promise < 0)) return false;
-  double length = 1;
-  for (int halving = 0; halving <= k_most_halvings; ++halving, length /= 2) {
-    TangentField steps = direction;
-    for (Vec2& step : steps) step *= length;
-    Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads);
-    std::vector<double> along = held_.move(state_.along, state_.sites, steps, moved);
-    State next = evaluate(moved.sites, std::move(along), stage);
-    if (!(next.energy <= state_.energy + k_least_share * length * promise)) {
-      spare_ = std::move(next.claims);
-      continue;
-    }
-    if (options_.method == RelaxationMethod::lbfgs) {
-      TangentField before = slope, change = gradient(next);
-      transport(moved, before);
-      for (std::size_t i = 0; i < change.size(); ++i) change[i] -= before[i];
-      memory_.add(moved, std::move(change));
-    }
-    accept(std::move(next));
-    revive_empty_cells(stage);
-    return true;
-  }
-  return false;
-}
-
-/// Of the energy by the sites' places: minus twice the first moment. Fixed sites have none.
-TangentField Relaxation::gradient(const State& state) const {
-  TangentField field(state.sites.size(), Vec2::Zero());
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    if (!is_fixed_[i]) field[i] = -2 * state.moments[i].moment;
-  }
-  held_.project(state.along, state.sites, field);
-  return field;
-}
-
-/// To the centre of each cell. A cell without mass (no density, or empty) keeps its site.
-TangentField Relaxation::lloyd_direction() const {
-  TangentField field(state_.sites.size(), Vec2::Zero());
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    const CellMoments& cell = state_.moments[i];
-    if (!is_fixed_[i] && cell.mass > 0) field[i] = cell.moment / cell.mass;
-  }
-  held_.project(state_.along, state_.sites, field);
-  return field;
-}
-
-TangentField Relaxation::quasi_newton_direction(const TangentField& slope) const {
-  std::vector<double> stiffness;
-  for (const CellMoments& cell : state_.moments) stiffness.push_back(2 * cell.mass);
-  TangentField field = memory_.direction(slope, stiffness);
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    if (is_fixed_[i]) field[i].setZero();
-  }
-  held_.project(state_.along, state_.sites, field);
-  shorten(field);
-  return field;
-}
-
-/// No site leaves its cell: twice the mean squared distance is the squared radius of a disk.
-void Relaxation::shorten(TangentField& direction) const {
-  for (std::size_t i = 0; i < direction.size(); ++i) {
-    const CellMoments& cell = state_.moments[i];
-    if (!(cell.mass > 0)) continue;
-    const double radius = std::sqrt(2 * std::max(cell.energy, 0.0) / cell.mass), length = direction[i].norm();
-    if (length > radius) direction[i] *= radius / length;
-  }
+  keep_the_better(stage);
 }
 
 /// Small falls, one after the other, that end a run. A quasi-Newton step may be poor and the next one good.
@@ -274,11 +67,11 @@ void show(const Relaxation& relaxation, const CentroidalVoronoiOptions& options,
 
 void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage,
            CentroidalVoronoi& result) {
-  const double part = 1.0 / (options.max_iterations + 1);
+  const double part = 1.0 / std::max(options.max_iterations, 1);
   int small_falls = 0;
   while (result.iterations < options.max_iterations) {
     const JobStage step =
-        stage.part((result.iterations + 1) * part, (result.iterations + 2) * part,
+        stage.part(result.iterations * part, (result.iterations + 1) * part,
                    message("Relaxing cells, step ", result.iterations + 1, " of ", options.max_iterations));
     if (!relaxation.advance(step)) {
       result.converged = true;
@@ -320,6 +113,7 @@ CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, s
     start.sites = result.sites;
     const bool changed = hold_stray_sites(mesh, result.cells, options.curves, fixed, start.sites, start.held);
     if (!changed && on_curves.max_iterations == options.max_iterations) return result;
+    on_curves.annealing = 0;
   }
 }
 
@@ -391,18 +185,23 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   check_sites(graph.mesh(), sites);
   check_options(graph.mesh(), options);
   check_fixed(options, sites);
-  const double part = 1.0 / (options.max_iterations + 1);
+  const double part = 1.0 / (options.annealing + options.max_iterations + 1), shaken = (options.annealing + 1) * part;
   Relaxation relaxation(graph, sites, options, stage.part(0, part));
   CentroidalVoronoi result;
-  result.energy.push_back(relaxation.state().energy);
-  show(relaxation, options, result);
+  const auto begin = [&] {
+    result.energy.push_back(relaxation.state().energy);
+    show(relaxation, options, result);
+  };
   try {
-    relax(relaxation, options, stage, result);
+    shake(relaxation, options, stage.part(part, shaken));
+    begin();
+    relax(relaxation, options, stage.part(shaken, 1), result);
   } catch (const Cancelled&) {
     if (!options.return_when_cancelled) throw;
+    if (result.energy.empty()) begin();
     result.stop_reason = k_cancelled;
   }
-  const State& best = relaxation.state();
+  const RelaxationState& best = relaxation.state();
   const JobStage last = options.return_when_cancelled ? JobStage() : stage;
   result.sites = best.sites;
   result.held.assign(options.held.begin(), options.held.end());

@@ -90,6 +90,7 @@ SurfacePoints start(const SaddleVertexGraph& graph, Index count, const Centroida
   if (coarse < std::max(k_coarsest, mesh.component_count())) return initial_sites(mesh, count, options.density, seed);
   CentroidalVoronoiOptions rough = options;
   rough.fixed = {};
+  rough.annealing = 0;
   rough.max_iterations = std::min(options.max_iterations, k_most_coarse_iterations);
   rough.tolerance = std::max(options.tolerance, k_coarse_tolerance);
   rough.return_when_cancelled = false;

@@ -1,0 +1,69 @@
+#pragma once
+// Sites that move towards the middles of their cells, step by step.
+
+#include <memory>
+#include <vector>
+
+#include "saddleback/centroidal_voronoi.h"
+#include "saddleback/job.h"
+
+#include "tessellation/cell_claims.h"
+#include "tessellation/cell_moments.h"
+#include "tessellation/held_sites.h"
+#include "tessellation/limited_memory.h"
+
+namespace saddleback {
+
+/// Sites with their cells and what is needed to move on.
+struct RelaxationState {
+  SurfacePoints sites;
+  std::vector<double> along;  ///< of held sites, see HeldSites
+  std::unique_ptr<CellClaims> claims;
+  std::vector<CellMoments> moments;
+  double energy = 0;
+};
+
+/// The sites on their way. Graph and options must outlive it.
+class Relaxation {
+ public:
+  Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& sites, const CentroidalVoronoiOptions& options,
+             const JobStage& stage);
+  const RelaxationState& state() const { return state_; }
+  /// The integral of the density.
+  double mass() const;
+
+  /// One step that lowers the energy; false when there is none. \throw Cancelled, the state as it was.
+  bool advance(const JobStage& stage);
+
+  /// To the centre of each cell; none for fixed sites, along their curves for held ones.
+  TangentField lloyd_direction() const;
+  /// Goes along the steps whatever the energy does then: no site out of its cell, fixed ones not at all, held ones
+  /// along their curves. Tells the steps as made. \throw Cancelled, the state as it was.
+  TangentField go(TangentField steps, const JobStage& stage);
+  /// To other places, of held sites with `along`. \throw Cancelled, the state as it was.
+  void go_to(SurfacePoints sites, std::vector<double> along, const JobStage& stage);
+
+ private:
+  std::vector<double> reaches(const SurfacePoints& sites) const;
+  RelaxationState evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage);
+  void accept(RelaxationState next);
+  bool revive_empty_cells(const JobStage& stage);
+  SurfacePoint far_place(Index site) const;
+  bool advance_by(const TangentField& direction, const TangentField& gradient, const JobStage& stage);
+  TangentField gradient(const RelaxationState& state) const;
+  TangentField quasi_newton_direction(const TangentField& gradient) const;
+  void hold(const RelaxationState& state, TangentField& field) const;
+  void shorten(TangentField& direction) const;
+
+  const SaddleVertexGraph& graph_;
+  const CentroidalVoronoiOptions& options_;
+  const VertexRings rings_;
+  CellIntegrals integrals_;
+  std::unique_ptr<CellClaims> spare_;  ///< memory for the next cells
+  std::vector<std::uint8_t> is_fixed_;
+  const HeldSites held_;
+  RelaxationState state_;
+  LimitedMemory memory_;
+};
+
+}  // namespace saddleback
