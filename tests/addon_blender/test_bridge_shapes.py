@@ -97,6 +97,52 @@ def test_closed_curves_are_shapes_with_holes(shapes):
         read()
 
 
+def test_texts_are_shapes_with_their_holes(shapes):
+    bpy.ops.object.text_add()
+    text = bpy.context.active_object
+    text.data.body = "8"
+    text.data.materials.append(bpy.data.materials.new("Ink"))
+    move(text, shapes)
+    (template,) = read()
+    assert [len(part) for part in template.parts] == [3] and template.source == text.name
+
+
+def test_flat_shapes_are_lifted_off_the_surface(shapes):
+    move(add_object("Plate", *grid_arrays(2)), shapes)
+    vertices, faces = grid_arrays(2)
+    move(add_object("Roof", vertices + np.outer(vertices[:, 0], [0, 0, 0.5]), faces), shapes)
+    plate, roof = read()
+    np.testing.assert_allclose(plate.solid.vertices[:, 2], 0.02, atol=1e-9)
+    assert roof.solid.vertices[:, 2].min() == 0.0 and roof.shift[2] == 0.0
+
+
+def test_outlines_that_are_none_are_told(shapes):
+    cases = [
+        (SQUARE[[0, 2, 1, 3]], "'Curve' is no shape: its outline crosses or touches itself"),
+        (SQUARE * (1, 0), "shape 'Curve' is a line seen from above"),
+        (SQUARE[:2], "shape 'Curve' has no closed spline"),
+    ]
+    for loop, text in cases:
+        item = move(add_curve("Curve", loop), shapes)
+        with pytest.raises(BadInputError, match=text):
+            read()
+        bpy.data.objects.remove(item)
+        bpy.data.curves.remove(bpy.data.curves["Curve"])
+
+
+@pytest.mark.parametrize("kind", ["ramp", "noise"])
+def test_images_without_a_clear_mask_are_refused(shapes, kind):
+    values = np.linspace(0, 1, 64)[None].repeat(64, 0) if kind == "ramp" else np.random.default_rng(1).random((64, 64))
+    image = bpy.data.images.new("Grey", 64, 64)
+    pixels = np.ones((64, 64, 4), np.float32)
+    pixels[..., :3] = values[..., None]
+    image.pixels.foreach_set(pixels.ravel())
+    with pytest.raises(
+        BadInputError, match=r"image 'Grey' makes no shape: no clear mask, 3\d% of it is neither in nor out"
+    ):
+        read(shapes="IMAGE", shapes_image="Grey")
+
+
 def test_images_are_shapes_where_they_are_opaque_or_dark(shapes):
     columns, rows = 40, 20
     pixels = np.zeros((rows, columns, 4), np.float32)
@@ -115,14 +161,14 @@ def test_images_are_shapes_where_they_are_opaque_or_dark(shapes):
     (dark,) = read(shapes="IMAGE", shapes_image="Mask")
     np.testing.assert_allclose(dark.parts[0][0], opaque.parts[0][0], atol=1e-9)
     image.pixels.foreach_set(np.ones_like(pixels).ravel())
-    with pytest.raises(BadInputError, match="'Host': image 'Mask' makes no shape: image: no clear mask"):
+    with pytest.raises(BadInputError, match="'Host': image 'Mask' makes no shape: nothing in it is opaque or dark"):
         read(shapes="IMAGE", shapes_image="Mask")
 
 
 def test_what_is_no_shape_is_told(shapes):
     with pytest.raises(BadInputError, match="there is no collection 'Nope' to take shapes from"):
         read("Nope")
-    with pytest.raises(BadInputError, match="collection 'Shapes' has no mesh, curve or image"):
+    with pytest.raises(BadInputError, match="collection 'Shapes' has no mesh, curve, text or image"):
         read()
     with pytest.raises(BadInputError, match="no image is chosen"):
         read(shapes="IMAGE")
@@ -135,5 +181,5 @@ def test_what_is_no_shape_is_told(shapes):
         read()
     bpy.data.objects.remove(bpy.data.objects["Upright"])
     move(add_object("Square", *grid_arrays(2)), shapes)["share"] = "many"
-    with pytest.raises(BadInputError, match="the share of shape 'Square' is 'many'"):
+    with pytest.raises(BadInputError, match="the share of shape 'Square' is 'many'; write a number of 0 or more"):
         read()

@@ -154,6 +154,58 @@ def test_materials_go_with_their_classes_when_the_collection_changes():
     assert class_materials(bent) == ["Gold"]
 
 
+def test_outlines_are_cut_into_a_copy_of_the_mesh():
+    item = host()
+    item.scale = (2, 1, -1)  # mirrored
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.uv.sphere_project()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    item.data.materials.append(bpy.data.materials.new("Skin"))
+    low = [vertex.index for vertex in item.data.vertices if vertex.co.z < 0]
+    item.vertex_groups.new(name="Low").add(low, 0.5, "REPLACE")
+    before = len(item.data.polygons), [a.name for a in item.data.attributes]
+    bpy.ops.saddleback.distribute(shapes="MOSAIC", make_cut=True, make_bent=False, **FEW)
+    assert (len(item.data.polygons), [a.name for a in item.data.attributes]) == before
+    cut = find_output(item, "shape cut")
+    mesh = cut.data
+    number, kind, slot = (np.empty(len(mesh.polygons), np.int32) for _ in range(3))
+    mesh.attributes["saddleback_shape"].data.foreach_get("value", number)
+    mesh.attributes["saddleback_class"].data.foreach_get("value", kind)
+    mesh.polygons.foreach_get("material_index", slot)
+    assert sorted(set(number)) == list(range(-1, 20)) and ((kind >= 0) == (number >= 0)).all()
+    np.testing.assert_array_equal(slot, kind + 1)
+    assert [material.name for material in mesh.materials] == ["Skin"] + ["Saddleback Shapes"] * 3
+    areas = np.array([polygon.area for polygon in mesh.polygons])
+    covered = float(jobs.state.figures[0].split()[1].rstrip("%;")) / 100
+    assert areas[number >= 0].sum() / areas.sum() == pytest.approx(covered, rel=0.02)
+    # One closed surface, facing outwards as the source does, on it.
+    world = np.array([cut.matrix_world @ vertex.co for vertex in mesh.vertices])
+    np.testing.assert_allclose(np.linalg.norm(world / (2, 1, 1), axis=1), 1, atol=0.01)
+    edges = {(a, b) for polygon in mesh.polygons for a, b in polygon.edge_keys}
+    assert len(edges) * 2 == len(mesh.loops) and not mesh.validate()
+    outwards = [polygon.normal.dot(polygon.center) > 0 for polygon in mesh.polygons if polygon.area > 1e-5]
+    assert np.mean(outwards) > 0.99
+    # UV maps are the source's to the seam: none of a face's corners is across the map.
+    uv = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers["UVMap"].data.foreach_get("uv", uv)
+    own = np.empty(2 * len(item.data.loops), np.float32)
+    item.data.uv_layers["UVMap"].data.foreach_get("uv", own)
+    assert np.ptp(uv.reshape(-1, 3, 2), axis=1).max() <= np.ptp(own.reshape(-1, 3, 2), axis=1).max() + 1e-4
+    mesh.uv_layers["saddleback_shape_uv"].data.foreach_get("uv", uv)
+    inside = uv.reshape(-1, 3, 2)[number >= 0]
+    assert inside.min() > -1e-6 and inside.max() < 1 + 1e-6 and np.ptp(inside) > 0.5
+    assert sum(len(vertex.groups) for vertex in mesh.vertices) > 1000
+    # It follows, and it goes.
+    item.shape_key_add(name="Basis")
+    key = item.shape_key_add(name="Large")
+    for point in key.data:
+        point.co = 2 * point.co
+    key.value = 1.0
+    np.testing.assert_allclose(np.linalg.norm(shown(cut) / (2, 1, 1), axis=1), 2, atol=0.02)
+    bpy.ops.saddleback.distribute(make_cut=False)
+    assert find_output(item, "shape cut") is None
+
+
 def test_hidden_instances_are_made_real_and_unreachable_ones_are_not_lost():
     item = host()
     bpy.ops.saddleback.distribute(make_instances=True, make_bent=False, **FEW)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.carried import Anchors
-from ..core.results import Dual
+from ..core.results import Indices, Reals
 from .mesh_in import read_triangles
 from .out_attributes import KINDS, recorded
 
@@ -41,19 +41,25 @@ class Carried:
     material: NDArray[np.int32]  # (n,)
 
 
-def read_carried(source: bpy.types.Object, mesh: bpy.types.Mesh, dual: Dual) -> Carried:
-    """Reads what `mesh`, the source's own or evaluated one, has at the dual's vertices."""
-    anchors = _anchors(source, mesh, dual)
+def read_carried(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, faces: Indices, barycentric: Reals, has_corners: bool = False
+) -> Carried:
+    """Reads what `mesh`, the source's own or evaluated one, has at points of the surface that was read from it.
+
+    `faces` (n,), `barycentric` (n, 3). With `has_corners` the points are corners of polygons, which have no attributes
+    and groups of their own: both are left out.
+    """
+    anchors = _anchors(source, mesh, faces, barycentric)
     return Carried(
-        attributes=_attributes(source, mesh, anchors),
+        attributes={} if has_corners else _attributes(source, mesh, anchors),
         uv_maps={layer.name: anchors.values(_uv(layer), "CORNER") for layer in mesh.uv_layers},
-        groups=_groups(source, mesh, anchors),
+        groups={} if has_corners else _groups(source, mesh, anchors),
         smooth=_of_polygons(mesh, "use_smooth", np.bool_)[anchors.polygons],
         material=_of_polygons(mesh, "material_index", np.int32)[anchors.polygons],
     )
 
 
-def _anchors(source: bpy.types.Object, mesh: bpy.types.Mesh, dual: Dual) -> Anchors:
+def _anchors(source: bpy.types.Object, mesh: bpy.types.Mesh, faces: Indices, barycentric: Reals) -> Anchors:
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
     loops, polygons = np.empty(3 * count, np.int32), np.empty(count, np.int32)
@@ -62,10 +68,10 @@ def _anchors(source: bpy.types.Object, mesh: bpy.types.Mesh, dual: Dual) -> Anch
     # The surface of a mirrored object has its triangles the other way round.
     order = [2, 1, 0] if source.matrix_world.determinant() < 0 else [0, 1, 2]
     return Anchors(
-        vertices=read_triangles(mesh)[dual.faces][:, order],
-        corners=loops.reshape(-1, 3)[dual.faces][:, order],
-        polygons=polygons[dual.faces],
-        weights=dual.barycentric,
+        vertices=read_triangles(mesh)[faces][:, order],
+        corners=loops.reshape(-1, 3)[faces][:, order],
+        polygons=polygons[faces],
+        weights=barycentric,
     )
 
 

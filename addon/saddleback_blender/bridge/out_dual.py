@@ -9,6 +9,7 @@ from .. import compat
 from ..core.results import CellsResult, Dual
 from ..core.settings import TessellateSettings
 from .carried_in import Carried, read_carried
+from .carried_out import write_groups
 from .mesh_in import from_world, mesh_of
 from .out_attributes import set_attribute
 from .out_collection import replace_object
@@ -28,17 +29,14 @@ def write_dual(
     assert result.dual is not None
     dual = result.dual
     with mesh_of(context, source, settings.use_modifiers) as read:
-        carried = read_carried(source, read, dual)
+        carried = read_carried(source, read, dual.faces, dual.barycentric)
         mesh = _mesh(source, dual)
         compat.copy_auto_smooth(read, mesh)
     _write_layers(mesh, carried)
     for material in source.data.materials:
         mesh.materials.append(material)
     item = replace_object(context, source, DUAL_ROLE, mesh)
-    for name, (vertices, weights) in carried.groups.items():
-        group = item.vertex_groups.get(name) or item.vertex_groups.new(name=name)
-        for vertex, weight in zip(vertices.tolist(), weights.tolist(), strict=True):
-            group.add([vertex], weight, "REPLACE")
+    write_groups(item, carried)
     return item
 
 

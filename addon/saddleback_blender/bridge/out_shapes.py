@@ -80,10 +80,10 @@ def write_bent(
     rgba = np.column_stack([rgb, np.ones(len(rgb))]).astype(np.float32)
     color.data.foreach_set("color", np.repeat(rgba, np.diff(bent.offsets), axis=0).ravel())
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
-    firsts = _add_materials(mesh, templates)
+    firsts = add_materials(mesh, templates)
     mesh.polygons.foreach_set("material_index", (bent.material + firsts[bent.polygon_shape]).astype(np.int32))
     if result.bent_anchors is not None:
-        _write_anchors(mesh, result.bent_anchors)
+        write_anchors(mesh, result.bent_anchors)
     mesh.update()
     item = replace_object(context, source, BENT_ROLE, mesh, place)
     if result.bent_anchors is not None:
@@ -93,7 +93,8 @@ def write_bent(
     return item
 
 
-def _write_anchors(mesh: bpy.types.Mesh, anchors: Anchors) -> None:
+def write_anchors(mesh: bpy.types.Mesh, anchors: Anchors) -> None:
+    """Writes what `set_following` asks of a mesh: where its vertices stand on the source."""
     for i, name in enumerate(CORNER_ATTRIBUTES):
         set_attribute(mesh, name, "POINT", np.ascontiguousarray(anchors.corners[:, i]))
     set_attribute(mesh, WEIGHTS_ATTRIBUTE, "POINT", anchors.barycentric)
@@ -177,7 +178,7 @@ def _keeper(source: bpy.types.Object, anchors: Anchors) -> bpy.types.Object:
     """An object in no collection that knows where the points of the outlines stand, which curves cannot."""
     mesh = bpy.data.meshes.new("Saddleback Outline Anchors")
     mesh.vertices.add(len(anchors.corners))
-    _write_anchors(mesh, anchors)
+    write_anchors(mesh, anchors)
     item = bpy.data.objects.new(mesh.name, mesh)
     item[ROLE], item[NAME], item[SOURCE] = KEEPER_ROLE, item.name, source_token(source)
     return item
@@ -295,13 +296,17 @@ def _fill_flat(mesh: bpy.types.Mesh, template: ShapeTemplate) -> None:
     _fill(mesh, vertices, corners, offsets, 0.5 + 0.5 * flat, np.zeros(len(loops), bool))
 
 
-def _add_materials(mesh: bpy.types.Mesh, templates: Sequence[ShapeTemplate]) -> np.ndarray:
+def add_materials(mesh: bpy.types.Mesh, templates: Sequence[ShapeTemplate]) -> np.ndarray:
     """Adds the materials of all classes; returns (classes,) the slot at which those of each begin."""
     firsts = []
     for template in templates:
         firsts.append(len(mesh.materials))
         item = bpy.data.objects.get(template.source) if template.source else None
-        own = [slot.material for slot in item.material_slots] if item is not None and item.type == "MESH" else []
+        own = (
+            [slot.material for slot in item.material_slots]
+            if item is not None and item.type in ("MESH", "FONT")
+            else []
+        )
         for material in own if any(own) else [nodes.shapes_material()]:
             mesh.materials.append(material)
     return np.array(firsts, np.int32)

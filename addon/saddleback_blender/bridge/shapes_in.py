@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import compat
 from ..core import native
+from ..core.distribute_texts import outline_refusal
 from ..core.errors import BadInputError
 from ..core.image_colors import to_linear
 from ..core.mask_shapes import parts_of_image, silhouette
@@ -24,6 +25,7 @@ from .mesh_in import mesh_of, read_triangles
 from .out_collection import SOURCE
 
 SHARE = "share"  # custom property of a shape's object: how many there shall be, to those of others
+FLAT = 1e-9  # of a curve's extent: what is thinner is a line
 REC_709 = np.array([0.2126, 0.7152, 0.0722])
 
 
@@ -57,13 +59,13 @@ def _items(source: bpy.types.Object, name: str) -> list[bpy.types.Object]:
     items = [item for item in group.all_objects if item != source and SOURCE not in item and _may_be_shape(item)]
     if not items:
         raise BadInputError(
-            f"'{source.name}': collection '{name}' has no mesh, curve or image to lay on the surface; add one"
+            f"'{source.name}': collection '{name}' has no mesh, curve, text or image to lay on the surface; add one"
         )
     return sorted(items, key=lambda item: item.name)
 
 
 def _may_be_shape(item: bpy.types.Object) -> bool:
-    return item.type in ("MESH", "CURVE") or (item.type == "EMPTY" and isinstance(item.data, bpy.types.Image))
+    return item.type in ("MESH", "CURVE", "FONT") or (item.type == "EMPTY" and isinstance(item.data, bpy.types.Image))
 
 
 def _share(source: bpy.types.Object, item: bpy.types.Object) -> float:
@@ -72,7 +74,9 @@ def _share(source: bpy.types.Object, item: bpy.types.Object) -> float:
     except (TypeError, ValueError):
         share = -1.0
     if not (share >= 0.0 and np.isfinite(share)):
-        raise BadInputError(f"'{source.name}': the share of shape '{item.name}' is {item[SHARE]!r}; write a number")
+        raise BadInputError(
+            f"'{source.name}': the share of shape '{item.name}' is {item[SHARE]!r}; write a number of 0 or more"
+        )
     return share
 
 
@@ -83,7 +87,7 @@ def _template(context: bpy.types.Context, source: bpy.types.Object, item: bpy.ty
         parts, solid = _of_curve(source, item) if item.type == "CURVE" else _of_mesh(context, source, item)
         native.load().Shape(*[list(part) for part in parts])
     except native.load().InputError as error:
-        raise BadInputError(f"'{source.name}': '{item.name}' is no shape to lay on a surface: {error}") from error
+        raise BadInputError(f"'{source.name}': '{item.name}' is no shape: {outline_refusal(str(error))}") from error
     return fitted(item.name, parts, _centre(parts), solid)
 
 
@@ -153,6 +157,10 @@ def _of_curve(source: bpy.types.Object, item: bpy.types.Object) -> tuple[Parts, 
     ]
     if not loops:
         raise BadInputError(f"'{source.name}': shape '{item.name}' has no closed spline; close one (Alt C)")
+    if all(np.linalg.matrix_rank(loop - loop.mean(axis=0), FLAT * np.ptp(loop)) < 2 for loop in loops):
+        raise BadInputError(
+            f"'{source.name}': shape '{item.name}' is a line seen from above; lay it in its own X and Y"
+        )
     return parts_of_loops(loops), None
 
 
@@ -174,7 +182,9 @@ def _of_image(source: bpy.types.Object, image: bpy.types.Image) -> ShapeTemplate
     try:
         parts = parts_of_image(mask)
     except native.load().InputError as error:
-        raise BadInputError(f"'{source.name}': image '{image.name}' makes no shape: {error}") from error
+        raise BadInputError(
+            f"'{source.name}': image '{image.name}' makes no shape: {outline_refusal(str(error))}"
+        ) from error
     return fitted(image.name, parts, _centre_of_box(parts))
 
 

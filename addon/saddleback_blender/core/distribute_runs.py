@@ -11,6 +11,7 @@ from . import cache as cache_module
 from . import native
 from .bent_copies import bent_copies
 from .cache import Cache
+from .cut_shapes import cut_shapes
 from .density_runs import density_of
 from .distribute_texts import MOST_FAULTS, fault, figures, no_room, refusal, told, warnings_of
 from .errors import BadInputError
@@ -49,6 +50,11 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         outlines, faces, barycentric = _outlines(mapped, progress)
         if settings.follow_surface:
             outline_anchors = anchored(surface, triangles, faces, barycentric, outlines.points)
+    cut = cut_anchors = None
+    if settings.make_cut:
+        cut = cut_shapes(mesh, mapped, progress)
+        if settings.follow_surface:
+            cut_anchors = anchored(surface, triangles, cut.faces, cut.barycentric, cut.vertices)
     if settings.write_attributes:
         with progress.stage(0.97, "measuring the way to the outlines") as job:
             found = mapped.attributes(VALUES_REACH * laid.size, threads=request.threads, job=job)
@@ -84,6 +90,8 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         outlines=outlines,
         outline_anchors=outline_anchors,
         values=values,
+        cut=cut,
+        cut_anchors=cut_anchors,
     )
 
 

@@ -116,6 +116,17 @@ def refusal(text: str, templates: Sequence[ShapeTemplate]) -> str:
     return re.sub(r"^\w+: ", "", text)
 
 
+def outline_refusal(text: str) -> str:
+    """Why the library takes no outline or image, in the artist's words."""
+    if "meets the edge" in text:
+        return "its outline crosses or touches itself, or another of its outlines; pull them apart"
+    if "no pixel is over" in text:
+        return "nothing in it is opaque or dark"
+    if "every pixel is over" in text:
+        return "all of it is opaque or dark"
+    return re.sub(r"^\w+: ", "", text)
+
+
 def fault(kind: str, first: int, second: int | None, where: tuple[float, float, float]) -> str:
     """One fault that the check found."""
     other = "" if second is None else f" shape {second}"

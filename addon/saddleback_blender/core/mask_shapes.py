@@ -12,6 +12,7 @@ from .shape_templates import Parts
 PIXELS = 256  # along the longer side of what is drawn
 MARGIN = 2  # empty pixels all around
 MOST_CORNERS = 96
+MOST_GREY = 1 / 3  # of an image; a drawing has it along its lines, a photograph or a ramp everywhere
 LEAST_AREA = 1e-6  # of the square of the longer side: what covers less stands upright
 
 
@@ -65,7 +66,15 @@ def _draw(mask: NDArray[np.float64], triangle: Reals) -> None:
 
 
 def parts_of_image(mask: Reals) -> Parts:
-    """Outlines, in pixels, of an image's mask (rows, columns), the first row below."""
+    """Outlines, in pixels, of an image's mask (rows, columns), the first row below.
+
+    Raises the library's InputError where there is nothing clear to see.
+    """
+    grey = ((mask > 0.25) & (mask < 0.75)).mean()
+    if grey > MOST_GREY:
+        raise native.load().InputError(
+            f"image: no clear mask, {grey:.0%} of it is neither in nor out; give it transparency or more contrast"
+        )
     rows, columns = mask.shape
     block = max(1, -(-max(rows, columns) // PIXELS))
     cut = mask[: rows // block * block, : columns // block * block]

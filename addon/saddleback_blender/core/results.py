@@ -250,6 +250,21 @@ class ShapeValues:
 
 
 @dataclass(frozen=True)
+class CutShapes:
+    """A surface of n vertices and m triangles, each of them inside just one of its shapes or outside of all."""
+
+    vertices: Reals  # (n, 3)
+    faces: Indices  # (n,) of the surface's triangles, on which the vertices lie
+    barycentric: Reals  # (n, 3)
+    triangles: Indices  # (m, 3)
+    corner_faces: Indices  # (3 m,) of the surface's triangles: that which the cut triangle is a part of
+    corner_barycentric: Reals  # (3 m, 3)
+    copy: Indices  # (m,) which shape, -1 outside
+    shape: Indices  # (m,) its class, -1 outside
+    uv: Reals  # (3 m, 2) where in the shape, 0 outside
+
+
+@dataclass(frozen=True)
 class DistributeResult:
     """Shapes on a surface, and what is made of them."""
 
@@ -264,6 +279,8 @@ class DistributeResult:
     outlines: PathsResult | None = None  # where they were wanted
     outline_anchors: Anchors | None = None  # of their points, where they follow the surface
     values: ShapeValues | None = None  # where they were wanted
+    cut: CutShapes | None = None  # where it was wanted
+    cut_anchors: Anchors | None = None  # of its vertices, where they follow the surface
 
 
 @dataclass(frozen=True)

@@ -198,6 +198,7 @@ class DistributeSettings(DensitySettings):
     follow_surface: bool = True  # where the mesh is deformed later
     make_outlines: bool = False
     outline_radius: float = 0.005
+    make_cut: bool = False  # a copy of the mesh with the outlines cut in
     write_attributes: bool = False
 
 

@@ -17,10 +17,13 @@ def _scales() -> list[ShapeTemplate]:
     """A shield with a keel that rises towards its tip, which points along the field."""
     half = np.array([(1.0, 0.0), (0.86, 0.2), (0.58, 0.46), (0.2, 0.62), (-0.3, 0.62), (-0.66, 0.5), (-0.84, 0.26)])
     outline = _smooth(np.concatenate([half, [(-0.9, 0.0)], half[:0:-1] * (1, -1)]))
-    along = outline[:, 0]
-    solid = _pillow(outline, 0.17, lift=0.55 + 0.45 * (along - along.min()) / np.ptp(along))
-    keel = np.exp(-((solid.vertices[:, 1] / 0.09) ** 2)) * np.clip(1.0 - np.hypot(*solid.vertices[:, :2].T), 0, 1)
-    return [_template("Scale", outline, _raised(solid, 0.1 * keel * (solid.vertices[:, 2] > 0)))]
+    solid = _pillow(outline, 0.17)
+    x, y, z = solid.vertices.T
+    # Of places, not of directions from the middle, where those would leave a knob.
+    lift = 0.55 + 0.45 * (x - x.min()) / np.ptp(x)
+    keel = 0.09 * np.exp(-((y / 0.09) ** 2)) * np.clip(1.0 - x**2, 0, 1) * (z > 0)
+    solid = replace(solid, vertices=np.column_stack([x, y, z * lift + keel]))
+    return [_template("Scale", outline, solid)]
 
 
 def _studs() -> list[ShapeTemplate]:
@@ -33,15 +36,18 @@ def _studs() -> list[ShapeTemplate]:
 
 
 def _feathers() -> list[ShapeTemplate]:
-    """A long vane with a quill along it."""
-    x = np.linspace(-1.0, 1.0, 25)
-    width = 0.27 * np.clip(1 - x**2, 0, 1) ** 0.55 * (1.0 + 0.25 * x)
-    outline = np.concatenate([np.stack([x, -width], axis=1), np.stack([x, width], axis=1)[-2:0:-1]])
-    solid = _pillow(outline, 0.06)
-    quill = np.exp(-((solid.vertices[:, 1] / 0.03) ** 2)) * np.clip(1 - solid.vertices[:, 0] ** 2, 0, 1)
-    barbs = 0.008 * np.sin(24 * (solid.vertices[:, 0] - 1.2 * np.abs(solid.vertices[:, 1])))
-    inner = np.clip(4 * (1 - np.abs(solid.vertices[:, 0])), 0, 1)
-    return [_template("Feather", outline, _raised(solid, (0.05 * quill + barbs * inner) * (solid.vertices[:, 2] > 0)))]
+    """A long vane with a round tip, barbs aslant of the quill, and the quill bare at its root."""
+    root = np.array([(-1.0, 0.018), (-0.9, 0.024), (-0.8, 0.03)])
+    x = np.cos(np.linspace(np.pi, 0.0, 27))[1:-1]  # from the root of the vane to its tip
+    vane = np.column_stack([0.87 * x + 0.13, 0.27 * (1 - x**2) ** 0.5 * (0.9 + 0.22 * x - 0.12 * x**2)])
+    half = np.concatenate([root, vane[vane[:, 0] > -0.74]])
+    outline = np.concatenate([half * (1, -1), [(1.0, 0.0)], half[::-1]])
+    solid = _pillow(outline, 0.05)
+    along, across = solid.vertices[:, 0], np.abs(solid.vertices[:, 1])
+    inside = solid.vertices[:, 2] > 0
+    quill = 0.055 * np.exp(-((across / 0.03) ** 2)) * np.clip(1.1 - np.abs(along), 0, 1)
+    barbs = 0.016 * np.sin(26 * (along - 1.3 * across)) * np.clip(12 * across, 0, 1)
+    return [_template("Feather", outline, _raised(solid, (quill + barbs * (along > -0.7)) * inside))]
 
 
 def _leaves() -> list[ShapeTemplate]:
@@ -92,12 +98,12 @@ def _along(outline: Reals, step: float) -> Reals:
     return np.concatenate(pieces)
 
 
-def _pillow(outline: Reals, height: float, lift: Reals | None = None) -> Solid:
+def _pillow(outline: Reals, height: float) -> Solid:
     """A low wall, then a round back."""
     slope = np.linspace(0.0, 1.0, 9)
     levels = np.concatenate([[1.0], 1.0 - 0.97 * slope])
     heights = height * np.concatenate([[0.0], 0.35 + 0.65 * np.sqrt(1 - (1 - slope) ** 2)])
-    return dome(outline, levels, heights, lift)
+    return dome(outline, levels, heights)
 
 
 def _raised(solid: Solid, height: Reals) -> Solid:

@@ -13,6 +13,9 @@ from .results import Indices, Reals
 Parts = tuple[tuple[Reals, ...], ...]  # each an outline (n, 2) and its holes
 
 
+FLAT_LIFT = 0.02  # of a shape's radius; twice what faces of bent copies may leave the surface by
+
+
 @dataclass(frozen=True)
 class Solid:
     """A mesh in the plane of a shape, z away from the surface. Polygon i: corners[offsets[i]:offsets[i + 1]]."""
@@ -30,8 +33,8 @@ class Solid:
         return fans(self.offsets) if self.triangles is None else self.triangles
 
     def moved(self, shift: Reals, scale: float) -> Solid:
-        """Shifted by (2,) in the plane, then scaled."""
-        return replace(self, vertices=(self.vertices + np.append(shift, 0.0)) * scale)
+        """Shifted by (3,), then scaled."""
+        return replace(self, vertices=(self.vertices + shift) * scale)
 
 
 @dataclass(frozen=True)
@@ -58,34 +61,36 @@ def sized(template: ShapeTemplate) -> ShapeTemplate:
     return replace(
         template,
         parts=tuple(tuple(loop * size for loop in part) for part in template.parts),
-        solid=None if template.solid is None else template.solid.moved(np.zeros(2), size),
+        solid=None if template.solid is None else template.solid.moved(np.zeros(3), size),
         scale=template.scale * size,
         size=1.0,
     )
 
 
 def fitted(name: str, parts: Sequence[Sequence[Reals]], centre: Reals, solid: Solid | None = None) -> ShapeTemplate:
-    """A template of circumradius 1 about `centre` (2,) of the given coordinates."""
+    """A template of circumradius 1 about `centre` (2,) of the given coordinates.
+
+    A solid that is flat is lifted a little, since it could not be told from the surface on which it lies.
+    """
     radius = max(float(np.linalg.norm(loop - centre, axis=1).max()) for part in parts for loop in part)
     scale = 1.0 / radius if radius > 0 else 1.0
     moved = tuple(tuple((loop - centre) * scale for loop in part) for part in parts)
-    return ShapeTemplate(
-        name, moved, None if solid is None else solid.moved(-centre, scale),
-        shift=(-float(centre[0]), -float(centre[1]), 0.0), scale=scale,
-    )  # fmt: skip
+    is_flat = solid is not None and bool((np.abs(solid.vertices[:, 2]) * scale < FLAT_LIFT).all())
+    shift = (-float(centre[0]), -float(centre[1]), FLAT_LIFT / scale if is_flat else 0.0)
+    own = None if solid is None else solid.moved(np.array(shift), scale)
+    return ShapeTemplate(name, moved, own, shift=shift, scale=scale)
 
 
-def dome(outline: Reals, levels: Reals, heights: Reals, lift: Reals | None = None) -> Solid:
+def dome(outline: Reals, levels: Reals, heights: Reals) -> Solid:
     """A solid over an outline (m, 2) that sees all of itself from the origin: rings drawn in towards it.
 
     Ring k is the outline times levels[k], at heights[k]; the last ring is closed by a fan about the origin at the last
-    height. `lift` (m,): heights are multiplied by it at each corner of the outline, and by its mean at the origin.
+    height.
     """
     count, rings = len(outline), len(levels)
-    lift = np.ones(count) if lift is None else lift
     ring = levels[:, None, None] * outline[None]
-    z = heights[:, None] * lift[None]
-    vertices = np.concatenate([np.dstack([ring, z]).reshape(-1, 3), [[0.0, 0.0, heights[-1] * lift.mean()]]])
+    z = np.repeat(heights[:, None], count, axis=1)
+    vertices = np.concatenate([np.dstack([ring, z]).reshape(-1, 3), [[0.0, 0.0, heights[-1]]]])
     here = np.arange(rings * count).reshape(rings, count)
     onward = np.roll(here, -1, axis=1)
     quads = np.stack([here[:-1], onward[:-1], onward[1:], here[1:]], axis=-1).reshape(-1, 4)

@@ -180,6 +180,7 @@ class SurfaceOperator(PolledOperator):
         text = str(error) or "there is not enough memory"
         if isinstance(error, sb.MeshError):
             jobs.state.needs_repair = name
+            text = text.removesuffix("; saddleback.repair mends this")
             text += "; press Repair in the Saddleback tab, then run again"
         self.report({"ERROR"}, f"'{name}': {text}")
         return {"CANCELLED"}

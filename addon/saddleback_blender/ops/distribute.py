@@ -13,6 +13,7 @@ from ..bridge.density import read_density, read_vertex_group
 from ..bridge.directions_in import read_directions
 from ..bridge.mesh_in import mesh_of, read_surface
 from ..bridge.out_collection import find_output, remove_output
+from ..bridge.out_shape_cut import CUT_ROLE, write_cut
 from ..bridge.out_shapes import (
     BENT_ROLE,
     INSTANCES_ROLE,
@@ -85,6 +86,10 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
             write_outlines(context, source, result, settings.outline_radius)
         else:
             remove_outlines(source)
+        if result.cut is not None:
+            write_cut(context, source, result, self._templates, settings)
+        else:
+            remove_output(source, CUT_ROLE)
         keep_settings(settings, source.saddleback.distribute)
         if warning:
             self.report({"WARNING"}, warning)

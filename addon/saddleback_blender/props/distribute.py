@@ -16,7 +16,11 @@ SHAPES = (
     ("FEATHERS", "Feathers", "Long vanes along the field"),
     ("LEAVES", "Leaves", "Leaves of two sizes"),
     ("MOSAIC", "Mosaic", "Square, long and three-cornered tiles"),
-    ("COLLECTION", "Collection", "Its meshes, closed curves and images; their property 'share' says how many of each"),
+    (
+        "COLLECTION",
+        "Collection",
+        "Its meshes, closed curves, texts and images; their property 'share' says how many of each",
+    ),
     ("IMAGE", "Image", "Where an image is opaque or, without transparency, dark"),
 )
 FIELD_SOURCES = (
@@ -66,6 +70,10 @@ DISTRIBUTE: dict[str, Any] = {
     ),
     "make_outlines": switch("Outlines", "Make a curve object of the shapes' outlines", False),
     "outline_radius": length("Radius", "Half the thickness of the outlines", 0.005),
+    "make_cut": switch(
+        "Cut Mesh", "Make a copy of the mesh with the outlines cut in; its faces know their shape and show its material",
+        False,
+    ),
     "write_attributes": switch(
         "Attributes", "Write on the mesh whose outline is nearest, how far it is, and where in the shape one is", False
     ),

@@ -473,8 +473,9 @@ class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
         row = layout.row()
         row.active = settings.make_outlines
         row.prop(settings, "outline_radius")
+        layout.prop(settings, "make_cut")
         row = layout.row()
-        row.active = settings.make_bent or settings.make_instances or settings.make_outlines
+        row.active = any((settings.make_bent, settings.make_instances, settings.make_outlines, settings.make_cut))
         row.prop(settings, "follow_surface")
         layout.prop(settings, "write_attributes")
 
