@@ -31,7 +31,7 @@ Args:
     shares: one number a shape, its share of the copies, only ratios matter; kept to a hundredth and one copy even where
         room runs out: where one class finds no more, the others stop as well. With a density those of the counts. None:
         counts alone, or whatever finds room.
-    gap: least distance between copies, mesh units.
+    gap: least distance between copies, mesh units; half of it is kept to the border and to what is forbidden.
     size_range: (smallest, largest): every copy is scaled by another factor in this range.
     forbidden: (F,) booleans: faces that nothing may touch.
     mirror: half of the copies are mirrored, at random.
@@ -169,7 +169,17 @@ py::object conform_to(Distribution& self, const py::object& vertices, const py::
 }
 
 const char* name_of(DistributionStop stop) {
-  return stop == DistributionStop::counts ? "counts" : stop == DistributionStop::full ? "full" : "tired";
+  switch (stop) {
+    case DistributionStop::counts:
+      return "counts";
+    case DistributionStop::full:
+      return "full";
+    case DistributionStop::unproven:
+      return "unproven";
+    case DistributionStop::tired:
+      break;
+  }
+  return "tired";
 }
 
 py::dict rejections_of(const Distribution& self) {
@@ -209,8 +219,11 @@ void bind_distribution(py::module_& m) {
           "Placements, in the order in which they were laid.")
       .def_property_readonly(
           "stop_reason", [](const Distribution& self) { return name_of(self.result.stop); },
-          "\"counts\": every count is met; \"full\": nothing more fits, as the certificate proves; \"tired\": no room "
-          "was found in a while.")
+          "\"counts\": every count is met; \"full\": nothing more fits, as the certificate proves; \"unproven\": no "
+          "room was "
+          "found, but of more than half of the surface no certificate can tell, as shapes or gaps are too large for "
+          "how "
+          "it bends (`certificate.uncertified_area`); \"tired\": no room was found in a while.")
       .def_property_readonly("rejections", &rejections_of,
                              "{cause: number} of candidates that were not laid: collision, boundary, forbidden, fold, "
                              "stretched.")

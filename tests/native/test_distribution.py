@@ -94,6 +94,55 @@ def test_nothing_collides_on_a_plane_and_nothing_more_fits(shape, mode, turning)
         assert any(extra.overlaps(copies[i]) for i in near)
 
 
+def distance(one: sb.Shape, other: sb.Shape) -> float:
+    """Of two polygons that do not overlap: of every corner of each to every edge of the other."""
+    least = np.inf
+    for a, b in ((one, other), (other, one)):
+        for loop in b.loops:
+            edge = np.roll(loop, -1, axis=0) - loop
+            for corners in a.loops:
+                away = corners[:, None] - loop
+                along = np.clip((away * edge).sum(axis=2) / (edge**2).sum(axis=1), 0, 1)
+                least = min(least, float(np.linalg.norm(away - along[..., None] * edge, axis=2).min()))
+    return least
+
+
+def test_a_certificate_with_a_gap_counts_its_clearance_from_half_of_it() -> None:
+    mesh, field = plane(turning=True)
+    size, gap, tolerance = 0.07, 0.1, 0.02
+    result = sb.distribute(mesh, STAR, field=field, size=size, gap=gap, maximal=True, tolerance=tolerance)
+    certificate = result.certificate
+    assert result.stop_reason == "full" and certificate.uncertified_area < 0.02 * mesh.area
+    assert certificate.tolerance == pytest.approx(tolerance * (size + gap / 2))
+    copies = laid_flat(result)
+    apart = [distance(a, b) for i, a in enumerate(copies) for b in copies[:i] if not a.overlaps(b)]
+    assert len(apart) == len(copies) * (len(copies) - 1) / 2 and min(apart) >= gap
+    rng, nearest = np.random.default_rng(2), []
+    places = rng.uniform(0.0, 1.0, (600, 2))
+    ahead = field.directions(sb.project(mesh, np.column_stack([places, np.zeros(len(places))])))
+    for place, direction in zip(places, ahead, strict=True):
+        extra = STAR.moved(size, np.arctan2(direction[1], direction[0]), place)
+        within = np.abs(np.concatenate(extra.loops) - 0.5).max() < 0.5 - gap / 2 - certificate.tolerance
+        if within and np.linalg.norm(place - [0.5, 0.5]) > 0.05:
+            nearest.append(min(0.0 if extra.overlaps(copy) else distance(extra, copy) for copy in copies))
+    assert len(nearest) > 250 and max(nearest) < gap + certificate.tolerance
+    # A clearance that grows with the gap needs no more cells than shapes alone.
+    finer = sb.distribute(mesh, STAR, field=field, size=size, maximal=True, tolerance=tolerance)
+    assert certificate.cells < finer.certificate.cells
+
+
+def test_what_no_certificate_can_tell_is_not_called_full() -> None:
+    """With half of such a gap around, a copy goes round the tube and meets itself: neither is it laid nor excluded."""
+    mesh = sb.Mesh(*meshes.torus(10, 6))
+    field = sb.direction_field(mesh, 1, {})
+    result = sb.distribute(mesh, STAR, field=field, size=0.15, gap=2.5, maximal=True, tolerance=0.05, threads=1)
+    assert result.stop_reason == "unproven" and len(result) == 0 and "unproven" in repr(result)
+    assert result.certificate.uncertified_area == pytest.approx(mesh.area)
+    assert result.rejections["fold"] > 0.9 * sum(result.rejections.values()) > 0
+    smaller = sb.distribute(mesh, STAR, field=field, size=0.15, gap=1.0, maximal=True, tolerance=0.05, threads=1)
+    assert smaller.stop_reason == "full" and 0 <= smaller.certificate.uncertified_area < 0.5 * mesh.area
+
+
 def test_stars_make_use_of_the_room_between_their_points() -> None:
     """Certified random pentagrams against certified random disks of the same circumradius, on a flat square.
 

@@ -13,7 +13,11 @@ from .shape_sizes import Laid
 from .shape_templates import ShapeTemplate
 
 # What the library's reasons to stop mean to a person; that every count is met needs no word.
-STOPS = {"full": "nothing more fits", "tired": "no more room was found"}
+STOPS = {
+    "full": "nothing more fits",
+    "unproven": "no more room was found, but whether there is any cannot be told for shapes or gaps so large",
+    "tired": "no more room was found",
+}
 REJECTIONS = {
     "collision": "met another",
     "boundary": "went over the border",
@@ -58,10 +62,11 @@ def figures(laid: Laid, is_maximal: bool) -> tuple[str, ...]:
     certificate = laid.result.certificate
     if is_maximal and certificate is not None:
         share = certificate.uncertified_area / laid.mesh.area
-        lines.append(
-            f"Proved full: none fits with {certificate.tolerance:.2g} to spare"
-            + (f", on all but {max(share, 1e-4):.2%} of the surface" if share > NO_SHARE else "")
-        )
+        where = f", on all but {max(share, 1e-4):.2%} of the surface" if share > NO_SHARE else ""
+        if laid.result.stop_reason == "unproven":
+            lines.append(f"Not proved full: shapes or gaps are too large for how {share:.0%} of the surface bends")
+        else:
+            lines.append(f"Proved full: none fits with {certificate.tolerance:.2g} to spare{where}")
     return tuple(lines)
 
 

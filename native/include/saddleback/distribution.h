@@ -31,7 +31,7 @@ struct DistributionOptions {
   std::vector<double> density;
   /// Per face: nothing may touch it. Empty: none.
   std::vector<std::uint8_t> forbidden;
-  /// Least distance between copies, mesh units.
+  /// Least distance between copies, mesh units; half of it is kept to the border and to what is forbidden.
   double gap = 0;
   /// 0: in random order; 1: one beside the other in a front that sweeps over the surface, denser by a quarter and more.
   double packing = 0;
@@ -49,9 +49,11 @@ struct DistributionOptions {
 };
 
 enum class DistributionStop : std::uint8_t {
-  counts,  ///< every count is met
-  full,    ///< nothing more fits, which the certificate proves
-  tired,   ///< no room was found in a while
+  counts,    ///< every count is met
+  full,      ///< nothing more fits, which the certificate proves
+  tired,     ///< no room was found in a while
+  unproven,  ///< no room was found, but of more than half of the surface no certificate can tell: shapes or gaps are
+             ///< too large for how it bends
 };
 
 enum class Rejection : std::uint8_t {

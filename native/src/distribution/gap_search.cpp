@@ -37,6 +37,8 @@ constexpr std::array<double, 10> k_showers{2, 2, 4, 4, 8, 8, 16, 16, 32, 32};
 constexpr std::array<double, 4> k_sweeping_showers{80, 40, 40, 40};
 constexpr std::size_t k_searching_showers = 6, k_searching_sweeps = 2;
 constexpr double k_most_drops = 1e6;  ///< on a face
+/// A certificate that leaves more than this share of the surface open is not called one.
+constexpr double k_unproven = 0.5;
 /// Cells smaller than this share of that square get fewer darts.
 constexpr double k_dart_area = 0.05, k_free_area = 0.006;  ///< the second where the centre seems free
 /// Disks looked at before all of them are: the largest, which tell most cells.
@@ -427,7 +429,9 @@ DistributionStop GapSearch::run(const JobStage& stage) {
     if (!options_->maximal && (is_tired || total == 0)) break;
   }
   if (!laying_->is_any_wanted()) return DistributionStop::counts;
-  return options_->maximal ? DistributionStop::full : DistributionStop::tired;
+  if (!options_->maximal) return DistributionStop::tired;
+  return certificate_.uncertified_area > k_unproven * mesh_->area() ? DistributionStop::unproven
+                                                                    : DistributionStop::full;
 }
 
 }  // namespace saddleback::distribution
