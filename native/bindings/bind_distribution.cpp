@@ -93,7 +93,12 @@ std::vector<Index> as_counts(const py::object& value) {
 }
 
 double as_packing(const py::object& mode) {
-  if (!py::isinstance<py::str>(mode)) return as_real(mode, "mode");
+  if (!py::isinstance<py::str>(mode)) {
+    const double packing = as_real(mode, "mode");
+    if (!(packing >= 0 && packing <= 1))
+      throw InputError(message("mode is ", packing, ", but must be \"random\", \"packed\" or 0 to 1"));
+    return packing;
+  }
   const auto name = py::cast<std::string>(mode);
   if (name == "random") return 0;
   if (name == "packed") return 1;

@@ -473,7 +473,7 @@ REFUSED = {
     "gap wider than the surface": ({"gap": 50.0}, "gap is 50: shape 0 .* larger than the surface, which has 1"),
     "such a gap, maximal": ({"gap": 50.0, "maximal": True}, "gap is 50: shape 0 .* larger than the surface"),
     "unknown mode": ({"mode": "dense"}, "mode: wanted"),
-    "packing beyond 1": ({"mode": 1.5}, "packing is 1.5"),
+    "packing beyond 1": ({"mode": 1.5}, "mode is 1.5, but must be"),
     "everything forbidden": ({"forbidden": np.ones(1152, bool)}, "no face is left"),
     "forbidden of another length": ({"forbidden": np.ones(3, bool)}, "forbidden has 3"),
     "tolerance": ({"tolerance": 0}, "tolerance is 0"),

@@ -68,7 +68,8 @@ void check_sizes(const Mesh& mesh, std::span<const Shape> shapes, const Distribu
     check_per_vertex("size", mesh, options.size, false);
   }
   if (!(options.smallest > 0) || !(options.largest >= options.smallest) || !std::isfinite(options.largest))
-    throw InputError(message("sizes from ", options.smallest, " to ", options.largest, " are no range above 0"));
+    throw InputError(message("size_range: from ", options.smallest, " to ", options.largest,
+                             " is no range above 0; wanted the smallest factor, then the largest"));
   const double least = *std::min_element(options.size.begin(), options.size.end()) * options.smallest;
   for (std::size_t i = 0; i < shapes.size(); ++i)
     if (shapes[i].area() * least * least > mesh.area())

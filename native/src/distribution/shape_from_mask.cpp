@@ -26,8 +26,10 @@ void check_values(const MaskImage& image, const JobStage& stage) {
       throw InputError(message("image: value ", *bad, " at [", row, ", ", bad - values.begin(), "] is not finite"));
     inside += std::count_if(values.begin(), values.end(), [](double v) { return v >= 0.5; });
   }
-  if (inside == 0) throw InputError("image: no clear mask, no pixel is over one half");
-  if (inside == image.values.size()) throw InputError("image: no clear mask, every pixel is over one half");
+  if (inside == 0)
+    throw InputError("image: no clear mask, no pixel is over one half; raise those of the shape above it");
+  if (inside == image.values.size())
+    throw InputError("image: no clear mask, every pixel is over one half; lower those around the shape below it");
 }
 
 void check(const MaskImage& image, Index max_corners, const JobStage& stage) {
@@ -42,7 +44,7 @@ void check(const MaskImage& image, Index max_corners, const JobStage& stage) {
 
 InputError too_many(std::size_t loops, Index max_corners) {
   return InputError(message("image: no clear mask, it has ", loops, " parts and holes, for which ", max_corners,
-                            " corners are too few"));
+                            " corners are too few; smooth the image or raise max_corners"));
 }
 
 /// Holes may be filled, but every outline keeps three corners.
