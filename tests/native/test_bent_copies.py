@@ -91,6 +91,31 @@ def test_flat_ones_lie_on_the_surface(case: meshes.Case) -> None:
     assert found.max() < max(0.01, 2.5 * bent.deviations[laid].max())
 
 
+def test_corners_lie_on_the_outline_where_the_plane_covers_the_surface_twice() -> None:
+    """Around the rim of a thin ellipsoid the plane meets itself beside narrow shapes."""
+    vertices, triangles = meshes.icosphere(3)
+    mesh = sb.Mesh(vertices * [1, 0.15, 0.08], triangles)
+    shapes = [sb.Shape.needle(10), sb.Shape.star(), sb.Shape.crescent()]
+    count, size, rng = 500, 0.3, np.random.default_rng(1)
+    kinds = rng.integers(0, 3, count)
+    placements = sb.Placements(
+        kinds, sb.sample(mesh, count, seed=3), rng.uniform(0, 2 * np.pi, count), np.full(count, size)
+    )
+    mapped = sb.map_shapes(mesh, shapes, placements)
+    bent = mapped.bend([flat(shape) for shape in shapes], 0)
+    laid = [i for i in range(count) if i not in mapped.failures]
+    assert len(laid) > 200 and len(bent.lost) == 0
+    for i in laid:
+        corners = shapes[kinds[i]].loops[0]
+        outline = mapped.outline(i)[0]
+        edge = np.roll(outline, -1, axis=0) - outline
+        for own in (bent.vertices[bent.begins[i] :][: len(corners)], mapped.conform(corners, i).points):
+            away = own[:, None] - outline
+            along = np.clip((away * edge).sum(axis=2) / np.maximum((edge**2).sum(axis=1), 1e-300), 0, 1)
+            off = np.linalg.norm(away - along[..., None] * edge, axis=2).min(axis=1)
+            assert off.max() < 1e-9 * size
+
+
 def test_without_a_tolerance_chords_leave_the_surface() -> None:
     mesh, scale = rough(), 0.25
     solids = [flat(shape) for shape in SHAPES]

@@ -73,6 +73,9 @@ class ShapeMap {
   /// it comes to: O(faces on the way). Leaves `face` where it got stuck when the answer is a failure.
   MapFailure find(const Vec2& point, Index& face);
 
+  /// Whether a point of the plane lies in a face whose corners are laid out.
+  bool is_in(const Vec2& point, Index face) const;
+
   /// The surface point at a point of the plane that lies in the face; rounding outside of it is removed.
   SurfacePoint surface_point(const Vec2& point, Index face) const;
 
@@ -105,7 +108,6 @@ class ShapeMap {
   void march(const PlaneBox& box);
   void settle(Index vertex, const PlaneBox& box);
   void look_through(Index from, Index to, Index apex);
-  bool is_in(const Vec2& point, Index face) const;
   double distance_of(const Vec2& place) const { return along_curve_ ? std::abs(place.y()) : place.norm(); }
 
   Sight sight_through(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) const;

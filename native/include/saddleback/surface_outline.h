@@ -64,6 +64,12 @@ class OutlineMapper {
     return {turned.x() / scale_.x(), turned.y() / scale_.y()};
   }
 
+  /// The face that a point of the plane lies in, walking from `face`, whose corners must be laid out. Beside a shape
+  /// the plane may cover the surface twice; a point in the shape or on its outline is found on the faces that it
+  /// touches. Elsewhere any face will do. Where there is none, `face` is the one of the centre. O(faces on the way),
+  /// seldom O(faces of the shape). \pre the last shape was mapped without a failure.
+  MapFailure find(const Vec2& point, Index& face);
+
   /// The plane as it was laid last, in mesh units and not mirrored.
   const ShapeMap& plane() const { return plane_; }
   ShapeMap& plane() { return plane_; }
@@ -92,6 +98,7 @@ class OutlineMapper {
   std::vector<Vec2> corners_;
   std::vector<Index> given_;  ///< per corner: number of the given edge that begins there
   std::vector<std::size_t> begins_;
+  std::vector<Index> touched_;  ///< faces
   std::vector<std::uint32_t> face_stamps_, inside_stamps_;
   std::vector<Index> crossed_;  ///< edges, by their smaller half-edge
   std::uint32_t stamp_ = 0;

@@ -26,18 +26,15 @@ ConformedPoints conform(OutlineMapper& mapper, const Shape& shape, const Placeme
   SurfaceOutline outline;
   result.failure = map_shape(mapper, shape, placement, field, outline, limits);
   if (result.failure != MapFailure::none) return result;
-  ShapeMap& plane = mapper.plane();
+  const ShapeMap& plane = mapper.plane();
   Index face = plane.centre_face();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec2 place = mapper.laid(points[i].head<2>());
-    MapFailure failure = plane.find(place, face);
-    if (failure != MapFailure::none) failure = plane.find(place, face = plane.centre_face());
-    if (failure == MapFailure::none) {
+    if (mapper.find(place, face) == MapFailure::none) {
       result.anchors.push_back(plane.surface_point(place, face));
     } else {
       result.lost.push_back(static_cast<Index>(i));
       result.anchors.push_back(placement.centre);
-      face = plane.centre_face();
     }
     result.heights.push_back(placement.scale * points[i].z());
   }

@@ -79,15 +79,10 @@ void SurfaceFit::bend(OutlineMapper& mapper, const Placement& placement, const S
 
 /// Where a point of the shape's space comes to lie; in mesh order of the walk from the last one.
 SurfaceFit::Vertex SurfaceFit::lay(const Vec3& given) {
-  ShapeMap& plane = mapper_->plane();
   const Vec2 place = mapper_->laid(given.head<2>());
-  MapFailure failure = plane.find(place, hint_);
-  if (failure != MapFailure::none) failure = plane.find(place, hint_ = plane.centre_face());
+  const MapFailure failure = mapper_->find(place, hint_);
   Vertex result{given, centre_, scale_ * given.z(), Vec3::Zero(), failure != MapFailure::none};
-  if (result.is_lost)
-    hint_ = plane.centre_face();
-  else
-    result.anchor = plane.surface_point(place, hint_);
+  if (!result.is_lost) result.anchor = mapper_->plane().surface_point(place, hint_);
   result.position = position(*mesh_, result.anchor);
   if (result.height != 0) result.position += result.height * normal_at(*mesh_, normals_, result.anchor);
   return result;

@@ -108,6 +108,7 @@ MapFailure OutlineMapper::cut(SurfaceOutline& outline, const MapLimits& limits) 
   outline.smallest = std::numeric_limits<double>::infinity();
   outline.largest = 0;
   crossed_.clear();
+  touched_.clear();
   face_ = plane_.centre_face();
   plane_.complete(face_);
   try {
@@ -201,6 +202,24 @@ void OutlineMapper::enter(Index face) {
   outline_->smallest = std::min(outline_->smallest, stretch.smallest);
   outline_->largest = std::max(outline_->largest, stretch.largest);
   outline_->faces.push_back(face);
+  touched_.push_back(face);
+}
+
+MapFailure OutlineMapper::find(const Vec2& point, Index& face) {
+  const auto touches = [this](Index f) { return face_stamps_[f] == stamp_; };
+  MapFailure found = plane_.find(point, face);
+  if (found == MapFailure::none && touches(face)) return found;
+  Index other = plane_.centre_face();
+  const MapFailure from_centre = plane_.find(point, other);
+  if (found != MapFailure::none || (from_centre == MapFailure::none && touches(other)))
+    found = from_centre, face = other;
+  const bool is_near = (point.array() >= box_.low.array()).all() && (point.array() <= box_.high.array()).all();
+  if (is_near && (found != MapFailure::none || !touches(face))) {
+    const auto own = std::find_if(touched_.begin(), touched_.end(), [&](Index f) { return plane_.is_in(point, f); });
+    if (own != touched_.end()) face = *own, found = MapFailure::none;
+  }
+  if (found != MapFailure::none) face = plane_.centre_face();
+  return found;
 }
 
 /// Vertices that are laid into the shape. Their stars are completed, which may lay out more.
