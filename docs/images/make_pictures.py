@@ -205,18 +205,19 @@ def lay(body: bpy.types.Object, shapes: str, **settings: object) -> None:
 
 
 def shapes_mosaic(body: bpy.types.Object) -> None:
-    """Picture: tiles of three kinds."""
-    lay(body, "MOSAIC", count=2200, size=0.038)
+    """Picture: tiles of three kinds, side by side."""
+    lay(body, "MOSAIC", count=2200)
 
 
 def shapes_leaves(body: bpy.types.Object) -> None:
     """Picture: leaves of two sizes."""
-    lay(body, "LEAVES", count=2600, size=0.05, size_variation=0.15)
+    lay(body, "LEAVES", count=2600, size=0.05, size_variation=0.15, packing=0.0)
 
 
 def shapes_studs(body: bpy.types.Object) -> None:
     """Picture: studs, small where the density was painted."""
-    lay(body, "STUDS", count=1800, size=0.024, size_by_density=True, density_source="VERTEX_GROUP", density_name=PAINT)
+    lay(body, "STUDS", count=1800, size=0.024, packing=0.0, size_by_density=True, density_source="VERTEX_GROUP",
+        density_name=PAINT)  # fmt: skip
     body.data.materials.clear()
     body.data.materials.append(studio.principled("Leather", (0.10, 0.035, 0.015), Roughness=0.55))
     output(body, "shapes").data.materials[0].user_remap(looks.gold())

@@ -294,9 +294,10 @@ CutSurface with_positions(const Mesh& mesh, CutMesh cut) {
   return result;
 }
 
-CutSurface cut_surface(const MappedShapes& self, CutPart part) {
+CutSurface cut_surface(const MappedShapes& self, CutPart part, const py::object& job) {
   const Mesh& mesh = self.mesh();
-  return without_gil([&] { return with_positions(mesh, cut_shapes(mesh, self.mapped, part)); });
+  Job* const watched = as_job(job);
+  return without_gil([&] { return with_positions(mesh, cut_shapes(mesh, self.mapped, part, watched)); });
 }
 
 CutSurface patch_of(const MappedShapes& self, const py::object& index) {
@@ -524,10 +525,13 @@ void bind_shape_maps(py::module_& m) {
            py::arg("job") = py::none(), k_bend_doc)
       .def("patch", &patch_of, py::arg("i"), "CutSurface of the piece of surface that a placement's shape covers.")
       .def(
-          "patches", [](const MappedShapes& self) { return cut_surface(self, CutPart::shapes); },
-          "CutSurface of all pieces, each by itself.")
+          "patches",
+          [](const MappedShapes& self, const py::object& job) { return cut_surface(self, CutPart::shapes, job); },
+          py::kw_only(), py::arg("job") = py::none(), "CutSurface of all pieces, each by itself.")
       .def(
-          "cut", [](const MappedShapes& self) { return cut_surface(self, CutPart::everything); },
+          "cut",
+          [](const MappedShapes& self, const py::object& job) { return cut_surface(self, CutPart::everything, job); },
+          py::kw_only(), py::arg("job") = py::none(),
           "CutSurface of the whole surface, its own vertices first. Raises InputError where shapes overlap.")
       .def("attributes", &attributes_of, py::arg("reach") = 0.0, py::kw_only(), py::arg("threads") = 0,
            py::arg("job") = py::none(), k_attributes_doc)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 
 Floats = NDArray[np.float64]
 
@@ -221,6 +222,13 @@ def test_the_cut_surface_is_the_surface(level: int) -> None:
     patches = mapped.patches()
     assert np.array_equal(np.unique(patches.triangle_shape), laid(mapped))
     assert len(patches.triangles) == (cut.triangle_shape >= 0).sum()
+
+
+def test_cutting_tells_its_progress_and_stops() -> None:
+    mesh = sb.Mesh(*meshes.icosphere(6))
+    mapped = sb.map_shapes(mesh, SHAPES, apart(mesh, 200, 0.08))
+    check_progress_and_cancel(lambda job: mapped.cut(job=job), 0.2)
+    check_progress_and_cancel(lambda job: mapped.patches(job=job), 0.1)
 
 
 def test_overlapping_shapes_cannot_be_cut_together() -> None:

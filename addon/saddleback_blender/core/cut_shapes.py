@@ -12,8 +12,8 @@ from .results import CutShapes, Indices, Reals
 
 def cut_shapes(mesh: Any, mapped: Any, progress: Progress) -> CutShapes:
     """The whole surface as triangles that know their shape, and where in it their corners are."""
-    with progress.stage(0.96, "cutting outlines into the surface"):
-        cut = mapped.cut()
+    with progress.stage(0.96, "cutting outlines into the surface") as job:
+        cut = mapped.cut(job=job)
     triangles, copy = np.asarray(cut.triangles), np.asarray(cut.triangle_shape)
     corner_faces = np.repeat(np.asarray(cut.triangle_face), 3)
     inside = np.repeat(copy >= 0, 3)

@@ -22,7 +22,7 @@ from .local_frames import anchored
 from .progress import Progress
 from .requests import DirectionFieldRequest, DistributeRequest, digest
 from .results import CheckResult, DistributeResult, Indices, PathsResult, PlacedShapes, Reals, ShapeValues
-from .shape_sizes import Laid, Placed, fitted_to_count, size_of, sizes
+from .shape_sizes import Laid, Placed, crowding, fitted_to_count, size_of, sizes
 from .shape_templates import sized
 
 BYTES_PER_SHAPE = 4000  # of a placement and its outline
@@ -162,6 +162,8 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         placed = place(settings.size, None if settings.maximal else settings.count)
     else:
         free = mesh.area if forbidden is None else float(np.asarray(mesh.face_areas)[~forbidden].sum()) or mesh.area
+        if "density" in options and not settings.size_by_density:
+            free /= crowding(mesh, options["density"])
         first = size_of(settings.count, settings.packing if fills else 0.0, fills, free, shapes, templates)
         placed = fitted_to_count(place, first, settings.count, fills, settings.maximal)
     warnings = () if field is None else field.notes

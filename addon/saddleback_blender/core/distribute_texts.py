@@ -79,7 +79,7 @@ def warnings_of(laid: Laid, mapped: Any, settings: DistributeSettings) -> tuple[
     if settings.maximal or laid.is_about:
         return tuple(found)
     if placed < settings.count:
-        more = "" if settings.packing == 1.0 else ", or raise Packing"
+        more = "" if settings.packing == 1.0 or settings.density_source != "UNIFORM" else ", or raise Packing"
         left = settings.count - placed
         found.append(f"{left:,} of {settings.count:,} shapes found no room; make them smaller{more}")
     elif settings.packing > 0 and settings.size and settings.density_source == "UNIFORM":

@@ -14,10 +14,11 @@ from .shape_templates import ShapeTemplate
 # Share of the surface that shapes cover: a loose scatter, and full of shapes laid at random, and side by side.
 LOOSE, FULL, PACKED = 0.40, 0.55, 0.70
 # Where the count is to fill the surface: by which share of it the number may differ.
-TOLERANCE = 0.04
+TOLERANCE = 0.05
 MOST_TRIALS = 5
-SHRINK = 0.97  # more than what the count asks for, where shapes do not find room
+SHRINK = 0.97  # more than what the count asks for, where shapes do not find room: by this once, twice, ...
 MOST_OVER = 1.3  # of the count, laid to see how many fit
+HIGH = 0.98  # share of the vertices below a density that counts as high
 MOST_GROWTH = 4.0  # of a size by the density, up or down
 
 
@@ -50,7 +51,7 @@ def size_of(
     """The scale at which so many shapes cover a fair share of the area."""
     shares = np.array([template.share for template in templates])
     mean = float((shares * [shape.area for shape in shapes]).sum() / shares.sum())
-    cover = FULL + packing * (PACKED - FULL) if fills else LOOSE
+    cover = FULL + packing**3 * (PACKED - FULL) if fills else LOOSE  # half packed is little more than by chance
     return float(np.sqrt(cover * area / (count * mean)))
 
 
@@ -64,14 +65,14 @@ def fitted_to_count(
     """
     most = None if maximal else int(MOST_OVER * count) + 1 if fills else count
     size, best, least = first, None, count + 1
-    for _ in range(MOST_TRIALS):
+    for turn in range(MOST_TRIALS):
         trial = place(size, most)
         found = len(trial.result.placements)
         if best is None or abs(found - count) < least:
             best, least = trial, abs(found - count)
         if least <= (max(1.0, TOLERANCE * count) if fills else 0):
             break
-        size *= float(np.sqrt(max(found, 0.5) / count)) * (1.0 if fills else SHRINK)
+        size *= float(np.sqrt(max(found, 0.5) / count)) * (1.0 if fills else SHRINK ** (turn + 1))
     assert best is not None
     return best
 
@@ -84,6 +85,12 @@ def sizes(mesh: Any, size: float, density: Reals | None) -> float | Reals:
     shrunk = np.sqrt(middle / np.maximum(density, middle / MOST_GROWTH**2))
     found: Reals = size * np.maximum(shrunk, 1.0 / MOST_GROWTH)
     return found
+
+
+def crowding(mesh: Any, density: Reals) -> float:
+    """How many more than on average are where the density is high."""
+    high = float(np.quantile(density, HIGH))
+    return max(1.0, high / float(np.average(density, weights=_vertex_areas(mesh))))
 
 
 def _vertex_areas(mesh: Any) -> Reals:

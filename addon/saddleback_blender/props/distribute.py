@@ -71,7 +71,7 @@ DISTRIBUTE: dict[str, Any] = {
     "make_outlines": switch("Outlines", "Make a curve object of the shapes' outlines", False),
     "outline_radius": length("Radius", "Half the thickness of the outlines", 0.005),
     "make_cut": switch(
-        "Cut Mesh", "Make a copy of the mesh with the outlines cut in; its faces know their shape and show its material",
+        "Cut Mesh", "Make a copy of the mesh with the outlines cut in; its faces know their shape, show its material",
         False,
     ),
     "write_attributes": switch(

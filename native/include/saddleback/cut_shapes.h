@@ -1,6 +1,7 @@
 #pragma once
 // The surface cut along outlines: faces that lie in one shape or in none.
 
+#include "saddleback/job.h"
 #include "saddleback/map_shapes.h"
 
 namespace saddleback {
@@ -22,7 +23,8 @@ enum class CutPart : std::uint8_t {
 
 /// Cuts the faces that outlines cross into triangles with the pieces of the outlines as edges, as near to Delaunay's as
 /// those let them be. The shapes are those that could be mapped. \throw InputError naming two shapes that overlap,
-/// unless they are cut out one by one. O(F + m log m) for m pieces.
-CutMesh cut_shapes(const Mesh& mesh, std::span<const MappedShape> shapes, CutPart part = CutPart::everything);
+/// unless they are cut out one by one; Cancelled when `job` (may be null) is stopped. O(F + m log m) for m pieces.
+CutMesh cut_shapes(const Mesh& mesh, std::span<const MappedShape> shapes, CutPart part = CutPart::everything,
+                   Job* job = nullptr);
 
 }  // namespace saddleback

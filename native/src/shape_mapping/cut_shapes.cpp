@@ -20,12 +20,14 @@ struct FacePiece {
 };
 
 constexpr Index k_unknown = -2;
+constexpr Index k_faces_between_looks = 1024;
 
 class Cutter {
  public:
-  Cutter(const Mesh& mesh, std::span<const MappedShape> shapes)
+  Cutter(const Mesh& mesh, std::span<const MappedShape> shapes, Job* job)
       : mesh_(mesh),
         shapes_(shapes),
+        stage_(job, "cutting outlines into the surface"),
         face_shape_(static_cast<std::size_t>(mesh.face_count()), k_none),
         vertex_shape_(static_cast<std::size_t>(mesh.vertex_count()), k_none),
         vertex_plane_(static_cast<std::size_t>(mesh.vertex_count()), Vec2::Zero()),
@@ -38,7 +40,10 @@ class Cutter {
     for (std::size_t s = 0; s < shapes_.size(); ++s) list_pieces(s);
     sort_pieces();
     std::size_t next = 0;
-    for (Index f = 0; f < mesh_.face_count(); ++f) next = cut_face(f, next);
+    for (Index f = 0; f < mesh_.face_count(); ++f) {
+      if (f % k_faces_between_looks == 0) stage_.update(static_cast<double>(f) / mesh_.face_count());
+      next = cut_face(f, next);
+    }
     return std::move(result_);
   }
 
@@ -46,6 +51,7 @@ class Cutter {
   CutMesh patches() {
     is_only_shapes_ = true;
     for (std::size_t s = 0; s < shapes_.size(); ++s) {
+      stage_.update(static_cast<double>(s) / static_cast<double>(shapes_.size()));
       mark(s);
       pieces_.clear();
       list_pieces(s);
@@ -198,6 +204,7 @@ class Cutter {
 
   const Mesh& mesh_;
   std::span<const MappedShape> shapes_;
+  JobStage stage_;
   bool is_only_shapes_ = false;
   std::vector<Index> face_shape_;  ///< of faces without pieces
   std::vector<Index> vertex_shape_;
@@ -214,8 +221,8 @@ class Cutter {
 
 }  // namespace
 
-CutMesh cut_shapes(const Mesh& mesh, std::span<const MappedShape> shapes, CutPart part) {
-  Cutter cutter(mesh, shapes);
+CutMesh cut_shapes(const Mesh& mesh, std::span<const MappedShape> shapes, CutPart part, Job* job) {
+  Cutter cutter(mesh, shapes, job);
   return part == CutPart::everything ? cutter.whole() : cutter.patches();
 }
 
