@@ -26,25 +26,38 @@ def write_positions(mesh: bpy.types.Mesh, positions: NDArray[np.float32]) -> Non
     mesh.vertices.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())
 
 
+def read_numbers(elements: Any, name: str, width: int = 1) -> NDArray[np.int32]:
+    """(n * width,) numbers of other elements, or counts, that n elements of a mesh have.
+
+    Blender's own are unsigned: only between arrays of the same kind it copies without a loop in Python.
+    """
+    numbers = np.empty(width * len(elements), np.int32)
+    elements.foreach_get(name, numbers.view(np.uint32))
+    return numbers
+
+
+def write_numbers(elements: Any, name: str, numbers: NDArray[np.integer]) -> None:
+    """Sets what `read_numbers` reads; of any shape."""
+    elements.foreach_set(name, np.ascontiguousarray(numbers, np.int32).ravel().view(np.uint32))
+
+
 def read_corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """(L,) vertex of each face corner."""
-    vertices = np.empty(len(mesh.loops), np.int32)
     attribute = mesh.attributes.get(".corner_vert")
-    if attribute is not None:
-        attribute.data.foreach_get("value", vertices)
-    else:
-        mesh.loops.foreach_get("vertex_index", vertices)
+    if attribute is None:
+        return read_numbers(mesh.loops, "vertex_index")
+    vertices = np.empty(len(mesh.loops), np.int32)
+    attribute.data.foreach_get("value", vertices)
     return vertices
 
 
 def read_edge_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """(E, 2) vertices of each edge."""
-    vertices = np.empty(2 * len(mesh.edges), np.int32)
     attribute = mesh.attributes.get(".edge_verts")
-    if attribute is not None:
-        attribute.data.foreach_get("value", vertices)
-    else:
-        mesh.edges.foreach_get("vertices", vertices)
+    if attribute is None:
+        return read_numbers(mesh.edges, "vertices", 2).reshape(-1, 2)
+    vertices = np.empty(2 * len(mesh.edges), np.int32)
+    attribute.data.foreach_get("value", vertices)
     return vertices.reshape(-1, 2)
 
 
@@ -94,6 +107,13 @@ def write_corners(mesh: bpy.types.Mesh, triangles: NDArray[np.int32]) -> None:
     write_polygons(mesh, triangles.ravel(), np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int32))
 
 
+def write_edges(mesh: bpy.types.Mesh, ends: NDArray[np.int32], corner_edges: NDArray[np.int32]) -> None:
+    """Gives a mesh that has polygons its edges (E, 2), and each corner (L,) the one to the next corner."""
+    mesh.edges.add(len(ends))
+    write_numbers(mesh.edges, "vertices", ends)
+    write_numbers(mesh.loops, "edge_index", corner_edges)
+
+
 def write_polygons(mesh: bpy.types.Mesh, corners: NDArray[np.int32], offsets: NDArray[np.int32]) -> None:
     """Gives a mesh that has vertices but no faces yet its polygons; edges come with `mesh.update`.
 
@@ -101,10 +121,10 @@ def write_polygons(mesh: bpy.types.Mesh, corners: NDArray[np.int32], offsets: ND
     """
     mesh.loops.add(len(corners))
     mesh.polygons.add(len(offsets) - 1)
-    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(corners, np.int32))
-    mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(offsets[:-1], np.int32))
+    write_numbers(mesh.loops, "vertex_index", corners)
+    write_numbers(mesh.polygons, "loop_start", offsets[:-1])
     if not mesh.bl_rna.properties["polygons"].fixed_type.properties["loop_total"].is_readonly:
-        mesh.polygons.foreach_set("loop_total", np.diff(offsets).astype(np.int32))
+        write_numbers(mesh.polygons, "loop_total", np.diff(offsets))
 
 
 def is_shaded_smooth(mesh: bpy.types.Mesh) -> bool:
@@ -115,7 +135,9 @@ def is_shaded_smooth(mesh: bpy.types.Mesh) -> bool:
 
 
 def shade_flat(mesh: bpy.types.Mesh) -> None:
-    """Flat faces: from 4.1 on new ones are smooth, before they are not."""
+    """Makes the faces of a new mesh flat: from 4.1 on they are smooth, before they are not."""
+    if hasattr(mesh, "use_auto_smooth"):
+        return
     mesh.polygons.foreach_set("use_smooth", np.zeros(len(mesh.polygons), bool))
 
 
@@ -144,11 +166,10 @@ def show_color(mesh: bpy.types.Mesh, name: str) -> None:
 
 def remove_material_slots(mesh: bpy.types.Mesh) -> None:
     """Removes all materials; faces keep their numbers. `materials.pop` would leave the objects' slots behind."""
-    numbers = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("material_index", numbers)
+    numbers = read_numbers(mesh.polygons, "material_index")
     mesh.materials.clear()
     if numbers.any():
-        mesh.polygons.foreach_set("material_index", numbers)
+        write_numbers(mesh.polygons, "material_index", numbers)
 
 
 def new_group_socket(group: bpy.types.NodeTree, name: str, in_out: str, socket_type: str) -> Any:

@@ -20,6 +20,13 @@ py::array normals(const py::object& vertices, const py::object& triangles) {
   return to_array(without_gil([&] { return vertex_normals(points_of(xyz), triangles_of(indices)); }));
 }
 
+py::tuple edges_of(const py::object& triangles, const py::object& vertex_count) {
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const Index count = as_integer(vertex_count, "vertex_count");
+  TriangleEdges found = without_gil([&] { return triangle_edges(triangles_of(indices), count); });
+  return py::make_tuple(to_rows<Index>(std::move(found.ends)), to_array(std::move(found.corner_edges)));
+}
+
 py::tuple border(const py::object& triangles, const py::object& vertex_count) {
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const Index count = as_integer(vertex_count, "vertex_count");
@@ -74,6 +81,20 @@ triangles : (T, 3) int array
 Returns
 -------
 (V, 3) float64; zero where no triangle with an area meets the vertex. O(V + T).)");
+  m.def("triangle_edges", &edges_of, py::arg("triangles"), py::arg("vertex_count"),
+        R"(Number the edges of triangles, in the order in which these come upon them, whichever way round.
+
+Parameters
+----------
+triangles : (T, 3) int array
+vertex_count : int
+
+Returns
+-------
+ends : (e, 2) int32
+    The vertices of each edge, once.
+corner_edges : (3 T,) int32
+    The edge from each triangle's corner to its next one. O(V + T).)");
   m.def("border_edges", &border, py::arg("triangles"), py::arg("vertex_count"),
         R"(Find the edges that only one triangle uses.
 

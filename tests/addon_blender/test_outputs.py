@@ -21,6 +21,7 @@ from saddleback_blender.bridge.out_attributes import clear_attributes, write_ver
 from saddleback_blender.bridge.out_cells import vanished_cells, write_cells
 from saddleback_blender.bridge.out_centres import write_centres
 from saddleback_blender.bridge.out_edges import write_edges
+from saddleback_blender.core.cell_colors import cell_colors
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.settings import TessellateSettings
 from tests import synthetic_cells
@@ -250,8 +251,24 @@ def test_every_face_of_a_cell_has_its_color_and_neighbours_differ(gap):
     np.testing.assert_array_equal(color, first[cell])
     a, b = (first[result.edge_cells[:, i]] for i in range(2))
     assert np.abs(a - b).max(axis=1).min() > 0.03
+    np.testing.assert_allclose(first[:, :3], cell_colors(25, result.edge_cells), atol=0.005)
     assert mesh.color_attributes.active_color.name == "saddleback_color"
     assert mesh.materials[0].name == "Saddleback Cells"
+
+
+@pytest.mark.parametrize("shape", [{}, {"gap": 0.02, "inset": 0.02, "thickness": 0.1}])
+def test_cells_have_the_edges_that_blender_gives_them(shape):
+    source = sphere_source()
+    mesh = write_cells(bpy.context, source, result_of(source), TessellateSettings(**shape)).data
+    own = np.sort(compat.read_edge_vertices(mesh), axis=1)
+    corners = compat.read_corner_vertices(mesh).reshape(-1, 3)
+    sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    np.testing.assert_array_equal(own[compat.read_numbers(mesh.loops, "edge_index")], sides)
+    assert not mesh.validate()
+    mesh.update(calc_edges=True)
+    again = np.sort(compat.read_edge_vertices(mesh), axis=1)
+    np.testing.assert_array_equal(np.unique(own, axis=0), np.unique(again, axis=0))
+    assert len(own) == len(again)
 
 
 @pytest.mark.parametrize("smooth", [False, True])

@@ -26,6 +26,29 @@ def test_closed_surfaces_have_no_border() -> None:
     assert ends.shape == (0, 2) and owners.shape == (0,)
 
 
+def test_edges_are_numbered_once_each_as_they_come() -> None:
+    """Against a dictionary: a large fan, three triangles about one edge, a triangle with one vertex twice."""
+    fan = [[0, i, i + 1] for i in range(1, 2000)]
+    triangles = np.array([*fan, [1, 2, 3000], [2, 1, 3001], [5, 5, 9], [1, 0, 2]], np.int32)
+    ends, corner_edges = sb.triangle_edges(triangles, 3002)
+    numbers: dict[tuple[int, int], int] = {}
+    users: dict[tuple[int, int], set[int]] = {}
+    expected = []
+    for t, corners in enumerate(triangles.tolist()):
+        for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):
+            edge = (min(a, b), max(a, b))
+            expected.append(numbers.setdefault(edge, len(numbers)))
+            users.setdefault(edge, set()).add(t)
+    assert ends.dtype == corner_edges.dtype == np.int32
+    np.testing.assert_array_equal(corner_edges, expected)
+    np.testing.assert_array_equal(np.sort(ends, axis=1), list(numbers))
+    rim, owners = sb.border_edges(triangles, 3002)
+    alone = {edge: next(iter(by)) for edge, by in users.items() if len(by) == 1}
+    assert {(min(a, b), max(a, b)) for a, b in rim.tolist()} == set(alone)
+    assert (np.diff(owners) >= 0).all()
+    assert all(alone[min(a, b), max(a, b)] == t for (a, b), t in zip(rim.tolist(), owners.tolist(), strict=True))
+
+
 def test_normals_of_a_sphere_point_outwards_and_unused_vertices_have_none() -> None:
     vertices, triangles = synthetic_cells.sphere(4)
     normals = sb.vertex_normals(np.vstack([vertices, [[9.0, 9.0, 9.0]]]), triangles)
@@ -76,6 +99,8 @@ def test_what_is_wrong_is_named() -> None:
     bad[4, 1] = 9
     with pytest.raises(sb.InputError, match="triangle 4 names vertex 9, but there are 9"):
         sb.border_edges(bad, 9)
+    with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
+        sb.triangle_edges(bad, 9)
     with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
         sb.vertex_normals(vertices, bad)
     with pytest.raises(sb.InputError, match="column: wanted 3 to 3, got 4"):

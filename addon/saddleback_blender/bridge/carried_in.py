@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import compat
 from ..core.carried import Anchors
 from ..core.results import Indices, Reals
 from .mesh_in import read_triangles
@@ -54,17 +55,15 @@ def read_carried(
         attributes={} if has_corners else _attributes(source, mesh, anchors),
         uv_maps={layer.name: anchors.values(_uv(layer), "CORNER") for layer in mesh.uv_layers},
         groups={} if has_corners else _groups(source, mesh, anchors),
-        smooth=_of_polygons(mesh, "use_smooth", np.bool_)[anchors.polygons],
-        material=_of_polygons(mesh, "material_index", np.int32)[anchors.polygons],
+        smooth=_smooth(mesh)[anchors.polygons],
+        material=compat.read_numbers(mesh.polygons, "material_index")[anchors.polygons],
     )
 
 
 def _anchors(source: bpy.types.Object, mesh: bpy.types.Mesh, faces: Indices, barycentric: Reals) -> Anchors:
     mesh.calc_loop_triangles()
-    count = len(mesh.loop_triangles)
-    loops, polygons = np.empty(3 * count, np.int32), np.empty(count, np.int32)
-    mesh.loop_triangles.foreach_get("loops", loops)
-    mesh.loop_triangles.foreach_get("polygon_index", polygons)
+    loops = compat.read_numbers(mesh.loop_triangles, "loops", 3)
+    polygons = compat.read_numbers(mesh.loop_triangles, "polygon_index")
     # The surface of a mirrored object has its triangles the other way round.
     order = [2, 1, 0] if source.matrix_world.determinant() < 0 else [0, 1, 2]
     return Anchors(
@@ -118,7 +117,7 @@ def _groups(
     }
 
 
-def _of_polygons(mesh: bpy.types.Mesh, name: str, dtype: type[Any]) -> NDArray[Any]:
-    values: NDArray[Any] = np.empty(len(mesh.polygons), dtype)
-    mesh.polygons.foreach_get(name, values)
+def _smooth(mesh: bpy.types.Mesh) -> NDArray[np.bool_]:
+    values = np.empty(len(mesh.polygons), np.bool_)
+    mesh.polygons.foreach_get("use_smooth", values)
     return values

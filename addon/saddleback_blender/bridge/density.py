@@ -168,7 +168,5 @@ def to_vertices(mesh: bpy.types.Mesh, values: NDArray[np.generic], domain: str) 
         return density_maths.average_to_vertices(np.repeat(values, 2), edges.ravel(), count)
     corners = compat.read_corner_vertices(mesh)
     if domain == "FACE":
-        totals = np.empty(len(mesh.polygons), np.int32)
-        mesh.polygons.foreach_get("loop_total", totals)
-        values = np.repeat(values, totals)
+        values = np.repeat(values, compat.read_numbers(mesh.polygons, "loop_total"))
     return density_maths.average_to_vertices(values, corners, count)

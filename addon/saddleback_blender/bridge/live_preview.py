@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from .. import nodes
+from .. import compat, nodes
 from ..core.edge_network import EdgeNetwork
 from .out_collection import level_place, remove_object, to_place
 
@@ -40,7 +40,7 @@ class LivePreview:
         mesh.vertices.add(len(lines.vertices))
         mesh.vertices.foreach_set("co", to_place(self._place, lines.vertices).astype(np.float32).ravel())
         mesh.edges.add(len(segments))
-        mesh.edges.foreach_set("vertices", segments.ravel())
+        compat.write_numbers(mesh.edges, "vertices", segments)
         mesh.update()
 
     def remove(self) -> None:

@@ -54,26 +54,20 @@ def read_triangles(mesh: bpy.types.Mesh) -> Indices:
     if len(mesh.loops) == 3 * len(mesh.polygons) and _all_triangles(mesh):
         return compat.read_corner_vertices(mesh).reshape(-1, 3)
     mesh.calc_loop_triangles()
-    triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("vertices", triangles)
-    return triangles.reshape(-1, 3)
+    return compat.read_numbers(mesh.loop_triangles, "vertices", 3).reshape(-1, 3)
 
 
 def read_triangle_polygons(mesh: bpy.types.Mesh) -> Indices:
     """(F,) polygon that each triangle of `read_triangles` is part of."""
     mesh.calc_loop_triangles()
-    polygons = np.empty(len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("polygon_index", polygons)
-    return polygons
+    return compat.read_numbers(mesh.loop_triangles, "polygon_index")
 
 
 def read_marked_edges(mesh: bpy.types.Mesh) -> Indices:
     """(n, 2) vertices of the edges that are marked sharp."""
     is_sharp = np.empty(len(mesh.edges), np.bool_)
-    ends = np.empty(2 * len(mesh.edges), np.int32)
     mesh.edges.foreach_get("use_edge_sharp", is_sharp)
-    mesh.edges.foreach_get("vertices", ends)
-    return ends.reshape(-1, 2)[is_sharp]
+    return compat.read_edge_vertices(mesh)[is_sharp]
 
 
 def to_world(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals:
@@ -90,9 +84,7 @@ def from_world(source: bpy.types.Object, points: Reals) -> Reals:
 
 
 def _all_triangles(mesh: bpy.types.Mesh) -> bool:
-    totals = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("loop_total", totals)
-    return bool((totals == 3).all())
+    return bool((compat.read_numbers(mesh.polygons, "loop_total") == 3).all())
 
 
 def _compact(triangles: Indices, vertex_count: int) -> tuple[Indices | None, Indices]:

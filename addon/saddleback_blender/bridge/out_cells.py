@@ -10,9 +10,10 @@ from mathutils import Matrix
 
 from .. import compat, nodes
 from ..core import cache
-from ..core.cell_colors import cell_colors
+from ..core.cell_colors import cell_colors, linear_to_srgb
 from ..core.cell_mesh import CellMesh, CellPieces, CellShape, cell_pieces, raise_cells
 from ..core.local_places import local_uv
+from ..core.mesh_edges import triangle_edges
 from ..core.requests import digest
 from ..core.results import CellPolygons, CellsResult, Indices
 from ..core.settings import TessellateSettings, Voronoi2dSettings
@@ -66,8 +67,9 @@ def write_polygons(
     compat.write_polygons(mesh, cells.corners, cells.offsets)
     colors = cell_colors(count, neighbours)
     compat.shade_flat(mesh)
-    _mark_cells(mesh, cells.polygon_cell)
-    _write_colors(mesh, colors[np.repeat(cells.polygon_cell, np.diff(cells.offsets))])
+    mesh.update(calc_edges=True)
+    set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.polygon_cell)
+    _write_colors(mesh, colors, np.repeat(cells.polygon_cell, np.diff(cells.offsets)))
     item = _shown(context, source, role, mesh, place)
     item[VANISHED] = vanished
     return item
@@ -88,8 +90,10 @@ def _pieces(result: CellsResult, shape: CellShape) -> CellPieces:
 def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray, is_smooth: bool) -> bpy.types.Mesh:
     mesh = _new_mesh(positions)
     compat.write_corners(mesh, cells.triangles)
-    _mark_cells(mesh, cells.triangle_cell)
-    _write_colors(mesh, colors[np.repeat(cells.triangle_cell, 3)])
+    compat.write_edges(mesh, *triangle_edges(cells.triangles, len(positions)))  # sooner than Blender finds them
+    mesh.update()
+    set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.triangle_cell)
+    _write_colors(mesh, colors, np.repeat(cells.triangle_cell, 3))
     if is_smooth:
         compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
     else:
@@ -111,14 +115,12 @@ def _shown(
     return replace_object(context, source, role, mesh, place)
 
 
-def _mark_cells(mesh: bpy.types.Mesh, face_cell: np.ndarray) -> None:
-    """Edges, and each face's cell."""
-    mesh.update(calc_edges=True)
-    set_attribute(mesh, CELL_ATTRIBUTE, "FACE", face_cell)
+def _write_colors(mesh: bpy.types.Mesh, colors: np.ndarray, corner_cell: np.ndarray) -> None:
+    """Of corners, as scripts find them whether cells share vertices or not; Blender does not show colours of faces.
 
-
-def _write_colors(mesh: bpy.types.Mesh, colors: np.ndarray) -> None:
-    """Of corners, as scripts find them whether cells share vertices or not; Blender does not show colours of faces."""
+    Blender keeps them as sRGB: given so, a colour is converted once a cell, not once a corner.
+    """
     color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
-    color.data.foreach_set("color", np.column_stack([colors, np.ones(len(colors))]).astype(np.float32).ravel())
+    rgba = np.column_stack([linear_to_srgb(colors), np.ones(len(colors))]).astype(np.float32)
+    color.data.foreach_set("color_srgb", rgba[corner_cell].ravel())
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)

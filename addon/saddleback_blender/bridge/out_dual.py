@@ -60,4 +60,4 @@ def _write_layers(mesh: bpy.types.Mesh, carried: Carried) -> None:
             layer.data.foreach_set("uv", np.ascontiguousarray(places[corners]).ravel())
     first = corners[::3]
     mesh.polygons.foreach_set("use_smooth", carried.smooth[first])
-    mesh.polygons.foreach_set("material_index", np.ascontiguousarray(carried.material[first]))
+    compat.write_numbers(mesh.polygons, "material_index", carried.material[first])

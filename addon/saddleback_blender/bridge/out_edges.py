@@ -7,7 +7,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from .. import nodes
+from .. import compat, nodes
 from ..core.edge_network import EdgeNetwork, edge_network, long_lines
 from ..core.results import CellsResult
 from ..core.settings import TessellateSettings, Voronoi2dSettings
@@ -62,7 +62,7 @@ def _edge_mesh(network: EdgeNetwork) -> bpy.types.Mesh:
     mesh.vertices.add(len(network.vertices))
     mesh.vertices.foreach_set("co", network.vertices.astype(np.float32).ravel())
     mesh.edges.add(len(segments))
-    mesh.edges.foreach_set("vertices", segments.ravel())
+    compat.write_numbers(mesh.edges, "vertices", segments)
     for column, name in enumerate((FIRST_CELL, SECOND_CELL)):
         set_attribute(mesh, name, "EDGE", network.cells[line, column])
     mesh.update()

@@ -32,7 +32,7 @@ def write_arrows(context: bpy.types.Context, source: bpy.types.Object, result: F
     mesh.vertices.add(len(arrows.vertices))
     mesh.vertices.foreach_set("co", to_place(place, arrows.vertices).astype(np.float32).ravel())
     compat.write_polygons(mesh, arrows.corners, arrows.offsets)
-    mesh.polygons.foreach_set("material_index", arrows.materials)
+    compat.write_numbers(mesh.polygons, "material_index", arrows.materials)
     mesh.polygons.foreach_set("use_smooth", arrows.smooth.astype(bool))
     mesh.update(calc_edges=True)
     for material in nodes.field_materials():

@@ -81,7 +81,7 @@ def write_bent(
     color.data.foreach_set("color", np.repeat(rgba, np.diff(bent.offsets), axis=0).ravel())
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
     firsts = add_materials(mesh, templates)
-    mesh.polygons.foreach_set("material_index", (bent.material + firsts[bent.polygon_shape]).astype(np.int32))
+    compat.write_numbers(mesh.polygons, "material_index", bent.material + firsts[bent.polygon_shape])
     if result.bent_anchors is not None:
         write_anchors(mesh, result.bent_anchors)
     mesh.update()

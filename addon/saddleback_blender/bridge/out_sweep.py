@@ -59,7 +59,7 @@ def _mesh(name: str, points: Reals, edges: Indices) -> bpy.types.Mesh:
     mesh.vertices.add(len(points))
     mesh.vertices.foreach_set("co", points.astype(np.float32).ravel())
     mesh.edges.add(len(edges))
-    mesh.edges.foreach_set("vertices", np.ascontiguousarray(edges, np.int32).ravel())
+    compat.write_numbers(mesh.edges, "vertices", edges)
     mesh.update()
     return mesh
 

@@ -18,8 +18,7 @@ from ..core.results import Indices, Reals
 
 def polygon_corners(mesh: bpy.types.Mesh) -> list[Indices]:
     """Vertices around each polygon."""
-    totals = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("loop_total", totals)
+    totals = compat.read_numbers(mesh.polygons, "loop_total")
     return np.split(compat.read_corner_vertices(mesh), np.cumsum(totals)[:-1]) if len(totals) else []
 
 

@@ -126,12 +126,10 @@ def _outline(vertices: Reals, triangles: Indices) -> Parts:
 
 
 def _solid(mesh: bpy.types.Mesh, vertices: Reals) -> Solid:
-    count = len(mesh.polygons)
-    totals, smooth = np.empty(count, np.int32), np.empty(count, bool)
-    material = np.empty(count, np.int32)
-    mesh.polygons.foreach_get("loop_total", totals)
+    totals = compat.read_numbers(mesh.polygons, "loop_total")
+    material = compat.read_numbers(mesh.polygons, "material_index")
+    smooth = np.empty(len(mesh.polygons), bool)
     mesh.polygons.foreach_get("use_smooth", smooth)
-    mesh.polygons.foreach_get("material_index", material)
     corners = compat.read_corner_vertices(mesh)
     layer = mesh.uv_layers.active
     uv = box_uv(vertices)[corners]
@@ -140,8 +138,7 @@ def _solid(mesh: bpy.types.Mesh, vertices: Reals) -> Solid:
         layer.data.foreach_get("uv", flat)
         uv = flat.reshape(-1, 2).astype(np.float64)
     mesh.calc_loop_triangles()
-    triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("loops", triangles)
+    triangles = compat.read_numbers(mesh.loop_triangles, "loops", 3)
     offsets = np.concatenate([[0], np.cumsum(totals)]).astype(np.int32)
     return Solid(vertices, corners, offsets, uv, smooth, material, triangles.reshape(-1, 3))
 

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import compat
 from ..core import darkness
 from ..core.errors import BadInputError
 from ..core.requests import Points
@@ -34,9 +35,7 @@ def read_uv(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> Reals:
 def read_triangle_corners(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """(F, 3) face corners of the mesh's triangles, in the order of `read_triangles`."""
     mesh.calc_loop_triangles()
-    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("loops", corners)
-    return corners.reshape(-1, 3)
+    return compat.read_numbers(mesh.loop_triangles, "loops", 3).reshape(-1, 3)
 
 
 def read_voronoi_sites(

@@ -53,6 +53,12 @@ def _random(cell: NDArray[np.uint64], draw: NDArray[np.uint64], streams: list[in
     return (x >> np.uint64(11)).astype(np.float64) * 2.0**-53
 
 
+def linear_to_srgb(rgb: Reals) -> Reals:
+    """Linear (n, 3) in [0, 1] to sRGB (IEC 61966-2-1)."""
+    srgb: Reals = np.where(rgb < 0.0031308, 12.92 * rgb, 1.055 * np.maximum(rgb, 0.0031308) ** (1 / 2.4) - 0.055)
+    return srgb
+
+
 def oklab_to_linear_rgb(lab: Reals) -> Reals:
     """Oklab (n, 3) to linear sRGB (n, 3), not clipped."""
     to_lms = np.array(

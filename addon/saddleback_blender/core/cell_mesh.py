@@ -107,7 +107,7 @@ def cell_pieces(vertices: Floats, triangles: Ints, triangle_cell: Ints, shape: C
         if shape.gap > 0.0:
             outer = cut_at_level(fields, triangles, DISTANCE, shape.rim_start)
             fields, triangles, cells = outer.fields, outer.triangles[outer.above], cells[outer.parent[outer.above]]
-    return CellPieces(fields, triangles, cells, present)
+    return CellPieces(*drop_unused(fields, triangles), cells, present)
 
 
 def raise_cells(pieces: CellPieces, shape: CellShape) -> CellMesh:
@@ -116,7 +116,9 @@ def raise_cells(pieces: CellPieces, shape: CellShape) -> CellMesh:
     if shape.inset > 0.0 and len(triangles):
         inner = cut_at_level(fields, triangles, DISTANCE, shape.rim_end)
         fields, triangles, cells = inner.fields, inner.triangles, cells[inner.parent]
-    vanished = np.setdiff1d(pieces.present, cells).astype(np.int32)
+    is_left = np.zeros(pieces.present.max(initial=-1) + 1, dtype=np.bool_)
+    is_left[cells] = True
+    vanished = pieces.present[~is_left[pieces.present]]
     if shape.thickness > 0.0:
         share = _plateau_share(fields[:, DISTANCE], shape)
         solid = raise_surface(fields[:, :6], triangles, shape.thickness * share, shape.underside)
@@ -137,5 +139,7 @@ def drop_unused(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
     """Leave out the vertices that no triangle uses."""
     used = np.zeros(len(vertices), dtype=np.bool_)
     used[triangles.ravel()] = True
+    if used.all():
+        return vertices, triangles
     number = np.cumsum(used, dtype=np.int32) - 1
     return vertices[used], number[triangles].astype(np.int32)

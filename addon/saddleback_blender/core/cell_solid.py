@@ -31,7 +31,7 @@ def vertex_normals(vertices: Floats, triangles: Ints) -> Floats:
 
 
 def _unit(vectors: Floats) -> Floats:
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    length = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))[:, None]
     unit: Floats = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0)
     return unit
 

@@ -20,6 +20,12 @@ def edge_keys(a: Ints, b: Ints, vertex_count: int) -> NDArray[np.int64]:
     return np.minimum(a, b).astype(np.int64) * vertex_count + np.maximum(a, b)
 
 
+def triangle_edges(triangles: Ints, vertex_count: int) -> tuple[Ints, Ints]:
+    """The edges (e,2), and the one from each corner (3T,) to the next."""
+    ends, corner_edges = native.load().triangle_edges(triangles, vertex_count)
+    return ends, corner_edges
+
+
 def border_edges(triangles: Ints, vertex_count: int) -> tuple[Ints, Ints, Ints]:
     """Start, end and triangle (b,) of the edges that only one triangle uses, oriented as in that triangle."""
     ends, owners = native.load().border_edges(triangles, vertex_count)

@@ -14,6 +14,15 @@ namespace saddleback {
 /// Unit normals (V,), weighted by the areas of the triangles about a vertex; zero where none has an area. O(V + T).
 std::vector<Vec3> vertex_normals(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
+struct TriangleEdges {
+  std::vector<std::array<Index, 2>> ends;  ///< each edge once
+  std::vector<Index> corner_edges;         ///< (3 T,) the edge from each triangle's corner to its next one
+};
+
+/// The edges of triangles, numbered in the order in which these come upon them, whichever way round. O(V + T) for
+/// surfaces.
+TriangleEdges triangle_edges(std::span<const Triangle> triangles, Index vertex_count);
+
 struct BorderEdges {
   std::vector<std::array<Index, 2>> ends;  ///< from, to, in the triangle's orientation
   std::vector<Index> triangles;            ///< the one that uses the edge
