@@ -283,7 +283,7 @@ def clothed(screen):
     ):
         settings.field_source = "ATTRIBUTE" if settings.shapes == "IMAGE" else "PANEL"
         yield from show_panels(screen, ("distribute", "shape_density", "shape_outputs"))
-    settings.density_source, settings.count = "UNIFORM", 100
+    settings.density_source, settings.count, settings.packing = "UNIFORM", 100, 0.0
     with screen.override():
         bpy.ops.saddleback.distribute("INVOKE_DEFAULT")
     yield from wait_until(lambda: not manager().saddleback_running, "the shapes to be laid")
