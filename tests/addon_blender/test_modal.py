@@ -16,8 +16,9 @@ from scenes import attribute, fingerprint, grid, select, sphere
 from saddleback_blender import jobs
 from saddleback_blender.bridge.mesh_in import read_surface
 from saddleback_blender.core import cache
-from saddleback_blender.core.settings import DistanceSettings, TessellateSettings
+from saddleback_blender.core.settings import DistanceSettings, DistributeSettings, TessellateSettings
 from saddleback_blender.ops.distance import SADDLEBACK_OT_distance
+from saddleback_blender.ops.distribute import SADDLEBACK_OT_distribute
 from saddleback_blender.ops.tessellate import SADDLEBACK_OT_relax_live, SADDLEBACK_OT_tessellate
 
 ESC = SimpleNamespace(type="ESC", value="PRESS", ctrl=False, oskey=False)
@@ -166,6 +167,34 @@ def test_escape_at_fifty_random_moments():
         assert operator.messages == [("INFO", "Stopped; nothing was changed")]
         assert fingerprint() == before
     assert max(waits) < 0.1, f"the thread went on for {max(waits):.3f} s"
+
+
+def test_escape_while_shapes_are_laid_bent_and_cut():
+    sphere(subdivisions=5)
+    outputs = {"make_instances": True, "make_outlines": True, "make_cut": True, "write_attributes": True}
+    options = {"shapes": "MOSAIC", "count": 150, **outputs}
+    operator, context = press(SADDLEBACK_OT_distribute, DistributeSettings(), **options)
+    start = time.perf_counter()
+    operator.invoke(context, None)
+    operator._task.join()
+    whole = time.perf_counter() - start
+    operator.cancel(context)
+    before = fingerprint()
+    waits = []
+    for moment in range(9):
+        cache.shared.clear()
+        operator, context = press(SADDLEBACK_OT_distribute, DistributeSettings(), **options)
+        operator.invoke(context, None)
+        task = operator._task
+        time.sleep(whole * (moment + 0.5) / 9)
+        asked = time.perf_counter()
+        assert operator.modal(context, ESC) == {"CANCELLED"}
+        assert time.perf_counter() - asked < 0.1
+        task.join()
+        waits.append(time.perf_counter() - asked)
+        assert operator.messages == [("INFO", "Stopped; nothing was changed")]
+        assert fingerprint() == before
+    assert sorted(waits)[-2] < 0.1, waits  # a busy machine may hold one of them up
 
 
 def test_the_file_is_the_same_to_the_byte_after_escape(tmp_path):

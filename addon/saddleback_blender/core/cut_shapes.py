@@ -24,7 +24,12 @@ def cut_shapes(mesh: Any, mapped: Any, progress: Progress) -> CutShapes:
         barycentric=cut.surface.barycentric,
         triangles=triangles,
         corner_faces=corner_faces,
-        corner_barycentric=_weights(mesh, corner_faces, np.asarray(cut.vertices)[triangles.ravel()]),
+        corner_barycentric=np.concatenate(
+            [
+                _weights(mesh, corner_faces[rows], np.asarray(cut.vertices)[triangles.ravel()[rows]])
+                for rows in progress.blocks(len(corner_faces))
+            ]
+        ),
         copy=copy,
         shape=np.where(copy >= 0, np.asarray(mapped.placements.shape)[copy], -1).astype(np.int32),
         uv=uv,

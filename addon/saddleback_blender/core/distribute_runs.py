@@ -45,16 +45,16 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
     bent_anchors = outline_anchors = None
     triangles = np.asarray(mesh.triangles)
     if bent is not None and settings.follow_surface:
-        bent_anchors = anchored(surface, triangles, bent.faces, bent.barycentric, bent.vertices)
+        bent_anchors = anchored(surface, triangles, bent.faces, bent.barycentric, bent.vertices, progress)
     if settings.make_outlines:
         outlines, faces, barycentric = _outlines(mapped, progress)
         if settings.follow_surface:
-            outline_anchors = anchored(surface, triangles, faces, barycentric, outlines.points)
+            outline_anchors = anchored(surface, triangles, faces, barycentric, outlines.points, progress)
     cut = cut_anchors = None
     if settings.make_cut:
         cut = cut_shapes(mesh, mapped, progress)
         if settings.follow_surface:
-            cut_anchors = anchored(surface, triangles, cut.faces, cut.barycentric, cut.vertices)
+            cut_anchors = anchored(surface, triangles, cut.faces, cut.barycentric, cut.vertices, progress)
     if settings.write_attributes:
         with progress.stage(0.97, "measuring the way to the outlines") as job:
             found = mapped.attributes(VALUES_REACH * laid.size, threads=request.threads, job=job)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .progress import Progress
 from .requests import Surface
 from .results import Anchors, Indices, Reals
 
@@ -26,16 +27,19 @@ def in_frames(frames: Reals, vectors: Reals) -> Reals:
     return found
 
 
-def anchored(surface: Surface, triangles: Indices, faces: Indices, barycentric: Reals, points: Reals) -> Anchors:
+def anchored(
+    surface: Surface, triangles: Indices, faces: Indices, barycentric: Reals, points: Reals, progress: Progress
+) -> Anchors:
     """Points (n, 3) as seen from the triangles of the surface that they stand on. O(n).
 
     `triangles` are the library's, of which `faces` (n,) counts.
     """
     corners = triangles[faces]
-    places = surface.vertices[corners]
-    feet = np.einsum("ni,nij->nj", barycentric, places)
+    shift = np.empty((len(faces), 3))
+    for rows in progress.blocks(len(faces)):
+        places = surface.vertices[corners[rows]]
+        feet = np.einsum("ni,nij->nj", barycentric[rows], places)
+        shift[rows] = in_frames(triangle_frames(places), points[rows] - feet)
     return Anchors(
-        corners=corners if surface.used is None else surface.used[corners],
-        barycentric=barycentric,
-        shift=in_frames(triangle_frames(places), points - feet),
+        corners=corners if surface.used is None else surface.used[corners], barycentric=barycentric, shift=shift
     )

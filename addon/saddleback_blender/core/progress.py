@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+BLOCK = 1 << 15  # rows between two looks at whether the run is to stop
+
 
 class Progress:
     """Shows a run to another thread. The thread that computes opens stages; any other reads, or cancels.
@@ -55,6 +57,12 @@ class Progress:
         """Raises the library's Cancelled when asked to stop; for the steps between native calls."""
         if self._cancelled:
             raise self._cancelled_error("cancelled")
+
+    def blocks(self, count: int) -> Iterator[slice]:
+        """Slices that make up `count` rows, few enough in each that a run that is to stop does so between two."""
+        for begin in range(0, max(count, 1), BLOCK):
+            self.check()
+            yield slice(begin, begin + BLOCK)
 
     @contextmanager
     def stage(self, end: float, text: str, can_settle: bool = False) -> Iterator[Any]:

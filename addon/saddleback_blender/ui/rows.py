@@ -42,7 +42,7 @@ def _draw_held(layout: bpy.types.UILayout, settings: Any) -> None:
     layout.prop(settings, "hold_sharp")
     row = layout.row()
     row.active = settings.hold_sharp
-    row.prop(settings, "sharp_angle")
+    row.prop(settings, "sharp_angle", text="Angle")
     layout.prop(settings, "hold_marked")
     layout.prop(settings, "hold_boundary")
 
