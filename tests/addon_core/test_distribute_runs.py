@@ -220,6 +220,18 @@ def test_so_many_are_as_large_as_fits_them(packing, maximal):
         assert count == 60
 
 
+def test_shapes_of_which_millions_would_fit_are_refused():
+    with pytest.raises(BadInputError, match=r"at a radius of 0\.0005 there is room for more than 2 million shapes"):
+        run(preset("STUDS"), size=0.0005, count=5)
+
+
+def test_a_surface_in_hundreds_of_pieces_takes_what_fits_them():
+    vertices, triangles = meshes.icosphere(2)
+    loose = vertices[triangles].reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
+    result = run(preset("STUDS"), arrays=loose, count=40, packing=1.0, make_bent=False)
+    assert len(result.placed.shape) >= 38
+
+
 def test_a_gap_makes_so_many_smaller():
     plain, apart = (run(preset("STUDS"), count=40, gap=gap, make_bent=False) for gap in (0.0, 0.2))
     assert len(plain.placed.shape) == len(apart.placed.shape) == 40

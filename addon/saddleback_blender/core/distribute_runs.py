@@ -13,7 +13,7 @@ from .bent_copies import bent_copies
 from .cache import Cache
 from .cut_shapes import cut_shapes
 from .density_runs import density_of
-from .distribute_texts import MOST_FAULTS, fault, figures, no_room, refusal, told, warnings_of
+from .distribute_texts import MOST_FAULTS, fault, figures, no_room, refusal, told, too_small, warnings_of
 from .errors import BadInputError
 from .field_runs import MadeField, field_of
 from .given_fields import given_field
@@ -22,7 +22,7 @@ from .local_frames import anchored
 from .progress import Progress
 from .requests import DirectionFieldRequest, DistributeRequest, digest
 from .results import CheckResult, DistributeResult, Indices, PathsResult, PlacedShapes, Reals, ShapeValues
-from .shape_sizes import Laid, Placed, crowding, fitted_to_count, size_of, sizes
+from .shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, room, size_of, sizes
 from .shape_templates import sized
 
 BYTES_PER_SHAPE = 4000  # of a placement and its outline
@@ -141,6 +141,8 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
 
     def place(size: float, count: int | None) -> Placed:
         wanted = sizes(mesh, size, density if settings.size_by_density else None)
+        if room(mesh.area, wanted, options["size_range"][0], shapes) > MOST_ROOM:
+            raise BadInputError(f"'{surface.name}': {too_small(size)}")
         key = (surface.key, digest(shared, wanted, count))
 
         def lay() -> Any:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .settings import DistributeSettings
-from .shape_sizes import Laid
+from .shape_sizes import MOST_ROOM, Laid
 from .shape_templates import ShapeTemplate
 
 # What the library's reasons to stop mean to a person; that every count is met needs no word.
@@ -96,6 +96,14 @@ def no_room(laid: Laid) -> str:
     return (
         f"no shape found room at a radius of {laid.size:.3g}{f' (tries refused: {causes})' if causes else ''}; make "
         "them smaller, or the gap, or keep them off less of the surface"
+    )
+
+
+def too_small(size: float) -> str:
+    """Why shapes of such a size are not laid."""
+    return (
+        f"at a radius of {size:.3g} there is room for more than {MOST_ROOM / 1e6:.0f} million shapes, too many to look "
+        "for; make them larger, or vary their sizes less"
     )
 
 

@@ -15,7 +15,9 @@ from .shape_templates import ShapeTemplate
 LOOSE, FULL, PACKED = 0.40, 0.55, 0.70
 # Where the count is to fill the surface: by which share of it the number may differ.
 TOLERANCE = 0.05
-MOST_TRIALS = 5
+MOST_TRIALS = 7
+STEADY = 0.5  # no trial is smaller than the one before by more, lest shapes become so small that millions fit
+MOST_ROOM = 2_000_000  # shapes that may fit: the search looks at room for all of them, however few are wanted
 SHRINK = 0.97  # more than what the count asks for, where shapes do not find room: by this once, twice, ...
 MOST_OVER = 1.3  # of the count, laid to see how many fit
 HIGH = 0.98  # share of the vertices below a density that counts as high
@@ -72,7 +74,7 @@ def fitted_to_count(
             best, least = trial, abs(found - count)
         if least <= (max(1.0, TOLERANCE * count) if fills else 0):
             break
-        size *= float(np.sqrt(max(found, 0.5) / count)) * (1.0 if fills else SHRINK ** (turn + 1))
+        size *= max(STEADY, float(np.sqrt(found / count)) * (1.0 if fills else SHRINK ** (turn + 1)))
     assert best is not None
     return best
 
@@ -85,6 +87,12 @@ def sizes(mesh: Any, size: float, density: Reals | None) -> float | Reals:
     shrunk = np.sqrt(middle / np.maximum(density, middle / MOST_GROWTH**2))
     found: Reals = size * np.maximum(shrunk, 1.0 / MOST_GROWTH)
     return found
+
+
+def room(area: float, size: float | Reals, smallest: float, shapes: Sequence[Any]) -> float:
+    """About how many of the smallest shapes the area has room for. `smallest`: share of the size."""
+    least = float(np.min(size)) * smallest
+    return area / (least**2 * min(shape.area for shape in shapes))
 
 
 def crowding(mesh: Any, density: Reals) -> float:
