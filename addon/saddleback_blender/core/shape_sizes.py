@@ -92,7 +92,7 @@ def sizes(mesh: Any, size: float, density: Reals | None) -> float | Reals:
 def room(area: float, size: float | Reals, smallest: float, shapes: Sequence[Any]) -> float:
     """About how many of the smallest shapes the area has room for. `smallest`: share of the size."""
     least = float(np.min(size)) * smallest
-    return area / (least**2 * min(shape.area for shape in shapes))
+    return float(area / (least**2 * min(shape.area for shape in shapes)))
 
 
 def crowding(mesh: Any, density: Reals) -> float:
