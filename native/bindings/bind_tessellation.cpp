@@ -380,8 +380,8 @@ starts : int
     relaxation ends depends on where it began.
 annealing : int
     So many steps of simulated annealing before the iterations, each as long as one of those: the sites are shaken, less
-    and less. Leaves fewer irregular cells than any number of iterations; 200 are many. Sites that would end with more
-    energy are left as they were.
+    and less. Ends with less energy, and more even triangles, than any number of iterations; 300 are many. Sites that
+    would end with more energy are left as they were.
 fixed : (m,) int array, optional
     Sites that stay where they are.
 curves : sequence of SurfaceCurve, optional

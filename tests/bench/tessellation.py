@@ -59,15 +59,23 @@ def ours(mesh: sb.Mesh, cells: int) -> Iterator[str]:
     graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3, threads=1)
     built = time.process_time() - start
     yield f"{'graph':<34} {'-':>11} {built:>8.2f}"
-    for method, iterations in (("lloyd", 20), ("lbfgs", 20), ("lbfgs", LONG)):
+    for method, annealing, iterations in (("lloyd", 0, 20), ("lbfgs", 0, 20), ("lbfgs", 0, LONG), ("lbfgs", 300, 100)):
         start = time.process_time()
         relaxed = sb.centroidal_voronoi(
-            graph, count=cells, method=method, max_iterations=iterations, tolerance=1e-7, seed=1, threads=1
+            graph,
+            count=cells,
+            method=method,
+            annealing=annealing,
+            max_iterations=iterations,
+            tolerance=1e-7,
+            seed=1,
+            threads=1,
         )
         seconds = time.process_time() - start
         vertices, triangles, issues = relaxed.cells.dual("strict")
-        name = f"{method}, {relaxed.iterations} iterations, E {relaxed.normalised_energy:.4f}"
-        yield row(name, mesh, seconds, relaxed.iterations + 1, vertices, triangles)
+        steps = f"{annealing} + {relaxed.iterations}" if annealing else f"{relaxed.iterations}"
+        name = f"{method}, {steps} steps, E {relaxed.normalised_energy:.4f}"
+        yield row(name, mesh, seconds, annealing + relaxed.iterations + 1, vertices, triangles)
         if issues:
             yield f"  {len(issues)} issues, first: {issues[0]}"
 

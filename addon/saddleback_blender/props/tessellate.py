@@ -53,8 +53,8 @@ TESSELLATE: dict[str, Any] = {
     ),
     "annealing": IntProperty(
         name="Annealing",
-        description="Steps in which the sites are shaken, less and less, before the iterations: fewer cells with more "
-        "or less than six neighbours, for a remesh that may take a while (200)",
+        description="Steps in which the sites are shaken, less and less, before the iterations: triangles more even "
+        "than any number of iterations makes them, for a remesh that may take a while (300)",
         default=0,
         min=0,
         soft_max=400,

@@ -31,8 +31,8 @@ struct CentroidalVoronoiOptions {
   /// Only for a number of cells: so many relaxations, by the seeds from the given one on, of which the one with the
   /// least energy is the result. Where a relaxation ends depends on where it began.
   int starts = 1;
-  /// So many steps of simulated annealing before the iterations, each as long as one of those: fewer irregular cells
-  /// than any number of iterations leaves. 200 are many. Sites that would end with more energy are left as they were.
+  /// So many steps of simulated annealing before the iterations, each as long as one of those: ends with less energy
+  /// than any number of iterations; 300 are many. Sites that would end with more energy are left as they were.
   int annealing = 0;
   bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
   RelaxationWatch* watch = nullptr;    ///< is shown the start and every iteration of the wanted number of sites
