@@ -16,6 +16,21 @@ from tests import meshes
 Call = Callable[[sb.Job], object]
 
 
+def graded_disk(rings: int, spokes: int) -> tuple[np.ndarray, np.ndarray]:
+    """A disk of rings that each are larger than the one inside by the same factor: what its middle sees takes long."""
+    radius = np.geomspace(1e-3, 1, rings)
+    angle = np.linspace(0, 2 * np.pi, spokes, endpoint=False)
+    ring = np.stack([np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle)), np.zeros((rings, spokes))], -1)
+    j = np.arange(spokes)
+    next_j = (j + 1) % spokes
+    middle = np.stack([np.zeros_like(j), 1 + j, 1 + next_j], 1)
+    inside = (1 + spokes * np.arange(rings - 1))[:, None]
+    a, b = inside + j, inside + next_j
+    sides = np.stack([np.stack([a, a + spokes, b + spokes], -1), np.stack([a, b + spokes, b], -1)])
+    triangles = np.concatenate([middle, sides.reshape(-1, 3)])
+    return np.concatenate([np.zeros((1, 3)), ring.reshape(-1, 3)]), triangles.astype(np.int32)
+
+
 def calls() -> dict[str, Call]:
     mesh = sb.Mesh(*meshes.icosphere(6))
     graph = sb.SaddleVertexGraph(mesh)
@@ -24,6 +39,7 @@ def calls() -> dict[str, Call]:
     small = sb.Mesh(*meshes.torus(40, 16))
     squeezed = sb.Mesh(mesh.vertices * [1, 1, 0.3], mesh.triangles)
     open_tube = sb.Mesh(*meshes.cylinder(200, 200, 1.0, 3.0))
+    finer_inside = sb.Mesh(*graded_disk(80, 100))
     return {
         "exact_distances": lambda job: sb.exact_distances(mesh, [0], job=job),
         "exact_distances_squeezed": lambda job: sb.exact_distances(squeezed, [0], job=job),
@@ -32,6 +48,8 @@ def calls() -> dict[str, Call]:
         "exact_nearest_few": lambda job: sb.exact_nearest(mesh, some, job=job),
         "nearest": lambda job: graph.nearest(many, job=job),
         "build": lambda job: sb.SaddleVertexGraph(mesh, threads=1, job=job),
+        "build_graded": lambda job: sb.SaddleVertexGraph(finer_inside, accuracy=0.02, threads=1, job=job),
+        "build_count": lambda job: sb.SaddleVertexGraph(mesh, k=50, threads=1, job=job),
         "build_exact": lambda job: sb.SaddleVertexGraph(small, exact=True, threads=1, job=job),
         "distances_to": lambda job: graph.distances_to(some, many, job=job),
         "paths": lambda job: graph.paths(some, many, threads=1, job=job),
@@ -86,6 +104,8 @@ def furthest_off(call: Call) -> float:
         "exact_nearest_few",
         "nearest",
         "build",
+        "build_graded",
+        "build_count",
         "build_exact",
         "distances_to",
         "paths",
@@ -96,5 +116,6 @@ def furthest_off(call: Call) -> float:
     ],
 )
 def test_progress_is_near_the_share_of_the_time(long_calls: dict[str, Call], name: str) -> None:
-    # Wanted is 0.1; a core shared with other work is uneven, and the best of a few runs is what the code does.
-    assert min(furthest_off(long_calls[name]) for _ in range(3)) < 0.25
+    # Wanted is 0.1, which builds keep; what else there is on a core is uneven, and the best of a few runs is what the
+    # code does.
+    assert min(furthest_off(long_calls[name]) for _ in range(3)) < (0.1 if name.startswith("build") else 0.25)

@@ -1,6 +1,7 @@
 #include "geodesics/arc_symmetry.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "support/parallel.h"
 
@@ -36,12 +37,12 @@ static_assert(k_row_ahead <= k_row_padding);
 
 class Union {
  public:
-  Union(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found, Index block_size)
+  Union(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found)
       : codec_(codec),
         packing_(codec.packing()),
         kernel_(kernel),
         found_(found),
-        block_size_(block_size),
+        block_size_(static_cast<Index>(found.front().counts.size())),
         missing_(found.size()) {
     const FoundArcs& last = found.back();
     node_count_ = last.first_node + static_cast<Index>(last.counts.size());
@@ -204,18 +205,19 @@ class Union {
 
 }  // namespace
 
-ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found,
-                            Index block_size, int threads, const JobStage& stage) {
-  Union work(codec, kernel, found, block_size);
-  const auto for_each_block = [&](auto&& use) {
+ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found, int threads,
+                            const JobStage& stage) {
+  Union work(codec, kernel, found);
+  std::atomic<Index> done{0};
+  const auto for_each_block = [&](const JobStage& part, auto&& use) {
+    done = 0;
     parallel_for(static_cast<Index>(found.size()), threads, 4, [&](Index b, int) {
-      stage.check();
+      part.update(static_cast<double>(done++) / static_cast<double>(found.size()));
       use(b);
     });
   };
-  for_each_block([&](Index b) { work.pair_with_later(b); });
-  for_each_block([&](Index b) { work.add_unpaired(b); });
-  stage.update(0.6);
+  for_each_block(stage.part(0, 0.5), [&](Index b) { work.pair_with_later(b); });
+  for_each_block(stage.part(0.5, 0.6), [&](Index b) { work.add_unpaired(b); });
   ArcRows arcs = work.assemble(threads, stage.part(0.6, 1));
   stage.update(1);
   return arcs;

@@ -20,9 +20,9 @@ struct FoundArcs {
 };
 
 /// The union of the found arcs and their reverses, the shorter of each pair. `found` holds the nodes in order, in
-/// blocks of `block_size`, and is emptied on the way. The same bytes for any number of threads. O(arcs). \throw
-/// Cancelled.
-ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found,
-                            Index block_size, int threads, const JobStage& stage);
+/// blocks of the same size (but the last), and is emptied on the way. The same bytes for any size and any number of
+/// threads. O(arcs). \throw Cancelled.
+ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found, int threads,
+                            const JobStage& stage);
 
 }  // namespace saddleback

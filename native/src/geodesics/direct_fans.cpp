@@ -125,7 +125,7 @@ void DirectFanFinder::find_exactly(const SaddleVertexGraph& graph, std::span<con
   for (const SurfacePoint& point : points) {
     stage.check();
     if (!is_vertex(graph.mesh(), point)) {
-      propagator_->from_point(point, exact_width(graph), row_);
+      propagator_->from_point(point, exact_width(graph), row_, stage);
       append(rows.arcs);
     }
     rows.offsets.push_back(std::ssize(rows.arcs));

@@ -143,10 +143,10 @@ void DiskFinder::add_window(int lane, const FirstWindow& window) {
 }
 
 bool DiskFinder::run(const JobStage& stage) {
-  int windows = 0;
-  for (; now_->size() > 0 && windows < k_most_windows; std::swap(now_, next_)) {
+  window_count_ = 0;
+  for (; now_->size() > 0 && window_count_ < k_most_windows; std::swap(now_, next_)) {
     stage.check();
-    windows += now_->size();
+    window_count_ += now_->size();
     advance();
   }
   if (by_count()) finish_disks();

@@ -54,6 +54,8 @@ class DiskFinder {
   /// False when windows were so many that it was stopped: no arc is wrong then, but some may be missing. \throw
   /// Cancelled.
   bool run(const JobStage& stage);
+  /// Of the last run.
+  int window_count() const { return window_count_; }
   /// The sightings that make a lane's arcs, in the order in which they were sighted, and k_row_padding more entries
   /// that are valid. The links are always among them.
   std::span<const std::int32_t> chosen(int lane) const { return {chosen_[lane].data(), chosen_counts_[lane]}; }
@@ -118,7 +120,7 @@ class DiskFinder {
   Generation* next_ = generations_.data() + 1;
   ApexColumns apexes_;
   SightingColumns sightings_;
-  int sighting_count_ = 0, generation_ = 0;
+  int sighting_count_ = 0, generation_ = 0, window_count_ = 0;
   alignas(64) std::array<float, k_batch> limits_{};
   std::vector<std::int32_t> changed_;  ///< slots whose neighbours may have to be told of their labels
   std::vector<float> radii_;

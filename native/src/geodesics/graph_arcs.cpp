@@ -1,7 +1,6 @@
 #include "geodesics/graph_arcs.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -21,36 +20,56 @@ namespace {
 // the accuracy asked for.
 constexpr double k_room = 0.95;
 
-Index block_count(const ArcSearch& search) {
-  return (static_cast<Index>(search.vertices.size()) + k_block - 1) / k_block;
+/// So many parts of the mesh, one after the other from all over it, take as long as they would if the mesh were even.
+constexpr Index k_parts = 377;
+// Nodes whose arcs are kept together: whole pages of memory are.
+constexpr Index k_block = 256, k_least_block = 64;
+
+Index block_size(Index node_count, bool watched) {
+  const Index part = (node_count / k_parts + k_batch - 1) / k_batch * k_batch;
+  return watched ? std::clamp(part, k_least_block, k_block) : k_block;
 }
 
-/// A step that leads through all of `count` blocks, far from those before: the golden section of them, or near it.
+/// A step that leads through all of `count` parts, far from those before: the golden section of them, or near it.
 Index scattering_step(Index count) {
-  auto step = static_cast<Index>(count * 0.618);
+  auto step = static_cast<Index>(count * 0.618034);
   while (std::gcd(step, count) != 1) ++step;
   return step;
 }
 
-/// Calls find(block, count, thread) from all threads, and reports how many are done. For those who watch, blocks come
-/// from all over the mesh, since parts of it may take longer; in their order they take 3 % less. Blocks are filled in
-/// memory that each thread keeps, and kept without room to grow.
+/// Blocks in the order in which they are done: by itself theirs, which is as near as memory can be; for those who watch
+/// a few neighbours at a time from all over the mesh, since parts of it may take longer.
+std::vector<Index> order_of_blocks(Index count, bool watched) {
+  std::vector<Index> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  if (!watched) return order;
+  const Index per_part = (count + k_parts - 1) / k_parts, parts = (count + per_part - 1) / per_part;
+  const Index step = scattering_step(parts);
+  auto next = order.begin();
+  for (Index i = 0; i < parts; ++i) {
+    const auto part = static_cast<Index>(std::int64_t{i} * step % parts);
+    for (Index b = part * per_part; b < std::min(count, (part + 1) * per_part); ++b) *next++ = b;
+  }
+  return order;
+}
+
+/// Calls find(block, count, thread) from all threads. Blocks are filled in memory that each thread keeps, and kept
+/// without room to grow.
 template <class Find>
 std::vector<FoundArcs> find_by_blocks(const ArcSearch& search, const JobStage& stage, Find&& find) {
-  std::vector<FoundArcs> found(block_count(search)), drafts(thread_count(search.threads));
-  std::atomic<Index> done{0};
-  const Index step = stage.is_watched() ? scattering_step(static_cast<Index>(found.size())) : 1;
+  const auto node_count = static_cast<Index>(search.vertices.size());
+  const Index size = block_size(node_count, stage.is_watched());
+  const std::vector<Index> order = order_of_blocks((node_count + size - 1) / size, stage.is_watched());
+  std::vector<FoundArcs> found(order.size()), drafts(thread_count(search.threads));
   parallel_for(static_cast<Index>(found.size()), search.threads, 1, [&](Index i, int thread) {
-    const auto b = static_cast<Index>(std::int64_t{i} * step % static_cast<std::int64_t>(found.size()));
     FoundArcs& draft = drafts[thread];
-    draft.first_node = b * k_block;
+    draft.first_node = order[i] * size;
     draft.counts.clear();
     draft.words.clear();
     draft.back_sectors.clear();
-    find(draft, std::min(k_block, static_cast<Index>(search.vertices.size()) - draft.first_node), thread);
+    find(draft, std::min(size, node_count - draft.first_node), thread);
     draft.words.resize(draft.words.size() + k_row_padding);
-    found[b] = draft;
-    stage.update(static_cast<double>(++done) / static_cast<double>(found.size()));
+    found[order[i]] = draft;
   });
   return found;
 }
@@ -82,9 +101,9 @@ double mean_in_sight(const ArcSearch& search, WindowPropagator& propagator, cons
   for (Index i = 0; i < samples; ++i) {
     stage.check();
     const Index vertex = search.vertices[static_cast<std::int64_t>(i) * count / samples];
-    propagator.from_vertex(vertex, std::max<Index>(disk / k_ratio, 1), row);
+    propagator.from_vertex(vertex, std::max<Index>(disk / k_ratio, 1), row, stage);
     small += static_cast<double>(row.size()) / samples;
-    propagator.from_vertex(vertex, disk, row);
+    propagator.from_vertex(vertex, disk, row, stage);
     large += static_cast<double>(row.size()) / samples;
   }
   const double power = std::clamp(std::log(large / small) / std::log(k_ratio), 0.0, 1.0);
@@ -129,29 +148,34 @@ WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::
       sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage) {}
 
 std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
-                                 const JobStage& stage) {
+                                 BuildProgress& progress) {
   std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
-  return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread) {
+  return find_by_blocks(search, progress.stage(), [&](FoundArcs& found, Index count, int thread) {
     if (!finders[thread])
       finders[thread] = std::make_unique<DiskRows>(tables.mesh, tables.sectors, search.codec, search.kernel, rule);
-    for (Index i = 0; i < count; i += k_batch)
-      finders[thread]->find(found.first_node + i, std::min(k_batch, count - i), found, stage);
+    for (Index i = 0; i < count; i += k_batch) {
+      const Index batch = std::min(k_batch, count - i);
+      const std::size_t before = found.words.size();
+      const int windows = finders[thread]->find(found.first_node + i, batch, found, progress.stage());
+      progress.found({batch, windows, std::ssize(found.words) - static_cast<std::int64_t>(before)});
+    }
   });
 }
 
-std::vector<FoundArcs> exact_arcs(const ArcSearch& search, const JobStage& stage) {
+std::vector<FoundArcs> exact_arcs(const ArcSearch& search, BuildProgress& progress) {
+  constexpr std::int64_t k_waves_per_ordered = 8;  // windows that come in order take so many times as long
   std::vector<std::unique_ptr<WindowPropagator>> propagators(thread_count(search.threads));
   std::vector<std::vector<DirectArc>> rows(propagators.size());
   propagators[0] = std::make_unique<WindowPropagator>(search.unfolding);
-  check_memory(search, *propagators[0], stage);
-  std::atomic<Index> done{0};  // rows: a block of them takes long
-  return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread) {
+  check_memory(search, *propagators[0], progress.stage());
+  return find_by_blocks(search, progress.stage(), [&](FoundArcs& found, Index count, int thread) {
     if (!propagators[thread]) propagators[thread] = std::make_unique<WindowPropagator>(search.unfolding);
     for (Index i = 0; i < count; ++i) {
-      stage.update(static_cast<double>(done++) / static_cast<double>(search.vertices.size()));
       const Index vertex = search.vertices[found.first_node + i];
-      propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread]);
+      propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread],
+                                       progress.stage());
       append_row(search, vertex, rows[thread], found);
+      progress.found({1, k_waves_per_ordered * propagators[thread]->window_count(), std::ssize(rows[thread])});
     }
   });
 }

@@ -6,12 +6,10 @@
 #include <vector>
 
 #include "geodesics/arc_symmetry.h"
+#include "geodesics/build_progress.h"
 #include "geodesics/disk_finder.h"
 
 namespace saddleback {
-
-/// Nodes whose arcs are found and joined together.
-inline constexpr Index k_block = 256;
 
 /// What waves of windows run on.
 struct WaveTables {
@@ -40,11 +38,11 @@ DiskRule disk_rule(Index k, double accuracy, Lattice lattice = Lattice::none);
 
 /// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
 std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
-                                 const JobStage& stage);
+                                 BuildProgress& progress);
 
 /// All straight geodesics of the mesh. \throw InputError when the graph would not fit into memory; Cancelled. O(V^2 log
 /// V).
-std::vector<FoundArcs> exact_arcs(const ArcSearch& search, const JobStage& stage);
+std::vector<FoundArcs> exact_arcs(const ArcSearch& search, BuildProgress& progress);
 
 /// The fastest kernel that this machine runs for "auto", or the one named. \throw InputError when there is none.
 const WaveKernel& wave_kernel(const std::string& instructions);

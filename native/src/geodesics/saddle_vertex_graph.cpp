@@ -11,6 +11,7 @@
 
 #include "geodesics/arc_symmetry.h"
 #include "geodesics/arc_unfolding.h"
+#include "geodesics/build_progress.h"
 #include "geodesics/graph_arcs.h"
 #include "geodesics/lattice.h"
 #include "geodesics/path_bound.h"
@@ -38,19 +39,10 @@ void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
 }
 
-/// How the time of a build is spread: shares at which the tables are laid and all arcs found.
-struct BuildTimes {
-  double laid = 0, found = 0.99;
-};
-// Microseconds a vertex on one machine, of which only ratios matter; nothing is much beside exact disks.
-BuildTimes build_times(Index k, double accuracy, bool exact) {
-  if (exact) return {};
-  constexpr double k_laying = 0.75;
-  const double fineness = SaddleVertexGraphOptions::k_default_accuracy / accuracy;
-  const double finding = k > 0 ? 0.25 * k : 9.5 * std::pow(fineness, 0.65);
-  const double joining = k > 0 ? 0.014 * k : 0.65 * std::pow(fineness, 0.45);
-  const double all = k_laying + finding + joining;
-  return {k_laying / all, (k_laying + finding) / all};
+/// What finding the arcs of a vertex is expected to take.
+double expected_cost(const Mesh& mesh, Index k, double accuracy) {
+  if (k > 0) return BuildProgress::by_count(mesh, k);
+  return accuracy > 0 ? BuildProgress::by_accuracy(mesh, accuracy) : BuildProgress::by_all(mesh);
 }
 
 }  // namespace
@@ -62,17 +54,19 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
   const JobStage stage(job, "Building the saddle vertex graph");
-  const BuildTimes times = build_times(k_, accuracy_, exact_);
+  BuildProgress progress(mesh, expected_cost(mesh, k_, accuracy_), stage);
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
-  stage.update(times.laid / 4);
+  progress.laid(0.25);
   order_nodes(options.threads, stage);
-  stage.update(times.laid / 2);
+  progress.laid(0.5);
   std::optional<WaveTables> tables;
   if (!exact_) tables.emplace(*unfolding_, nodes_, vertices_, options.threads, stage.part(0, 0));
+  progress.laid(0.8);
   const double longest = tables ? longest_path_bound(tables->mesh, options.threads, stage)
                                 : longest_path_bound(mesh, nodes_, vertices_, options.threads, stage);
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
   const DiskRule rule = disk_rule(k_, accuracy_, accuracy_ > 0 ? lattice_of(*unfolding_, stage) : Lattice::none);
+  progress.laid(1);
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   if (!options.cuda_devices.empty()) {
     if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
@@ -81,10 +75,9 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;
   }
-  const JobStage finding = stage.part(times.laid, times.found);
-  auto found = exact_ ? exact_arcs(search, finding) : disk_arcs(search, *tables, rule, finding);
+  auto found = exact_ ? exact_arcs(search, progress) : disk_arcs(search, *tables, rule, progress);
   tables.reset();
-  arcs_ = unite_with_reverses(codec, *kernel_, found, k_block, options.threads, stage.part(times.found, 1));
+  arcs_ = unite_with_reverses(codec, *kernel_, found, options.threads, progress.joining());
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 

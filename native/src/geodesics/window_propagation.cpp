@@ -99,7 +99,7 @@ void WindowPropagator::offer_direct(Index vertex, double distance, const Window&
   push({distance, ~vertex});
 }
 
-void WindowPropagator::from_vertex(Index source, Index k, std::vector<DirectArc>& arcs) {
+void WindowPropagator::from_vertex(Index source, Index k, std::vector<DirectArc>& arcs, const JobStage& stage) {
   begin();
   VertexState& centre = state(source);
   centre.distance = 0;
@@ -123,12 +123,13 @@ void WindowPropagator::from_vertex(Index source, Index k, std::vector<DirectArc>
     }
     h = mesh_.rotate(h);
   } while (h != k_none && h != first);
-  run(k);
+  run(k, stage);
   collect(arcs);
 }
 
-void WindowPropagator::from_point(const SurfacePoint& source, Index k, std::vector<DirectArc>& arcs) {
-  if (const Index vertex = vertex_at(mesh_, source); vertex != k_none) return from_vertex(vertex, k, arcs);
+void WindowPropagator::from_point(const SurfacePoint& source, Index k, std::vector<DirectArc>& arcs,
+                                  const JobStage& stage) {
+  if (const Index vertex = vertex_at(mesh_, source); vertex != k_none) return from_vertex(vertex, k, arcs, stage);
   begin();
   const FaceChart chart(mesh_, source.face);
   const Vec2 centre = chart.to_plane(source.barycentric);
@@ -148,13 +149,14 @@ void WindowPropagator::from_point(const SurfacePoint& source, Index k, std::vect
                    entered});
     }
   }
-  run(k);
+  run(k, stage);
   collect(arcs);
 }
 
-void WindowPropagator::run(Index k) {
+void WindowPropagator::run(Index k, const JobStage& stage) {
   const Index most_windows = k_windows_per_vertex * std::min(k, Index{1} << 20) + k_windows_at_least;
   while (!queue_.empty() && settled_ < k && windows_alive_ + direct_pending_ > 0) {
+    stage.check();
     const Event event = queue_.front();
     std::pop_heap(queue_.begin(), queue_.end());
     queue_.pop_back();

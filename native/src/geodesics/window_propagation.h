@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/surface_points.h"
 
 #include "geodesics/unfolding.h"
@@ -30,9 +31,12 @@ class WindowPropagator {
   explicit WindowPropagator(const Unfolding& unfolding);
 
   /// Fills `arcs` with the vertices among the k nearest that the vertex sees, and all its neighbours by mesh edges.
-  void from_vertex(Index source, Index k, std::vector<DirectArc>& arcs);
+  /// \throw Cancelled.
+  void from_vertex(Index source, Index k, std::vector<DirectArc>& arcs, const JobStage& stage);
   /// The same for a point that need not be a vertex; the corners of its face are always among the arcs.
-  void from_point(const SurfacePoint& source, Index k, std::vector<DirectArc>& arcs);
+  void from_point(const SurfacePoint& source, Index k, std::vector<DirectArc>& arcs, const JobStage& stage);
+  /// Of the last source.
+  Index window_count() const { return static_cast<Index>(windows_.size()); }
 
  private:
   /// Part [b0, b1] of half-edge h, about to enter h's face, lit by the source at `source` (y <= 0) in the frame of h.
@@ -81,7 +85,7 @@ class WindowPropagator {
   void offer_direct(Index vertex, double distance, const Window& window, const Vec2& offset);
   void push(const Event& event);
   void push_window(const Window& window);
-  void run(Index k);
+  void run(Index k, const JobStage& stage);
   void settle(Index vertex);
   void propagate(const Window& window);
   Side side_of(const Window& window, bool left) const;

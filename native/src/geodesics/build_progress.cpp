@@ -1,0 +1,68 @@
+#include "geodesics/build_progress.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saddleback/saddle_vertex_graph.h"
+
+namespace saddleback {
+namespace {
+
+// Microseconds on one machine, of which only ratios matter.
+constexpr double k_laying = 1;  ///< a vertex
+constexpr double k_window = 0.025, k_arc = 0.025, k_joined_arc = 0.035;
+
+/// Where edges differ much in length windows are many more: how many times, for the accuracies in use.
+double unevenness(const Mesh& mesh) {
+  constexpr Index k_samples = 4096;
+  constexpr double k_even = 0.85, k_growth = 2.5;  // of the logarithm's spread
+  const Index stride = std::max<Index>(1, mesh.halfedge_count() / k_samples);
+  double count = 0, sum = 0, squares = 0;
+  for (Index h = 0; h < mesh.halfedge_count(); h += stride) {
+    const double value = std::log(mesh.length(h) / mesh.mean_edge_length());
+    ++count;
+    sum += value;
+    squares += value * value;
+  }
+  const double variance = squares / count - sum * sum / (count * count);
+  return std::exp(k_growth * std::max(0.0, std::sqrt(std::max(0.0, variance)) - k_even));
+}
+
+}  // namespace
+
+double BuildProgress::by_accuracy(const Mesh& mesh, double accuracy) {
+  return 10 * std::pow(SaddleVertexGraphOptions::k_default_accuracy / accuracy, 0.6) * unevenness(mesh);
+}
+
+double BuildProgress::by_count(const Mesh&, Index k) { return 0.25 * k; }
+
+double BuildProgress::by_all(const Mesh& mesh) { return mesh.vertex_count(); }
+
+BuildProgress::BuildProgress(const Mesh& mesh, double expected, const JobStage& stage)
+    : stage_(stage), source_count_(mesh.vertex_count()), expected_(expected) {
+  constexpr double k_joining = 0.15;  // of finding, about
+  laid_ = k_laying / (k_laying + (1 + k_joining) * expected);
+}
+
+void BuildProgress::found(const ArcWork& more) {
+  if (!stage_.is_watched()) return;
+  const std::lock_guard lock(guard_);
+  done_.sources += more.sources;
+  done_.windows += more.windows;
+  done_.arcs += more.arcs;
+  stage_.update(share());
+}
+
+double BuildProgress::share() const {
+  const double sources = static_cast<double>(done_.sources), laying = k_laying * source_count_;
+  if (sources == 0) return laid_;
+  const auto windows = static_cast<double>(done_.windows), arcs = static_cast<double>(done_.arcs);
+  const double finding = k_window * windows + k_arc * arcs, joining = k_joined_arc * arcs;
+  // What was expected counts as a few sources more: among the first ones may be none of the few that take long.
+  constexpr double k_belief = 0.02;
+  const double some = k_belief * source_count_;
+  const double per_source = (finding + joining + some * expected_) / (sources + some);
+  return std::min(1.0, (laying + finding) / (laying + per_source * source_count_));
+}
+
+}  // namespace saddleback
