@@ -98,8 +98,33 @@ def pymeshlab_cells(mesh: sb.Mesh, cells: int) -> Arrays:
     meshes_ = pymeshlab.MeshSet(verbose=False)
     meshes_.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.triangles))
     meshes_.generate_sampling_voronoi(samplenum=cells, iternum=10, distancetype="Euclidean")
-    made = meshes_.current_mesh()
-    return made.vertex_matrix(), made.face_matrix().astype(np.int32)
+    made = meshes_.mesh(1)  # its cells, fans about their seeds; the current one is the input
+    return dual_of_fans(made.vertex_matrix(), made.face_matrix())
+
+
+def dual_of_fans(vertices: np.ndarray, triangles: np.ndarray) -> Arrays:
+    """The triangulation of the middles of cells, each a fan about one of the first vertices.
+
+    Cells that meet at a corner give a fan, those about a corner on the border none.
+    """
+    cells = int(triangles.min(axis=1).max()) + 1
+    if not ((triangles < cells).sum(axis=1) == 1).all():
+        raise ValueError("its cells are no fans")
+    turn = np.argmax(triangles < cells, axis=1)
+    fans = np.take_along_axis(triangles, (turn[:, None] + np.arange(3)) % 3, axis=1).tolist()
+    sides: dict[int, dict[int, list[int]]] = {}  # by corner, by cell: the corners beside it in the cell
+    for cell, before, after in fans:
+        sides.setdefault(before, {}).setdefault(cell, []).append(after)
+        sides.setdefault(after, {}).setdefault(cell, []).append(before)
+    made: list[list[int]] = []
+    for about in sides.values():  # from cell to cell across the edges that end here; cells may lie either way round
+        ring, edge = [next(iter(about))], about[next(iter(about))][0]
+        for _ in range(len(about) - 1):
+            ring += [cell for cell in about if cell != ring[-1] and edge in about[cell]][:1]
+            edge = next((other for other in about[ring[-1]] if other != edge), edge)
+        if len(set(ring)) == len(about) and edge in about[ring[0]]:
+            made += [[ring[0], ring[i], ring[i + 1]] for i in range(1, len(ring) - 1)]
+    return np.asarray(vertices[:cells], dtype=float), np.array(made, dtype=np.int32).reshape(-1, 3)
 
 
 def meshlib_cells(mesh: sb.Mesh, cells: int) -> Arrays:
