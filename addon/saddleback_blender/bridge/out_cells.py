@@ -122,5 +122,5 @@ def _write_colors(mesh: bpy.types.Mesh, colors: np.ndarray, corner_cell: np.ndar
     """
     color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
     rgba = np.column_stack([linear_to_srgb(colors), np.ones(len(colors))]).astype(np.float32)
-    color.data.foreach_set("color_srgb", rgba[corner_cell].ravel())
+    color.data.foreach_set("color_srgb", rgba.take(corner_cell, axis=0).ravel())
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
