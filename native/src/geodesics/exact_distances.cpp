@@ -54,7 +54,7 @@ std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& given
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
   const JobStage stage(job, k_text);
-  const double share = share_of_surface(mesh, sources.size(), limit);
+  const double share = share_of_surface(mesh, sources, limit);
   const ExactSurface surface(mesh, sources, stage.part(0, share));
   ExactPropagation propagation(surface, sources, {.limit = limit});
   propagation.run(stage.part(share, 1));
@@ -65,7 +65,7 @@ NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& given, double 
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
   const JobStage stage(job, k_text);
-  const double share = share_of_surface(mesh, sources.size(), limit);
+  const double share = share_of_surface(mesh, sources, limit);
   const ExactSurface surface(mesh, sources, stage.part(0, share));
   ExactPropagation propagation(surface, sources, {.limit = limit, .break_ties = sources.size() > 1});
   propagation.run(stage.part(share, 1));
@@ -75,7 +75,7 @@ NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& given, double 
 struct ExactField::Parts {
   Parts(const Mesh& mesh, const SurfacePoints& given, const JobStage& stage)
       : sources(snapped_to_vertices(given)),
-        share(k_windows_made * share_of_surface(mesh, sources.size(), k_infinity)),
+        share(k_windows_made * share_of_surface(mesh, sources, k_infinity)),
         surface(mesh, sources, stage.part(0, share)),
         propagation(surface, sources, {.break_ties = sources.size() > 1, .keep_windows = true}),
         windows((propagation.run(stage.part(share, k_windows_made)),

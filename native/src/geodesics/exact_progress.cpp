@@ -48,14 +48,24 @@ double smoothness(const Mesh& mesh) {
   return std::clamp(2 - 4.0 * saddles / mesh.vertex_count(), 0.0, 1.0);
 }
 
-/// Vertices within the limit, all of them when there is none.
-double vertices_within(const Mesh& mesh, double source_count, double limit) {
-  const double disks = source_count * std::numbers::pi * limit * limit;
-  return mesh.vertex_count() * std::min(1.0, disks / mesh.area());
+/// Vertices of the components that hold sources.
+double vertices_in_reach(const Mesh& mesh, const SurfacePoints& sources) {
+  if (mesh.component_count() == 1) return mesh.vertex_count();
+  std::vector<bool> holds_sources(mesh.component_count(), false);
+  for (const SurfacePoint& source : sources) holds_sources[mesh.component_of(mesh.triangles()[source.face][0])] = true;
+  return static_cast<double>(
+      std::ranges::count_if(mesh.components(), [&](Index component) { return holds_sources[component]; }));
 }
 
-double cost_of_windows(const Mesh& mesh, double source_count, double limit) {
-  const double count = vertices_within(mesh, source_count, limit), each = std::max(1.0, count / source_count);
+/// Of these, the vertices within the limit, all of them when there is none.
+double vertices_within(const Mesh& mesh, const SurfacePoints& sources, double limit) {
+  const double disks = static_cast<double>(sources.size()) * std::numbers::pi * limit * limit;
+  return std::min(vertices_in_reach(mesh, sources), mesh.vertex_count() * disks / mesh.area());
+}
+
+double cost_of_windows(const Mesh& mesh, const SurfacePoints& sources, double limit) {
+  const double count = vertices_within(mesh, sources, limit);
+  const double each = std::max(1.0, count / static_cast<double>(sources.size()));
   const double bent = std::min(k_most_windows, k_cost_of_windows * std::pow(each, k_growth_of_windows));
   const double smooth = k_cost_where_smooth + k_growth_where_smooth * std::sqrt(each);
   return count * (bent + smoothness(mesh) * (smooth - bent));
@@ -63,14 +73,13 @@ double cost_of_windows(const Mesh& mesh, double source_count, double limit) {
 
 double by_caches(const Mesh& mesh) { return std::pow(mesh.vertex_count(), k_growth_by_caches); }
 
-double cost_of_guess(const Mesh& mesh, double source_count, double limit) {
-  return k_cost_of_guess * by_caches(mesh) * vertices_within(mesh, source_count, limit);
+double cost_of_guess(const Mesh& mesh, const SurfacePoints& sources, double limit) {
+  return k_cost_of_guess * by_caches(mesh) * vertices_within(mesh, sources, limit);
 }
 
 }  // namespace
 
-double share_of_surface(const Mesh& mesh, std::size_t source_count, double limit) {
-  const auto sources = static_cast<double>(source_count);
+double share_of_surface(const Mesh& mesh, const SurfacePoints& sources, double limit) {
   const double surface = k_cost_of_surface * by_caches(mesh) * mesh.vertex_count();
   return surface / (surface + cost_of_guess(mesh, sources, limit) + cost_of_windows(mesh, sources, limit));
 }
@@ -79,9 +88,8 @@ ExactProgress::ExactProgress(const ExactSurface& surface, const SurfacePoints& s
                              const JobStage& stage) {
   static_assert(std::size(k_rules) == k_ways);
   if (!stage.is_watched()) return;
-  const auto source_count = static_cast<double>(sources.size());
-  const double guess = cost_of_guess(surface.mesh(), source_count, limit);
-  const double before = guess / (guess + cost_of_windows(surface.mesh(), source_count, limit));
+  const double guess = cost_of_guess(surface.mesh(), sources, limit);
+  const double before = guess / (guess + cost_of_windows(surface.mesh(), sources, limit));
   running_ = stage.part(before, 1);
   spread_flows(surface, sources, limit, stage.part(0, before));
   for (int i = 0; i < k_ways; ++i) beliefs_[i] = k_rules[i].belief;

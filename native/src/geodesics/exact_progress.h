@@ -12,7 +12,7 @@
 namespace saddleback {
 
 /// Of the time of a propagation that is watched, what passes before it runs: its surface is laid out.
-double share_of_surface(const Mesh& mesh, std::size_t source_count, double limit);
+double share_of_surface(const Mesh& mesh, const SurfacePoints& sources, double limit);
 
 /// How much of a propagation is done: the time goes into windows, and how many there will be is foretold.
 ///
