@@ -26,9 +26,8 @@ Diagram find_diagram(const py::object& sites, const py::object& weights, const p
   ClippedCells clipped;
   constexpr std::size_t k_worth_a_device = 50'000;
   const bool has_weights = !radii.empty();
-  if (has_weights && device.starts_with("cuda")) throw DeviceError("device: weighted sites run on the CPU only");
   Voronoi2d diagram =
-      run_on(device, !has_weights && points.size() >= k_worth_a_device, [&](const std::vector<int>& devices) {
+      run_on(device, points.size() >= k_worth_a_device, [&](const std::vector<int>& devices) {
         options.cuda_devices = devices;
         return without_gil([&] {
           Voronoi2d result =
@@ -90,8 +89,8 @@ threads : int
     0: all cores. The result does not depend on it.
 device : str
     "auto", "cpu", "cuda" or, for another than the first CUDA device, "cuda:1"; "cuda:0,1" and "cuda:all" let several
-    share the work. The result does not depend on it; what a device is not made for (weights, few or scattered sites)
-    runs on the processor.
+    share the work. The result does not depend on it; what a device is not made for (few or scattered sites,
+    weighted ones that share a place) runs on the processor.
 job : Job, optional
 
 Returns

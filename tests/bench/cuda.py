@@ -51,6 +51,8 @@ def main(arguments: list[str]) -> int:
     print(f"{'sites':<28} {'':<15}{HEAD}")
     for kind, count in PLANE:
         measure_plane(kind, count)
+    for radius in (0.2, 1.0):
+        measure_plane("uniform", 1_000_000, radius)
     print(f"{'mesh':<28} {'rule':<15}{HEAD}")
     for name in arguments:
         mesh = sb.read_mesh(name)
@@ -62,11 +64,15 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def measure_plane(kind: str, count: int) -> None:
+def measure_plane(kind: str, count: int, radius: float = 0) -> None:
+    """Weights, where there are any, are up to `radius` mean distances of the sites of a square."""
     rng = np.random.default_rng(count)
-    inputs = [plane_sites.KINDS[kind](count, rng) for _ in range(TIMES)]
-    wall, twins = best(lambda number: sb.voronoi_2d(inputs[number], device="cuda"))
-    processor, diagrams = best(lambda number: sb.voronoi_2d(inputs[number], device="cpu"))
+    inputs = []
+    for _ in range(TIMES):
+        sites = plane_sites.KINDS[kind](count, rng)
+        inputs.append((sites, radius / np.sqrt(count) * rng.random(count) if radius > 0 else None))
+    wall, twins = best(lambda number: sb.voronoi_2d(*inputs[number], device="cuda"))
+    processor, diagrams = best(lambda number: sb.voronoi_2d(*inputs[number], device="cpu"))
     same = all(
         getattr(twin, name).tobytes() == getattr(own, name).tobytes()
         for twin, own in zip(twins, diagrams, strict=True)
@@ -74,7 +80,8 @@ def measure_plane(kind: str, count: int) -> None:
     )
     far = [twin.device_times["second_pass"] if twin.device_times else -1 for twin in twins]
     done = "left to the processor" if min(far) < 0 else f"second pass {max(far)}, {'equal' if same else 'DIFFERENT'}"
-    print(f"{kind:<28} {count:<15,}{parts_of(twins)} {1e3 * wall:6.1f} {1e3 * processor:6.1f}  {done}", flush=True)
+    name = kind if radius == 0 else f"{kind}, weights to {radius}"
+    print(f"{name:<28} {count:<15,}{parts_of(twins)} {1e3 * wall:6.1f} {1e3 * processor:6.1f}  {done}", flush=True)
 
 
 def measure_queries(name: str, graph: sb.SaddleVertexGraph) -> None:

@@ -15,6 +15,7 @@ from tests.native import plane_sites
 
 DEVICES = ("cuda", "cuda:0,0,0", "cuda:all")  # one, one in three parts, and all, a part each
 ARRAYS = ("sites", "site_of", "vertices", "edges", "edge_sites", "edge_directions", "delaunay", "areas", "centroids")
+WEIGHTED_ARRAYS = (*(name for name in ARRAYS if name != "delaunay"), "weights", "hidden")
 SIZES = (1, 2, 3, 4, 5, 7, 12, 40, 300, 3000, 30000)
 
 
@@ -22,11 +23,11 @@ def make(kind: str, n: int, seed: int) -> np.ndarray:
     return plane_sites.KINDS[kind](n, np.random.default_rng(seed))
 
 
-def expect_twins(sites: np.ndarray) -> sb.Voronoi2d:
-    own = sb.voronoi_2d(sites, device="cpu")
+def expect_twins(sites: np.ndarray, weights: np.ndarray | None = None) -> sb.Voronoi2d:
+    own = sb.voronoi_2d(sites, weights, device="cpu")
     for device in DEVICES:
-        twin = sb.voronoi_2d(sites, device=device)
-        for name in ARRAYS:
+        twin = sb.voronoi_2d(sites, weights, device=device)
+        for name in ARRAYS if weights is None else WEIGHTED_ARRAYS:
             assert getattr(twin, name).tobytes() == getattr(own, name).tobytes(), (device, name)
         for mine, other in zip(twin.cells, own.cells, strict=True):
             assert mine.tobytes() == other.tobytes()
@@ -51,6 +52,64 @@ def test_the_device_itself_finds_large_ones(kind: str) -> None:
     assert twin.device == "cuda"
     times = twin.device_times
     assert times is not None and times["find"] > 0 and times["by_processor"] == 0
+
+
+WEIGHTS = {
+    "small": lambda mean, rng, n: 0.2 * mean * rng.random(n),
+    "large": lambda mean, rng, n: mean * rng.random(n),
+    "many hidden": lambda mean, rng, n: 4 * mean * rng.random(n) ** 4,
+    "few sizes": lambda mean, rng, n: 0.3 * mean * rng.integers(-1, 2, n),
+    "one heavy": lambda mean, rng, n: np.where(np.arange(n) == n // 2, 6 * mean, 0.0),
+}
+
+
+def weights_of(kind: str, sites: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Radii in parts of the mean distance of sites."""
+    extent = float(np.ptp(sites, axis=0).max()) if len(sites) else 1.0
+    return np.asarray(WEIGHTS[kind](extent / np.sqrt(max(len(sites), 1)), rng, len(sites)), float)
+
+
+@pytest.mark.parametrize("n", SIZES[:-1])  # circles of more take the processor too long
+@pytest.mark.parametrize("kind", plane_sites.KINDS)
+@pytest.mark.parametrize("weights", WEIGHTS)
+def test_the_same_weighted_diagram(kind: str, weights: str, n: int) -> None:
+    sites = make(kind, n, seed=n)
+    expect_twins(sites, weights_of(weights, sites, np.random.default_rng(n)))
+
+
+@pytest.mark.parametrize("kind", ["uniform", "clusters", "grid"])
+@pytest.mark.parametrize("weights", ["small", "large", "many hidden"])
+def test_the_device_itself_finds_large_weighted_ones(kind: str, weights: str) -> None:
+    sites = make(kind, 200_000, seed=7)
+    twin = expect_twins(sites, weights_of(weights, sites, np.random.default_rng(8)))
+    assert twin.device == "cuda"
+    times = twin.device_times
+    assert times is not None and times["find"] > 0
+
+
+def test_edges_shared_twice_and_cells_of_two_sides() -> None:
+    """Small disks between large ones cut their edges in two, and have no third neighbour."""
+    rng = np.random.default_rng(11)
+    large = np.column_stack([k.ravel() for k in np.meshgrid(np.arange(40.0), np.arange(40.0))])
+    large += rng.uniform(-0.05, 0.05, large.shape)
+    small = 0.5 * (large[:-1] + large[1:]) + rng.uniform(-0.01, 0.01, (len(large) - 1, 2))
+    sites = np.concatenate([large, small])
+    weights = np.concatenate([rng.uniform(0.4, 0.45, len(large)), rng.uniform(-0.02, 0.02, len(small))])
+    twin = expect_twins(sites, weights)
+    assert twin.device == "cuda"
+    _, counts = np.unique(np.sort(twin.edge_sites, axis=1), axis=0, return_counts=True)
+    assert (counts > 1).any()
+
+
+def test_weights_that_are_wrong_are_refused_in_the_same_words() -> None:
+    sites = make("uniform", 100, seed=1)
+    for weights in (np.ones(99), np.where(np.arange(100) == 7, np.nan, 1.0)):
+        messages = []
+        for device in ("cpu", "cuda"):
+            with pytest.raises(sb.InputError) as caught:
+                sb.voronoi_2d(sites, weights, device=device)
+            messages.append(str(caught.value))
+        assert messages[0] == messages[1]
 
 
 def expect_kept(kept: sb.DeviceVoronoi2d, own: sb.Voronoi2d) -> None:

@@ -10,12 +10,9 @@
 // enough for the circle test was found by D. L. Millman (2007).
 
 #include "predicates/predicates.h"
+#include "predicates/weighted_point.h"
 
 namespace saddleback::predicates {
-
-struct WeightedPoint2 {
-  double x, y, weight;
-};
 
 /// True when a is nowhere farther than b, from inside or from outside: |a - b| <= w_a - w_b. Exact.
 bool hides(const WeightedPoint2& a, const WeightedPoint2& b);

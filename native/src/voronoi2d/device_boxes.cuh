@@ -17,6 +17,10 @@ struct __align__(16) DeviceBox {
   __device__ bool contains(double x, double y) const {
     return x >= low[0] && x <= high[0] && y >= low[1] && y <= high[1];
   }
+  __device__ double square_distance(double x, double y) const {
+    const double dx = fmax(fmax(low[0] - x, x - high[0]), 0.0), dy = fmax(fmax(low[1] - y, y - high[1]), 0.0);
+    return dx * dx + dy * dy;
+  }
 };
 
 struct DeviceTree {
@@ -27,6 +31,42 @@ struct DeviceTree {
   std::int32_t site_count;
   int levels;
 };
+
+/// By a warp: calls visit(rank of the lane's site, or -1) for every 32 sites in a row, as long as all boxes about them
+/// have a number from measure(level, box) that is not negative; of each 32 those with the least come first. Ends when
+/// visit() is false.
+template <class Measure, class Visit>
+__device__ void visit_leaves(const DeviceTree& tree, Measure&& measure, Visit&& visit) {
+  const int lane = threadIdx.x % 32;
+  int level = tree.levels - 1;
+  unsigned open[DeviceTree::k_most_levels];  // children not visited yet; the same in all lanes
+  std::int32_t node[DeviceTree::k_most_levels];
+  open[level] = k_warp;
+  node[level] = 0;
+  while (level < tree.levels) {
+    const std::int32_t child = node[level] * 32 + lane;
+    double measured = -1;
+    if ((open[level] >> lane & 1) && child < tree.counts[level]) measured = measure(level, child);
+    const unsigned those = __ballot_sync(k_warp, measured >= 0);
+    if (those == 0) {
+      ++level;
+      continue;
+    }
+    const unsigned key = measured >= 0 ? __float_as_uint(static_cast<float>(measured)) : ~0u;
+    const unsigned least = warp_min(key);
+    const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, measured >= 0 && key == least))) - 1;
+    open[level] = those & ~(1u << chosen);
+    const std::int32_t next = node[level] * 32 + chosen;
+    if (level > 0) {
+      --level;
+      open[level] = k_warp;
+      node[level] = next;
+      continue;
+    }
+    const std::int32_t site = next * 32 + lane;
+    if (!visit(site < tree.site_count ? site : -1)) return;
+  }
+}
 
 __device__ inline DeviceBox joined(DeviceBox box) {
   for (int step = 16; step > 0; step /= 2) {

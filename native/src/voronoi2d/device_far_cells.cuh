@@ -84,44 +84,17 @@ class FarWinder {
   /// lane's site, or -1) for the sites in them.
   template <class MayHold, class Visit>
   __device__ void for_boxes(MayHold&& may_hold, Visit&& visit) {
-    const int lane = threadIdx.x % 32;
-    int level = tree_.levels - 1, visits = 0;
-    unsigned open[DeviceTree::k_most_levels];  // children not visited yet; the same in all lanes
-    std::int32_t node[DeviceTree::k_most_levels];
-    open[level] = k_warp;
-    node[level] = 0;
-    while (level < tree_.levels) {
-      const std::int32_t child = node[level] * 32 + lane;
-      bool is_open = (open[level] >> lane & 1) && child < tree_.counts[level];
-      double distance = 0;
-      if (is_open) {
-        const DeviceBox box = tree_.boxes[level][child];
-        const double dx = fmax(fmax(box.low[0] - site_.x, site_.x - box.high[0]), 0.0),
-                     dy = fmax(fmax(box.low[1] - site_.y, site_.y - box.high[1]), 0.0);
-        distance = dx * dx + dy * dy;
-        is_open = may_hold(box, distance);
-      }
-      const unsigned those = __ballot_sync(k_warp, is_open);
-      if (those == 0) {
-        ++level;
-        continue;
-      }
-      const unsigned key = is_open ? __float_as_uint(static_cast<float>(distance)) : ~0u;
-      const unsigned least = warp_min(key);
-      const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, is_open && key == least))) - 1;
-      open[level] = those & ~(1u << chosen);
-      const std::int32_t next = node[level] * 32 + chosen;
-      if (level > 0) {
-        --level;
-        open[level] = k_warp;
-        node[level] = next;
-      } else {
-        if (++visits > k_most_visits) fails_ = true;
-        const std::int32_t site = next * 32 + lane;
-        visit(site < tree_.site_count && site != rank_ ? site : -1);
-        if (fails_) return;
-      }
-    }
+    const auto measure = [&](int level, std::int32_t child) {
+      const DeviceBox& box = tree_.boxes[level][child];
+      const double distance = box.square_distance(site_.x, site_.y);
+      return may_hold(box, distance) ? distance : -1;
+    };
+    int visits = 0;
+    visit_leaves(tree_, measure, [&](std::int32_t site) {
+      if (++visits > k_most_visits) fails_ = true;
+      visit(site == rank_ ? -1 : site);
+      return !fails_;
+    });
   }
 
   /// Moves `best` to a lane's site as long as one is better.
@@ -262,20 +235,29 @@ class FarWinder {
 
 constexpr int k_far_threads = 128;
 
-__global__ void __launch_bounds__(k_far_threads)
-    find_far_cells(DeviceTree tree, const std::int32_t* far, const int* far_count, int* next, DeviceLists lists,
-                   int* failures, int most_failures) {
+/// Cells that a kernel takes one by one, and what it says of those that fail again.
+struct FarCells {
+  const std::int32_t* ranks;
+  const int* count;
+  int* next;
+  int* failures;
+  int most_failures;
+
+  /// By a warp: the next of them, -1 when there is none.
+  __device__ std::int32_t take() const {
+    const int all = *count;
+    int i = 0;
+    if (threadIdx.x % 32 == 0) i = *static_cast<volatile int*>(failures) > most_failures ? all : atomicAdd(next, 1);
+    i = __shfl_sync(k_warp, i, 0);
+    return i < all ? ranks[i] : -1;
+  }
+};
+
+__global__ void __launch_bounds__(k_far_threads) find_far_cells(DeviceTree tree, FarCells far, DeviceLists lists) {
   __shared__ FarMemory memory[k_far_threads / 32];
   FarWinder winder(tree, memory[threadIdx.x / 32]);
-  const int lane = threadIdx.x % 32, count = *far_count;
-  while (true) {
-    int i = 0;
-    if (lane == 0) i = *static_cast<volatile int*>(failures) > most_failures ? count : atomicAdd(next, 1);
-    i = __shfl_sync(k_warp, i, 0);
-    if (i >= count) return;
-    if (!winder.wind(far[i], lists)) {
-      if (lane == 0) lists.far[atomicAdd(failures, 1)] = far[i];
-    }
+  for (std::int32_t rank = far.take(); rank >= 0; rank = far.take()) {
+    if (!winder.wind(rank, lists) && threadIdx.x % 32 == 0) lists.far[atomicAdd(far.failures, 1)] = rank;
     __syncwarp();
   }
 }

@@ -12,20 +12,24 @@
 #include "voronoi2d/device_cells.cuh"
 #include "voronoi2d/device_kept.cuh"
 #include "voronoi2d/plane_twin.h"
+#include "voronoi2d/weighted_wave.h"
 
 namespace saddleback::voronoi2d {
 namespace {
 
-/// Rows of neighbours, counter-clockwise; of an open cell from the border on. All of them, of which some are numbered
-/// here and the others elsewhere.
+/// A side is told by the neighbour; negative where the corner behind it is at infinity.
+__device__ constexpr std::int32_t open_side(std::int32_t neighbour) { return ~neighbour; }
+__device__ constexpr std::int32_t neighbour_of(std::int32_t side) { return side < 0 ? ~side : side; }
+
+/// Rows of sides, counter-clockwise. All of them, of which some are numbered here and the others elsewhere.
 struct DeviceCells {
   std::int32_t count;
   IndexRange mine;
   const double2* at;
+  const double* weights;  ///< null where all weigh the same
   const std::int32_t* original;
   const std::int32_t* offsets;
-  const std::int32_t* neighbours;
-  const std::uint8_t* is_open;
+  const std::int32_t* sides;  ///< see open_side
 
   __device__ Point2 point(std::int32_t rank) const {
     const double2 p = at[rank];
@@ -33,16 +37,42 @@ struct DeviceCells {
   }
   /// By one thread for each cell.
   __device__ std::int32_t of_thread() const { return mine.begin + thread_number(); }
-  /// The side of `other` towards `cell`; the end of its row when it has none.
-  __device__ std::int32_t twin_side(std::int32_t cell, std::int32_t other) const {
+  __device__ predicates::WeightedPoint2 weighted(std::int32_t rank) const {
+    return {at[rank].x, at[rank].y, weights[rank]};
+  }
+  __device__ std::int32_t neighbour(std::int32_t side) const { return neighbour_of(sides[side]); }
+  __device__ bool is_open(std::int32_t side) const { return sides[side] < 0; }
+  /// The side of the neighbour towards a cell; the end of the neighbour's row when it has none.
+  __device__ std::int32_t twin_side(std::int32_t cell, std::int32_t side) const {
+    const std::int32_t other = neighbour(side), end = offsets[other + 1];
     std::int32_t twin = offsets[other];
-    while (twin < offsets[other + 1] && neighbours[twin] != cell) ++twin;
+    while (twin < end && !(neighbour(twin) == cell && (!weights || are_twins(cell, side, other, twin)))) ++twin;
     return twin;
+  }
+  // Of several sides between two cells the twins are next to the same third ones: no two of three curves around a cell
+  // cross more than twice.
+  __device__ bool are_twins(std::int32_t cell, std::int32_t side, std::int32_t other, std::int32_t twin) const {
+    return third_after(cell, side) == third_before(other, twin) && third_before(cell, side) == third_after(other, twin);
+  }
+  /// The third cell about the corner behind a side, -1 at infinity.
+  __device__ std::int32_t third_after(std::int32_t cell, std::int32_t side) const {
+    return is_open(side) ? -1 : neighbour(side + 1 == offsets[cell + 1] ? offsets[cell] : side + 1);
+  }
+  __device__ std::int32_t third_before(std::int32_t cell, std::int32_t side) const {
+    const std::int32_t before = corner_before(cell, side);
+    return is_open(before) ? -1 : neighbour(before);
   }
   /// The corner before a side, in the cell that has it.
   __device__ std::int32_t corner_before(std::int32_t cell, std::int32_t side) const {
     return side == offsets[cell] ? offsets[cell + 1] - 1 : side - 1;
   }
+};
+
+/// Vertices that the processor places: number and sites, from the one with the lowest rank on, counter-clockwise.
+struct RoughVertices {
+  int4* vertices;
+  int* count;
+  int room;
 };
 
 struct DeviceNumbers {
@@ -52,14 +82,15 @@ struct DeviceNumbers {
   int2* edges;
   int2* edge_sites;
   double2* vertices;
+  RoughVertices rough;
   const int* misfits;  ///< found before
   int* misfits_here;
 
   __device__ bool failed_before() const { return *misfits != 0; }
 };
 
-/// Neighbours row after row; also counts the edges of a cell, which are those to higher ranks.
-__global__ void gather_rows(DeviceLists lists, IndexRange cells, const std::int32_t* offsets, std::int32_t* neighbours,
+/// Sides row after row; also counts the edges of a cell, which are those to higher ranks.
+__global__ void gather_rows(DeviceLists lists, IndexRange cells, const std::int32_t* offsets, std::int32_t* sides,
                             std::int32_t* edge_counts) {
   const std::int32_t cell = cells.begin + thread_number();
   if (cell >= cells.end) return;
@@ -68,8 +99,9 @@ __global__ void gather_rows(DeviceLists lists, IndexRange cells, const std::int3
   if (size > k_slots) from = lists.pool + *from;
   int edges = 0;
   for (std::int32_t k = 0; k < size; ++k) {
-    neighbours[begin + k] = from[k];
-    edges += from[k] > cell;
+    const bool opens = k + 1 == size && lists.is_open[cell];  // else the list says where
+    sides[begin + k] = opens ? open_side(from[k]) : from[k];
+    edges += neighbour_of(from[k]) > cell;
   }
   edge_counts[cell] = edges;
 }
@@ -87,17 +119,17 @@ __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
     const double2 q = cells.at[rank];
     return q.y > p.y || (q.y == p.y && q.x > p.x);
   };
-  const bool is_open = cells.is_open[cell];
-  bool before = is_above(cells.neighbours[is_open ? first : last]);
+  const bool is_open = cells.is_open(last);
+  bool before = is_above(cells.neighbour(is_open ? first : last));
   int crossings = 0;
   for (std::int32_t side = first; side <= last; ++side) {
-    const bool now = is_above(cells.neighbours[side]);
+    const bool now = is_above(cells.neighbour(side));
     crossings += now != before;
     before = now;
   }
   if (!is_open) return crossings == 2;
-  return crossings <= 1 && orient_2d(cells.point(cells.neighbours[last]), cells.point(cell),
-                                     cells.point(cells.neighbours[first])) != predicates::Sign::negative;
+  return crossings <= 1 && orient_2d(cells.point(cells.neighbour(last)), cells.point(cell),
+                                     cells.point(cells.neighbour(first))) != predicates::Sign::negative;
 }
 
 /// Edges belong to the lower of their cells.
@@ -105,12 +137,12 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
   const std::int32_t first = cells.offsets[cell], end = cells.offsets[cell + 1];
-  bool fits = winds_once(cells, cell);
+  bool fits = cells.weights || winds_once(cells, cell);  // with weights they are known to
   std::int32_t edge = edges_before[cell];
   for (std::int32_t side = first; side < end; ++side) {
-    const std::int32_t other = cells.neighbours[side];
+    const std::int32_t other = cells.neighbour(side);
     if (other < cell && cells.mine.holds(other)) continue;
-    const std::int32_t twin = cells.twin_side(cell, other);
+    const std::int32_t twin = cells.twin_side(cell, side);
     if (twin == cells.offsets[other + 1]) {
       fits = false;
       break;
@@ -118,7 +150,7 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
     numbers.next_corners[side] = cells.corner_before(other, twin);
     if (other < cell) {  // numbered elsewhere
       std::int32_t theirs = edges_before[other];
-      for (std::int32_t k = cells.offsets[other]; k < twin; ++k) theirs += cells.neighbours[k] > other;
+      for (std::int32_t k = cells.offsets[other]; k < twin; ++k) theirs += cells.neighbour(k) > other;
       numbers.side_edges[side] = theirs;
       continue;
     }
@@ -129,7 +161,8 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
     numbers.edge_sites[edge] = {cells.original[cell], cells.original[other]};
     ++edge;
   }
-  if (cells.is_open[cell]) numbers.corner_vertices[end - 1] = -1;
+  for (std::int32_t side = first; side < end; ++side)
+    if (cells.is_open(side)) numbers.corner_vertices[side] = -1;
   if (!fits) *numbers.misfits_here = 1;
 }
 
@@ -140,8 +173,8 @@ struct CornerWalk {
   std::int32_t cell, corner;
 
   __device__ void step() {
-    const std::int32_t next = cells.neighbours[corner];
-    corner = cells.mine.holds(cell) ? next_corners[corner] : cells.corner_before(next, cells.twin_side(cell, next));
+    const std::int32_t next = cells.neighbour(corner);
+    corner = cells.mine.holds(cell) ? next_corners[corner] : cells.corner_before(next, cells.twin_side(cell, corner));
     cell = next;
   }
 };
@@ -161,9 +194,9 @@ template <class Found>
 __device__ void for_own_vertices(const DeviceCells& cells, const std::int32_t* next_corners, std::int32_t cell,
                                  Found&& found) {
   const std::int32_t first = cells.offsets[cell], last = cells.offsets[cell + 1] - 1;
-  for (std::int32_t corner = first; corner <= last - cells.is_open[cell]; ++corner) {
-    const std::int32_t other = cells.neighbours[corner], third = cells.neighbours[corner == last ? first : corner + 1];
-    if (min(other, third) < cell) continue;
+  for (std::int32_t corner = first; corner <= last; ++corner) {
+    const std::int32_t other = cells.neighbour(corner), third = cells.neighbour(corner == last ? first : corner + 1);
+    if (min(other, third) < cell || cells.is_open(corner)) continue;
     if (owner_of(cells, next_corners, cell, corner).cell == cell) found(corner);
   }
 }
@@ -174,6 +207,19 @@ __global__ void count_vertices(DeviceCells cells, DeviceNumbers numbers, std::in
   std::int32_t mine = 0;
   for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t) { ++mine; });
   counts[cell] = mine;
+}
+
+__device__ inline Point2 weighted_vertex(const DeviceCells& cells, const std::int32_t about[3], std::int32_t vertex,
+                                         const RoughVertices& rough) {
+  const predicates::WeightedPoint2 here = cells.weighted(about[0]);
+  const WaveCrossing crossing =
+      wave_crossing(wave_of(here, cells.weighted(about[1])), wave_of(here, cells.weighted(about[2])));
+  if (!crossing.is_good()) {
+    const int place = atomicAdd(rough.count, 1);
+    if (place < rough.room)
+      rough.vertices[place] = {vertex, cells.original[about[0]], cells.original[about[1]], cells.original[about[2]]};
+  }
+  return crossing_point(here, crossing.x, crossing.y, crossing.height);
 }
 
 __global__ void add_vertices(DeviceCells cells, const std::int32_t* vertices_before, DeviceNumbers numbers) {
@@ -196,8 +242,10 @@ __global__ void add_vertices(DeviceCells cells, const std::int32_t* vertices_bef
       if (k == size / 3 - 1) about[1] = walk.cell;
       if (k == 2 * size / 3 - 1) about[2] = walk.cell;
     }
-    const Point2 centre = circumcentre_point(cells.point(about[0]), cells.point(about[1]), cells.point(about[2]));
-    numbers.vertices[vertex++] = {centre.x, centre.y};
+    const Point2 place = cells.weights
+                             ? weighted_vertex(cells, about, vertex, numbers.rough)
+                             : circumcentre_point(cells.point(about[0]), cells.point(about[1]), cells.point(about[2]));
+    numbers.vertices[vertex++] = {place.x, place.y};
   });
 }
 
@@ -302,14 +350,14 @@ struct PlanePart {
 /// the end.
 class DeviceDiagram {
  public:
-  DeviceDiagram(const PlanePart& part, std::int32_t cells, std::int32_t sides, cudaStream_t stream)
+  DeviceDiagram(const PlanePart& part, std::int32_t cells, std::int32_t sides, bool has_weights, cudaStream_t stream)
       : part_(part),
         stream_(stream),
         count_(cells),
         sides_(sides),
         edges_(sides / 2),
         vertices_(edges_ - cells + 1),
-        neighbours_(size(sides), stream),
+        cell_sides_(size(sides), stream),
         corner_vertices_(size(sides), stream),
         side_edges_(size(sides), stream),
         edge_vertices_(size(edges_), stream),
@@ -318,11 +366,12 @@ class DeviceDiagram {
         next_corners_(size(sides), stream),
         counts_(size(cells) + 1, stream),
         before_(size(cells) + 1, stream),
-        misfits_(2, stream) {}
+        rough_(has_weights ? k_most_rough : 0, stream),
+        misfits_(3, stream) {}
 
   /// By Euler's formula.
   bool can_be() const { return sides_ % 2 == 0 && vertices_ >= 0 && edges_ <= 3 * static_cast<std::int64_t>(count_); }
-  const std::int32_t* neighbours() const { return neighbours_.data(); }
+  const std::int32_t* cell_sides() const { return cell_sides_.data(); }
   PlaneTwinSizes sizes() const { return {count_, edges_, vertices_}; }
 
   /// Joins the cells. \throw LeftOver
@@ -331,10 +380,10 @@ class DeviceDiagram {
     counts_.fill_bytes(0);
     side_parts_ = part_.rows(offsets, sides_);
     const unsigned blocks = blocks_for(cells.mine.count());
-    gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, neighbours_.data(),
+    gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, cell_sides_.data(),
                                                    counts_.data());
     check_cuda(cudaGetLastError(), "gathering cells");
-    part_.arrays.share(part_.member, neighbours_.data(), side_parts_, stream_);
+    part_.arrays.share(part_.member, cell_sides_.data(), side_parts_, stream_);
     add_up_all(edges_);
     edge_parts_ = part_.rows(before_, edges_);
     if (!part_.is_all()) corner_vertices_.fill_bytes(k_unknown_byte);
@@ -390,15 +439,27 @@ class DeviceDiagram {
     to.vertices = std::move(vertex_places_);
   }
 
+  /// Vertices of this part that the processor places. Waits for the stream. \throw LeftOver for too many
+  std::vector<int4> rough() const {
+    const int count = rough_.size() == 0 ? 0 : misfits_.value_at(2);
+    if (count > k_most_rough) throw LeftOver();
+    std::vector<int4> result(static_cast<std::size_t>(count));
+    if (count > 0) rough_.read(result);
+    return result;
+  }
+
   /// Waits for the stream.
   bool fits() const { return misfits_.value_at(0) == 0; }
 
  private:
+  static constexpr int k_most_rough = 1 << 16;
+  RoughVertices rough_vertices() { return {rough_.data(), misfits_.data() + 2, static_cast<int>(rough_.size())}; }
   static std::size_t size(std::int32_t count) { return static_cast<std::size_t>(count); }
 
   DeviceNumbers numbers() {
-    return {next_corners_.data(), corner_vertices_.data(), side_edges_.data(), edge_vertices_.data(),
-            edge_sites_.data(),   vertex_places_.data(),   misfits_.data(),    misfits_.data() + 1};
+    return {next_corners_.data(),  corner_vertices_.data(), side_edges_.data(),
+            edge_vertices_.data(), edge_sites_.data(),      vertex_places_.data(),
+            rough_vertices(),      misfits_.data(),         misfits_.data() + 1};
   }
   /// Sums of what all members have counted; the last is the total.
   void add_up_all(std::int32_t total) {
@@ -422,11 +483,12 @@ class DeviceDiagram {
   const PlanePart& part_;
   cudaStream_t stream_;
   std::int32_t count_, sides_, edges_, vertices_;
-  DeviceBuffer<std::int32_t> neighbours_, corner_vertices_, side_edges_;
+  DeviceBuffer<std::int32_t> cell_sides_, corner_vertices_, side_edges_;
   DeviceBuffer<int2> edge_vertices_, edge_sites_;
   DeviceBuffer<double2> vertex_places_;
   DeviceBuffer<std::int32_t> next_corners_, counts_, before_;
-  DeviceBuffer<int> misfits_;
+  DeviceBuffer<int4> rough_;
+  DeviceBuffer<int> misfits_;                          ///< before and here, and how many vertices are rough
   std::vector<std::int32_t> side_parts_, edge_parts_;  ///< where the members' sides and edges begin
 };
 

@@ -2,6 +2,7 @@
 // answer is the processor's, to the bit.
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -9,8 +10,7 @@
 
 #include "support/device_stream.h"
 #include "support/host_copies.h"
-#include "voronoi2d/device_far_cells.cuh"
-#include "voronoi2d/device_numbering.cuh"
+#include "voronoi2d/device_found_cells.cuh"
 #include "voronoi2d/device_voronoi.h"
 
 namespace saddleback {
@@ -18,121 +18,19 @@ namespace {
 
 using namespace voronoi2d;
 
-int blocks_of(const void* kernel, int threads, std::size_t shared, int device) {
-  int per_processor = 0, processors = 0;
-  check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, kernel, threads, shared),
-             "asking for occupancy");
-  check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
-             "asking for the number of processors");
-  return std::max(1, per_processor) * processors;
+/// What a diagram takes at most at once, in bytes.
+std::uint64_t bytes_needed(const PlaneTwinRequest& request) {
+  const std::uint64_t each = request.weights ? 440 : 360;
+  return static_cast<std::uint64_t>(request.count) * each + (1 << 21);
 }
 
-/// The neighbours of a part of the cells.
-class CellFinder {
- public:
-  CellFinder(const DeviceOrder& order, int members, cudaStream_t stream)
-      : stream_(stream),
-        count_(order.cell_count()),
-        order_(order),
-        tiles_(order.places(), count_, stream),
-        parts_(tiles_.parts(members, count_)),
-        slots_(static_cast<std::size_t>(count_) * k_slots, stream),
-        counts_(static_cast<std::size_t>(count_) + 1, stream),
-        offsets_(static_cast<std::size_t>(count_) + 1, stream),
-        far_(static_cast<std::size_t>(count_), stream),
-        failed_(static_cast<std::size_t>(k_most_failures) + 4096, stream),
-        pool_(static_cast<std::size_t>(count_) / 4 + 65536, stream),
-        is_open_(static_cast<std::size_t>(count_), stream),
-        counters_(5, stream) {}
-
-  /// Where the members' cells begin, and the last one's end.
-  const std::vector<std::int32_t>& begins() const { return parts_.sites; }
-
-  /// Does not wait for the last tiles; calls report() in between where there are many.
-  template <class Report>
-  void start(int member, int device, Report&& report) {
-    const BoxLevels boxes(order_.at(), count_, stream_);
-    const auto at = static_cast<std::size_t>(member);
-    const std::int32_t sites = parts_.sites[at + 1] - parts_.sites[at];
-    counts_.fill_bytes(0);
-    counters_.fill_bytes(0);
-    constexpr std::size_t k_shared = sizeof(TileMemory);
-    check_cuda(cudaFuncSetAttribute(find_cells_of_tiles, cudaFuncAttributeMaxDynamicSharedMemorySize, k_shared),
-               "asking for shared memory");
-    check_cuda(cudaFuncSetAttribute(find_cells_of_tiles, cudaFuncAttributePreferredSharedMemoryCarveout, 100),
-               "asking for shared memory");
-    const int blocks = blocks_of(reinterpret_cast<const void*>(find_cells_of_tiles), k_tile_threads, k_shared, device);
-    constexpr std::int32_t k_tiles_per_launch = 1 << 17;  // some tens of milliseconds
-    // Of one part the number of tiles is not known here: they are half full and less.
-    const std::int32_t launches = 1 + sites / (k_tile_sites * k_tiles_per_launch) * 4, last = parts_.tiles[at + 1];
-    for (std::int32_t i = 0; i < launches; ++i) {
-      const std::int32_t first = parts_.tiles[at] + i * k_tiles_per_launch;
-      const bool is_last = i + 1 == launches || last - first <= k_tiles_per_launch;
-      const TileRange range{tiles_.begins(), tiles_.count(), counters_.data() + k_next_tile, first,
-                            is_last ? last : first + k_tiles_per_launch};
-      check_cuda(cudaMemsetAsync(range.taken, 0, sizeof(int), stream_), "clearing a counter");
-      find_cells_of_tiles<<<blocks, k_tile_threads, k_shared, stream_>>>(boxes.tree(), range, lists());
-      check_cuda(cudaGetLastError(), "finding cells");
-      if (is_last) break;
-      check_cuda(cudaStreamSynchronize(stream_), "finding cells");
-      report(static_cast<double>(i) / launches);
-    }
-    const int far_blocks = blocks_of(reinterpret_cast<const void*>(find_far_cells), k_far_threads, 0, device);
-    DeviceLists far_lists = lists();
-    far_lists.far = failed_.data();
-    find_far_cells<<<far_blocks, k_far_threads, 0, stream_>>>(boxes.tree(), far_.data(), counters_.data() + k_far,
-                                                              counters_.data() + k_next_far, far_lists,
-                                                              counters_.data() + k_failed, k_most_failures);
-    check_cuda(cudaGetLastError(), "finding far cells");
-  }
-
-  /// All members' cells, where there are several.
-  void share(const PlanePart& part) {
-    part.arrays.share(part.member, counts_.data(), part.begins, stream_);
-    part.arrays.share(part.member, is_open_.data(), part.begins, stream_);
-    add_up(counts_, offsets_, stream_);  // the last count is 0
-  }
-
-  /// Waits for the cells. \return how many neighbours all have together.
-  std::int32_t finish(DeviceTimes& times) const {
-    int counters[k_counters];
-    std::int32_t sides = 0;
-    check_cuda(cudaMemcpyAsync(&sides, offsets_.data() + count_, sizeof sides, cudaMemcpyDeviceToHost, stream_),
-               "counting sides");
-    counters_.read(counters);
-    times.second_pass = counters[k_far];
-    if (counters[k_failed] > 0) throw LeftOver();
-    return sides;
-  }
-  const DeviceBuffer<std::int32_t>& offsets() const { return offsets_; }
-  DeviceBuffer<std::int32_t> take_offsets() { return std::move(offsets_); }
-
-  DeviceLists lists() {
-    return {slots_.data(),
-            counts_.data(),
-            is_open_.data(),
-            pool_.data(),
-            reinterpret_cast<unsigned*>(counters_.data() + k_pool),
-            static_cast<unsigned>(pool_.size()),
-            far_.data(),
-            counters_.data() + k_far};
-  }
-
- private:
-  enum { k_next_tile, k_far, k_next_far, k_failed, k_pool, k_counters };
-  static constexpr int k_most_failures = 64;
-  cudaStream_t stream_;
-  std::int32_t count_;
-  const DeviceOrder& order_;
-  const Tiles tiles_;
-  const Tiles::Parts parts_;
-  DeviceBuffer<std::int32_t> slots_, counts_, offsets_, far_, failed_, pool_;
-  DeviceBuffer<std::uint8_t> is_open_;
-  DeviceBuffer<int> counters_;
+/// The sites that have cells, by rank.
+struct CellSites {
+  std::int32_t count;
+  const double2* at;
+  const double* weights;  ///< or null
+  const std::int32_t *original, *cell_places;
 };
-
-/// What a diagram takes at most at once, in bytes.
-std::uint64_t bytes_needed(std::int32_t count) { return static_cast<std::uint64_t>(count) * 360 + (1 << 20); }
 
 /// A diagram found by one or several devices. All have all sites, each finds and numbers the cells of some tiles.
 class Builder {
@@ -153,7 +51,7 @@ class Builder {
   void build_part(int member) {
     const int device = team_.device(member);
     check_cuda(cudaSetDevice(device), "choosing the device");
-    check_device_room("the diagram", bytes_needed(request_.count), request_.most_bytes);
+    check_device_room("the diagram", bytes_needed(request_), request_.most_bytes);
     keep_freed_memory(device);
     const auto report = [&](double fraction) { caller_.report(member, fraction); };
     DeviceTimes& times = times_[static_cast<std::size_t>(member)];
@@ -161,37 +59,60 @@ class Builder {
     const cudaStream_t stream = *own_stream;
     Stopwatch watch(stream);
     DeviceBuffer<double2> uploaded;
+    DeviceBuffer<double> weights;
     if (request_.sites_are_there) {
       expect_sites_on(device);
     } else {
-      uploaded = upload(stream, report);
+      uploaded = upload(reinterpret_cast<const double2*>(request_.sites), stream, report);
     }
+    if (request_.weights) weights = upload(request_.weights, stream, report);
     times.upload = watch.lap();
     report(0.1);
     DeviceOrder order =
         ordered(request_.sites_are_there ? reinterpret_cast<const double2*>(request_.sites) : uploaded.data(), stream);
+    std::optional<VisibleSites> visible;
+    if (request_.weights) visible.emplace(seen(order, weights.data(), stream));
     times.order = watch.lap();
     report(0.2);
-    CellFinder cells(order, team_.members(), stream);
+    if (visible) {
+      WeightedCellFinder cells(*visible, team_.members(), stream);
+      const CellSites sites{visible->count(), visible->at(), visible->weights(), visible->original(),
+                            visible->cell_places()};
+      find(member, cells, sites, order, watch, own_stream);
+    } else {
+      CellFinder cells(order, team_.members(), stream);
+      find(member, cells, {order.cell_count(), order.at(), nullptr, order.original(), order.cell_places()}, order,
+           watch, own_stream);
+    }
+  }
+
+  template <class Finder>
+  void find(int member, Finder& cells, const CellSites& sites, DeviceOrder& order, Stopwatch& watch,
+            std::unique_ptr<Stream>& own_stream) {
+    const int device = team_.device(member);
+    const auto report = [&](double fraction) { caller_.report(member, fraction); };
+    DeviceTimes& times = times_[static_cast<std::size_t>(member)];
+    const cudaStream_t stream = *own_stream;
     const PlanePart part{arrays_, member, cells.begins()};
     cells.start(member, device, [&](double done) { report(0.2 + 0.3 * done); });
     cells.share(part);
     watch.end();
-    if (member == 0 && !request_.kept) make_room(order.cell_count());
+    if (member == 0 && !request_.kept) make_room(sites.count);
     team_.meet();
     HostCopies copies(stream);
-    copy_order(order, part, copies);
+    copy_sites(order, sites, part, copies);
     const std::int32_t sides = cells.finish(times);
     times.find = watch.read();
     report(0.6);
     watch.start();
-    DeviceDiagram diagram(part, order.cell_count(), sides, stream);
+    DeviceDiagram diagram(part, sites.count, sides, sites.weights != nullptr, stream);
     if (!diagram.can_be()) throw LeftOver();
     const HostCopies::End end(copies);
     if (member == 0)
-      copies.to_host(cells.offsets().data(), static_cast<std::size_t>(order.cell_count()) + 1, to_.cell_offsets);
-    const DeviceCells rows{order.cell_count(),     part.cells(),         order.at(),           order.original(),
-                           cells.offsets().data(), diagram.neighbours(), cells.lists().is_open};
+      copies.to_host(cells.offsets().data(), static_cast<std::size_t>(sites.count) + 1, to_.cell_offsets);
+    const DeviceCells rows{sites.count,         part.cells(),   sites.at,
+                           sites.weights,       sites.original, cells.offsets().data(),
+                           diagram.cell_sides()};
     diagram.join(rows, cells.offsets(), cells.lists());
     DeviceBuffer<std::int32_t> triangles;
     if (request_.kept && request_.only_triangles) {
@@ -214,9 +135,27 @@ class Builder {
       }
       return tell_kept(std::move(kept), diagram.sizes());
     }
+    place_rough(diagram.rough());
     team_.meet();
     if (member == 0)
       caller_.ask([&](const PlaneTwinCaller& caller) { return caller.cut(caller.self, diagram.sizes()); });
+  }
+
+  /// The vertices that the processor places.
+  void place_rough(const std::vector<int4>& vertices) {
+    if (vertices.empty()) return;
+    static_assert(sizeof(int4) == sizeof(RoughVertex));
+    caller_.ask([&](const PlaneTwinCaller& caller) {
+      return caller.place(caller.self, reinterpret_cast<const RoughVertex*>(vertices.data()),
+                          static_cast<std::int32_t>(vertices.size()));
+    });
+  }
+
+  VisibleSites seen(const DeviceOrder& order, const double* weights, cudaStream_t stream) const {
+    if (order.cell_count() != request_.count) throw LeftOver();
+    VisibleSites visible(order, weights, stream);
+    if (visible.count() < k_fewest) throw LeftOver();
+    return visible;
   }
 
   /// Whoever wrote them there may still be at it.
@@ -229,14 +168,15 @@ class Builder {
     check_cuda(cudaDeviceSynchronize(), "waiting for the sites");
   }
 
-  template <class Report>
-  DeviceBuffer<double2> upload(cudaStream_t stream, Report&& report) const {
+  /// A number for each site.
+  template <class Number, class Report>
+  DeviceBuffer<Number> upload(const Number* numbers, cudaStream_t stream, Report&& report) const {
     const auto count = static_cast<std::size_t>(request_.count);
-    DeviceBuffer<double2> sites(count, stream);
+    DeviceBuffer<Number> result(count, stream);
     HostCopies copies(stream);
-    copies.to_device(reinterpret_cast<const double2*>(request_.sites), count, sites.data());
+    copies.to_device(numbers, count, result.data());
     copies.finish([&] { report(0); });
-    return sites;
+    return result;
   }
 
   /// What stays, and its stream, outlive all else.
@@ -267,7 +207,6 @@ class Builder {
       if (request_.sites_are_there) throw LeftOver();
       caller_.ask([&](const PlaneTwinCaller& caller) { return caller.sort(caller.self, places, sorted); });
     });
-    constexpr std::int32_t k_fewest = 3;
     if (found == DeviceOrder::Found::not_for_the_device || order.cell_count() < k_fewest) throw LeftOver();
     return order;
   }
@@ -278,7 +217,7 @@ class Builder {
   }
 
   /// Each member copies its share.
-  void copy_order(const DeviceOrder& order, const PlanePart& part, HostCopies& copies) const {
+  void copy_sites(const DeviceOrder& order, const CellSites& sites, const PlanePart& part, HostCopies& copies) const {
     const auto copy = [&](const std::int32_t* from, std::int32_t count, std::int32_t* to) {
       const auto begin = static_cast<std::ptrdiff_t>(static_cast<std::int64_t>(count) * part.member / team_.members());
       const auto end =
@@ -286,10 +225,11 @@ class Builder {
       copies.to_host(from + begin, static_cast<std::size_t>(end - begin), to ? to + begin : to);
     };
     copy(order.site_of(), request_.count, to_.site_of);
-    copy(order.cell_places(), request_.count, to_.cell_places);
-    copy(order.original(), order.cell_count(), to_.cell_sites);
+    copy(sites.cell_places, request_.count, to_.cell_places);
+    copy(sites.original, sites.count, to_.cell_sites);
   }
 
+  static constexpr std::int32_t k_fewest = 3;
   const PlaneTwinRequest& request_;
   DeviceTeam team_;
   TeamCaller<PlaneTwinCaller> caller_;

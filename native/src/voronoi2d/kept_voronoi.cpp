@@ -37,7 +37,9 @@ struct Caller {
                 }
               });
             },
-            nullptr, nullptr};
+            nullptr,
+            nullptr,
+            nullptr};
   }
 };
 

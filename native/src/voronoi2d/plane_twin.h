@@ -26,8 +26,9 @@ struct DevicePlane {
 struct PlaneTwinRequest {
   const int* devices = nullptr;  ///< the driver's numbers; one that is named twice takes two parts
   int device_count = 0;
-  std::uint64_t most_bytes = 0;   ///< of each device's memory; 0: what is free
-  const double* sites = nullptr;  ///< (count, 2)
+  std::uint64_t most_bytes = 0;     ///< of each device's memory; 0: what is free
+  const double* sites = nullptr;    ///< (count, 2)
+  const double* weights = nullptr;  ///< (count), or null where all weigh the same; of a diagram that comes back
   std::int32_t count = 0;
   bool sites_are_there = false;  ///< in the memory of the one device
   DevicePlane* kept = nullptr;   ///< where the diagram is told that stays on the one device; null: it comes back
@@ -47,6 +48,12 @@ struct PlaneTwinArrays {
   double* vertices;                            ///< two each
 };
 
+/// A vertex of a weighted diagram that takes the processor's arithmetic, and the sites about it, from the one whose
+/// cell comes first on, counter-clockwise.
+struct RoughVertex {
+  std::int32_t vertex, sites[3];
+};
+
 /// What the twin asks of its caller. No call throws.
 struct PlaneTwinCaller {
   void* self = nullptr;
@@ -56,6 +63,8 @@ struct PlaneTwinCaller {
   bool (*sort)(void* self, std::uint32_t* places, std::int32_t* order) = nullptr;
   /// Makes room for a diagram of at most these sizes, while the device is at work. False: stop.
   bool (*make_room)(void* self, const PlaneTwinSizes& most, PlaneTwinArrays* arrays) = nullptr;
+  /// Places vertices, while the room is as it was made. False: stop.
+  bool (*place)(void* self, const RoughVertex* vertices, std::int32_t count) = nullptr;
   /// Says how much of that is used. False: stop.
   bool (*cut)(void* self, const PlaneTwinSizes& sizes) = nullptr;
 };

@@ -6,6 +6,7 @@
 #include "support/twin_caller.h"
 #include "voronoi2d/curve_order.h"
 #include "voronoi2d/plane_twin.h"
+#include "voronoi2d/weighted_vertex.h"
 
 namespace saddleback::voronoi2d {
 namespace {
@@ -13,8 +14,8 @@ namespace {
 /// Answers the twin's calls.
 class Caller {
  public:
-  Caller(std::span<const Vec2> sites, int threads, const JobStage& stage)
-      : sites_(sites), threads_(threads), stage_(stage) {}
+  Caller(std::span<const Vec2> sites, std::span<const double> weights, int threads, const JobStage& stage)
+      : sites_(sites), weights_(weights), threads_(threads), stage_(stage) {}
 
   PlaneTwinCaller calls() {
     return {this,
@@ -29,6 +30,10 @@ class Caller {
             [](void* self, const PlaneTwinSizes& most, PlaneTwinArrays* arrays) {
               auto& caller = *static_cast<Caller*>(self);
               return caller.guard_.run([&] { *arrays = caller.make_room(most); });
+            },
+            [](void* self, const RoughVertex* vertices, std::int32_t count) {
+              auto& caller = *static_cast<Caller*>(self);
+              return caller.guard_.run([&] { caller.place({vertices, static_cast<std::size_t>(count)}); });
             },
             [](void* self, const PlaneTwinSizes& sizes) {
               auto& caller = *static_cast<Caller*>(self);
@@ -54,6 +59,14 @@ class Caller {
             result_.edges.data()->data(), result_.edge_sites.data()->data(), result_.vertices.data()->data()};
   }
 
+  void place(std::span<const RoughVertex> vertices) {
+    const auto site = [&](Index i) { return predicates::WeightedPoint2{sites_[i].x(), sites_[i].y(), weights_[i]}; };
+    for (const RoughVertex& rough : vertices) {
+      const predicates::WeightedPoint2 before = site(rough.sites[1]), after = site(rough.sites[2]);
+      result_.vertices[rough.vertex] = rough_vertex(site(rough.sites[0]), &before, &after);
+    }
+  }
+
   void resize(const PlaneTwinSizes& sizes) {
     const auto edges = static_cast<std::size_t>(sizes.edges), cells = static_cast<std::size_t>(sizes.cells);
     result_.site_of.resize(sites_.size());
@@ -68,6 +81,7 @@ class Caller {
   }
 
   std::span<const Vec2> sites_;
+  std::span<const double> weights_;
   int threads_;
   const JobStage& stage_;
   TwinGuard guard_;
@@ -78,15 +92,21 @@ class Caller {
 
 std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const int> devices, int threads,
                                       const JobStage& stage) {
+  return twin_voronoi(sites, {}, devices, threads, stage);
+}
+
+std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const double> weights,
+                                      std::span<const int> devices, int threads, const JobStage& stage) {
   const CudaTwins& twins = loaded_twins();
   PlaneTwinRequest request;
   request.devices = devices.data();
   request.device_count = static_cast<int>(devices.size());
   request.most_bytes = cuda_memory_limit();
   request.sites = sites.empty() ? nullptr : sites.front().data();
+  request.weights = weights.empty() ? nullptr : weights.data();
   request.count = static_cast<std::int32_t>(sites.size());
 
-  Caller caller(sites, threads, stage);
+  Caller caller(sites, weights, threads, stage);
   DeviceTimes times;
   TwinReason reason;
   const TwinStatus status = twins.find_voronoi(request, caller.calls(), times, reason);

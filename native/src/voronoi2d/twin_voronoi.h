@@ -12,5 +12,9 @@ namespace saddleback::voronoi2d {
 /// numbers that are too large. \throw DeviceError when the device cannot do it; Cancelled.
 std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const int> devices, int threads,
                                       const JobStage& stage);
+/// The same with a weight for each site; also none where sites share a place or doubles do not tell what exact numbers
+/// would.
+std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const double> weights,
+                                      std::span<const int> devices, int threads, const JobStage& stage);
 
 }  // namespace saddleback::voronoi2d

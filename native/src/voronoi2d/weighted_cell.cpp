@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "voronoi2d/weighted_vertex.h"
+
 namespace saddleback::voronoi2d {
 
 using predicates::Crossing;
@@ -363,15 +365,11 @@ bool WeightedCell::is_open_after(Index arc) const {
 
 /// Computed from the two sites beside it, so that it does not depend on what the cell met in which order.
 Vec2 WeightedCell::corner_after(Index arc) const {
-  constexpr double k_good = 0x1p-36;
   const WeightedPoint2& here = points_[site_];
   const Begin& last = begins_[after(arc)];
   const Begin end = last.fixed == k_none ? last : begin_between(begins_[arc].rival, last.rival);
-  if (end.doubt < k_good * end.height && end.blur < k_good)
-    return {here.x + 0.5 * end.x / end.height, here.y + 0.5 * end.y / end.height};
-  const predicates::CrossingPlace place =
-      predicates::crossing_place(here, {point(rivals_[begins_[arc].rival]), point(rivals_[last.rival])});
-  return {here.x + 0.5 * place.x / place.height, here.y + 0.5 * place.y / place.height};
+  if (end.is_good()) return vertex_at(here, end);
+  return rough_vertex(here, point(rivals_[begins_[arc].rival]), point(rivals_[last.rival]));
 }
 
 // The curve towards a neighbour begins and ends at infinity; the direction away from the neighbour is between its end

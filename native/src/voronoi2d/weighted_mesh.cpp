@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "support/parallel.h"
-#include "voronoi2d/weighted_wave.h"
+#include "voronoi2d/weighted_vertex.h"
 
 namespace saddleback::voronoi2d {
 
@@ -62,7 +62,7 @@ std::array<Index, 3> WeightedMesh::from_lowest(Index a, Index b, Index c) {
 }
 
 WeightedMesh::Centre WeightedMesh::centre(Index a, Index b, Index c) const {
-  constexpr double k_known = 0x1p-20, k_good = 0x1p-36, k_epsilon = predicates::detail::k_epsilon;
+  constexpr double k_known = 0x1p-20, k_epsilon = predicates::detail::k_epsilon;
   const std::array<Index, 3> sites = from_lowest(a, b, c);
   const WeightedPoint2& here = points_[sites[0]];
   const auto wave = [&](Index site) { return site == far_away() ? Wave{} : wave_of(here, points_[site]); };
@@ -71,11 +71,11 @@ WeightedMesh::Centre WeightedMesh::centre(Index a, Index b, Index c) const {
   if (!(crossing.blur < k_known) || !(is_far || crossing.doubt < k_known * crossing.height))
     return {0, 0, std::numeric_limits<double>::infinity(), 0, true};
   if (is_far) return {crossing.x, crossing.y, crossing.blur, 0, true};
-  const double x = here.x + 0.5 * crossing.x / crossing.height, y = here.y + 0.5 * crossing.y / crossing.height;
+  const auto [x, y] = crossing_point(here, crossing.x, crossing.y, crossing.height);
   const double away = 0.5 / crossing.height;
   const double doubt = 2 * away * (crossing.blur + crossing.doubt / crossing.height) +
                        8 * k_epsilon * (std::fabs(x) + std::fabs(y) + away);
-  return {x, y, doubt, 1, !(crossing.blur < k_good && crossing.doubt < k_good * crossing.height)};
+  return {x, y, doubt, 1, !crossing.is_good()};
 }
 
 Vec2 WeightedMesh::corner(Index triangle) const {
@@ -83,9 +83,7 @@ Vec2 WeightedMesh::corner(Index triangle) const {
   if (!centre.is_rough) return {centre.x, centre.y};
   const Index* const corner = mesh_.corners.data() + 4 * static_cast<std::size_t>(triangle);
   const std::array<Index, 3> sites = from_lowest(corner[0], corner[1], corner[2]);
-  const WeightedPoint2& here = points_[sites[0]];
-  const predicates::CrossingPlace place = predicates::crossing_place(here, {&points_[sites[1]], &points_[sites[2]]});
-  return {here.x + 0.5 * place.x / place.height, here.y + 0.5 * place.y / place.height};
+  return rough_vertex(points_[sites[0]], &points_[sites[1]], &points_[sites[2]]);
 }
 
 WeightedMesh::Way WeightedMesh::way(Index site, const Centre& centre) const {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "saddleback/error.h"
 #include "saddleback/voronoi_2d.h"
 
 #include "voronoi2d/check_options.h"
+#include "voronoi2d/twin_voronoi.h"
 #include "voronoi2d/weighted_cells.h"
 #include "voronoi2d/weighted_sites.h"
 
@@ -100,6 +102,23 @@ class Numberer {
   LargeArray<Index> edge_at_, vertex_at_;
 };
 
+/// None where it takes the processor, which then also says what is wrong.
+std::optional<Voronoi2d> found_on_device(std::span<const Vec2> sites, std::span<const double> weights,
+                                         const Voronoi2dOptions& options, const JobStage& stage) {
+  constexpr std::size_t k_fewest = 3;
+  constexpr double k_largest = 0x1p250;  // as coordinates that need no scale
+  if (options.cuda_devices.empty() || sites.size() < k_fewest || weights.size() != sites.size() ||
+      !std::all_of(weights.begin(), weights.end(), [](double weight) { return std::fabs(weight) < k_largest; }))
+    return std::nullopt;
+  std::optional<Voronoi2d> result = twin_voronoi(sites, weights, options.cuda_devices, options.threads, stage);
+  if (!result) return std::nullopt;
+  result->weights.assign(weights.begin(), weights.end());
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    if (result->cell_places[i] == k_none) result->hidden.push_back(static_cast<Index>(i));
+  stage.update(1);
+  return result;
+}
+
 bool all_equal(std::span<const double> weights) {
   return std::all_of(weights.begin(), weights.end(), [&](double weight) { return weight == weights[0]; });
 }
@@ -112,6 +131,7 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, std::span<const double> weight
   const JobStage stage(job, "Weighted Voronoi diagram");
   if (weights.size() == sites.size() && all_equal(weights) && (weights.empty() || std::isfinite(weights[0])))
     return voronoi_2d(sites, options, stage);
+  if (std::optional<Voronoi2d> found = found_on_device(sites, weights, options, stage)) return std::move(*found);
   WeightedSites ordered = order_weighted_sites(sites, weights, options.threads, stage.part(0, 0.2));
   constexpr Index k_good = 2000;  // few enough for a core's cache
   const Index tile_size = options.circles > 0 ? std::max<Index>(1, ordered.count() / options.circles) : k_good;
