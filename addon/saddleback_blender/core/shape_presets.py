@@ -40,7 +40,7 @@ def _feathers() -> list[ShapeTemplate]:
     root = np.array([(-1.0, 0.018), (-0.9, 0.024), (-0.8, 0.03)])
     x = np.cos(np.linspace(np.pi, 0.0, 27))[1:-1]  # from the root of the vane to its tip
     vane = np.column_stack([0.87 * x + 0.13, 0.27 * (1 - x**2) ** 0.5 * (0.9 + 0.22 * x - 0.12 * x**2)])
-    half = np.concatenate([root, vane[vane[:, 0] > -0.74]])
+    half = np.concatenate([root, vane[vane[:, 0] > -0.72]])  # wider than the quill: all is seen from the middle
     outline = np.concatenate([half * (1, -1), [(1.0, 0.0)], half[::-1]])
     solid = _pillow(outline, 0.05)
     along, across = solid.vertices[:, 0], np.abs(solid.vertices[:, 1])
