@@ -42,9 +42,9 @@ def cover(subject: bpy.types.Object, shapes: str, count: int) -> bpy.types.Objec
         paint = models.paint_curvature(subject)
     started = time.time()
     bpy.ops.saddleback.direction_field(strokes="COLLECTION" if has_strokes else "NONE", make_arrows=False)
-    # More than there is room for: side by side until no more room is found.
+    # Side by side until nothing more fits.
     bpy.ops.saddleback.distribute(
-        shapes=shapes, count=3 * count, size=math.sqrt(0.5 * models.area(subject) / (2.0 * count)), packing=1.0, seed=7,
+        shapes=shapes, maximal=True, size=math.sqrt(0.5 * models.area(subject) / (2.0 * count)), packing=1.0, seed=7,
         size_by_density=True, size_variation=0.12, density_source=paint.source, density_name=paint.name,
         density_contrast=0.7,
     )  # fmt: skip
