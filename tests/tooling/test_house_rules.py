@@ -136,6 +136,8 @@ def test_native_headers_know_neither_python_nor_openmesh():
 
 def test_every_version_is_the_same():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    cuda = tomllib.loads((ROOT / "native/cuda/pyproject.toml").read_text())["project"]
+    assert cuda["version"] == project and cuda["dependencies"] == [f"saddleback=={project}"]
     manifest = tomllib.loads((ADDON / "blender_manifest.toml").read_text())["version"]
     cmake = re.search(r"project\(saddleback VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())
     bl_info = re.search(r'"version": \((\d+), (\d+), (\d+)\)', (ADDON / "__init__.py").read_text())
