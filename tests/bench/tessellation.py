@@ -3,13 +3,16 @@
 Per mesh: CPU seconds an iteration and in all, vertices out, Euler characteristic (of the mesh in brackets), quality of
 the dual mesh, greatest distances between the two surfaces, from the mesh and back, in % of its diagonal. Peers that are
 installed run on the same input: pyacvd (clusters of a subdivided mesh), pymeshlab (geodesic Voronoi relaxation of
-vertices), MeshLib (remesher).
+vertices), MeshLib (remesher), CGAL (isotropic remeshing; `apt-get install libcgal-dev g++`).
 """
 
 from __future__ import annotations
 
 import argparse
 import importlib.util
+import shutil
+import subprocess
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -127,15 +130,53 @@ def dual_of_fans(vertices: np.ndarray, triangles: np.ndarray) -> Arrays:
     return np.asarray(vertices[:cells], dtype=float), np.array(made, dtype=np.int32).reshape(-1, 3)
 
 
+def edge_length(mesh: sb.Mesh, cells: int) -> float:
+    """Of equilateral triangles about so many vertices."""
+    return float(np.sqrt(2 / np.sqrt(3) * mesh.area / cells))
+
+
 def meshlib_cells(mesh: sb.Mesh, cells: int) -> Arrays:
     from meshlib import mrmeshnumpy, mrmeshpy
 
     other = mrmeshnumpy.meshFromFacesVerts(mesh.triangles, mesh.vertices)
     settings = mrmeshpy.RemeshSettings()
-    settings.targetEdgeLen = float(np.sqrt(2 / np.sqrt(3) * mesh.area / cells))
+    settings.targetEdgeLen = edge_length(mesh, cells)
     mrmeshpy.remesh(other, settings)
     other.pack()
     return mrmeshnumpy.getNumpyVerts(other), mrmeshnumpy.getNumpyFaces(other.topology)
+
+
+def cgal_cells(mesh: sb.Mesh, cells: int, program: Path) -> tuple[float, Arrays]:
+    """CGAL has no Python of its own: a small program that times itself."""
+    with tempfile.TemporaryDirectory() as folder:
+        given, made = Path(folder) / "given.bin", Path(folder) / "made.bin"
+        with given.open("wb") as file:
+            np.array([len(mesh.vertices), len(mesh.triangles)], np.int64).tofile(file)
+            mesh.vertices.tofile(file)
+            mesh.triangles.astype(np.int32).tofile(file)
+        length = str(edge_length(mesh, cells))
+        told = subprocess.run([program, given, made, length], check=True, capture_output=True, text=True)
+        with made.open("rb") as file:
+            vertex_count, triangle_count = np.fromfile(file, np.int64, 2)
+            vertices = np.fromfile(file, np.float64, 3 * vertex_count).reshape(-1, 3)
+            triangles = np.fromfile(file, np.int32, 3 * triangle_count).reshape(-1, 3)
+    return float(told.stdout), (vertices, triangles)
+
+
+def cgal(mesh: sb.Mesh, cells: int) -> str:
+    name = "cgal"
+    if shutil.which("g++") is None or not Path("/usr/include/CGAL/Polygon_mesh_processing").is_dir():
+        return f"{name:<34} not installed"
+    source = Path(__file__).with_name("_cgal_remesh.cpp")
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder) / "cgal_remesh"
+        build = ["g++", "-O3", "-DNDEBUG", "-std=c++17", "-w", "-I/usr/include/eigen3"]
+        subprocess.run([*build, str(source), "-o", str(program), "-lgmp", "-lmpfr"], check=True)
+        try:
+            seconds, (vertices, triangles) = cgal_cells(mesh, cells, program)
+        except subprocess.CalledProcessError as error:
+            return f"{name:<34} failed: {error.stderr[:80]}"
+    return row(name, mesh, seconds, 0, vertices, triangles)
 
 
 PEERS: dict[str, Callable[[sb.Mesh, int], Arrays]] = {
@@ -157,6 +198,7 @@ def peers(mesh: sb.Mesh, cells: int) -> Iterator[str]:
             yield f"{name:<34} failed: {str(error)[:80]}"
             continue
         yield row(name, mesh, time.process_time() - start, 0, vertices, triangles)
+    yield cgal(mesh, cells)
 
 
 def main(arguments: list[str]) -> int:
