@@ -40,11 +40,11 @@ def build_graph(mesh: Any, options: dict[str, Any], threads: int, progress: Prog
 
 
 def plane_diagram(sites: Any, weights: Any, threads: int, progress: Progress, job: Any) -> Any:
-    """A Voronoi diagram by the chosen device; of weighted sites by the processor."""
+    """A Voronoi diagram by the chosen device."""
     sb = native.load()
-    if weights is not None:
-        return sb.voronoi_2d(sites, weights=weights, threads=threads, device="cpu", job=job)
-    return by_chosen(lambda device: sb.voronoi_2d(sites, threads=threads, device=device, job=job), progress)
+    return by_chosen(
+        lambda device: sb.voronoi_2d(sites, weights=weights, threads=threads, device=device, job=job), progress
+    )
 
 
 def by_chosen(work: Callable[[str], Any], progress: Progress) -> Any:
