@@ -26,16 +26,14 @@ Diagram find_diagram(const py::object& sites, const py::object& weights, const p
   ClippedCells clipped;
   constexpr std::size_t k_worth_a_device = 50'000;
   const bool has_weights = !radii.empty();
-  Voronoi2d diagram =
-      run_on(device, points.size() >= k_worth_a_device, [&](const std::vector<int>& devices) {
-        options.cuda_devices = devices;
-        return without_gil([&] {
-          Voronoi2d result =
-              has_weights ? voronoi_2d(points, radii, options, token) : voronoi_2d(points, options, token);
-          if (within) clipped = result.clip(*within, options.threads, token);
-          return result;
-        });
-      });
+  Voronoi2d diagram = run_on(device, points.size() >= k_worth_a_device, [&](const std::vector<int>& devices) {
+    options.cuda_devices = devices;
+    return without_gil([&] {
+      Voronoi2d result = has_weights ? voronoi_2d(points, radii, options, token) : voronoi_2d(points, options, token);
+      if (within) clipped = result.clip(*within, options.threads, token);
+      return result;
+    });
+  });
   return {std::move(diagram), within ? py::cast(std::move(clipped)) : py::none()};
 }
 
