@@ -119,3 +119,11 @@ def test_progress_is_near_the_share_of_the_time(long_calls: dict[str, Call], nam
     # Wanted is 0.1, which builds keep; what else there is on a core is uneven, and the best of a few runs is what the
     # code does.
     assert min(furthest_off(long_calls[name]) for _ in range(3)) < (0.1 if name.startswith("build") else 0.25)
+
+
+@pytest.mark.parametrize("arrays", [meshes.needles(4, 60), graded_disk(30, 16), meshes.torus()])
+def test_exact_distances_end_with_all_done(arrays):
+    """What is left of a forecast that was too high is told at the end."""
+    mesh, job = sb.Mesh(*arrays), sb.Job()
+    sb.exact_distances(mesh, np.array([0], np.int32), job=job)
+    assert job.fraction == 1

@@ -75,6 +75,7 @@ void ExactPropagation::run(const JobStage& stage) {
     due_.clear();
   }
   progress_.reset();
+  stage.update(1);
 }
 
 void ExactPropagation::release() {
