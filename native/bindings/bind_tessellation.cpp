@@ -25,6 +25,12 @@ struct VoronoiEdge {
   bool closed;
 };
 
+/// A cache together with the graph (a Python object) that it knows cells of.
+struct GraphCells {
+  CellCache cache;
+  py::object graph;
+};
+
 struct Relaxed {
   CentroidalVoronoi result;
   py::object cells;
@@ -279,11 +285,23 @@ RelaxationWatch* as_watch(const py::object& watch) {
   return &py::cast<RelaxationWatch&>(watch);
 }
 
+/// The cache for a call with a graph. What it knows of another one is forgotten: that graph may go.
+CellCache* as_cache(const py::object& cache, const py::object& graph) {
+  if (cache.is_none()) return nullptr;
+  if (!py::isinstance<GraphCells>(cache))
+    throw InputError(message("cache: wanted a CellCache, got a ", Py_TYPE(cache.ptr())->tp_name));
+  auto& known = py::cast<GraphCells&>(cache);
+  if (!known.graph.is(graph)) known.cache.clear();
+  known.graph = graph;
+  return &known.cache;
+}
+
 Relaxed relax(const py::object& graph, const py::object& sites, const py::object& count, const py::object& density,
               const std::string& method, const py::object& max_iterations, const py::object& tolerance,
               const py::object& seed, const std::string& start, const py::object& starts, const py::object& annealing,
-              const py::object& fixed, const py::object& curves, const py::object& held, bool return_when_cancelled,
-              const py::object& watch, const py::object& threads, const py::object& job) {
+              const py::object& fixed, const py::object& curves, const py::object& held, const py::object& least_move,
+              const py::object& cache, bool return_when_cancelled, const py::object& watch, const py::object& threads,
+              const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   ArrayIn<double> weights;
@@ -301,6 +319,8 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
                                          .tolerance = as_real(tolerance, "tolerance"),
                                          .starts = as_integer(starts, "starts"),
                                          .annealing = as_integer(annealing, "annealing"),
+                                         .least_move = as_real(least_move, "least_move"),
+                                         .cache = as_cache(cache, graph),
                                          .return_when_cancelled = return_when_cancelled,
                                          .watch = as_watch(watch),
                                          .threads = as_integer(threads, "threads")};
@@ -315,6 +335,7 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
     return has_count ? centroidal_voronoi(g, wanted, source, number, options, token)
                      : centroidal_voronoi(g, given, options, token);
   });
+  as_cache(cache, graph);  // another call may have been with another graph meanwhile
   py::object cells = make_cells(std::move(result.cells), graph);
   return {std::move(result), std::move(cells)};
 }
@@ -390,6 +411,12 @@ curves : sequence of SurfaceCurve, optional
     curve are put onto it.
 held : (n,) int array, optional
     With `sites`: the curve that each is held on, -1 for free ones. Held sites begin at the nearest points of their curves.
+least_move : float
+    Sites that an iteration would move by less, in roots of their cells' areas, stay where they are, and cells that
+    neither move nor have neighbours that do are not found anew: where most sites rest, iterations are short. When all
+    would stay, the run ends. 1e-3 is less than one sees.
+cache : CellCache, optional
+    Cells to begin with, and afterwards those of the result.
 return_when_cancelled : bool
     When the job is cancelled during annealing or the iterations, return the best found so far instead of raising.
 watch : RelaxationWatch, optional
@@ -540,6 +567,22 @@ Pass it as ``watch=`` to `centroidal_voronoi`. Coarse cells and annealing, which
       .def(py::init<>())
       .def("latest", &latest_step, "The `RelaxationStep` that was reached, None before the first. O(1).");
 
+  py::class_<GraphCells>(m, "CellCache", py::module_local(),
+                         R"(Keeps the cells that a relaxation ended with, for the next one on the same graph.
+
+Pass it as ``cache=`` to `centroidal_voronoi`. Called again with the same graph and density, that finds anew only cells whose
+sites, or whose neighbours' sites, are elsewhere: move, add or remove a few of the result's sites (the others in the same
+order) and only their surroundings are computed. With ``least_move`` above 0 this goes for every iteration. Other cells stay
+the same to the bit. About 1 KB a vertex, and the graph, are kept.)")
+      .def(py::init<>())
+      .def(
+          "clear",
+          [](GraphCells& known) {
+            known.cache.clear();
+            known.graph = py::none();
+          },
+          "Forgets what is kept.");
+
   py::class_<Relaxed>(m, "CentroidalVoronoi", py::module_local(), "Even cells; made by `centroidal_voronoi`.")
       .def_property_readonly(
           "sites", [](const Relaxed& r) { return r.result.sites; }, "SurfacePoints (n).")
@@ -556,7 +599,7 @@ Pass it as ``watch=`` to `centroidal_voronoi`. Coarse cells and annealing, which
           "converged", [](const Relaxed& r) { return r.result.converged; }, "False when max_iterations ended it.")
       .def_property_readonly(
           "stop_reason", [](const Relaxed& r) { return r.result.stop_reason; },
-          "\"tolerance\", \"no step lowers the energy\", \"max_iterations\" or \"cancelled\".")
+          "\"tolerance\", \"no step lowers the energy\", \"least_move\", \"max_iterations\" or \"cancelled\".")
       .def_property_readonly(
           "held",
           [](const Relaxed& r) {
@@ -576,8 +619,9 @@ Pass it as ``watch=`` to `centroidal_voronoi`. Coarse cells and annealing, which
         py::arg("density") = py::none(), py::arg("method") = "lbfgs", py::arg("max_iterations") = 100,
         py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("start") = "auto",
         py::arg("starts") = 1, py::arg("annealing") = 0, py::arg("fixed") = py::none(), py::arg("curves") = py::none(),
-        py::arg("held") = py::none(), py::arg("return_when_cancelled") = false, py::arg("watch") = py::none(),
-        py::arg("threads") = 0, py::arg("job") = py::none(), k_centroidal_doc);
+        py::arg("held") = py::none(), py::arg("least_move") = 0.0, py::arg("cache") = py::none(),
+        py::arg("return_when_cancelled") = false, py::arg("watch") = py::none(), py::arg("threads") = 0,
+        py::arg("job") = py::none(), k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

@@ -27,6 +27,8 @@ from .settings import DistanceSettings
 from .shell_solid import thicken
 from .surface_places import compact_points, surface_points
 
+UNSEEN = 1e-3  # of a cell's size: sites that would move by less while they are watched rest
+
 
 def new_progress() -> Progress:
     """A progress to give to one run. Raises native.NativeMissingError."""
@@ -221,7 +223,7 @@ def _solve(
             cvt = sb.centroidal_voronoi(
                 graph, density=density, method=settings.method.lower(), max_iterations=iterations, seed=settings.seed,
                 starts=_starts(request), annealing=_annealing(request, iterations),
-                start="auto" if live is None else "sample",
+                start="auto" if live is None else "sample", least_move=0.0 if live is None else UNSEEN,
                 return_when_cancelled=live is not None, watch=watch, threads=request.threads, job=job, **choice,
             )  # fmt: skip
         cells = cvt.cells

@@ -40,6 +40,7 @@ from .base import SurfaceOperator
 ENDS = {
     "tolerance": " until nothing changed",
     "no step lowers the energy": " until nothing got better",
+    "least_move": " until nothing moved",
     "cancelled": " until it was stopped",
 }
 

@@ -4,6 +4,7 @@ from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
     BentCopies,
     Cancelled,
+    CellCache,
     CentroidalVoronoi,
     Certificate,
     Chart,
@@ -99,6 +100,7 @@ from saddleback.sizes import blend_by_distance, density_by_curvature, ramp_by_di
 __all__ = [
     "BentCopies",
     "Cancelled",
+    "CellCache",
     "CentroidalVoronoi",
     "Certificate",
     "Chart",

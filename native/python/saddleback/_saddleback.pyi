@@ -528,6 +528,11 @@ class RelaxationWatch:
     def __init__(self) -> None: ...
     def latest(self) -> RelaxationStep | None: ...
 
+@final
+class CellCache:
+    def __init__(self) -> None: ...
+    def clear(self) -> None: ...
+
 def centroidal_voronoi(
     graph: SaddleVertexGraph,
     sites: _Points | None = None,
@@ -544,6 +549,8 @@ def centroidal_voronoi(
     fixed: ArrayLike | None = None,
     curves: Sequence[SurfaceCurve] | None = None,
     held: ArrayLike | None = None,
+    least_move: SupportsFloat = 0.0,
+    cache: CellCache | None = None,
     return_when_cancelled: bool = False,
     watch: RelaxationWatch | None = None,
     threads: SupportsIndex = 0,

@@ -100,14 +100,106 @@ CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings,
 
 CellClaims::~CellClaims() = default;
 
-void CellClaims::find(const SurfacePoints& sites, std::span<const double> reaches, const JobStage& stage) {
-  maps_.label_nodes(sites, reaches, threads_, stage.part(0, 0.6));
-  reach_.assign(site_count(), 0);
+void CellClaims::find(const SurfacePoints& sites, const JobStage& stage) {
+  if (!std::exchange(is_complete_, false)) {
+    find_once(sites, {}, {}, stage);
+  } else {
+    find_once(sites, reaches(sites), sites_that_moved(sites), stage);
+  }
+  is_complete_ = true;
+  // Where most sites move they move little; where few do, cells beside them may grow much.
+  if (maps_.keeps_any()) look_farther(stage);
+  stage.update(1);
+}
+
+void CellClaims::look_farther(const JobStage& stage) {
+  std::vector<Index> sites;
+  for (Index site = 0; site < site_count(); ++site)
+    if (reach_[site] > maps_.limit(site)) sites.push_back(site);
+  if (sites.empty()) return;
+  is_complete_ = false;
+  const std::vector<std::uint8_t> as_before = std::move(is_as_before_);
+  const std::vector<double> without_end(site_count(), std::numeric_limits<double>::infinity());
+  find_once(SurfacePoints(maps_.sites()), without_end, std::move(sites), JobStage(stage));
+  for (Index site = 0; site < site_count(); ++site) is_as_before_[site] &= as_before[site];
+  is_complete_ = true;
+}
+
+/// `others` as for SiteMaps.
+void CellClaims::find_once(const SurfacePoints& sites, std::span<const double> reaches,
+                           const std::optional<std::vector<Index>>& others, const JobStage& stage) {
+  maps_.label_nodes(sites, reaches, others, threads_, stage.part(0, 0.6));
+  if (maps_.keeps_any()) remember();
+  reach_.resize(site_count());
+  has_laid_.resize(site_count());
+  is_kept_.resize(site_count());
+  for (Index site = 0; site < site_count(); ++site) {
+    const bool had_laid = std::exchange(has_laid_[site], 0) != 0;
+    is_kept_[site] = maps_.is_kept(site) && !had_laid;
+    if (!is_kept(site)) reach_[site] = 0;
+  }
   find_mixed_faces();
   claim_by_cells(stage);
+  if (maps_.keeps_any()) keep_claims();
   stage.update(0.85);
   spread(sites, stage);
-  stage.update(1);
+  compare();
+}
+
+std::vector<Index> CellClaims::sites_that_moved(const SurfacePoints& sites) const {
+  std::vector<Index> moved;
+  for (Index site = 0; site < static_cast<Index>(sites.size()); ++site) {
+    const bool stays = site < site_count() && maps_.sites()[site].face == sites[site].face &&
+                       maps_.sites()[site].barycentric == sites[site].barycentric;
+    if (!stays) moved.push_back(site);
+  }
+  return moved;
+}
+
+/// How far sites may own something: as far as before, and as they have moved.
+std::vector<double> CellClaims::reaches(const SurfacePoints& sites) const {
+  const Mesh& mesh = graph_.mesh();
+  std::vector<double> reaches(sites.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < std::min(sites.size(), reach_.size()); ++i) {
+    if (reach_[i] > 0) reaches[i] = reach_[i] + (position(mesh, sites[i]) - position(mesh, maps_.sites()[i])).norm();
+  }
+  return reaches;
+}
+
+/// The claims of kept cells are looked up; all others are made anew.
+void CellClaims::remember() {
+  before_.shared_index.swap(shared_index_);
+  before_.rows.swap(rows_);
+  before_.claims.swap(claims_);
+}
+
+void CellClaims::renumber(std::span<const Index> before) {
+  std::vector<Index> now(site_count(), k_none);
+  std::vector<double> reach(before.size(), 0);
+  std::vector<std::uint8_t> has_laid(before.size(), 0);
+  for (Index site = 0; site < static_cast<Index>(before.size()); ++site) {
+    const Index old = before[site];
+    if (old == k_none) continue;
+    now[old] = site;
+    reach[site] = reach_[old];
+    has_laid[site] = has_laid_[old];
+  }
+  for (FaceClaim& claim : claims_) {
+    if (claim.site != k_none) claim.site = now[claim.site];
+  }
+  reach_.swap(reach);
+  has_laid_.swap(has_laid);
+  maps_.renumber(before);
+}
+
+CellClaims::Stretch CellClaims::shared_within(Index first_face, Index end_face) const {
+  const auto mixed_end = rows_.begin() + mixed_count_;
+  const auto below = [](const Row& row, Index face) { return row.face < face; };
+  const auto number = [&](auto begin, auto end, Index face) {
+    return static_cast<Index>(std::lower_bound(begin, end, face, below) - rows_.begin());
+  };
+  return {number(rows_.begin(), mixed_end, first_face), number(rows_.begin(), mixed_end, end_face),
+          number(mixed_end, rows_.end(), first_face), number(mixed_end, rows_.end(), end_face)};
 }
 
 /// Faces whose corners differ in their labels, each with room for as many claims as there are labels.
@@ -140,6 +232,7 @@ void CellClaims::find_mixed_faces() {
     all = {all.rows + sum.rows, all.claims + sum.claims};
   }
   rows_.resize(all.rows);
+  mixed_count_ = all.rows;
   at_border_.assign(graph_.mesh().vertex_count(), 0);
   in_stretches([&](Index face, Sum& next) {
     const Index labels = std::exchange(shared_index_[face], k_none);
@@ -162,10 +255,56 @@ void CellClaims::claim_by_cells(const JobStage& stage) {
   parallel_for(site_count(), threads_, 16, [&](Index i, int thread) {
     stage.check();
     const Index site = maps_.sites_along_curve()[i];
+    if (is_kept(site)) return;
     maps_.place_cell(site, workers_[thread].scratch);
     for (const Index node : maps_.nodes(site)) {
       if (is_at_border(node)) claim_from(node, site, workers_[thread]);
     }
+  });
+}
+
+/// The claims of kept cells on faces whose corners' labels differ.
+void CellClaims::keep_claims() {
+  parallel_for(mixed_count_, threads_, 512, [&](Index shared, int) {
+    const Row& row = rows_[shared];
+    std::array<Index, 3> labels;
+    std::ranges::transform(rings_.face(row.face).nodes, labels.begin(), [&](Index node) { return maps_.label(node); });
+    std::ranges::sort(labels);
+    const auto rest = std::ranges::unique(labels);
+    FaceClaim* claim = &claims_[row.first];
+    for (auto label = labels.begin(); label != rest.begin(); ++label, ++claim)
+      if (is_kept(*label)) *claim = *kept_claim(row.face, *label);
+  });
+}
+
+/// Null where there is none.
+const FaceClaim* CellClaims::kept_claim(Index face, Index site) const {
+  if (!is_kept(site)) return nullptr;
+  const auto claims = before_.on(face);
+  const auto found = std::ranges::find(claims, site, &FaceClaim::site);
+  return found != claims.end() ? &*found : nullptr;
+}
+
+/// Which cells have the parts of faces that they had.
+void CellClaims::compare() {
+  is_as_before_.assign(site_count(), maps_.keeps_any());
+  if (!maps_.keeps_any()) return;
+  const auto differ = [&](std::span<const FaceClaim> claims) {
+    for (const FaceClaim& claim : claims)
+      if (claim.site != k_none) std::atomic_ref(is_as_before_[claim.site]).store(0, std::memory_order_relaxed);
+  };
+  for (Index site = 0; site < site_count(); ++site)
+    if (!is_kept(site)) is_as_before_[site] = 0;
+  parallel_for(shared_count(), threads_, 512, [&](Index shared, int) {
+    const auto now = claims(shared), then = before_.on(face(shared));
+    const auto same = [&](const FaceClaim& a, const FaceClaim& b) { return a.site == b.site && is_kept(a.site); };
+    if (std::ranges::equal(now, then, same)) return;
+    differ(now);
+    differ(then);
+  });
+  parallel_for(static_cast<Index>(before_.rows.size()), threads_, 512, [&](Index row, int) {
+    const Index face = before_.rows[row].face;
+    if (shared_index_[face] == k_none) differ(before_.on(face));
   });
 }
 
@@ -204,6 +343,10 @@ std::vector<CellClaims::Wish> CellClaims::wishes_of_sites(const SurfacePoints& s
 
 /// False where corners are left to be laid down.
 bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& worker, FaceClaim& claim) const {
+  if (const FaceClaim* const kept = kept_claim(face, site)) {
+    claim = *kept;
+    return true;
+  }
   const auto& nodes = rings_.face(face).nodes;
   claim = {face, site, {}};
   bool complete = true;
@@ -245,7 +388,9 @@ void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid) {
     complete[i] = make_claim(wishes[i].face, wishes[i].site, laid, workers_[thread], granted[i]);
   });
   for (Index i = 0; i < count; ++i) {
-    if (!complete[i] && wishes[i].side != k_none) lay_corners(wishes[i].side, laid, granted[i]);
+    if (complete[i]) continue;
+    has_laid_[wishes[i].site] = 1;
+    if (wishes[i].side != k_none) lay_corners(wishes[i].side, laid, granted[i]);
   }
   for (const FaceClaim& claim : granted) {
     Index& last = late_index_[claim.face];
@@ -292,6 +437,7 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
 
 /// Faces with late claims get new rows behind the others.
 void CellClaims::merge_late() {
+  std::ranges::sort(late_faces_);
   Index end = claim_count();
   std::vector<Row> late_rows;
   for (const Index face : late_faces_) {

@@ -2,6 +2,7 @@
 // Which sites may own a part of which face.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -64,16 +65,27 @@ class FaceClaims {
 ///
 /// Claims on a face start with the labels of its corners and the sites that lie in it; a site that is nearest on a part
 /// of an edge claims the face beyond, too, until nothing changes. Thus cells smaller than a face, or without any
-/// vertex, are found: a cell is connected, and its site's own face begins the walk. Keeps its memory for other sites.
+/// vertex, are found: a cell is connected, and its site's own face begins the walk.
+///
+/// Keeps its memory for other sites, and the cells whose own sites and borders are as they were: where few sites move,
+/// few cells are found anew, and the others are the same to the bit.
 class CellClaims {
  public:
   /// Nothing is claimed before `find`. Both must outlive the claims.
   CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads);
   ~CellClaims();
 
-  /// The sites must have passed check_sites. `reaches` as for SiteMaps. \throw Cancelled, and then holds nothing of
-  /// use.
-  void find(const SurfacePoints& sites, std::span<const double> reaches, const JobStage& stage);
+  /// The sites must have passed check_sites. \throw Cancelled, and then holds nothing of use.
+  void find(const SurfacePoints& sites, const JobStage& stage);
+  /// Finds cells that have grown beyond what their sites were asked for anew: then they are as if those had been asked
+  /// without end. Of a `find` in which most sites moved; others do so themselves. \throw Cancelled, as `find`.
+  void look_farther(const JobStage& stage);
+  /// The next `find` keeps nothing.
+  void forget() { is_complete_ = false; }
+  /// As SiteMaps::renumber. The next `find` must be of as many sites.
+  void renumber(std::span<const Index> before);
+  /// Whether the last `find` left the cell, the parts of faces that it owns and how it sees them, as it was.
+  bool is_as_before(Index site) const { return is_as_before_[site] != 0; }
 
   const SiteMaps& maps() const { return maps_; }
   const VertexRings& rings() const { return rings_; }
@@ -93,8 +105,12 @@ class CellClaims {
   Index first_claim(Index shared) const { return rows_[shared].first; }
   /// Whether a face about the node is shared.
   bool is_at_border(Index node) const { return at_border_[node] != 0; }
-  /// How far the site sees the farthest corner that it claims; 0 where it claims none.
-  double reach(Index site) const { return reach_[site]; }
+  /// The shared faces from one face up to another, by their numbers: in order, those that labels made shared, then
+  /// those that cells without a vertex of theirs cross.
+  struct Stretch {
+    Index first, last, first_late, last_late;
+  };
+  Stretch shared_within(Index first_face, Index end_face) const;
 
  private:
   struct Worker;
@@ -107,7 +123,27 @@ class CellClaims {
     auto operator<=>(const Wish&) const = default;
   };
   struct Laid;
+  /// What is looked up of the cells before.
+  struct Before {
+    std::vector<Index> shared_index;
+    std::vector<Row> rows;
+    std::vector<FaceClaim> claims;
+    std::span<const FaceClaim> on(Index face) const {
+      if (shared_index.empty() || shared_index[face] == k_none) return {};
+      const Row& row = rows[shared_index[face]];
+      return {claims.data() + row.first, static_cast<std::size_t>(row.count)};
+    }
+  };
+  void find_once(const SurfacePoints& sites, std::span<const double> reaches,
+                 const std::optional<std::vector<Index>>& others, const JobStage& stage);
+  std::vector<double> reaches(const SurfacePoints& sites) const;
+  std::vector<Index> sites_that_moved(const SurfacePoints& sites) const;
+  bool is_kept(Index site) const { return is_kept_[site] != 0; }
+  void remember();
   void find_mixed_faces();
+  void keep_claims();
+  const FaceClaim* kept_claim(Index face, Index site) const;
+  void compare();
   void claim_by_cells(const JobStage& stage);
   void claim_from(Index node, Index site, Worker& worker);
   std::vector<Wish> wishes_of_sites(const SurfacePoints& sites) const;
@@ -133,9 +169,15 @@ class CellClaims {
   std::vector<Worker> workers_;
   std::vector<Index> shared_index_;  ///< by face
   std::vector<Row> rows_;
+  Index mixed_count_ = 0;  ///< of rows_, those of faces whose corners' labels differ
   std::vector<FaceClaim> claims_;
   std::vector<std::uint8_t> at_border_;  ///< by node
-  std::vector<double> reach_;            ///< by site
+  std::vector<double> reach_;  ///< by site: how far it sees the farthest corner that it claims; 0 where it claims none
+  std::vector<std::uint8_t> has_laid_;      ///< by site: corners were laid for it; who asks first has a say
+  std::vector<std::uint8_t> is_as_before_;  ///< by site
+  std::vector<std::uint8_t> is_kept_;       ///< by site: how it sees corners is as it was
+  bool is_complete_ = false;
+  Before before_;
   // Found while claims spread:
   struct Late {
     FaceClaim claim;

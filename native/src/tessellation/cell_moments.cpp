@@ -329,16 +329,18 @@ CellMoments CellIntegrals::whole_faces(const CellClaims& claims, Index site) con
   return sum;
 }
 
-std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, const JobStage& stage) {
-  std::vector<CellMoments> cells(claims.site_count());
+std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::vector<CellMoments> before,
+                                                const JobStage& stage) {
+  std::vector<CellMoments> cells = std::move(before);
+  cells.resize(claims.site_count());
   parallel_for(claims.site_count(), threads_, 16, [&](Index i, int) {
     stage.check();
     const Index site = claims.maps().sites_along_curve()[i];
-    cells[site] = whole_faces(claims, site);
+    if (!claims.is_as_before(site)) cells[site] = whole_faces(claims, site);
   });
-  // By stretches of a fixed size: sums do not depend on the number of threads.
-  constexpr Index k_stretch = 2048;
-  const Index count = claims.shared_count(), stretches = (count + k_stretch - 1) / k_stretch;
+  // By stretches of faces that are always the same: sums depend neither on the number of threads nor on other cells.
+  constexpr Index k_stretch = 4096;
+  const Index stretches = (rings_.face_count() + k_stretch - 1) / k_stretch;
   struct Worker {
     SharedFace face;
     StretchSums sums;
@@ -349,16 +351,27 @@ std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, const 
     stage.check();
     auto& [shared_face, stretch_sums] = workers[thread];
     stretch_sums.begin(claims.site_count());
-    for (Index shared = stretch * k_stretch; shared < std::min(count, (stretch + 1) * k_stretch); ++shared) {
-      const Index face = claims.face(shared);
-      const FaceShape shape(faces_[face], density_.empty() ? nullptr : &density_[face]);
-      shared_face.integrate(shape, claims.claims(shared),
-                            [&](Index site, const CellMoments& part) { stretch_sums.add(site, part); });
-    }
+    const auto integrate = [&](Index first, Index last) {
+      for (Index shared = first; shared < last; ++shared) {
+        const auto rivals = claims.claims(shared);
+        if (std::ranges::all_of(rivals, [&](const FaceClaim& claim) { return claims.is_as_before(claim.site); }))
+          continue;
+        const Index face = claims.face(shared);
+        const FaceShape shape(faces_[face], density_.empty() ? nullptr : &density_[face]);
+        shared_face.integrate(shape, rivals,
+                              [&](Index site, const CellMoments& part) { stretch_sums.add(site, part); });
+      }
+    };
+    const CellClaims::Stretch within =
+        claims.shared_within(stretch * k_stretch, std::min(rings_.face_count(), (stretch + 1) * k_stretch));
+    integrate(within.first, within.last);
+    integrate(within.first_late, within.last_late);
     sums[stretch] = stretch_sums.entries();
   });
-  for (const auto& entries : sums)
-    for (const auto& [site, part] : entries) cells[site] += part;
+  for (const auto& entries : sums) {
+    for (const auto& [site, part] : entries)
+      if (!claims.is_as_before(site)) cells[site] += part;
+  }
   return cells;
 }
 

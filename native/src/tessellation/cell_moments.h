@@ -24,8 +24,9 @@ class CellIntegrals {
   CellIntegrals(const SaddleVertexGraph& graph, const VertexRings& rings, std::span<const double> density, int threads);
 
   /// By cell. Integrals of density^2 times squared distance (both quadratic in a flat face) are exact. The same for any
-  /// number of threads. \throw Cancelled. O(V + pieces).
-  std::vector<CellMoments> moments(const CellClaims& claims, const JobStage& stage);
+  /// number of threads. `before`: those of the claims before their last `find`; cells that are as before keep theirs.
+  /// \throw Cancelled. O(V + pieces), of the other cells.
+  std::vector<CellMoments> moments(const CellClaims& claims, std::vector<CellMoments> before, const JobStage& stage);
 
   /// A flat face. Integrals over all of it: density^2 with the barycentric coordinates, and with what squared distances
   /// fall short of their corners' interpolation.

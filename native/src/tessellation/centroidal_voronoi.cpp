@@ -21,6 +21,7 @@ void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
     throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
   if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
   if (options.starts < 1) throw InputError(message("starts: wanted 1 or more, got ", options.starts));
+  if (!(options.least_move >= 0)) throw InputError(message("least_move: wanted 0 or more, got ", options.least_move));
   if (options.annealing < 0) throw InputError(message("annealing: wanted 0 or more, got ", options.annealing));
   check_density(mesh, options.density);
 }
@@ -75,7 +76,7 @@ void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, cons
                    message("Relaxing cells, step ", result.iterations + 1, " of ", options.max_iterations));
     if (!relaxation.advance(step)) {
       result.converged = true;
-      result.stop_reason = "no step lowers the energy";
+      result.stop_reason = relaxation.is_at_rest() ? "least_move" : "no step lowers the energy";
       return;
     }
     const double energy = relaxation.state().energy, fall = result.energy.back() - energy;
@@ -205,7 +206,7 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   const JobStage last = options.return_when_cancelled ? JobStage() : stage;
   result.sites = best.sites;
   result.held.assign(options.held.begin(), options.held.end());
-  const ClaimsOfCells claims(*best.claims);
+  const ClaimsOfCells claims(relaxation.cells(last));
   result.cells = make_diagram(CellComplex(claims, options.threads, last), best.sites, last);
   constexpr double k_hexagon = 5 / (36 * 1.7320508075688772);
   const double mass = relaxation.mass();

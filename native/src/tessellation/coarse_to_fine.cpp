@@ -95,6 +95,7 @@ SurfacePoints start(const SaddleVertexGraph& graph, Index count, const Centroida
   rough.tolerance = std::max(options.tolerance, k_coarse_tolerance);
   rough.return_when_cancelled = false;
   rough.watch = nullptr;
+  rough.cache = nullptr;
   const SurfacePoints sites = start(graph, coarse, options, seed, stage.part(0, 0.5));
   // Round thin parts coarse cells meet themselves or each other twice; where many do, they are no start for others.
   CentroidalVoronoiOptions first = rough;

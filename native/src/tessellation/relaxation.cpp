@@ -10,13 +10,13 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
                        const CentroidalVoronoiOptions& options, const JobStage& stage)
     : graph_(graph),
       options_(options),
-      rings_(graph, options.threads),
-      integrals_(graph, rings_, options.density, options.threads),
+      cells_(options.cache, graph, options.density, options.threads),
       is_fixed_(sites.size(), 0),
       held_(graph.mesh(), options.curves, options.held, sites.size()) {
   for (const Index site : options.fixed) is_fixed_[site] = 1;
   SurfacePoints start = sites;
   std::vector<double> along = held_.bring(start);
+  cells_->match(start);
   state_ = evaluate(std::move(start), std::move(along), stage);
   while (revive_empty_cells(stage)) {}
 }
@@ -25,31 +25,19 @@ RelaxationState Relaxation::evaluate(SurfacePoints sites, std::vector<double> al
   RelaxationState state;
   state.sites = std::move(sites);
   state.along = std::move(along);
-  state.claims = spare_ ? std::move(spare_) : std::make_unique<CellClaims>(graph_, rings_, options_.threads);
-  state.claims->find(state.sites, reaches(state.sites), stage.part(0, 0.8));
-  state.moments = integrals_.moments(*state.claims, stage);
+  state.moments = cells_->find(state.sites, stage);
   for (const CellMoments& cell : state.moments) state.energy += cell.energy;
   return state;
 }
 
-/// Takes the better of two states; the other's memory is for the next.
-void Relaxation::accept(RelaxationState next) {
-  spare_ = std::move(state_.claims);
-  state_ = std::move(next);
-}
-
-/// How far sites may own something: somewhat farther than before, and than they have moved. None for the first cells.
-std::vector<double> Relaxation::reaches(const SurfacePoints& sites) const {
-  constexpr double k_growth = 1.1;
-  if (!state_.claims) return {};
-  const Mesh& mesh = graph_.mesh();
-  std::vector<double> reaches(sites.size());
-  for (Index i = 0; i < static_cast<Index>(sites.size()); ++i) {
-    const double reach = state_.claims->reach(i);
-    const double moved = (position(mesh, sites[i]) - position(mesh, state_.sites[i])).norm();
-    reaches[i] = reach > 0 ? k_growth * (reach + moved) : std::numeric_limits<double>::infinity();
-  }
-  return reaches;
+const CellClaims& Relaxation::cells(const JobStage& stage) {
+  const SurfacePoints& last = cells_->claims().maps().sites();
+  const auto same = [](const SurfacePoint& a, const SurfacePoint& b) {
+    return a.face == b.face && a.barycentric == b.barycentric;
+  };
+  if (!cells_->is_whole() || !std::ranges::equal(last, state_.sites, same)) cells_->find(state_.sites, stage);
+  cells_->look_farther(stage);
+  return cells_->claims();
 }
 
 double Relaxation::mass() const {
@@ -79,21 +67,19 @@ bool Relaxation::revive_empty_cells(const JobStage& stage) {
     const double of_a = state_.moments[a].energy, of_b = state_.moments[b].energy;
     return of_a != of_b ? of_a > of_b : a < b;
   });
+  const CellClaims& known = cells(stage);
   SurfacePoints sites = state_.sites;
-  for (std::size_t i = 0; i < std::min(empty.size(), rich.size()); ++i) sites[empty[i]] = far_place(rich[i]);
+  for (std::size_t i = 0; i < std::min(empty.size(), rich.size()); ++i) sites[empty[i]] = far_place(known, rich[i]);
   RelaxationState next = evaluate(std::move(sites), state_.along, stage);
-  if (!(next.energy < state_.energy)) {  // nothing is far enough to be told apart
-    spare_ = std::move(next.claims);
-    return false;
-  }
-  accept(std::move(next));
+  if (!(next.energy < state_.energy)) return false;  // nothing is far enough to be told apart
+  state_ = std::move(next);
   memory_.forget();
   return true;
 }
 
 /// Far from the site, in its cell: the last of its vertices, else on the way to a corner of its face.
-SurfacePoint Relaxation::far_place(Index site) const {
-  const auto nodes = state_.claims->maps().nodes(site);
+SurfacePoint Relaxation::far_place(const CellClaims& cells, Index site) const {
+  const auto nodes = cells.maps().nodes(site);
   if (!nodes.empty()) {
     const Index farthest = graph_.vertex_of(nodes.back());
     if (vertex_at(graph_.mesh(), state_.sites[site]) != farthest) return at_vertex(graph_.mesh(), farthest);
@@ -106,6 +92,7 @@ SurfacePoint Relaxation::far_place(Index site) const {
 
 bool Relaxation::advance(const JobStage& stage) {
   const TangentField slope = gradient(state_);
+  is_at_rest_ = false;
   if (options_.method == RelaxationMethod::lbfgs && !memory_.empty()) {
     if (advance_by(quasi_newton_direction(slope), slope, stage)) return true;
     memory_.forget();
@@ -114,9 +101,10 @@ bool Relaxation::advance(const JobStage& stage) {
 }
 
 /// Takes the first of shorter and shorter steps that lowers the energy by a share of what its slope promises.
-bool Relaxation::advance_by(const TangentField& direction, const TangentField& slope, const JobStage& stage) {
+bool Relaxation::advance_by(TangentField direction, const TangentField& slope, const JobStage& stage) {
   constexpr double k_least_share = 1e-4;
   constexpr int k_most_halvings = 6;
+  leave_at_rest(direction);
   const double promise = dot(slope, direction);
   if (!(promise < 0)) return false;
   double length = 1;
@@ -126,17 +114,14 @@ bool Relaxation::advance_by(const TangentField& direction, const TangentField& s
     Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads);
     std::vector<double> along = held_.move(state_.along, state_.sites, steps, moved);
     RelaxationState next = evaluate(moved.sites, std::move(along), stage);
-    if (!(next.energy <= state_.energy + k_least_share * length * promise)) {
-      spare_ = std::move(next.claims);
-      continue;
-    }
+    if (!(next.energy <= state_.energy + k_least_share * length * promise)) continue;
     if (options_.method == RelaxationMethod::lbfgs) {
       TangentField before = slope, change = gradient(next);
       transport(moved, before);
       for (std::size_t i = 0; i < change.size(); ++i) change[i] -= before[i];
       memory_.add(moved, std::move(change));
     }
-    accept(std::move(next));
+    state_ = std::move(next);
     revive_empty_cells(stage);
     return true;
   }
@@ -153,7 +138,7 @@ TangentField Relaxation::go(TangentField steps, const JobStage& stage) {
 }
 
 void Relaxation::go_to(SurfacePoints sites, std::vector<double> along, const JobStage& stage) {
-  accept(evaluate(std::move(sites), std::move(along), stage));
+  state_ = evaluate(std::move(sites), std::move(along), stage);
   memory_.forget();
   revive_empty_cells(stage);
 }
@@ -201,6 +186,18 @@ void Relaxation::shorten(TangentField& direction) const {
     if (!(cell.mass > 0)) continue;
     const double radius = std::sqrt(2 * std::max(cell.energy, 0.0) / cell.mass), length = direction[i].norm();
     if (length > radius) direction[i] *= radius / length;
+  }
+}
+
+/// Takes out the steps that are shorter than least_move.
+void Relaxation::leave_at_rest(TangentField& direction) {
+  if (options_.least_move == 0) return;
+  is_at_rest_ = true;
+  for (std::size_t i = 0; i < direction.size(); ++i) {
+    if (direction[i].norm() < options_.least_move * std::sqrt(state_.moments[i].area))
+      direction[i].setZero();
+    else
+      is_at_rest_ = false;
   }
 }
 

@@ -1,24 +1,21 @@
 #pragma once
 // Sites that move towards the middles of their cells, step by step.
 
-#include <memory>
 #include <vector>
 
 #include "saddleback/centroidal_voronoi.h"
 #include "saddleback/job.h"
 
-#include "tessellation/cell_claims.h"
-#include "tessellation/cell_moments.h"
+#include "tessellation/cell_cache.h"
 #include "tessellation/held_sites.h"
 #include "tessellation/limited_memory.h"
 
 namespace saddleback {
 
-/// Sites with their cells and what is needed to move on.
+/// Sites with what is needed to move on.
 struct RelaxationState {
   SurfacePoints sites;
   std::vector<double> along;  ///< of held sites, see HeldSites
-  std::unique_ptr<CellClaims> claims;
   std::vector<CellMoments> moments;
   double energy = 0;
 };
@@ -29,6 +26,10 @@ class Relaxation {
   Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& sites, const CentroidalVoronoiOptions& options,
              const JobStage& stage);
   const RelaxationState& state() const { return state_; }
+  /// Of the state's sites: found again where others were looked at last. \throw Cancelled.
+  const CellClaims& cells(const JobStage& stage);
+  /// Whether the last step that was refused would have moved no site by least_move.
+  bool is_at_rest() const { return is_at_rest_; }
   /// The integral of the density.
   double mass() const;
 
@@ -44,26 +45,24 @@ class Relaxation {
   void go_to(SurfacePoints sites, std::vector<double> along, const JobStage& stage);
 
  private:
-  std::vector<double> reaches(const SurfacePoints& sites) const;
   RelaxationState evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage);
-  void accept(RelaxationState next);
   bool revive_empty_cells(const JobStage& stage);
-  SurfacePoint far_place(Index site) const;
-  bool advance_by(const TangentField& direction, const TangentField& gradient, const JobStage& stage);
+  SurfacePoint far_place(const CellClaims& cells, Index site) const;
+  bool advance_by(TangentField direction, const TangentField& gradient, const JobStage& stage);
   TangentField gradient(const RelaxationState& state) const;
   TangentField quasi_newton_direction(const TangentField& gradient) const;
   void hold(const RelaxationState& state, TangentField& field) const;
   void shorten(TangentField& direction) const;
+  void leave_at_rest(TangentField& direction);
 
   const SaddleVertexGraph& graph_;
   const CentroidalVoronoiOptions& options_;
-  const VertexRings rings_;
-  CellIntegrals integrals_;
-  std::unique_ptr<CellClaims> spare_;  ///< memory for the next cells
+  const BorrowedCells cells_;  ///< of the sites that were looked at last
   std::vector<std::uint8_t> is_fixed_;
   const HeldSites held_;
   RelaxationState state_;
   LimitedMemory memory_;
+  bool is_at_rest_ = false;
 };
 
 }  // namespace saddleback

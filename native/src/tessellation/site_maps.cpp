@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "geodesics/parted_search.h"
 #include "geodesics/planar.h"
 #include "support/parallel.h"
+#include "tessellation/relabelling.h"
 #include "tessellation/seen_between.h"
 
 namespace saddleback {
@@ -67,11 +70,32 @@ void SiteMaps::Scratch::forget() {
   std::ranges::fill(beside, Beside());
 }
 
-void SiteMaps::label_nodes(const SurfacePoints& sites, std::span<const double> reaches, int threads,
-                           const JobStage& stage) {
+void SiteMaps::label_nodes(const SurfacePoints& sites, std::span<const double> reaches,
+                           const std::optional<std::vector<Index>>& others, int threads, const JobStage& stage) {
+  keeps_any_ = others && 2 * others->size() <= sites.size();  // else labels are found as soon from the start
   sites_ = sites;
   order_sites();
-  make_fans(reaches, threads, stage.part(0, 0.5));
+  std::vector<Index> anew;
+  if (keeps_any_) {
+    anew = *others;
+  } else {
+    anew.resize(sites.size());
+    std::iota(anew.begin(), anew.end(), 0);
+    fans_.resize(sites.size());
+    limits_.resize(sites.size());
+  }
+  is_kept_.assign(sites.size(), keeps_any_);
+  for (const Index site : anew) is_kept_[site] = 0;
+  make_fans(anew, reaches, threads, stage.part(0, 0.5));
+  if (keeps_any_) {
+    label_again(anew, stage.part(0.5, 1));
+  } else {
+    label_all(threads, stage.part(0.5, 1));
+  }
+}
+
+void SiteMaps::label_all(int threads, const JobStage& stage) {
+  bare_.clear();
   const auto seeds_of = [&](Index first, Index last, std::vector<NodeSeed>& seeds) {
     const auto add = [&](Index node, Index site, double distance) {
       if (node >= first && node < last) seeds.push_back({node, site, distance});
@@ -82,21 +106,98 @@ void SiteMaps::label_nodes(const SurfacePoints& sites, std::span<const double> r
       for (const SeenNode& seen : fan.seen) add(seen.node, site, seen.length);
     }
   };
-  nearest_sources(graph_, seeds_of, threads, stage.part(0.5, 1), distance_, label_);
+  nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
   group_nodes();
 }
 
-void SiteMaps::make_fans(std::span<const double> reaches, int threads, const JobStage& stage) {
-  fans_.resize(sites_.size());
-  std::vector<Index> at_vertices;
+/// What was nearest to sites that have moved, and what is nearer to them now.
+void SiteMaps::label_again(std::span<const Index> moved, const JobStage& stage) {
+  std::vector<Index> loose = std::exchange(bare_, {});
+  for (const Index site : moved) {
+    const auto own = nodes(site);
+    loose.insert(loose.end(), own.begin(), own.end());
+  }
+  Relabelling search(graph_, distance_, label_);
+  search.loosen(loose);
   for (Index site = 0; site < site_count(); ++site) {
+    const Fan& fan = fans_[site];
+    if (fan.centre != k_none) search.offer(fan.centre, site, 0);
+    for (const SeenNode& seen : fan.seen) search.offer(seen.node, site, seen.length);
+  }
+  std::vector<std::uint8_t> moves(site_count(), 0);  // its nodes, away or here
+  for (const Index site : moved) moves[site] = 1;
+  std::vector<Index> moving = std::move(loose);
+  search.run(stage, [&](Index site) {
+    if (std::exchange(moves[site], 1) != 0) return;
+    const auto own = nodes(site);
+    moving.insert(moving.end(), own.begin(), own.end());
+  });
+  for (Index site = 0; site < site_count(); ++site) is_kept_[site] = moves[site] == 0;
+  group_again(moving);
+}
+
+/// All nodes of cells that are made anew are `moving`.
+void SiteMaps::group_again(std::span<const Index> moving) {
+  std::vector<Index> first(site_count() + 1, 0), grouped(label_.size());
+  for (const Index node : moving) ++first[label_[node] + 1];
+  for (Index site = 0; site < site_count(); ++site)
+    first[site + 1] = first[site] + (is_kept(site) ? static_cast<Index>(nodes(site).size()) : first[site + 1]);
+  for (Index site = 0; site < site_count(); ++site)
+    if (is_kept(site)) std::ranges::copy(nodes(site), grouped.begin() + first[site]);
+  std::vector<Index> cursor(first.begin(), first.end() - 1);
+  for (const Index node : moving) grouped[cursor[label_[node]]++] = node;
+  first_node_.swap(first);
+  nodes_.swap(grouped);
+}
+
+void SiteMaps::renumber(std::span<const Index> before) {
+  const auto count = static_cast<Index>(before.size());
+  std::vector<Index> now(sites_.size(), k_none), first{0}, grouped;
+  SurfacePoints sites(count, {k_none, Vec3::Zero()});
+  std::vector<Fan> fans(count);
+  std::vector<double> limits(count, 0);
+  grouped.reserve(nodes_.size());
+  for (Index site = 0; site < count; ++site) {
+    if (const Index old = before[site]; old != k_none) {
+      now[old] = site;
+      sites[site] = sites_[old];
+      fans[site] = std::move(fans_[old]);
+      limits[site] = limits_[old];
+      const auto own = nodes(old);
+      grouped.insert(grouped.end(), own.begin(), own.end());
+    }
+    first.push_back(static_cast<Index>(grouped.size()));
+  }
+  for (Index node = 0; node < static_cast<Index>(label_.size()); ++node) {
+    if (label_[node] == k_none) continue;  // bare already
+    label_[node] = now[label_[node]];
+    if (label_[node] == k_none) bare_.push_back(node);
+  }
+  sites_.swap(sites);
+  fans_.swap(fans);
+  limits_.swap(limits);
+  first_node_.swap(first);
+  nodes_.swap(grouped);
+}
+
+void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reaches, int threads,
+                         const JobStage& stage) {
+  constexpr double k_growth = 1.1;  // sites are asked for so much more than they reach, that they may reach farther
+  std::vector<Index> at_vertices;
+  SurfacePoints points;
+  std::vector<double> limits;
+  for (const Index site : of) {
     const Index vertex = vertex_at(mesh_, sites_[site]);
     fans_[site].centre = vertex == k_none ? k_none : graph_.node_of(vertex);
     fans_[site].corners = rings_.face(rings_.face_of(sites_[site].face)).nodes;
+    limits_[site] = reaches.empty() ? k_infinity : k_growth * reaches[site];
     if (vertex != k_none) at_vertices.push_back(site);
+    points.push_back(sites_[site]);
+    limits.push_back(limits_[site]);
   }
-  for_each_view(graph_, sites_, reaches, threads, stage, [&](Index site, std::span<const SeenNode> view) {
-    std::vector<SeenNode>& seen = fans_[site].seen;
+  if (reaches.empty()) limits.clear();
+  for_each_view(graph_, points, limits, threads, stage, [&](Index i, std::span<const SeenNode> view) {
+    std::vector<SeenNode>& seen = fans_[of[i]].seen;
     seen.assign(view.begin(), view.end());
     for (SeenNode& node : seen) {
       const double length = graph_.arcs().codec().round(node.length);

@@ -1,6 +1,7 @@
 #pragma once
 // Where vertices lie in the tangent planes of the sites: the discrete logarithm map of each cell.
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,10 +43,26 @@ class SiteMaps {
   /// Nothing is known before label_nodes. Both must outlive the maps.
   SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings);
 
-  /// Begins with new sites. `reaches`: for each site a distance beyond which it is not asked for arcs of its own, which
-  /// are most of the work where cells are small; empty: none. What lies beyond is placed as what is hidden from the
-  /// site. \throw Cancelled. O(sites k log k + arcs).
-  void label_nodes(const SurfacePoints& sites, std::span<const double> reaches, int threads, const JobStage& stage);
+  /// Begins with new sites. `reaches`: for each site how far it is asked for arcs of its own, which are most of the
+  /// work where cells are small, or somewhat farther; empty: without end. What lies beyond is placed as what is hidden
+  /// from the site.
+  ///
+  /// `others`: sites that are not as they were the last time, since when all cells were placed. The cells whose site
+  /// and nodes are as they were stay so, unless most are not; without a value all are made anew. Labels are the same in
+  /// either case. \throw Cancelled, and then holds nothing to keep. O(sites k log k + arcs), of the cells that are made
+  /// anew.
+  void label_nodes(const SurfacePoints& sites, std::span<const double> reaches,
+                   const std::optional<std::vector<Index>>& others, int threads, const JobStage& stage);
+  /// Whether the cell is as it was before the last call of label_nodes; else it must be placed.
+  bool is_kept(Index site) const { return is_kept_[site] != 0; }
+  bool keeps_any() const { return keeps_any_; }
+  /// Of the last call of label_nodes.
+  const SurfacePoints& sites() const { return sites_; }
+  /// How far a site was asked for arcs.
+  double limit(Index site) const { return limits_[site]; }
+  /// Gives the sites of the last time other numbers, for the next time: site i was before[i], in increasing order, or
+  /// k_none for new ones; those not named are gone. O(V).
+  void renumber(std::span<const Index> before);
 
   // Vertices are the graph's nodes from here on.
   const SaddleVertexGraph& graph() const { return graph_; }
@@ -125,9 +142,12 @@ class SiteMaps {
     double beyond = 0;    ///< by how much of the edge's length the ray passes the edge's ends; below 0 past its start
   };
 
-  void make_fans(std::span<const double> reaches, int threads, const JobStage& stage);
+  void label_all(int threads, const JobStage& stage);
+  void label_again(std::span<const Index> moved, const JobStage& stage);
+  void make_fans(std::span<const Index> of, std::span<const double> reaches, int threads, const JobStage& stage);
   void make_fan_at_vertex(Fan& fan);
   void group_nodes();
+  void group_again(std::span<const Index> moving);
   void order_sites();
   const SeenNode* seen_in_fan(Index site, Index node) const;
   static Place place_straight(const SeenNode& seen) { return {seen.place, seen.length, k_none, k_straight}; }
@@ -157,6 +177,10 @@ class SiteMaps {
   SurfacePoints sites_;
   std::vector<Index> order_;
   std::vector<Fan> fans_;
+  std::vector<double> limits_;         ///< of the fans' lengths
+  std::vector<std::uint8_t> is_kept_;  ///< by site
+  bool keeps_any_ = false;
+  std::vector<Index> bare_;  ///< nodes of sites that are gone
   std::vector<Index> label_;
   std::vector<double> distance_;           ///< in the graph
   std::vector<Index> nodes_, first_node_;  ///< by label

@@ -1,0 +1,103 @@
+#include "tessellation/cell_cache.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "support/parallel.h"
+
+namespace saddleback {
+namespace {
+
+using PointKey = std::tuple<Index, double, double, double>;
+
+PointKey key_of(const SurfacePoint& point) {
+  return {point.face, point.barycentric[0], point.barycentric[1], point.barycentric[2]};
+}
+
+/// Of each site, the number of one that was at the same place before, in increasing order; k_none where there is none.
+std::vector<Index> numbers_before(const SurfacePoints& before, const SurfacePoints& now) {
+  std::multimap<PointKey, Index> places;
+  for (Index i = 0; i < static_cast<Index>(before.size()); ++i) places.emplace(key_of(before[i]), i);
+  std::vector<Index> numbers;
+  Index next = 0;
+  for (const SurfacePoint& site : now) {
+    const auto [first, last] = places.equal_range(key_of(site));
+    const auto found = std::find_if(first, last, [&](const auto& place) { return place.second >= next; });
+    numbers.push_back(found == last ? k_none : found->second);
+    if (found != last) next = found->second + 1;
+  }
+  return numbers;
+}
+
+}  // namespace
+
+CellCache::CellCache() = default;
+CellCache::~CellCache() = default;
+
+void CellCache::clear() { take(); }
+
+std::unique_ptr<CellCache::Content> CellCache::take() {
+  const std::scoped_lock lock(mutex_);
+  return std::move(content_);
+}
+
+void CellCache::put(std::unique_ptr<Content> content) {
+  const std::scoped_lock lock(mutex_);
+  content_.swap(content);
+}
+
+KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads)
+    : graph_(graph),
+      density_(density.begin(), density.end()),
+      threads_(thread_count(threads)),
+      rings_(graph, threads),
+      integrals_(graph, rings_, density_, threads),
+      claims_(graph, rings_, threads) {}
+
+bool KnownCells::fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads) const {
+  return &graph == &graph_ && thread_count(threads) == threads_ && std::ranges::equal(density, density_);
+}
+
+void KnownCells::match(const SurfacePoints& sites) {
+  const SurfacePoints& before = claims_.maps().sites();
+  if (!is_whole_) return;
+  const std::vector<Index> numbers = numbers_before(before, sites);
+  if (2 * std::ranges::count(numbers, k_none) > std::ssize(numbers)) claims_.forget();  // others may be far away now
+  claims_.renumber(numbers);
+  std::vector<CellMoments> moments(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    if (numbers[i] != k_none) moments[i] = moments_[numbers[i]];
+  moments_.swap(moments);
+}
+
+const std::vector<CellMoments>& KnownCells::find(const SurfacePoints& sites, const JobStage& stage) {
+  if (!std::exchange(is_whole_, false)) claims_.forget();
+  claims_.find(sites, stage.part(0, 0.8));
+  moments_ = integrals_.moments(claims_, std::move(moments_), stage);
+  is_whole_ = true;
+  return moments_;
+}
+
+void KnownCells::look_farther(const JobStage& stage) {
+  is_whole_ = false;
+  claims_.look_farther(stage);
+  moments_ = integrals_.moments(claims_, std::move(moments_), stage);
+  is_whole_ = true;
+}
+
+BorrowedCells::BorrowedCells(CellCache* cache, const SaddleVertexGraph& graph, std::span<const double> density,
+                             int threads)
+    : cache_(cache) {
+  if (auto content = cache ? cache->take() : nullptr; content && content->cells->fits(graph, density, threads))
+    cells_ = std::move(content->cells);
+  else
+    cells_ = std::make_unique<KnownCells>(graph, density, threads);
+}
+
+BorrowedCells::~BorrowedCells() {
+  if (cache_) cache_->put(std::make_unique<CellCache::Content>(std::move(cells_)));
+}
+
+}  // namespace saddleback
