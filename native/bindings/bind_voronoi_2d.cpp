@@ -17,7 +17,7 @@ struct Diagram {
 Diagram find_diagram(const py::object& sites, const py::object& weights, const py::object& domain,
                      const py::object& circles, const py::object& threads, const std::string& device,
                      const py::object& job) {
-  const std::vector<Vec2> points = as_points_2d(sites, "sites");
+  LargeArray<Vec2> points = as_large_points_2d(sites, "sites");
   const std::vector<double> radii = as_weights(weights, points.size());
   std::optional<PlanarDomain> within;
   if (!domain.is_none()) within = as_domain(domain, "domain");
@@ -29,7 +29,8 @@ Diagram find_diagram(const py::object& sites, const py::object& weights, const p
   Voronoi2d diagram = run_on(device, points.size() >= k_worth_a_device, [&](const std::vector<int>& devices) {
     options.cuda_devices = devices;
     return without_gil([&] {
-      Voronoi2d result = has_weights ? voronoi_2d(points, radii, options, token) : voronoi_2d(points, options, token);
+      Voronoi2d result =
+          has_weights ? voronoi_2d(points, radii, options, token) : voronoi_2d(std::move(points), options, token);
       if (within) clipped = result.clip(*within, options.threads, token);
       return result;
     });

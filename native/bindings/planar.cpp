@@ -2,11 +2,24 @@
 
 namespace saddleback::bindings {
 
-std::vector<Vec2> as_points_2d(const py::object& value, const char* name) {
+namespace {
+
+template <class Points>
+Points as_points_of(const py::object& value, const char* name) {
   const ArrayIn<double> in = as_points2(value, name);
-  std::vector<Vec2> sites(in.count);
-  for (Index i = 0; i < in.count; ++i) sites[i] = {in.values[2 * i], in.values[2 * i + 1]};
-  return sites;
+  Points points(in.count);
+  for (Index i = 0; i < in.count; ++i) points[i] = {in.values[2 * i], in.values[2 * i + 1]};
+  return points;
+}
+
+}  // namespace
+
+std::vector<Vec2> as_points_2d(const py::object& value, const char* name) {
+  return as_points_of<std::vector<Vec2>>(value, name);
+}
+
+LargeArray<Vec2> as_large_points_2d(const py::object& value, const char* name) {
+  return as_points_of<LargeArray<Vec2>>(value, name);
 }
 
 std::vector<double> as_weights(const py::object& value, std::size_t site_count) {

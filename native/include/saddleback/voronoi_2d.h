@@ -104,6 +104,8 @@ struct Voronoi2d {
 /// more) that products of four cannot be told exactly; for negative options. Cancelled.
 /// O(n log n) time, O(n) memory.
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options = {}, Job* job = nullptr);
+/// The same; the diagram takes the sites over.
+Voronoi2d voronoi_2d(LargeArray<Vec2>&& sites, const Voronoi2dOptions& options = {}, Job* job = nullptr);
 /// The same as a part of other work.
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage);
 

@@ -1,6 +1,7 @@
-// Touching fresh memory costs a visit to the kernel for each page; with pages of 2 MiB that is nothing. What is too
-// small for those is kept for the next array of its size. Larger arrays go back to the system at once: an ordinary heap
-// would keep what lies between others, which then counts at the peak of what follows.
+// Touching fresh memory costs a visit to the kernel for each page; with pages of 2 MiB the visits are nothing, but
+// clearing them is not. What is too small for those is kept for the next array of its size. Of larger arrays the huge
+// pages are kept, some of them and on loan: the system may take them back whenever it is short of memory. Each page can
+// become a part of an array of any size, so that none lies idle between others while more are asked for.
 
 #include "saddleback/large_array.h"
 
@@ -21,11 +22,14 @@ namespace saddleback {
 namespace {
 
 constexpr std::size_t k_huge = std::size_t{1} << 21, k_step = std::size_t{1} << 16;
-constexpr std::size_t k_smallest = k_step;  // below, an ordinary heap is as good
+constexpr std::size_t k_smallest = k_step;                     // below, an ordinary heap is as good
+constexpr std::size_t k_smallest_kept = std::size_t{1} << 12;  // though such a heap may go back and forth to the system
 constexpr std::size_t k_largest_kept = 7 << 19, k_most_kept = std::size_t{24} << 20;
+constexpr std::size_t k_most_pages = 128;  // huge ones that are kept
 
 /// What is had for a size. The last page is huge only where most of it is used.
 std::size_t rounded(std::size_t size) {
+  if (size < k_smallest) return (size + k_smallest_kept - 1) / k_smallest_kept * k_smallest_kept;
   return std::max((size + k_step - 1) / k_step * k_step, (size + k_huge / 8) / k_huge * k_huge);
 }
 
@@ -81,26 +85,55 @@ Kept& kept() {
   return *all;
 }
 
+/// Free huge pages.
+class KeptPages {
+ public:
+  /// Puts pages in the place of the first ones of fresh memory.
+  void lay(void* memory, std::size_t size) {
+    const std::lock_guard lock(mutex_);
+    char* to = static_cast<char*>(memory);
+    for (const char* const end = to + size / k_huge * k_huge; to != end && count_ > 0; to += k_huge)
+      mremap(pages_[--count_], k_huge, k_huge, MREMAP_MAYMOVE | MREMAP_FIXED, to);  // if not, the fresh page stays
+  }
+  /// Takes the first pages of memory that is not used any more; returns the size of what was taken.
+  std::size_t keep(void* memory, std::size_t size) {
+    const std::lock_guard lock(mutex_);
+    char* const begin = static_cast<char*>(memory);
+    const std::size_t taken = std::min(size / k_huge, k_most_pages - count_);
+    if (taken > 0 && madvise(begin, taken * k_huge, MADV_FREE) != 0) return 0;
+    for (std::size_t i = 0; i < taken; ++i) pages_[count_++] = begin + i * k_huge;
+    return taken * k_huge;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::array<char*, k_most_pages> pages_{};
+  std::size_t count_ = 0;
+};
+
+KeptPages& kept_pages() {
+  static KeptPages* const all = new KeptPages;
+  return *all;
+}
+
 }  // namespace
 
 void* allocate_large(std::size_t size) {
-  if (size >= k_smallest) {
-    const std::size_t wanted = rounded(size);
-    void* memory = kept().take(wanted);
-    if (!memory) memory = map_pages(wanted);
-    if (!memory) throw std::bad_alloc();
-    return memory;
-  }
-  void* const memory = std::malloc(size ? size : 1);
+  const std::size_t wanted = size >= k_smallest_kept ? rounded(size) : std::max<std::size_t>(size, 1);
+  void* memory = size >= k_smallest_kept ? kept().take(wanted) : nullptr;
+  if (memory) return memory;
+  memory = size < k_smallest ? std::malloc(wanted) : map_pages(wanted);
   if (!memory) throw std::bad_alloc();
+  if (wanted >= k_huge) kept_pages().lay(memory, wanted);
   return memory;
 }
 
 void free_large(void* memory, std::size_t size) noexcept {
-  if (size < k_smallest)
-    std::free(memory);
-  else if (!kept().keep(memory, rounded(size)))
-    munmap(memory, rounded(size));
+  const std::size_t had = rounded(size);
+  if (size >= k_smallest_kept && kept().keep(memory, had)) return;
+  if (size < k_smallest) return std::free(memory);
+  const std::size_t kept_size = had >= k_huge ? kept_pages().keep(memory, had) : 0;
+  if (kept_size < had) munmap(static_cast<char*>(memory) + kept_size, had - kept_size);
 }
 
 #else

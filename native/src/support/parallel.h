@@ -18,10 +18,14 @@ inline int thread_count(int requested) { return requested > 0 ? requested : std:
 /// depend on it.
 template <class Body>
 void parallel_for(Index count, int threads, Index chunk, Body&& body) {
-  std::exception_ptr error;
-  std::atomic<bool> failed{false};
   const int team =
       static_cast<int>(std::min<Index>(thread_count(threads), std::max<Index>(1, (count + chunk - 1) / chunk)));
+  if (team == 1) {  // a team of one costs microseconds
+    for (Index i = 0; i < count; ++i) body(i, 0);
+    return;
+  }
+  std::exception_ptr error;
+  std::atomic<bool> failed{false};
 #pragma omp parallel for schedule(dynamic, chunk) num_threads(team)
   for (Index i = 0; i < count; ++i) {
     if (failed.load(std::memory_order_relaxed)) continue;

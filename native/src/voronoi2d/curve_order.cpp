@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
+#include <vector>
 
+#include "support/parallel.h"
 #include "voronoi2d/curve_place.h"
 
 namespace saddleback::voronoi2d {
@@ -14,19 +17,22 @@ namespace {
 
 constexpr int k_bits = k_curve_bits;
 
-// Hilbert's curve, two bits of each axis at a time: state, then bits of x and y, to bits of the place and a new state.
+// Hilbert's curve, four bits of each axis at a time: state, then bits of x and y, to bits of the place and a new state.
 struct CurveTable {
+  static constexpr int k_step = 4;
+  static constexpr std::uint32_t k_values = 1u << k_step;
   struct Step {
     std::uint8_t place, state;
   };
-  std::array<Step, 4 * 16> steps{};
+  std::array<Step, 4 * k_values * k_values> steps{};
 
   constexpr CurveTable() {
-    for (unsigned state = 0; state < 4; ++state) {
-      for (unsigned xy = 0; xy < 16; ++xy) {
+    for (std::uint32_t state = 0; state < 4; ++state) {
+      for (std::uint32_t xy = 0; xy < k_values * k_values; ++xy) {
         std::uint32_t s = state, place = 0;
-        for (int bit = 1; bit >= 0; --bit) place = 4 * place + curve_step((xy >> (2 + bit)) & 1, (xy >> bit) & 1, s);
-        steps[16 * state + xy] = {static_cast<std::uint8_t>(place), static_cast<std::uint8_t>(s)};
+        for (int bit = k_step - 1; bit >= 0; --bit)
+          place = 4 * place + curve_step((xy >> (k_step + bit)) & 1, (xy >> bit) & 1, s);
+        steps[k_values * k_values * state + xy] = {static_cast<std::uint8_t>(place), static_cast<std::uint8_t>(s)};
       }
     }
   }
@@ -34,63 +40,65 @@ struct CurveTable {
 constexpr CurveTable k_curve;
 
 std::uint32_t place_on_curve(std::uint32_t x, std::uint32_t y) {
-  std::uint32_t place = 0;
-  unsigned state = 0;
-  for (int shift = k_bits - 2; shift >= 0; shift -= 2) {
-    const auto step = k_curve.steps[16 * state + 4 * ((x >> shift) & 3) + ((y >> shift) & 3)];
-    place = 16 * place + step.place;
+  constexpr std::uint32_t k_values = CurveTable::k_values, k_mask = k_values - 1;
+  std::uint32_t place = 0, state = 0;
+  for (int shift = k_bits - CurveTable::k_step; shift >= 0; shift -= CurveTable::k_step) {
+    const auto step =
+        k_curve.steps[k_values * k_values * state + k_values * ((x >> shift) & k_mask) + ((y >> shift) & k_mask)];
+    place = k_values * k_values * place + step.place;
     state = step.state;
   }
   return place;
 }
 
-// Calls work(item) for all; tells the job from time to time.
-template <class Items, class Work>
-void for_blocks(Items& items, const JobStage& stage, Work&& work) {
-  constexpr std::size_t k_block = std::size_t{1} << 16;
-  for (std::size_t begin = 0; begin < items.size(); begin += k_block) {
-    stage.update(static_cast<double>(begin) / static_cast<double>(items.size()));
-    const std::size_t end = std::min(items.size(), begin + k_block);
-    for (std::size_t i = begin; i < end; ++i) work(items[i]);
-  }
-}
-
-// Stable, least digit first.
-void radix_sort(LargeArray<Placed>& items, LargeArray<Placed>& other, const JobStage& stage) {
-  constexpr int k_digit = 11;
-  constexpr std::size_t k_values = std::size_t{1} << k_digit;
-  other.resize(items.size());
-  for (int shift = 0; shift < 2 * k_bits; shift += k_digit) {
-    std::array<std::size_t, k_values + 1> begin{};
-    const JobStage pass = stage.part(shift / (2.0 * k_bits), std::min(1.0, (shift + k_digit) / (2.0 * k_bits)));
-    for_blocks(items, pass.part(0, 0.3),
-               [&](const Placed& item) { ++begin[((item.place >> shift) & (k_values - 1)) + 1]; });
-    for (std::size_t i = 0; i < k_values; ++i) begin[i + 1] += begin[i];
-    for_blocks(items, pass.part(0.3, 1),
-               [&](const Placed& item) { other[begin[(item.place >> shift) & (k_values - 1)]++] = item; });
-    items.swap(other);
-  }
-}
-
 struct Box {
   double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+
+  void add(const Vec2& point) {
+    for (int k = 0; k < 2; ++k) {
+      low[k] = point[k] < low[k] ? point[k] : low[k];
+      high[k] = point[k] > high[k] ? point[k] : high[k];
+    }
+  }
+  void add(const Box& other) {
+    for (int k = 0; k < 2; ++k) {
+      low[k] = std::min(low[k], other.low[k]);
+      high[k] = std::max(high[k], other.high[k]);
+    }
+  }
+  /// Half of the longer side: the whole may be beyond the doubles.
+  double half_width() const { return std::max(0.5 * high[0] - 0.5 * low[0], 0.5 * high[1] - 0.5 * low[1]); }
+  std::uint32_t place(const Vec2& point, double half_width) const {
+    return place_on_curve(square_of(point[0], low[0], half_width), square_of(point[1], low[1], half_width));
+  }
 };
 
-class Sorter {
+/// Puts points that share a square of the curve in order.
+class RunSorter {
  public:
-  Sorter(std::span<const Vec2> points, const JobStage& stage) : points_(points), stage_(stage) {}
+  RunSorter(std::span<const Vec2> points, const JobStage& stage) : points_(points), stage_(stage) {}
 
-  /// Sorts indices along the curve over their box; equal points end up side by side, the smallest index first.
-  void sort(std::span<Placed> items) {
+  void sort_runs(std::span<Placed> items) const {
+    for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
+      for (end = begin + 1; end < items.size() && items[end].place == items[begin].place;) ++end;
+      if (end - begin == 1) continue;
+      stage_.check();
+      sort(items.subspan(begin, end - begin));
+    }
+  }
+
+ private:
+  /// By a curve over the points' own box; equal points end up side by side, the smallest index first.
+  void sort(std::span<Placed> items) const {
     const std::uint32_t outer_place = items[0].place;
     sort_inside(items);
     for (Placed& item : items) item.place = outer_place;
   }
 
-  void sort_inside(std::span<Placed> items) {
+  void sort_inside(std::span<Placed> items) const {
     constexpr std::size_t k_few = 48;
-    if (items.size() <= k_few || !place(items, stage_.part(0, 0))) {
+    if (items.size() <= k_few || !place(items)) {
       std::sort(items.begin(), items.end(), [&](const Placed& a, const Placed& b) { return less(a.index, b.index); });
       return;
     }
@@ -100,36 +108,16 @@ class Sorter {
     sort_runs(items);
   }
 
-  void sort_runs(std::span<Placed> items) {
-    for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
-      for (end = begin + 1; end < items.size() && items[end].place == items[begin].place;) ++end;
-      if (end - begin == 1) continue;
-      stage_.check();
-      sort(items.subspan(begin, end - begin));
-    }
-  }
-
   /// Fills in the places; false when all points are one.
-  bool place(std::span<Placed> items, const JobStage& stage) {
+  bool place(std::span<Placed> items) const {
     Box box;
-    for_blocks(items, stage.part(0, 0.3), [&](const Placed& item) {
-      for (int k = 0; k < 2; ++k) {
-        box.low[k] = std::min(box.low[k], points_[item.index][k]);
-        box.high[k] = std::max(box.high[k], points_[item.index][k]);
-      }
-    });
-    // Halves, since the width of the box may be beyond the doubles.
-    const double width = std::max(0.5 * box.high[0] - 0.5 * box.low[0], 0.5 * box.high[1] - 0.5 * box.low[1]);
-    if (!(width > 0)) return false;
-    for_blocks(items, stage.part(0.3, 1), [&](Placed& item) {
-      std::uint32_t square[2];
-      for (int k = 0; k < 2; ++k) square[k] = square_of(points_[item.index][k], box.low[k], width);
-      item.place = place_on_curve(square[0], square[1]);
-    });
+    for (const Placed& item : items) box.add(points_[item.index]);
+    const double half_width = box.half_width();
+    if (!(half_width > 0)) return false;
+    for (Placed& item : items) item.place = box.place(points_[item.index], half_width);
     return true;
   }
 
- private:
   bool less(Index a, Index b) const {
     const Vec2 &p = points_[a], &q = points_[b];
     if (p.x() != q.x()) return p.x() < q.x();
@@ -139,16 +127,107 @@ class Sorter {
   const JobStage& stage_;
 };
 
+/// All points at once, by any number of threads: each has a share of them, the same in all steps.
+class Sorter {
+ public:
+  Sorter(std::span<const Vec2> points, int threads, const JobStage& stage)
+      : points_(points),
+        stage_(stage),
+        shares_(std::clamp(static_cast<Index>(points.size() / k_worth_a_thread), 1, thread_count(threads))),
+        items_(points.size()) {}
+
+  LargeArray<Placed> sorted() {
+    if (place()) sort_by_place();
+    sort_runs();
+    return std::move(items_);
+  }
+
+ private:
+  static constexpr std::size_t k_block = std::size_t{1} << 16, k_worth_a_thread = std::size_t{1} << 14;
+
+  /// Calls work(share, begin, end) for each share of the points, piece by piece; tells the job from time to time.
+  template <class Work>
+  void for_shares(const JobStage& stage, Work&& work) {
+    const std::size_t count = points_.size();
+    parallel_for(shares_, shares_, 1, [&](Index share, int) {
+      const std::size_t first = count * share / shares_, last = count * (share + 1) / shares_;
+      for (std::size_t begin = first; begin < last; begin += k_block) {
+        stage.update(static_cast<double>(begin - first) / static_cast<double>(last - first));
+        work(share, begin, std::min(last, begin + k_block));
+      }
+    });
+  }
+
+  /// Fills in the places; false when all points are one.
+  bool place() {
+    std::vector<Box> boxes(shares_);
+    for_shares(stage_.part(0, 0.1), [&](Index share, std::size_t begin, std::size_t end) {
+      Box box = boxes[share];
+      for (std::size_t i = begin; i < end; ++i) box.add(points_[i]);
+      boxes[share] = box;
+    });
+    Box all;
+    for (const Box& box : boxes) all.add(box);
+    const double half_width = all.half_width();
+    const bool has_places = half_width > 0;
+    for_shares(stage_.part(0.1, 0.3), [&](Index, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        items_[i] = {has_places ? all.place(points_[i], half_width) : 0, static_cast<Index>(i)};
+    });
+    return has_places;
+  }
+
+  /// By radix, stable, least digit first.
+  void sort_by_place() {
+    constexpr int k_digit = 11;
+    constexpr std::size_t k_values = std::size_t{1} << k_digit;
+    LargeArray<Placed> other(items_.size());
+    std::vector<std::array<Index, k_values>> next(shares_);  // by share and digit: where its next item goes
+    for (int shift = 0; shift < 2 * k_bits; shift += k_digit) {
+      const auto digit = [&](const Placed& item) { return (item.place >> shift) & (k_values - 1); };
+      const double begin_share = shift / (2.0 * k_bits), end_share = std::min(1.0, (shift + k_digit) / (2.0 * k_bits));
+      const JobStage pass = stage_.part(0.3 + 0.6 * begin_share, 0.3 + 0.6 * end_share);
+      for (auto& counts : next) counts.fill(0);
+      for_shares(pass.part(0, 0.3), [&](Index share, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) ++next[share][digit(items_[i])];
+      });
+      Index before = 0;
+      for (std::size_t value = 0; value < k_values; ++value)
+        for (auto& counts : next) before += std::exchange(counts[value], before);
+      for_shares(pass.part(0.3, 1), [&](Index share, std::size_t begin, std::size_t end) {
+        Index* const to = next[share].data();
+        for (std::size_t i = begin; i < end; ++i) other[to[digit(items_[i])]++] = items_[i];
+      });
+      items_.swap(other);
+    }
+  }
+
+  void sort_runs() {
+    const JobStage stage = stage_.part(0.9, 1);
+    const std::size_t count = items_.size(), pieces = (count + k_block - 1) / k_block;
+    std::vector<std::size_t> begin(pieces + 1, count);  // where no run is under way
+    for (std::size_t piece = 0; piece < pieces; ++piece) {
+      std::size_t at = std::max(piece * k_block, piece == 0 ? 0 : begin[piece - 1]);
+      while (0 < at && at < count && items_[at].place == items_[at - 1].place) ++at;
+      begin[piece] = at;
+    }
+    const RunSorter runs(points_, stage);
+    parallel_for(static_cast<Index>(pieces), shares_, 1, [&](Index piece, int) {
+      stage.update(piece / static_cast<double>(pieces));
+      runs.sort_runs(std::span(items_).subspan(begin[piece], begin[piece + 1] - begin[piece]));
+    });
+  }
+
+  std::span<const Vec2> points_;
+  const JobStage& stage_;
+  Index shares_;
+  LargeArray<Placed> items_;
+};
+
 }  // namespace
 
-LargeArray<Placed> curve_order(std::span<const Vec2> points, const JobStage& stage) {
-  LargeArray<Placed> items(points.size()), other;
-  Index next = 0;
-  for_blocks(items, stage.part(0, 0.1), [&](Placed& item) { item = {0, next++}; });
-  const JobStage last = stage.part(0.9, 1);
-  Sorter sorter(points, last);
-  if (items.size() > 1 && sorter.place(items, stage.part(0.1, 0.3))) radix_sort(items, other, stage.part(0.3, 0.9));
-  sorter.sort_runs(items);
+LargeArray<Placed> curve_order(std::span<const Vec2> points, int threads, const JobStage& stage) {
+  LargeArray<Placed> items = Sorter(points, threads, stage).sorted();
   stage.update(1);
   return items;
 }

@@ -16,8 +16,8 @@ struct Placed {
   Index index;
 };
 
-/// Points along a Hilbert curve, by ascending place; equal points side by side, the smallest index first. O(n log n).
-/// \throw Cancelled
-LargeArray<Placed> curve_order(std::span<const Vec2> points, const JobStage& stage);
+/// Points along a Hilbert curve, by ascending place; equal points side by side, the smallest index first.
+/// `threads`: 0: all cores. O(n log n). \throw Cancelled
+LargeArray<Placed> curve_order(std::span<const Vec2> points, int threads, const JobStage& stage);
 
 }  // namespace saddleback::voronoi2d

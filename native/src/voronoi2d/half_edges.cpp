@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -56,11 +57,15 @@ struct Piece {
 class Numberer {
  public:
   Numberer(Triangulation& mesh, const OrderedSites& sites, int threads, Numbering& result)
-      : mesh_(mesh), sites_(sites), threads_(thread_count(threads)), result_(result), scratch_(threads_) {
-    constexpr Index k_small = 2048,
-                    k_large = 8192;  // cells that stay in a core's cache; that outweigh a thread's start
-    const Index count = sites.count(), size = threads_ == 1 ? k_small : k_large;
-    for (Index begin = 0; begin < count; begin += size) pieces_.push_back({begin, std::min(count, begin + size)});
+      : mesh_(mesh),
+        sites_(sites),
+        threads_(thread_count(threads)),
+        result_(result),
+        scratch_(threads_),
+        piece_size_(threads_ == 1 ? k_small : k_large) {
+    const Index count = sites.count();
+    for (Index begin = 0; begin < count; begin += piece_size_)
+      pieces_.push_back({begin, std::min(count, begin + piece_size_)});
   }
 
   void run(const JobStage& stage) {
@@ -80,12 +85,12 @@ class Numberer {
       }
     } else {
       std::vector<Counts> counts(pieces_.size());
-      for_pieces(stage.part(0, 0.2), [&](Index i, int thread) { counts[i] = count_in(pieces_[i], scratch_[thread]); });
+      for_pieces(stage.part(0, 0.1), [&](Index i, int thread) { count_about(i, counts, scratch_[thread]); });
       for (std::size_t i = 0; i < pieces_.size(); ++i) {
         start_after(pieces_[i], all);
         add_to(all, counts[i]);
       }
-      for_pieces(stage.part(0.2, 0.6),
+      for_pieces(stage.part(0.1, 0.6),
                  [&](Index i, int thread) { number_piece(pieces_[i], pieces_[i].begin, scratch_[thread]); });
       for_pieces(stage.part(0.6, 0.7), [&](Index i, int) { resolve(pieces_[i]); });
     }
@@ -101,11 +106,14 @@ class Numberer {
   struct Counts {
     Index corners = 0, vertices = 0, edges = 0;
   };
+  static constexpr Index k_small = 2048,
+                         k_large = 8192;  ///< cells that stay in a core's cache; that outweigh a thread's start
   static constexpr Index k_ahead = 2048;  ///< sites: about a tile
   /// A worker's memory.
   struct Scratch {
     CellBlock cells;
     std::vector<Index> around, triangles;       ///< of a large vertex: sites and places of its triangles' number
+    Index first_half = k_none;                  ///< of those about it that no triangle of it is behind
     std::vector<Index> own_corners, own_sides;  ///< of the block's cells, that these give a number to
     Index own_corner_count = 0, own_side_count = 0;
   };
@@ -133,7 +141,9 @@ class Numberer {
     scratch.around.clear();
     scratch.triangles.clear();
     Index walk = half, lowest = mesh_.corners[half];
+    scratch.first_half = half;
     do {
+      scratch.first_half = std::min(scratch.first_half, walk);
       lowest = std::min(lowest, mesh_.corners[walk]);
       scratch.around.push_back(mesh_.corners[walk]);
       scratch.triangles.push_back(walk | 3);
@@ -193,18 +203,41 @@ class Numberer {
     }
   }
 
-  Counts count_in(const Piece& piece, Scratch& scratch) const {
-    Counts counts;
-    const CellBlock& cells = scratch.cells;
-    for_blocks(piece, scratch, [&](Index) {
-      counts.corners += cells.size;
-      counts.edges += scratch.own_side_count;
-      for (Index k = 0; k < scratch.own_corner_count; ++k) {
-        const Index i = scratch.own_corners[k], half = cells.halves[i];
-        counts.vertices += !is_large(half) || go_around(half, scratch) == cells.sites[i];
+  /// Counts what a piece's triangles say of its cells and, at its border, of others.
+  void count_about(Index piece, std::vector<Counts>& counts, Scratch& scratch) const {
+    const Index *const corners = mesh_.corners.data(), *const twins = mesh_.twins.data();
+    Counts own;
+    const auto count = [&](Index Counts::*what, Index site, Index more) {
+      const Index of = site / piece_size_;
+      if (of == piece)
+        own.*what += more;
+      else
+        std::atomic_ref(counts[of].*what).fetch_add(more, std::memory_order_relaxed);
+    };
+    for (Index first = 8 * pieces_[piece].begin; first < 8 * pieces_[piece].end; first += 4) {
+      if (corners[first] == k_none) continue;
+      const Index flat = twins[first + 3];
+      for (Index k = 0; k < 3; ++k) {
+        const Index half = first + k, from = corners[half], to = corners[next_half(half)];
+        const Index is_side = ~(flat >> k) & 1, is_border = static_cast<Index>(twins[half] < 0);
+        count(&Counts::corners, from, is_side);
+        count(&Counts::edges, from, is_side & static_cast<Index>(from < to));
+        if (is_border == 0) continue;
+        count(&Counts::corners, to, 1);
+        count(&Counts::edges, to, static_cast<Index>(to < from));
       }
-    });
-    return counts;
+      if (flat == 0) {
+        count(&Counts::vertices, std::min({corners[first], corners[first + 1], corners[first + 2]}), 1);
+        continue;
+      }
+      for (Index k = 0; k < 3; ++k) {  // a large vertex counts once: at the first of the half-edges about it
+        if ((flat >> k & 1) != 0) continue;
+        const Index lowest = go_around(first + k, scratch);
+        if (first + k == scratch.first_half) count(&Counts::vertices, lowest, 1);
+      }
+    }
+    for (const auto what : {&Counts::corners, &Counts::vertices, &Counts::edges})
+      std::atomic_ref(counts[piece].*what).fetch_add(own.*what, std::memory_order_relaxed);
   }
 
   /// Cells from `known` on have their numbers when it is this piece's turn.
@@ -370,8 +403,10 @@ class Numberer {
   }
 
   void leave_out_flat_triangles() {
-    for (std::size_t first = 0; first < mesh_.corners.size(); first += 4)
-      if (mesh_.corners[first] != k_none && mesh_.twins[first + 3] != 0) mesh_.corners[first] = k_none;
+    for_pieces({}, [&](Index i, int) {
+      for (Index first = 8 * pieces_[i].begin; first < 8 * pieces_[i].end; first += 4)
+        if (mesh_.corners[first] != k_none && mesh_.twins[first + 3] != 0) mesh_.corners[first] = k_none;
+    });
   }
 
   Triangulation& mesh_;
@@ -379,6 +414,7 @@ class Numberer {
   int threads_;
   Numbering& result_;
   std::vector<Scratch> scratch_;
+  Index piece_size_;
   std::vector<Piece> pieces_;
 };
 

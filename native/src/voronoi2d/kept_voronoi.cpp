@@ -31,7 +31,7 @@ struct Caller {
             [](void* self, std::uint32_t* places, std::int32_t* order) {
               auto& caller = *static_cast<Caller*>(self);
               return caller.guard.run([&] {
-                for (const Placed& item : curve_order(caller.sites, caller.stage.part(0.1, 0.2))) {
+                for (const Placed& item : curve_order(caller.sites, 0, caller.stage.part(0.1, 0.2))) {
                   *places++ = item.place;
                   *order++ = item.index;
                 }

@@ -89,7 +89,7 @@ std::vector<Index> Voronoi2d::locate(std::span<const Vec2> points, int threads, 
   LargeArray<Vec2> all(points.begin(), points.end());
   for (const Index site : cell_sites) all.push_back(sites[site]);
   const Scaled scaled{*this, scale_for(all)};
-  const LargeArray<Placed> order = voronoi2d::curve_order(all, stage.part(0, 0.3));
+  const LargeArray<Placed> order = voronoi2d::curve_order(all, threads, stage.part(0, 0.3));
 
   const Index point_count = static_cast<Index>(points.size()), count = static_cast<Index>(order.size());
   std::vector<Index> result(points.size());

@@ -16,14 +16,22 @@ namespace saddleback::voronoi2d {
 struct OrderedSites {
   LargeArray<double> x, y;           ///< by rank, times `scale`
   LargeArray<Index> original;        ///< by rank: the index given by the caller, the smallest of equal sites
-  LargeArray<Index> site_of;         ///< by index: the smallest index of an equal site
+  LargeArray<Index> rank_of;         ///< by index: the rank of the site or of its equal
   LargeArray<std::uint32_t> places;  ///< by rank: two bits for each halving of the squares, never falling
   double scale = 1;                  ///< a power of two
 
   Index count() const { return static_cast<Index>(x.size()); }
+  /// The smallest index of the sites that are equal to this one.
+  Index site_of(std::size_t index) const { return original[rank_of[index]]; }
 };
 
-/// \throw InputError for a coordinate that is not finite, and for coordinates of too different size. O(n log n).
-OrderedSites order_sites(std::span<const Vec2> sites, const JobStage& stage);
+/// `threads`: 0: all cores. \throw InputError for a coordinate that is not finite, and for coordinates of too different
+/// size. O(n log n).
+OrderedSites order_sites(std::span<const Vec2> sites, int threads, const JobStage& stage);
+
+/// By index: the smallest index of an equal site.
+LargeArray<Index> smallest_equals(const OrderedSites& sites, int threads, const JobStage& stage);
+
+LargeArray<Vec2> copy_of(std::span<const Vec2> sites, int threads, const JobStage& stage);
 
 }  // namespace saddleback::voronoi2d

@@ -155,7 +155,7 @@ SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& centre, std:
     if (!events.empty()) s.radius = std::min(0.0, events[0].radius);
     return;
   }
-  s.ordered = order_sites(sites, {});
+  s.ordered = order_sites(sites, 1, {});
   s.sweep.centre_x = centre.x() * s.ordered.scale;
   s.sweep.centre_y = centre.y() * s.ordered.scale;
   s.sort_sites({s.sweep.centre_x, s.sweep.centre_y});

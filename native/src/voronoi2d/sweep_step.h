@@ -68,33 +68,30 @@ constexpr double k_never = DBL_MAX, k_latest = 0.5 * DBL_MAX;  ///< events lie b
 /// vector units compute both at once.
 struct Pair {
   double ax[2], ay[2], bx[2], by[2], cx[2], cy[2];
-  double radius[2], turn[2], doubt[2];
+  double radius[2], certainty[2];
 };
 
-/// Sets the radius |v - centre| + |v - b| at which each arc vanishes, v being the circumcentre, if the three sites turn
-/// clockwise, which they do where `turn` is above `doubt`, and do not where it is below -doubt.
+/// Sets the radius |v - centre| + |v - b| at which each arc vanishes, v being the circumcentre, or k_never if the three
+/// sites do not turn clockwise. That is sure where `certainty` is positive.
 SADDLEBACK_HOST_DEVICE inline void find_radii(Pair& p, double centre_x, double centre_y) {
   for (int k = 0; k < 2; ++k) {
     const double ax = p.ax[k] - p.bx[k], ay = p.ay[k] - p.by[k], cx = p.cx[k] - p.bx[k], cy = p.cy[k] - p.by[k];
     const double left = ax * cy, right = ay * cx, det = left - right;
-    p.turn[k] = det;
-    p.doubt[k] = predicates::detail::k_orient_bound * (fabs(left) + fabs(right));
+    p.certainty[k] = fabs(det) - predicates::detail::k_orient_bound * (fabs(left) + fabs(right));
     const double half = 0.5 / det, a2 = ax * ax + ay * ay, c2 = cx * cx + cy * cy;
     const double x = (cy * a2 - ay * c2) * half, y = (ax * c2 - cx * a2) * half;
     const double from_x = x + (p.bx[k] - centre_x), from_y = y + (p.by[k] - centre_y);
-    p.radius[k] = sqrt(x * x + y * y) + sqrt(from_x * from_x + from_y * from_y);
+    const double radius = sqrt(x * x + y * y) + sqrt(from_x * from_x + from_y * from_y);
+    const double before_never = radius < k_latest ? radius : k_latest;
+    p.radius[k] = det > 0 ? before_never : k_never;
   }
 }
 
-/// The radius at which one of them vanishes, or k_never. Whether it does is exact.
-SADDLEBACK_HOST_DEVICE inline double radius_of(const Pair& p, int k) {
-  if (fabs(p.turn[k]) > p.doubt[k]) {
-    const double radius = p.radius[k] < k_latest ? p.radius[k] : k_latest;
-    return p.turn[k] > 0 ? radius : k_never;
-  }
+/// The same for one arc, exactly, where doubles cannot tell: later than anything that matters, since it is so flat.
+SADDLEBACK_HOST_DEVICE inline double radius_of_flat(const Pair& p, int k) {
   const bool turns = predicates::detail::orient_2d_exact({p.ax[k], p.ay[k]}, {p.bx[k], p.by[k]}, {p.cx[k], p.cy[k]}) ==
                      predicates::Sign::negative;
-  return turns ? k_latest : k_never;  // flat: later than anything that matters
+  return turns ? k_latest : k_never;
 }
 
 /// Says anew when two arcs vanish.
@@ -108,8 +105,12 @@ SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index first, Index se
     is_parted[k] = a.site != c.site;  // between two parts of one ellipse an arc stays
   }
   find_radii(pair, s.centre_x, s.centre_y);
-  s.arcs[first].radius = is_parted[0] ? radius_of(pair, 0) : k_never;
-  s.arcs[second].radius = is_parted[1] ? radius_of(pair, 1) : k_never;
+  s.arcs[first].radius = pair.radius[0];
+  s.arcs[second].radius = pair.radius[1];
+  if (pair.certainty[0] > 0 && pair.certainty[1] > 0) return;  // two parts of one ellipse are not certain either
+  for (int k = 0; k < 2; ++k)
+    if (!(pair.certainty[k] > 0))
+      s.arcs[k == 0 ? first : second].radius = is_parted[k] ? radius_of_flat(pair, k) : k_never;
 }
 
 SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {
@@ -258,8 +259,8 @@ SADDLEBACK_HOST_DEVICE inline Index hit_arc(const SweepState& s, const Touch& p,
 
 /// Number of the sector of a direction: an angle without trigonometry.
 SADDLEBACK_HOST_DEVICE inline Index sector_of(const SweepState& s, double x, double y) {
-  const double share = y / (fabs(x) + fabs(y));  // -1 to 1
-  const double turn = x >= 0 ? 1 + share : 3 - share;
+  const double share = y / (fabs(x) + fabs(y));    // -1 to 1
+  const double turn = 2 - copysign(1 - share, x);  // 1 + share to the right, 3 - share to the left
   const Index sector = static_cast<Index>(turn * (0.25 * s.near_count));
   return sector < s.near_count ? sector : s.near_count - 1;
 }
@@ -293,12 +294,10 @@ SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, const Touch& p
 
 /// The triangle of half-edge `half` lies beyond a breakpoint whose inner side is `edge`.
 SADDLEBACK_HOST_DEVICE inline void join(SweepState& s, Index edge, Index half) {
-  if (edge < 0) {
-    s.arcs[~edge].edge = half;  // no triangle yet on that side: it will come at the other end
-  } else {
-    s.twins[edge] = half;
-    s.twins[half] = edge;
-  }
+  // A negative one has no triangle yet on that side: it will come at the other end. Which one it is no processor
+  // predicts, so both are written without a branch.
+  *(edge < 0 ? &s.arcs[~edge].edge : &s.twins[edge]) = half;
+  s.twins[half] = edge < 0 ? k_none : edge;
 }
 
 /// Vanishing event: the neighbours meet at a Voronoi vertex. Returns the one before.

@@ -1,8 +1,5 @@
 #include "voronoi2d/twin_voronoi.h"
 
-#include <algorithm>
-
-#include "support/parallel.h"
 #include "support/twin_caller.h"
 #include "voronoi2d/curve_order.h"
 #include "voronoi2d/plane_twin.h"
@@ -45,7 +42,7 @@ class Caller {
 
  private:
   void sort(std::uint32_t* places, std::int32_t* order) const {
-    const LargeArray<Placed> items = curve_order(sites_, stage_.part(0.1, 0.2));
+    const LargeArray<Placed> items = curve_order(sites_, threads_, stage_.part(0.1, 0.2));
     for (std::size_t i = 0; i < items.size(); ++i) {
       places[i] = items[i].place;
       order[i] = items[i].index;
@@ -113,13 +110,6 @@ std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<con
   if (status == TwinStatus::left) return std::nullopt;
   caller.guard().check(status, reason);
   Voronoi2d result = caller.take();
-  result.sites.resize(sites.size());
-  constexpr Index k_piece = 1 << 16;
-  parallel_for((static_cast<Index>(sites.size()) + k_piece - 1) / k_piece, threads, 1, [&](Index piece, int) {
-    const std::size_t begin = static_cast<std::size_t>(piece) * k_piece;
-    const std::span<const Vec2> part = sites.subspan(begin, std::min<std::size_t>(k_piece, sites.size() - begin));
-    std::copy(part.begin(), part.end(), result.sites.begin() + static_cast<std::ptrdiff_t>(begin));
-  });
   result.device_times = times;
   return result;
 }

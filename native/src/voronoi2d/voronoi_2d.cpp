@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "saddleback/error.h"
 
@@ -27,54 +26,52 @@ Index tile_size(Index count, const Voronoi2dOptions& options) {
   return options.circles > 0 ? std::max<Index>(1, count / options.circles) : k_good;
 }
 
+/// All but the sites themselves.
+Voronoi2d find_diagram(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage) {
+  check_options(options, sites.size());
+  constexpr std::size_t k_fewest = 3;
+  if (!options.cuda_devices.empty() && sites.size() >= k_fewest) {
+    std::optional<Voronoi2d> found = twin_voronoi(sites, options.cuda_devices, options.threads, stage);
+    if (found) return std::move(*found);
+  }
+  OrderedSites ordered = order_sites(sites, options.threads, stage.part(0, 0.1));
+  Triangulation triangulation =
+      triangulate(ordered, tile_size(ordered.count(), options), options.threads, stage.part(0.1, 0.7));
+  LargeArray<std::uint32_t>().swap(ordered.places);  // others can have the room
+  Numbering numbering = number(std::move(triangulation), ordered, options.threads, stage.part(0.7, 0.98));
+  LargeArray<double>().swap(ordered.x);
+  LargeArray<double>().swap(ordered.y);
+
+  Voronoi2d result;
+  result.site_of = smallest_equals(ordered, options.threads, stage.part(0.98, 1));
+  result.vertices = std::move(numbering.vertices);
+  result.edges = std::move(numbering.edge_vertices);
+  result.edge_sites = std::move(numbering.edge_sites);
+  result.cell_places = std::move(ordered.rank_of);
+  result.cell_sites = std::move(ordered.original);
+  result.cell_offsets = std::move(numbering.offsets);
+  result.corner_vertices = std::move(numbering.corner_vertices);
+  result.side_edges = std::move(numbering.side_edges);
+  return result;
+}
+
 }  // namespace
+
+Voronoi2d voronoi_2d(LargeArray<Vec2>&& sites, const Voronoi2dOptions& options, Job* job) {
+  const JobStage stage(job, "Voronoi diagram");
+  Voronoi2d result = find_diagram(sites, options, stage);
+  result.sites = std::move(sites);
+  stage.update(1);
+  return result;
+}
 
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, Job* job) {
   return voronoi_2d(sites, options, JobStage(job, "Voronoi diagram"));
 }
 
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage) {
-  check_options(options, sites.size());
-  constexpr std::size_t k_fewest = 3;
-  if (!options.cuda_devices.empty() && sites.size() >= k_fewest) {
-    std::optional<Voronoi2d> found = twin_voronoi(sites, options.cuda_devices, options.threads, stage);
-    if (found) {
-      stage.update(1);
-      return std::move(*found);
-    }
-  }
-  OrderedSites ordered = order_sites(sites, stage.part(0, 0.1));
-  Triangulation triangulation =
-      triangulate(ordered, tile_size(ordered.count(), options), options.threads, stage.part(0.1, 0.7));
-  LargeArray<std::uint32_t>().swap(ordered.places);  // others can have the room
-  const bool are_distinct = ordered.original.size() == sites.size();
-  if (are_distinct) LargeArray<Index>().swap(ordered.site_of);
-  Numbering numbering = number(std::move(triangulation), ordered, options.threads, stage.part(0.7, 0.95));
-  LargeArray<double>().swap(ordered.x);
-  LargeArray<double>().swap(ordered.y);
-
-  Voronoi2d result;
-  result.sites.assign(sites.begin(), sites.end());
-  result.vertices = std::move(numbering.vertices);
-  result.edges = std::move(numbering.edge_vertices);
-  result.edge_sites = std::move(numbering.edge_sites);
-  result.cell_places.assign(sites.size(), k_none);
-  for (Index rank = 0; rank < static_cast<Index>(ordered.original.size()); ++rank) {
-    if (rank % 65536 == 0) stage.update(0.95 + 0.05 * rank / static_cast<double>(ordered.original.size()));
-    result.cell_places[ordered.original[rank]] = rank;
-  }
-  if (are_distinct) {
-    ordered.site_of.resize(sites.size());
-    std::iota(ordered.site_of.begin(), ordered.site_of.end(), 0);
-  } else {
-    for (std::size_t i = 0; i < sites.size(); ++i) result.cell_places[i] = result.cell_places[ordered.site_of[i]];
-  }
-  result.site_of = std::move(ordered.site_of);
-  result.cell_sites = std::move(ordered.original);
-  result.cell_offsets = std::move(numbering.offsets);
-  result.corner_vertices = std::move(numbering.corner_vertices);
-  result.side_edges = std::move(numbering.side_edges);
-  stage.update(1);
+  Voronoi2d result = find_diagram(sites, options, stage.part(0, 0.99));
+  result.sites = copy_of(sites, options.threads, stage.part(0.99, 1));
   return result;
 }
 

@@ -42,14 +42,11 @@ struct Heaviest {
 Heaviest heaviest_by_place(const OrderedSites& ordered, std::span<const double> weights) {
   const Index count = static_cast<Index>(weights.size());
   Heaviest result{ordered.original, std::vector<bool>(count, false)};
-  LargeArray<Index> rank_of(count);
-  for (Index rank = 0; rank < ordered.count(); ++rank) rank_of[ordered.original[rank]] = rank;
   for (Index i = 0; i < count; ++i) {
-    Index& best = result.original[rank_of[ordered.site_of[i]]];
+    Index& best = result.original[ordered.rank_of[i]];
     if (weights[i] > weights[best]) best = i;
   }
-  for (Index i = 0; i < count; ++i)
-    result.is_hidden[i] = weights[i] < weights[result.original[rank_of[ordered.site_of[i]]]];
+  for (Index i = 0; i < count; ++i) result.is_hidden[i] = weights[i] < weights[result.original[ordered.rank_of[i]]];
   return result;
 }
 
@@ -58,18 +55,18 @@ LargeArray<Index> smallest_equal(const OrderedSites& ordered, std::span<const do
   const Index count = static_cast<Index>(weights.size());
   LargeArray<Index> site_of(count);
   std::vector<Index> shared;  // sites that are not alone at their place
-  std::vector<bool> is_shared(count, false);
+  std::vector<bool> is_shared(ordered.count(), false);
   for (Index i = 0; i < count; ++i)
-    if (ordered.site_of[i] != i) is_shared[ordered.site_of[i]] = true;
+    if (ordered.site_of(i) != i) is_shared[ordered.rank_of[i]] = true;
   for (Index i = 0; i < count; ++i) {
     site_of[i] = i;
-    if (is_shared[ordered.site_of[i]]) shared.push_back(i);
+    if (is_shared[ordered.rank_of[i]]) shared.push_back(i);
   }
   const auto same = [&](Index a, Index b) {
-    return ordered.site_of[a] == ordered.site_of[b] && weights[a] == weights[b];
+    return ordered.rank_of[a] == ordered.rank_of[b] && weights[a] == weights[b];
   };
   std::sort(shared.begin(), shared.end(), [&](Index a, Index b) {
-    if (ordered.site_of[a] != ordered.site_of[b]) return ordered.site_of[a] < ordered.site_of[b];
+    if (ordered.rank_of[a] != ordered.rank_of[b]) return ordered.rank_of[a] < ordered.rank_of[b];
     return weights[a] != weights[b] ? weights[a] < weights[b] : a < b;
   });
   for (std::size_t k = 1; k < shared.size(); ++k)
@@ -146,7 +143,7 @@ class HiddenFinder {
 WeightedSites order_weighted_sites(std::span<const Vec2> sites, std::span<const double> weights, int threads,
                                    const JobStage& stage) {
   check_weights(sites, weights);
-  const OrderedSites ordered = order_sites(sites, stage.part(0, 0.5));
+  const OrderedSites ordered = order_sites(sites, threads, stage.part(0, 0.5));
   check_scaled(weights, ordered.scale);
   WeightedSites result;
   result.scale = ordered.scale;

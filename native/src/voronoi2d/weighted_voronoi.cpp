@@ -8,6 +8,7 @@
 #include "saddleback/voronoi_2d.h"
 
 #include "voronoi2d/check_options.h"
+#include "voronoi2d/site_order.h"
 #include "voronoi2d/twin_voronoi.h"
 #include "voronoi2d/weighted_cells.h"
 #include "voronoi2d/weighted_sites.h"
@@ -112,6 +113,7 @@ std::optional<Voronoi2d> found_on_device(std::span<const Vec2> sites, std::span<
     return std::nullopt;
   std::optional<Voronoi2d> result = twin_voronoi(sites, weights, options.cuda_devices, options.threads, stage);
   if (!result) return std::nullopt;
+  result->sites = copy_of(sites, options.threads, stage.part(0.99, 1));
   result->weights.assign(weights.begin(), weights.end());
   for (std::size_t i = 0; i < sites.size(); ++i)
     if (result->cell_places[i] == k_none) result->hidden.push_back(static_cast<Index>(i));
@@ -140,7 +142,7 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, std::span<const double> weight
     const WeightedCells cells(ordered, tile_size, options.threads, stage.part(0.2, 0.9));
     Numberer(cells, ordered, result).run(stage.part(0.9, 1));
   }
-  result.sites.assign(sites.begin(), sites.end());
+  result.sites = copy_of(sites, options.threads, stage.part(0.99, 1));
   result.weights.assign(weights.begin(), weights.end());
   result.cell_places.assign(sites.size(), k_none);
   for (Index rank = 0; rank < ordered.count(); ++rank) result.cell_places[ordered.original[rank]] = rank;
