@@ -69,6 +69,7 @@ class BlockQueue {
     current_ = 0;
   }
 
+  double width() const { return width_; }  ///< of a bucket
   /// No item taken from now on has a lesser key, but for those whose place in the order rounding or the ring changed.
   double reached() const { return static_cast<double>(current_) * width_; }
 

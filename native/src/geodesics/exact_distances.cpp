@@ -44,8 +44,6 @@ std::vector<Index> owners_of(const ExactSurface& surface, const ExactPropagation
 }
 
 constexpr const char* k_text = "Measuring exact distances";
-// Of the time of a field whose windows are kept: sorting them comes last.
-constexpr double k_windows_made = 0.72;
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -53,33 +51,30 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& given, double limit, Job* job) {
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
-  const JobStage stage(job, k_text);
-  const double share = share_of_surface(mesh, sources, limit);
-  const ExactSurface surface(mesh, sources, stage.part(0, share));
+  ExactProgress progress({mesh, sources, limit}, JobStage(job, k_text));
+  const ExactSurface surface(mesh, sources, progress.laying());
   ExactPropagation propagation(surface, sources, {.limit = limit});
-  propagation.run(stage.part(share, 1));
+  propagation.run(progress);
   return distances_of(surface, propagation);
 }
 
 NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& given, double limit, Job* job) {
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
-  const JobStage stage(job, k_text);
-  const double share = share_of_surface(mesh, sources, limit);
-  const ExactSurface surface(mesh, sources, stage.part(0, share));
+  ExactProgress progress({mesh, sources, limit}, JobStage(job, k_text));
+  const ExactSurface surface(mesh, sources, progress.laying());
   ExactPropagation propagation(surface, sources, {.limit = limit, .break_ties = sources.size() > 1});
-  propagation.run(stage.part(share, 1));
+  propagation.run(progress);
   return {distances_of(surface, propagation), owners_of(surface, propagation)};
 }
 
 struct ExactField::Parts {
   Parts(const Mesh& mesh, const SurfacePoints& given, const JobStage& stage)
       : sources(snapped_to_vertices(given)),
-        share(k_windows_made * share_of_surface(mesh, sources, k_infinity)),
-        surface(mesh, sources, stage.part(0, share)),
+        progress({mesh, sources, k_infinity, true}, stage),
+        surface(mesh, sources, progress.laying()),
         propagation(surface, sources, {.break_ties = sources.size() > 1, .keep_windows = true}),
-        windows((propagation.run(stage.part(share, k_windows_made)),
-                 KeptWindows(surface, propagation, stage.part(k_windows_made, 1)))),
+        windows((propagation.run(progress), KeptWindows(surface, propagation, progress.sorting()))),
         tracer(surface, sources, propagation, windows),
         distances(distances_of(surface, propagation)),
         nearest(owners_of(surface, propagation)) {
@@ -87,7 +82,7 @@ struct ExactField::Parts {
   }
 
   const SurfacePoints sources;
-  const double share;  ///< of the time, until the surface is laid out
+  ExactProgress progress;
   const ExactSurface surface;
   ExactPropagation propagation;
   const KeptWindows windows;

@@ -1,57 +1,49 @@
 #pragma once
 // How the time of a propagation of exact distances is spread.
 
-#include <array>
 #include <cstdint>
-#include <vector>
 
 #include "saddleback/job.h"
 
-#include "geodesics/exact_surface.h"
+#include "geodesics/window_forecast.h"
 
 namespace saddleback {
 
-/// Of the time of a propagation that is watched, what passes before it runs: its surface is laid out.
-double share_of_surface(const Mesh& mesh, const SurfacePoints& sources, double limit);
+/// What is to be propagated.
+struct ExactWork {
+  const Mesh& mesh;
+  const SurfacePoints& sources;
+  double limit;
+  bool sorts_windows = false;  ///< afterwards
+};
 
-/// How much of a propagation is done: the time goes into windows, and how many there will be is foretold.
-///
-/// A window is split at every vertex that it passes, so that light spreads out from the source as a flow that grows by
-/// one at each vertex and is handed on to the vertices farther out. What becomes of it depends on the surface: on a
-/// sphere all of it comes together behind, elsewhere it runs over borders, or ends where other light came first. So it
-/// is foretold in several ways at once, and the more the windows counted so far agree with one, the more it counts.
+/// How much of a propagation is done: a surface is laid out, windows are foretold, run and maybe sorted. Without a
+/// watched job nothing is foretold.
 class ExactProgress {
  public:
-  /// The forecast is a part of the stage. \throw Cancelled. O(V log V).
-  ExactProgress(const ExactSurface& surface, const SurfacePoints& sources, double limit, const JobStage& stage);
+  /// Mesh and sources outlive this object.
+  ExactProgress(const ExactWork& work, const JobStage& stage);
 
-  /// A vertex of the surface is reached for the first time, at about that distance.
-  void reach(Index vertex, double distance);
+  JobStage laying() const { return stage_.part(0, laid_); }
+  /// Of windows in rings of that width about the sources. \throw Cancelled. O(V).
+  void foretell(const ExactSurface& surface, double ring_width);
   /// Windows up to that distance are done, so many in all. \throw Cancelled.
   void update(double distance, std::int64_t window_count);
+  /// All windows are done. \throw Cancelled.
+  void end();
+  JobStage sorting() const { return stage_.part(run_, 1); }
 
  private:
-  static constexpr int k_ways = 4;  ///< that flows are foretold
-  using Flows = std::array<float, k_ways>;
-  using Sums = std::array<double, k_ways>;
-  /// Windows done, and what of the flows was done then.
-  struct Count {
-    double windows;
-    Sums flows;
-  };
+  double cost_of_windows(double count) const;
 
-  void spread_flows(const ExactSurface& surface, const SurfacePoints& sources, double limit, const JobStage& stage);
-  std::size_t ring_of(double distance) const;
-  void remember(double windows);
-  double share() const;
-
+  const ExactWork work_;
+  const JobStage stage_;
   JobStage running_;
+  double before_windows_ = 0;                 ///< cost of the surface and the forecast
+  double laid_ = 0, foretold_ = 0, run_ = 1;  ///< shares of the whole, so far
+  WindowForecast forecast_;
   double per_ring_ = 0;
-  std::vector<Flows> flows_;   ///< of the surface's vertices
-  std::vector<Sums> pending_;  ///< half of the flow of vertices ahead, by rings about the sources
-  std::size_t ring_ = 0;       ///< the first one pending
-  Sums done_{}, totals_{}, beliefs_{};
-  std::vector<Count> counts_;
+  std::size_t ring_ = 0, before_ring_ = 0;  ///< windows done when this ring began
 };
 
 }  // namespace saddleback

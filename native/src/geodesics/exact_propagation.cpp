@@ -64,18 +64,16 @@ ExactPropagation::ExactPropagation(const ExactSurface& surface, const SurfacePoi
       arrivals_(surface.vertex_count(), {0, 0, Arrival::k_unreached, k_none}),
       occupants_(surface.halfedge_count(), {k_far, 0}) {}
 
-void ExactPropagation::run(const JobStage& stage) {
-  progress_ = std::make_unique<ExactProgress>(surface_, sources_, options_.limit, stage);
+void ExactPropagation::run(ExactProgress& progress) {
+  progress.foretell(surface_, queue_->width());
   start();
   while (queue_->advance() && queue_->reached() <= options_.limit) {
-    progress_->update(queue_->reached(), window_count_);
-    while (WindowBlock* const block = queue_->take()) drain(block, stage);
+    while (WindowBlock* const block = queue_->take()) drain(block, progress);
     // Last in the bucket: by now their distances are final, nearly always.
     for (const Index vertex : due_) bend(vertex);
     due_.clear();
   }
-  progress_.reset();
-  stage.update(1);
+  progress.end();
 }
 
 void ExactPropagation::release() {
@@ -99,9 +97,9 @@ void ExactPropagation::fetch(Index halfedge) const {
 }
 
 /// Propagates a chain of blocks.
-void ExactPropagation::drain(WindowBlock* block, const JobStage& stage) {
+void ExactPropagation::drain(WindowBlock* block, ExactProgress& progress) {
   while (block) {
-    stage.check();
+    progress.update(queue_->reached(), window_count_);
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->items[i];
       if (i + k_ahead < block->size) fetch(block->items[i + k_ahead].halfedge);
@@ -177,7 +175,6 @@ void ExactPropagation::offer(Index vertex, double distance, const Arrival& arriv
   }
   const bool keeps_owner =
       options_.break_ties && distance >= known * (1 - k_tie) && owns_before(arrivals_[vertex], arrival);
-  if (known == k_far) progress_->reach(vertex, distance);
   distances_[vertex] = distance;
   if (!keeps_owner) arrivals_[vertex] = arrival;
   if (surface_.may_bend(vertex) || arrival.halfedge == Arrival::k_at_source)

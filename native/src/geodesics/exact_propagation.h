@@ -37,7 +37,7 @@ class ExactPropagation {
   ExactPropagation(const ExactSurface& surface, const SurfacePoints& sources, const ExactPropagationOptions& options);
 
   /// \throw Cancelled. Once.
-  void run(const JobStage& stage);
+  void run(ExactProgress& progress);
 
   /// Infinity where no source reaches, or only beyond the limit.
   double distance(Index vertex) const { return distances_[vertex] <= options_.limit ? distances_[vertex] : k_far; }
@@ -61,7 +61,7 @@ class ExactPropagation {
   void start();
   void start_in_face(const SourceInFace& place);
   void fetch(Index halfedge) const;
-  void drain(WindowBlock* block, const JobStage& stage);
+  void drain(WindowBlock* block, ExactProgress& progress);
   void offer(Index vertex, double distance, const Arrival& arrival);
   bool owns_before(const Arrival& a, const Arrival& b) const;
   void light(const Window& window);
@@ -76,7 +76,6 @@ class ExactPropagation {
   const SurfacePoints& sources_;
   const ExactPropagationOptions options_;
   std::unique_ptr<WindowQueue> queue_;
-  std::unique_ptr<ExactProgress> progress_;  ///< while it runs
   std::vector<double> distances_, bent_at_;
   std::vector<Arrival> arrivals_;
   std::vector<Occupant> occupants_;

@@ -14,7 +14,7 @@ constexpr double k_flat_tolerance = 1e-12;
 // Barycentric. Rays from nearer to a vertex, which pass it on both sides, are as far as this from telling all their
 // directions; what is lit from the vertex instead is no more than twice this too far.
 constexpr double k_beside = 1e-8;
-constexpr Index k_check = 1 << 15;  ///< vertices or half-edges: some milliseconds
+constexpr Index k_check = 1 << 12;  ///< vertices or half-edges: less than a millisecond
 
 /// A point that is no vertex as a point of each face that it lies in.
 SurfacePoints in_each_face(const Mesh& mesh, const SurfacePoint& point) {
