@@ -17,10 +17,11 @@ void CellBlock::gather(const Triangulation& mesh, const Index* leaving, Index be
   cell_count = count;
   size = 0;
   open.clear();
-  for (Index cell = 0; cell < count; ++cell) {
-    const Found found = gather_few(mesh, leaving[cell], cell);
-    if (found == Found::flat) gather_few_flat(mesh, leaving[cell], cell);
-    if (found == Found::any) few_size_[cell] = 0;
+  for (Index cell = 0; cell < count; cell += k_together) {
+    const Index end = std::min(count, cell + k_together);
+    if (end - cell == k_together && gather_few<k_together>(mesh, leaving + cell, cell)) continue;
+    for (Index one = cell; one < end; ++one)
+      if (!gather_few<1>(mesh, leaving + one, one)) few_size_[one] = 0;
   }
   for (Index cell = 0; cell < count; ++cell) {
     starts[cell] = size;
@@ -50,32 +51,50 @@ constexpr std::ptrdiff_t k_next[4] = {1, 1, -2, 0}, k_previous[4] = {2, -1, -1, 
 
 }  // namespace
 
-// Always as many steps, since when a walk ends cannot be predicted: what comes after is the same once more.
-CellBlock::Found CellBlock::gather_few(const Triangulation& mesh, Index first, Index cell) {
+// Always as many steps, since when a walk ends cannot be predicted: what comes after is the same once more. Each step
+// waits for the one before: the walks about several sites do so together.
+template <Index Together>
+bool CellBlock::gather_few(const Triangulation& mesh, const Index* leaving, Index cell) {
   const Index *const corners = mesh.corners.data(), *const twins = mesh.twins.data();
+  std::ptrdiff_t walk[Together], count[Together], is_under_way[Together], lowest[Together];
+  Index flags[Together];
+  for (Index i = 0; i < Together; ++i) {
+    walk[i] = leaving[i];
+    count[i] = 0;
+    is_under_way[i] = 1;
+    lowest[i] = std::numeric_limits<std::ptrdiff_t>::max();
+    flags[i] = 0;
+  }
   Index *const walked = few_half_.data() + k_few * cell, *const others = few_neighbour_.data() + k_few * cell;
-  std::ptrdiff_t walk = first, count = 0, is_under_way = 1;
-  std::ptrdiff_t lowest = std::numeric_limits<std::ptrdiff_t>::max();
-  Index flags = 0, twin = 0;
 #ifdef __GNUC__
 #pragma GCC unroll 8
 #endif
   for (std::ptrdiff_t step = 0; step < k_few; ++step) {
-    const std::ptrdiff_t k = walk & 3, other = corners[walk + k_next[k]];
-    walked[step] = static_cast<Index>(walk);
-    others[step] = static_cast<Index>(other);
-    lowest = std::min(lowest, k_few * other + step);
-    flags |= twins[walk | 3];
-    count += is_under_way;
-    twin = twins[walk + k_previous[k]];
-    if (twin < 0) return Found::any;
-    walk = twin;
-    is_under_way &= static_cast<std::ptrdiff_t>(walk != first);
+    Index ends = 0;
+#ifdef __GNUC__
+#pragma GCC unroll 4
+#endif
+    for (Index i = 0; i < Together; ++i) {
+      const std::ptrdiff_t k = walk[i] & 3, other = corners[walk[i] + k_next[k]];
+      walked[k_few * i + step] = static_cast<Index>(walk[i]);
+      others[k_few * i + step] = static_cast<Index>(other);
+      lowest[i] = std::min(lowest[i], k_few * other + step);
+      flags[i] |= twins[walk[i] | 3];
+      count[i] += is_under_way[i];
+      const Index twin = twins[walk[i] + k_previous[k]];
+      ends |= twin;
+      walk[i] = std::max(twin, 0);
+      is_under_way[i] &= static_cast<std::ptrdiff_t>(twin != leaving[i]);
+    }
+    if (ends < 0) return false;  // of the border
   }
-  few_size_[cell] = static_cast<Index>(count);
-  few_lowest_[cell] = static_cast<Index>(lowest % k_few);
-  if (is_under_way != 0) return Found::any;
-  return flags == 0 ? Found::closed : Found::flat;
+  for (Index i = 0; i < Together; ++i) {
+    if (is_under_way[i] != 0) return false;
+    few_size_[cell + i] = static_cast<Index>(count[i]);
+    few_lowest_[cell + i] = static_cast<Index>(lowest[i] % k_few);
+    if (flags[i] != 0) gather_few_flat(mesh, leaving[i], cell + i);
+  }
+  return true;
 }
 
 /// The same where some triangles share their circle.

@@ -31,9 +31,11 @@ class CellBlock {
   std::vector<Index> befores;              ///< by side: the one before it
 
  private:
-  static constexpr Index k_few = 8;  ///< triangles about most sites
-  enum class Found { closed, flat, any };
-  Found gather_few(const Triangulation& mesh, Index first, Index cell);
+  static constexpr Index k_few = 8;       ///< triangles about most sites
+  static constexpr Index k_together = 2;  ///< cells
+  /// Some cells in a row; false where one is open or has more triangles than a few.
+  template <Index Together>
+  bool gather_few(const Triangulation& mesh, const Index* leaving, Index cell);
   void gather_few_flat(const Triangulation& mesh, Index first, Index cell);
   bool gather_any(const Triangulation& mesh, Index first);
   void append_few(Index cell, Index cell_site);

@@ -1,10 +1,9 @@
 #pragma once
 // Where a Voronoi vertex lies.
 
-#include <cmath>
-
 #include "saddleback/types.h"
 
+#include "support/two_doubles.h"
 #include "voronoi2d/circumcentre_point.h"
 
 namespace saddleback::voronoi2d {
@@ -15,36 +14,29 @@ inline Vec2 circumcentre(const predicates::Point2& a, const predicates::Point2& 
   return {centre.x, centre.y};
 }
 
-/// Two triangles side by side, so that vector units compute both at once: the numbers of `circumcentre_point`, but only
-/// where `is_good`; elsewhere digits are lost.
-struct TwoTriangles {
-  double ax[2], ay[2], bx[2], by[2], cx[2], cy[2];  ///< corners
-  double x[2], y[2];
-  bool is_good[2];
+/// Sites by rank.
+struct SiteColumns {
+  const double *x, *y;
+};
 
-  void set(int k, const predicates::Point2& a, const predicates::Point2& b, const predicates::Point2& c) {
-    ax[k] = a.x, ay[k] = a.y, bx[k] = b.x, by[k] = b.y, cx[k] = c.x, cy[k] = c.y;
-  }
-  void find_centres() {
-    double det[2], size[2];
-    for (int k = 0; k < 2; ++k) {
-      const double ux = bx[k] - ax[k], uy = by[k] - ay[k], vx = cx[k] - ax[k], vy = cy[k] - ay[k];
-      const double left = ux * vy, right = uy * vx;
-      det[k] = left - right;
-      size[k] = std::fabs(left) + std::fabs(right);
-      const double u2 = ux * ux + uy * uy, v2 = vx * vx + vy * vy;
-      x[k] = ax[k] + 0.5 * ((vy * u2 - uy * v2) / det[k]);
-      y[k] = ay[k] + 0.5 * ((ux * v2 - vx * u2) / det[k]);
-    }
-    for (int k = 0; k < 2; ++k) is_good[k] = !(std::fabs(det[k]) < k_cancelled_share * size[k]);
-  }
-  Vec2 centre(int k) const {
-    if (is_good[k]) return {x[k], y[k]};
-    return circumcentre({ax[k], ay[k]}, {bx[k], by[k]}, {cx[k], cy[k]});
-  }
+/// The numbers of `circumcentre_point` for two triangles side by side: those of their centres, and where they are good;
+/// elsewhere digits are lost.
+struct TwoCentres {
+  TwoDoubles x, y, certainty;
 
- private:
-  static constexpr double k_cancelled_share = 0x1p-10;  ///< as in `circumcentre_point`
+  TwoCentres(const SiteColumns& sites, const Index* first, const Index* second) {
+    using Two = TwoDoubles;
+    const auto at = [&](const double* column, int k) { return Two::of(column[first[k]], column[second[k]]); };
+    const Two ax = at(sites.x, 0), ay = at(sites.y, 0);
+    const Two ux = at(sites.x, 1) - ax, uy = at(sites.y, 1) - ay, vx = at(sites.x, 2) - ax, vy = at(sites.y, 2) - ay;
+    const Two left = ux * vy, right = uy * vx, det = left - right;
+    const Two u2 = ux * ux + uy * uy, v2 = vx * vx + vy * vy;
+    x = ax + Two::both(0.5) * ((vy * u2 - uy * v2) / det);
+    y = ay + Two::both(0.5) * ((ux * v2 - vx * u2) / det);
+    constexpr double k_cancelled = 0x1p-10;  // as in `circumcentre_point`
+    certainty = Two::size(det) - Two::both(k_cancelled) * (Two::size(left) + Two::size(right));
+  }
+  bool are_good() const { return TwoDoubles::are_positive(certainty); }
 };
 
 }  // namespace saddleback::voronoi2d

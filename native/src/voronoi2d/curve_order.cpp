@@ -180,23 +180,27 @@ class Sorter {
   /// By radix, stable, least digit first.
   void sort_by_place() {
     constexpr int k_digit = 11;
-    constexpr std::size_t k_values = std::size_t{1} << k_digit;
+    constexpr std::uint32_t k_values = 1u << k_digit;
     LargeArray<Placed> other(items_.size());
-    std::vector<std::array<Index, k_values>> next(shares_);  // by share and digit: where its next item goes
+    std::vector<Index> next(static_cast<std::size_t>(shares_) * k_values);  // by share, digit: where its next item goes
     for (int shift = 0; shift < 2 * k_bits; shift += k_digit) {
-      const auto digit = [&](const Placed& item) { return (item.place >> shift) & (k_values - 1); };
+      const auto digit = [shift](const Placed& item) { return (item.place >> shift) & (k_values - 1); };
       const double begin_share = shift / (2.0 * k_bits), end_share = std::min(1.0, (shift + k_digit) / (2.0 * k_bits));
       const JobStage pass = stage_.part(0.3 + 0.6 * begin_share, 0.3 + 0.6 * end_share);
-      for (auto& counts : next) counts.fill(0);
+      std::fill(next.begin(), next.end(), 0);
       for_shares(pass.part(0, 0.3), [&](Index share, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) ++next[share][digit(items_[i])];
+        Index* const count = next.data() + static_cast<std::size_t>(share) * k_values;
+        const Placed* const items = items_.data();
+        for (std::size_t i = begin; i < end; ++i) ++count[digit(items[i])];
       });
       Index before = 0;
-      for (std::size_t value = 0; value < k_values; ++value)
-        for (auto& counts : next) before += std::exchange(counts[value], before);
+      for (std::uint32_t value = 0; value < k_values; ++value)
+        for (std::size_t at = value; at < next.size(); at += k_values) before += std::exchange(next[at], before);
       for_shares(pass.part(0.3, 1), [&](Index share, std::size_t begin, std::size_t end) {
-        Index* const to = next[share].data();
-        for (std::size_t i = begin; i < end; ++i) other[to[digit(items_[i])]++] = items_[i];
+        Index* const to = next.data() + static_cast<std::size_t>(share) * k_values;
+        const Placed* const items = items_.data();
+        Placed* const sorted = other.data();
+        for (std::size_t i = begin; i < end; ++i) sorted[to[digit(items[i])]++] = items[i];
       });
       items_.swap(other);
     }

@@ -377,10 +377,20 @@ class Numberer {
   }
 
   void place_in(const Piece& piece, double unscale) {
-    TwoTriangles pair{};
-    Index vertices[2]{};
+    const SiteColumns columns{sites_.x.data(), sites_.y.data()};
+    Vec2* const vertices = result_.vertices.data();
+    const auto place = [&](const Index* a, const Index* b) {
+      const TwoCentres centres(columns, a, b);
+      if (centres.are_good()) {
+        vertices[a[3]] = Vec2(centres.x[0], centres.y[0]) * unscale;
+        vertices[b[3]] = Vec2(centres.x[1], centres.y[1]) * unscale;
+      } else {
+        for (const Index* one : {a, b})
+          vertices[one[3]] = circumcentre(point(one[0]), point(one[1]), point(one[2])) * unscale;
+      }
+    };
+    Index pair[2][4]{};
     int filled = 0;
-    const auto write = [&](int k) { result_.vertices[vertices[k]] = pair.centre(k) * unscale; };
     for (Index first = 8 * piece.begin; first < 8 * piece.end; first += 4) {
       const Index* const corner = mesh_.corners.data() + first;
       if (corner[0] == k_none) continue;
@@ -388,18 +398,13 @@ class Numberer {
                 is_c = (corner[2] < corner[0]) & (corner[2] < corner[1]);
       static constexpr Index k_around[5] = {0, 1, 2, 0, 1};
       const Index* const around = k_around + (is_b + 2 * is_c);  // the lowest first, whatever the triangle's order
-      pair.set(filled, point(corner[around[0]]), point(corner[around[1]]), point(corner[around[2]]));
-      vertices[filled] = corner[3];
+      Index* const to = pair[filled];
+      for (int k = 0; k < 3; ++k) to[k] = corner[around[k]];
+      to[3] = corner[3];
       filled = 1 - filled;
-      if (filled == 1) continue;
-      pair.find_centres();
-      write(0);
-      write(1);
+      if (filled == 0) place(pair[0], pair[1]);
     }
-    if (filled == 0) return;
-    pair.set(1, {pair.ax[0], pair.ay[0]}, {pair.bx[0], pair.by[0]}, {pair.cx[0], pair.cy[0]});
-    pair.find_centres();
-    write(0);
+    if (filled != 0) place(pair[0], pair[0]);
   }
 
   void leave_out_flat_triangles() {

@@ -7,6 +7,7 @@
 
 #include "predicates/in_circle_steps.h"
 #include "predicates/predicates.h"
+#include "support/two_doubles.h"
 
 namespace saddleback::voronoi2d {
 
@@ -31,29 +32,29 @@ struct PlanarMesh {
 predicates::Sign circle_test(const PlanarMesh& mesh, Index half);
 
 /// The circle through three sites, ready to be asked about others: the minors of the determinant of `in_circle` along
-/// the row of the fourth site, counted from the first. Each value is off by less than 11 roundings of its terms' sizes.
+/// the row of the fourth site, counted from the first. With q the largest squared distance from the first site to any
+/// other, the determinant is off by less than 12 roundings of 4 q^2.
 struct CircleTest {
-  double x, y;                         ///< the first site
-  double by_x, by_y, by_square;        ///< minors
-  double size_x, size_y, size_square;  ///< the same with all terms positive
-  static constexpr double k_bound = 12 * predicates::detail::k_epsilon;
+  double x, y;                   ///< the first site
+  double by_x, by_y, by_square;  ///< minors
+  double largest_square;
+  static constexpr double k_bound = 50 * predicates::detail::k_epsilon;
 
   CircleTest(const predicates::Point2& a, const predicates::Point2& b, const predicates::Point2& c) : x(a.x), y(a.y) {
     const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
     const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
-    const double byc2 = by * c2, cyb2 = cy * b2, bxc2 = bx * c2, cxb2 = cx * b2, bxcy = bx * cy, bycx = by * cx;
-    by_x = cyb2 - byc2;
-    by_y = bxc2 - cxb2;
-    by_square = bycx - bxcy;
-    size_x = std::fabs(byc2) + std::fabs(cyb2);
-    size_y = std::fabs(bxc2) + std::fabs(cxb2);
-    size_square = std::fabs(bycx) + std::fabs(bxcy);
+    by_x = cy * b2 - by * c2;
+    by_y = bx * c2 - cx * b2;
+    by_square = by * cx - bx * cy;
+    largest_square = b2 > c2 ? b2 : c2;
   }
-  /// Certainly outside the circle, if the sites turn counter-clockwise.
-  bool is_outside(const predicates::Point2& d) const {
-    const double dx = d.x - x, dy = d.y - y, d2 = dx * dx + dy * dy;
-    const double value = dx * by_x + dy * by_y + d2 * by_square;
-    return value < -k_bound * (std::fabs(dx) * size_x + std::fabs(dy) * size_y + d2 * size_square);
+  /// Both certainly outside the circle, if the sites turn counter-clockwise.
+  bool are_outside(const predicates::Point2& d, const predicates::Point2& e) const {
+    using Two = TwoDoubles;
+    const Two dx = Two::of(d.x, e.x) - Two::both(x), dy = Two::of(d.y, e.y) - Two::both(y), d2 = dx * dx + dy * dy;
+    const Two value = dx * Two::both(by_x) + dy * Two::both(by_y) + d2 * Two::both(by_square);
+    const Two largest = Two::larger(d2, Two::both(largest_square));
+    return Two::are_positive(Two::both(-k_bound) * (largest * largest) - value);
   }
 };
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 
 namespace saddleback::voronoi2d {
 
@@ -16,9 +15,9 @@ void SweepCircle::reserve(Index count) {
   arcs_ = std::make_unique_for_overwrite<Arc[]>(2 * static_cast<std::size_t>(capacity_));
 }
 
-// By equal steps of the squared distance, about one site each, then within each step.
+// By equal steps of the squared distance, two for each site, then past the few before that are farther.
 void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> y, Index first) {
-  const Index count = static_cast<Index>(x.size());
+  const Index count = static_cast<Index>(x.size()), day_count = 2 * count;
   order_.resize(count);
   unsorted_.resize(count);
   double farthest = 0;
@@ -27,18 +26,32 @@ void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> 
     unsorted_[i] = {dx * dx + dy * dy, i};
     farthest = std::max(farthest, unsorted_[i].radius);
   }
-  const double days_per_area = farthest > 0 ? static_cast<double>(count) / farthest : 0;
+  const double days_per_area = farthest > 0 ? static_cast<double>(day_count) / farthest : 0;
   const auto day = [&](const Place& place) { return static_cast<Index>(place.radius * days_per_area); };
-  days_.assign(count + 2, 0);
+  days_.assign(day_count + 2, 0);
   for (const Place& place : unsorted_) ++days_[day(place) + 1];
-  std::partial_sum(days_.begin(), days_.end(), days_.begin());
+  Index before = 0, longest = 0;
+  for (Index& begin : days_) {
+    longest = std::max(longest, begin);
+    before += begin;
+    begin = before;
+  }
   for (const Place& place : unsorted_) order_[days_[day(place)]++] = place;
   const auto is_nearer = [](const Place& a, const Place& b) {
     return a.radius != b.radius ? a.radius < b.radius : a.site < b.site;
   };
-  for (Index begin = 0, i = 0; i <= count; ++i) {  // each day's begin has moved to its end
-    std::sort(order_.begin() + begin, order_.begin() + days_[i], is_nearer);
-    begin = days_[i];
+  constexpr Index k_few = 8;
+  if (longest > k_few) {
+    for (Index begin = 0, i = 0; i <= day_count; ++i) {  // each day's begin has moved to its end
+      if (days_[i] - begin > k_few) std::sort(order_.begin() + begin, order_.begin() + days_[i], is_nearer);
+      begin = days_[i];
+    }
+  }
+  for (Index i = 1; i < count; ++i) {
+    const Place place = order_[i];
+    Index to = i;
+    for (; to > 0 && is_nearer(place, order_[to - 1]); --to) order_[to] = order_[to - 1];
+    order_[to] = place;
   }
   for (Place& place : order_) place.radius = std::sqrt(place.radius);
 }

@@ -27,6 +27,7 @@
 #include "saddleback/types.h"
 
 #include "predicates/predicates.h"
+#include "support/two_doubles.h"
 
 namespace saddleback::voronoi2d {
 
@@ -64,53 +65,39 @@ struct SweptSite {
 
 constexpr double k_never = DBL_MAX, k_latest = 0.5 * DBL_MAX;  ///< events lie before `k_latest`, or never
 
-/// Two arcs b with the arcs a and c before and after them: what is to be known of their vanishing, side by side so that
-/// vector units compute both at once.
-struct Pair {
-  double ax[2], ay[2], bx[2], by[2], cx[2], cy[2];
-  double radius[2], certainty[2];
-};
-
-/// Sets the radius |v - centre| + |v - b| at which each arc vanishes, v being the circumcentre, or k_never if the three
-/// sites do not turn clockwise. That is sure where `certainty` is positive.
-SADDLEBACK_HOST_DEVICE inline void find_radii(Pair& p, double centre_x, double centre_y) {
-  for (int k = 0; k < 2; ++k) {
-    const double ax = p.ax[k] - p.bx[k], ay = p.ay[k] - p.by[k], cx = p.cx[k] - p.bx[k], cy = p.cy[k] - p.by[k];
-    const double left = ax * cy, right = ay * cx, det = left - right;
-    p.certainty[k] = fabs(det) - predicates::detail::k_orient_bound * (fabs(left) + fabs(right));
-    const double half = 0.5 / det, a2 = ax * ax + ay * ay, c2 = cx * cx + cy * cy;
-    const double x = (cy * a2 - ay * c2) * half, y = (ax * c2 - cx * a2) * half;
-    const double from_x = x + (p.bx[k] - centre_x), from_y = y + (p.by[k] - centre_y);
-    const double radius = sqrt(x * x + y * y) + sqrt(from_x * from_x + from_y * from_y);
-    const double before_never = radius < k_latest ? radius : k_latest;
-    p.radius[k] = det > 0 ? before_never : k_never;
-  }
-}
-
-/// The same for one arc, exactly, where doubles cannot tell: later than anything that matters, since it is so flat.
-SADDLEBACK_HOST_DEVICE inline double radius_of_flat(const Pair& p, int k) {
-  const bool turns = predicates::detail::orient_2d_exact({p.ax[k], p.ay[k]}, {p.bx[k], p.by[k]}, {p.cx[k], p.cy[k]}) ==
-                     predicates::Sign::negative;
+/// An arc b with the arcs a and c before and after it, as nearly flat ones are looked at: when it vanishes. Between two
+/// parts of one ellipse an arc stays; three sites nearly on one line meet later than anything that matters, if ever.
+SADDLEBACK_HOST_DEVICE inline double radius_of_flat(const Arc& a, const Arc& b, const Arc& c) {
+  const bool turns = a.site != c.site && predicates::detail::orient_2d_exact({a.x, a.y}, {b.x, b.y}, {c.x, c.y}) ==
+                                             predicates::Sign::negative;
   return turns ? k_latest : k_never;
 }
 
-/// Says anew when two arcs vanish.
-SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index first, Index second) {
-  Pair pair;
-  bool is_parted[2];
-  for (int k = 0; k < 2; ++k) {
-    const Arc& b = s.arcs[k == 0 ? first : second];
-    const Arc &a = s.arcs[b.previous], &c = s.arcs[b.next];
-    pair.ax[k] = a.x, pair.ay[k] = a.y, pair.bx[k] = b.x, pair.by[k] = b.y, pair.cx[k] = c.x, pair.cy[k] = c.y;
-    is_parted[k] = a.site != c.site;  // between two parts of one ellipse an arc stays
-  }
-  find_radii(pair, s.centre_x, s.centre_y);
-  s.arcs[first].radius = pair.radius[0];
-  s.arcs[second].radius = pair.radius[1];
-  if (pair.certainty[0] > 0 && pair.certainty[1] > 0) return;  // two parts of one ellipse are not certain either
-  for (int k = 0; k < 2; ++k)
-    if (!(pair.certainty[k] > 0))
-      s.arcs[k == 0 ? first : second].radius = is_parted[k] ? radius_of_flat(pair, k) : k_never;
+/// Says anew when two arcs vanish: at the radius |v - centre| + |v - b|, v being the circumcentre, if the three sites
+/// turn clockwise.
+inline void schedule(SweepState& s, Index first, Index second) {
+  Arc* const arcs = s.arcs;
+  Arc &b0 = arcs[first], &b1 = arcs[second];
+  const Arc &a0 = arcs[b0.previous], &c0 = arcs[b0.next], &a1 = arcs[b1.previous], &c1 = arcs[b1.next];
+  using Two = TwoDoubles;
+  const Two at0 = Two::at(&b0.x), at1 = Two::at(&b1.x), centre = Two::of(s.centre_x, s.centre_y);
+  const Two to_a0 = Two::at(&a0.x) - at0, to_c0 = Two::at(&c0.x) - at0, from0 = at0 - centre;
+  const Two to_a1 = Two::at(&a1.x) - at1, to_c1 = Two::at(&c1.x) - at1, from1 = at1 - centre;
+  const Two ax = Two::firsts(to_a0, to_a1), ay = Two::seconds(to_a0, to_a1);
+  const Two cx = Two::firsts(to_c0, to_c1), cy = Two::seconds(to_c0, to_c1);
+  const Two left = ax * cy, right = ay * cx, det = left - right;
+  const Two certainty =
+      Two::size(det) - Two::both(predicates::detail::k_orient_bound) * (Two::size(left) + Two::size(right));
+  const Two half = Two::both(0.5) / det, a2 = ax * ax + ay * ay, c2 = cx * cx + cy * cy;
+  const Two x = (cy * a2 - ay * c2) * half, y = (ax * c2 - cx * a2) * half;
+  const Two from_x = x + Two::firsts(from0, from1), from_y = y + Two::seconds(from0, from1);
+  const Two sum = Two::root(x * x + y * y) + Two::root(from_x * from_x + from_y * from_y);
+  const Two radius = Two::if_positive(det, Two::smaller(sum, Two::both(k_latest)), Two::both(k_never));
+  b0.radius = radius[0];
+  b1.radius = radius[1];
+  if (Two::are_positive(certainty)) return;
+  if (!(certainty[0] > 0)) b0.radius = radius_of_flat(a0, b0, c0);
+  if (!(certainty[1] > 0)) b1.radius = radius_of_flat(a1, b1, c1);
 }
 
 SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {

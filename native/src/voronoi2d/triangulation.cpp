@@ -67,13 +67,11 @@ class TileSweeper {
                       0.5 * sites_.y[part.lowest] + 0.5 * sites_.y[part.highest]);
     Index *const corners = result_.corners.data(), *const twins = result_.twins.data();
     Index end = circle_.sweep(sites_, part.begin, part.end, centre, first, corners, twins, stage);
-    doubtful_.clear();
     link_sites(part, first, end);
-    if (is_triangulation(part, end - first)) {
-      find_doubtful(first, end);
-    } else {
+    if (!is_triangulation(part, end - first)) {
       end = triangulate_from_left(part);
       link_sites(part, first, end);
+      doubtful_.clear();
       for (Index half = 4 * first; half < 4 * end; ++half)
         if ((half & 3) != 3) doubtful_.push_back(half);
     }
@@ -102,33 +100,32 @@ class TileSweeper {
     return true;
   }
 
-  /// Each site's half-edge, and those along the border.
+  /// Each site's half-edge, those along the border, and those that are not certain to pass the circle test.
   void link_sites(const MeshPart& part, Index first, Index end) {
     const Index *const corners = result_.corners.data(), *const twins = result_.twins.data();
     Index* const leaving = result_.leaving.data();
     std::fill(leaving + part.begin, leaving + part.end, k_none);
     border_.clear();
+    doubtful_.clear();
     for (Index half = 4 * first; half < 4 * end; half += 4) {
       for (Index k = 0; k < 3; ++k) leaving[corners[half + k]] = half + k;
-      if (std::min({twins[half], twins[half + 1], twins[half + 2]}) >= 0) continue;
-      for (Index k = 0; k < 3; ++k)
-        if (twins[half + k] == k_none) border_.push_back(half + k);
+      // The later triangle of two that meet was joined by its second or third half-edge: a test of these is one of all.
+      const CircleTest circle(point(corners[half]), point(corners[half + 1]), point(corners[half + 2]));
+      if (std::min({twins[half], twins[half + 1], twins[half + 2]}) < 0) {
+        for (Index k = 0; k < 3; ++k) {
+          const bool is_border = twins[half + k] < 0;
+          if (is_border) border_.push_back(half + k);
+          if (!is_border && k > 0 && !circle.are_outside(opposite(half + k), opposite(half + k)))
+            doubtful_.push_back(half + k);
+        }
+      } else if (!circle.are_outside(opposite(half + 1), opposite(half + 2))) {
+        for (Index k = 1; k < 3; ++k) doubtful_.push_back(half + k);
+      }
     }
     for (const Index half : border_) leaving[corners[half]] = half;
   }
-
-  // The later triangle of two that meet was joined by its second or third half-edge: a test of these is one of all.
-  void find_doubtful(Index first, Index end) {
-    const Index *const corners = result_.corners.data(), *const twins = result_.twins.data();
-    for (Index half = 4 * first; half < 4 * end; half += 4) {
-      const CircleTest circle(point(corners[half]), point(corners[half + 1]), point(corners[half + 2]));
-      for (Index k = 1; k < 3; ++k) {
-        const Index twin = twins[half + k];
-        if (twin < 0 || circle.is_outside(point(corners[previous_half(twin)]))) continue;
-        doubtful_.push_back(half + k);
-      }
-    }
-  }
+  /// The corner beyond a half-edge.
+  predicates::Point2 opposite(Index half) const { return point(result_.corners[previous_half(result_.twins[half])]); }
 
   // For the rare ones that no sweep in doubles gets through. Returns the triangles' end.
   Index triangulate_from_left(const MeshPart& part) {
