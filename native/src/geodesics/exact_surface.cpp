@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "mesh/hilbert.h"
+#include "mesh/key_order.h"
 
 namespace saddleback {
 namespace {
@@ -53,7 +54,7 @@ void ExactSurface::renumber(const JobStage& stage) {
     if (v % k_check == 0) stage.update(0.5 * v / vertices);
     keys[v] = curve.key(mesh_->position(v));
   }
-  mesh_vertex_ = order_of(keys, stage);
+  mesh_vertex_ = order_of(keys, 1, stage);
   stage.update(0.8);
   vertex_of_.resize(vertices);
   for (Index v = 0; v < vertices; ++v) vertex_of_[mesh_vertex_[v]] = v;

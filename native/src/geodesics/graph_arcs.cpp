@@ -138,8 +138,7 @@ DiskRule disk_rule(Index k, double accuracy, Lattice lattice) {
 
 WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
                        int threads, const JobStage& stage)
-    : WaveTables(unfolding,
-                 (check_mesh_size(unfolding.mesh()), NodeEdges(unfolding.mesh(), nodes, vertices, threads, stage)),
+    : WaveTables(unfolding, (check_mesh_size(unfolding.mesh()), NodeEdges(unfolding.mesh(), vertices, threads, stage)),
                  nodes, vertices, threads, stage) {}
 
 WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,

@@ -1,9 +1,12 @@
 #include "geodesics/lattice.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "support/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -26,22 +29,28 @@ struct Surroundings {
   bool nearly = false;
 };
 
-/// Whether another edge leaves the target of h in the direction in which h arrives, where nothing bends the surface;
-/// each to `angle` radians.
-bool goes_straight_on(const Unfolding& unfolding, Index h, double angle) {
+/// How well another edge goes on from the target of h in the direction in which h arrives, where nothing bends the
+/// surface: angles in radians.
+struct GoingOn {
+  double bent = std::numeric_limits<double>::infinity(), turned = std::numeric_limits<double>::infinity();
+  bool is_straight(double angle) const { return bent <= angle && turned < angle; }
+};
+
+GoingOn going_on(const Unfolding& unfolding, Index h) {
   const Mesh& mesh = unfolding.mesh();
   const Index vertex = mesh.to(h);
-  constexpr double k_turn = 2 * std::numbers::pi;
-  if (mesh.is_boundary(vertex) || std::abs(mesh.total_angle(vertex) - k_turn) > angle) return false;
+  if (mesh.is_boundary(vertex)) return {};
+  GoingOn best{std::abs(mesh.total_angle(vertex) - 2 * std::numbers::pi)};
+  if (best.bent > k_nearly_straight) return best;
   const double back = unfolding.polar_of_reverse(h);
   const Index first = mesh.first_halfedge(vertex);
   Index out = first;
   do {
     const double turn = std::abs(unfolding.polar(out) - back);
-    if (std::abs(turn - std::numbers::pi) < angle) return true;
+    best.turned = std::min(best.turned, std::abs(turn - std::numbers::pi));
     out = mesh.rotate(out);
   } while (out != k_none && out != first);
-  return false;
+  return best;
 }
 
 Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
@@ -52,8 +61,9 @@ Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
   Index h = first;
   do {
     ++edges;
-    straight += goes_straight_on(unfolding, h, k_straight);
-    nearly_straight += goes_straight_on(unfolding, h, k_nearly_straight);
+    const GoingOn on = going_on(unfolding, h);
+    straight += on.is_straight(k_straight);
+    nearly_straight += on.is_straight(k_nearly_straight);
     shortest = std::min(shortest, mesh.length(h));
     longest = std::max(longest, mesh.length(h));
     h = mesh.rotate(h);
@@ -64,16 +74,17 @@ Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
 
 }  // namespace
 
-Lattice lattice_of(const Unfolding& unfolding, const JobStage& stage) {
+Lattice lattice_of(const Unfolding& unfolding, int threads, const JobStage& stage) {
   const Index count = unfolding.mesh().vertex_count(), stride = std::max<Index>(1, count / k_most_sampled);
-  Index looked_at = 0, even = 0, stretched = 0, nearly_stretched = 0;
-  for (Index vertex = 0; vertex < count; vertex += stride, ++looked_at) {
-    if (looked_at % 1024 == 0) stage.check();
-    const auto [found, nearly] = surroundings_of(unfolding, vertex);
-    even += found == Lattice::even && !nearly;
-    stretched += found == Lattice::stretched && !nearly;
-    nearly_stretched += found == Lattice::stretched;
-  }
+  const Index looked_at = (count + stride - 1) / stride;
+  std::atomic<Index> even = 0, stretched = 0, nearly_stretched = 0;
+  parallel_for(looked_at, threads, 256, [&](Index i, int) {
+    stage.check();
+    const auto [found, nearly] = surroundings_of(unfolding, i * stride);
+    if (found == Lattice::even && !nearly) ++even;
+    if (found == Lattice::stretched && !nearly) ++stretched;
+    if (found == Lattice::stretched) ++nearly_stretched;
+  });
   if (stretched > k_share * looked_at || nearly_stretched > k_nearly_share * looked_at) return Lattice::stretched;
   return even + stretched > k_share * looked_at ? Lattice::even : Lattice::none;
 }

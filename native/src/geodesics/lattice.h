@@ -15,6 +15,6 @@ enum class Lattice {
 
 /// What lattice part of the mesh is, the more stretched one of several: most edges of its vertices go straight on at
 /// the next vertex, where the surface is flat. Looks at a sample of the vertices. O(1). \throw Cancelled.
-Lattice lattice_of(const Unfolding& unfolding, const JobStage& stage);
+Lattice lattice_of(const Unfolding& unfolding, int threads, const JobStage& stage);
 
 }  // namespace saddleback

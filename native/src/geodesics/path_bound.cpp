@@ -158,7 +158,7 @@ double longest_path_bound(const WaveMesh& mesh, int threads, const JobStage& sta
 
 double longest_path_bound(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
                           const JobStage& stage) {
-  const NodeEdges edges(mesh, nodes, vertices, threads, stage);
+  const NodeEdges edges(mesh, vertices, threads, stage);
   const double unit = mesh.mean_edge_length();
   const auto count = static_cast<Index>(edges.halfedges.size());
   LargeArray<Index> targets(edges.halfedges.size());

@@ -17,6 +17,7 @@
 #include "geodesics/path_bound.h"
 #include "geodesics/twin_arcs.h"
 #include "mesh/hilbert.h"
+#include "mesh/key_order.h"
 #include "support/parallel.h"
 
 namespace saddleback {
@@ -65,7 +66,8 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const double longest = tables ? longest_path_bound(tables->mesh, options.threads, stage)
                                 : longest_path_bound(mesh, nodes_, vertices_, options.threads, stage);
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
-  const DiskRule rule = disk_rule(k_, accuracy_, accuracy_ > 0 ? lattice_of(*unfolding_, stage) : Lattice::none);
+  const DiskRule rule =
+      disk_rule(k_, accuracy_, accuracy_ > 0 ? lattice_of(*unfolding_, options.threads, stage) : Lattice::none);
   progress.laid(1);
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   if (!options.cuda_devices.empty()) {
@@ -88,9 +90,9 @@ void SaddleVertexGraph::order_nodes(int threads, const JobStage& stage) {
     stage.check();
     keys[v] = curve.key(mesh_->position(v));
   });
-  vertices_ = order_of(keys, stage);
+  vertices_ = order_of(keys, threads, stage);
   nodes_.resize(mesh_->vertex_count());
-  for (Index node = 0; node < mesh_->vertex_count(); ++node) nodes_[vertices_[node]] = node;
+  parallel_for(mesh_->vertex_count(), threads, 4096, [&](Index node, int) { nodes_[vertices_[node]] = node; });
 }
 
 SaddleVertexGraph::~SaddleVertexGraph() = default;

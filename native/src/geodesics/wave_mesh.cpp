@@ -32,21 +32,32 @@ void for_each_edge(const NodeEdges& edges, int threads, const JobStage& stage, U
 
 }  // namespace
 
-NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
-                     const JobStage& stage)
+NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int threads, const JobStage& stage)
     : first(vertices.size() + 1, 0), halfedges(mesh.halfedge_count()), edge_of(mesh.halfedge_count()) {
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    if (f % (16 * k_chunk) == 0) stage.check();
-    for (const Index vertex : mesh.triangles()[f]) ++first[nodes[vertex] + 1];
-  }
-  const auto count = static_cast<Index>(vertices.size());
-  for (Index node = 0; node < count; ++node) first[node + 1] += first[node];
-  parallel_for(count, threads, k_chunk, [&](Index node, int) {
+  const auto count = static_cast<Index>(vertices.size()), chunks = (count + k_chunk - 1) / k_chunk;
+  std::vector<std::vector<Index>> found(chunks);  // how many a node has is known once they are
+  parallel_for(chunks, threads, 1, [&](Index chunk, int) {
     stage.check();
-    Index h = mesh.first_halfedge(vertices[node]);
-    for (Index e = first[node]; e < first[node + 1]; ++e, h = mesh.rotate(h)) {
+    std::vector<Index>& out = found[chunk];
+    out.reserve(8 * k_chunk);
+    for (Index node = chunk * k_chunk; node < std::min(count, (chunk + 1) * k_chunk); ++node) {
+      const std::size_t before = out.size();
+      const Index start = mesh.first_halfedge(vertices[node]);
+      Index h = start;
+      do {
+        out.push_back(h);
+        h = mesh.rotate(h);
+      } while (h != k_none && h != start);
+      first[node + 1] = static_cast<Index>(out.size() - before);
+    }
+  });
+  for (Index node = 0; node < count; ++node) first[node + 1] += first[node];
+  parallel_for(chunks, threads, 1, [&](Index chunk, int) {
+    stage.check();
+    Index e = first[chunk * k_chunk];
+    for (const Index h : found[chunk]) {
       halfedges[e] = h;
-      edge_of[h] = e;
+      edge_of[h] = e++;
     }
   });
 }
@@ -94,8 +105,8 @@ Index WaveMesh::edge_between(Index from, Index to) const {
 
 FanMesh::FanMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
                  const JobStage& stage)
-    : FanMesh(unfolding, NodeEdges(unfolding.mesh(), nodes, vertices, threads, stage.part(0, 0.4)), nodes, vertices,
-              threads, stage.part(0.4, 1)) {}
+    : FanMesh(unfolding, NodeEdges(unfolding.mesh(), vertices, threads, stage.part(0, 0.4)), nodes, vertices, threads,
+              stage.part(0.4, 1)) {}
 
 FanMesh::FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
                  std::span<const Index> vertices, int threads, const JobStage& stage)

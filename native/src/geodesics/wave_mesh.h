@@ -17,9 +17,8 @@ struct NodeEdges {
   std::vector<Index> first;     ///< per node, and the number of edges at the end
   LargeArray<Index> halfedges;  ///< of the edges; those out of one node are neighbours, counter-clockwise
   LargeArray<Index> edge_of;    ///< the halfedges' inverse
-  /// `nodes` of the vertices and `vertices` of the nodes. \throw Cancelled.
-  NodeEdges(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
-            const JobStage& stage);
+  /// `vertices` of the nodes. \throw Cancelled.
+  NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int threads, const JobStage& stage);
 };
 
 /// Half-edges in the order of NodeEdges. Lengths are in units of the mean edge, so that

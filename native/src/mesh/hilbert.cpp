@@ -1,12 +1,10 @@
-// Hilbert keys after Skilling, "Programming the Hilbert curve" (2004): the axes' bits are transposed in place. The keys
-// are sorted by their bytes, last byte first.
+// Hilbert keys after Skilling, "Programming the Hilbert curve" (2004): the axes' bits are transposed in place.
 
 #include "hilbert.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 namespace saddleback {
 namespace {
@@ -58,26 +56,6 @@ std::uint64_t HilbertCurve::key(const Vec3& point) const {
     cell[i] = static_cast<std::uint32_t>(std::clamp(place, 0.0, static_cast<double>((1 << k_bits) - 1)));
   }
   return hilbert_key(cell);
-}
-
-std::vector<Index> order_of(std::span<const std::uint64_t> keys, const JobStage& stage) {
-  const std::size_t count = keys.size();
-  std::vector<Index> order(count), sorted(count);
-  std::iota(order.begin(), order.end(), 0);
-  std::uint64_t differing = 0;
-  for (const std::uint64_t key : keys) differing |= key ^ keys.front();
-  constexpr int k_digit = 11;
-  constexpr std::uint64_t k_mask = (1u << k_digit) - 1;
-  for (int shift = 0; shift < 64; shift += k_digit) {
-    if ((differing >> shift & k_mask) == 0) continue;
-    stage.check();
-    std::vector<std::size_t> start(k_mask + 2, 0);
-    for (const std::uint64_t key : keys) ++start[(key >> shift & k_mask) + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    for (const Index i : order) sorted[start[keys[i] >> shift & k_mask]++] = i;
-    order.swap(sorted);
-  }
-  return order;
 }
 
 }  // namespace saddleback

@@ -4,9 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <span>
-#include <vector>
 
-#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -21,8 +19,5 @@ class HilbertCurve {
   Vec3 lowest_ = Vec3::Zero();
   double scale_ = 0;  ///< cells per unit
 };
-
-/// The indices 0 to n-1 in ascending order of key, then of index. \throw Cancelled.
-std::vector<Index> order_of(std::span<const std::uint64_t> keys, const JobStage& stage = {});
 
 }  // namespace saddleback

@@ -22,6 +22,7 @@
 #include "../support/parallel.h"
 #include "flat_face.h"
 #include "hilbert.h"
+#include "key_order.h"
 
 namespace saddleback {
 namespace {
@@ -243,7 +244,7 @@ SurfacePoints project(const Mesh& mesh, std::span<const double> xyz, const Proje
   const HilbertCurve curve(mesh.positions());
   std::vector<std::uint64_t> keys(static_cast<std::size_t>(count));
   for (Index i = 0; i < count; ++i) keys[i] = curve.key(query(i));
-  const std::vector<Index> order = order_of(keys, stage);
+  const std::vector<Index> order = order_of(keys, options.threads, stage);
 
   SurfacePoints result(static_cast<std::size_t>(count));
   const Index chunks = (count + k_chunk - 1) / k_chunk;

@@ -16,6 +16,7 @@
 #include "saddleback/error.h"
 
 #include "hilbert.h"
+#include "key_order.h"
 #include "support/random_numbers.h"
 
 namespace saddleback {
