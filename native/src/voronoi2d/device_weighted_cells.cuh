@@ -103,6 +103,7 @@ class ChosenWaves {
 __device__ inline bool find_near(const WeightedTree& tree, const DeviceBox& around, double margin, RowMemory& memory) {
   const int lane = threadIdx.x % 32;
   int count = 0;
+  __syncwarp();  // what an earlier attempt wrote is written
   visit_leaves(
       tree.boxes,
       [&](int level, std::int32_t child) {
