@@ -45,7 +45,15 @@ using WideRoom = Room<All, 512, 2048, false>;
 template <bool All>
 using LargeRoom = Room<All, 4096, 1 << 14, false>;
 
+/// Whether there are edges that are none for WarpWaves.
+__global__ void look_for_extremes(const double* lengths, std::int32_t count, int* has_extremes) {
+  for (auto i = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); i < count;
+       i += static_cast<std::int32_t>(gridDim.x * blockDim.x))
+    if (!(lengths[i] < k_longest && lengths[i] * k_longest > 1)) *has_extremes = 1;
+}
+
 struct Work {
+  const int* fails;           ///< whether all do
   const std::int32_t* nodes;  ///< null: all from `begin` on
   std::int32_t begin, count;
   std::int32_t* next;      ///< counts what is taken
@@ -70,7 +78,7 @@ __device__ void work_through(const DeviceMesh& mesh, const Work& work, typename 
     };
     waves.begin();
     for (int source = 0; source < sources; ++source) waves.add_node(source, node_of(source));
-    if (waves.run()) {
+    if (*work.fails == 0 && waves.run()) {
       for (int source = 0; source < sources; ++source) {
         int count = 0;
         waves.for_each_kept(source, [&](const Sighting&, unsigned kept) { count += __popc(kept); });
@@ -190,7 +198,12 @@ class ArcFinder {
         tables_(request, stream),
         failed_(static_cast<std::size_t>(part.nodes.count()), stream),
         counters_(2, stream),
-        rows_(request.node_count, first_guess(request, part.nodes), request.packing.target_mask, stream) {}
+        has_extremes_(1, stream),
+        rows_(request.node_count, first_guess(request, part.nodes), request.packing.target_mask, stream) {
+    has_extremes_.fill_bytes(0);
+    look_for_extremes<<<256, 256, 0, stream>>>(tables_.mesh().lengths, request.edge_count, has_extremes_.data());
+    check_cuda(cudaGetLastError(), "looking at edges");
+  }
 
   void find(DeviceTimes& times) {
     while (true) {
@@ -295,7 +308,7 @@ class ArcFinder {
   }
 
   Work work(const std::int32_t* nodes, std::int32_t begin, std::int32_t count, DeviceBuffer<std::int32_t>& failed) {
-    return {nodes, begin, count, counters_.data(), failed.data(), counters_.data() + 1};
+    return {has_extremes_.data(), nodes, begin, count, counters_.data(), failed.data(), counters_.data() + 1};
   }
 
   std::vector<std::int32_t> failures(const DeviceBuffer<std::int32_t>& failed) {
@@ -319,7 +332,7 @@ class ArcFinder {
   TeamCaller<ArcTwinCaller>& caller_;
   cudaStream_t stream_;
   Tables tables_;
-  DeviceBuffer<std::int32_t> failed_, counters_;
+  DeviceBuffer<std::int32_t> failed_, counters_, has_extremes_;
   RowStore rows_;
 };
 

@@ -82,7 +82,7 @@ SADDLEBACK_STEP Floats serving_distance(const Flank& flank, Floats angle, float 
   const Floats surplus = excess * (excess + one + one);
   const Floats b = (one + excess) * flank.way - flank.reach + half * flank.reach * square(angle);
   const Floats c = surplus * (flank.reach - flank.way) * (flank.reach + flank.way);
-  return (b + Simd::sqrt(Simd::max(b * b + c, Simd::fill(0)))) / surplus;
+  return Simd::quotient(b + Simd::sqrt(Simd::max(b * b + c, Simd::fill(0))), surplus);
 }
 
 /// The radius beyond which the way by one of two flanks does for all vertices between them. `cosine` and `sine` are of
@@ -91,10 +91,10 @@ SADDLEBACK_STEP Floats serving_radius(Floats cosine, Floats sine, const Flank& p
                                       Floats most) {
   const Floats zero = Simd::fill(0);
   // An upper bound of the angle (Huygens), closer than rounding for all that are small enough to count.
-  const Floats angle = (sine + sine + sine / cosine) * Simd::fill(1.0f / 3);
+  const Floats angle = (sine + sine + Simd::quotient(sine, cosine)) * Simd::fill(1.0f / 3);
   // Far away the detours are r (1 - cos): divide the angle so that they are the same.
   const Floats p_root = Simd::sqrt(p.reach), q_root = Simd::sqrt(q.reach);
-  const Floats off_p = angle * (q_root / (p_root + q_root)), off_q = angle - off_p;
+  const Floats off_p = angle * Simd::quotient(q_root, p_root + q_root), off_q = angle - off_p;
   const Floats bound = Simd::max(serving_distance(p, off_p, allowed), serving_distance(q, off_q, allowed));
   return Simd::pick((zero < cosine) & (bound < most), bound, most);
 }
@@ -127,7 +127,7 @@ SADDLEBACK_STEP Child look_at(const Side& side) {
   const Floats near_in = Simd::max(cross(side.far_ray_x, side.far_ray_y, side.near_x, side.near_y), zero);
   // The apex of a side with light on it is off the ray by more than nothing.
   const Floats begin = Simd::share(near_off, side.apex_off);
-  const Floats end = Simd::pick(side.cut, one, Simd::min(near_in / (near_in - side.apex_in), one));
+  const Floats end = Simd::pick(side.cut, one, Simd::min(Simd::quotient(near_in, near_in - side.apex_in), one));
   Mask useful = side.lit & (Simd::fill(k_narrow) < end - begin);
   const Floats begin_x = side.near_x + begin * along_x, begin_y = side.near_y + begin * along_y;
   const Floats end_x = side.near_x + end * along_x, end_y = side.near_y + end * along_y;
@@ -185,7 +185,7 @@ struct ApexRay {
   Floats x, y;
 };
 SADDLEBACK_STEP ApexRay ray_to(const ApexView& apex) {
-  const Floats per_reach = Simd::fill(1) / apex.reach;
+  const Floats per_reach = Simd::quotient(Simd::fill(1), apex.reach);
   return {apex.x * per_reach, apex.y * per_reach};
 }
 

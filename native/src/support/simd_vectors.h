@@ -44,6 +44,7 @@ struct Vectors {
   static Floats pick(Mask mask, Floats yes, Floats no) { return mask ? yes : no; }
   static Ints pick(Mask mask, Ints yes, Ints no) { return mask ? yes : no; }
   static Floats share(Floats a, Floats b) { return a / (a + b); }
+  static Floats quotient(Floats a, Floats b) { return a / b; }
   static Floats min(Floats a, Floats b) { return a < b ? a : b; }
   static Floats max(Floats a, Floats b) { return a > b ? a : b; }
   static Ints bits_of(Floats values) { return reinterpret_cast<Ints>(values); }
