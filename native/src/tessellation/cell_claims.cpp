@@ -83,6 +83,7 @@ struct CellClaims::Worker {
   /// Before others ask than the cells themselves.
   void forget() {
     scratch.forget();
+    wishes.clear();
     ++round;
   }
 };
@@ -324,8 +325,12 @@ void CellClaims::claim_from(Index node, Index site, Worker& worker) {
   }
 }
 
+/// May be called by several threads at once.
 void CellClaims::reach_corners(const FaceClaim& claim) {
-  for (const SiteVector& corner : claim.corner) reach_[claim.site] = std::max(reach_[claim.site], corner.distance);
+  const double farthest = std::max({claim.corner[0].distance, claim.corner[1].distance, claim.corner[2].distance});
+  const std::atomic_ref reach(reach_[claim.site]);
+  for (double before = reach.load(std::memory_order_relaxed); before < farthest;)
+    if (reach.compare_exchange_weak(before, farthest, std::memory_order_relaxed)) break;
 }
 
 /// May be called by several threads at once.
@@ -335,10 +340,11 @@ void CellClaims::mark_border(Index face) {
 }
 
 /// Claims of sites on the faces in which they lie.
-std::vector<CellClaims::Wish> CellClaims::wishes_of_sites(const SurfacePoints& sites) const {
-  std::vector<Wish> wishes;
-  for (Index site = 0; site < site_count(); ++site) wish_for({rings_.face_of(sites[site].face), site, k_none}, wishes);
-  return wishes;
+void CellClaims::find_wishes_of_sites(const SurfacePoints& sites) {
+  parallel_for(site_count(), threads_, 256, [&](Index i, int thread) {
+    const Index site = maps_.sites_along_curve()[i];
+    wish_for({rings_.face_of(sites[site].face), site, k_none}, workers_[thread].wishes);
+  });
 }
 
 /// False where corners are left to be laid down.
@@ -381,23 +387,25 @@ void CellClaims::lay_corners(Index side, Laid& laid, FaceClaim& claim) const {
 
 /// Makes the claims that are wished for; each face and site once.
 void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid) {
-  const auto count = static_cast<Index>(wishes.size());
-  std::vector<FaceClaim> granted(count);
+  const auto count = static_cast<Index>(wishes.size()), first = static_cast<Index>(late_.size());
   std::vector<std::uint8_t> complete(count);
+  late_.resize(first + count);
   parallel_for(count, threads_, 64, [&](Index i, int thread) {
-    complete[i] = make_claim(wishes[i].face, wishes[i].site, laid, workers_[thread], granted[i]);
+    FaceClaim& claim = late_[first + i].claim;
+    complete[i] = make_claim(wishes[i].face, wishes[i].site, laid, workers_[thread], claim);
+    if (complete[i]) reach_corners(claim);
   });
   for (Index i = 0; i < count; ++i) {
     if (complete[i]) continue;
-    has_laid_[wishes[i].site] = 1;
-    if (wishes[i].side != k_none) lay_corners(wishes[i].side, laid, granted[i]);
-  }
-  for (const FaceClaim& claim : granted) {
-    Index& last = late_index_[claim.face];
-    if (last == k_none) late_faces_.push_back(claim.face);
-    late_.push_back({claim, last});
-    last = static_cast<Index>(late_.size()) - 1;
+    FaceClaim& claim = late_[first + i].claim;
+    has_laid_[claim.site] = 1;
+    if (wishes[i].side != k_none) lay_corners(wishes[i].side, laid, claim);
     reach_corners(claim);
+  }
+  for (Index i = 0; i < count; ++i) {  // found from their faces only now, when all are complete
+    Index& last = late_index_[wishes[i].face];
+    if (last == k_none) late_faces_.push_back(wishes[i].face);
+    late_[first + i].before = std::exchange(last, first + i);
   }
 }
 
@@ -411,8 +419,9 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
   late_faces_.clear();
   first_fresh_ = 0;
   for (Worker& worker : workers_) worker.forget();
-  std::vector<Wish> wishes = wishes_of_sites(sites);
-  while (!changed.empty() || !wishes.empty()) {
+  std::vector<Wish> wishes;
+  find_wishes_of_sites(sites);
+  while (true) {
     parallel_for(static_cast<Index>(changed.size()), threads_, 256, [&](Index i, int thread) {
       stage.check();
       if (!is_settled(changed[i])) find_wishes(changed[i], workers_[thread]);
@@ -421,6 +430,7 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
       wishes.insert(wishes.end(), worker.wishes.begin(), worker.wishes.end());
       worker.wishes.clear();
     }
+    if (wishes.empty()) break;
     std::sort(wishes.begin(), wishes.end());
     const auto same = [](const Wish& a, const Wish& b) { return a.face == b.face && a.site == b.site; };
     wishes.erase(std::unique(wishes.begin(), wishes.end(), same), wishes.end());
@@ -439,13 +449,12 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
 void CellClaims::merge_late() {
   std::ranges::sort(late_faces_);
   Index end = claim_count();
-  std::vector<Row> late_rows;
-  for (const Index face : late_faces_) {
-    Index count = 0;
-    visit_claims(face, [&](const FaceClaim&) { ++count; });
-    late_rows.push_back({face, end, count});
-    end += count;
-  }
+  std::vector<Row> late_rows(late_faces_.size());
+  parallel_for(static_cast<Index>(late_rows.size()), threads_, 256, [&](Index i, int) {
+    Row& row = late_rows[i] = {late_faces_[i], 0, 0};
+    visit_claims(row.face, [&](const FaceClaim&) { ++row.count; });
+  });
+  for (Row& row : late_rows) end += row.count, row.first = end - row.count;
   claims_.resize(end);
   parallel_for(static_cast<Index>(late_rows.size()), threads_, 64, [&](Index i, int) {
     FaceClaim* const row = claims_.data() + late_rows[i].first;

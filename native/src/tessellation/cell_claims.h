@@ -125,9 +125,9 @@ class CellClaims {
   struct Laid;
   /// What is looked up of the cells before.
   struct Before {
-    std::vector<Index> shared_index;
-    std::vector<Row> rows;
-    std::vector<FaceClaim> claims;
+    LargeArray<Index> shared_index;
+    LargeArray<Row> rows;
+    LargeArray<FaceClaim> claims;
     std::span<const FaceClaim> on(Index face) const {
       if (shared_index.empty() || shared_index[face] == k_none) return {};
       const Row& row = rows[shared_index[face]];
@@ -146,7 +146,7 @@ class CellClaims {
   void compare();
   void claim_by_cells(const JobStage& stage);
   void claim_from(Index node, Index site, Worker& worker);
-  std::vector<Wish> wishes_of_sites(const SurfacePoints& sites) const;
+  void find_wishes_of_sites(const SurfacePoints& sites);
   void spread(const SurfacePoints& sites, const JobStage& stage);
   void merge_late();
   void reach_corners(const FaceClaim& claim);
@@ -167,10 +167,10 @@ class CellClaims {
   const int threads_;
   SiteMaps maps_;
   std::vector<Worker> workers_;
-  std::vector<Index> shared_index_;  ///< by face
-  std::vector<Row> rows_;
+  LargeArray<Index> shared_index_;  ///< by face
+  LargeArray<Row> rows_;
   Index mixed_count_ = 0;  ///< of rows_, those of faces whose corners' labels differ
-  std::vector<FaceClaim> claims_;
+  LargeArray<FaceClaim> claims_;
   std::vector<std::uint8_t> at_border_;  ///< by node
   std::vector<double> reach_;  ///< by site: how far it sees the farthest corner that it claims; 0 where it claims none
   std::vector<std::uint8_t> has_laid_;      ///< by site: corners were laid for it; who asks first has a say

@@ -46,9 +46,9 @@ class CellIntegrals {
 
   const VertexRings& rings_;
   const int threads_;
-  std::vector<Face> faces_;                     ///< in the rings' order
+  LargeArray<Face> faces_;                     ///< in the rings' order
   std::vector<std::array<double, 3>> density_;  ///< of their corners; empty for 1
-  std::vector<Node> nodes_;
+  LargeArray<Node> nodes_;
 };
 
 }  // namespace saddleback

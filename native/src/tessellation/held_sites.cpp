@@ -106,7 +106,7 @@ std::vector<double> HeldSites::move(const std::vector<double>& along, const Surf
     next[i] = on_curve(curve, along[i] + wanted);
     const Place place = place_at(curve, next[i]);
     moved.sites[i] = place.point;
-    moved.rotations[i] = place.heading - before;
+    moved.turns[i] = polar(1, place.heading - before);
     moved.steps[i] = polar(curve.closed() ? wanted : next[i] - along[i], place.heading);
   }
   return next;

@@ -184,7 +184,7 @@ class SiteMaps {
   std::vector<Index> label_;
   std::vector<double> distance_;           ///< in the graph
   std::vector<Index> nodes_, first_node_;  ///< by label
-  std::vector<Place> places_;
+  LargeArray<Place> places_;
 };
 
 }  // namespace saddleback

@@ -16,8 +16,8 @@ double surface_scale(const Mesh& mesh, const SurfacePoint& point) {
   return vertex == k_none || mesh.is_boundary(vertex) ? 1 : mesh.total_angle(vertex) / (2 * M_PI);
 }
 
-Vec2 rotated(const Vec2& v, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+Vec2 turned(const Vec2& v, const Vec2& turn) {
+  const double c = turn.x(), s = turn.y();
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
@@ -30,8 +30,9 @@ void move_site(const Mesh& mesh, const SurfacePoint& site, const Vec2& step, Ind
   try {
     const TraceEnd end = trace_end(mesh, site, angle, length);
     moved.sites[i] = end.point;
-    moved.rotations[i] = tangent_heading(mesh, end.point, end.angle) - heading;
-    moved.steps[i] = rotated(step * (end.length / length), moved.rotations[i]);
+    const double angle_turned = tangent_heading(mesh, end.point, end.angle) - heading;
+    moved.turns[i] = Vec2(std::cos(angle_turned), std::sin(angle_turned));
+    moved.steps[i] = turned(step * (end.length / length), moved.turns[i]);
   } catch (const InputError&) {
     moved.sites[i] = site;  // the curve would turn without end
   }
@@ -45,14 +46,14 @@ double tangent_heading(const Mesh& mesh, const SurfacePoint& point, double chart
 
 Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads) {
   Moved moved{SurfacePoints(sites.size()), TangentField(sites.size(), Vec2::Zero()),
-              std::vector<double>(sites.size(), 0.0)};
+              TangentField(sites.size(), Vec2(1, 0))};
   parallel_for(static_cast<Index>(sites.size()), threads, 64,
                [&](Index i, int) { move_site(mesh, sites[i], steps[i], i, moved); });
   return moved;
 }
 
 void transport(const Moved& moved, TangentField& field) {
-  for (std::size_t i = 0; i < field.size(); ++i) field[i] = rotated(field[i], moved.rotations[i]);
+  for (std::size_t i = 0; i < field.size(); ++i) field[i] = turned(field[i], moved.turns[i]);
 }
 
 double dot(const TangentField& a, const TangentField& b) {

@@ -13,8 +13,8 @@ using TangentField = std::vector<Vec2>;
 /// Where sites came to rest, and what the way did to directions.
 struct Moved {
   SurfacePoints sites;
-  TangentField steps;             ///< as made (a boundary may have stopped them), in the new tangent planes
-  std::vector<double> rotations;  ///< by which a vector carried along turns against the axes, radians
+  TangentField steps;  ///< as made (a boundary may have stopped them), in the new tangent planes
+  TangentField turns;  ///< cosine and sine of the angle by which a vector carried along turns against the axes
 };
 
 /// Moves every site along its step by the exponential map. A step of length 0, or one that cannot be traced (round a

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/large_array.h"
 #include "saddleback/saddle_vertex_graph.h"
 
 namespace saddleback {
@@ -56,10 +57,10 @@ class VertexRings {
  private:
   void order_faces(const SaddleVertexGraph& graph, int threads);
 
-  std::vector<Face> faces_;
+  LargeArray<Face> faces_;
   std::vector<Index> places_;  ///< of the mesh's faces
-  std::vector<Index> first_;
-  std::vector<Wedge> wedges_;
+  LargeArray<Index> first_;
+  LargeArray<Wedge> wedges_;
 };
 
 }  // namespace saddleback
