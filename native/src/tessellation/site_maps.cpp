@@ -182,7 +182,9 @@ void SiteMaps::renumber(std::span<const Index> before) {
 
 void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reaches, int threads,
                          const JobStage& stage) {
-  constexpr double k_growth = 1.1;  // sites are asked for so much more than they reach, that they may reach farther
+  // Sites are asked for so much more than they reach, that they may reach farther; beside cells that stay they may soon
+  // reach much farther.
+  constexpr double k_growth = 1.1, k_growth_of_few = 1.6;
   std::vector<Index> at_vertices;
   SurfacePoints points;
   std::vector<double> limits;
@@ -190,7 +192,7 @@ void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reac
     const Index vertex = vertex_at(mesh_, sites_[site]);
     fans_[site].centre = vertex == k_none ? k_none : graph_.node_of(vertex);
     fans_[site].corners = rings_.face(rings_.face_of(sites_[site].face)).nodes;
-    limits_[site] = reaches.empty() ? k_infinity : k_growth * reaches[site];
+    limits_[site] = reaches.empty() ? k_infinity : (keeps_any_ ? k_growth_of_few : k_growth) * reaches[site];
     if (vertex != k_none) at_vertices.push_back(site);
     points.push_back(sites_[site]);
     limits.push_back(limits_[site]);
