@@ -23,6 +23,17 @@ def test_every_kind_of_sites_is_exactly_right(kind, n):
     assert plane_sites.faults(sb.voronoi_2d(sites)) == []
 
 
+@pytest.mark.parametrize("step", [1.0, 0.75, 2.0**-11, 2.0**-40])
+@pytest.mark.parametrize("place", [(0.5, 0.5), (-40.5, 2.0), (-(2.0**20), -(2.0**33))])
+def test_grids_that_doubles_just_tell_or_just_do_not(step, place):
+    grid = np.stack(np.meshgrid(np.arange(25.0), np.arange(31.0)), axis=-1).reshape(-1, 2)
+    sites = place + step * grid
+    rng = np.random.default_rng(1)
+    moved = rng.random(len(sites)) < 0.1  # some by the last digit of their coordinate
+    sites[moved] = np.nextafter(sites[moved], rng.choice([-np.inf, np.inf], size=(moved.sum(), 2)))
+    assert plane_sites.faults(sb.voronoi_2d(sites, threads=1)) == []
+
+
 # Few values, near each other and far apart: many sites on common lines and circles, many nearly so.
 coordinates = st.one_of(
     st.integers(-3, 3).map(float),

@@ -4,7 +4,11 @@
 
 #include <cmath>
 
-#include "saddleback/types.h"
+#ifdef __CUDACC__
+#define SADDLEBACK_HOST_DEVICE __host__ __device__
+#else
+#define SADDLEBACK_HOST_DEVICE
+#endif
 
 namespace saddleback {
 
@@ -47,28 +51,36 @@ struct TwoDoubles {
 struct TwoDoubles {
   double pair[2];
 
-  static TwoDoubles both(double value) { return {{value, value}}; }
-  static TwoDoubles of(double first, double second) { return {{first, second}}; }
-  static TwoDoubles at(const double* place) { return {{place[0], place[1]}}; }
-  double operator[](int k) const { return pair[k]; }
-  friend TwoDoubles operator+(TwoDoubles a, TwoDoubles b) { return {{a[0] + b[0], a[1] + b[1]}}; }
-  friend TwoDoubles operator-(TwoDoubles a, TwoDoubles b) { return {{a[0] - b[0], a[1] - b[1]}}; }
-  friend TwoDoubles operator*(TwoDoubles a, TwoDoubles b) { return {{a[0] * b[0], a[1] * b[1]}}; }
-  friend TwoDoubles operator/(TwoDoubles a, TwoDoubles b) { return {{a[0] / b[0], a[1] / b[1]}}; }
-  static TwoDoubles firsts(TwoDoubles a, TwoDoubles b) { return {{a[0], b[0]}}; }
-  static TwoDoubles seconds(TwoDoubles a, TwoDoubles b) { return {{a[1], b[1]}}; }
-  static TwoDoubles size(TwoDoubles a) { return {{std::fabs(a[0]), std::fabs(a[1])}}; }
-  static TwoDoubles root(TwoDoubles a) { return {{std::sqrt(a[0]), std::sqrt(a[1])}}; }
-  static TwoDoubles smaller(TwoDoubles a, TwoDoubles b) {
+  SADDLEBACK_HOST_DEVICE static TwoDoubles both(double value) { return {{value, value}}; }
+  SADDLEBACK_HOST_DEVICE static TwoDoubles of(double first, double second) { return {{first, second}}; }
+  SADDLEBACK_HOST_DEVICE static TwoDoubles at(const double* place) { return {{place[0], place[1]}}; }
+  SADDLEBACK_HOST_DEVICE double operator[](int k) const { return pair[k]; }
+  SADDLEBACK_HOST_DEVICE friend TwoDoubles operator+(TwoDoubles a, TwoDoubles b) {
+    return {{a[0] + b[0], a[1] + b[1]}};
+  }
+  SADDLEBACK_HOST_DEVICE friend TwoDoubles operator-(TwoDoubles a, TwoDoubles b) {
+    return {{a[0] - b[0], a[1] - b[1]}};
+  }
+  SADDLEBACK_HOST_DEVICE friend TwoDoubles operator*(TwoDoubles a, TwoDoubles b) {
+    return {{a[0] * b[0], a[1] * b[1]}};
+  }
+  SADDLEBACK_HOST_DEVICE friend TwoDoubles operator/(TwoDoubles a, TwoDoubles b) {
+    return {{a[0] / b[0], a[1] / b[1]}};
+  }
+  SADDLEBACK_HOST_DEVICE static TwoDoubles firsts(TwoDoubles a, TwoDoubles b) { return {{a[0], b[0]}}; }
+  SADDLEBACK_HOST_DEVICE static TwoDoubles seconds(TwoDoubles a, TwoDoubles b) { return {{a[1], b[1]}}; }
+  SADDLEBACK_HOST_DEVICE static TwoDoubles size(TwoDoubles a) { return {{fabs(a[0]), fabs(a[1])}}; }
+  SADDLEBACK_HOST_DEVICE static TwoDoubles root(TwoDoubles a) { return {{sqrt(a[0]), sqrt(a[1])}}; }
+  SADDLEBACK_HOST_DEVICE static TwoDoubles smaller(TwoDoubles a, TwoDoubles b) {
     return {{a[0] < b[0] ? a[0] : b[0], a[1] < b[1] ? a[1] : b[1]}};
   }
-  static TwoDoubles larger(TwoDoubles a, TwoDoubles b) {
+  SADDLEBACK_HOST_DEVICE static TwoDoubles larger(TwoDoubles a, TwoDoubles b) {
     return {{a[0] > b[0] ? a[0] : b[0], a[1] > b[1] ? a[1] : b[1]}};
   }
-  static TwoDoubles if_positive(TwoDoubles a, TwoDoubles yes, TwoDoubles no) {
+  SADDLEBACK_HOST_DEVICE static TwoDoubles if_positive(TwoDoubles a, TwoDoubles yes, TwoDoubles no) {
     return {{a[0] > 0 ? yes[0] : no[0], a[1] > 0 ? yes[1] : no[1]}};
   }
-  static bool are_positive(TwoDoubles a) { return a[0] > 0 && a[1] > 0; }
+  SADDLEBACK_HOST_DEVICE static bool are_positive(TwoDoubles a) { return a[0] > 0 && a[1] > 0; }
 };
 
 #endif

@@ -45,7 +45,7 @@ class MeshJoiner {
   };
   bool find_sides(MeshPart& first, MeshPart& second, Sides& sides) const;
   predicates::Sign turn(Index a, Index b, Index c) const {
-    return predicates::orient_2d(mesh_.point(a), mesh_.point(b), mesh_.point(c));
+    return predicates::orient_2d_by_steps(mesh_.point(a), mesh_.point(b), mesh_.point(c));
   }
   Index target(Index half) const { return mesh_.triangles[next_half(half)]; }
   Index before_on_border(Index half) const;

@@ -5,7 +5,7 @@
 
 #include "saddleback/types.h"
 
-#include "predicates/in_circle_steps.h"
+#include "predicates/plane_steps.h"
 #include "predicates/predicates.h"
 #include "support/two_doubles.h"
 
@@ -48,13 +48,13 @@ struct CircleTest {
     by_square = by * cx - bx * cy;
     largest_square = b2 > c2 ? b2 : c2;
   }
-  /// Both certainly outside the circle, if the sites turn counter-clockwise.
-  bool are_outside(const predicates::Point2& d, const predicates::Point2& e) const {
+  /// For two sites: positive if it is certainly outside the circle, when the three turn counter-clockwise.
+  TwoDoubles room(const predicates::Point2& d, const predicates::Point2& e) const {
     using Two = TwoDoubles;
     const Two dx = Two::of(d.x, e.x) - Two::both(x), dy = Two::of(d.y, e.y) - Two::both(y), d2 = dx * dx + dy * dy;
     const Two value = dx * Two::both(by_x) + dy * Two::both(by_y) + d2 * Two::both(by_square);
     const Two largest = Two::larger(d2, Two::both(largest_square));
-    return Two::are_positive(Two::both(-k_bound) * (largest * largest) - value);
+    return Two::both(-k_bound) * (largest * largest) - value;
   }
 };
 

@@ -26,7 +26,7 @@
 
 #include "saddleback/types.h"
 
-#include "predicates/predicates.h"
+#include "predicates/plane_steps.h"
 #include "support/two_doubles.h"
 
 namespace saddleback::voronoi2d {
@@ -68,14 +68,18 @@ constexpr double k_never = DBL_MAX, k_latest = 0.5 * DBL_MAX;  ///< events lie b
 /// An arc b with the arcs a and c before and after it, as nearly flat ones are looked at: when it vanishes. Between two
 /// parts of one ellipse an arc stays; three sites nearly on one line meet later than anything that matters, if ever.
 SADDLEBACK_HOST_DEVICE inline double radius_of_flat(const Arc& a, const Arc& b, const Arc& c) {
-  const bool turns = a.site != c.site && predicates::detail::orient_2d_exact({a.x, a.y}, {b.x, b.y}, {c.x, c.y}) ==
-                                             predicates::Sign::negative;
-  return turns ? k_latest : k_never;
+  if (a.site == c.site) return k_never;
+#ifdef __CUDA_ARCH__
+  const predicates::Sign turn = predicates::orient_2d({a.x, a.y}, {b.x, b.y}, {c.x, c.y});
+#else
+  const predicates::Sign turn = predicates::orient_2d_by_steps({a.x, a.y}, {b.x, b.y}, {c.x, c.y});
+#endif
+  return turn == predicates::Sign::negative ? k_latest : k_never;
 }
 
 /// Says anew when two arcs vanish: at the radius |v - centre| + |v - b|, v being the circumcentre, if the three sites
 /// turn clockwise.
-inline void schedule(SweepState& s, Index first, Index second) {
+SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index first, Index second) {
   Arc* const arcs = s.arcs;
   Arc &b0 = arcs[first], &b1 = arcs[second];
   const Arc &a0 = arcs[b0.previous], &c0 = arcs[b0.next], &a1 = arcs[b1.previous], &c1 = arcs[b1.next];

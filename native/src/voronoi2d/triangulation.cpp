@@ -95,7 +95,8 @@ class TileSweeper {
 
   bool is_line(const MeshPart& part) const {
     for (Index site = part.begin + 2; site < part.end; ++site)
-      if (predicates::orient_2d(point(part.begin), point(part.begin + 1), point(site)) != predicates::Sign::zero)
+      if (predicates::orient_2d_by_steps(point(part.begin), point(part.begin + 1), point(site)) !=
+          predicates::Sign::zero)
         return false;
     return true;
   }
@@ -115,12 +116,15 @@ class TileSweeper {
         for (Index k = 0; k < 3; ++k) {
           const bool is_border = twins[half + k] < 0;
           if (is_border) border_.push_back(half + k);
-          if (!is_border && k > 0 && !circle.are_outside(opposite(half + k), opposite(half + k)))
+          if (!is_border && k > 0 && !(circle.room(opposite(half + k), opposite(half + k))[0] > 0))
             doubtful_.push_back(half + k);
         }
-      } else if (!circle.are_outside(opposite(half + 1), opposite(half + 2))) {
-        for (Index k = 1; k < 3; ++k) doubtful_.push_back(half + k);
+        continue;
       }
+      const TwoDoubles room = circle.room(opposite(half + 1), opposite(half + 2));
+      if (TwoDoubles::are_positive(room)) continue;
+      for (Index k = 1; k < 3; ++k)
+        if (!(room[k - 1] > 0)) doubtful_.push_back(half + k);
     }
     for (const Index half : border_) leaving[corners[half]] = half;
   }
@@ -160,7 +164,7 @@ class TileSweeper {
     for (Index i = 0; i < border_count; ++i) {
       const Index half = result_.leaving[b], c = target(b);
       if (result_.twins[half] != k_none || (b == start) != (i + 1 == border_count)) return false;
-      if (predicates::orient_2d(point(a), point(b), point(c)) == predicates::Sign::negative) return false;
+      if (predicates::orient_2d_by_steps(point(a), point(b), point(c)) == predicates::Sign::negative) return false;
       changes += goes_up(a, b) != goes_up(b, c);
       a = b;
       b = c;
