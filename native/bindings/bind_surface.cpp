@@ -62,6 +62,7 @@ Args:
         counter-clockwise in the chart of the point's face (corner 0 to corner 1 is 0) or, at a vertex, on the surface
         about it from its first edge.
     length: mesh units, >= 0.
+    job: a Job that tells how far it is and may stop it.
 
 Raises:
     InputError: bad point, direction or length; a vector across the surface; a curve over more than a million faces.
@@ -134,13 +135,14 @@ double as_direction(const py::object& value, const Mesh& mesh, const SurfacePoin
 }
 
 TracedPath trace_from(const py::object& mesh_object, const py::object& point, const py::object& direction,
-                      const py::object& length) {
+                      const py::object& length, const py::object& job_object) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const SurfacePoint start = as_surface_point(point, mesh, "point");
   const double angle = as_direction(direction, mesh, start);
   const double wanted = as_real(length, "length");
+  Job* const job = as_job(job_object);
   return without_gil([&] {
-    TraceResult result = trace(mesh, start, angle, wanted);
+    TraceResult result = trace(mesh, start, angle, wanted, job);
     const Index last_face = result.path.surface.back().face;
     const Vec3 arrival = direction_in_space(mesh, last_face, result.end_angle);
     return TracedPath{std::move(result.path), result.end_angle, arrival, result.hit_boundary};
@@ -213,7 +215,8 @@ void bind_paths(py::module_& m) {
           },
           "(3,) float64: direction of arrival, a unit vector.")
       .def_readonly("hit_boundary", &TracedPath::hit_boundary, "True when the boundary stopped the curve early.");
-  m.def("trace", &trace_from, py::arg("mesh"), py::arg("point"), py::arg("direction"), py::arg("length"), k_trace_doc);
+  m.def("trace", &trace_from, py::arg("mesh"), py::arg("point"), py::arg("direction"), py::arg("length"), py::kw_only(),
+        py::arg("job") = py::none(), k_trace_doc);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 
 Floats = NDArray[np.float64]
 
@@ -299,6 +300,14 @@ def test_bad_input_is_named(point: object, direction: object, length: object, se
     mesh = sb.Mesh(*meshes.grid())
     with pytest.raises(sb.InputError, match=sentence):
         sb.trace(mesh, point, direction, length)  # type: ignore[arg-type]
+
+
+def test_progress_is_the_share_of_the_length_and_cancel_is_quick() -> None:
+    mesh, job = sb.Mesh(*meshes.torus()), sb.Job()
+    watched = sb.trace(mesh, 0, 0.3, 50.0, job=job)
+    assert job.fraction == 1
+    assert np.array_equal(watched.points, sb.trace(mesh, 0, 0.3, 50.0).points)
+    check_progress_and_cancel(lambda job: sb.trace(mesh, 0, 0.3, 1e5, job=job), 0.05)
 
 
 def test_what_is_no_mesh_is_named() -> None:

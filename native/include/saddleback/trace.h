@@ -1,6 +1,7 @@
 #pragma once
 // Straightest geodesics: the exponential map.
 
+#include "saddleback/job.h"
 #include "saddleback/surface_points.h"
 
 namespace saddleback {
@@ -33,13 +34,15 @@ struct TraceEnd {
 /// vertex it goes on with half the total angle on either side (Polthier and Schmies 1998); at the boundary, edge or
 /// vertex, it stops. The polyline has one point for each edge or vertex crossed. An angle that leaves the surface at
 /// once (boundary) gives the start with hit_boundary; length 0 gives the start. \throw InputError for a point off the
-/// mesh, a negative or non-finite length, a non-finite angle, a curve over more than a million faces. O(faces crossed).
-TraceResult trace(const Mesh& mesh, const SurfacePoint& start, double angle, double length);
+/// mesh, a negative or non-finite length, a non-finite angle, a curve over more than a million faces. \throw Cancelled.
+/// O(faces crossed).
+TraceResult trace(const Mesh& mesh, const SurfacePoint& start, double angle, double length, Job* job = nullptr);
 
 /// As above, the direction given as a vector in space, projected onto the surface at the start: onto the face's plane
 /// or, at a vertex, to the nearest direction among those of the faces around it. \throw InputError as well for a vector
 /// that is not finite or has no part along the surface.
-TraceResult trace(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction, double length);
+TraceResult trace(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction, double length,
+                  Job* job = nullptr);
 
 /// The end of the same curve, to the bit, without its polyline: no allocation.
 TraceEnd trace_end(const Mesh& mesh, const SurfacePoint& start, double angle, double length);

@@ -173,7 +173,12 @@ class TracedPath(GeodesicPath):
     def hit_boundary(self) -> bool: ...
 
 def trace(
-    mesh: Mesh, point: SupportsIndex | SurfacePoints, direction: SupportsFloat | ArrayLike, length: SupportsFloat
+    mesh: Mesh,
+    point: SupportsIndex | SurfacePoints,
+    direction: SupportsFloat | ArrayLike,
+    length: SupportsFloat,
+    *,
+    job: Job | None = None,
 ) -> TracedPath: ...
 def exact_distances(mesh: Mesh, sources: _Points, limit: SupportsFloat = ..., *, job: Job | None = None) -> _Floats: ...
 def exact_nearest(

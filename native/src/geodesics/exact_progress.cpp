@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <vector>
+
+#include "geodesics/angle_defect.h"
 
 namespace saddleback {
 namespace {
@@ -17,20 +19,11 @@ constexpr double k_sorting = 0.6;  ///< a window, of its cost
 // is how many a ray passes, the slower the more the surface bends light.
 constexpr double k_at_vertex = 13;
 constexpr double k_where_smooth = 0.75, k_less_a_decade = 0.27, k_least = 0.1;
-constexpr double k_smooth = 1e-3;  ///< radians that vertices miss to 2 pi, in the mean
+constexpr double k_smooth = 1e-3;  ///< mean_angle_defect
 
-/// How the root's factor is.
 double growth_of_windows(const Mesh& mesh) {
-  constexpr Index k_samples = 4096;
-  const Index stride = std::max<Index>(1, mesh.vertex_count() / k_samples);
-  double sum = 0, count = 0;
-  for (Index v = 0; v < mesh.vertex_count(); v += stride) {
-    if (mesh.is_boundary(v)) continue;
-    sum += std::abs(mesh.total_angle(v) - 2 * std::numbers::pi);
-    ++count;
-  }
-  const double curvature = std::max(k_smooth, sum / std::max(1.0, count));
-  return std::max(k_least, k_where_smooth - k_less_a_decade * std::log10(curvature / k_smooth));
+  const double decades = std::log10(std::max(1.0, mean_angle_defect(mesh) / k_smooth));
+  return std::max(k_least, k_where_smooth - k_less_a_decade * decades);
 }
 
 /// The vertices that sources reach, and how many of them the source of one has, in the mean over them all.

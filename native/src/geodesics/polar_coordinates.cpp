@@ -8,6 +8,7 @@
 #include "saddleback/error.h"
 #include "saddleback/trace.h"
 
+#include "geodesics/angle_defect.h"
 #include "geodesics/curve_windows.h"
 #include "geodesics/point_star.h"
 #include "support/parallel.h"
@@ -31,8 +32,12 @@ void check_radius(double radius) {
 }
 
 DistanceProgress progress_of(const Mesh& mesh, const SurfacePoints& sources, double radius, const JobStage& stage) {
-  constexpr double k_guessed = 0.03, k_growth = 0.3;  // found by trying
-  return {mesh, sources, {.limit = radius, .growth = k_growth}, stage.part(0, k_guessed), stage.part(k_guessed, 1)};
+  constexpr double k_guessed = 0.03;
+  // Found by trying: the smoother the surface, the more windows are alive far out.
+  constexpr double k_growth = 0.3, k_growth_where_smooth = 0.65, k_smooth = 1e-3, k_rough = 1e-2;  // mean_angle_defect
+  const double defect = std::clamp(mean_angle_defect(mesh), k_smooth, k_rough);
+  const double growth = std::lerp(k_growth_where_smooth, k_growth, std::log10(defect / k_smooth));
+  return {mesh, sources, {.limit = radius, .growth = growth}, stage.part(0, k_guessed), stage.part(k_guessed, 1)};
 }
 
 }  // namespace

@@ -28,21 +28,25 @@ namespace {
 /// cannot be derived from length and mean edge, because a curve may wind round a thin tube any number of times for each
 /// of them.
 constexpr std::int64_t k_max_faces = 1'000'000;
+constexpr std::int64_t k_faces_a_look = 1024;  ///< at the job: a quarter of a millisecond
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Components of v in the frame whose x axis is the unit vector `axis`.
 Vec2 rotated_into(const Vec2& axis, const Vec2& v) { return {axis.dot(v), cross(axis, v)}; }
 
-/// What the walk writes down: every point, or nothing.
+/// What the walk writes down, every point or nothing, and whom it tells what share of its length it has gone.
 struct Polyline {
   GeodesicPath path;
+  JobStage stage;
+  void went(double share) const { stage.update(share); }
   void add(const Mesh& mesh, const SurfacePoint& point) {
     path.surface.push_back(point);
     path.points.push_back(position(mesh, point));
   }
 };
 struct NoPolyline {
+  void went(double) const {}
   void add(const Mesh&, const SurfacePoint&) {}
 };
 
@@ -114,6 +118,7 @@ class Walk {
       if (faces > k_max_faces)
         throw InputError(message("length ", length_, " is too long to follow: after ", faces - 1,
                                  " faces the curve is ", travelled_, " long"));
+      if (faces % k_faces_a_look == 0) record_.went(travelled_ / length_);
       going = at_corner_ ? leave_corner() : leave_through();
     }
     return end_;
@@ -391,15 +396,16 @@ TraceEnd trace_end(const Mesh& mesh, const SurfacePoint& start, const Vec3& dire
   return trace_end(mesh, start, start_angle(mesh, start, direction), length);
 }
 
-TraceResult trace(const Mesh& mesh, const SurfacePoint& start, double angle, double length) {
-  Polyline polyline;
+TraceResult trace(const Mesh& mesh, const SurfacePoint& start, double angle, double length, Job* job) {
+  Polyline polyline{{}, JobStage(job, "Walking straight on")};
   const TraceEnd end = walk(mesh, start, angle, length, polyline);
+  polyline.went(1);
   polyline.path.length = end.length;
   return {std::move(polyline.path), end.angle, end.hit_boundary};
 }
 
-TraceResult trace(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction, double length) {
-  return trace(mesh, start, start_angle(mesh, start, direction), length);
+TraceResult trace(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction, double length, Job* job) {
+  return trace(mesh, start, start_angle(mesh, start, direction), length, job);
 }
 
 }  // namespace saddleback
