@@ -134,6 +134,16 @@ def test_progress_is_near_the_share_of_the_time(long_calls: dict[str, Call], nam
 @pytest.mark.parametrize("arrays", [meshes.needles(4, 60), graded_disk(30, 16), meshes.torus()])
 def test_exact_distances_end_with_all_done(arrays):
     """What is left of a forecast that was too high is told at the end."""
-    mesh, job = sb.Mesh(*arrays), sb.Job()
-    sb.exact_distances(mesh, np.array([0], np.int32), job=job)
-    assert job.fraction == 1
+    mesh = sb.Mesh(*arrays)
+    for call in (sb.exact_distances, sb.exact_nearest, sb.ExactField):
+        for sources in (np.array([0], np.int32), sb.sample(mesh, 7)):
+            job = sb.Job()
+            call(mesh, sources, job=job)
+            assert job.fraction == 1
+
+
+def test_watching_changes_no_distance() -> None:
+    for case in meshes.good():
+        for limit in (0.0, 0.2 * case.mesh.area**0.5, np.inf):
+            seen = sb.exact_distances(case.mesh, [0], limit, job=sb.Job())
+            assert np.array_equal(seen, sb.exact_distances(case.mesh, [0], limit))

@@ -41,6 +41,7 @@ KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& pr
       roots_[place] = window.root;
     }
   }
+  stage.update(1);
 }
 
 double KeptWindows::root_distance(Index root) const {
