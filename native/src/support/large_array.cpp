@@ -9,10 +9,12 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <mutex>
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #define SADDLEBACK_OWN_PAGES
 #include <sys/mman.h>
+#include <unistd.h>
 #endif
 
 namespace saddleback {
@@ -25,7 +27,6 @@ constexpr std::size_t k_huge = std::size_t{1} << 21, k_step = std::size_t{1} << 
 constexpr std::size_t k_smallest = k_step;                     // below, an ordinary heap is as good
 constexpr std::size_t k_smallest_kept = std::size_t{1} << 12;  // though such a heap may go back and forth to the system
 constexpr std::size_t k_largest_kept = 7 << 19, k_most_kept = std::size_t{24} << 20;
-constexpr std::size_t k_most_pages = 128;  // huge ones that are kept
 
 /// What is had for a size. The last page is huge only where most of it is used.
 std::size_t rounded(std::size_t size) {
@@ -85,9 +86,11 @@ Kept& kept() {
   return *all;
 }
 
-/// Free huge pages.
+/// Free huge pages, up to a small part of the memory that there is.
 class KeptPages {
  public:
+  KeptPages() : most_(find_most()), pages_(std::make_unique<char*[]>(most_)) {}
+
   /// Puts pages in the place of the first ones of fresh memory.
   void lay(void* memory, std::size_t size) {
     const std::lock_guard lock(mutex_);
@@ -99,15 +102,23 @@ class KeptPages {
   std::size_t keep(void* memory, std::size_t size) {
     const std::lock_guard lock(mutex_);
     char* const begin = static_cast<char*>(memory);
-    const std::size_t taken = std::min(size / k_huge, k_most_pages - count_);
+    const std::size_t taken = std::min(size / k_huge, most_ - count_);
     if (taken > 0 && madvise(begin, taken * k_huge, MADV_FREE) != 0) return 0;
     for (std::size_t i = 0; i < taken; ++i) pages_[count_++] = begin + i * k_huge;
     return taken * k_huge;
   }
 
  private:
+  static std::size_t find_most() {
+    constexpr std::size_t k_share = 16, k_limit = 2048;
+    const auto pages = static_cast<std::size_t>(std::max(0L, sysconf(_SC_PHYS_PAGES)));
+    const auto page_size = static_cast<std::size_t>(std::max(0L, sysconf(_SC_PAGESIZE)));
+    return std::min(k_limit, pages * page_size / k_share / k_huge);
+  }
+
   std::mutex mutex_;
-  std::array<char*, k_most_pages> pages_{};
+  std::size_t most_;
+  std::unique_ptr<char*[]> pages_;
   std::size_t count_ = 0;
 };
 
