@@ -238,3 +238,18 @@ def test_cancelled() -> None:
     job.cancel()
     with pytest.raises(sb.Cancelled):
         sb.geodesic_voronoi(sb.SaddleVertexGraph(sb.Mesh(*meshes.cube())), [0], job=job)
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1e3])
+def test_edges_seen_end_on_do_not_make_the_scale_matter(scale: float) -> None:
+    """Ways along edges are common; what lies beyond such an edge once was where the roundings of lengths put it."""
+    vertices, triangles = meshes.torus(72, 30)
+    x, y, z = vertices.T
+    vertices = vertices * (1 + 0.15 * np.sin(7 * x) * np.cos(5 * y + 1) * np.cos(6 * z))[:, None]
+    mesh, scaled = sb.Mesh(vertices, triangles), sb.Mesh(scale * vertices, triangles)
+    graph, scaled_graph = sb.SaddleVertexGraph(mesh, k=40), sb.SaddleVertexGraph(scaled, k=40)
+    for seed in (4, 8, 17):
+        sites = sb.sample(mesh, 40, seed=seed)
+        areas = sb.geodesic_voronoi(graph, sites).areas
+        found = sb.geodesic_voronoi(scaled_graph, sites).areas / scale**2
+        np.testing.assert_allclose(found, areas, atol=1e-6 * mesh.area / 40)

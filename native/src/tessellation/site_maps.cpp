@@ -35,6 +35,8 @@ constexpr int k_ahead = 8;
 
 // Square of the least angle at which an edge must be seen: what lies beyond one seen end-on cannot be told from it.
 constexpr double k_end_on = 1e-10;
+// The same where only the roundings of the two distances to its ends tell it from one seen end-on, see there.
+constexpr double k_end_on_rounded = 1e-8;
 
 Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
 
@@ -334,7 +336,10 @@ bool SiteMaps::see(const Wedge& wedge, const Place& from, const Place& to, Sight
   const double length = wedge.length, a = from.at.squaredNorm(), b = to.at.squaredNorm();
   // The edge runs along the x axis, the corner above, the anchor below.
   const double x = (a - b + length * length) / (2 * length), y = a - x * x;
-  if (!(y > k_end_on * length * length)) return false;
+  // Distances that are wrong by e, relative, move x by 2 e a / length and y by 2 x times that: no more than
+  // 2 e a (a + square) / square.
+  const double square = length * length;
+  if (!(y > k_end_on * square && y * square > k_end_on_rounded * a * (a + square))) return false;
   sight.anchor = Vec2(x, -std::sqrt(y));
   sight.ray = wedge.apex - sight.anchor;
   const double at_edge = x - sight.ray.x() * sight.anchor.y() / sight.ray.y();
