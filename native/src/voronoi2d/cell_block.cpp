@@ -29,6 +29,7 @@ void CellBlock::gather(const Triangulation& mesh, const Index* leaving, Index be
       append_few(cell, begin + cell);
       continue;
     }
+    lowest[cell] = k_none;
     const bool is_open = gather_any(mesh, leaving[cell]);
     if (is_open) open.push_back(cell);
     make_room(static_cast<Index>(any_half_.size()) + k_few * (count - cell + 1));
@@ -56,13 +57,13 @@ constexpr std::ptrdiff_t k_next[4] = {1, 1, -2, 0}, k_previous[4] = {2, -1, -1, 
 template <Index Together>
 bool CellBlock::gather_few(const Triangulation& mesh, const Index* leaving, Index cell) {
   const Index *const corners = mesh.corners.data(), *const twins = mesh.twins.data();
-  std::ptrdiff_t walk[Together], count[Together], is_under_way[Together], lowest[Together];
+  std::ptrdiff_t walk[Together], count[Together], is_under_way[Together], least[Together];
   Index flags[Together];
   for (Index i = 0; i < Together; ++i) {
     walk[i] = leaving[i];
     count[i] = 0;
     is_under_way[i] = 1;
-    lowest[i] = std::numeric_limits<std::ptrdiff_t>::max();
+    least[i] = std::numeric_limits<std::ptrdiff_t>::max();
     flags[i] = 0;
   }
   Index *const walked = few_half_.data() + k_few * cell, *const others = few_neighbour_.data() + k_few * cell;
@@ -78,7 +79,7 @@ bool CellBlock::gather_few(const Triangulation& mesh, const Index* leaving, Inde
       const std::ptrdiff_t k = walk[i] & 3, other = corners[walk[i] + k_next[k]];
       walked[k_few * i + step] = static_cast<Index>(walk[i]);
       others[k_few * i + step] = static_cast<Index>(other);
-      lowest[i] = std::min(lowest[i], k_few * other + step);
+      least[i] = std::min(least[i], k_few * other + step);
       flags[i] |= twins[walk[i] | 3];
       count[i] += is_under_way[i];
       const Index twin = twins[walk[i] + k_previous[k]];
@@ -91,7 +92,8 @@ bool CellBlock::gather_few(const Triangulation& mesh, const Index* leaving, Inde
   for (Index i = 0; i < Together; ++i) {
     if (is_under_way[i] != 0) return false;
     few_size_[cell + i] = static_cast<Index>(count[i]);
-    few_lowest_[cell + i] = static_cast<Index>(lowest[i] % k_few);
+    few_lowest_[cell + i] = static_cast<Index>(least[i] % k_few);
+    lowest[cell + i] = flags[i] == 0 ? static_cast<Index>(least[i] / k_few) : k_none;
     if (flags[i] != 0) gather_few_flat(mesh, leaving[i], cell + i);
   }
   return true;
@@ -101,7 +103,7 @@ bool CellBlock::gather_few(const Triangulation& mesh, const Index* leaving, Inde
 void CellBlock::gather_few_flat(const Triangulation& mesh, Index first, Index cell) {
   const Index *const corners = mesh.corners.data(), *const twins = mesh.twins.data();
   Index *const walked = few_half_.data() + k_few * cell, *const others = few_neighbour_.data() + k_few * cell;
-  Index walk = first, found = 0, lowest = 0, lowest_neighbour = std::numeric_limits<Index>::max();
+  Index walk = first, found = 0, least = 0, lowest_neighbour = std::numeric_limits<Index>::max();
   Index is_under_way = 1;
   for (Index step = 0; step < k_few; ++step) {
     const Index k = walk & 3, other = corners[walk + k_next[k]];
@@ -109,14 +111,14 @@ void CellBlock::gather_few_flat(const Triangulation& mesh, Index first, Index ce
     walked[found] = walk;
     others[found] = other;
     const bool is_lowest = (is_side != 0) & (other < lowest_neighbour);
-    lowest = is_lowest ? found : lowest;
+    least = is_lowest ? found : least;
     lowest_neighbour = is_lowest ? other : lowest_neighbour;
     found += is_side;
     walk = twins[walk + k_previous[k]];
     is_under_way &= static_cast<Index>(walk != first);
   }
   few_size_[cell] = found;
-  few_lowest_[cell] = lowest;
+  few_lowest_[cell] = least;
 }
 
 /// Whether the cell is open.
@@ -154,16 +156,16 @@ void copy_few(Index* to, const Index* from) { std::memcpy(to, from, 8 * sizeof(I
 
 // From the lowest on, then from the first on over what that copied too much.
 void CellBlock::append_few(Index cell, Index cell_site) {
-  const Index count = few_size_[cell], lowest = few_lowest_[cell], turned = count - lowest, start = size;
+  const Index count = few_size_[cell], least = few_lowest_[cell], turned = count - least, start = size;
   const Index *const walked = few_half_.data() + k_few * cell, *const others = few_neighbour_.data() + k_few * cell;
-  copy_few(halves.data() + start, walked + lowest);
+  copy_few(halves.data() + start, walked + least);
   copy_few(halves.data() + start + turned, walked);
-  copy_few(neighbours.data() + start, others + lowest);
+  copy_few(neighbours.data() + start, others + least);
   copy_few(neighbours.data() + start + turned, others);
   Index* const next = next_neighbours.data() + start;
-  copy_few(next, others + lowest + 1);
+  copy_few(next, others + least + 1);
   copy_few(next + turned - 1, others);
-  next[count - 1] = others[lowest];
+  next[count - 1] = others[least];
   Index *const own = sites.data() + start, *const before = befores.data() + start;
   for (Index i = 0; i < k_few; ++i) {
     own[i] = cell_site;

@@ -24,6 +24,7 @@ class CellBlock {
 
   Index cell_count = 0, size = 0;          ///< `size`: sides of all cells
   std::array<Index, k_most + 1> starts{};  ///< by cell: its first side
+  std::array<Index, k_most> lowest{};      ///< by cell: the lowest neighbour; -1 where vertices of more cells may be
   std::vector<Index> open;                 ///< cells that are
   std::vector<Index> halves;               ///< by side: from the site, or to it for the last side of an open cell
   std::vector<Index> sites, neighbours;    ///< by side: of either side

@@ -270,19 +270,32 @@ class Numberer {
     }
   }
 
+  /// Calls work(begin, end, whether some numbers may be given in other pieces) for sides of cells in a row.
+  template <class Work>
+  static void for_runs(const CellBlock& cells, Index known, Work&& work) {
+    const auto may_be_late = [&](Index cell) { return known > 0 && cells.lowest[cell] < known; };
+    for (Index cell = 0, end; cell < cells.cell_count; cell = end) {
+      const bool is_late = may_be_late(cell);
+      for (end = cell + 1; end < cells.cell_count && may_be_late(end) == is_late;) ++end;
+      work(cells.starts[cell], cells.starts[end], is_late);
+    }
+  }
+
   void write_corners(Piece& piece, Index known, Index corner, Scratch& scratch) {
     const CellBlock& cells = scratch.cells;
     const Index *const half = cells.halves.data(), *const numbers = mesh_.corners.data();
     Index* const to = result_.corner_vertices.data() + corner;
-    if (known == 0) {
-      for (Index i = 0; i < cells.size; ++i) to[i] = numbers[half[i] | 3];
-    } else {
-      for (Index i = 0; i < cells.size; ++i) {
+    for_runs(cells, known, [&](Index begin, Index end, bool may_be_late) {
+      if (!may_be_late) {
+        for (Index i = begin; i < end; ++i) to[i] = numbers[half[i] | 3];
+        return;
+      }
+      for (Index i = begin; i < end; ++i) {
         const bool is_late = lowest_about(i, scratch) < known;
         to[i] = is_late ? late(half[i] | 3) : numbers[half[i] | 3];
         if (is_late) piece.late_corners.push_back(corner + i);
       }
-    }
+    });
     for (const Index cell : cells.open) to[cells.starts[cell + 1] - 1] = k_none;
   }
 
@@ -304,15 +317,17 @@ class Numberer {
       const Index side = half[scratch.own_sides[k]], twin = twins[side];
       twins[twin < 0 ? side : twin] = ~(at.edges + k);
     }
-    if (known == 0) {
-      for (Index i = 0; i < cells.size; ++i) sides[i] = ~twins[half[i]];
-    } else {
-      for (Index i = 0; i < cells.size; ++i) {
+    for_runs(cells, known, [&](Index begin, Index end, bool may_be_late) {
+      if (!may_be_late) {
+        for (Index i = begin; i < end; ++i) sides[i] = ~twins[half[i]];
+        return;
+      }
+      for (Index i = begin; i < end; ++i) {
         const bool is_late = neighbour[i] < known;
         sides[i] = is_late ? half[i] : ~twins[half[i]];
         if (is_late) piece.late_sides.push_back(at.corners + i);
       }
-    }
+    });
     write_edges(piece, at, scratch);
     at.edges += scratch.own_side_count;
   }
