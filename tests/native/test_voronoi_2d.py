@@ -217,3 +217,20 @@ def test_a_million_sites_stop_within_a_moment():
         sb.voronoi_2d(sites, job=job)
     watcher.join()
     assert time.perf_counter() - stopped_at[0] < 0.5  # 0.1 s on a machine that is not busy
+
+
+def test_diagrams_of_sizes_nearly_alike_come_and_go() -> None:
+    """Freed memory serves arrays of any size that it does for; whoever frees it last must know whence it came."""
+    rng = np.random.default_rng(5)
+
+    def diagrams(n: int) -> list[sb.Voronoi2d]:
+        return [sb.voronoi_2d(rng.random((n, 2)), threads=1) for _ in range(24)]
+
+    full, less = diagrams(1 << 14), diagrams(15_500)  # 64 KiB of numbers, and a little less
+    del full
+    again = diagrams(15_600)
+    full = diagrams(1 << 14)
+    del less, again
+    less = diagrams(15_700)
+    assert all(len(diagram.sites) == 15_700 for diagram in less)
+    assert all(len(diagram.sites) == 1 << 14 for diagram in full)

@@ -133,7 +133,7 @@ void* allocate_large(std::size_t size) {
   const std::size_t wanted = size >= k_smallest_kept ? rounded(size) : std::max<std::size_t>(size, 1);
   void* memory = size >= k_smallest_kept ? kept().take(wanted) : nullptr;
   if (memory) return memory;
-  memory = size < k_smallest ? std::malloc(wanted) : map_pages(wanted);
+  memory = wanted < k_smallest ? std::malloc(wanted) : map_pages(wanted);
   if (!memory) throw std::bad_alloc();
   if (wanted >= k_huge) kept_pages().lay(memory, wanted);
   return memory;
@@ -142,7 +142,7 @@ void* allocate_large(std::size_t size) {
 void free_large(void* memory, std::size_t size) noexcept {
   const std::size_t had = rounded(size);
   if (size >= k_smallest_kept && kept().keep(memory, had)) return;
-  if (size < k_smallest) return std::free(memory);
+  if (had < k_smallest) return std::free(memory);  // as it was had: what is kept is had by any size that it does for
   const std::size_t kept_size = had >= k_huge ? kept_pages().keep(memory, had) : 0;
   if (kept_size < had) munmap(static_cast<char*>(memory) + kept_size, had - kept_size);
 }
