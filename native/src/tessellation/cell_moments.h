@@ -46,7 +46,7 @@ class CellIntegrals {
 
   const VertexRings& rings_;
   const int threads_;
-  LargeArray<Face> faces_;                     ///< in the rings' order
+  LargeArray<Face> faces_;                      ///< in the rings' order
   std::vector<std::array<double, 3>> density_;  ///< of their corners; empty for 1
   LargeArray<Node> nodes_;
 };
