@@ -81,6 +81,15 @@ def test_what_is_too_much_for_the_device_the_processor_does(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("rule", RULES, ids=RULE_NAMES)
+def test_edges_of_very_different_lengths_the_processor_follows(rule: dict[str, Any], tmp_path: Path) -> None:
+    vertices, triangles = meshes.torus(30, 12)
+    count = len(vertices)
+    both = sb.Mesh(np.vstack([vertices, 1e-13 * vertices]), np.vstack([triangles, triangles + count]))
+    expect_twins(both, tmp_path, **rule)
+    assert sb.SaddleVertexGraph(both, device="cuda", **rule).device_times["by_processor"] == 2 * count
+
+
+@pytest.mark.parametrize("rule", RULES, ids=RULE_NAMES)
 def test_two_runs_give_the_same_bytes(rule: dict[str, Any], tmp_path: Path) -> None:
     mesh = sb.Mesh(*meshes.grid(80, 80, 0.3))
     runs = {saved(sb.SaddleVertexGraph(mesh, device="cuda", **rule), tmp_path) for _ in range(3)}

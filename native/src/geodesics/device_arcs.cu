@@ -38,7 +38,7 @@ struct Room {
 template <bool All>
 using SmallRoom = Room<All, 48, 256, true>;
 template <bool All>
-using MiddleRoom = Room<All, 160, 512, false>;
+using MiddleRoom = Room<All, All ? 160 : 112, 512, false>;
 template <bool All>
 using WideRoom = Room<All, 512, 2048, false>;
 /// In global memory, two thousand sources at a time.
@@ -248,7 +248,9 @@ class ArcFinder {
     const auto kernel = find_arcs<Room>;
     check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, Room::shared_bytes),
                "asking for shared memory");
-    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, 100),
+    // Rings that are not in shared memory had better be in the cache beside it.
+    constexpr int k_carveout = Room::rings_are_shared ? 100 : 75;
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, k_carveout),
                "asking for shared memory");
     const int blocks = blocks_of(reinterpret_cast<const void*>(kernel), Room::shared_bytes);
     DeviceBuffer<Sighting> drafts(static_cast<std::size_t>(blocks) * k_draft_room, stream_);

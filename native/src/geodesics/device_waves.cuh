@@ -2,134 +2,20 @@
 // Windows of a few sources, kept and advanced by the 32 lanes of a warp: the twin of DiskFinder, to the bit.
 //
 // As there, generations have no order but their own: all windows of one look at their apexes, the labels are lowered,
-// then all are split. What a source sees of the mesh is in a hash table of its own, since it reaches a hundred vertices
-// or two of all there are; a *slot* is an entry of that table, with the source's number in the key's low bits.
+// then all are split.
 
 #include <cstdint>
 
-#include "geodesics/arc_twin.h"
-
-#define SADDLEBACK_STEP __device__ __forceinline__
-
-namespace saddleback {
-namespace {
-
-/// One lane, a thread: what window_waves_step.h computes with. This source is compiled without fused operations.
-struct Simd {
-  using Floats = float;
-  using Doubles = double;
-  using Ints = std::int32_t;
-  using Mask = bool;
-  SADDLEBACK_STEP static float fill(float value) { return value; }
-  SADDLEBACK_STEP static float pick(bool mask, float yes, float no) { return mask ? yes : no; }
-  SADDLEBACK_STEP static bool pick(bool mask, bool yes, bool no) { return mask ? yes : no; }
-  SADDLEBACK_STEP static float min(float a, float b) { return a < b ? a : b; }
-  SADDLEBACK_STEP static float max(float a, float b) { return a > b ? a : b; }
-  // Quotients and roots as IEEE's, by the steps that compilers take for numbers that are neither huge nor tiny, but
-  // without asking each time whether they are: asking takes as long, and lanes wait for one another. P. Markstein,
-  // "Computation of elementary functions on the IBM RISC System/6000 processor", 1990. See k_longest.
-  SADDLEBACK_STEP static float quotient(float a, float b) {
-    float inverse;
-    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(b));
-    inverse = __fmaf_rn(inverse, __fmaf_rn(-b, inverse, 1), inverse);
-    float result = __fmul_rn(a, inverse);
-    result = __fmaf_rn(__fmaf_rn(-b, result, a), inverse, result);
-    return __fmaf_rn(__fmaf_rn(-b, result, a), inverse, result);
-  }
-  /// a / (a + b) for b > 0.
-  SADDLEBACK_STEP static float share(float a, float b) { return quotient(a, a + b); }
-  SADDLEBACK_STEP static float sqrt(float a) {
-    float inverse;
-    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(a));
-    const float root = __fmul_rn(a, inverse);
-    const float better = __fmaf_rn(__fmaf_rn(-root, root, a), 0.5f * inverse, root);
-    return a > 0x1p-100f ? better : 0;
-  }
-};
-
-}  // namespace
-}  // namespace saddleback
-
-#include "geodesics/window_waves_step.h"
+#include "geodesics/device_wave_memory.cuh"
 #include "support/warp.cuh"
 
 namespace saddleback {
 namespace {
 
-/// Edges longer than this or shorter than its inverse, in mean edges, might ask for roots and quotients of other
-/// numbers than those that Simd has them for.
-constexpr double k_longest = 0x1p30;
-
-constexpr std::uint32_t k_no_key = 0xffffffffu;
-constexpr std::int32_t k_unreached_label = 0x7f800000;
-constexpr std::uint64_t k_no_arc = static_cast<std::uint64_t>(k_unreached_label) << 32 | 0xffffffffu;
 // As in disk_finder.cpp.
 constexpr float k_disk_as_far = 1 + 1e-5f;
 constexpr float k_bend_longer = 1 + 1e-6f;
 constexpr int k_disk_generations_per_bound = 3;
-
-/// The mesh in device memory.
-struct DeviceMesh {
-  const EdgeRecord* records;
-  const std::int32_t *first, *targets;
-  const double* lengths;
-  const float *sectors, *reverse_sectors, *apex_sectors, *per_radian;
-  const std::uint8_t* saddles;
-  double unit;
-  ArcPacking packing;
-  std::int32_t k;
-  float detour, excess;
-  double slack;
-};
-
-/// A vertex seen, until it is known whether an arc to it stays: the directions are computed only then.
-struct Sighting {
-  double2 place;            ///< of the vertex
-  float2 side;              ///< from it to the start of the half-edge that the window came through
-  std::int32_t edge, root;  ///< of the window; a link of the source has ~edge as root, and whether it is the other side
-  std::int32_t slot;
-  std::int32_t unused;
-};
-
-/// A warp's windows: a ring of those behind left sides, and one of those behind right ones.
-template <bool All, int Ring_>
-struct alignas(16) WaveRings {
-  static constexpr int Ring = Ring_;
-  double2 from[2][Ring], to[2][Ring];
-  float4 rays[2][Ring];  ///< right_x, right_y, left_x, left_y
-  float2 reaches[2][Ring];
-  float2 ways[All ? 1 : 2][All ? 1 : Ring];
-  std::int32_t edges[2][Ring];  ///< record * k_batch + source
-  std::int32_t roots[2][Ring];
-  float most[All ? 1 : 2][All ? 1 : Ring];
-  ushort2 ends[2][Ring];  ///< slots of the half-edge's ends
-  std::uint16_t apexes[2][Ring];
-};
-
-/// The vertices that a warp's sources reached.
-template <bool All, int Sources_, int Slots_>
-struct alignas(16) WaveTable {
-  static constexpr int Sources = Sources_, Slots = Slots_;
-  std::uint64_t arcs[Slots];  ///< label of the shortest arc, and its number in the draft
-  std::int32_t labels[Slots];
-  std::uint32_t keys[Slots];                    ///< node * k_batch + source
-  std::uint32_t changed[All ? Slots / 32 : 1];  ///< bits: neighbours may have to be told of the label
-  float limits[Sources];
-  std::int32_t nodes[Sources];
-  std::uint16_t todo[All ? Slots : 1];
-};
-
-SADDLEBACK_STEP float distance_of(std::int32_t label) { return __int_as_float(label); }
-SADDLEBACK_STEP std::int32_t label_of(float distance, bool makes_arc) {
-  const std::int32_t bits = __float_as_int(distance) & ~1;
-  return makes_arc ? bits : bits | 1;
-}
-SADDLEBACK_STEP int to_sector(float sector) {
-  const int whole = static_cast<int>(sector);
-  return whole < 0 ? 0 : whole > 255 ? 255 : whole;
-}
-/// As Eigen's norm.
-SADDLEBACK_STEP double norm_of(double x, double y) { return __dsqrt_rn(x * x + y * y); }
 
 /// One window as its lane holds it.
 struct LaneWindow {

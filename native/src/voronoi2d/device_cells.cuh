@@ -63,6 +63,19 @@ __device__ inline void write_list(const DeviceLists& lists, std::int32_t rank, i
   }
 }
 
+/// By a warp: where a cell's list of any length goes; null when there is no room.
+__device__ inline std::int32_t* place_for_list(const DeviceLists& lists, std::int32_t rank, int count) {
+  std::int32_t* const slots = lists.slots + static_cast<std::int64_t>(rank) * k_slots;
+  if (count <= k_slots) return slots;
+  const int lane = threadIdx.x % 32;
+  unsigned begin = 0;
+  if (lane == 0) begin = atomicAdd(lists.pool_taken, static_cast<unsigned>(count));
+  begin = __shfl_sync(k_warp, begin, 0);
+  if (begin + static_cast<unsigned>(count) > lists.pool_room) return nullptr;
+  if (lane == 0) *slots = static_cast<std::int32_t>(begin);
+  return lists.pool + begin;
+}
+
 /// How far along the line of centres the circle through the site and n touches another site: surely between two bounds;
 /// infinite for a site to the right.
 struct Touch {

@@ -208,15 +208,8 @@ class FarWinder {
         if (static_cast<unsigned>(at(i)) == lowest) place = static_cast<unsigned>(i);
       first = static_cast<int>(warp_min(place));
     }
-    std::int32_t* to = lists.slots + static_cast<std::int64_t>(rank_) * k_slots;
-    if (count > k_slots) {
-      unsigned begin = 0;
-      if (lane == 0) begin = atomicAdd(lists.pool_taken, static_cast<unsigned>(count));
-      begin = __shfl_sync(k_warp, begin, 0);
-      if (begin + static_cast<unsigned>(count) > lists.pool_room) return false;
-      if (lane == 0) *to = static_cast<std::int32_t>(begin);
-      to = lists.pool + begin;
-    }
+    std::int32_t* const to = place_for_list(lists, rank_, count);
+    if (!to) return false;
     for (int i = lane; i < count; i += 32) to[i] = at((i + first) % count);
     if (lane == 0) {
       lists.counts[rank_] = count;

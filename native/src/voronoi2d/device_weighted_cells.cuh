@@ -23,11 +23,11 @@ struct RowMemory {
 /// Some of the sites near a row, as one of the row sees them: three a lane, and the infinitely far, which comes first.
 class ChosenWaves {
  public:
-  __device__ ChosenWaves(const RowMemory& memory, const std::uint16_t* chosen, const WeightedPoint2& here)
+  __device__ ChosenWaves(const RowMemory& memory, std::uint16_t* chosen, const WeightedPoint2& here)
       : memory_(memory), chosen_(chosen), here_(here) {}
 
   /// Those other than the site's own rank that may cut off a cell within half of `far`. False when there are too many.
-  __device__ bool choose(std::int32_t own, double far, std::uint16_t* chosen) {
+  __device__ bool choose(std::int32_t own, double far) {
     const int lane = threadIdx.x % 32;
     count_ = 1;
     __syncwarp();
@@ -41,7 +41,7 @@ class ChosenWaves {
       }
       const unsigned those = __ballot_sync(k_warp, is_in);
       const int at = count_ + __popc(those & ((1u << lane) - 1));
-      if (is_in && at < RowMemory::k_chosen) chosen[at] = static_cast<std::uint16_t>(k);
+      if (is_in && at < RowMemory::k_chosen) chosen_[at] = static_cast<std::uint16_t>(k);
       count_ += __popc(those);
     }
     if (count_ > RowMemory::k_chosen) return false;
@@ -93,7 +93,7 @@ class ChosenWaves {
   }
 
   const RowMemory& memory_;
-  const std::uint16_t* chosen_;
+  std::uint16_t* chosen_;
   WeightedPoint2 here_;
   Wave mine_[k_each];
   int count_ = 0;
@@ -140,12 +140,11 @@ class RowWinder {
   /// False when it takes other means.
   __device__ bool wind(std::int32_t rank, double usual_far, const DeviceLists& lists) const {
     const WeightedPoint2 here = tree_.site(rank);
-    std::uint16_t* const chosen = memory_.chosen[threadIdx.x / 32];
-    ChosenWaves waves(memory_, chosen, here);
+    ChosenWaves waves(memory_, memory_.chosen[threadIdx.x / 32], here);
     const double farthest = memory_.margin + here.weight;  // how far sites are known
     double far = fmin(usual_far, farthest);
     for (int attempt = 0; attempt < 2; ++attempt) {
-      if (!waves.choose(rank, far, chosen)) return false;
+      if (!waves.choose(rank, far)) return false;
       Found found;
       const bool is_closed = find(waves, found);
       if (is_closed && found.far <= far) return write(rank, found, lists);

@@ -163,15 +163,8 @@ class FarEnvelopeWinder {
     const int lane = threadIdx.x % 32;
     int sides = 0;
     for (int k = 0; k < count_; ++k) sides += memory_.rank[k] != k_nobody;
-    std::int32_t* to = lists.slots + static_cast<std::int64_t>(rank) * k_slots;
-    if (sides > k_slots) {
-      unsigned begin = 0;
-      if (lane == 0) begin = atomicAdd(lists.pool_taken, static_cast<unsigned>(sides));
-      begin = __shfl_sync(k_warp, begin, 0);
-      if (begin + static_cast<unsigned>(sides) > lists.pool_room) return false;
-      if (lane == 0) *to = static_cast<std::int32_t>(begin);
-      to = lists.pool + begin;
-    }
+    std::int32_t* const to = place_for_list(lists, rank, sides);
+    if (!to) return false;
     if (lane != 0) return true;
     int place = 0, arc = first;
     for (int step = 0; step < count_; ++step, arc = after(arc)) {
