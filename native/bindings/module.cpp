@@ -28,6 +28,7 @@ void bind_shapes(py::module_& m);
 void bind_stepped_sweep(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_graph(py::module_& m);
+void bind_relaxation(py::module_& m);
 void bind_tessellation(py::module_& m);
 void bind_dual_mesh(py::module_& m);
 void bind_triangle_arrays(py::module_& m);
@@ -112,6 +113,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_hausdorff_distance(m);
   bind_fields(m);
   bind_tessellation(m);
+  bind_relaxation(m);
   bind_device_voronoi_2d(m);
   bind_voronoi_2d(m);
   bind_devices(m);

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "saddleback/geodesic_voronoi.h"
+
+#include "convert.h"
+
+namespace saddleback::bindings {
+
+/// The Python object of a diagram on the mesh of a graph (a Python object), which stays as long as it.
+py::object make_cells(GeodesicVoronoi&& diagram, const py::object& graph);
+
+}  // namespace saddleback::bindings
