@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import threading
 import time
@@ -451,3 +452,27 @@ def test_progress_rises_and_cancel_is_quick(what: str) -> None:
         assert ended
         assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
     assert np.isfinite(graph.distance(0, 1))  # what was stopped leaves nothing behind
+
+
+def test_a_query_after_stopped_ones_is_as_if_they_had_not_been() -> None:
+    mesh = sb.Mesh(*meshes.icosphere(6))
+    graph = sb.SaddleVertexGraph(mesh, k=20)
+    curve, points = traced(mesh, 0, 0.1, 10.0), random_points(mesh, 1000)
+    asks = [
+        lambda job=None: graph.distances(curve, job=job),
+        lambda job=None: graph.distances_to(curve, points, job=job),
+        lambda job=None: graph.nearest(points, job=job),
+        lambda job=None: graph.distances_to(points, points, job=job),
+    ]
+    for ask in asks:
+        start = time.perf_counter()
+        expected = ask()
+        seconds = time.perf_counter() - start
+        for share in np.linspace(0.1, 0.9, 5):
+            job = sb.Job()
+            stop = threading.Timer(share * seconds, job.cancel)
+            stop.start()
+            with contextlib.suppress(sb.Cancelled):
+                ask(job)
+            stop.join()
+        assert np.array_equal(np.asarray(ask()), np.asarray(expected))

@@ -57,7 +57,7 @@ class BlockQueue {
     return true;
   }
 
-  /// Empties the queue, to begin again with keys from 0.
+  /// Empties the queue, to begin again with keys from 0. No block may be kept.
   void clear() {
     for (Block*& head : ring_) {
       while (head) {
@@ -65,6 +65,11 @@ class BlockQueue {
         give_back(head);
         head = next;
       }
+    }
+    if (in_use_ > 0) {  // who had taken some was stopped, and gave none back
+      free_ = nullptr;
+      in_use_ = static_cast<std::int64_t>(pool_.size());
+      for (const auto& block : pool_) give_back(block.get());
     }
     current_ = 0;
   }

@@ -122,6 +122,7 @@ std::vector<double> ExactField::distance_to(const SurfacePoints& points, Job* jo
     stage.update(static_cast<double>(result.size()) / static_cast<double>(points.size()));
     result.push_back(parts_->tracer.approach(point).distance);
   }
+  stage.update(1);
   return result;
 }
 
@@ -159,6 +160,7 @@ std::vector<GeodesicPath> ExactField::paths(const SurfacePoints& targets, Job* j
     stage.update(static_cast<double>(result.size()) / static_cast<double>(targets.size()));
     result.push_back(parts_->tracer.path(target));
   }
+  stage.update(1);
   return result;
 }
 
