@@ -37,33 +37,38 @@ static_assert(k_row_ahead <= k_row_padding);
 
 class Union {
  public:
-  Union(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found)
+  Union(const ArcCodec& codec, const WaveKernel& kernel, std::vector<KeptArcs>& found, int threads,
+        const JobStage& stage)
       : codec_(codec),
         packing_(codec.packing()),
         kernel_(kernel),
         found_(found),
         block_size_(static_cast<Index>(found.front().counts.size())),
         missing_(found.size()) {
-    const FoundArcs& last = found.back();
+    const KeptArcs& last = found.back();
     node_count_ = last.first_node + static_cast<Index>(last.counts.size());
-    rows_.reserve(node_count_ + 1);
-    std::int64_t first = 0;
-    for (const FoundArcs& block : found) {
-      const std::uint64_t* words = block.words.data();
-      for (const std::int32_t count : block.counts) {
-        rows_.push_back({words, first});
-        words += count;
-        first += count;
+    std::vector<std::int64_t> firsts(found.size() + 1, 0);
+    for (std::size_t b = 0; b < found.size(); ++b) firsts[b + 1] = firsts[b] + std::ssize(found[b].back_sectors);
+    rows_.resize(node_count_ + 1);
+    paired_.resize(firsts.back());
+    parallel_for(static_cast<Index>(found.size()), threads, 4, [&](Index b, int) {
+      stage.check();
+      Row row{found[b].words.data(), firsts[b]};
+      Row* next = rows_.data() + found[b].first_node;
+      for (const std::int32_t count : found[b].counts) {
+        *next++ = row;
+        row.words += count;
+        row.first += count;
       }
-    }
-    rows_.push_back({nullptr, first});
-    paired_.resize(first);
+      std::fill(paired_.begin() + firsts[b], paired_.begin() + firsts[b + 1], std::uint8_t{0});
+    });
+    rows_.back() = {nullptr, firsts.back()};
   }
 
   /// Looks for the reverses of arcs to later nodes; where one of the two is longer, it is marked to be replaced, and
   /// where there is none, to be added. Writes nothing but marks of arcs that no other block marks.
   void pair_with_later(Index block_index) {
-    const FoundArcs& block = found_[block_index];
+    const KeptArcs& block = found_[block_index];
     const std::uint64_t* const words = block.words.data();
     std::int64_t i = 0;
     for (std::size_t row = 0; row < block.counts.size(); ++row) {
@@ -97,7 +102,7 @@ class Union {
 
   /// Arcs to earlier nodes that no reverse was paired with have none. To be called when all blocks are paired.
   void add_unpaired(Index block_index) {
-    const FoundArcs& block = found_[block_index];
+    const KeptArcs& block = found_[block_index];
     const std::uint8_t* const paired = paired_.data() + rows_[block.first_node].first;
     std::int64_t i = 0;
     for (std::size_t row = 0; row < block.counts.size(); ++row) {
@@ -156,24 +161,31 @@ class Union {
   }
 
   std::uint8_t back_sector(Index node, int at) const {
-    const FoundArcs& block = found_[node / block_size_];
+    const KeptArcs& block = found_[node / block_size_];
     return block.back_sectors[rows_[node].first - rows_[block.first_node].first + at];
   }
 
   /// By their nodes, each node's sorted: the order in which they were found does not matter.
   void sort_missing(int threads, const JobStage& stage) {
-    first_missing_.assign(node_count_ + 1, 0);
-    for (const auto& list : missing_)
-      for (const MissingArc& arc : list) ++first_missing_[arc.node() + 1];
-    stage.check();
-    for (Index node = 0; node < node_count_; ++node) first_missing_[node + 1] += first_missing_[node];
-    all_missing_.resize(first_missing_.back());
-    std::vector<std::int64_t> next(first_missing_.begin(), first_missing_.end() - 1);
-    for (auto& list : missing_) {
+    first_missing_.resize(node_count_ + 1);
+    std::vector<std::atomic<std::int32_t>> counts(node_count_);
+    const auto lists = static_cast<Index>(missing_.size());
+    parallel_for(lists, threads, 4, [&](Index b, int) {
       stage.check();
-      for (const MissingArc& arc : list) all_missing_[next[arc.node()]++] = arc;
-      list = {};
-    }
+      for (const MissingArc& arc : missing_[b]) counts[arc.node()].fetch_add(1, std::memory_order_relaxed);
+    });
+    first_missing_[0] = 0;
+    for (Index node = 0; node < node_count_; ++node)
+      first_missing_[node + 1] = first_missing_[node] + counts[node].load(std::memory_order_relaxed);
+    all_missing_.resize(first_missing_.back());
+    parallel_for(lists, threads, 4, [&](Index b, int) {
+      stage.check();
+      for (const MissingArc& arc : missing_[b]) {
+        const std::int32_t left = counts[arc.node()].fetch_sub(1, std::memory_order_relaxed) - 1;
+        all_missing_[first_missing_[arc.node()] + left] = arc;
+      }
+      missing_[b] = {};
+    });
     parallel_for(node_count_, threads, 4 * block_size_, [&](Index node, int) {
       if (node % block_size_ == 0) stage.check();
       std::sort(all_missing_.begin() + first_missing_[node], all_missing_.begin() + first_missing_[node + 1]);
@@ -182,7 +194,7 @@ class Union {
 
   template <class Use>
   void for_each_row(Index b, Use&& use) const {
-    const FoundArcs& block = found_[b];
+    const KeptArcs& block = found_[b];
     for (std::size_t row = 0; row < block.counts.size(); ++row) {
       const Index node = block.first_node + static_cast<Index>(row);
       const std::int64_t begin = first_missing_[node], end = first_missing_[node + 1];
@@ -194,20 +206,36 @@ class Union {
   const ArcCodec& codec_;
   const ArcPacking& packing_;
   const WaveKernel& kernel_;
-  std::vector<FoundArcs>& found_;
+  std::vector<KeptArcs>& found_;
   Index block_size_, node_count_ = 0;
-  std::vector<Row> rows_;  ///< per node, and the number of all arcs at the end
+  LargeArray<Row> rows_;  ///< per node, and the number of all arcs at the end
   std::vector<std::vector<MissingArc>> missing_;
-  std::vector<std::uint8_t> paired_;  ///< per arc: its reverse was found
+  LargeArray<std::uint8_t> paired_;  ///< per arc: its reverse was found
   LargeArray<MissingArc> all_missing_;
-  std::vector<std::int64_t> first_missing_;  ///< per node
+  LargeArray<std::int64_t> first_missing_;  ///< per node
 };
 
 }  // namespace
 
-ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<FoundArcs>& found, int threads,
+KeptArcs::KeptArcs(const FoundArcs& found, ReturnedPieces& memory) : first_node(found.first_node) {
+  const std::size_t word_count = found.words.size(), padded = word_count + k_row_padding;
+  const std::size_t of_words = padded * sizeof(std::uint64_t), of_counts = found.counts.size() * sizeof(std::int32_t);
+  memory_ = memory.take(of_words + of_counts + word_count);
+  auto* const start = static_cast<std::byte*>(memory_.get());
+  auto* const own_words = reinterpret_cast<std::uint64_t*>(start);
+  auto* const own_counts = reinterpret_cast<std::int32_t*>(start + of_words);
+  auto* const own_sectors = reinterpret_cast<std::uint8_t*>(start + of_words + of_counts);
+  std::fill(std::copy(found.words.begin(), found.words.end(), own_words), own_words + padded, 0);
+  std::copy(found.counts.begin(), found.counts.end(), own_counts);
+  std::copy(found.back_sectors.begin(), found.back_sectors.end(), own_sectors);
+  words = {own_words, padded};
+  counts = {own_counts, found.counts.size()};
+  back_sectors = {own_sectors, word_count};
+}
+
+ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<KeptArcs>& found, int threads,
                             const JobStage& stage) {
-  Union work(codec, kernel, found);
+  Union work(codec, kernel, found, threads, stage);
   std::atomic<Index> done{0};
   const auto for_each_block = [&](const JobStage& part, auto&& use) {
     done = 0;

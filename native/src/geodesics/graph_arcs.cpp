@@ -22,12 +22,19 @@ constexpr double k_room = 0.95;
 
 /// So many parts of the mesh, one after the other from all over it, take as long as they would if the mesh were even.
 constexpr Index k_parts = 377;
-// Nodes whose arcs are kept together: whole pages of memory are.
-constexpr Index k_block = 256, k_least_block = 64;
+// Nodes whose arcs are kept together: so many that what is done for each block is nothing, so few that no thread waits
+// long for the last.
+constexpr Index k_block = 128, k_most_watched = 256, k_least_watched = 64;
+// Bytes. Of blocks that are united in another order each has a piece of its own, lest all be kept to the end.
+constexpr std::size_t k_piece = std::size_t{1} << 21, k_piece_a_node = 512;
 
 Index block_size(Index node_count, bool watched) {
   const Index part = (node_count / k_parts + k_batch - 1) / k_batch * k_batch;
-  return watched ? std::clamp(part, k_least_block, k_block) : k_block;
+  return watched ? std::clamp(part, k_least_watched, k_most_watched) : k_block;
+}
+
+std::size_t piece_size(Index node_count, bool watched) {
+  return watched ? 0 : std::min(k_piece, k_piece_a_node * static_cast<std::size_t>(node_count));
 }
 
 /// A step that leads through all of `count` parts, far from those before: the golden section of them, or near it.
@@ -53,14 +60,15 @@ std::vector<Index> order_of_blocks(Index count, bool watched) {
   return order;
 }
 
-/// Calls find(block, count, thread) from all threads. Blocks are filled in memory that each thread keeps, and kept
-/// without room to grow.
+/// Calls find(draft, count, thread) from all threads. Blocks are filled in memory that each thread keeps.
 template <class Find>
-std::vector<FoundArcs> find_by_blocks(const ArcSearch& search, const JobStage& stage, Find&& find) {
+std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, const JobStage& stage, Find&& find) {
   const auto node_count = static_cast<Index>(search.vertices.size());
   const Index size = block_size(node_count, stage.is_watched());
   const std::vector<Index> order = order_of_blocks((node_count + size - 1) / size, stage.is_watched());
-  std::vector<FoundArcs> found(order.size()), drafts(thread_count(search.threads));
+  std::vector<KeptArcs> found(order.size());
+  std::vector<FoundArcs> drafts(thread_count(search.threads));
+  std::vector<ReturnedPieces> pieces(drafts.size(), ReturnedPieces(piece_size(node_count, stage.is_watched())));
   parallel_for(static_cast<Index>(found.size()), search.threads, 1, [&](Index i, int thread) {
     FoundArcs& draft = drafts[thread];
     draft.first_node = order[i] * size;
@@ -68,8 +76,7 @@ std::vector<FoundArcs> find_by_blocks(const ArcSearch& search, const JobStage& s
     draft.words.clear();
     draft.back_sectors.clear();
     find(draft, std::min(size, node_count - draft.first_node), thread);
-    draft.words.resize(draft.words.size() + k_row_padding);
-    found[order[i]] = draft;
+    found[order[i]] = KeptArcs(draft, pieces[thread]);
   });
   return found;
 }
@@ -146,8 +153,8 @@ WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::
     : mesh(unfolding, edges, nodes, vertices, threads, stage),
       sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage) {}
 
-std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
-                                 BuildProgress& progress) {
+std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
+                                BuildProgress& progress) {
   std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
   return find_by_blocks(search, progress.stage(), [&](FoundArcs& found, Index count, int thread) {
     if (!finders[thread])
@@ -161,7 +168,7 @@ std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tabl
   });
 }
 
-std::vector<FoundArcs> exact_arcs(const ArcSearch& search, BuildProgress& progress) {
+std::vector<KeptArcs> exact_arcs(const ArcSearch& search, BuildProgress& progress) {
   constexpr std::int64_t k_waves_per_ordered = 8;  // windows that come in order take so many times as long
   std::vector<std::unique_ptr<WindowPropagator>> propagators(thread_count(search.threads));
   std::vector<std::vector<DirectArc>> rows(propagators.size());

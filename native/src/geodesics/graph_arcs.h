@@ -37,12 +37,12 @@ struct ArcSearch {
 DiskRule disk_rule(Index k, double accuracy, Lattice lattice = Lattice::none);
 
 /// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
-std::vector<FoundArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
-                                 BuildProgress& progress);
+std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
+                                BuildProgress& progress);
 
 /// All straight geodesics of the mesh. \throw InputError when the graph would not fit into memory; Cancelled. O(V^2 log
 /// V).
-std::vector<FoundArcs> exact_arcs(const ArcSearch& search, BuildProgress& progress);
+std::vector<KeptArcs> exact_arcs(const ArcSearch& search, BuildProgress& progress);
 
 /// The fastest kernel that this machine runs for "auto", or the one named. \throw InputError when there is none.
 const WaveKernel& wave_kernel(const std::string& instructions);

@@ -3,6 +3,8 @@
 // what follows. An ordinary heap keeps what lies between other things.
 
 #include <cstddef>
+#include <memory>
+#include <span>
 #include <vector>
 
 namespace saddleback {
@@ -25,5 +27,20 @@ struct ReturningAllocator {
 
 template <class T>
 using ReturnedVector = std::vector<T, ReturningAllocator<T>>;
+
+/// Memory for many arrays of one thread, one after the other in pieces. A piece goes back to the system with the last
+/// of its arrays: as each return makes all threads wait, pieces are large where arrays are freed in the order in which
+/// they were made.
+class ReturnedPieces {
+ public:
+  using Owner = std::shared_ptr<void>;
+  explicit ReturnedPieces(std::size_t piece_size) : piece_size_(piece_size) {}
+  /// Room for `size` bytes, aligned for anything. \throw std::bad_alloc
+  Owner take(std::size_t size);
+
+ private:
+  std::size_t piece_size_, used_ = 0, size_ = 0;
+  Owner piece_;
+};
 
 }  // namespace saddleback
