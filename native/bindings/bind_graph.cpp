@@ -8,8 +8,6 @@
 namespace saddleback::bindings {
 namespace {
 
-// Below this, what the device gains is lost on the way there.
-constexpr Index k_worth_a_device = 20000;
 
 std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k,
                                               const py::object& accuracy, bool exact, const py::object& threads,
@@ -32,7 +30,7 @@ std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, con
     }
   }
   Job* const token = as_job(job);
-  return run_on(device, !exact && mesh.vertex_count() >= k_worth_a_device, [&](const std::vector<int>& devices) {
+  return run_on(device, !exact && mesh.vertex_count() >= k_vertices_worth_a_device, [&](const std::vector<int>& devices) {
     options.cuda_devices = devices;
     return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });
   });

@@ -63,15 +63,14 @@ QueryOptions query_options(const py::object& limit, const std::string& method) {
 template <class Work>
 auto search_on(const std::string& device, const SaddleVertexGraph& graph, QueryOptions options, std::size_t field_count,
                Work&& work) {
-  constexpr Index k_worth_a_device = 20000;
   constexpr std::size_t k_many = 8;
-  const bool is_near = graph.built_by_cuda() || graph.is_on_device() || field_count >= k_many;
+  const bool are_many = field_count >= k_many && graph.mesh().vertex_count() >= k_vertices_worth_a_device;
   const bool is_dijkstra = options.method == QueryMethod::dijkstra;
-  return run_on(device, is_near && !is_dijkstra && graph.mesh().vertex_count() >= k_worth_a_device,
+  return run_on(device, !is_dijkstra && (are_many || is_search_worth_a_device(graph)),
                 [&](const std::vector<int>& devices) {
                   if (!devices.empty() && is_dijkstra)
                     throw InputError("method: 'dijkstra' runs on the processor only; wanted device='cpu'");
-                  options.cuda_device = devices.empty() ? -1 : devices.front();
+                  options.cuda_device = first_device(devices);
                   return without_gil([&] { return work(options); });
                 });
 }

@@ -3,6 +3,7 @@
 #include "saddleback/centroidal_voronoi.h"
 
 #include "cells.h"
+#include "devices.h"
 #include "points.h"
 
 namespace saddleback::bindings {
@@ -71,7 +72,7 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
               const py::object& seed, const std::string& start, const py::object& starts, const py::object& annealing,
               const py::object& fixed, const py::object& curves, const py::object& held, const py::object& least_move,
               const py::object& cache, bool return_when_cancelled, const py::object& watch, const py::object& threads,
-              const py::object& job) {
+              const std::string& device, const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   ArrayIn<double> weights;
@@ -80,7 +81,7 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
   if (!fixed.is_none()) stay = as_indices(fixed, "fixed");
   if (!held.is_none()) on_curves = as_indices(held, "held");
   const std::vector<const SurfaceCurve*> lines = as_curves(curves);
-  const CentroidalVoronoiOptions options{.density = weights.values,
+  CentroidalVoronoiOptions options{.density = weights.values,
                                          .fixed = stay.values,
                                          .curves = lines,
                                          .held = on_curves.values,
@@ -101,12 +102,15 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
   if (!sites.is_none()) given = as_surface_points(sites, g.mesh(), "sites");
   const Index wanted = count.is_none() ? 0 : as_integer(count, "count");
   const bool has_count = !count.is_none();
-  CentroidalVoronoi result = without_gil([&] {
-    return has_count ? centroidal_voronoi(g, wanted, source, number, options, token)
-                     : centroidal_voronoi(g, given, options, token);
+  CentroidalVoronoi result = run_on(device, is_search_worth_a_device(g), [&](const std::vector<int>& devices) {
+    options.cuda_device = first_device(devices);
+    return without_gil([&] {
+      return has_count ? centroidal_voronoi(g, wanted, source, number, options, token)
+                       : centroidal_voronoi(g, given, options, token);
+    });
   });
   as_cache(cache, graph);  // another call may have been with another graph meanwhile
-  py::object cells = make_cells(std::move(result.cells), graph);
+  py::object cells = make_cells(std::move(result.cells), graph, options.cuda_device >= 0);
   return {std::move(result), std::move(cells)};
 }
 
@@ -159,6 +163,10 @@ watch : RelaxationWatch, optional
     Shown the start and each iteration, for another thread to look at meanwhile.
 threads : int
     0: all cores. The result does not depend on it.
+device : str
+    "cpu"; "cuda", or "cuda:1" for the second CUDA device, which finds the vertices' nearest sites in every iteration, all
+    else being the processor's part, and keeps the graph's arcs from then on; "auto": that where a CUDA device built the
+    graph or keeps it. The result does not depend on it.
 job : Job, optional
 
 Returns
@@ -170,6 +178,8 @@ Raises
 InputError
     Neither or both of sites and count; fewer cells than connected parts, or than the curves need; a fixed site or a curve
     out of range, a curve of another mesh; a density of the wrong length, with a negative or not finite value, or 0 everywhere; what `geodesic_voronoi` refuses.
+DeviceError
+    device="cuda" where there is no usable CUDA device or module, too little of its memory is free, or it fails.
 Cancelled
     The job was cancelled.
 
@@ -253,7 +263,7 @@ the same to the bit. About 1 KB a vertex, and the graph, are kept.)")
         py::arg("starts") = 1, py::arg("annealing") = 0, py::arg("fixed") = py::none(), py::arg("curves") = py::none(),
         py::arg("held") = py::none(), py::arg("least_move") = 0.0, py::arg("cache") = py::none(),
         py::arg("return_when_cancelled") = false, py::arg("watch") = py::none(), py::arg("threads") = 0,
-        py::arg("job") = py::none(), k_centroidal_doc);
+        py::arg("device") = "auto", py::arg("job") = py::none(), k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

@@ -6,6 +6,7 @@
 #include "saddleback/geodesic_centre.h"
 
 #include "cells.h"
+#include "devices.h"
 #include "points.h"
 
 namespace saddleback::bindings {
@@ -15,6 +16,7 @@ namespace {
 struct Cells {
   GeodesicVoronoi diagram;
   py::object graph;
+  bool by_cuda;
   const Mesh& mesh() const { return py::cast<const SaddleVertexGraph&>(graph).mesh(); }
 };
 
@@ -119,15 +121,18 @@ SurfacePoints corners(const Cells& cells, const py::object& cell) {
 }
 
 py::object find_cells(const py::object& graph, const py::object& sites, bool exact, const py::object& threads,
-                      const py::object& job) {
+                      const std::string& device, const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   const SurfacePoints points = as_surface_points(sites, g.mesh(), "sites");
-  const GeodesicVoronoiOptions options{.threads = as_integer(threads, "threads")};
+  GeodesicVoronoiOptions options{.threads = as_integer(threads, "threads")};
   Job* const token = as_job(job);
-  const auto find = [&] {
-    return exact ? exact_voronoi(g.mesh(), points, token) : geodesic_voronoi(g, points, options, token);
-  };
-  return make_cells(without_gil(find), graph);
+  GeodesicVoronoi cells = run_on(device, !exact && is_search_worth_a_device(g), [&](const std::vector<int>& devices) {
+    if (!devices.empty() && exact) throw InputError("exact: runs on the processor only; wanted device='cpu'");
+    options.cuda_device = first_device(devices);
+    return without_gil(
+        [&] { return exact ? exact_voronoi(g.mesh(), points, token) : geodesic_voronoi(g, points, options, token); });
+  });
+  return make_cells(std::move(cells), graph, options.cuda_device >= 0);
 }
 
 py::list dual_paths(const Cells& cells, const py::object& threads, const py::object& job) {
@@ -250,6 +255,10 @@ exact : bool
     one core.
 threads : int
     0: all cores. The result does not depend on it.
+device : str
+    "cpu"; "cuda", or "cuda:1" for the second CUDA device, which finds the vertices' nearest sites, all else being the
+    processor's part, and keeps the graph's arcs from then on; "auto": that where a CUDA device built the graph or keeps
+    it. Not with `exact`. The result does not depend on it.
 job : Job, optional
 
 Returns
@@ -259,7 +268,9 @@ GeodesicVoronoi
 Raises
 ------
 InputError
-    No sites, too many, a site off the mesh, a connected part of the mesh without a site.
+    No sites, too many, a site off the mesh, a connected part of the mesh without a site; exact cells by a CUDA device.
+DeviceError
+    device="cuda" where there is no usable CUDA device or module, too little of its memory is free, or it fails.
 Cancelled
     The job was cancelled.
 
@@ -270,8 +281,8 @@ triangulated surfaces, IEEE TPAMI 33(8), 2011.)";
 
 }  // namespace
 
-py::object make_cells(GeodesicVoronoi&& diagram, const py::object& graph) {
-  return py::cast(Cells{std::move(diagram), graph});
+py::object make_cells(GeodesicVoronoi&& diagram, const py::object& graph, bool by_cuda) {
+  return py::cast(Cells{std::move(diagram), graph, by_cuda});
 }
 
 void bind_tessellation(py::module_& m) {
@@ -320,6 +331,9 @@ void bind_tessellation(py::module_& m) {
           "sites", [](const Cells& c) { return c.diagram.sites; }, "SurfacePoints (n).")
       .def_property_readonly("vertex_cell", &array_of<&GeodesicVoronoi::vertex_cell>,
                              "(V,) int32: nearest site; ties: the smaller.")
+      .def_property_readonly(
+          "device", [](const Cells& c) { return c.by_cuda ? "cuda" : "cpu"; },
+          "Which device found the vertices' nearest sites: \"cpu\" or \"cuda\".")
       .def_property_readonly("vertex_distance", &array_of<&GeodesicVoronoi::vertex_distance>,
                              "(V,) float64: distance to it, mesh units.")
       .def_property_readonly("areas", &array_of<&GeodesicVoronoi::areas>, "(n,) float64: they sum to the mesh's area.")
@@ -374,7 +388,7 @@ void bind_tessellation(py::module_& m) {
   m.def("geodesic_centre", &centre_of_points, py::arg("graph"), py::arg("points"), py::arg("weights") = py::none(),
         py::kw_only(), py::arg("job") = py::none(), k_centre_doc);
   m.def("geodesic_voronoi", &find_cells, py::arg("graph"), py::arg("sites"), py::kw_only(), py::arg("exact") = false,
-        py::arg("threads") = 0, py::arg("job") = py::none(), k_voronoi_doc);
+        py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(), k_voronoi_doc);
 }
 
 }  // namespace saddleback::bindings

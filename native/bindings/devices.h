@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "saddleback/cuda_twins.h"
+#include "saddleback/saddle_vertex_graph.h"
 
 #include "convert.h"
 
@@ -14,6 +15,17 @@ namespace saddleback::bindings {
 /// "cuda:0,1" these two and "cuda:all" all of them, "auto" the first where there is one and `is_worth_it`.
 /// \throw DeviceError with the reason when CUDA is asked for and cannot be used; InputError for any other word.
 std::vector<int> cuda_devices_of(const std::string& device, bool is_worth_it);
+
+/// Vertices of a mesh below which what a device gains is lost on the way there.
+inline constexpr Index k_vertices_worth_a_device = 20'000;
+
+/// Whether a search in the graph is worth it with device="auto": where a CUDA device built the graph or keeps it.
+inline bool is_search_worth_a_device(const SaddleVertexGraph& graph) {
+  return (graph.built_by_cuda() || graph.is_on_device()) && graph.mesh().vertex_count() >= k_vertices_worth_a_device;
+}
+
+/// Number of the device that searches, of those chosen; -1: the processor.
+inline int first_device(const std::vector<int>& devices) { return devices.empty() ? -1 : devices.front(); }
 
 /// Seconds of a device's part by its own clock, and how often it needed help.
 py::dict as_dict(const DeviceTimes& times);

@@ -69,6 +69,20 @@ def test_queries_without_a_device_run_on_the_processor_unless_one_is_asked_for(
     assert graph.query_times is None
 
 
+def test_cells_without_a_device_are_the_processors_unless_one_is_asked_for(
+    mesh: sb.Mesh, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    use_module(monkeypatch, None)
+    graph = sb.SaddleVertexGraph(mesh)
+    for find in (sb.geodesic_voronoi, sb.centroidal_voronoi):
+        with pytest.raises(sb.DeviceError):
+            find(graph, [0, 1], device="cuda")
+        with pytest.raises(sb.InputError, match="device: wanted 'auto'"):
+            find(graph, [0, 1], device="gpu")
+    assert sb.geodesic_voronoi(graph, [0, 1]).device == "cpu"
+    assert sb.centroidal_voronoi(graph, [0, 1]).cells.device == "cpu"
+
+
 def test_what_stays_on_a_device_needs_one(monkeypatch: pytest.MonkeyPatch) -> None:
     use_module(monkeypatch, None)
     sites = np.random.default_rng(0).random((10, 2))

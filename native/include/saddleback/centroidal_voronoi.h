@@ -43,6 +43,7 @@ struct CentroidalVoronoiOptions {
   bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
   RelaxationWatch* watch = nullptr;    ///< is shown the start and every iteration of the wanted number of sites
   int threads = 0;                     ///< 0: all cores; the result does not depend on it
+  int cuda_device = -1;                ///< as in GeodesicVoronoiOptions, in every iteration
 };
 
 struct CentroidalVoronoi {
@@ -73,7 +74,7 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 /// that coincides with another, and so has no cell, is put where the most energy is. Where it all ends depends on where
 /// it began: annealing (see the options; Kirkpatrick, Gelatt, Vecchi: Optimization by simulated annealing, 1983) and
 /// several starts end with less. \throw InputError for a density of wrong length, with a negative, infinite or
-/// not-a-number value, or zero everywhere; for a fixed site out of range; for what geodesic_voronoi refuses; Cancelled
+/// not-a-number value, or zero everywhere; for a fixed site out of range; for what geodesic_voronoi refuses; DeviceError; Cancelled
 /// unless the best is to be returned. Per iteration O(sites k log k + arcs).
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);

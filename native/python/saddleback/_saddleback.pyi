@@ -366,6 +366,8 @@ class GeodesicVoronoi:
     @property
     def vertex_cell(self) -> _Indices: ...
     @property
+    def device(self) -> str: ...
+    @property
     def vertex_distance(self) -> _Floats: ...
     @property
     def areas(self) -> _Floats: ...
@@ -497,6 +499,7 @@ def geodesic_voronoi(
     *,
     exact: bool = False,
     threads: SupportsIndex = 0,
+    device: str = "auto",
     job: Job | None = None,
 ) -> GeodesicVoronoi: ...
 
@@ -559,6 +562,7 @@ def centroidal_voronoi(
     return_when_cancelled: bool = False,
     watch: RelaxationWatch | None = None,
     threads: SupportsIndex = 0,
+    device: str = "auto",
     job: Job | None = None,
 ) -> CentroidalVoronoi: ...
 

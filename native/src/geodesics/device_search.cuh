@@ -309,14 +309,14 @@ __global__ void clear_fields(SearchFields fields, std::size_t count) {
   }
 }
 
-/// In the order of the vertices, and infinity for what nothing reached.
+/// In the order of the vertices, of the nodes where those of the vertices are null; infinity for what nothing reached.
 __global__ void write_fields(SearchFields fields, const std::int32_t* nodes, std::int32_t node_count, double* distances,
                              std::int32_t* sources) {
   const auto bound = static_cast<DistanceBits>(__double_as_longlong(fields.bound));
   const std::size_t row = static_cast<std::size_t>(blockIdx.y) * node_count;
   for (std::int32_t vertex = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); vertex < node_count;
        vertex += static_cast<std::int32_t>(gridDim.x * blockDim.x)) {
-    const std::int32_t node = nodes[vertex];
+    const std::int32_t node = nodes ? nodes[vertex] : vertex;
     const DistanceBits distance = fields.distances[row + node];
     const bool is_reached = distance != bound;
     distances[row + vertex] = __longlong_as_double(is_reached ? static_cast<long long>(distance) : 0x7ff0000000000000);

@@ -31,8 +31,9 @@ struct SearchTwinRequest {
   const double* seed_distances = nullptr;      ///< below `bound`
   double bound = 0;                            ///< the first number beyond the limit
   double step = 0;                             ///< by which the front advances; the result does not depend on it
-  double* distances = nullptr;                 ///< (field_count, node_count), in the order of the vertices
+  double* distances = nullptr;                 ///< (field_count, node_count)
   std::int32_t* sources = nullptr;             ///< the same, or null
+  bool by_node = false;                        ///< they are in the order of the nodes, else in that of the vertices
 };
 
 /// What the twin asks of its caller. It does not throw.

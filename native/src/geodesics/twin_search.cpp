@@ -22,16 +22,55 @@ struct FlatSeeds {
 
   FlatSeeds(const SaddleVertexGraph& graph, std::span<const std::vector<Seed>> fields, double bound) {
     for (const std::vector<Seed>& seeds : fields) {
-      for (const Seed& seed : seeds) {
-        if (seed.distance >= bound) continue;
-        nodes.push_back(graph.node_of(seed.vertex));
-        sources.push_back(seed.source);
-        distances.push_back(seed.distance);
-      }
+      for (const Seed& seed : seeds)
+        if (seed.distance < bound) add({graph.node_of(seed.vertex), seed.source, seed.distance});
       first.push_back(static_cast<std::int64_t>(nodes.size()));
     }
   }
+  /// Of one field.
+  explicit FlatSeeds(std::span<const NodeSeed> seeds) {
+    for (const NodeSeed& seed : seeds) add(seed);
+    first.push_back(static_cast<std::int64_t>(nodes.size()));
+  }
+
+ private:
+  void add(const NodeSeed& seed) {
+    nodes.push_back(seed.node);
+    sources.push_back(seed.source);
+    distances.push_back(seed.distance);
+  }
 };
+
+/// The first number beyond a limit.
+double bound_of(double limit) { return std::nextafter(limit, std::numeric_limits<double>::infinity()); }
+
+/// `to` tells where to write; the rest of a request is filled in here.
+void search(const SaddleVertexGraph& graph, int device, const FlatSeeds& seeds, double bound, SearchTwinRequest to,
+            const JobStage& stage) {
+  DeviceGraphs& graphs = graph.query_cache().device_graphs;
+  DeviceTimes times;
+  const DeviceGraphs::Kept kept = graphs.on(device, graph, times);
+  to.most_bytes = cuda_memory_limit();
+  to.field_count = static_cast<std::int32_t>(seeds.first.size() - 1);
+  to.first_seed = seeds.first.data();
+  to.seed_nodes = seeds.nodes.data();
+  to.seed_sources = to.sources ? seeds.sources.data() : nullptr;
+  to.seed_distances = seeds.distances.data();
+  to.bound = bound;
+  to.step = kept.step;
+  struct Caller {
+    const JobStage& stage;
+    TwinGuard guard;
+  } caller{stage, {}};
+  const SearchTwinCaller calls{&caller, [](void* self, double fraction) {
+                                 Caller& asked = *static_cast<Caller*>(self);
+                                 return asked.guard.run([&] { asked.stage.update(fraction); });
+                               }};
+  TwinReason reason;
+  caller.guard.check(loaded_twins().search(*kept.twin, to, calls, times, reason), reason);
+  graphs.tell(times);
+  stage.update(1);
+}
 
 }  // namespace
 
@@ -73,33 +112,17 @@ bool DeviceGraphs::any() const {
 
 void twin_search(const SaddleVertexGraph& graph, std::span<const std::vector<Seed>> seeds, const QueryOptions& options,
                  const FieldsTo& to, const JobStage& stage) {
-  DeviceGraphs& graphs = graph.query_cache().device_graphs;
-  DeviceTimes times;
-  const DeviceGraphs::Kept kept = graphs.on(options.cuda_device, graph, times);
-  const double bound = std::nextafter(options.limit, std::numeric_limits<double>::infinity());
-  const FlatSeeds flat(graph, seeds, bound);
-  SearchTwinRequest request{.most_bytes = cuda_memory_limit(),
-                            .field_count = static_cast<std::int32_t>(seeds.size()),
-                            .first_seed = flat.first.data(),
-                            .seed_nodes = flat.nodes.data(),
-                            .seed_sources = to.sources ? flat.sources.data() : nullptr,
-                            .seed_distances = flat.distances.data(),
-                            .bound = bound,
-                            .step = kept.step,
-                            .distances = to.distances,
-                            .sources = to.sources};
-  struct Caller {
-    const JobStage& stage;
-    TwinGuard guard;
-  } caller{stage, {}};
-  const SearchTwinCaller calls{&caller, [](void* self, double fraction) {
-                                 Caller& asked = *static_cast<Caller*>(self);
-                                 return asked.guard.run([&] { asked.stage.update(fraction); });
-                               }};
-  TwinReason reason;
-  caller.guard.check(loaded_twins().search(*kept.twin, request, calls, times, reason), reason);
-  graphs.tell(times);
-  stage.update(1);
+  const double bound = bound_of(options.limit);
+  search(graph, options.cuda_device, FlatSeeds(graph, seeds, bound), bound,
+         {.distances = to.distances, .sources = to.sources}, stage);
+}
+
+void twin_nearest_sources(const SaddleVertexGraph& graph, int device, std::span<const NodeSeed> seeds,
+                          const JobStage& stage, std::vector<double>& distances, std::vector<Index>& sources) {
+  distances.resize(graph.mesh().vertex_count());
+  sources.resize(distances.size());
+  search(graph, device, FlatSeeds(seeds), bound_of(QueryOptions().limit),
+         {.distances = distances.data(), .sources = sources.data(), .by_node = true}, stage);
 }
 
 }  // namespace saddleback

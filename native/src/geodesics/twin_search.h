@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "saddleback/saddle_vertex_graph.h"
 
@@ -39,6 +40,11 @@ struct FieldsTo {
   double* distances;
   Index* sources;  ///< or null
 };
+
+/// Least distance and, among equals, least source of every node: what nearest_sources finds. \throw DeviceError,
+/// Cancelled.
+void twin_nearest_sources(const SaddleVertexGraph& graph, int device, std::span<const NodeSeed> seeds,
+                          const JobStage& stage, std::vector<double>& distances, std::vector<Index>& sources);
 
 /// A field for each list of seeds: the same bits as GraphSearch. \throw DeviceError, Cancelled.
 void twin_search(const SaddleVertexGraph& graph, std::span<const std::vector<Seed>> seeds, const QueryOptions& options,

@@ -48,16 +48,20 @@ void CellCache::put(std::unique_ptr<Content> content) {
   content_.swap(content);
 }
 
-KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads)
+KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads,
+                       int cuda_device)
     : graph_(graph),
       density_(density.begin(), density.end()),
       threads_(thread_count(threads)),
+      cuda_device_(cuda_device),
       rings_(graph, threads),
       integrals_(graph, rings_, density_, threads),
-      claims_(graph, rings_, threads) {}
+      claims_(graph, rings_, threads, cuda_device) {}
 
-bool KnownCells::fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads) const {
-  return &graph == &graph_ && thread_count(threads) == threads_ && std::ranges::equal(density, density_);
+bool KnownCells::fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads,
+                      int cuda_device) const {
+  return &graph == &graph_ && thread_count(threads) == threads_ && cuda_device == cuda_device_ &&
+         std::ranges::equal(density, density_);
 }
 
 void KnownCells::match(const SurfacePoints& sites) {
@@ -88,12 +92,12 @@ void KnownCells::look_farther(const JobStage& stage) {
 }
 
 BorrowedCells::BorrowedCells(CellCache* cache, const SaddleVertexGraph& graph, std::span<const double> density,
-                             int threads)
+                             int threads, int cuda_device)
     : cache_(cache) {
-  if (auto content = cache ? cache->take() : nullptr; content && content->cells->fits(graph, density, threads))
+  if (auto content = cache ? cache->take() : nullptr; content && content->cells->fits(graph, density, threads, cuda_device))
     cells_ = std::move(content->cells);
   else
-    cells_ = std::make_unique<KnownCells>(graph, density, threads);
+    cells_ = std::make_unique<KnownCells>(graph, density, threads, cuda_device);
 }
 
 BorrowedCells::~BorrowedCells() {

@@ -15,17 +15,17 @@ namespace saddleback {
 /// sites move.
 class KnownCells {
  public:
-  /// The graph must outlive it.
-  KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads);
+  /// The graph must outlive it. `cuda_device` as for SiteMaps.
+  KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads, int cuda_device);
 
-  bool fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads) const;
+  bool fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads, int cuda_device) const;
   const CellClaims& claims() const { return claims_; }
   /// False before the first `find` and after one that was cancelled.
   bool is_whole() const { return is_whole_; }
   /// Gives sites that are where some were before those one's numbers. Sites that are not in the same order as before
   /// count as moved.
   void match(const SurfacePoints& sites);
-  /// \throw Cancelled, and then all cells are found anew the next time.
+  /// \throw Cancelled, DeviceError, and then all cells are found anew the next time.
   const std::vector<CellMoments>& find(const SurfacePoints& sites, const JobStage& stage);
   /// As CellClaims::look_farther.
   void look_farther(const JobStage& stage);
@@ -33,7 +33,7 @@ class KnownCells {
  private:
   const SaddleVertexGraph& graph_;
   const std::vector<double> density_;
-  const int threads_;
+  const int threads_, cuda_device_;
   const VertexRings rings_;
   CellIntegrals integrals_;
   CellClaims claims_;
@@ -49,7 +49,8 @@ struct CellCache::Content {
 class BorrowedCells {
  public:
   /// `cache` may be null. Both must outlive it.
-  BorrowedCells(CellCache* cache, const SaddleVertexGraph& graph, std::span<const double> density, int threads);
+  BorrowedCells(CellCache* cache, const SaddleVertexGraph& graph, std::span<const double> density, int threads,
+                int cuda_device);
   ~BorrowedCells();
   BorrowedCells(const BorrowedCells&) = delete;
   BorrowedCells& operator=(const BorrowedCells&) = delete;

@@ -94,8 +94,8 @@ struct CellClaims::Laid {
   std::unordered_map<std::uint64_t, SiteVector> vectors;
 };
 
-CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads)
-    : graph_(graph), rings_(rings), threads_(threads), maps_(graph, rings) {
+CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads, int cuda_device)
+    : graph_(graph), rings_(rings), threads_(threads), maps_(graph, rings, cuda_device) {
   for (int thread = 0; thread < thread_count(threads); ++thread) workers_.emplace_back(maps_);
 }
 

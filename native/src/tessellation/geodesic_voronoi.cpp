@@ -181,7 +181,7 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells");
   const VertexRings rings(graph, options.threads);
-  CellClaims cells(graph, rings, options.threads);
+  CellClaims cells(graph, rings, options.threads, options.cuda_device);
   cells.find(sites, stage.part(0.05, 0.7));
   const ClaimsOfCells claims(cells);
   return make_diagram(CellComplex(claims, options.threads, stage.part(0.7, 0.9)), sites, stage);

@@ -10,7 +10,7 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
                        const CentroidalVoronoiOptions& options, const JobStage& stage)
     : graph_(graph),
       options_(options),
-      cells_(options.cache, graph, options.density, options.threads),
+      cells_(options.cache, graph, options.density, options.threads, options.cuda_device),
       is_fixed_(sites.size(), 0),
       held_(graph.mesh(), options.curves, options.held, sites.size()) {
   for (const Index site : options.fixed) is_fixed_[site] = 1;

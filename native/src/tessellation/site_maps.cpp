@@ -12,6 +12,7 @@
 
 #include "geodesics/parted_search.h"
 #include "geodesics/planar.h"
+#include "geodesics/twin_search.h"
 #include "support/parallel.h"
 #include "tessellation/relabelling.h"
 #include "tessellation/seen_between.h"
@@ -60,10 +61,11 @@ double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
 
 }  // namespace
 
-SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings)
+SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, int cuda_device)
     : graph_(graph),
       mesh_(graph.mesh()),
       rings_(rings),
+      cuda_device_(cuda_device),
       slack_(std::max(2 * graph.accuracy(), k_least_slack)),
       places_(graph.mesh().vertex_count()) {}
 
@@ -108,7 +110,13 @@ void SiteMaps::label_all(int threads, const JobStage& stage) {
       for (const SeenNode& seen : fan.seen) add(seen.node, site, seen.length);
     }
   };
-  nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
+  if (cuda_device_ >= 0) {
+    std::vector<NodeSeed> seeds;
+    seeds_of(0, mesh_.vertex_count(), seeds);
+    twin_nearest_sources(graph_, cuda_device_, seeds, stage, distance_, label_);
+  } else {
+    nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
+  }
   group_nodes();
 }
 

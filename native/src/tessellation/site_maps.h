@@ -40,8 +40,9 @@ class SiteMaps {
   static constexpr Index k_unplaced = -1, k_straight = -2, k_after_another = -3, k_centre = -4;
 
  public:
-  /// Nothing is known before label_nodes. Both must outlive the maps.
-  SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings);
+  /// Nothing is known before label_nodes. Both must outlive the maps. A CUDA device, unless it is below 0, finds the
+  /// labels where all are made anew.
+  SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, int cuda_device);
 
   /// Begins with new sites. `reaches`: for each site how far it is asked for arcs of its own, which are most of the
   /// work where cells are small, or somewhat farther; empty: without end. What lies beyond is placed as what is hidden
@@ -49,8 +50,8 @@ class SiteMaps {
   ///
   /// `others`: sites that are not as they were the last time, since when all cells were placed. The cells whose site
   /// and nodes are as they were stay so, unless most are not; without a value all are made anew. Labels are the same in
-  /// either case. \throw Cancelled, and then holds nothing to keep. O(sites k log k + arcs), of the cells that are made
-  /// anew.
+  /// either case. \throw Cancelled, DeviceError, and then holds nothing to keep. O(sites k log k + arcs), of the cells that
+  /// are made anew.
   void label_nodes(const SurfacePoints& sites, std::span<const double> reaches,
                    const std::optional<std::vector<Index>>& others, int threads, const JobStage& stage);
   /// Whether the cell is as it was before the last call of label_nodes; else it must be placed.
@@ -173,6 +174,7 @@ class SiteMaps {
   const SaddleVertexGraph& graph_;
   const Mesh& mesh_;
   const VertexRings& rings_;
+  const int cuda_device_;
   double slack_;  ///< how far below the graph's a distance may be, relative
   SurfacePoints sites_;
   std::vector<Index> order_;
