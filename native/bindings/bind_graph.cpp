@@ -8,7 +8,6 @@
 namespace saddleback::bindings {
 namespace {
 
-
 std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k,
                                               const py::object& accuracy, bool exact, const py::object& threads,
                                               const std::string& device, const std::string& instructions,
@@ -30,10 +29,11 @@ std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, con
     }
   }
   Job* const token = as_job(job);
-  return run_on(device, !exact && mesh.vertex_count() >= k_vertices_worth_a_device, [&](const std::vector<int>& devices) {
-    options.cuda_devices = devices;
-    return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });
-  });
+  return run_on(device, !exact && mesh.vertex_count() >= k_vertices_worth_a_device,
+                [&](const std::vector<int>& devices) {
+                  options.cuda_devices = devices;
+                  return without_gil([&] { return std::make_unique<SaddleVertexGraph>(mesh, options, token); });
+                });
 }
 
 void save(const SaddleVertexGraph& graph, const py::object& path, const py::object& job) {

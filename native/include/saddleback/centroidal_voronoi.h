@@ -74,8 +74,8 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 /// that coincides with another, and so has no cell, is put where the most energy is. Where it all ends depends on where
 /// it began: annealing (see the options; Kirkpatrick, Gelatt, Vecchi: Optimization by simulated annealing, 1983) and
 /// several starts end with less. \throw InputError for a density of wrong length, with a negative, infinite or
-/// not-a-number value, or zero everywhere; for a fixed site out of range; for what geodesic_voronoi refuses; DeviceError; Cancelled
-/// unless the best is to be returned. Per iteration O(sites k log k + arcs).
+/// not-a-number value, or zero everywhere; for a fixed site out of range; for what geodesic_voronoi refuses;
+/// DeviceError; Cancelled unless the best is to be returned. Per iteration O(sites k log k + arcs).
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);
 

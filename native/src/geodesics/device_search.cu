@@ -209,7 +209,8 @@ class Searcher {
     constexpr int k_threads = 256;
     const auto blocks = static_cast<unsigned>((graph_.node_count + k_threads - 1) / k_threads);
     write_fields<<<dim3(blocks, static_cast<unsigned>(fields.count)), k_threads, 0, stream_>>>(
-        fields, request_.by_node ? nullptr : graph_.nodes.data(), graph_.node_count, distances, request_.sources ? sources : nullptr);
+        fields, request_.by_node ? nullptr : graph_.nodes.data(), graph_.node_count, distances,
+        request_.sources ? sources : nullptr);
     check_cuda(cudaGetLastError(), "writing fields");
   }
 

@@ -1,5 +1,6 @@
 #include "geodesics/twin_search.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,45 +15,18 @@ namespace {
 // Of the median node's shortest arc.
 constexpr double k_front_step = 8, k_median = 0.5;
 
-/// Seeds of all fields in flat arrays.
-struct FlatSeeds {
-  std::vector<std::int64_t> first{0};
-  std::vector<std::int32_t> nodes, sources;
-  std::vector<double> distances;
-
-  FlatSeeds(const SaddleVertexGraph& graph, std::span<const std::vector<Seed>> fields, double bound) {
-    for (const std::vector<Seed>& seeds : fields) {
-      for (const Seed& seed : seeds)
-        if (seed.distance < bound) add({graph.node_of(seed.vertex), seed.source, seed.distance});
-      first.push_back(static_cast<std::int64_t>(nodes.size()));
-    }
-  }
-  /// Of one field.
-  explicit FlatSeeds(std::span<const NodeSeed> seeds) {
-    for (const NodeSeed& seed : seeds) add(seed);
-    first.push_back(static_cast<std::int64_t>(nodes.size()));
-  }
-
- private:
-  void add(const NodeSeed& seed) {
-    nodes.push_back(seed.node);
-    sources.push_back(seed.source);
-    distances.push_back(seed.distance);
-  }
-};
-
 /// The first number beyond a limit.
 double bound_of(double limit) { return std::nextafter(limit, std::numeric_limits<double>::infinity()); }
 
-/// `to` tells where to write; the rest of a request is filled in here.
-void search(const SaddleVertexGraph& graph, int device, const FlatSeeds& seeds, double bound, SearchTwinRequest to,
-            const JobStage& stage) {
+/// `to` tells where to write; the rest of a request is filled in here. `first`: of each field's seeds, after a 0.
+void search(const SaddleVertexGraph& graph, int device, const FlatSeeds& seeds, std::span<const std::int64_t> first,
+            double bound, SearchTwinRequest to, const JobStage& stage) {
   DeviceGraphs& graphs = graph.query_cache().device_graphs;
   DeviceTimes times;
   const DeviceGraphs::Kept kept = graphs.on(device, graph, times);
   to.most_bytes = cuda_memory_limit();
-  to.field_count = static_cast<std::int32_t>(seeds.first.size() - 1);
-  to.first_seed = seeds.first.data();
+  to.field_count = static_cast<std::int32_t>(first.size() - 1);
+  to.first_seed = first.data();
   to.seed_nodes = seeds.nodes.data();
   to.seed_sources = to.sources ? seeds.sources.data() : nullptr;
   to.seed_distances = seeds.distances.data();
@@ -110,18 +84,41 @@ bool DeviceGraphs::any() const {
   return kept_.has_value();
 }
 
+void FlatSeeds::resize(std::size_t count) {
+  nodes.resize(count);
+  sources.resize(count);
+  distances.resize(count);
+}
+
+void FlatSeeds::set(std::size_t i, const NodeSeed& seed) {
+  nodes[i] = seed.node;
+  sources[i] = seed.source;
+  distances[i] = seed.distance;
+}
+
 void twin_search(const SaddleVertexGraph& graph, std::span<const std::vector<Seed>> seeds, const QueryOptions& options,
                  const FieldsTo& to, const JobStage& stage) {
   const double bound = bound_of(options.limit);
-  search(graph, options.cuda_device, FlatSeeds(graph, seeds, bound), bound,
-         {.distances = to.distances, .sources = to.sources}, stage);
+  std::vector<std::int64_t> first{0};
+  std::size_t count = 0;
+  for (const std::vector<Seed>& field : seeds) count += field.size();
+  FlatSeeds flat;
+  flat.resize(count);
+  count = 0;
+  for (const std::vector<Seed>& field : seeds) {
+    for (const Seed& seed : field)
+      if (seed.distance < bound) flat.set(count++, {graph.node_of(seed.vertex), seed.source, seed.distance});
+    first.push_back(static_cast<std::int64_t>(count));
+  }
+  search(graph, options.cuda_device, flat, first, bound, {.distances = to.distances, .sources = to.sources}, stage);
 }
 
-void twin_nearest_sources(const SaddleVertexGraph& graph, int device, std::span<const NodeSeed> seeds,
-                          const JobStage& stage, std::vector<double>& distances, std::vector<Index>& sources) {
+void twin_nearest_sources(const SaddleVertexGraph& graph, int device, const FlatSeeds& seeds, const JobStage& stage,
+                          std::vector<double>& distances, std::vector<Index>& sources) {
   distances.resize(graph.mesh().vertex_count());
   sources.resize(distances.size());
-  search(graph, device, FlatSeeds(seeds), bound_of(QueryOptions().limit),
+  const std::array<std::int64_t, 2> all{0, std::ssize(seeds.nodes)};
+  search(graph, device, seeds, all, bound_of(QueryOptions().limit),
          {.distances = distances.data(), .sources = sources.data(), .by_node = true}, stage);
 }
 

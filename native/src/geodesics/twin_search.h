@@ -41,10 +41,19 @@ struct FieldsTo {
   Index* sources;  ///< or null
 };
 
+/// Seeds in flat arrays, as a device takes them.
+struct FlatSeeds {
+  std::vector<std::int32_t> nodes, sources;
+  std::vector<double> distances;
+
+  void resize(std::size_t count);
+  void set(std::size_t i, const NodeSeed& seed);
+};
+
 /// Least distance and, among equals, least source of every node: what nearest_sources finds. \throw DeviceError,
 /// Cancelled.
-void twin_nearest_sources(const SaddleVertexGraph& graph, int device, std::span<const NodeSeed> seeds,
-                          const JobStage& stage, std::vector<double>& distances, std::vector<Index>& sources);
+void twin_nearest_sources(const SaddleVertexGraph& graph, int device, const FlatSeeds& seeds, const JobStage& stage,
+                          std::vector<double>& distances, std::vector<Index>& sources);
 
 /// A field for each list of seeds: the same bits as GraphSearch. \throw DeviceError, Cancelled.
 void twin_search(const SaddleVertexGraph& graph, std::span<const std::vector<Seed>> seeds, const QueryOptions& options,

@@ -48,8 +48,7 @@ void CellCache::put(std::unique_ptr<Content> content) {
   content_.swap(content);
 }
 
-KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads,
-                       int cuda_device)
+KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads, int cuda_device)
     : graph_(graph),
       density_(density.begin(), density.end()),
       threads_(thread_count(threads)),
@@ -94,7 +93,8 @@ void KnownCells::look_farther(const JobStage& stage) {
 BorrowedCells::BorrowedCells(CellCache* cache, const SaddleVertexGraph& graph, std::span<const double> density,
                              int threads, int cuda_device)
     : cache_(cache) {
-  if (auto content = cache ? cache->take() : nullptr; content && content->cells->fits(graph, density, threads, cuda_device))
+  if (auto content = cache ? cache->take() : nullptr;
+      content && content->cells->fits(graph, density, threads, cuda_device))
     cells_ = std::move(content->cells);
   else
     cells_ = std::make_unique<KnownCells>(graph, density, threads, cuda_device);

@@ -205,7 +205,7 @@ CellClaims::Stretch CellClaims::shared_within(Index first_face, Index end_face) 
 
 /// Faces whose corners differ in their labels, each with room for as many claims as there are labels.
 void CellClaims::find_mixed_faces() {
-  constexpr Index k_stretch = 16384;
+  constexpr Index k_stretch = 4096;
   const Index count = rings_.face_count(), stretches = (count + k_stretch - 1) / k_stretch;
   struct Sum {
     Index rows = 0, claims = 0;
@@ -253,7 +253,7 @@ void CellClaims::find_mixed_faces() {
 /// are in reach then.
 void CellClaims::claim_by_cells(const JobStage& stage) {
   for (Worker& worker : workers_) worker.forget();
-  parallel_for(site_count(), threads_, 16, [&](Index i, int thread) {
+  parallel_for(site_count(), threads_, 4, [&](Index i, int thread) {
     stage.check();
     const Index site = maps_.sites_along_curve()[i];
     if (is_kept(site)) return;
@@ -402,52 +402,71 @@ void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid) {
     if (wishes[i].side != k_none) lay_corners(wishes[i].side, laid, claim);
     reach_corners(claim);
   }
+  const auto known = std::ssize(late_faces_);
   for (Index i = 0; i < count; ++i) {  // found from their faces only now, when all are complete
     Index& last = late_index_[wishes[i].face];
     if (last == k_none) late_faces_.push_back(wishes[i].face);
     late_[first + i].before = std::exchange(last, first + i);
   }
+  std::inplace_merge(late_faces_.begin(), late_faces_.begin() + known, late_faces_.end());
+}
+
+void CellClaims::forget_late() {
+  if (late_index_.empty()) late_index_.assign(rings_.face_count(), k_none);
+  for (const Index face : late_faces_) late_index_[face] = k_none;
+  late_faces_.clear();
+  late_.clear();
+  first_fresh_ = 0;
+}
+
+/// The workers', in order, each face and site once.
+std::vector<CellClaims::Wish> CellClaims::all_wishes() {
+  const auto same = [](const Wish& a, const Wish& b) { return a.face == b.face && a.site == b.site; };
+  const auto count = static_cast<Index>(workers_.size());
+  parallel_for(count, threads_, 1, [&](Index i, int) { std::ranges::sort(workers_[i].wishes); });
+  for (Index step = 1; step < count; step *= 2) {
+    parallel_for((count - step + 2 * step - 1) / (2 * step), threads_, 1, [&](Index pair, int) {
+      std::vector<Wish>&a = workers_[2 * step * pair].wishes, &b = workers_[2 * step * pair + step].wishes;
+      const auto middle = std::ssize(a);
+      a.insert(a.end(), b.begin(), b.end());
+      std::ranges::inplace_merge(a, a.begin() + middle);
+      b.clear();
+    });
+  }
+  std::vector<Wish> wishes = std::exchange(workers_.front().wishes, {});
+  const auto rest = std::ranges::unique(wishes, same);
+  wishes.erase(rest.begin(), rest.end());
+  return wishes;
 }
 
 /// Claims beyond the edges of faces with new claims, until there are no new ones.
 void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
-  std::vector<Index> changed(rows_.size());
-  for (std::size_t i = 0; i < rows_.size(); ++i) changed[i] = rows_[i].face;
-  Laid laid;
-  late_index_.assign(rings_.face_count(), k_none);
-  late_.clear();
-  late_faces_.clear();
-  first_fresh_ = 0;
+  forget_late();
   for (Worker& worker : workers_) worker.forget();
-  std::vector<Wish> wishes;
   find_wishes_of_sites(sites);
+  Laid laid;
+  std::vector<Index> changed;  // empty: all shared faces
   while (true) {
-    parallel_for(static_cast<Index>(changed.size()), threads_, 256, [&](Index i, int thread) {
+    const auto count = static_cast<Index>(changed.empty() ? rows_.size() : changed.size());
+    parallel_for(count, threads_, 256, [&](Index i, int thread) {
       stage.check();
-      if (!is_settled(changed[i])) find_wishes(changed[i], workers_[thread]);
+      const Index face = changed.empty() ? rows_[i].face : changed[i];
+      if (!is_settled(face)) find_wishes(face, workers_[thread]);
     });
-    for (Worker& worker : workers_) {
-      wishes.insert(wishes.end(), worker.wishes.begin(), worker.wishes.end());
-      worker.wishes.clear();
-    }
+    const std::vector<Wish> wishes = all_wishes();
     if (wishes.empty()) break;
-    std::sort(wishes.begin(), wishes.end());
-    const auto same = [](const Wish& a, const Wish& b) { return a.face == b.face && a.site == b.site; };
-    wishes.erase(std::unique(wishes.begin(), wishes.end(), same), wishes.end());
     first_fresh_ = static_cast<Index>(late_.size());
     grant(wishes, laid);
     changed.clear();
     for (const Wish& wish : wishes) {
       if (changed.empty() || changed.back() != wish.face) changed.push_back(wish.face);
     }
-    wishes.clear();
   }
   merge_late();
 }
 
 /// Faces with late claims get new rows behind the others.
 void CellClaims::merge_late() {
-  std::ranges::sort(late_faces_);
   Index end = claim_count();
   std::vector<Row> late_rows(late_faces_.size());
   parallel_for(static_cast<Index>(late_rows.size()), threads_, 256, [&](Index i, int) {

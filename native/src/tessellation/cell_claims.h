@@ -149,6 +149,8 @@ class CellClaims {
   void claim_from(Index node, Index site, Worker& worker);
   void find_wishes_of_sites(const SurfacePoints& sites);
   void spread(const SurfacePoints& sites, const JobStage& stage);
+  void forget_late();
+  std::vector<Wish> all_wishes();
   void merge_late();
   void reach_corners(const FaceClaim& claim);
   void mark_border(Index face);
@@ -186,8 +188,8 @@ class CellClaims {
   };
   std::vector<Index> late_index_;  ///< by face: its last one in late_, or k_none
   std::vector<Late> late_;
-  Index first_fresh_ = 0;  ///< of late_, since faces were last looked at; 0: all claims are new
-  std::vector<Index> late_faces_;
+  Index first_fresh_ = 0;          ///< of late_, since faces were last looked at; 0: all claims are new
+  std::vector<Index> late_faces_;  ///< in increasing order
 };
 
 /// The same by the faces and vertices of the mesh. The cells must outlive it.

@@ -12,7 +12,6 @@
 
 #include "geodesics/parted_search.h"
 #include "geodesics/planar.h"
-#include "geodesics/twin_search.h"
 #include "support/parallel.h"
 #include "tessellation/relabelling.h"
 #include "tessellation/seen_between.h"
@@ -111,13 +110,26 @@ void SiteMaps::label_all(int threads, const JobStage& stage) {
     }
   };
   if (cuda_device_ >= 0) {
-    std::vector<NodeSeed> seeds;
-    seeds_of(0, mesh_.vertex_count(), seeds);
-    twin_nearest_sources(graph_, cuda_device_, seeds, stage, distance_, label_);
+    twin_nearest_sources(graph_, cuda_device_, flat_seeds(threads), stage, distance_, label_);
   } else {
     nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
   }
-  group_nodes();
+  group_nodes(threads);
+}
+
+/// All fans', one after the other.
+FlatSeeds SiteMaps::flat_seeds(int threads) const {
+  std::vector<std::size_t> first{0};
+  for (const Fan& fan : fans_) first.push_back(first.back() + fan.seen.size() + (fan.centre != k_none ? 1 : 0));
+  FlatSeeds seeds;
+  seeds.resize(first.back());
+  parallel_for(site_count(), threads, 64, [&](Index site, int) {
+    std::size_t at = first[site];
+    const Fan& fan = fans_[site];
+    for (const SeenNode& seen : fan.seen) seeds.set(at++, {seen.node, site, seen.length});
+    if (fan.centre != k_none) seeds.set(at, {fan.centre, site, 0});
+  });
+  return seeds;
 }
 
 /// What was nearest to sites that have moved, and what is nearer to them now.
@@ -237,13 +249,29 @@ void SiteMaps::make_fan_at_vertex(Fan& fan) {
   }
 }
 
-void SiteMaps::group_nodes() {
-  first_node_.assign(site_count() + 1, 0);
-  for (const Index site : label_) ++first_node_[site + 1];
-  for (Index site = 0; site < site_count(); ++site) first_node_[site + 1] += first_node_[site];
+/// Each thread counts, and later places, its own stretch of the nodes: a label's nodes are in their order.
+void SiteMaps::group_nodes(int threads) {
+  constexpr Index k_least_stretch = 1 << 14;
+  const auto sites = static_cast<std::size_t>(site_count());
+  const Index count = mesh_.vertex_count(), worth_it = count / std::max(k_least_stretch, site_count());
+  const Index stretches = std::clamp(worth_it, 1, thread_count(threads));
+  const auto begin = [&](Index stretch) { return static_cast<Index>(std::int64_t{count} * stretch / stretches); };
+  std::vector<Index> cursors(static_cast<std::size_t>(stretches) * sites, 0);
+  const auto in_stretches = [&](auto&& visit) {
+    parallel_for(stretches, threads, 1, [&](Index stretch, int) {
+      Index* const cursor = &cursors[static_cast<std::size_t>(stretch) * sites];
+      for (Index node = begin(stretch); node < begin(stretch + 1); ++node) visit(node, cursor[label_[node]]);
+    });
+  };
+  in_stretches([](Index, Index& cursor) { ++cursor; });
+  first_node_.assign(sites + 1, 0);
+  for (std::size_t site = 0; site < sites; ++site) {
+    Index next = first_node_[site];
+    for (std::size_t at = site; at < cursors.size(); at += sites) next += std::exchange(cursors[at], next);
+    first_node_[site + 1] = next;
+  }
   nodes_.resize(label_.size());
-  std::vector<Index> cursor(first_node_.begin(), first_node_.end() - 1);
-  for (Index node = 0; node < mesh_.vertex_count(); ++node) nodes_[cursor[label_[node]]++] = node;
+  in_stretches([&](Index node, Index& cursor) { nodes_[cursor++] = node; });
 }
 
 void SiteMaps::order_sites() {

@@ -9,6 +9,7 @@
 
 #include "geodesics/arc_unfolding.h"
 #include "geodesics/direct_fans.h"
+#include "geodesics/twin_search.h"
 #include "tessellation/vertex_rings.h"
 
 namespace saddleback {
@@ -50,8 +51,8 @@ class SiteMaps {
   ///
   /// `others`: sites that are not as they were the last time, since when all cells were placed. The cells whose site
   /// and nodes are as they were stay so, unless most are not; without a value all are made anew. Labels are the same in
-  /// either case. \throw Cancelled, DeviceError, and then holds nothing to keep. O(sites k log k + arcs), of the cells that
-  /// are made anew.
+  /// either case. \throw Cancelled, DeviceError, and then holds nothing to keep. O(sites k log k + arcs), of the cells
+  /// that are made anew.
   void label_nodes(const SurfacePoints& sites, std::span<const double> reaches,
                    const std::optional<std::vector<Index>>& others, int threads, const JobStage& stage);
   /// Whether the cell is as it was before the last call of label_nodes; else it must be placed.
@@ -144,10 +145,11 @@ class SiteMaps {
   };
 
   void label_all(int threads, const JobStage& stage);
+  FlatSeeds flat_seeds(int threads) const;
   void label_again(std::span<const Index> moved, const JobStage& stage);
   void make_fans(std::span<const Index> of, std::span<const double> reaches, int threads, const JobStage& stage);
   void make_fan_at_vertex(Fan& fan);
-  void group_nodes();
+  void group_nodes(int threads);
   void group_again(std::span<const Index> moving);
   void order_sites();
   const SeenNode* seen_in_fan(Index site, Index node) const;
