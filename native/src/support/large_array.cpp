@@ -110,7 +110,7 @@ class KeptPages {
 
  private:
   static std::size_t find_most() {
-    constexpr std::size_t k_share = 16, k_limit = 2048;
+    constexpr std::size_t k_share = 8, k_limit = 2048;
     const auto pages = static_cast<std::size_t>(std::max(0L, sysconf(_SC_PHYS_PAGES)));
     const auto page_size = static_cast<std::size_t>(std::max(0L, sysconf(_SC_PAGESIZE)));
     return std::min(k_limit, pages * page_size / k_share / k_huge);

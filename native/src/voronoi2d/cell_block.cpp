@@ -20,8 +20,7 @@ void CellBlock::gather(const Triangulation& mesh, const Index* leaving, Index be
   for (Index cell = 0; cell < count; cell += k_together) {
     const Index end = std::min(count, cell + k_together);
     if (end - cell == k_together && gather_few<k_together>(mesh, leaving + cell, cell)) continue;
-    for (Index one = cell; one < end; ++one)
-      if (!gather_few<1>(mesh, leaving + one, one)) few_size_[one] = 0;
+    for (Index one = cell; one < end; ++one) gather_few<1>(mesh, leaving + one, one);
   }
   for (Index cell = 0; cell < count; ++cell) {
     starts[cell] = size;
@@ -87,11 +86,14 @@ bool CellBlock::gather_few(const Triangulation& mesh, const Index* leaving, Inde
       walk[i] = std::max(twin, 0);
       is_under_way[i] &= static_cast<std::ptrdiff_t>(twin != leaving[i]);
     }
-    if (ends < 0) return false;  // of the border
+    if (ends < 0) {  // of the border
+      std::fill_n(few_size_.begin() + cell, Together, 0);
+      return false;
+    }
   }
   for (Index i = 0; i < Together; ++i) {
-    if (is_under_way[i] != 0) return false;
-    few_size_[cell + i] = static_cast<Index>(count[i]);
+    few_size_[cell + i] = is_under_way[i] != 0 ? 0 : static_cast<Index>(count[i]);
+    if (is_under_way[i] != 0) continue;
     few_lowest_[cell + i] = static_cast<Index>(least[i] % k_few);
     lowest[cell + i] = flags[i] == 0 ? static_cast<Index>(least[i] / k_few) : k_none;
     if (flags[i] != 0) gather_few_flat(mesh, leaving[i], cell + i);

@@ -34,7 +34,7 @@ class CellBlock {
  private:
   static constexpr Index k_few = 8;       ///< triangles about most sites
   static constexpr Index k_together = 2;  ///< cells
-  /// Some cells in a row; false where one is open or has more triangles than a few.
+  /// Some cells in a row: their numbers of sides, 0 where there are more than a few. False, and all 0, if one is open.
   template <Index Together>
   bool gather_few(const Triangulation& mesh, const Index* leaving, Index cell);
   void gather_few_flat(const Triangulation& mesh, Index first, Index cell);
@@ -45,8 +45,8 @@ class CellBlock {
 
   // Sides of cells with few, `k_few` places for each, before they are turned to begin with the lowest neighbour.
   std::vector<Index> few_half_, few_neighbour_;
-  std::array<Index, k_most> few_size_{}, few_lowest_{};
-  std::vector<Index> any_half_, any_neighbour_;  ///< of a cell with any number
+  std::array<Index, k_most> few_size_{}, few_lowest_{};  ///< by cell; 0: not few
+  std::vector<Index> any_half_, any_neighbour_;          ///< of a cell with any number
   Index any_lowest_ = 0;
 };
 

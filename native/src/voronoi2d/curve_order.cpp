@@ -1,5 +1,6 @@
-// Places along a Hilbert curve of 2^16 x 2^16 squares over the points' box, sorted by radix; points that share a square
-// are put in order by a curve over their own box, and so on, which follows clusters of any size.
+// Places along a Hilbert curve of 2^16 x 2^16 squares over the points' box, sorted by radix, as many digits as part
+// most points, then those that are left side by side; points that share a square are put in order by a curve over their
+// own box, and so on, which follows clusters of any size.
 
 #include "voronoi2d/curve_order.h"
 
@@ -74,10 +75,42 @@ struct Box {
   }
 };
 
-/// Puts points that share a square of the curve in order.
+/// Puts points in order that share a square of the curve, or a larger one.
 class RunSorter {
  public:
   RunSorter(std::span<const Vec2> points, const JobStage& stage) : points_(points), stage_(stage) {}
+
+  /// Items are in order but for the last `open_bits` of their places, and by index where all others are equal.
+  void sort_open(std::span<Placed> items, int open_bits) const {
+    for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
+      const std::uint32_t square = items[begin].place >> open_bits;
+      for (end = begin + 1; end < items.size() && items[end].place >> open_bits == square;) ++end;
+      if (end - begin == 1) continue;
+      stage_.check();
+      const std::span<Placed> run = items.subspan(begin, end - begin);
+      sort_by_place(run);
+      sort_runs(run);
+    }
+  }
+
+ private:
+  /// Stable: items are by index.
+  static void sort_by_place(std::span<Placed> items) {
+    constexpr std::size_t k_few = 16;
+    if (items.size() > k_few) {
+      if (!std::is_sorted(items.begin(), items.end(), is_before)) std::sort(items.begin(), items.end(), is_before);
+      return;
+    }
+    for (std::size_t i = 1; i < items.size(); ++i) {
+      const Placed item = items[i];
+      std::size_t to = i;
+      for (; to > 0 && item.place < items[to - 1].place; --to) items[to] = items[to - 1];
+      items[to] = item;
+    }
+  }
+  static bool is_before(const Placed& a, const Placed& b) {
+    return a.place != b.place ? a.place < b.place : a.index < b.index;
+  }
 
   void sort_runs(std::span<Placed> items) const {
     for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
@@ -88,7 +121,6 @@ class RunSorter {
     }
   }
 
- private:
   /// By a curve over the points' own box; equal points end up side by side, the smallest index first.
   void sort(std::span<Placed> items) const {
     const std::uint32_t outer_place = items[0].place;
@@ -102,9 +134,7 @@ class RunSorter {
       std::sort(items.begin(), items.end(), [&](const Placed& a, const Placed& b) { return less(a.index, b.index); });
       return;
     }
-    std::sort(items.begin(), items.end(), [](const Placed& a, const Placed& b) {
-      return a.place != b.place ? a.place < b.place : a.index < b.index;
-    });
+    std::sort(items.begin(), items.end(), is_before);
     sort_runs(items);
   }
 
@@ -137,8 +167,9 @@ class Sorter {
         items_(points.size()) {}
 
   LargeArray<Placed> sorted() {
-    if (place()) sort_by_place();
-    sort_runs();
+    const int digit = digit_for(items_.size());
+    if (place()) sort_by_place(digit);
+    sort_runs(2 * (k_bits - digit));
     return std::move(items_);
   }
 
@@ -177,27 +208,32 @@ class Sorter {
     return has_places;
   }
 
-  /// By radix, stable, least digit first.
-  void sort_by_place() {
-    constexpr int k_digit = 11;
-    constexpr std::uint32_t k_values = 1u << k_digit;
+  /// Bits of a digit of which two part most of so many points that lie evenly.
+  static int digit_for(std::size_t count) {
+    constexpr std::size_t k_many = std::size_t{1} << 22, k_few = std::size_t{1} << 14;
+    return count >= k_many ? 12 : count >= k_few ? 11 : 8;
+  }
+
+  /// By the two highest digits: by radix, stable, the lower one first.
+  void sort_by_place(int digit_bits) {
+    const std::uint32_t values = 1u << digit_bits;
     LargeArray<Placed> other(items_.size());
-    std::vector<Index> next(static_cast<std::size_t>(shares_) * k_values);  // by share, digit: where its next item goes
-    for (int shift = 0; shift < 2 * k_bits; shift += k_digit) {
-      const auto digit = [shift](const Placed& item) { return (item.place >> shift) & (k_values - 1); };
-      const double begin_share = shift / (2.0 * k_bits), end_share = std::min(1.0, (shift + k_digit) / (2.0 * k_bits));
-      const JobStage pass = stage_.part(0.3 + 0.6 * begin_share, 0.3 + 0.6 * end_share);
+    std::vector<Index> next(static_cast<std::size_t>(shares_) * values);  // by share, digit: where its next item goes
+    for (int pass_number = 0; pass_number < 2; ++pass_number) {
+      const int shift = 2 * k_bits - (2 - pass_number) * digit_bits;
+      const auto digit = [=](const Placed& item) { return (item.place >> shift) & (values - 1); };
+      const JobStage pass = stage_.part(0.3 + 0.3 * pass_number, 0.6 + 0.3 * pass_number);
       std::fill(next.begin(), next.end(), 0);
       for_shares(pass.part(0, 0.3), [&](Index share, std::size_t begin, std::size_t end) {
-        Index* const count = next.data() + static_cast<std::size_t>(share) * k_values;
+        Index* const count = next.data() + static_cast<std::size_t>(share) * values;
         const Placed* const items = items_.data();
         for (std::size_t i = begin; i < end; ++i) ++count[digit(items[i])];
       });
       Index before = 0;
-      for (std::uint32_t value = 0; value < k_values; ++value)
-        for (std::size_t at = value; at < next.size(); at += k_values) before += std::exchange(next[at], before);
+      for (std::uint32_t value = 0; value < values; ++value)
+        for (std::size_t at = value; at < next.size(); at += values) before += std::exchange(next[at], before);
       for_shares(pass.part(0.3, 1), [&](Index share, std::size_t begin, std::size_t end) {
-        Index* const to = next.data() + static_cast<std::size_t>(share) * k_values;
+        Index* const to = next.data() + static_cast<std::size_t>(share) * values;
         const Placed* const items = items_.data();
         Placed* const sorted = other.data();
         for (std::size_t i = begin; i < end; ++i) sorted[to[digit(items[i])]++] = items[i];
@@ -206,19 +242,19 @@ class Sorter {
     }
   }
 
-  void sort_runs() {
+  void sort_runs(int open_bits) {
     const JobStage stage = stage_.part(0.9, 1);
     const std::size_t count = items_.size(), pieces = (count + k_block - 1) / k_block;
     std::vector<std::size_t> begin(pieces + 1, count);  // where no run is under way
     for (std::size_t piece = 0; piece < pieces; ++piece) {
       std::size_t at = std::max(piece * k_block, piece == 0 ? 0 : begin[piece - 1]);
-      while (0 < at && at < count && items_[at].place == items_[at - 1].place) ++at;
+      while (0 < at && at < count && items_[at].place >> open_bits == items_[at - 1].place >> open_bits) ++at;
       begin[piece] = at;
     }
     const RunSorter runs(points_, stage);
     parallel_for(static_cast<Index>(pieces), shares_, 1, [&](Index piece, int) {
       stage.update(piece / static_cast<double>(pieces));
-      runs.sort_runs(std::span(items_).subspan(begin[piece], begin[piece + 1] - begin[piece]));
+      runs.sort_open(std::span(items_).subspan(begin[piece], begin[piece + 1] - begin[piece]), open_bits);
     });
   }
 

@@ -62,7 +62,9 @@ class Numberer {
         threads_(thread_count(threads)),
         result_(result),
         scratch_(threads_),
-        piece_size_(threads_ == 1 ? k_small : k_large) {
+        piece_size_(threads_ == 1 ? k_small : k_large),
+        places_at_once_(sites.count() <= k_few),
+        unscale_(1 / sites.scale) {
     const Index count = sites.count();
     for (Index begin = 0; begin < count; begin += piece_size_)
       pieces_.push_back({begin, std::min(count, begin + piece_size_)});
@@ -76,6 +78,7 @@ class Numberer {
     result_.side_edges.resize(6 * count);
     result_.edge_vertices.resize(3 * count);
     result_.edge_sites.resize(3 * count);
+    if (places_at_once_) result_.vertices.resize(2 * count);
     Counts all;
     if (threads_ == 1) {  // numbers follow without being counted before, and those of lower cells are known
       for (Piece& piece : pieces_) {
@@ -107,8 +110,9 @@ class Numberer {
     Index corners = 0, vertices = 0, edges = 0;
   };
   static constexpr Index k_small = 2048,
-                         k_large = 8192;  ///< cells that stay in a core's cache; that outweigh a thread's start
-  static constexpr Index k_ahead = 2048;  ///< sites: about a tile
+                         k_large = 8192;   ///< cells that stay in a core's cache; that outweigh a thread's start
+  static constexpr Index k_ahead = 2048;   ///< sites: about a tile
+  static constexpr Index k_few = 1 << 15;  ///< sites whose vertices need not wait until others have no use for the room
   /// A worker's memory.
   struct Scratch {
     CellBlock cells;
@@ -257,8 +261,11 @@ class Numberer {
 
   void number_vertices(Piece& piece, Index& vertex, Scratch& scratch) {
     const CellBlock& cells = scratch.cells;
+    const Index first = vertex;
+    bool has_large = false;
     for (Index k = 0; k < scratch.own_corner_count; ++k) {
       const Index i = scratch.own_corners[k], half = cells.halves[i];
+      has_large |= is_large(half);
       if (!is_large(half)) {
         mesh_.corners[half | 3] = vertex++;
       } else if (go_around(half, scratch) == cells.sites[i]) {
@@ -266,6 +273,34 @@ class Numberer {
         const std::size_t size = scratch.around.size();
         piece.large.push_back({vertex, {cells.sites[i], scratch.around[size / 3], scratch.around[2 * size / 3]}});
         ++vertex;
+      }
+    }
+    if (!places_at_once_) return;
+    if (!has_large) return place_row(first, scratch);
+    for (Index k = 0; k < scratch.own_corner_count; ++k) {
+      const Index i = scratch.own_corners[k], half = cells.halves[i];
+      if (!is_large(half))
+        place(mesh_.corners[half | 3], cells.sites[i], cells.neighbours[i], cells.next_neighbours[i]);
+    }
+  }
+
+  /// Vertices in a row, one for each corner that the block's cells give a number to.
+  void place_row(Index first, const Scratch& scratch) {
+    const CellBlock& cells = scratch.cells;
+    const Index *const own = scratch.own_corners.data(), count = scratch.own_corner_count;
+    const SiteColumns columns{sites_.x.data(), sites_.y.data()};
+    Vec2* const to = result_.vertices.data() + first;
+    for (Index k = 0; k < count; k += 2) {
+      const Index i = own[k], j = own[std::min(k + 1, count - 1)];
+      const Index a[3] = {cells.sites[i], cells.neighbours[i], cells.next_neighbours[i]},
+                  b[3] = {cells.sites[j], cells.neighbours[j], cells.next_neighbours[j]};
+      const TwoCentres centres(columns, a, b);
+      if (centres.are_good()) {
+        to[k] = Vec2(centres.x[0], centres.y[0]) * unscale_;
+        if (k + 1 < count) to[k + 1] = Vec2(centres.x[1], centres.y[1]) * unscale_;
+      } else {
+        place(first + k, a[0], a[1], a[2]);
+        if (k + 1 < count) place(first + k + 1, b[0], b[1], b[2]);
       }
     }
   }
@@ -375,33 +410,32 @@ class Numberer {
 
   predicates::Point2 point(Index rank) const { return {sites_.x[rank], sites_.y[rank]}; }
 
+  void place(Index vertex, Index a, Index b, Index c) {
+    result_.vertices[vertex] = circumcentre(point(a), point(b), point(c)) * unscale_;
+  }
+
   void place_vertices(Index count, const JobStage& stage) {
     const bool has_large = std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return !p.large.empty(); });
-    if (has_large) leave_out_flat_triangles();
+    if (has_large && !places_at_once_) leave_out_flat_triangles();
     LargeArray<Index>().swap(mesh_.twins);  // the vertices can have the room
     result_.vertices.resize(count);
-    const double unscale = 1 / sites_.scale;  // of a power of two: exact
-    const auto place = [&](Index vertex, Index a, Index b, Index c) {
-      result_.vertices[vertex] = circumcentre(point(a), point(b), point(c)) * unscale;
-    };
     for_pieces(stage, [&](Index i, int) {
-      place_in(pieces_[i], unscale);
+      if (!places_at_once_) place_in(pieces_[i]);
       for (const LargeVertex& large : pieces_[i].large)
         place(large.vertex, large.sites[0], large.sites[1], large.sites[2]);
     });
   }
 
-  void place_in(const Piece& piece, double unscale) {
+  void place_in(const Piece& piece) {
     const SiteColumns columns{sites_.x.data(), sites_.y.data()};
     Vec2* const vertices = result_.vertices.data();
-    const auto place = [&](const Index* a, const Index* b) {
+    const auto place_two = [&](const Index* a, const Index* b) {
       const TwoCentres centres(columns, a, b);
       if (centres.are_good()) {
-        vertices[a[3]] = Vec2(centres.x[0], centres.y[0]) * unscale;
-        vertices[b[3]] = Vec2(centres.x[1], centres.y[1]) * unscale;
+        vertices[a[3]] = Vec2(centres.x[0], centres.y[0]) * unscale_;
+        vertices[b[3]] = Vec2(centres.x[1], centres.y[1]) * unscale_;
       } else {
-        for (const Index* one : {a, b})
-          vertices[one[3]] = circumcentre(point(one[0]), point(one[1]), point(one[2])) * unscale;
+        for (const Index* one : {a, b}) place(one[3], one[0], one[1], one[2]);
       }
     };
     Index pair[2][4]{};
@@ -417,9 +451,9 @@ class Numberer {
       for (int k = 0; k < 3; ++k) to[k] = corner[around[k]];
       to[3] = corner[3];
       filled = 1 - filled;
-      if (filled == 0) place(pair[0], pair[1]);
+      if (filled == 0) place_two(pair[0], pair[1]);
     }
-    if (filled != 0) place(pair[0], pair[0]);
+    if (filled != 0) place_two(pair[0], pair[0]);
   }
 
   void leave_out_flat_triangles() {
@@ -435,6 +469,8 @@ class Numberer {
   Numbering& result_;
   std::vector<Scratch> scratch_;
   Index piece_size_;
+  bool places_at_once_;  ///< vertices, as soon as they have a number
+  double unscale_;       ///< of a power of two: exact
   std::vector<Piece> pieces_;
 };
 

@@ -56,21 +56,52 @@ void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> 
   for (Place& place : order_) place.radius = std::sqrt(place.radius);
 }
 
-/// All arcs that should have vanished by now.
-void SweepCircle::vanish_until(double radius) {
+/// All arcs that should have vanished by now, but for a few. In rounds: those that are sooner than both neighbours
+/// vanish, then is said anew when the ones beside them do. So none waits for the roots of the one before, nor is a
+/// branch foretold wrongly for each of them. Returns whether there were any.
+bool SweepCircle::vanish_until(double radius) {
   const std::size_t count = state_.arcs_used;
-  if (count > overdue_.size()) overdue_.resize(2 * count);
-  std::size_t found = 0;
-  for (std::size_t arc = 0; arc < count; ++arc) {  // without branches, which could not be predicted
-    overdue_[found] = static_cast<Index>(arc);
-    found += state_.arcs[arc].radius <= radius;
+  if (2 * count > overdue_.size()) {
+    overdue_.resize(4 * count);
+    soonest_.resize(4 * count);
   }
-  for (std::size_t i = 0; i < found; ++i) settle(state_, overdue_[i], radius);
+  Arc* const arcs = state_.arcs;
+  Index *const overdue = overdue_.data(), *const soonest = soonest_.data();
+  std::size_t found = 0, all_removed = 0;
+  for (std::size_t arc = 0; arc < count; ++arc) {  // without branches, which could not be predicted
+    overdue[found] = static_cast<Index>(arc);
+    found += arcs[arc].radius <= radius;
+  }
+  const std::size_t all_found = found;
+  while (found > 0) {
+    std::size_t soonest_count = 0, removed = 0;
+    for (std::size_t i = 0; i < found; ++i) {
+      const Arc& arc = arcs[overdue[i]];
+      soonest[soonest_count] = overdue[i];
+      soonest_count +=
+          (arc.radius <= radius) & (arc.radius <= arcs[arc.previous].radius) & (arc.radius < arcs[arc.next].radius);
+    }
+    for (std::size_t i = 0; i < soonest_count; ++i) {
+      const Arc& arc = arcs[soonest[i]];
+      if (arc.site == k_none) continue;  // found on both sides
+      overdue[removed] = arc.previous;
+      overdue[removed + 1] = arc.next;
+      removed += 2;
+      remove(state_, soonest[i]);
+    }
+    for (std::size_t i = 0; i < removed; i += 2) schedule(state_, overdue[i], overdue[i + 1]);
+    found = removed;
+    all_removed += removed;
+  }
+  if (all_found > 0 && all_removed == 0) {  // a ring of equally soon ones
+    for (std::size_t i = 0; i < all_found; ++i) settle(state_, overdue[i], radius);
+  }
+  return all_found > 0;
 }
 
 void SweepCircle::run(const OrderedSites& sites, Index begin, const JobStage& stage) {
   const Index count = static_cast<Index>(order_.size());
-  constexpr Index k_block = 4096, k_share = 8;  // of the arcs: sites between two turns
+  constexpr Index k_block = 4096, k_share = 16;  // of the arcs: sites between two turns
   Index next_turn = 0;
   for (Index block = 1; block < count; block += k_block) {
     const Index end = std::min(count, block + k_block);
@@ -85,7 +116,7 @@ void SweepCircle::run(const OrderedSites& sites, Index begin, const JobStage& st
     }
     stage.update(static_cast<double>(end) / static_cast<double>(count));
   }
-  vanish_until(k_latest);
+  while (vanish_until(k_latest)) {}
 }
 
 Index SweepCircle::sweep(const OrderedSites& sites, Index begin, Index end, const Vec2& place, Index first,

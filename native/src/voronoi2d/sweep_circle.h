@@ -28,11 +28,11 @@ class SweepCircle {
   };
   void sort_sites(std::span<const double> x, std::span<const double> y, Index first);
   void reserve(Index count);
-  void vanish_until(double radius);
+  bool vanish_until(double radius);
   void run(const OrderedSites& sites, Index begin, const JobStage& stage);
 
   std::vector<Place> order_, unsorted_;
-  std::vector<Index> days_, near_, overdue_;
+  std::vector<Index> days_, near_, overdue_, soonest_;
   std::unique_ptr<Arc[]> arcs_;
   Index capacity_ = 0;
   SweepState state_{};

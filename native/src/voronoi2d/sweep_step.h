@@ -291,8 +291,8 @@ SADDLEBACK_HOST_DEVICE inline void join(SweepState& s, Index edge, Index half) {
   s.twins[half] = edge < 0 ? k_none : edge;
 }
 
-/// Vanishing event: the neighbours meet at a Voronoi vertex. Returns the one before.
-SADDLEBACK_HOST_DEVICE inline Index vanish(SweepState& s, Index arc) {
+/// Takes an arc out of the ring and adds its triangle. When the two beside it vanish is to be said anew.
+SADDLEBACK_HOST_DEVICE inline void remove(SweepState& s, Index arc) {
   Arc& b = s.arcs[arc];
   const Index before = b.previous, after = b.next;
   Arc &a = s.arcs[before], &c = s.arcs[after];
@@ -312,6 +312,12 @@ SADDLEBACK_HOST_DEVICE inline Index vanish(SweepState& s, Index arc) {
   b.next = s.free_arc;
   s.free_arc = arc;
   if (s.latest == arc) s.latest = after;
+}
+
+/// Vanishing event: the neighbours meet at a Voronoi vertex. Returns the one before.
+SADDLEBACK_HOST_DEVICE inline Index vanish(SweepState& s, Index arc) {
+  const Index before = s.arcs[arc].previous, after = s.arcs[arc].next;
+  remove(s, arc);
   schedule(s, before, after);
   return before;
 }

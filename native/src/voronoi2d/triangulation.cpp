@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "support/parallel.h"
 #include "voronoi2d/join_meshes.h"
@@ -19,7 +21,7 @@ namespace {
 struct Square {
   MeshPart part;
   Index first = k_none, second = k_none;  ///< squares
-  Index height = 0;                       ///< above the lowest of its tiles
+  Index start;                            ///< the first square of those that are in it
 };
 
 /// Squares, each after its parts: split until they have few enough sites.
@@ -32,19 +34,18 @@ class SquareTree {
 
  private:
   Index add(Index begin, Index end, int bits) {
-    if (end - begin <= size_ || bits == 0) return add_square({{begin, end, begin, begin, begin, begin, false, {}}});
+    if (end - begin <= size_ || bits == 0) return add_square(begin, end, k_none, k_none);
     const auto in_first_half = [&](std::uint32_t place) { return ((place >> (bits - 1)) & 1) == 0; };
     const auto middle = std::partition_point(places_.begin() + begin, places_.begin() + end, in_first_half);
     const Index half = static_cast<Index>(middle - places_.begin());
     if (half == begin || half == end) return add(begin, end, bits - 1);
     const Index first = add(begin, half, bits - 1), second = add(half, end, bits - 1);
-    Square square{{begin, end, begin, begin, begin, begin, false, {}}, first, second};
-    square.height = 1 + std::max(squares_[first].height, squares_[second].height);
-    return add_square(std::move(square));
+    return add_square(begin, end, first, second);
   }
-  Index add_square(Square&& square) {
-    squares_.push_back(std::move(square));
-    return static_cast<Index>(squares_.size()) - 1;
+  Index add_square(Index begin, Index end, Index first, Index second) {
+    const Index square = static_cast<Index>(squares_.size()), start = first == k_none ? square : squares_[first].start;
+    squares_.push_back({{begin, end, begin, begin, begin, begin, false, {}}, first, second, start});
+    return square;
   }
 
   const LargeArray<std::uint32_t>& places_;
@@ -81,16 +82,22 @@ class TileSweeper {
   }
 
  private:
+  /// The first of the least of some coordinates, and the last of the greatest.
+  static std::pair<Index, Index> ends_of(const LargeArray<double>& values, Index begin, Index end) {
+    double least = values[begin], greatest = least;
+    for (Index i = begin; i < end; ++i) {
+      least = values[i] < least ? values[i] : least;
+      greatest = values[i] > greatest ? values[i] : greatest;
+    }
+    Index first = begin, last = end - 1;
+    while (values[first] != least) ++first;
+    while (values[last] != greatest) --last;
+    return {first, last};
+  }
+
   void find_box(MeshPart& part) const {
-    const Index count = part.end - part.begin;
-    const std::span<const double> x = std::span(sites_.x).subspan(part.begin, count),
-                                  y = std::span(sites_.y).subspan(part.begin, count);
-    const auto [leftmost, rightmost] = std::minmax_element(x.begin(), x.end());
-    const auto [lowest, highest] = std::minmax_element(y.begin(), y.end());
-    part.leftmost = part.begin + static_cast<Index>(leftmost - x.begin());
-    part.rightmost = part.begin + static_cast<Index>(rightmost - x.begin());
-    part.lowest = part.begin + static_cast<Index>(lowest - y.begin());
-    part.highest = part.begin + static_cast<Index>(highest - y.begin());
+    std::tie(part.leftmost, part.rightmost) = ends_of(sites_.x, part.begin, part.end);
+    std::tie(part.lowest, part.highest) = ends_of(sites_.y, part.begin, part.end);
   }
 
   bool is_line(const MeshPart& part) const {
@@ -181,58 +188,84 @@ class TileSweeper {
   std::vector<Index> border_, doubtful_;
 };
 
-/// All tiles, then all pairs, from the lowest up.
+/// All tiles and pairs. Pairs are joined right after their parts, while these are in a core's cache.
 class TileWork {
  public:
   TileWork(const OrderedSites& sites, std::vector<Square>& squares, Triangulation& result, int threads)
-      : squares_(squares), threads_(std::min(thread_count(threads), static_cast<int>(squares.size()))) {
-    const PlanarMesh mesh{sites.x.data(), sites.y.data(), sites.count(), result.corners.data(), result.twins.data(), 0};
+      : squares_(squares),
+        threads_(std::min(thread_count(threads), static_cast<int>(squares.size()))),
+        count_(sites.count()) {
+    const PlanarMesh mesh{sites.x.data(), sites.y.data(), count_, result.corners.data(), result.twins.data(), 0};
     joiners_.reserve(threads_);
     for (int i = 0; i < threads_; ++i) {
       joiners_.emplace_back(mesh, result.leaving.data());
       sweepers_.emplace_back(sites, result, joiners_.back());
     }
-    Index top = 0;
-    for (const Square& square : squares) top = std::max(top, square.height);
-    levels_.resize(top + 1);
-    for (std::size_t i = 0; i < squares.size(); ++i) levels_[squares[i].height].push_back(static_cast<Index>(i));
+    share_out();
   }
 
   void run(const JobStage& stage) {
-    const Index count = squares_.back().part.end;
-    const std::size_t pair_count = squares_.size() - levels_[0].size();
-    std::atomic<Index> done{0}, joined{0};
-    for (std::size_t level = 0; level < levels_.size(); ++level) {
-      parallel_for(static_cast<Index>(levels_[level].size()), threads_, 1, [&](Index i, int thread) {
-        stage.check();
-        Square& square = squares_[levels_[level][i]];
-        if (level > 0) {
-          join(square, thread, stage);
-          stage.update(0.9 + 0.1 * ++joined / static_cast<double>(pair_count));
-          return;
-        }
-        const Index size = square.part.end - square.part.begin;
-        const bool is_long = size > k_long;
-        sweepers_[thread].triangulate(square.part, is_long ? stage.part(0, 0.9) : JobStage());
-        stage.update(0.9 * static_cast<double>(done += size) / count);
+    for (const std::vector<Run>& level : levels_) {
+      parallel_for(static_cast<Index>(level.size()), threads_, 1, [&](Index i, int thread) {
+        for (Index square = level[i].begin; square < level[i].end; ++square) work(squares_[square], thread, stage);
       });
     }
     stage.update(1);
   }
 
  private:
+  /// Squares in a row: each after its parts, those of it that are not done before it.
+  struct Run {
+    Index begin, end;
+  };
   static constexpr Index k_long = 65536;  ///< sites: takes so long that it reports and can be stopped
+  static constexpr Index k_shares = 16;   ///< for each thread
 
-  void join(Square& square, int thread, const JobStage& stage) {
-    MeshPart &part = square.part, &first = squares_[square.first].part, &second = squares_[square.second].part;
-    if (!joiners_[thread].join(first, second, part)) sweepers_[thread].triangulate(part, stage);
+  /// Squares of up to a share of the sites, each with all its parts, are for one thread; then come those about them,
+  /// from the lowest up.
+  void share_out() {
+    const Index share = threads_ == 1 ? count_ : count_ / (k_shares * threads_),
+                size = static_cast<Index>(squares_.size());
+    std::vector<std::size_t> level(size, 0);
+    levels_.resize(1);
+    const auto add = [&](Index square) { levels_[0].push_back({squares_[square].start, square + 1}); };
+    for (Index i = 0; i < size; ++i) {
+      const Square& square = squares_[i];
+      if (square.first == k_none || square.part.end - square.part.begin <= share) continue;
+      for (const Index part : {square.first, square.second})
+        if (level[part] == 0) add(part);
+      level[i] = 1 + std::max(level[square.first], level[square.second]);
+      levels_.resize(std::max(levels_.size(), level[i] + 1));
+      levels_[level[i]].push_back({i, i + 1});
+    }
+    if (level[size - 1] == 0) add(size - 1);
+  }
+
+  void work(Square& square, int thread, const JobStage& stage) {
+    stage.check();
+    const auto tell = [&](double sites, Index pairs) {
+      stage.update(0.9 * sites / count_ + 0.1 * pairs / static_cast<double>(squares_.size()));
+    };
+    if (square.first != k_none) {
+      MeshPart &part = square.part, &first = squares_[square.first].part, &second = squares_[square.second].part;
+      if (!joiners_[thread].join(first, second, part)) sweepers_[thread].triangulate(part, stage);
+      const Index joined = ++joined_;
+      tell(swept_, joined);
+      return;
+    }
+    const Index size = square.part.end - square.part.begin;
+    sweepers_[thread].triangulate(square.part, size > k_long ? stage.part(0, 0.9) : JobStage());
+    const Index swept = swept_ += size;
+    tell(swept, joined_);
   }
 
   std::vector<Square>& squares_;
   int threads_;
+  Index count_;
   std::vector<TileSweeper> sweepers_;
   std::vector<MeshJoiner> joiners_;
-  std::vector<std::vector<Index>> levels_;
+  std::vector<std::vector<Run>> levels_;
+  std::atomic<Index> swept_{0}, joined_{0};
 };
 
 }  // namespace
