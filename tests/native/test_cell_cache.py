@@ -157,6 +157,7 @@ def test_what_was_cancelled_is_found_anew() -> None:
     [
         ({"least_move": -1}, "least_move: wanted 0 or more, got -1"),
         ({"least_move": np.nan}, "least_move: wanted 0 or more, got nan"),
+        ({"least_move": np.inf}, "least_move: wanted a finite number, got inf"),
         ({"cache": {}}, "cache: wanted a CellCache, got a dict"),
     ],
 )

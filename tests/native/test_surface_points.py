@@ -64,6 +64,16 @@ def test_float32_rounding_is_removed() -> None:
     assert (sb.SurfacePoints([0], [[1.0, -1e-9, 0.0]]).barycentric == [[1, 0, 0]]).all()
 
 
+def test_points_that_were_given_out_come_back_to_the_bit() -> None:
+    points = sb.sample(sb.Mesh(*meshes.torus(20, 10)), 1000, seed=1)
+    moved = sb.centroidal_voronoi(
+        sb.SaddleVertexGraph(sb.Mesh(*meshes.torus(20, 10)), k=20), count=100, max_iterations=3
+    ).sites
+    for out in (points, moved):
+        again = sb.SurfacePoints(out.faces, out.barycentric)
+        assert again.barycentric.tobytes() == out.barycentric.tobytes()
+
+
 @pytest.mark.parametrize(
     ("faces", "weights", "sentence"),
     [

@@ -29,9 +29,10 @@ SurfacePoint at_vertex(const Mesh& mesh, Index vertex);
 /// The vertex that the point is exactly at (a barycentric coordinate equal to 1), else k_none.
 Index vertex_at(const Mesh& mesh, const SurfacePoint& point);
 
-/// Points from flat arrays: a face each, three coordinates each; rounding removed as by normalised_barycentric.
-/// \throw InputError when the lengths differ, or naming the first negative face or coordinates that are not finite,
-/// negative or not summing to 1. What only a mesh can tell is left to check_surface_points.
+/// Points from flat arrays: a face each, three coordinates each; rounding removed as by normalised_barycentric, where
+/// it is more than that of the last bits: points that were given out come back as they were. \throw InputError when the
+/// lengths differ, or naming the first negative face or coordinates that are not finite, negative or not summing to 1.
+/// What only a mesh can tell is left to check_surface_points.
 SurfacePoints surface_points(std::span<const Index> faces, std::span<const double> barycentric);
 
 /// \throw InputError naming `argument` and the first offender: face out of range, coordinates not finite, negative or

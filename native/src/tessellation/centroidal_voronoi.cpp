@@ -22,6 +22,8 @@ void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
   if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
   if (options.starts < 1) throw InputError(message("starts: wanted 1 or more, got ", options.starts));
   if (!(options.least_move >= 0)) throw InputError(message("least_move: wanted 0 or more, got ", options.least_move));
+  if (std::isinf(options.least_move))
+    throw InputError("least_move: wanted a finite number, got inf: no site would move");
   if (options.annealing < 0) throw InputError(message("annealing: wanted 0 or more, got ", options.annealing));
   check_density(mesh, options.density);
 }

@@ -106,7 +106,7 @@ void SiteMaps::label_all(int threads, const JobStage& stage) {
     for (Index site = 0; site < site_count(); ++site) {
       const Fan& fan = fans_[site];
       if (fan.centre != k_none) add(fan.centre, site, 0);
-      for (const SeenNode& seen : fan.seen) add(seen.node, site, seen.length);
+      for (const Seen& seen : fan.seen) add(seen.node, site, seen.rounded);
     }
   };
   if (cuda_device_ >= 0) {
@@ -144,7 +144,7 @@ void SiteMaps::label_again(std::span<const Index> moved, const JobStage& stage) 
   for (Index site = 0; site < site_count(); ++site) {
     const Fan& fan = fans_[site];
     if (fan.centre != k_none) search.offer(fan.centre, site, 0);
-    for (const SeenNode& seen : fan.seen) search.offer(seen.node, site, seen.length);
+    for (const Seen& seen : fan.seen) search.offer(seen.node, site, seen.rounded);
   }
   std::vector<std::uint8_t> moves(site_count(), 0);  // its nodes, away or here
   for (const Index site : moved) moves[site] = 1;
@@ -221,13 +221,9 @@ void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reac
   }
   if (reaches.empty()) limits.clear();
   for_each_view(graph_, points, limits, threads, stage, [&](Index i, std::span<const SeenNode> view) {
-    std::vector<SeenNode>& seen = fans_[of[i]].seen;
-    seen.assign(view.begin(), view.end());
-    for (SeenNode& node : seen) {
-      const double length = graph_.arcs().codec().round(node.length);
-      node.place *= length / node.length;
-      node.length = length;
-    }
+    std::vector<Seen>& seen = fans_[of[i]].seen;
+    seen.clear();
+    for (const SeenNode& node : view) seen.push_back({node, graph_.arcs().codec().round(node.length)});
   });
   parallel_for(static_cast<Index>(at_vertices.size()), threads, 16, [&](Index i, int) {
     stage.check();
@@ -243,9 +239,10 @@ void SiteMaps::make_fan_at_vertex(Fan& fan) {
   UnfoldedArc unfolded;
   fan.seen.clear();
   for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
-    unfolder.unfold(graph_.hint(node, arc), unfolded);
-    fan.seen.push_back({arcs.target(arc), k_none, arcs.length(arc),
-                        polar(arcs.length(arc), scale * unfolded.start_angle), Vec2(unfolded.end_angle, 0)});
+    const double rounded = arcs.length(arc);
+    const double length = unfolder.unfold(graph_.hint(node, arc), unfolded) ? unfolded.length : rounded;
+    const Vec2 place = polar(length, scale * unfolded.start_angle);
+    fan.seen.push_back({{arcs.target(arc), k_none, length, place, Vec2(unfolded.end_angle, 0)}, rounded});
   }
 }
 
@@ -293,9 +290,9 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
   const Fan& fan = fans_[site];
   // Straight ones first: each may serve as the end of an edge that others are seen across.
   for (std::size_t i = 0; i < fan.seen.size(); ++i) {
-    const SeenNode& seen = fan.seen[i];
+    const Seen& seen = fan.seen[i];
     scratch.table[seen.node] = {scratch.round, static_cast<Index>(i)};
-    if (label_[seen.node] == site && seen.length <= distance_[seen.node]) places_[seen.node] = place_straight(seen);
+    if (label_[seen.node] == site && seen.rounded <= distance_[seen.node]) places_[seen.node] = place_straight(seen);
   }
   if (fan.centre != k_none && label_[fan.centre] == site) places_[fan.centre] = {.found_by = k_centre};
   for (auto node = first; node != last; ++node) {
@@ -307,9 +304,9 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
   }
 }
 
-const SeenNode* SiteMaps::seen_in_fan(Index site, Index node) const {
+const SiteMaps::Seen* SiteMaps::seen_in_fan(Index site, Index node) const {
   const auto& seen = fans_[site].seen;
-  const auto found = std::ranges::find(seen, node, &SeenNode::node);
+  const auto found = std::ranges::find(seen, node, &Seen::node);
   return found != seen.end() ? &*found : nullptr;
 }
 
@@ -338,8 +335,9 @@ SiteMaps::Place SiteMaps::place_after(Index node, Index previous, Scratch& scrat
   const Place& before = places_[previous];
   const Index vertex = graph_.vertex_of(previous);
   const std::int64_t arc = graph_.arcs().find(previous, node);
-  scratch.unfolder.unfold(graph_.hint(previous, arc), scratch.unfolded);
-  const double length = graph_.arcs().length(arc), out = scratch.unfolded.start_angle;
+  const bool unfolds = scratch.unfolder.unfold(graph_.hint(previous, arc), scratch.unfolded);
+  const double length = unfolds ? scratch.unfolded.length : graph_.arcs().length(arc);
+  const double out = scratch.unfolded.start_angle;
   if (is_anchor(vertex, back, out))
     return {polar(length, out - back), before.distance + length, previous, k_after_another};
   const double heading = std::atan2(before.at.y(), before.at.x()) + turn_at(mesh_, vertex, back, out);
@@ -368,13 +366,14 @@ double SiteMaps::direction_back(Index node, Scratch& scratch) const {
 /// False where the anchor is on the corner's own side of the edge, where the lengths make no triangle, or where the ray
 /// passes an end that is not nearly flat.
 bool SiteMaps::see(const Wedge& wedge, const Place& from, const Place& to, Sight& sight) {
-  if (from.anchor != to.anchor || cross(from.at, to.at) >= 0) return false;
-  const double length = wedge.length, a = from.at.squaredNorm(), b = to.at.squaredNorm();
+  const double length = wedge.length, square = length * length, side = cross(to.at, from.at);
+  // Ends on one ray, as those after one vertex may be, are on one side or the other by rounding alone.
+  if (from.anchor != to.anchor || !(side > 0 && side * side > k_end_on * square * square)) return false;
+  const double a = from.at.squaredNorm(), b = to.at.squaredNorm();
   // The edge runs along the x axis, the corner above, the anchor below.
   const double x = (a - b + length * length) / (2 * length), y = a - x * x;
   // Distances that are wrong by e, relative, move x by 2 e a / length and y by 2 x times that: no more than
   // 2 e a (a + square) / square.
-  const double square = length * length;
   if (!(y > k_end_on * square && y * square > k_end_on_rounded * a * (a + square))) return false;
   sight.anchor = Vec2(x, -std::sqrt(y));
   sight.ray = wedge.apex - sight.anchor;
@@ -477,7 +476,7 @@ bool SiteMaps::find(Index site, Index node, Scratch& scratch, SiteVector& vector
     vector = {};
     return true;
   }
-  const SeenNode* seen = nullptr;
+  const Seen* seen = nullptr;
   if (scratch.site == site) {
     const Scratch::Known known = scratch.table[node];
     if (known.round == scratch.round && known.at < 0) {

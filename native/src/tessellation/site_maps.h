@@ -132,8 +132,12 @@ class SiteMaps {
 
  private:
   using Wedge = VertexRings::Wedge;
+  /// Its place is not rounded: that depends on the scale, which must not show in the cells.
+  struct Seen : SeenNode {
+    double rounded;  ///< length as the graph's arcs are, for labels
+  };
   struct Fan {
-    std::vector<SeenNode> seen;    ///< lengths rounded as the graph's arcs
+    std::vector<Seen> seen;
     Index centre = k_none;         ///< the node that the site is
     std::array<Index, 3> corners;  ///< of its face
   };
@@ -152,7 +156,7 @@ class SiteMaps {
   void group_nodes(int threads);
   void group_again(std::span<const Index> moving);
   void order_sites();
-  const SeenNode* seen_in_fan(Index site, Index node) const;
+  const Seen* seen_in_fan(Index site, Index node) const;
   static Place place_straight(const SeenNode& seen) { return {seen.place, seen.length, k_none, k_straight}; }
   Index node_before(Index node) const;
   Place place_after(Index node, Index previous, Scratch& scratch) const;
