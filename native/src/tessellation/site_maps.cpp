@@ -126,7 +126,7 @@ FlatSeeds SiteMaps::flat_seeds(int threads) const {
   parallel_for(site_count(), threads, 64, [&](Index site, int) {
     std::size_t at = first[site];
     const Fan& fan = fans_[site];
-    for (const SeenNode& seen : fan.seen) seeds.set(at++, {seen.node, site, seen.length});
+    for (const Seen& seen : fan.seen) seeds.set(at++, {seen.node, site, seen.rounded});
     if (fan.centre != k_none) seeds.set(at, {fan.centre, site, 0});
   });
   return seeds;
