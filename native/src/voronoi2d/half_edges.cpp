@@ -211,6 +211,7 @@ class Numberer {
   void count_about(Index piece, std::vector<Counts>& counts, Scratch& scratch) const {
     const Index *const corners = mesh_.corners.data(), *const twins = mesh_.twins.data();
     Counts own;
+    const Index begin = pieces_[piece].begin, end = pieces_[piece].end;
     const auto count = [&](Index Counts::*what, Index site, Index more) {
       const Index of = site / piece_size_;
       if (of == piece)
@@ -218,9 +219,16 @@ class Numberer {
       else
         std::atomic_ref(counts[of].*what).fetch_add(more, std::memory_order_relaxed);
     };
-    for (Index first = 8 * pieces_[piece].begin; first < 8 * pieces_[piece].end; first += 4) {
+    for (Index first = 8 * begin; first < 8 * end; first += 4) {
       if (corners[first] == k_none) continue;
-      const Index flat = twins[first + 3];
+      const Index flat = twins[first + 3], a = corners[first], b = corners[first + 1], c = corners[first + 2];
+      if (flat == 0 && std::min({a, b, c}) >= begin && std::max({a, b, c}) < end &&
+          (twins[first] | twins[first + 1] | twins[first + 2]) >= 0) {  // nearly all
+        own.corners += 3;
+        own.edges += static_cast<Index>(a < b) + static_cast<Index>(b < c) + static_cast<Index>(c < a);
+        ++own.vertices;
+        continue;
+      }
       for (Index k = 0; k < 3; ++k) {
         const Index half = first + k, from = corners[half], to = corners[next_half(half)];
         const Index is_side = ~(flat >> k) & 1, is_border = static_cast<Index>(twins[half] < 0);
@@ -231,7 +239,7 @@ class Numberer {
         count(&Counts::edges, to, static_cast<Index>(to < from));
       }
       if (flat == 0) {
-        count(&Counts::vertices, std::min({corners[first], corners[first + 1], corners[first + 2]}), 1);
+        count(&Counts::vertices, std::min({a, b, c}), 1);
         continue;
       }
       for (Index k = 0; k < 3; ++k) {  // a large vertex counts once: at the first of the half-edges about it
