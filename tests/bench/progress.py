@@ -216,7 +216,7 @@ def map_calls(mesh: sb.Mesh, graph: sb.SaddleVertexGraph, folder: Path) -> Itera
     yield Case("log_map, radius", lambda job, _: graph.log_map(middle, size, job=job))
     yield Case("polar_coordinates", lambda job, _: sb.polar_coordinates(graph, curve, np.inf, job=job))
     yield Case("polar_coordinates, radius", lambda job, _: sb.polar_coordinates(graph, curve, size, job=job))
-    yield Case("trace", lambda job, _: sb.trace(mesh, middle, 0.3, 1e6 * mesh.mean_edge_length, job=job))
+    yield Case("trace", lambda job, _: sb.trace(mesh, middle, 0.3, 2e5 * mesh.mean_edge_length, job=job))
     yield Case("exp_map, 20,000", lambda job, _: sb.exp_map(mesh, middle, uv, threads=1, job=job))
     path = folder / "graph"
     graph.save(path)

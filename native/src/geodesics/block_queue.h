@@ -74,7 +74,8 @@ class BlockQueue {
     current_ = 0;
   }
 
-  double width() const { return width_; }  ///< of a bucket
+  double width() const { return width_; }                 ///< of a bucket
+  std::int64_t blocks_in_use() const { return in_use_; }  ///< those taken and neither kept nor given back, too
   /// No item taken from now on has a lesser key, but for those whose place in the order rounding or the ring changed.
   double reached() const { return static_cast<double>(current_) * width_; }
 

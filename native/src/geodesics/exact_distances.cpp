@@ -156,9 +156,17 @@ std::vector<GeodesicPath> ExactField::paths(const SurfacePoints& targets, Job* j
   const JobStage stage(job, "Following shortest paths");
   std::vector<GeodesicPath> result;
   result.reserve(targets.size());
+  // A path takes as long as it crosses edges, and some more.
+  constexpr double k_edges_more = 20;
+  const auto likely = [&](const SurfacePoint& target) {
+    return k_edges_more + parts_->distances[mesh().triangles()[target.face][0]] / mesh().mean_edge_length();
+  };
+  double all = 0, done = 0;
+  for (const SurfacePoint& target : targets) all += likely(target);
   for (const SurfacePoint& target : targets) {
-    stage.update(static_cast<double>(result.size()) / static_cast<double>(targets.size()));
+    stage.update(done / all);
     result.push_back(parts_->tracer.path(target));
+    done += likely(target);
   }
   stage.update(1);
   return result;

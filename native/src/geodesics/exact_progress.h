@@ -18,28 +18,41 @@ struct ExactWork {
 };
 
 /// How much of a propagation is done: a surface is laid out, windows are foretold, run and maybe sorted. Without a
-/// watched job nothing is foretold.
+/// watched job nothing is foretold, nor where many sources have few vertices each: there these are counted.
 class ExactProgress {
  public:
+  /// So far.
+  struct Done {
+    double distance;
+    std::int64_t windows;
+    Index vertices;                    ///< that are reached
+    std::int64_t blocks, blocks_left;  ///< of windows
+  };
   /// Mesh and sources outlive this object.
   ExactProgress(const ExactWork& work, const JobStage& stage);
 
   JobStage laying() const { return stage_.part(0, laid_); }
   /// Of windows in rings of that width about the sources. \throw Cancelled. O(V).
   void foretell(const ExactSurface& surface, double ring_width);
-  /// Windows up to that distance are done, so many in all. \throw Cancelled.
-  void update(double distance, std::int64_t window_count);
+  /// \throw Cancelled.
+  void update(const Done& done);
   /// All windows are done. \throw Cancelled.
   void end();
   JobStage sorting() const { return stage_.part(run_, 1); }
 
  private:
-  double cost_of_windows(double count) const;
+  double whole_cost(double of_running) const;
+  double share_by_vertices(const Done& done) const;
+  double share_by_rings(const Done& done);
 
   const ExactWork work_;
   const JobStage stage_;
   JobStage running_;
+  bool is_foretold_ = false;
+  double likely_vertices_ = 0;
+  double cost_of_vertex_ = 0, cost_of_bend_ = 0;
   double before_windows_ = 0;                 ///< cost of the surface and the forecast
+  double at_vertices_ = 0, at_windows_ = 0;   ///< likely cost of running
   double laid_ = 0, foretold_ = 0, run_ = 1;  ///< shares of the whole, so far
   WindowForecast forecast_;
   double per_ring_ = 0;

@@ -99,7 +99,7 @@ void ExactPropagation::fetch(Index halfedge) const {
 /// Propagates a chain of blocks.
 void ExactPropagation::drain(WindowBlock* block, ExactProgress& progress) {
   while (block) {
-    progress.update(queue_->reached(), window_count_);
+    progress.update({queue_->reached(), window_count_, reached_count_, block_count_++, queue_->blocks_in_use()});
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->items[i];
       if (i + k_ahead < block->size) fetch(block->items[i + k_ahead].halfedge);
@@ -175,6 +175,7 @@ void ExactPropagation::offer(Index vertex, double distance, const Arrival& arriv
   }
   const bool keeps_owner =
       options_.break_ties && distance >= known * (1 - k_tie) && owns_before(arrivals_[vertex], arrival);
+  reached_count_ += known == k_far;
   distances_[vertex] = distance;
   if (!keeps_owner) arrivals_[vertex] = arrival;
   if (surface_.may_bend(vertex) || arrival.halfedge == Arrival::k_at_source)

@@ -81,7 +81,8 @@ class ExactPropagation {
   std::vector<Occupant> occupants_;
   std::vector<Index> due_;
   std::vector<WindowBlock*> kept_;
-  std::int64_t window_count_ = 0;
+  std::int64_t window_count_ = 0, block_count_ = 0;  ///< done
+  Index reached_count_ = 0;                          ///< vertices
 };
 
 }  // namespace saddleback

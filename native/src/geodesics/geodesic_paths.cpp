@@ -274,9 +274,10 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   check_surface_points(graph.mesh(), targets, "targets");
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
   const JobStage stage(job, "Finding paths");
-  // A path takes as long as some hundred vertices of the field, more where it passes more, a shortened one ten times
-  // that.
-  const double of_path = (options.shorten ? 12 : 0.8) * std::sqrt(graph.mesh().vertex_count());
+  // A path takes as long as some vertices of the field, more where it passes more; shortened it is laid out anew for
+  // each of its bends.
+  const double to_source = std::sqrt(graph.mesh().vertex_count() / static_cast<double>(sources.size()));
+  const double of_path = options.shorten ? 10 + 0.025 * to_source * to_source : 9 + 0.8 * to_source;
   const double of_paths = of_path * static_cast<double>(targets.size());
   const double of_field = graph.mesh().vertex_count() + cost_of_fans(graph, sources);
   const double share = of_field / (of_field + of_paths + cost_of_fans(graph, targets));

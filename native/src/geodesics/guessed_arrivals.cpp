@@ -21,9 +21,9 @@ struct Due {
 
 class Guess {
  public:
-  Guess(const ExactSurface& surface, double limit)
+  Guess(const ExactSurface& surface, const GuessExtent& extent)
       : surface_(surface),
-        limit_(limit),
+        extent_(extent),
         queue_(common_length(surface.mesh())),
         arrivals_(surface.vertex_count(),
                   {std::numeric_limits<double>::infinity(), 0, 0, 0, GuessedArrival::k_at_source, k_none, k_none}) {}
@@ -52,7 +52,7 @@ class Guess {
  private:
   /// \return the next of the chain.
   ItemBlock<Due>* drain(ItemBlock<Due>* block, const JobStage& stage) {
-    stage.update(static_cast<double>(reached_) / static_cast<double>(arrivals_.size()));
+    stage.update(static_cast<double>(reached_) / std::max(1.0, extent_.vertices));
     for (Index i = 0; i < block->size; ++i) {
       const auto [vertex, distance] = block->items[i];
       if (arrivals_[vertex].distance == distance) go_on(vertex);
@@ -64,7 +64,7 @@ class Guess {
 
   void offer(Index vertex, const GuessedArrival& arrival) {
     GuessedArrival& known = arrivals_[vertex];
-    if (arrival.distance >= known.distance * (1 - k_shorter) || arrival.distance > limit_) return;
+    if (arrival.distance >= known.distance * (1 - k_shorter) || arrival.distance > extent_.limit) return;
     reached_ += std::isinf(known.distance);
     known = arrival;
     queue_.push({vertex, arrival.distance}, arrival.distance);
@@ -105,7 +105,7 @@ class Guess {
   }
 
   const ExactSurface& surface_;
-  const double limit_;
+  const GuessExtent extent_;
   BlockQueue<Due> queue_;
   std::vector<GuessedArrival> arrivals_;
   Index reached_ = 0;  ///< vertices
@@ -113,9 +113,9 @@ class Guess {
 
 }  // namespace
 
-std::vector<GuessedArrival> guessed_arrivals(const ExactSurface& surface, const SurfacePoints& sources, double limit,
-                                             const JobStage& stage) {
-  Guess guess(surface, limit);
+std::vector<GuessedArrival> guessed_arrivals(const ExactSurface& surface, const SurfacePoints& sources,
+                                             const GuessExtent& extent, const JobStage& stage) {
+  Guess guess(surface, extent);
   guess.start(sources);
   return guess.run(stage);
 }

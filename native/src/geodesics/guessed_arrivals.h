@@ -20,11 +20,16 @@ struct GuessedArrival {
   Index source;
 };
 
+struct GuessExtent {
+  double limit;     ///< of distances
+  double vertices;  ///< within it, about: what is done is a share of them
+};
+
 /// Distances of the surface's vertices, usually some thousandths too long or too short: from vertex to vertex, the two
 /// nearer corners of a face telling those of the third as if their paths came from one root. (Trettner, Bommes and
 /// Kobbelt, "Geodesic distance computation via virtual source propagation", 2021, in the simple form that keeps the
 /// roots at vertices.) \throw Cancelled. O(V).
-std::vector<GuessedArrival> guessed_arrivals(const ExactSurface& surface, const SurfacePoints& sources, double limit,
-                                             const JobStage& stage);
+std::vector<GuessedArrival> guessed_arrivals(const ExactSurface& surface, const SurfacePoints& sources,
+                                             const GuessExtent& extent, const JobStage& stage);
 
 }  // namespace saddleback

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double k_pi = std::numbers::pi;
 constexpr std::size_t k_most_rings = 1 << 16;  ///< what is farther out goes into the last one
-// A vertex that is reached counts as one window an edge, and as some for memory that is touched for the first time.
-constexpr double k_windows_at_vertex = 3 + 5;
+// What goes on from a bend ends sooner than its rays tell, as its windows are narrow and lie in others' way.
+constexpr double k_from_bend = 0.5;
 // As a share of an edge: guessed distances are as exact as this, usually.
 constexpr double k_doubt = 0.25;
 
@@ -29,19 +29,20 @@ class RayCount {
 
   void add_vertex(Index vertex, double weight) {
     const GuessedArrival& arrival = arrivals_[vertex];
-    count(arrival.distance, k_windows_at_vertex * weight);
+    const bool bends = surface_.may_bend(vertex);
+    count(arrival.distance, (extent_.windows_at_vertex + (bends ? extent_.windows_at_bend : 0)) * weight);
     if (arrival.halfedge == GuessedArrival::k_at_source) return;
     const Index original = surface_.mesh_vertex(vertex);
     const double total = surface_.mesh().total_angle(original), angle = arrival_angle(vertex);
-    if (!surface_.may_bend(vertex)) {
+    if (!bends) {
       follow(ray_from(vertex, std::fmod(angle + total / 2, total)), weight);
     } else if (!surface_.mesh().is_boundary(original)) {
       // What it lights anew lies between two rays.
-      follow(ray_from(vertex, std::fmod(angle + k_pi, total)), weight);
-      follow(ray_from(vertex, std::fmod(angle + total - k_pi, total)), weight);
+      follow(ray_from(vertex, std::fmod(angle + k_pi, total)), k_from_bend * weight);
+      follow(ray_from(vertex, std::fmod(angle + total - k_pi, total)), k_from_bend * weight);
     } else {
-      if (angle + k_pi < total) follow(ray_from(vertex, angle + k_pi), weight);
-      if (angle - k_pi > 0) follow(ray_from(vertex, angle - k_pi), weight);
+      if (angle + k_pi < total) follow(ray_from(vertex, angle + k_pi), k_from_bend * weight);
+      if (angle - k_pi > 0) follow(ray_from(vertex, angle - k_pi), k_from_bend * weight);
     }
   }
 
@@ -159,7 +160,8 @@ WindowForecast::WindowForecast(const ExactSurface& surface, const SurfacePoints&
                                const JobStage& stage) {
   constexpr double k_guess = 0.8;  // share of the time
   constexpr std::size_t k_samples = 1000, k_samples_a_check = 16;
-  const std::vector<GuessedArrival> arrivals = guessed_arrivals(surface, sources, extent.limit, stage.part(0, k_guess));
+  const std::vector<GuessedArrival> arrivals =
+      guessed_arrivals(surface, sources, {extent.limit, extent.vertices}, stage.part(0, k_guess));
   std::vector<Index> reached;
   for (Index v = 0; v < surface.vertex_count(); ++v)
     if (!std::isinf(arrivals[v].distance)) reached.push_back(v);

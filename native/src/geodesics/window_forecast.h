@@ -18,6 +18,9 @@ class WindowForecast {
   struct Extent {
     double limit;       ///< where the propagation ends
     double ring_width;  ///< windows are counted in rings about the sources
+    double vertices;    ///< that are reached, about
+    /// What a vertex that is reached counts as, and how much more where paths bend.
+    double windows_at_vertex, windows_at_bend;
   };
   WindowForecast() = default;
   /// \throw Cancelled. O(V).
