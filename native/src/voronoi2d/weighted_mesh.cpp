@@ -1,6 +1,7 @@
 #include "voronoi2d/weighted_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -13,7 +14,8 @@ using predicates::WeightedPoint2;
 
 namespace {
 
-constexpr Index k_block = 4096;  ///< triangles that stay in a core's cache
+constexpr Index k_block = 4096;      ///< triangles that stay in a core's cache
+constexpr std::size_t k_ahead = 16;  ///< half-edges
 
 }  // namespace
 
@@ -119,6 +121,14 @@ bool WeightedMesh::is_side(Index half) const {
                   centres_[half / 4]);
 }
 
+/// The centres beside a half-edge are brought near.
+void WeightedMesh::ask_for_centres([[maybe_unused]] Index half) const {
+#ifdef __GNUC__
+  __builtin_prefetch(&centres_[mesh_.twins[half] / 4]);
+  __builtin_prefetch(&centres_[half / 4]);
+#endif
+}
+
 /// Whether a way that turns with some sign, by less than once, passes the x axis.
 bool WeightedMesh::passes(const Way& from, const Way& to, int sign) {
   const bool was_low = from.y < 0, is_low = to.y < 0;
@@ -191,8 +201,12 @@ std::int64_t WeightedMesh::find_sides(std::vector<Index>& bad, int threads, cons
   std::int64_t passed = 0;
   for (Worker& worker : workers) {
     stage.check();
-    for (const Index half : worker.late)
+    const std::size_t late_count = worker.late.size();
+    for (std::size_t i = 0; i < late_count; ++i) {
+      ask_for_centres(worker.late[std::min(i + k_ahead, late_count - 1)]);
+      const Index half = worker.late[i];
       if (!is_side(half, worker.passed)) bad.push_back(half);
+    }
     bad.insert(bad.end(), worker.bad.begin(), worker.bad.end());
     passed += worker.passed;
   }
@@ -215,6 +229,22 @@ std::int64_t WeightedMesh::passed_about(Index half) const {
   return result;
 }
 
+std::int64_t WeightedMesh::passed_by_all(int threads, const JobStage& stage) const {
+  const Index count = triangle_count(), blocks = (count + k_block - 1) / k_block;
+  std::atomic<std::int64_t> passed{0};
+  parallel_for(blocks, threads, 1, [&](Index block, int) {
+    stage.update(block / static_cast<double>(blocks));
+    std::int64_t here = 0;
+    for (Index triangle = block * k_block; triangle < std::min(count, (block + 1) * k_block); ++triangle) {
+      if (mesh_.corners[4 * triangle] == k_none) continue;
+      for (Index half = 4 * triangle; half < 4 * triangle + 3; ++half)
+        if (mesh_.twins[half] < half) is_side(half, here);
+    }
+    passed += here;
+  });
+  return passed;
+}
+
 /// Exchanges two triangles if there is a piece of curve between the new ones.
 bool WeightedMesh::exchange(Index half, Exchanges& all) {
   const Index twin = mesh_.twins[half], from = mesh_.corners[half], to = mesh_.corners[twin];
@@ -223,14 +253,14 @@ bool WeightedMesh::exchange(Index half, Exchanges& all) {
   const Centre near_from = centre(from, right, left), near_to = centre(to, left, right);
   if (!is_piece(right, left, near_to, near_from)) return false;
   if (are_neighbours(left, right)) all.repeated.insert(all.repeated.end(), {left, right});
-  all.turns -= passed_about(half);
+  if (!all.recounts) all.turns -= passed_about(half);
   PlanarMesh view{nullptr, nullptr, far_away(), mesh_.corners.data(), mesh_.twins.data(), 0};
   exchange_pair(view, half);
   centres_[half / 4] = near_from;
   centres_[twin / 4] = near_to;
   if (from != far_away()) mesh_.leaving[from] = half;
   if (to != far_away()) mesh_.leaving[to] = twin;
-  all.turns += passed_about(next_half(half));
+  if (!all.recounts) all.turns += passed_about(next_half(half));
   return true;
 }
 
@@ -259,7 +289,10 @@ void WeightedMesh::exchange_all(Exchanges& all, const JobStage& stage) {
 void WeightedMesh::improve(int threads, const JobStage& stage) {
   Exchanges all;
   all.turns = find_sides(all.bad, threads, stage.part(0, 0.8));
+  constexpr std::size_t k_many = 16;  // one in so many sites: then all turns are counted sooner than those that change
+  all.recounts = all.bad.size() > points_.size() / k_many;
   exchange_all(all, stage);
+  if (all.recounts) all.turns = passed_by_all(threads, stage.part(0.8, 1));
   std::fill(is_certain_.begin(), is_certain_.end(), std::uint8_t{1});
   std::int64_t certain = far_away();
   const auto doubt = [&](Index site) {

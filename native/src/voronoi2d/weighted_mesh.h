@@ -76,6 +76,7 @@ class WeightedMesh {
     std::vector<Index> bad{};       ///< half-edges that are no sides
     std::vector<Index> repeated{};  ///< sites with several sides towards another
     std::int64_t turns = 0;         ///< how often the ways of all sites to their corners pass the x axis
+    bool recounts = false;          ///< `turns` is counted once more at the end, not with each exchange
   };
 
   Index next_around(Index half) const { return mesh_.twins[previous_half(half)]; }
@@ -91,10 +92,12 @@ class WeightedMesh {
   bool may_follow(Index site, Index neighbour, int turn) const;
   bool is_piece(Index from, Index to, const Centre& right, const Centre& left) const;
   bool is_side(Index half) const;
+  void ask_for_centres(Index half) const;
   bool is_side(Index half, std::int64_t& passed) const;
   Ring ring(Index site) const;
   bool are_neighbours(Index a, Index b) const;
   std::int64_t passed_about(Index half) const;
+  std::int64_t passed_by_all(int threads, const JobStage& stage) const;
   bool exchange(Index half, Exchanges& all);
   void exchange_all(Exchanges& all, const JobStage& stage);
 

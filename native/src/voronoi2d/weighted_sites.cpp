@@ -102,16 +102,19 @@ class HiddenFinder {
           rows_.push_back(row);
           disks_.push_back(tree_.rows()[row]);
         });
+    near_.resize(std::max(near_.size(), rows_.size()));
   }
 
-  bool is_hidden(Index site) const {
+  bool is_hidden(Index site) {
     const WeightedPoint2& point = points_[site];
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {  // without branches, which could not be predicted
       const DiskTree::Disk& disk = disks_[i];
-      if (is_within(disk.x - point.x, disk.y - point.y, disk.radius - point.weight) && is_hidden_in(rows_[i], site))
-        return true;
+      near_[near] = rows_[i];
+      near += static_cast<std::size_t>(is_within(disk.x - point.x, disk.y - point.y, disk.radius - point.weight));
     }
-    return false;
+    return std::any_of(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(near),
+                       [&](Index row) { return is_hidden_in(row, site); });
   }
 
   bool is_hidden_in(Index row, Index site) const {
@@ -134,7 +137,7 @@ class HiddenFinder {
 
   std::span<const WeightedPoint2> points_;
   const DiskTree& tree_;
-  std::vector<Index> rows_;
+  std::vector<Index> rows_, near_;
   std::vector<DiskTree::Disk> disks_;
 };
 
@@ -163,6 +166,9 @@ WeightedSites order_weighted_sites(std::span<const Vec2> sites, std::span<const 
     finders[thread].find(block * k_block, std::min(count, (block + 1) * k_block), hidden.data());
   });
   stage.update(0.9);
+  result.points.reserve(count);
+  result.places.reserve(count);
+  result.original.reserve(count);
   for (Index rank = 0; rank < count; ++rank) {
     if (hidden[rank]) {
       heaviest.is_hidden[heaviest.original[rank]] = true;
