@@ -1,7 +1,9 @@
 #pragma once
 // Copies between a device and host memory that the device cannot reach by itself, which is all memory that nobody
 // pinned. The driver copies such memory with one thread; pinning it for one copy takes longer than the copy. Here a few
-// threads do it, piece by piece, through pinned memory of their own: they also lay the pages under what is fresh.
+// threads do it, piece by piece, through pinned memory of their own: they also lay the pages under what is fresh. One
+// or two pieces are copied by the caller, who would wait longer for threads to begin and to end, most of all where
+// those of the work before still look for more.
 
 #include <algorithm>
 #include <chrono>
@@ -97,6 +99,7 @@ class HostCopies {
   void finish(Poll&& poll) {
     using namespace std::chrono_literals;
     for (const Copy& copy : std::exchange(small_, {})) start(copy);
+    if (threads_.empty()) copy_here(poll);
     for (std::unique_lock lock(mutex_); open_ > 0 && !failure_;) {
       if (changed_.wait_for(lock, 20ms) == std::cv_status::no_timeout) continue;
       lock.unlock();
@@ -120,6 +123,7 @@ class HostCopies {
     cudaEvent_t after;
   };
   static constexpr std::size_t k_small = std::size_t{1} << 19;  ///< not worth a thread
+  static constexpr std::size_t k_few = 2;                       ///< pieces not worth a thread
   static constexpr std::size_t k_most_threads = 8;
 
   static bool is_pinned(const void* host) {
@@ -146,8 +150,38 @@ class HostCopies {
       ++open_;
     }
     const std::size_t most = std::min<std::size_t>(k_most_threads, std::max(1u, std::thread::hardware_concurrency()));
-    while (threads_.size() < std::min(most, open_)) threads_.emplace_back([this] { work(); });
+    while (open_ > k_few && threads_.size() < std::min(most, open_)) threads_.emplace_back([this] { work(); });
     changed_.notify_all();
+  }
+
+  template <class Poll>
+  void copy_here(Poll&& poll) {
+    while (const std::optional<Copy> piece = take(false)) {
+      if (!own_) own_.emplace(PinnedPieces::pool().lease());
+      char* const memory = (*own_)->piece(0);
+      const bool is_up = piece->kind == cudaMemcpyHostToDevice;
+      if (is_up) std::memcpy(memory, piece->from, piece->size);
+      start({is_up ? memory : piece->from, is_up ? piece->to : memory, piece->size, piece->kind, piece->after});
+      wait_aside(poll);
+      if (!is_up) std::memcpy(piece->to, memory, piece->size);
+      --open_;
+    }
+  }
+
+  /// Until the device has copied all that was started.
+  template <class Poll>
+  void wait_aside(Poll&& poll) {
+    using Clock = std::chrono::steady_clock;
+    using namespace std::chrono_literals;
+    for (auto asked = Clock::now();;) {
+      const cudaError_t state = cudaStreamQuery(aside_);
+      if (state == cudaSuccess) return;
+      if (state != cudaErrorNotReady) check_cuda(state, "copying between host and device");
+      if (Clock::now() - asked < 20ms) continue;
+      poll();
+      asked = Clock::now();
+      std::this_thread::sleep_for(500us);
+    }
   }
 
   void close() {
@@ -217,6 +251,7 @@ class HostCopies {
   std::vector<StreamEvent> events_;
   std::vector<Copy> small_;
   std::vector<std::thread> threads_;
+  std::optional<ScratchPool<PinnedPieces>::Lease> own_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Copy> pieces_;

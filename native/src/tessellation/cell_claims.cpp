@@ -214,8 +214,10 @@ void CellClaims::find_mixed_faces() {
   shared_index_.resize(count);
   const auto in_stretches = [&](auto&& visit) {
     parallel_for(stretches, threads_, 1, [&](Index stretch, int) {
+      Sum sum = sums[stretch];  // not counted where the other threads' are
       for (Index face = stretch * k_stretch; face < std::min(count, (stretch + 1) * k_stretch); ++face)
-        visit(face, sums[stretch]);
+        visit(face, sum);
+      sums[stretch] = sum;
     });
   };
   in_stretches([&](Index face, Sum& sum) {
