@@ -10,7 +10,7 @@ import pytest
 import saddleback as sb
 from tests import meshes
 from tests.parity.test_graph_twin import LARGER
-from tests.parity.test_search_twin import CASES, RULES, graph_of
+from tests.parity.test_search_twin import CASES, RULES, graph_of, some
 
 PARTS = ("vertex_cell", "vertex_distance", "areas", "edge_points", "edge_cells", "edge_closed")
 
@@ -37,6 +37,12 @@ def test_the_same_cells(mesh: sb.Mesh) -> None:
 
 
 @pytest.mark.parametrize("name", LARGER)
+def test_the_same_cells_of_larger_meshes(name: str) -> None:
+    mesh = sb.Mesh(*LARGER[name]())
+    cells_by_both(graph_of(mesh, RULES[0]), some(40, len(mesh.vertices)))
+
+
+@pytest.mark.parametrize("name", ["sphere", "grid", "jittered"])
 def test_the_same_relaxation(name: str) -> None:
     graph = graph_of(sb.Mesh(*LARGER[name]()), RULES[0])
     for method in ("lloyd", "lbfgs"):

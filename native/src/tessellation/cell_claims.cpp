@@ -424,10 +424,14 @@ void CellClaims::forget_late() {
 /// The workers', in order, each face and site once.
 std::vector<CellClaims::Wish> CellClaims::all_wishes() {
   const auto same = [](const Wish& a, const Wish& b) { return a.face == b.face && a.site == b.site; };
+  constexpr std::size_t k_worth_threads = 4096;  // where cells spread through long faces there are many rounds of few
   const auto count = static_cast<Index>(workers_.size());
-  parallel_for(count, threads_, 1, [&](Index i, int) { std::ranges::sort(workers_[i].wishes); });
+  std::size_t wish_count = 0;
+  for (const Worker& worker : workers_) wish_count += worker.wishes.size();
+  const int threads = wish_count < k_worth_threads ? 1 : threads_;
+  parallel_for(count, threads, 1, [&](Index i, int) { std::ranges::sort(workers_[i].wishes); });
   for (Index step = 1; step < count; step *= 2) {
-    parallel_for((count - step + 2 * step - 1) / (2 * step), threads_, 1, [&](Index pair, int) {
+    parallel_for((count - step + 2 * step - 1) / (2 * step), threads, 1, [&](Index pair, int) {
       std::vector<Wish>&a = workers_[2 * step * pair].wishes, &b = workers_[2 * step * pair + step].wishes;
       const auto middle = std::ssize(a);
       a.insert(a.end(), b.begin(), b.end());
