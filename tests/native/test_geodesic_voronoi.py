@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -253,3 +255,15 @@ def test_edges_seen_end_on_do_not_make_the_scale_matter(scale: float) -> None:
         areas = sb.geodesic_voronoi(graph, sites).areas
         found = sb.geodesic_voronoi(scaled_graph, sites).areas / scale**2
         np.testing.assert_allclose(found, areas, atol=1e-6 * mesh.area / 40)
+
+
+def test_rays_through_many_vertices_are_followed_once() -> None:
+    # On the spokes of a wheel each vertex parts what is seen along them in two, and so does the next one.
+    mesh = sb.Mesh(*meshes.graded_disk())
+    graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3)
+    sites = np.random.default_rng(5).integers(0, len(mesh.vertices), 5).astype(np.int32)
+    start = time.process_time()
+    cells = sb.geodesic_voronoi(graph, sites)
+    assert time.process_time() - start < 5  # 0.1 on a slow machine, 18 without the rule
+    assert cells.areas.sum() == pytest.approx(mesh.area, rel=1e-9)
+    np.testing.assert_array_equal(cells.vertex_cell[sites], np.arange(len(sites)))

@@ -11,6 +11,9 @@ namespace {
 // A geodesic may run through vertices: they lie on the border of their windows, up to rounding.
 constexpr double k_on_border = 1e-9;
 
+// Of the longest length: what rounding makes of one place.
+constexpr double k_same_place = 1e-11;
+
 bool same_length(double found, const ArcHint& hint) {
   return std::abs(found - hint.length) <= hint.tolerance * hint.length;
 }
@@ -110,8 +113,23 @@ void ArcUnfolder::push(Index edge, Index depth, const Vec2& from, const Vec2& to
     stack_.push_back({entered, depth, from, to, right, left});
 }
 
+/// Whether a window without width has been there before. Past each vertex on its ray such a window goes on on both
+/// sides: behind many in a row, as on the spokes of a wheel, each side would be followed once for every way that leads
+/// there.
+bool ArcUnfolder::was_followed(const Window& window, double farthest) {
+  if (cross(window.right, window.left) > k_on_border) return false;
+  const double tolerance = k_same_place * farthest;
+  const auto near = [&](const Vec2& a, const Vec2& b) { return (a - b).squaredNorm() <= tolerance * tolerance; };
+  for (const Crossed& ray : rays_) {
+    if (ray.entered == window.entered && near(ray.from, window.from) && near(ray.to, window.to)) return true;
+  }
+  rays_.push_back({window.entered, window.from, window.to});
+  return false;
+}
+
 bool ArcUnfolder::search(const ArcHint& hint, double base_angle, UnfoldedArc& arc) {
   const double farthest = hint.length * (1 + hint.tolerance);
+  rays_.clear();
   while (!stack_.empty()) {
     Window window = stack_.back();
     stack_.pop_back();
@@ -120,7 +138,7 @@ bool ArcUnfolder::search(const ArcHint& hint, double base_angle, UnfoldedArc& ar
       const Index h = window.entered;
       const Vec2 edge = window.to - window.from;
       const double squared = edge.squaredNorm();  // the mesh knows the length, but memory is slower than a root
-      if (is_beyond(window.from, window.to, squared, farthest)) break;
+      if (is_beyond(window.from, window.to, squared, farthest) || was_followed(window, farthest)) break;
       trail_.push_back({h, window.from, window.to});
       const Vec2 along = edge / std::sqrt(squared);
       const Vec2 offset = unfolding_.apex(h);

@@ -61,6 +61,7 @@ class ArcUnfolder {
   bool start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc);
   bool search(const ArcHint& hint, double base_angle, UnfoldedArc& arc);
   void push(Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right, const Vec2& left);
+  bool was_followed(const Window& window, double farthest);
   bool finish(const Window& last, const Vec2& target, double base_angle, UnfoldedArc& arc);
 
   const Unfolding& unfolding_;
@@ -69,6 +70,7 @@ class ArcUnfolder {
   const SurfacePoint* target_ = nullptr;  ///< null: the vertex hint.to
   std::vector<Window> stack_;
   std::vector<Crossed> trail_;
+  std::vector<Crossed> rays_;  ///< where windows without width have been
 };
 
 }  // namespace saddleback
