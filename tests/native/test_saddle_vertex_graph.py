@@ -80,6 +80,21 @@ def test_errors_stay_below_the_accuracy_on_lattices(stretch: float, accuracy: fl
         assert error.mean() <= accuracy / 4
 
 
+@pytest.mark.parametrize(
+    ("around", "tube", "tube_radius", "sources"), [(92, 10, 0.58, (1, 4, 9)), (66, 30, 0.24, (2, 10, 20))]
+)
+def test_errors_of_fine_graphs_stay_below_the_accuracy(
+    around: int, tube: int, tube_radius: float, sources: tuple[int, ...]
+) -> None:
+    """Tori of stretched cells, where many small detours add up."""
+    mesh = sb.Mesh(*meshes.torus(around, tube, 1.0, tube_radius))
+    graph = sb.SaddleVertexGraph(mesh, accuracy=1e-3)
+    for source in sources:
+        exact = np.asarray(sb.exact_distances(mesh, [source]))
+        far = exact > 0
+        assert (graph.distances([source])[far] / exact[far] - 1).max() <= 1e-3
+
+
 @pytest.mark.parametrize("case", SMALL, ids=str)
 def test_the_exact_graph_is_exact(case: meshes.Case) -> None:
     graph = sb.SaddleVertexGraph(case.mesh, exact=True)
