@@ -95,6 +95,20 @@ def test_errors_of_fine_graphs_stay_below_the_accuracy(
         assert (graph.distances([source])[far] / exact[far] - 1).max() <= 1e-3
 
 
+@pytest.mark.parametrize("accuracy", [5e-3, 1e-3])
+@pytest.mark.parametrize(("around", "tube", "tube_radius"), [(114, 13, 0.33), (80, 11, 0.35), (94, 35, 0.61)])
+def test_errors_along_strips_between_saddles_stay_below_the_accuracy(
+    around: int, tube: int, tube_radius: float, accuracy: float
+) -> None:
+    """An odd number of rows leaves a flat ring, one cell wide, between the two inmost ones."""
+    mesh = sb.Mesh(*meshes.torus(around, tube, 1.0, tube_radius))
+    graph = sb.SaddleVertexGraph(mesh, accuracy=accuracy)
+    for source in range(tube // 2 - 1, tube // 2 + 3):
+        exact = np.asarray(sb.exact_distances(mesh, [source]))
+        far = exact > 0
+        assert (graph.distances([source])[far] / exact[far] - 1).max() <= accuracy
+
+
 @pytest.mark.parametrize("case", SMALL, ids=str)
 def test_the_exact_graph_is_exact(case: meshes.Case) -> None:
     graph = sb.SaddleVertexGraph(case.mesh, exact=True)

@@ -53,6 +53,25 @@ GoingOn going_on(const Unfolding& unfolding, Index h) {
   return best;
 }
 
+/// Whether two edges of a saddle go straight on along one of its sides: the border of a flat strip, as between the two
+/// inmost rows of a torus. Shortest paths stay within it, one cell wide, and have the same detour again and again.
+bool is_beside_strip(const Unfolding& unfolding, Index vertex) {
+  const Mesh& mesh = unfolding.mesh();
+  const double total = mesh.total_angle(vertex);
+  if (mesh.is_boundary(vertex) || total < 2 * std::numbers::pi + k_straight) return false;
+  const Index first = mesh.first_halfedge(vertex);
+  Index a = first;
+  do {
+    for (Index b = mesh.rotate(a); b != first; b = mesh.rotate(b)) {
+      const double turn = unfolding.polar(b) - unfolding.polar(a);
+      if (std::abs(turn - std::numbers::pi) < k_straight || std::abs(total - turn - std::numbers::pi) < k_straight)
+        return true;
+    }
+    a = mesh.rotate(a);
+  } while (a != first);
+  return false;
+}
+
 Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
   const Mesh& mesh = unfolding.mesh();
   int edges = 0, straight = 0, nearly_straight = 0;
@@ -68,8 +87,9 @@ Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
     longest = std::max(longest, mesh.length(h));
     h = mesh.rotate(h);
   } while (h != k_none && h != first);
-  if (2 * nearly_straight < edges) return {};
-  return {longest < k_stretched * shortest ? Lattice::even : Lattice::stretched, 2 * straight < edges};
+  const bool is_strip = is_beside_strip(unfolding, vertex);
+  if (2 * nearly_straight < edges && !is_strip) return {};
+  return {longest < k_stretched * shortest ? Lattice::even : Lattice::stretched, 2 * straight < edges && !is_strip};
 }
 
 }  // namespace
