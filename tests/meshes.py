@@ -7,6 +7,7 @@ Each is a `Case`: arrays, what is known about them in closed form, and `mesh`, b
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -214,6 +215,15 @@ def torus(around: int = 36, tube: int = 14, radius: float = 1.0, tube_radius: fl
         [(ring * np.cos(v)).ravel(), (ring * np.sin(v)).ravel(), (tube_radius * np.sin(u)).ravel()]
     )
     return vertices, _wrap(tube, around, closed_along=True)[:, ::-1].copy()
+
+
+def lathed(radii: Sequence[float], steps: Sequence[float], around: int) -> Arrays:
+    """A profile turned about z, open at both ends, outward: rows of these radii, so far above one another."""
+    angle = 2 * np.pi * np.arange(around) / around
+    ring = np.asarray(radii)[:, None]
+    height = np.broadcast_to(np.concatenate([[0], np.cumsum(steps)])[:, None], (len(radii), around))
+    vertices = np.column_stack([(ring * np.cos(angle)).ravel(), (ring * np.sin(angle)).ravel(), height.ravel()])
+    return vertices, _wrap(around, len(radii))
 
 
 def voxels(occupied: NDArray[np.bool_]) -> Arrays:

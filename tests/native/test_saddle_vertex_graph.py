@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -87,12 +88,7 @@ def test_errors_of_fine_graphs_stay_below_the_accuracy(
     around: int, tube: int, tube_radius: float, sources: tuple[int, ...]
 ) -> None:
     """Tori of stretched cells, where many small detours add up."""
-    mesh = sb.Mesh(*meshes.torus(around, tube, 1.0, tube_radius))
-    graph = sb.SaddleVertexGraph(mesh, accuracy=1e-3)
-    for source in sources:
-        exact = np.asarray(sb.exact_distances(mesh, [source]))
-        far = exact > 0
-        assert (graph.distances([source])[far] / exact[far] - 1).max() <= 1e-3
+    expect_accuracy(sb.Mesh(*meshes.torus(around, tube, 1.0, tube_radius)), sources, 1e-3)
 
 
 @pytest.mark.parametrize("accuracy", [5e-3, 1e-3])
@@ -102,8 +98,28 @@ def test_errors_along_strips_between_saddles_stay_below_the_accuracy(
 ) -> None:
     """An odd number of rows leaves a flat ring, one cell wide, between the two inmost ones."""
     mesh = sb.Mesh(*meshes.torus(around, tube, 1.0, tube_radius))
+    expect_accuracy(mesh, range(tube // 2 - 1, tube // 2 + 3), accuracy)
+
+
+@pytest.mark.parametrize(
+    ("radii", "steps", "around", "accuracy"),
+    [
+        ((0.762, 0.66, 0.632, 0.705, 0.705, 0.705), (0.297, 0.391, 0.024, 0.096, 0.279), 108, 5e-3),
+        ((0.82, 0.82, 0.803, 0.89, 0.766), (0.288, 0.051, 0.052, 0.208), 123, 1e-3),
+        ((0.605, 0.804, 0.554, 0.566, 0.566), (0.073, 0.07, 0.365, 0.191), 103, 1e-3),
+    ],
+)
+def test_errors_on_lathed_cylinders_stay_below_the_accuracy(
+    radii: tuple[float, ...], steps: tuple[float, ...], around: int, accuracy: float
+) -> None:
+    """One ring of long faces between rims, or up to the border."""
+    mesh = sb.Mesh(*meshes.lathed(radii, steps, around))
+    expect_accuracy(mesh, range(0, len(mesh.vertices), around), accuracy)
+
+
+def expect_accuracy(mesh: sb.Mesh, sources: Iterable[int], accuracy: float) -> None:
     graph = sb.SaddleVertexGraph(mesh, accuracy=accuracy)
-    for source in range(tube // 2 - 1, tube // 2 + 3):
+    for source in sources:
         exact = np.asarray(sb.exact_distances(mesh, [source]))
         far = exact > 0
         assert (graph.distances([source])[far] / exact[far] - 1).max() <= accuracy

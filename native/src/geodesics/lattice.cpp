@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "support/parallel.h"
 
@@ -53,22 +54,49 @@ GoingOn going_on(const Unfolding& unfolding, Index h) {
   return best;
 }
 
-/// Whether two edges of a saddle go straight on along one of its sides: the border of a flat strip, as between the two
-/// inmost rows of a torus. Shortest paths stay within it, one cell wide, and have the same detour again and again.
+/// An edge of a vertex: its direction there, and its length.
+struct Spoke {
+  double angle, length;
+};
+
+/// Counter-clockwise. O(degree)
+std::vector<Spoke> spokes_of(const Unfolding& unfolding, Index vertex) {
+  const Mesh& mesh = unfolding.mesh();
+  std::vector<Spoke> spokes;
+  const Index first = mesh.first_halfedge(vertex);
+  for (Index h = first; h != k_none;) {
+    spokes.push_back({unfolding.polar(h), mesh.length(h)});
+    const Index last = Mesh::prev(h);
+    h = mesh.rotate(h);
+    if (h == k_none) spokes.push_back({mesh.total_angle(vertex), mesh.length(last)});
+    if (h == first) h = k_none;
+  }
+  return spokes;
+}
+
+/// Whether two edges go straight on along a side on which all others reach as far: a flat strip one cell wide, as
+/// between the rims of a lathed cylinder and between the two inmost rows of a torus. Along it the same detour follows
+/// again and again.
 bool is_beside_strip(const Unfolding& unfolding, Index vertex) {
   const Mesh& mesh = unfolding.mesh();
-  const double total = mesh.total_angle(vertex);
-  if (mesh.is_boundary(vertex) || total < 2 * std::numbers::pi + k_straight) return false;
-  const Index first = mesh.first_halfedge(vertex);
-  Index a = first;
-  do {
-    for (Index b = mesh.rotate(a); b != first; b = mesh.rotate(b)) {
-      const double turn = unfolding.polar(b) - unfolding.polar(a);
-      if (std::abs(turn - std::numbers::pi) < k_straight || std::abs(total - turn - std::numbers::pi) < k_straight)
-        return true;
+  const std::vector<Spoke> spokes = spokes_of(unfolding, vertex);
+  const std::size_t count = spokes.size(), most = mesh.is_boundary(vertex) ? 1 : count;
+  for (std::size_t begin = 0; begin < most; ++begin) {
+    double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+    for (std::size_t i = 1; i < count; ++i) {
+      const Spoke& spoke = spokes[(begin + i) % count];
+      double turn = spoke.angle - spokes[begin].angle;
+      if (turn < 0) turn += mesh.total_angle(vertex);
+      if (turn > std::numbers::pi - k_straight) {
+        const bool is_straight = turn < std::numbers::pi + k_straight;
+        if (i > 2 && is_straight && farthest - nearest <= k_straight * farthest) return true;
+        break;
+      }
+      const double height = spoke.length * std::sin(turn);
+      nearest = std::min(nearest, height);
+      farthest = std::max(farthest, height);
     }
-    a = mesh.rotate(a);
-  } while (a != first);
+  }
   return false;
 }
 
