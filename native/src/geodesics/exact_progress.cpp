@@ -11,7 +11,7 @@ namespace {
 
 // Microseconds on one machine, of which only ratios matter: a vertex in the surface's layout, in the forecast, when it
 // is reached, and when it bends what reaches it. They grow with the mesh, as less of it stays in caches.
-constexpr double k_cost_of_surface = 0.3, k_cost_of_forecast = 0.75, k_cost_of_vertex = 0.3, k_cost_of_bend = 1.6;
+constexpr double k_cost_of_surface = 0.3, k_cost_of_forecast = 0.55, k_cost_of_vertex = 0.3, k_cost_of_bend = 1.6;
 constexpr double k_cost_of_window = 0.038;
 constexpr double k_keeping = 1, k_sorting = 1.6;  ///< a window that is kept, in times its cost
 constexpr double k_usual_vertices = 35e3;
@@ -96,23 +96,24 @@ Reach reach_of(const ExactWork& work) {
   return reach;
 }
 
-double by_caches(const Mesh& mesh, double power) { return std::pow(mesh.vertex_count() / k_usual_vertices, power); }
+double by_caches(double vertices, double power) { return std::pow(vertices / k_usual_vertices, power); }
 
 }  // namespace
 
 ExactProgress::ExactProgress(const ExactWork& work, const JobStage& stage) : work_(work), stage_(stage) {
   if (!stage.is_watched()) return;
   const Mesh& mesh = work.mesh;
-  const double slower = by_caches(mesh, 0.5);
-  const double surface = k_cost_of_surface * by_caches(mesh, 0.6) * mesh.vertex_count();
   const Reach reach = reach_of(work);
+  const double slower = by_caches(reach.vertices, 0.5);  // what is out of reach stays out of caches
+  const double surface = k_cost_of_surface * by_caches(mesh.vertex_count(), 1.0 / 3) * mesh.vertex_count();
   likely_vertices_ = reach.vertices;
   is_foretold_ = reach.a_source >= k_worth_forecast || has_needles(mesh);
   cost_of_vertex_ = k_cost_of_vertex * slower;
   cost_of_bend_ = k_cost_of_bend * slower;
   at_vertices_ = (cost_of_vertex_ + cost_of_bend_ * bending_share(mesh)) * reach.vertices;
   at_windows_ = k_cost_of_window * growth_of_windows(mesh) * std::sqrt(reach.a_source) * reach.vertices;
-  before_windows_ = surface + (is_foretold_ ? k_cost_of_forecast * by_caches(mesh, 0.25) * reach.vertices : 0);
+  before_windows_ =
+      surface + (is_foretold_ ? k_cost_of_forecast * by_caches(reach.vertices, 0.25) * reach.vertices : 0);
   const double all = before_windows_ + whole_cost(at_vertices_ + at_windows_);
   laid_ = surface / all;
   foretold_ = before_windows_ / all;
