@@ -10,7 +10,8 @@ import numpy as np
 import saddleback as sb
 
 WIDTH, HEIGHT, MOST = 480, 240, 500
-LEFT, RIGHT, TOP, BOTTOM = 60, 460, 20, 200
+LEFT, RIGHT, TOP, BOTTOM = 50, 470, 20, 200
+MARGIN = 35
 
 
 def median_of(count: int, times: int) -> float:
@@ -27,7 +28,10 @@ def median_of(count: int, times: int) -> float:
 
 figures = {10**power: median_of(10**power, times) for power, times in ((3, 500), (4, 100), (5, 15), (6, 5), (7, 2))}
 places = {
-    count: (LEFT + (np.log10(count) - 3) / 4 * (RIGHT - LEFT), BOTTOM - value / MOST * (BOTTOM - TOP))
+    count: (
+        LEFT + MARGIN + (np.log10(count) - 3) / 4 * (RIGHT - LEFT - 2 * MARGIN),
+        BOTTOM - value / MOST * (BOTTOM - TOP),
+    )
     for count, value in figures.items()
 }
 lines = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" font-family="sans-serif">']
