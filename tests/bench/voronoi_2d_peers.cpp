@@ -35,8 +35,10 @@ static void run_cgal(const std::vector<Kernel::Point_2>& points) {
   }
   std::vector<std::pair<int, int>> edges;
   edges.reserve(3 * triangulation.number_of_vertices());
-  for (auto edge = triangulation.finite_edges_begin(); edge != triangulation.finite_edges_end(); ++edge)
-    edges.emplace_back(numbers[edge->first], numbers[edge->first->neighbor(edge->second)]);
+  for (auto edge = triangulation.finite_edges_begin(); edge != triangulation.finite_edges_end(); ++edge) {
+    const int left = numbers[edge->first];  // a value: a face at infinity is new to the map, which may move the others
+    edges.emplace_back(left, numbers[edge->first->neighbor(edge->second)]);
+  }
   const double seconds = cpu_seconds() - start;
 
   std::size_t flat = 0;  // edges of no length: a tree within each cluster of coinciding vertices

@@ -41,17 +41,11 @@ Numbering strips_of(const OrderedSites& sites) {
   return result;
 }
 
-/// A vertex of more than three cells, with three of them evenly about it, so that their circle is well determined.
-struct LargeVertex {
-  Index vertex, sites[3];
-};
-
 /// Cells in a row, whose numbers follow each other.
 struct Piece {
   Index begin, end;
-  Index corners = 0, vertices = 0, edges = 0;  ///< how many come before
-  std::vector<LargeVertex> large{};
-  std::vector<Index> late_sides{}, late_corners{}, late_ends{};  ///< whose numbers are given in other pieces; 2 e + k
+  Index corners = 0, vertices = 0, edges = 0;       ///< how many come before
+  std::vector<Index> late_sides{}, late_corners{};  ///< whose numbers are given in other pieces
 };
 
 class Numberer {
@@ -63,7 +57,7 @@ class Numberer {
         result_(result),
         scratch_(threads_),
         piece_size_(threads_ == 1 ? k_small : k_large),
-        places_at_once_(sites.count() <= k_few),
+        edges_at_once_(threads_ == 1 && sites.count() <= k_few),
         unscale_(1 / sites.scale) {
     const Index count = sites.count();
     for (Index begin = 0; begin < count; begin += piece_size_)
@@ -76,13 +70,12 @@ class Numberer {
     result_.offsets.resize(count + 1);
     result_.corner_vertices.resize(6 * count);
     result_.side_edges.resize(6 * count);
-    result_.edge_vertices.resize(3 * count);
-    result_.edge_sites.resize(3 * count);
-    if (places_at_once_) result_.vertices.resize(2 * count);
+    result_.vertices.resize(2 * count);
+    if (edges_at_once_) make_room_for_edges(static_cast<Index>(3 * count));
     Counts all;
     if (threads_ == 1) {  // numbers follow without being counted before, and those of lower cells are known
       for (Piece& piece : pieces_) {
-        stage.update(0.7 * piece.begin / static_cast<double>(count));
+        stage.update(0.8 * piece.begin / static_cast<double>(count));
         start_after(piece, all);
         add_to(all, number_piece(piece, 0, scratch_[0]));
       }
@@ -93,16 +86,22 @@ class Numberer {
         start_after(pieces_[i], all);
         add_to(all, counts[i]);
       }
-      for_pieces(stage.part(0.1, 0.6),
+      for_pieces(stage.part(0.1, 0.7),
                  [&](Index i, int thread) { number_piece(pieces_[i], pieces_[i].begin, scratch_[thread]); });
-      for_pieces(stage.part(0.6, 0.7), [&](Index i, int) { resolve(pieces_[i]); });
+      for_pieces(stage.part(0.7, 0.8), [&](Index i, int) { resolve(pieces_[i]); });
     }
     result_.offsets.back() = all.corners;
     result_.corner_vertices.resize(all.corners);
     result_.side_edges.resize(all.corners);
-    result_.edge_vertices.resize(all.edges);
-    result_.edge_sites.resize(all.edges);
-    place_vertices(all.vertices, stage.part(0.7, 1));
+    result_.vertices.resize(all.vertices);
+    LargeArray<Index>().swap(mesh_.corners);
+    LargeArray<Index>().swap(mesh_.twins);
+    make_room_for_edges(all.edges);
+    if (edges_at_once_) return;
+    for_pieces(stage.part(0.8, 1), [&](Index i, int) {
+      const bool is_last = static_cast<std::size_t>(i) + 1 == pieces_.size();
+      list_edges(pieces_[i], is_last ? all.edges : pieces_[i + 1].edges);
+    });
   }
 
  private:
@@ -112,7 +111,7 @@ class Numberer {
   static constexpr Index k_small = 2048,
                          k_large = 8192;   ///< cells that stay in a core's cache; that outweigh a thread's start
   static constexpr Index k_ahead = 2048;   ///< sites: about a tile
-  static constexpr Index k_few = 1 << 15;  ///< sites whose vertices need not wait until others have no use for the room
+  static constexpr Index k_few = 1 << 15;  ///< sites whose edges need not wait until the triangles leave their room
   /// A worker's memory.
   struct Scratch {
     CellBlock cells;
@@ -259,7 +258,7 @@ class Numberer {
     for_blocks(piece, scratch, [&](Index begin) {
       for (Index cell = 0; cell < cells.cell_count; ++cell)
         result_.offsets[begin + cell] = at.corners + cells.starts[cell];
-      number_vertices(piece, at.vertices, scratch);
+      number_vertices(at.vertices, scratch);
       write_corners(piece, known, at.corners, scratch);
       write_sides(piece, known, at, scratch);
       at.corners += cells.size;
@@ -267,7 +266,7 @@ class Numberer {
     return {at.corners - piece.corners, at.vertices - piece.vertices, at.edges - piece.edges};
   }
 
-  void number_vertices(Piece& piece, Index& vertex, Scratch& scratch) {
+  void number_vertices(Index& vertex, Scratch& scratch) {
     const CellBlock& cells = scratch.cells;
     const Index first = vertex;
     bool has_large = false;
@@ -277,13 +276,11 @@ class Numberer {
       if (!is_large(half)) {
         mesh_.corners[half | 3] = vertex++;
       } else if (go_around(half, scratch) == cells.sites[i]) {
-        for (const Index place : scratch.triangles) mesh_.corners[place] = vertex;
-        const std::size_t size = scratch.around.size();
-        piece.large.push_back({vertex, {cells.sites[i], scratch.around[size / 3], scratch.around[2 * size / 3]}});
-        ++vertex;
+        for (const Index triangle : scratch.triangles) mesh_.corners[triangle] = vertex;
+        const std::size_t size = scratch.around.size();  // three evenly about it: their circle is well determined
+        place(vertex++, cells.sites[i], scratch.around[size / 3], scratch.around[2 * size / 3]);
       }
     }
-    if (!places_at_once_) return;
     if (!has_large) return place_row(first, scratch);
     for (Index k = 0; k < scratch.own_corner_count; ++k) {
       const Index i = scratch.own_corners[k], half = cells.halves[i];
@@ -371,33 +368,34 @@ class Numberer {
         if (is_late) piece.late_sides.push_back(at.corners + i);
       }
     });
-    write_edges(piece, at, scratch);
+    for (Index k = 0; k < scratch.own_side_count; ++k) sides[scratch.own_sides[k]] = at.edges + k;
+    if (edges_at_once_) write_edges(at, scratch);
     at.edges += scratch.own_side_count;
   }
 
-  void write_edges(Piece& piece, const Counts& at, const Scratch& scratch) {
+  void make_room_for_edges(Index count) {
+    result_.edge_vertices.resize(count);
+    result_.edge_sites.resize(count);
+  }
+
+  /// Of the block's cells, when the vertices of all lower cells have their numbers.
+  void write_edges(const Counts& at, const Scratch& scratch) {
     const CellBlock& cells = scratch.cells;
     const Index *const numbers = result_.corner_vertices.data() + at.corners, *const own = scratch.own_sides.data(),
                        *const before = cells.befores.data(), *const site = cells.sites.data(),
                        *const neighbour = cells.neighbours.data(), *const original = sites_.original.data();
-    Index* const sides = result_.side_edges.data() + at.corners;
     std::array<Index, 2>*const edge_vertices = result_.edge_vertices.data() + at.edges, *const edge_sites =
                                                                                             result_.edge_sites.data() +
                                                                                             at.edges;
     for (Index k = 0; k < scratch.own_side_count; ++k) {
       const Index i = own[k];
-      sides[i] = at.edges + k;
       const std::array<Index, 2> ends{numbers[before[i]], numbers[i]},
           beside{original[site[i]], original[neighbour[i]]};
       edge_vertices[k] = ends;
       edge_sites[k] = beside;
-      if (std::min(ends[0], ends[1]) >= 0) continue;
-      if (ends[0] == k_none) {
-        std::swap(edge_vertices[k][0], edge_vertices[k][1]);
-        std::swap(edge_sites[k][0], edge_sites[k][1]);
-      }
-      for (Index end = 0; end < 2; ++end)
-        if (edge_vertices[k][end] < k_none) piece.late_ends.push_back(2 * (at.edges + k) + end);
+      if (ends[0] >= 0) continue;
+      std::swap(edge_vertices[k][0], edge_vertices[k][1]);
+      std::swap(edge_sites[k][0], edge_sites[k][1]);
     }
   }
 
@@ -410,10 +408,6 @@ class Numberer {
       Index& vertex = result_.corner_vertices[corner];
       vertex = mesh_.corners[late(vertex)];
     }
-    for (const Index end : piece.late_ends) {
-      Index& vertex = result_.edge_vertices[end / 2][end % 2];
-      vertex = mesh_.corners[late(vertex)];
-    }
   }
 
   predicates::Point2 point(Index rank) const { return {sites_.x[rank], sites_.y[rank]}; }
@@ -422,53 +416,36 @@ class Numberer {
     result_.vertices[vertex] = circumcentre(point(a), point(b), point(c)) * unscale_;
   }
 
-  void place_vertices(Index count, const JobStage& stage) {
-    const bool has_large = std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return !p.large.empty(); });
-    if (has_large && !places_at_once_) leave_out_flat_triangles();
-    LargeArray<Index>().swap(mesh_.twins);  // the vertices can have the room
-    result_.vertices.resize(count);
-    for_pieces(stage, [&](Index i, int) {
-      if (!places_at_once_) place_in(pieces_[i]);
-      for (const LargeVertex& large : pieces_[i].large)
-        place(large.vertex, large.sites[0], large.sites[1], large.sites[2]);
-    });
-  }
-
-  void place_in(const Piece& piece) {
-    const SiteColumns columns{sites_.x.data(), sites_.y.data()};
-    Vec2* const vertices = result_.vertices.data();
-    const auto place_two = [&](const Index* a, const Index* b) {
-      const TwoCentres centres(columns, a, b);
-      if (centres.are_good()) {
-        vertices[a[3]] = Vec2(centres.x[0], centres.y[0]) * unscale_;
-        vertices[b[3]] = Vec2(centres.x[1], centres.y[1]) * unscale_;
-      } else {
-        for (const Index* one : {a, b}) place(one[3], one[0], one[1], one[2]);
+  /// The edges of a piece's cells, from these alone. The cell that gave an edge its number, the first on it, is to its
+  /// left, the other to its right; only if it comes from infinity it is turned.
+  void list_edges(const Piece& piece, Index edges_end) {
+    const Index *const offsets = result_.offsets.data(), *const corners = result_.corner_vertices.data(),
+                       *const sides = result_.side_edges.data();
+    std::array<Index, 2>*const edge_vertices = result_.edge_vertices.data(), *const edge_sites =
+                                                                                 result_.edge_sites.data();
+    Index next = piece.edges;
+    for (Index cell = piece.begin; cell < piece.end; ++cell) {
+      const Index end = offsets[cell + 1], site = sites_.original[cell], first_own = next;
+      Index from = corners[end - 1];
+      Index at = offsets[cell];
+      if (from >= 0 && next + end - at < edges_end) {
+        for (; at < end; ++at) {
+          const Index edge = sides[at], is_own = static_cast<Index>(edge >= first_own), to = corners[at];
+          edge_vertices[next] = {from, to};  // to be written once more if it is not the cell's own
+          next += is_own;
+          edge_sites[edge][static_cast<std::size_t>(1 - is_own)] = site;
+          from = to;
+        }
+        continue;
       }
-    };
-    Index pair[2][4]{};
-    int filled = 0;
-    for (Index first = 8 * piece.begin; first < 8 * piece.end; first += 4) {
-      const Index* const corner = mesh_.corners.data() + first;
-      if (corner[0] == k_none) continue;
-      const int is_b = (corner[1] < corner[0]) & (corner[1] < corner[2]),
-                is_c = (corner[2] < corner[0]) & (corner[2] < corner[1]);
-      static constexpr Index k_around[5] = {0, 1, 2, 0, 1};
-      const Index* const around = k_around + (is_b + 2 * is_c);  // the lowest first, whatever the triangle's order
-      Index* const to = pair[filled];
-      for (int k = 0; k < 3; ++k) to[k] = corner[around[k]];
-      to[3] = corner[3];
-      filled = 1 - filled;
-      if (filled == 0) place_two(pair[0], pair[1]);
+      for (; at < end; ++at) {
+        const Index edge = sides[at], to = corners[at];
+        const bool is_own = edge >= first_own, is_turned = from < 0;
+        if (is_own) edge_vertices[next++] = is_turned ? std::array{to, from} : std::array{from, to};
+        edge_sites[edge][static_cast<std::size_t>(is_turned || (!is_own && to >= 0))] = site;
+        from = to;
+      }
     }
-    if (filled != 0) place_two(pair[0], pair[0]);
-  }
-
-  void leave_out_flat_triangles() {
-    for_pieces({}, [&](Index i, int) {
-      for (Index first = 8 * pieces_[i].begin; first < 8 * pieces_[i].end; first += 4)
-        if (mesh_.corners[first] != k_none && mesh_.twins[first + 3] != 0) mesh_.corners[first] = k_none;
-    });
   }
 
   Triangulation& mesh_;
@@ -477,8 +454,8 @@ class Numberer {
   Numbering& result_;
   std::vector<Scratch> scratch_;
   Index piece_size_;
-  bool places_at_once_;  ///< vertices, as soon as they have a number
-  double unscale_;       ///< of a power of two: exact
+  bool edges_at_once_;  ///< as soon as they have a number
+  double unscale_;      ///< of a power of two: exact
   std::vector<Piece> pieces_;
 };
 
