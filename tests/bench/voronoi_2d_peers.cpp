@@ -1,5 +1,5 @@
 // Voronoi diagrams by CGAL (exact) and Boost.Polygon (of coordinates rounded to 30 bits), for comparison:
-// `voronoi_2d_peers FILE`, the file holding pairs of doubles. Prints, one line each:
+// `voronoi_2d_peers FILE [cgal]`, the file holding pairs of doubles; by CGAL alone if so asked. Prints, one line each:
 //   cgal SECONDS VERTICES EDGES      after merging vertices of more than three cells
 //   boost SECONDS
 // Seconds of processor time from the points to vertices (as coordinates) and edges (as pairs of vertices).
@@ -68,12 +68,12 @@ static void run_boost(const std::vector<Kernel::Point_2>& points) {
 }
 
 int main(int count, char** arguments) {
-  std::FILE* file = count == 2 ? std::fopen(arguments[1], "rb") : nullptr;
+  std::FILE* file = count >= 2 ? std::fopen(arguments[1], "rb") : nullptr;
   if (!file) return 1;
   std::vector<Kernel::Point_2> points;
   for (double xy[2]; std::fread(xy, sizeof(double), 2, file) == 2;) points.emplace_back(xy[0], xy[1]);
   std::fclose(file);
   std::setvbuf(stdout, nullptr, _IONBF, 0);  // what one says is not lost when another crashes
   run_cgal(points);
-  run_boost(points);
+  if (count == 2) run_boost(points);
 }

@@ -14,6 +14,7 @@ from scipy.spatial import Delaunay
 
 import saddleback as sb
 from tests.native import plane_sites
+from tests.native.cancelling import check_progress_and_cancel
 
 
 @pytest.mark.parametrize("kind", plane_sites.KINDS)
@@ -217,6 +218,28 @@ def test_a_million_sites_stop_within_a_moment():
         sb.voronoi_2d(sites, job=job)
     watcher.join()
     assert time.perf_counter() - stopped_at[0] < 0.5  # 0.1 s on a machine that is not busy
+
+
+def crowded(n: int, scales: int) -> plane_sites.Points:
+    """All but a few sites share the smallest square that the box of all is divided into, and again."""
+    sites = np.random.default_rng(n).random((n, 2))
+    sites[:scales] = 10.0 ** (6 * (1 + np.arange(scales)))[:, None]
+    return sites
+
+
+@pytest.mark.parametrize("scales", [1, 3])
+def test_sites_that_crowd_in_one_square_have_their_diagram(scales):
+    assert not plane_sites.faults(sb.voronoi_2d(crowded(20_000, scales)))
+
+
+def test_a_million_sites_in_one_square_stop_within_a_moment():
+    sites = crowded(10**6, 1)
+    check_progress_and_cancel(lambda job: sb.voronoi_2d(sites, threads=1, job=job), 0.639)
+
+
+def test_millions_of_sites_on_one_line_stop_within_a_moment():
+    sites = plane_sites.collinear(4 * 10**6, np.random.default_rng(3))
+    check_progress_and_cancel(lambda job: sb.voronoi_2d(sites, threads=1, job=job), 0.7)
 
 
 def test_diagrams_of_sizes_nearly_alike_come_and_go() -> None:

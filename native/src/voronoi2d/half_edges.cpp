@@ -1,7 +1,7 @@
 // Block by block of cells, in the order of their ranks: a site's triangles in turn are its corners, the half-edges that
 // leave it its sides. A number is given at the lowest site about a vertex or beside an edge and left in the
 // triangulation for the others: a vertex's beside the corners of its triangles, an edge's in place of a twin that is
-// not needed any more.
+// not needed any more. The edges' ends and sites are listed at last, from the cells, in the room of the triangles.
 
 #include "voronoi2d/half_edges.h"
 
@@ -21,13 +21,15 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-Numbering strips_of(const OrderedSites& sites) {
-  const NeighbourLists lists = neighbours_of({.corners = {}, .twins = {}, .leaving = {}, .is_line = true}, sites);
+Numbering strips_of(const OrderedSites& sites, const JobStage& stage) {
+  const NeighbourLists lists =
+      neighbours_of({.corners = {}, .twins = {}, .leaving = {}, .is_line = true}, sites, stage.part(0, 0.6));
   Numbering result;
   result.offsets = lists.offsets;
   result.corner_vertices.assign(lists.neighbours.size(), k_none);
   result.side_edges.resize(lists.neighbours.size());
   for (Index cell = 0; cell < sites.count(); ++cell) {
+    stage.check();
     for (Index side = lists.offsets[cell]; side < lists.offsets[cell + 1]; ++side) {
       const Index other = lists.neighbours[side];
       if (other < cell) continue;
@@ -462,7 +464,7 @@ class Numberer {
 }  // namespace
 
 Numbering number(Triangulation&& triangulation, const OrderedSites& sites, int threads, const JobStage& stage) {
-  if (triangulation.is_line) return strips_of(sites);
+  if (triangulation.is_line) return strips_of(sites, stage);
   Triangulation mesh = std::move(triangulation);
   Numbering result;
   Numberer(mesh, sites, threads, result).run(stage);

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
 
 #include "support/parallel.h"
+#include "voronoi2d/curve_order.h"
 #include "voronoi2d/join_meshes.h"
 #include "voronoi2d/sweep_circle.h"
 
@@ -24,23 +26,39 @@ struct Square {
   Index start;                            ///< the first square of those that are in it
 };
 
-/// Squares, each after its parts: split until they have few enough sites.
+/// Squares, each after its parts: split until they have few enough sites. The smallest squares of a curve with too many
+/// sites are split by the curve within.
 class SquareTree {
  public:
-  SquareTree(const LargeArray<std::uint32_t>& places, Index count, Index size) : places_(places), size_(size) {
-    if (count > 0) add(0, count, 32);
+  SquareTree(const OrderedSites& sites, Index size, const JobStage& stage) : sites_(sites), size_(size), stage_(stage) {
+    if (sites.count() > 0) add({sites.places, 0}, 0, sites.count(), k_all_bits);
   }
   std::vector<Square>& squares() { return squares_; }
 
  private:
-  Index add(Index begin, Index end, int bits) {
-    if (end - begin <= size_ || bits == 0) return add_square(begin, end, k_none, k_none);
+  static constexpr int k_all_bits = 32;
+  /// Of the sites from `first` on.
+  struct Places {
+    std::span<const std::uint32_t> places;
+    Index first;
+  };
+
+  Index add(const Places& curve, Index begin, Index end, int bits) {
+    if (end - begin <= size_) return add_square(begin, end, k_none, k_none);
+    if (bits == 0) return add_crowded(begin, end);
     const auto in_first_half = [&](std::uint32_t place) { return ((place >> (bits - 1)) & 1) == 0; };
-    const auto middle = std::partition_point(places_.begin() + begin, places_.begin() + end, in_first_half);
-    const Index half = static_cast<Index>(middle - places_.begin());
-    if (half == begin || half == end) return add(begin, end, bits - 1);
-    const Index first = add(begin, half, bits - 1), second = add(half, end, bits - 1);
+    const auto places = curve.places.subspan(begin - curve.first, end - begin);
+    const auto middle = std::partition_point(places.begin(), places.end(), in_first_half);
+    const Index half = begin + static_cast<Index>(middle - places.begin());
+    if (half == begin || half == end) return add(curve, begin, end, bits - 1);
+    const Index first = add(curve, begin, half, bits - 1), second = add(curve, half, end, bits - 1);
     return add_square(begin, end, first, second);
+  }
+  Index add_crowded(Index begin, Index end) {
+    const auto of_square = [&](const LargeArray<double>& all) { return std::span(all).subspan(begin, end - begin); };
+    const LargeArray<std::uint32_t> places = places_in_square(of_square(sites_.x), of_square(sites_.y), stage_);
+    if (places.empty()) return add_square(begin, end, k_none, k_none);
+    return add({places, begin}, begin, end, k_all_bits);
   }
   Index add_square(Index begin, Index end, Index first, Index second) {
     const Index square = static_cast<Index>(squares_.size()), start = first == k_none ? square : squares_[first].start;
@@ -48,8 +66,9 @@ class SquareTree {
     return square;
   }
 
-  const LargeArray<std::uint32_t>& places_;
+  const OrderedSites& sites_;
   Index size_;
+  const JobStage& stage_;
   std::vector<Square> squares_;
 };
 
@@ -281,8 +300,9 @@ Triangulation triangulate(const OrderedSites& sites, Index tile_size, int thread
   result.twins.resize(static_cast<std::size_t>(8) * count);
   result.leaving.reserve(count + 1);  // one more, for who takes the memory over
   result.leaving.resize(count);
-  SquareTree tree(sites.places, count, tile_size);
-  TileWork(sites, tree.squares(), result, threads).run(stage);
+  const JobStage parting = stage.part(0, 0.05);
+  SquareTree tree(sites, tile_size, parting);
+  TileWork(sites, tree.squares(), result, threads).run(stage.part(0.05, 1));
   const MeshPart& all = tree.squares().back().part;
   result.is_line = !all.has_triangles;
   for (const auto& [begin, end] : all.free)
@@ -290,25 +310,28 @@ Triangulation triangulate(const OrderedSites& sites, Index tile_size, int thread
   return result;
 }
 
-std::vector<Index> along_line(const OrderedSites& sites) {
+namespace {
+
+/// Ranks of sites that are all on one line, from one end to the other.
+std::vector<Index> along_line(const OrderedSites& sites, const JobStage& stage) {
   std::vector<Index> along(sites.count());
   std::iota(along.begin(), along.end(), 0);
   std::sort(along.begin(), along.end(), [&](Index a, Index b) {
+    stage.check();
     return sites.x[a] != sites.x[b] ? sites.x[a] < sites.x[b] : sites.y[a] < sites.y[b];
   });
   return along;
 }
 
-namespace {
-
-NeighbourLists neighbours_on_line(const OrderedSites& sites) {
-  const std::vector<Index> along = along_line(sites);
+NeighbourLists neighbours_on_line(const OrderedSites& sites, const JobStage& stage) {
+  const std::vector<Index> along = along_line(sites, stage);
   const Index count = sites.count();
   std::vector<Index> place(count);
   for (Index i = 0; i < count; ++i) place[along[i]] = i;
   NeighbourLists lists;
   lists.offsets.push_back(0);
   for (Index site = 0; site < count; ++site) {
+    stage.check();
     if (place[site] > 0) lists.neighbours.push_back(along[place[site] - 1]);
     if (place[site] + 1 < count) lists.neighbours.push_back(along[place[site] + 1]);
     lists.offsets.push_back(static_cast<Index>(lists.neighbours.size()));
@@ -318,8 +341,8 @@ NeighbourLists neighbours_on_line(const OrderedSites& sites) {
 
 }  // namespace
 
-NeighbourLists neighbours_of(const Triangulation& triangulation, const OrderedSites& sites) {
-  if (triangulation.is_line) return neighbours_on_line(sites);
+NeighbourLists neighbours_of(const Triangulation& triangulation, const OrderedSites& sites, const JobStage& stage) {
+  if (triangulation.is_line) return neighbours_on_line(sites, stage);
   NeighbourLists lists;
   lists.offsets.reserve(sites.count() + 1);
   lists.offsets.push_back(0);

@@ -28,9 +28,6 @@ struct NeighbourLists {
   LargeArray<Index> offsets;     ///< (n + 1)
   LargeArray<Index> neighbours;  ///< ranks
 };
-NeighbourLists neighbours_of(const Triangulation& triangulation, const OrderedSites& sites);
-
-/// Ranks of sites that are all on one line, from one end to the other.
-std::vector<Index> along_line(const OrderedSites& sites);
+NeighbourLists neighbours_of(const Triangulation& triangulation, const OrderedSites& sites, const JobStage& stage);
 
 }  // namespace saddleback::voronoi2d

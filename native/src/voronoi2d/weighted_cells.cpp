@@ -108,7 +108,7 @@ WeightedCells::WeightedCells(const WeightedSites& sites, Index tile_size, int th
   const OrderedSites places = places_of(sites_);
   Triangulation triangulation = triangulate(places, tile_size, threads_, stage.part(0, 0.5));
   if (triangulation.is_line) {
-    line_ = neighbours_of(triangulation, places);
+    line_ = neighbours_of(triangulation, places, stage.part(0.5, 0.8));
   } else {
     mesh_.emplace(std::move(triangulation), sites_.points);
     mesh_->improve(threads_, stage.part(0.5, 0.8));
