@@ -17,11 +17,11 @@ struct Diagram {
 Diagram find_diagram(const py::object& sites, const py::object& weights, const py::object& domain,
                      const py::object& circles, const py::object& threads, const std::string& device,
                      const py::object& job) {
-  LargeArray<Vec2> points = as_large_points_2d(sites, "sites");
+  Voronoi2dOptions options{.circles = as_integer(circles, "circles"), .threads = as_integer(threads, "threads")};
+  LargeArray<Vec2> points = as_large_points_2d(sites, "sites", options.threads);
   const std::vector<double> radii = as_weights(weights, points.size());
   std::optional<PlanarDomain> within;
   if (!domain.is_none()) within = as_domain(domain, "domain");
-  Voronoi2dOptions options{.circles = as_integer(circles, "circles"), .threads = as_integer(threads, "threads")};
   Job* const token = as_job(job);
   ClippedCells clipped;
   constexpr std::size_t k_worth_a_device = 50'000;

@@ -2,24 +2,19 @@
 
 namespace saddleback::bindings {
 
-namespace {
-
-template <class Points>
-Points as_points_of(const py::object& value, const char* name) {
+std::vector<Vec2> as_points_2d(const py::object& value, const char* name) {
   const ArrayIn<double> in = as_points2(value, name);
-  Points points(in.count);
+  std::vector<Vec2> points(in.count);
   for (Index i = 0; i < in.count; ++i) points[i] = {in.values[2 * i], in.values[2 * i + 1]};
   return points;
 }
 
-}  // namespace
-
-std::vector<Vec2> as_points_2d(const py::object& value, const char* name) {
-  return as_points_of<std::vector<Vec2>>(value, name);
-}
-
-LargeArray<Vec2> as_large_points_2d(const py::object& value, const char* name) {
-  return as_points_of<LargeArray<Vec2>>(value, name);
+LargeArray<Vec2> as_large_points_2d(const py::object& value, const char* name, int threads) {
+  static_assert(sizeof(Vec2) == 2 * sizeof(double));
+  const ArrayIn<double> in = as_points2(value, name);
+  LargeArray<Vec2> points(in.count);
+  copy_large(points.data(), in.values.data(), points.size() * sizeof(Vec2), threads);
+  return points;
 }
 
 std::vector<double> as_weights(const py::object& value, std::size_t site_count) {

@@ -1,4 +1,4 @@
-// Finding a graph's arcs on a CUDA device. A warp takes a source or two at a time, with all their windows in shared
+// Finding a graph's arcs on a CUDA device. A warp takes a source at a time, with all its windows in shared
 // memory; sources that overflow it are done again with room in global memory, and what overflows even that is left to
 // the caller. The answer is the processor's, to the bit.
 
@@ -31,14 +31,14 @@ template <bool All_, int Ring, int Slots, bool RingsAreShared>
 struct Room {
   static constexpr bool All = All_;
   [[maybe_unused]] static constexpr bool rings_are_shared = RingsAreShared;
-  using Table = WaveTable<All, 1, Slots>;
+  using Table = WaveTable<All, Slots>;
   using Rings = WaveRings<All, Ring>;
   [[maybe_unused]] static constexpr std::size_t shared_bytes = sizeof(Table) + (RingsAreShared ? sizeof(Rings) : 0);
 };
 template <bool All>
 using SmallRoom = Room<All, 48, 256, true>;
 template <bool All>
-using MiddleRoom = Room<All, All ? 160 : 112, 512, false>;
+using MiddleRoom = Room<All, All ? 160 : 112, All ? 384 : 512, false>;
 template <bool All>
 using WideRoom = Room<All, 512, 2048, false>;
 /// In global memory, two thousand sources at a time.
@@ -50,6 +50,13 @@ __global__ void look_for_extremes(const double* lengths, std::int32_t count, int
   for (auto i = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); i < count;
        i += static_cast<std::int32_t>(gridDim.x * blockDim.x))
     if (!(lengths[i] < k_longest && lengths[i] * k_longest > 1)) *has_extremes = 1;
+}
+
+/// Sees to it that who looks a record up need not look up its apex as well.
+__global__ void note_saddles(EdgeRecord* records, std::int32_t count, const std::uint8_t* saddles) {
+  for (auto i = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); i < count;
+       i += static_cast<std::int32_t>(gridDim.x * blockDim.x))
+    records[i].apex_is_saddle = saddles[records[i].apex];
 }
 
 struct Work {
@@ -65,35 +72,28 @@ template <class Room>
 __device__ void work_through(const DeviceMesh& mesh, const Work& work, typename Room::Table& table,
                              typename Room::Rings& rings, Sighting* draft, int draft_room, const DeviceRows& rows) {
   const int lane = threadIdx.x & 31;
-  constexpr int k_sources = Room::Table::Sources;
   WarpWaves<Room::All, typename Room::Table, typename Room::Rings> waves(mesh, table, rings, draft, draft_room);
   while (true) {
-    std::int32_t start = 0;
-    if (lane == 0) start = atomicAdd(work.next, k_sources);
-    start = __shfl_sync(k_warp, start, 0);
-    if (start >= work.count) return;
-    const int sources = min(k_sources, work.count - start);
-    const auto node_of = [&](int source) {
-      return work.nodes ? work.nodes[start + source] : work.begin + start + source;
-    };
-    waves.begin();
-    for (int source = 0; source < sources; ++source) waves.add_node(source, node_of(source));
+    std::int32_t number = 0;
+    if (lane == 0) number = atomicAdd(work.next, 1);
+    number = __shfl_sync(k_warp, number, 0);
+    if (number >= work.count) return;
+    const std::int32_t node = work.nodes ? work.nodes[number] : work.begin + number;
+    waves.begin(node);
     if (*work.fails == 0 && waves.run()) {
-      for (int source = 0; source < sources; ++source) {
-        int count = 0;
-        waves.for_each_kept(source, [&](const Sighting&, unsigned kept) { count += __popc(kept); });
-        const RowPlace row = rows.reserve(node_of(source), count);
-        std::int64_t at = row.first;
-        waves.for_each_kept(source, [&](const Sighting& seen, unsigned kept) {
-          if (row.fits && (kept >> lane & 1)) {
-            const auto [word, back_sector] = waves.arc_of(seen);
-            rows.put(at + __popc(kept & ((1u << lane) - 1)), word, back_sector);
-          }
-          at += __popc(kept);
-        });
-      }
-    } else if (lane < sources) {
-      work.failed[atomicAdd(work.failures, 1)] = node_of(lane);
+      int count = 0;
+      waves.for_each_kept([&](const Sighting&, unsigned kept) { count += __popc(kept); });
+      const RowPlace row = rows.reserve(node, count);
+      std::int64_t at = row.first;
+      waves.for_each_kept([&](const Sighting& seen, unsigned kept) {
+        if (row.fits && (kept >> lane & 1)) {
+          const auto [word, back_sector] = waves.arc_of(seen);
+          rows.put(at + __popc(kept & ((1u << lane) - 1)), word, back_sector);
+        }
+        at += __popc(kept);
+      });
+    } else if (lane == 0) {
+      work.failed[atomicAdd(work.failures, 1)] = node;
     }
     __syncwarp();
   }
@@ -162,6 +162,8 @@ class Tables {
     fill(r.per_radian, per_radian_);
     fill(r.saddles, saddles_);
     copies.finish();
+    note_saddles<<<256, 256, 0, stream>>>(records_.data(), r.edge_count, saddles_.data());
+    check_cuda(cudaGetLastError(), "noting saddles");
   }
   const DeviceMesh& mesh() const { return mesh_; }
 
@@ -181,6 +183,11 @@ std::int64_t first_guess(const ArcTwinRequest& r, IndexRange nodes) {
   const std::int64_t per_row = r.k > 0 ? r.k + r.k / 8 + 24 : 96;
   return per_row * nodes.count() + 4096;
 }
+
+/// Of all time, at the end of each part.
+struct Share {
+  static constexpr double upload = 0.15, find = 0.55, unite = 0.6;
+};
 
 /// Which part of the work one of a team's devices has.
 struct Part {
@@ -327,7 +334,9 @@ class ArcFinder {
     return nodes;
   }
 
-  void report(double fraction) const { caller_.report(part_.member, 0.9 * fraction); }
+  void report(double fraction) const {
+    caller_.report(part_.member, Share::upload + (Share::find - Share::upload) * fraction);
+  }
 
   const ArcTwinRequest& request_;
   Part part_;
@@ -386,7 +395,7 @@ class Builder {
     exchange(mine, finder.rows(), stream);
     DeviceUnion arcs(request_.packing, finder.rows(), mine.nodes, stream);
     times.unite = watch.lap();
-    caller_.report(mine.member, 0.95);
+    caller_.report(mine.member, Share::unite);
     counts_[at] = arcs.count();
     team_.meet();
     if (mine.member == 0) {
@@ -398,7 +407,7 @@ class Builder {
     HostCopies copies(stream);
     arcs.copy(copies, std::accumulate(counts_.begin(), counts_.begin() + mine.member, std::int64_t{0}), offsets_,
               words_);
-    copies.finish([&] { caller_.report(mine.member, 0.95); });
+    copies.finish([&](double share) { caller_.report(mine.member, Share::unite + (1 - Share::unite) * share); });
     times.download = watch.lap();
   }
 

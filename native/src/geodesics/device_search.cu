@@ -159,7 +159,7 @@ class Searcher {
       if (request_.sources) copies.to_host(ordered_sources.data(), size, request_.sources + to);
     }
     watch_.start();
-    copies.finish([&] {
+    copies.finish([&](double) {
       if (!keep_going(request_.field_count)) throw Stopped();
     });
     times_.download += watch_.lap();

@@ -1,8 +1,8 @@
 #pragma once
-// What the windows of a warp's sources are kept in.
+// What the windows of a warp's source are kept in.
 //
 // What a source sees of the mesh is in a hash table of its own, since it reaches a hundred vertices or two of all there
-// are; a *slot* is an entry of that table, with the source's number in the key's low bits.
+// are; a *slot* is an entry of that table.
 
 #include <cstdint>
 
@@ -38,31 +38,29 @@ struct Sighting {
   std::int32_t unused;
 };
 
-/// A warp's windows: a ring of those behind left sides, and one of those behind right ones.
+/// A warp's windows: a ring of those behind left sides, and behind it one of those behind right ones.
 template <bool All, int Ring_>
 struct alignas(16) WaveRings {
-  static constexpr int Ring = Ring_;
-  double2 from[2][Ring], to[2][Ring];
-  float4 rays[2][Ring];  ///< right_x, right_y, left_x, left_y
-  float2 reaches[2][Ring];
-  float2 ways[All ? 1 : 2][All ? 1 : Ring];
-  std::int32_t edges[2][Ring];  ///< record * k_batch + source
-  std::int32_t roots[2][Ring];
-  float most[All ? 1 : 2][All ? 1 : Ring];
-  ushort2 ends[2][Ring];  ///< slots of the half-edge's ends
-  std::uint16_t apexes[2][Ring];
+  static constexpr int Ring = Ring_, Room = 2 * Ring;
+  double2 from[Room], to[Room];
+  float4 rays[Room];  ///< right_x, right_y, left_x, left_y
+  float2 reaches[Room];
+  float2 ways[All ? 1 : Room];
+  std::int32_t edges[Room];  ///< records
+  std::int32_t roots[Room];
+  float most[All ? 1 : Room];
+  ushort2 ends[Room];  ///< slots of the half-edge's ends
+  std::uint16_t apexes[Room];
 };
 
-/// The vertices that a warp's sources reached.
-template <bool All, int Sources_, int Slots_>
+/// The vertices that a warp's source reached.
+template <bool All, int Slots_>
 struct alignas(16) WaveTable {
-  static constexpr int Sources = Sources_, Slots = Slots_;
+  static constexpr int Slots = Slots_;
   std::uint64_t arcs[Slots];  ///< label of the shortest arc, and its number in the draft
   std::int32_t labels[Slots];
-  std::uint32_t keys[Slots];                    ///< node * k_batch + source
+  std::uint32_t keys[Slots];                    ///< nodes
   std::uint32_t changed[All ? Slots / 32 : 1];  ///< bits: neighbours may have to be told of the label
-  float limits[Sources];
-  std::int32_t nodes[Sources];
   std::uint16_t todo[All ? Slots : 1];
 };
 

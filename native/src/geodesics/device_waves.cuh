@@ -1,5 +1,5 @@
 #pragma once
-// Windows of a few sources, kept and advanced by the 32 lanes of a warp: the twin of DiskFinder, to the bit.
+// Windows of a source, kept and advanced by the 32 lanes of a warp: the twin of DiskFinder, to the bit.
 //
 // As there, generations have no order but their own: all windows of one look at their apexes, the labels are lowered,
 // then all are split.
@@ -31,21 +31,21 @@ struct LaneApex {
   double x, y;
   ApexView view;
   float way;
-  bool direct;
+  bool direct, is_saddle;
   std::int32_t left, right, node;
 };
 
-/// Sources from their first windows to their rows of arcs.
+/// A source from its first windows to its row of arcs.
 template <bool All, class Table, class Rings>
 class WarpWaves {
-  static constexpr int k_ring = Rings::Ring, k_slots = Table::Slots, k_sources = Table::Sources;
+  static constexpr int k_ring = Rings::Ring, k_slots = Table::Slots;
 
  public:
-  /// `draft` has room for the sightings of all sources that make arcs.
+  /// `draft` has room for the sightings that make arcs.
   SADDLEBACK_STEP WarpWaves(const DeviceMesh& mesh, Table& table, Rings& rings, Sighting* draft, int draft_room)
       : mesh_(mesh), table_(table), rings_(rings), draft_(draft), draft_room_(draft_room), lane_(threadIdx.x & 31) {}
 
-  SADDLEBACK_STEP void begin() {
+  SADDLEBACK_STEP void begin(std::int32_t node) {
     for (int i = lane_; i < k_slots; i += 32) {
       table_.keys[i] = k_no_key;
       table_.labels[i] = k_unreached_label;
@@ -53,23 +53,20 @@ class WarpWaves {
     }
     if constexpr (All)
       for (int i = lane_; i < k_slots / 32; i += 32) table_.changed[i] = 0;
-    if (lane_ < k_sources) table_.limits[lane_] = __int_as_float(k_unreached_label);
+    node_ = node;
+    limit_ = __int_as_float(k_unreached_label);
     left_head_ = right_head_ = left_count_ = right_count_ = 0;
     arcs_ = 0;
     generation_ = 0;
     overflow_ = false;
     __syncwarp();
-  }
-
-  SADDLEBACK_STEP void add_node(int source, std::int32_t node) {
     if (lane_ == 0) {
-      table_.nodes[source] = node;
-      const int centre = insert(node, source);
+      const int centre = insert(node);
       if (centre >= 0) table_.labels[centre] = label_of(0, false);
     }
     __syncwarp();
     const std::int32_t end = mesh_.first[node + 1];
-    for (std::int32_t base = mesh_.first[node]; base < end; base += 32) add_edges(source, base + lane_, end);
+    for (std::int32_t base = mesh_.first[node]; base < end; base += 32) add_edges(base + lane_, end);
     links_ = arcs_;
   }
 
@@ -89,11 +86,11 @@ class WarpWaves {
         const int now = min(32, all - base), lefts_now = max(0, min(32, lefts - base));
         if (all > 32) {  // otherwise what a window saw is still in its lane
           const int p = base + (lane_ < now ? lane_ : 0);
-          const Place place = p < lefts ? Place{0, wrapped(left_head_ + p - lefts_used)}
-                                        : Place{1, wrapped(right_head_ + p - lefts - rights_used)};
+          const int place = p < lefts ? wrapped(left_head_ + p - lefts_used)
+                                      : k_ring + wrapped(right_head_ + p - lefts - rights_used);
           w = load(place);
           apex = look(w);
-          slot = rings_.apexes[place.ring][place.at];
+          slot = rings_.apexes[place];
           __syncwarp();
         }
         left_head_ = wrapped(left_head_ + lefts_now);
@@ -108,26 +105,23 @@ class WarpWaves {
     }
     if constexpr (All) {
       for (bool smaller = true; smaller && !overflowed();) {
-        smaller = false;
-        for (int source = 0; source < k_sources; ++source) smaller |= bound_disk(source);
+        smaller = bound_disk();
         relax_bends();
       }
     }
     return !overflowed();
   }
 
-  /// Calls use(sighting, lanes) for a source's arcs to keep, 32 sightings at a time: `lanes` are those that hold one.
+  /// Calls use(sighting, lanes) for the arcs to keep, 32 sightings at a time: `lanes` are those that hold one.
   template <class Use>
-  SADDLEBACK_STEP void for_each_kept(int source, Use&& use) const {
+  SADDLEBACK_STEP void for_each_kept(Use&& use) const {
     for (int base = 0; base < arcs_; base += 32) {
       const int i = base + lane_;
       bool kept = false;
       if (i < arcs_) {
         const int slot = draft_[i].slot;
-        if (is_of(slot, source)) {
-          const bool shortest = static_cast<std::uint32_t>(table_.arcs[slot]) == static_cast<std::uint32_t>(i);
-          kept = i < links_ ? shortest || !is_kept(slot, source) : shortest && is_kept(slot, source);
-        }
+        const bool shortest = static_cast<std::uint32_t>(table_.arcs[slot]) == static_cast<std::uint32_t>(i);
+        kept = i < links_ ? shortest || !is_kept(slot) : shortest && is_kept(slot);
       }
       use(draft_[i < arcs_ ? i : 0], __ballot_sync(k_warp, kept));
     }
@@ -138,15 +132,12 @@ class WarpWaves {
     std::uint8_t back_sector;
   };
   SADDLEBACK_STEP Arc arc_of(const Sighting& seen) const {
-    const std::uint32_t key = table_.keys[seen.slot];
-    const std::int32_t target = static_cast<std::int32_t>(key >> k_batch_bits);
+    const auto target = static_cast<std::int32_t>(table_.keys[seen.slot]);
     float leaving, back;
     if (seen.root >= 0) {
       const float x = static_cast<float>(seen.place.x), y = static_cast<float>(seen.place.y);
-      const std::int32_t node = table_.nodes[key & (k_batch - 1)];
-      leaving = mesh_.sectors[seen.root] + angle_of(x, y) * mesh_.per_radian[node];
-      back = mesh_.apex_sectors[seen.edge >> k_batch_bits] +
-             angle_back(x, y, seen.side.x, seen.side.y) * mesh_.per_radian[target];
+      leaving = mesh_.sectors[seen.root] + angle_of(x, y) * mesh_.per_radian[node_];
+      back = mesh_.apex_sectors[seen.edge] + angle_back(x, y, seen.side.x, seen.side.y) * mesh_.per_radian[target];
     } else if (seen.edge == 0) {
       leaving = mesh_.sectors[~seen.root];
       back = mesh_.reverse_sectors[~seen.root];
@@ -164,8 +155,8 @@ class WarpWaves {
   SADDLEBACK_STEP unsigned below() const { return (1u << lane_) - 1; }
 
   /// The slot of a node, made if need be. Any lanes may call it at once.
-  SADDLEBACK_STEP int insert(std::int32_t node, int source) {
-    const std::uint32_t key = static_cast<std::uint32_t>(node) << k_batch_bits | static_cast<std::uint32_t>(source);
+  SADDLEBACK_STEP int insert(std::int32_t node) {
+    const auto key = static_cast<std::uint32_t>(node);
     std::uint32_t at = __umulhi(key * 2654435769u, k_slots);
     for (int tries = 0; tries < k_slots / 2; ++tries) {
       const std::uint32_t there = table_.keys[at];
@@ -180,10 +171,11 @@ class WarpWaves {
     return -1;
   }
 
-  SADDLEBACK_STEP void lower_label(int slot, std::int32_t label) {
+  /// `bends` unless only straight ways are known to go on from there: neighbours then have to be told of the label.
+  SADDLEBACK_STEP void lower_label(int slot, std::int32_t label, bool bends) {
     const std::int32_t before = atomicMin(&table_.labels[slot], label);
     if constexpr (All)
-      if (label < before) atomicOr(&table_.changed[slot / 32], 1u << (slot % 32));
+      if (bends && label < before) atomicOr(&table_.changed[slot / 32], 1u << (slot % 32));
   }
 
   SADDLEBACK_STEP void put_arc(int number, std::int32_t label, const Sighting& seen) {
@@ -197,7 +189,7 @@ class WarpWaves {
   }
 
   /// Links and first windows of the source's edges.
-  SADDLEBACK_STEP void add_edges(int source, std::int32_t e, std::int32_t end) {
+  SADDLEBACK_STEP void add_edges(std::int32_t e, std::int32_t end) {
     const bool active = e < end;
     EdgeRecord record{};
     double length = 1;
@@ -213,16 +205,16 @@ class WarpWaves {
     const double apex_x = record.a * length, apex_y = record.b * length, other = norm_of(apex_x, apex_y);
     int to = -1, apex = -1;
     if (active) {
-      to = insert(target, source);
-      apex = insert(record.apex, source);
+      to = insert(target);
+      apex = insert(record.apex);
     }
     if (active && to >= 0 && apex >= 0) {
       const std::int32_t label = label_of(static_cast<float>(norm_of(length, 0)), true);
-      lower_label(to, label);
+      lower_label(to, label, true);
       put_arc(number, label, {{length, 0}, {0, 0}, 0, ~e, to, 0});
       if (boundary) {
         const std::int32_t far = label_of(static_cast<float>(norm_of(other, 0)), true);
-        lower_label(apex, far);
+        lower_label(apex, far, true);
         put_arc(number + 1, far, {{other, 0}, {0, 0}, 1, ~e, apex, 0});
       }
     }
@@ -233,19 +225,19 @@ class WarpWaves {
     } else if (opens) {
       const int i = left_count_ + __popc(opening & below());
       const double right_reach = norm_of(length, 0), left_reach = other;
-      rings_.from[0][i] = {apex_x, apex_y};
-      rings_.to[0][i] = {length, 0};
-      rings_.rays[0][i] = {static_cast<float>(length / right_reach), static_cast<float>(0 / right_reach),
-                           static_cast<float>(apex_x / left_reach), static_cast<float>(apex_y / left_reach)};
+      rings_.from[i] = {apex_x, apex_y};
+      rings_.to[i] = {length, 0};
+      rings_.rays[i] = {static_cast<float>(length / right_reach), static_cast<float>(0 / right_reach),
+                        static_cast<float>(apex_x / left_reach), static_cast<float>(apex_y / left_reach)};
       const float2 reach{static_cast<float>(right_reach), static_cast<float>(left_reach)};
-      rings_.reaches[0][i] = reach;
+      rings_.reaches[i] = reach;
       if constexpr (!All) {
-        rings_.ways[0][i] = reach;
-        rings_.most[0][i] = __int_as_float(k_unreached_label);
+        rings_.ways[i] = reach;
+        rings_.most[i] = __int_as_float(k_unreached_label);
       }
-      rings_.edges[0][i] = record.right * k_batch + source;
-      rings_.roots[0][i] = e;
-      rings_.ends[0][i] = make_ushort2(static_cast<unsigned short>(apex), static_cast<unsigned short>(to));
+      rings_.edges[i] = record.right;
+      rings_.roots[i] = e;
+      rings_.ends[i] = make_ushort2(static_cast<unsigned short>(apex), static_cast<unsigned short>(to));
     }
     left_count_ += __popc(opening);
     arcs_ += __popc(actives) + __popc(boundaries);
@@ -254,37 +246,34 @@ class WarpWaves {
 
   SADDLEBACK_STEP static int wrapped(int at) { return at < k_ring ? at : at - k_ring; }
 
-  struct Place {
-    int ring, at;
-  };
   /// Of the window that is p-th in its generation, lefts first.
-  SADDLEBACK_STEP Place place_of(int p, int lefts) const {
-    return p < lefts ? Place{0, wrapped(left_head_ + p)} : Place{1, wrapped(right_head_ + p - lefts)};
+  SADDLEBACK_STEP int place_of(int p, int lefts) const {
+    return p < lefts ? wrapped(left_head_ + p) : k_ring + wrapped(right_head_ + p - lefts);
   }
 
-  SADDLEBACK_STEP LaneWindow load(const Place& place) const {
-    const float4 rays = rings_.rays[place.ring][place.at];
-    const float2 reach = rings_.reaches[place.ring][place.at];
-    LaneWindow w{rings_.from[place.ring][place.at],
-                 rings_.to[place.ring][place.at],
+  SADDLEBACK_STEP LaneWindow load(int place) const {
+    const float4 rays = rings_.rays[place];
+    const float2 reach = rings_.reaches[place];
+    LaneWindow w{rings_.from[place],
+                 rings_.to[place],
                  {rays.x, rays.y, rays.z, rays.w, reach.x, reach.y},
                  0,
                  0,
                  0,
-                 rings_.edges[place.ring][place.at],
-                 rings_.roots[place.ring][place.at],
-                 rings_.ends[place.ring][place.at]};
+                 rings_.edges[place],
+                 rings_.roots[place],
+                 rings_.ends[place]};
     if constexpr (!All) {
-      const float2 ways = rings_.ways[place.ring][place.at];
+      const float2 ways = rings_.ways[place];
       w.right_way = ways.x;
       w.left_way = ways.y;
-      w.most = rings_.most[place.ring][place.at];
+      w.most = rings_.most[place];
     }
     return w;
   }
 
   SADDLEBACK_STEP LaneApex look(const LaneWindow& w) const {
-    const EdgeRecord& record = mesh_.records[w.edge >> k_batch_bits];
+    const EdgeRecord& record = mesh_.records[w.edge];
     const double along_x = w.to.x - w.from.x, along_y = w.to.y - w.from.y;
     LaneApex apex;
     apex.x = w.from.x + (record.a * along_x - record.b * along_y);
@@ -292,6 +281,7 @@ class WarpWaves {
     apex.left = record.left;
     apex.right = record.right;
     apex.node = record.apex;
+    apex.is_saddle = record.apex_is_saddle != 0;
     apex.view = view_apex(static_cast<float>(apex.x), static_cast<float>(apex.y), w.rays);
     apex.direct = apex.view.inside;
     if constexpr (!All) {
@@ -305,18 +295,18 @@ class WarpWaves {
   /// 32 windows of the generation look at their apexes and lower the labels. \return the slot of the lane's apex.
   SADDLEBACK_STEP int sight(int base, int lefts, int all, LaneWindow& w, LaneApex& apex) {
     const bool active = base + lane_ < all;
-    const Place place = place_of(active ? base + lane_ : 0, lefts);
+    const int place = place_of(active ? base + lane_ : 0, lefts);
     bool makes_arc = false;
     int slot = -1;
     std::int32_t label = 0;
     w = load(place);
     apex = look(w);
     if (active) {
-      slot = insert(apex.node, w.edge & (k_batch - 1));
-      if (all > 32) rings_.apexes[place.ring][place.at] = static_cast<std::uint16_t>(slot);
+      slot = insert(apex.node);
+      if (all > 32) rings_.apexes[place] = static_cast<std::uint16_t>(slot);
       if (slot >= 0 && apex.view.in_sight) {
         label = label_of(apex.view.reach, apex.direct);
-        lower_label(slot, label);
+        lower_label(slot, label, !apex.direct || apex.is_saddle);
         makes_arc = apex.direct;
       }
     }
@@ -338,7 +328,7 @@ class WarpWaves {
   SADDLEBACK_STEP void bend() {
     if constexpr (All) {
       if (++generation_ % k_disk_generations_per_bound != 0) return;
-      for (int source = 0; source < k_sources; ++source) bound_disk(source);
+      bound_disk();
       relax_bends();
     }
   }
@@ -355,8 +345,7 @@ class WarpWaves {
     ApexView view = apex.view;
     Rays rays = w.rays;
     ApexRay ray = ray_to(view);
-    // One after the other in the same code: it is larger than the cache of instructions likes as it is.
-#pragma unroll 1
+#pragma unroll
     for (int ring = 0; ring < 2; ++ring) {
       const Side side = left_side(face, view, rays, active && (ring == 0 ? apex.left : apex.right) >= 0);
       put_child(ring, side, look_at(side), ray, w, apex, slot);
@@ -370,9 +359,8 @@ class WarpWaves {
   SADDLEBACK_STEP void put_child(int ring, const Side& side, const Child& child, const ApexRay& ray,
                                  const LaneWindow& w, const LaneApex& apex, int slot) {
     float most = w.most;
-    const int source = w.edge & (k_batch - 1);
     if constexpr (All) {
-      most = table_.limits[source];
+      most = limit_;
     } else if (apex.view.inside && child.useful) {
       most = bound_child(side, ray, {apex.view.reach, apex.way},
                          {ring == 0 ? w.rays.left_reach : w.rays.right_reach, ring == 0 ? w.left_way : w.right_way},
@@ -387,60 +375,55 @@ class WarpWaves {
     }
     if (keep) {
       const int head = ring == 0 ? left_head_ : right_head_;
-      const int i = wrapped(wrapped(head + count) + __popc(keeping & below()));
+      const int i = ring * k_ring + wrapped(wrapped(head + count) + __popc(keeping & below()));
       // The apex's ray takes the place of the far one where the light ends there.
       const bool left = ring == 0, right_is_apex = left && side.cut, left_is_apex = !left && side.cut;
       const float2 apex_ray{ray.x, left ? ray.y : -ray.y};
       const double2 place{apex.x, apex.y};
-      rings_.from[ring][i] = left ? w.from : place;
-      rings_.to[ring][i] = left ? place : w.to;
+      rings_.from[i] = left ? w.from : place;
+      rings_.to[i] = left ? place : w.to;
       const float2 right = right_is_apex ? apex_ray : float2{w.rays.right_x, w.rays.right_y};
       const float2 other = left_is_apex ? apex_ray : float2{w.rays.left_x, w.rays.left_y};
-      rings_.rays[ring][i] = {right.x, right.y, other.x, other.y};
-      rings_.reaches[ring][i] = {right_is_apex ? apex.view.reach : w.rays.right_reach,
-                                 left_is_apex ? apex.view.reach : w.rays.left_reach};
+      rings_.rays[i] = {right.x, right.y, other.x, other.y};
+      rings_.reaches[i] = {right_is_apex ? apex.view.reach : w.rays.right_reach,
+                           left_is_apex ? apex.view.reach : w.rays.left_reach};
       if constexpr (!All) {
-        rings_.ways[ring][i] = {right_is_apex ? apex.way : w.right_way, left_is_apex ? apex.way : w.left_way};
-        rings_.most[ring][i] = most;
+        rings_.ways[i] = {right_is_apex ? apex.way : w.right_way, left_is_apex ? apex.way : w.left_way};
+        rings_.most[i] = most;
       }
-      rings_.edges[ring][i] = (left ? apex.left : apex.right) * k_batch + source;
-      rings_.roots[ring][i] = w.root;
+      rings_.edges[i] = left ? apex.left : apex.right;
+      rings_.roots[i] = w.root;
       const auto here = static_cast<unsigned short>(slot);
-      rings_.ends[ring][i] = left ? make_ushort2(w.ends.x, here) : make_ushort2(here, w.ends.y);
+      rings_.ends[i] = left ? make_ushort2(w.ends.x, here) : make_ushort2(here, w.ends.y);
     }
     (ring == 0 ? left_count_ : right_count_) = count + __popc(keeping);
     __syncwarp();
   }
 
-  SADDLEBACK_STEP bool is_kept(int slot, int source) const {
+  SADDLEBACK_STEP bool is_kept(int slot) const {
     const float reach = distance_of(static_cast<std::int32_t>(table_.arcs[slot] >> 32));
     return reach < distance_of(k_unreached_label) &&
-           reach <= mesh_.slack * static_cast<double>(distance_of(table_.labels[slot])) &&
-           reach <= table_.limits[source];
+           reach <= mesh_.slack * static_cast<double>(distance_of(table_.labels[slot])) && reach <= limit_;
   }
 
-  SADDLEBACK_STEP bool is_of(int slot, int source) const {
-    return k_sources == 1 || static_cast<int>(table_.keys[slot] & (k_batch - 1)) == source;
-  }
-  /// Slots of a source with labels up to one.
-  SADDLEBACK_STEP int count_labels(int source, std::int32_t most) const {
+  /// Slots with labels up to one.
+  SADDLEBACK_STEP int count_labels(std::int32_t most) const {
     int count = 0;
-    for (int i = lane_; i < k_slots; i += 32) count += table_.labels[i] <= most && is_of(i, source);
+    for (int i = lane_; i < k_slots; i += 32) count += table_.labels[i] <= most;
     return warp_sum(count);
   }
 
-  /// Lowers the radius of a source's disk to that of the k-th nearest vertex, as far as is known.
-  SADDLEBACK_STEP bool bound_disk(int source) {
+  /// Lowers the radius of the disk to that of the k-th nearest vertex, as far as is known.
+  SADDLEBACK_STEP bool bound_disk() {
     __syncwarp();
     const int wanted = mesh_.k + 1;  // a node is its own nearest
-    const float limit = table_.limits[source];
-    std::int32_t low = -1, high = min(__float_as_int(limit), k_unreached_label - 1);
+    std::int32_t low = -1, high = min(__float_as_int(limit_), k_unreached_label - 1);
     // The k-th label is at most the limit over k_disk_as_far, once there is one.
-    int count = count_labels(source, high);
+    int count = count_labels(high);
     if (count < wanted) return false;
     while (count != wanted && high - low > 1) {
       const std::int32_t middle = low + (high - low) / 2;
-      const int there = count_labels(source, middle);
+      const int there = count_labels(middle);
       if (there >= wanted) {
         high = middle;
         count = there;
@@ -450,56 +433,54 @@ class WarpWaves {
     }
     std::int32_t kth = 0;
     for (int i = lane_; i < k_slots; i += 32)
-      if (table_.labels[i] <= high && is_of(i, source)) kth = max(kth, table_.labels[i]);
-    kth = warp_max(kth);
-    const float radius = distance_of(kth) * k_disk_as_far;
-    __syncwarp();
-    if (!(radius < limit)) return false;
-    if (lane_ == 0) table_.limits[source] = radius;
-    __syncwarp();
+      if (table_.labels[i] <= high) kth = max(kth, table_.labels[i]);
+    const float radius = distance_of(warp_max(kth)) * k_disk_as_far;
+    if (!(radius < limit_)) return false;
+    limit_ = radius;
     return true;
   }
 
   /// As DiskFinder::relax_bends: what bends make of the labels does not depend on the order in which they are told.
   SADDLEBACK_STEP void relax_bends() {
-    __syncwarp();
-    while (true) {
-      int count = 0;
-      for (int base = 0; base < k_slots; base += 32) {
-        const int slot = base + lane_;
-        const std::uint32_t word = table_.changed[base / 32];
-        if (word == 0) continue;
-        bool tells = false, done = false;
-        if (word >> lane_ & 1) {
-          const std::int32_t label = table_.labels[slot];
-          const std::uint32_t key = table_.keys[slot];
-          const float limit = table_.limits[k_sources == 1 ? 0 : key & (k_batch - 1)];
-          done = limit < distance_of(k_unreached_label);
-          tells = done && distance_of(label) < limit && ((label & 1) != 0 || mesh_.saddles[key >> k_batch_bits] != 0);
-        }
-        const unsigned telling = __ballot_sync(k_warp, tells), over = __ballot_sync(k_warp, done);
-        if (tells) table_.todo[count + __popc(telling & below())] = static_cast<std::uint16_t>(slot);
-        __syncwarp();
-        if (lane_ == 0) table_.changed[base / 32] = word & ~over;
-        count += __popc(telling);
-      }
-      __syncwarp();
-      if (count == 0) return;
+    if (!(limit_ < distance_of(k_unreached_label))) return;
+    while (const int count = list_changed()) {
       for (int i = lane_ / 8; i < count; i += 4) tell_neighbours(table_.todo[i]);
       if (overflowed()) return;
     }
   }
 
+  /// Takes the slots that are marked as changed into the list of those to do. \return how many
+  SADDLEBACK_STEP int list_changed() {
+    __syncwarp();
+    int count = 0;
+    for (int base = 0; base < k_slots / 32; base += 32) {
+      const int at = base + lane_;
+      std::uint32_t word = at < k_slots / 32 ? table_.changed[at] : 0;
+      if (word != 0) table_.changed[at] = 0;
+      int through = __popc(word);  // of the lanes up to this one
+      for (int step = 1; step < 32; step *= 2) {
+        const int before = __shfl_up_sync(k_warp, through, step);
+        if (lane_ >= step) through += before;
+      }
+      int next = count + through - __popc(word);
+      for (; word != 0; word &= word - 1)
+        table_.todo[next++] = static_cast<std::uint16_t>(32 * at + __ffs(static_cast<int>(word)) - 1);
+      count += __shfl_sync(k_warp, through, 31);
+    }
+    __syncwarp();
+    return count;
+  }
+
+  /// By eight lanes.
   SADDLEBACK_STEP void tell_neighbours(int slot) {
     const std::int32_t label = table_.labels[slot];
-    const std::uint32_t key = table_.keys[slot];
-    const std::int32_t node = static_cast<std::int32_t>(key >> k_batch_bits);
-    const int source = static_cast<int>(key & (k_batch - 1));
+    const auto node = static_cast<std::int32_t>(table_.keys[slot]);
+    if (!(distance_of(label) < limit_) || ((label & 1) == 0 && mesh_.saddles[node] == 0)) return;
     const auto offer = [&](std::int32_t target, double length) {
-      const int there = insert(target, source);
+      const int there = insert(target);
       if (there < 0) return;
       const std::int32_t bent = label_of((distance_of(label) + static_cast<float>(length)) * k_bend_longer, false);
-      lower_label(there, bent);
+      lower_label(there, bent, true);
     };
     const std::int32_t end = mesh_.first[node + 1];
     for (std::int32_t e = mesh_.first[node] + (lane_ & 7); e < end; e += 8) {
@@ -515,6 +496,8 @@ class WarpWaves {
   Rings& rings_;
   Sighting* draft_;
   int draft_room_, lane_;
+  std::int32_t node_ = 0;
+  float limit_ = 0;                                        ///< of the disk
   int left_head_, right_head_, left_count_, right_count_;  ///< of the rings
   int arcs_ = 0, links_ = 0, generation_ = 0;
   bool overflow_ = false;

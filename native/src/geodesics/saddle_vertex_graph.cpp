@@ -41,9 +41,12 @@ void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
 }
 
 /// What finding the arcs of a vertex is expected to take.
-double expected_cost(const Mesh& mesh, Index k, double accuracy) {
-  if (k > 0) return BuildProgress::by_count(mesh, k);
-  return accuracy > 0 ? BuildProgress::by_accuracy(mesh, accuracy) : BuildProgress::by_all(mesh);
+double expected_cost(const Mesh& mesh, Index k, double accuracy, bool on_device) {
+  constexpr double k_device_cost = 0.05;  // beside that of the tables, which the processor lays
+  const double cost = k > 0          ? BuildProgress::by_count(mesh, k)
+                      : accuracy > 0 ? BuildProgress::by_accuracy(mesh, accuracy)
+                                     : BuildProgress::by_all(mesh);
+  return on_device ? k_device_cost * cost : cost;
 }
 
 }  // namespace
@@ -55,7 +58,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
   const JobStage stage(job, "Building the saddle vertex graph");
-  BuildProgress progress(mesh, expected_cost(mesh, k_, accuracy_), stage);
+  BuildProgress progress(mesh, expected_cost(mesh, k_, accuracy_, !options.cuda_devices.empty()), stage);
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
   progress.laid(0.25);
   order_nodes(options.threads, stage);
@@ -72,7 +75,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
   if (!options.cuda_devices.empty()) {
     if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
-    arcs_ = twin_arcs(search, *tables, rule, options.cuda_devices, device_times_, stage);
+    arcs_ = twin_arcs(search, *tables, rule, options.cuda_devices, device_times_, progress.joining());
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;

@@ -18,9 +18,9 @@ inline constexpr int k_row_padding = 16;
 /// A face's corner is at from + a * (to - from) + b * (to - from turned left).
 struct alignas(32) EdgeRecord {
   double a, b;
-  std::int32_t left, right;  ///< edge records behind (from, apex) and (apex, to); -1 at the boundary
-  std::int32_t apex;         ///< node
-  std::int32_t unused;
+  std::int32_t left, right;     ///< edge records behind (from, apex) and (apex, to); -1 at the boundary
+  std::int32_t apex;            ///< node
+  std::int32_t apex_is_saddle;  ///< on a CUDA device, which fills it in
 };
 
 /// Windows, a row a quantity. The source is at the origin of a plane of its own; a window shines through the part of a

@@ -94,7 +94,7 @@ class HostCopies {
     events_.emplace_back().record(stream_);  // the memory is the stream's from here on
     add({from, to, count * sizeof(Number), cudaMemcpyHostToDevice, events_.back()}, from);
   }
-  /// Waits until all is copied; calls poll() now and then, which may throw.
+  /// Waits until all is copied; calls poll(share of it that is) now and then, which may throw.
   template <class Poll>
   void finish(Poll&& poll) {
     using namespace std::chrono_literals;
@@ -102,8 +102,9 @@ class HostCopies {
     if (threads_.empty()) copy_here(poll);
     for (std::unique_lock lock(mutex_); open_ > 0 && !failure_;) {
       if (changed_.wait_for(lock, 20ms) == std::cv_status::no_timeout) continue;
+      const double share = copied_share();
       lock.unlock();
-      poll();
+      poll(share);
       lock.lock();
     }
     if (failure_) std::rethrow_exception(failure_);
@@ -111,7 +112,7 @@ class HostCopies {
     events_.clear();
   }
   void finish() {
-    finish([] {});
+    finish([](double) {});
   }
 
  private:
@@ -148,6 +149,7 @@ class HostCopies {
       pieces_.push_back({static_cast<const char*>(copy.from) + begin, static_cast<char*>(copy.to) + begin,
                          std::min(PinnedPieces::k_size, copy.size - begin), copy.kind, copy.after});
       ++open_;
+      ++added_;
     }
     const std::size_t most = std::min<std::size_t>(k_most_threads, std::max(1u, std::thread::hardware_concurrency()));
     while (open_ > k_few && threads_.size() < std::min(most, open_)) threads_.emplace_back([this] { work(); });
@@ -168,6 +170,9 @@ class HostCopies {
     }
   }
 
+  /// Of the pieces, while no thread changes them.
+  double copied_share() const { return added_ == 0 ? 0 : 1 - static_cast<double>(open_) / static_cast<double>(added_); }
+
   /// Until the device has copied all that was started.
   template <class Poll>
   void wait_aside(Poll&& poll) {
@@ -178,7 +183,7 @@ class HostCopies {
       if (state == cudaSuccess) return;
       if (state != cudaErrorNotReady) check_cuda(state, "copying between host and device");
       if (Clock::now() - asked < 20ms) continue;
-      poll();
+      poll(copied_share());
       asked = Clock::now();
       std::this_thread::sleep_for(500us);
     }
@@ -255,7 +260,7 @@ class HostCopies {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Copy> pieces_;
-  std::size_t open_ = 0;  ///< pieces not copied yet
+  std::size_t added_ = 0, open_ = 0;  ///< pieces, and those of them not copied yet
   std::exception_ptr failure_;
   bool is_closing_ = false;
 };

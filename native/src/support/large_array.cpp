@@ -9,8 +9,11 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <mutex>
+
+#include "support/parallel.h"
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #define SADDLEBACK_OWN_PAGES
 #include <sys/mman.h>
@@ -158,5 +161,15 @@ void* allocate_large(std::size_t size) {
 void free_large(void* memory, std::size_t) noexcept { std::free(memory); }
 
 #endif
+
+void copy_large(void* to, const void* from, std::size_t size, int threads) {
+  constexpr std::size_t k_piece = std::size_t{1} << 21;
+  const auto pieces = static_cast<Index>((size + k_piece - 1) / k_piece);
+  parallel_for(pieces, threads, 4, [&](Index piece, int) {
+    const std::size_t begin = static_cast<std::size_t>(piece) * k_piece;
+    std::memcpy(static_cast<char*>(to) + begin, static_cast<const char*>(from) + begin,
+                std::min(k_piece, size - begin));
+  });
+}
 
 }  // namespace saddleback
