@@ -38,15 +38,17 @@ int sight(const WaveScene& scene, const WindowRows& w, int count, const ApexRows
     Simd::store(apexes.reach + i, view.reach);
     Simd::store(apexes.from_right + i, view.from_right);
     Simd::store(apexes.to_left + i, view.to_left);
-    Mask direct = view.inside;
+    Mask direct = view.inside, in_sight = view.in_sight;
+    const Ints bits = Simd::bits_of(view.reach) & Simd::fill_int(~1);
     if constexpr (!All) {
+      // Beyond the limit nothing is wanted: half of what windows about small cells see.
+      in_sight = in_sight & !(Simd::look_up_lane(scene.limits, Simd::load(w.edge + i)) < Simd::floats_of(bits));
       const Floats detour = Simd::fill(scene.detour);
       const Floats way = way_by_flank(view, rays, Simd::load(w.right_way + i), Simd::load(w.left_way + i), detour);
       direct = direct & (detour * view.reach < way);
       Simd::store(apexes.way + i, Simd::pick(direct, view.reach, way));
     }
-    const Ints bits = Simd::bits_of(view.reach) & Simd::fill_int(~1);
-    const auto packing = Simd::packing(Simd::first(count - i) & view.in_sight);
+    const auto packing = Simd::packing(Simd::first(count - i) & in_sight);
     packing.store(seen.slot + sightings, slot);
     packing.store(seen.label + sightings, Simd::pick(direct, bits, bits | Simd::fill_int(1)));
     packing.store(seen.x + sightings, x);

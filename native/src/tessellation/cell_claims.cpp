@@ -68,7 +68,7 @@ struct CellClaims::Worker {
     bool found = false;
     SiteVector vector;
   };
-  static constexpr std::size_t k_known = 1 << 15;
+  static constexpr std::size_t k_known = 1 << 12;
   std::uint32_t round = 0;  ///< answers of earlier ones are forgotten
   std::vector<Known> known;
   const Known& find(const SiteMaps& maps, Index site, Index node) {
@@ -260,9 +260,8 @@ void CellClaims::claim_by_cells(const JobStage& stage) {
     const Index site = maps_.sites_along_curve()[i];
     if (is_kept(site)) return;
     maps_.place_cell(site, workers_[thread].scratch);
-    for (const Index node : maps_.nodes(site)) {
-      if (is_at_border(node)) claim_from(node, site, workers_[thread]);
-    }
+    for (const Index node : maps_.nodes(site))
+      if (is_at_border(node)) reach_[site] = std::max(reach_[site], claim_from(node, site, workers_[thread]));
   });
 }
 
@@ -311,8 +310,9 @@ void CellClaims::compare() {
   });
 }
 
-/// The faces about a node that are shared and have no earlier node of the cell's.
-void CellClaims::claim_from(Index node, Index site, Worker& worker) {
+/// The faces about a node that are shared and have no earlier node of the cell's. How far the site sees their corners.
+double CellClaims::claim_from(Index node, Index site, Worker& worker) {
+  double farthest = 0;
   for (const VertexRings::Wedge& wedge : rings_.around(node)) {
     const Index from = maps_.label(wedge.from), to = maps_.label(wedge.to);
     if ((from == site && (to == site || wedge.from < node)) || (to == site && wedge.to < node)) continue;
@@ -322,9 +322,12 @@ void CellClaims::claim_from(Index node, Index site, Worker& worker) {
     claim.face = face;
     claim.site = site;
     const auto& nodes = rings_.face(face).nodes;
-    for (int i = 0; i < 3; ++i) maps_.find(site, nodes[i], worker.scratch, claim.corner[i]);  // each is beside the cell
-    reach_corners(claim);
+    for (int i = 0; i < 3; ++i) {
+      maps_.find(site, nodes[i], worker.scratch, claim.corner[i]);  // each is beside the cell
+      farthest = std::max(farthest, claim.corner[i].distance);
+    }
   }
+  return farthest;
 }
 
 /// May be called by several threads at once.
@@ -544,21 +547,25 @@ void CellClaims::find_wishes(Index face, Worker& worker) const {
   visit_claims(face, [&](const FaceClaim& claim) { worker.claims.push_back(&claim); });
   for (Index i = late_index_[face]; i != k_none && i >= first_fresh_; i = late_[i].before)
     worker.fresh.push_back(late_[i].claim.site);
-  const auto wish = [&](Index site, Index twin) {
-    const bool is_fresh = first_fresh_ == 0 || std::ranges::find(worker.fresh, site) != worker.fresh.end();
-    if (is_fresh) wish_for({twin / 3, site, twin}, worker.wishes);
-  };
+  const VertexRings::Face& here = rings_.face(face);
   for (Index side = 3 * face; side < 3 * face + 3; ++side) {
-    const Index twin = rings_.face(face).twins[side % 3];
+    const Index twin = here.twins[side % 3];
     if (twin == k_none) continue;
+    // The labels of the edge's ends have claims beyond it.
+    const Index at_start = maps_.label(here.nodes[side % 3]), at_end = maps_.label(here.nodes[Mesh::next(side) % 3]);
+    const auto wish = [&](Index site) {
+      if (site == at_start || site == at_end) return;
+      const bool is_fresh = first_fresh_ == 0 || std::ranges::find(worker.fresh, site) != worker.fresh.end();
+      if (is_fresh) wish_for({twin / 3, site, twin}, worker.wishes);
+    };
     worker.lines.clear();
     for (const FaceClaim* claim : worker.claims) worker.lines.push_back(line_along(*claim, side));
     if (worker.lines.size() == 2) {
-      for (const Index site : winners(worker.lines[0], worker.lines[1])) wish(site, twin);
+      for (const Index site : winners(worker.lines[0], worker.lines[1])) wish(site);
       continue;
     }
     lower_envelope(worker.lines, worker.pieces);
-    for (const EdgePiece& piece : worker.pieces) wish(piece.site, twin);
+    for (const EdgePiece& piece : worker.pieces) wish(piece.site);
   }
 }
 

@@ -146,7 +146,7 @@ class CellClaims {
   const FaceClaim* kept_claim(Index face, Index site) const;
   void compare();
   void claim_by_cells(const JobStage& stage);
-  void claim_from(Index node, Index site, Worker& worker);
+  double claim_from(Index node, Index site, Worker& worker);
   void find_wishes_of_sites(const SurfacePoints& sites);
   void spread(const SurfacePoints& sites, const JobStage& stage);
   void forget_late();

@@ -106,6 +106,7 @@ void SiteMaps::label_all(int threads, const JobStage& stage) {
     for (Index site = 0; site < site_count(); ++site) {
       const Fan& fan = fans_[site];
       if (fan.centre != k_none) add(fan.centre, site, 0);
+      if (fan.last < first || fan.first >= last) continue;  // of another part of the surface
       for (const Seen& seen : fan.seen) add(seen.node, site, seen.rounded);
     }
   };
@@ -221,14 +222,21 @@ void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reac
   }
   if (reaches.empty()) limits.clear();
   for_each_view(graph_, points, limits, threads, stage, [&](Index i, std::span<const SeenNode> view) {
-    std::vector<Seen>& seen = fans_[of[i]].seen;
-    seen.clear();
-    for (const SeenNode& node : view) seen.push_back({node, graph_.arcs().codec().round(node.length)});
+    Fan& fan = fans_[of[i]];
+    fan.seen.clear();
+    for (const SeenNode& node : view) fan.seen.push_back({node, graph_.arcs().codec().round(node.length)});
+    fan.span_nodes();
   });
   parallel_for(static_cast<Index>(at_vertices.size()), threads, 16, [&](Index i, int) {
     stage.check();
     make_fan_at_vertex(fans_[at_vertices[i]]);
   });
+}
+
+void SiteMaps::Fan::span_nodes() {
+  const auto [least, greatest] = std::ranges::minmax_element(seen, {}, &Seen::node);
+  first = seen.empty() ? 0 : least->node;
+  last = seen.empty() ? -1 : greatest->node;
 }
 
 void SiteMaps::make_fan_at_vertex(Fan& fan) {
@@ -244,6 +252,7 @@ void SiteMaps::make_fan_at_vertex(Fan& fan) {
     const Vec2 place = polar(length, scale * unfolded.start_angle);
     fan.seen.push_back({{arcs.target(arc), k_none, length, place, Vec2(unfolded.end_angle, 0)}, rounded});
   }
+  fan.span_nodes();
 }
 
 /// Each thread counts, and later places, its own stretch of the nodes: a label's nodes are in their order.

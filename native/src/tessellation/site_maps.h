@@ -140,6 +140,8 @@ class SiteMaps {
     std::vector<Seen> seen;
     Index centre = k_none;         ///< the node that the site is
     std::array<Index, 3> corners;  ///< of its face
+    Index first = 0, last = -1;    ///< the least and the greatest of the nodes
+    void span_nodes();
   };
   /// The anchor of an edge's ends, both placed from it, seen across the edge from the third corner.
   struct Sight {
