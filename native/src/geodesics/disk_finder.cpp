@@ -276,14 +276,20 @@ bool DiskFinder::bound_disk(int lane) {
   const auto& slots = touched_[lane];
   const Index before = sources_ == Sources::nodes ? rule_.k : rule_.k - 1;  // a node is its own nearest
   if (static_cast<Index>(slots.size()) <= before) return false;
-  radii_.clear();
-  for (const std::int32_t slot : slots) radii_.push_back(distance_of(labels_[slot]));
+  // What lies beyond the radius so far does not count, and is nearly half.
+  radii_.resize(slots.size());
+  const float limit = limits_[lane];
+  auto end = radii_.begin();
+  for (const std::int32_t slot : slots) {
+    *end = distance_of(labels_[slot]);
+    end += *end <= limit;
+  }
+  if (end - radii_.begin() <= before) return false;
   const auto kth = radii_.begin() + before;
-  std::nth_element(radii_.begin(), kth, radii_.end());
+  std::nth_element(radii_.begin(), kth, end);
   const float radius = *kth * k_as_far;
-  const bool smaller = radius < limits_[lane];
-  limits_[lane] = std::min(limits_[lane], radius);
-  return smaller;
+  limits_[lane] = std::min(limit, radius);
+  return radius < limit;
 }
 
 /// No window is left: distances are final once every bend is known.
