@@ -61,7 +61,7 @@ def measured(work: Callable[[], object]) -> float:
 
 
 def repetitions(n: int) -> int:
-    return max(1, min(31, 10**6 // n))
+    return max(3, min(31, 10**6 // n))
 
 
 def compare(kind: str, n: int, threads: int, peers: Path | None, *, with_scipy: bool) -> dict[str, float]:
