@@ -31,10 +31,6 @@ std::uint64_t pair_key(Index site, Index other) {
 
 constexpr double k_unknown = -1;  ///< distance of a corner that is yet to be laid down
 
-EdgeLine line_along(const FaceClaim& claim, Index halfedge) {
-  return {claim.site, claim.squared_distance(halfedge % 3), claim.squared_distance(Mesh::next(halfedge) % 3)};
-}
-
 /// The nearest of two sites at an edge's start and at its end, as lower_envelope tells them.
 std::array<Index, 2> winners(const EdgeLine& a, const EdgeLine& b) {
   const auto nearer = [&](double of_a, double of_b) {
@@ -559,7 +555,7 @@ void CellClaims::find_wishes(Index face, Worker& worker) const {
       if (is_fresh) wish_for({twin / 3, site, twin}, worker.wishes);
     };
     worker.lines.clear();
-    for (const FaceClaim* claim : worker.claims) worker.lines.push_back(line_along(*claim, side));
+    for (const FaceClaim* claim : worker.claims) worker.lines.push_back(claim->line_along(side));
     if (worker.lines.size() == 2) {
       for (const Index site : winners(worker.lines[0], worker.lines[1])) wish(site);
       continue;
@@ -582,24 +578,6 @@ void CellClaims::wish_for(const Wish& wish, std::vector<Wish>& wishes) const {
   if (shared ? is_claimed(wish.face, wish.site) : face_site(wish.face) == wish.site) return;
   if (!shared) wishes.push_back({wish.face, face_site(wish.face), k_none});
   wishes.push_back(wish);
-}
-
-ClaimsOfCells::ClaimsOfCells(const CellClaims& cells)
-    : FaceClaims(cells.maps().graph().mesh(), cells.site_count()), cells_(cells), graph_(cells.maps().graph()) {
-  for (Index shared = 0; shared < cells.shared_count(); ++shared)
-    faces_.push_back(cells.rings().face(cells.face(shared)).in_mesh);
-  std::ranges::sort(faces_);
-  for (Index i = 0; i < shared_count(); ++i) {
-    shared_index_[faces_[i]] = i;
-    const auto claims = cells.claims(cells.shared_index(cells.rings().face_of(faces_[i])));
-    for (const FaceClaim& claim : claims) claims_.push_back({faces_[i], claim.site, claim.corner});
-    first_.push_back(static_cast<Index>(claims_.size()));
-  }
-}
-
-void FaceClaims::lines_along(Index shared, Index halfedge, std::vector<EdgeLine>& lines) const {
-  lines.clear();
-  for (const FaceClaim& claim : claims(shared)) lines.push_back(line_along(claim, halfedge));
 }
 
 }  // namespace saddleback

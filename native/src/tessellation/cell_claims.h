@@ -19,6 +19,9 @@ struct FaceClaim {
   Index face, site;
   std::array<SiteVector, 3> corner;
   double squared_distance(int i) const { return corner[i].distance * corner[i].distance; }
+  EdgeLine line_along(Index halfedge) const {
+    return {site, squared_distance(halfedge % 3), squared_distance(Mesh::next(halfedge) % 3)};
+  }
 };
 
 /// The claims on every face that several sites may share; the other faces belong to one cell.
