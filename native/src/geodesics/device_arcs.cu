@@ -38,7 +38,7 @@ struct Room {
 template <bool All>
 using SmallRoom = Room<All, 48, 256, true>;
 template <bool All>
-using MiddleRoom = Room<All, All ? 160 : 112, All ? 384 : 512, false>;
+using MiddleRoom = Room<All, All ? 160 : 112, 512, false>;
 template <bool All>
 using WideRoom = Room<All, 512, 2048, false>;
 /// In global memory, two thousand sources at a time.
