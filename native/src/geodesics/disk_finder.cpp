@@ -196,6 +196,11 @@ void DiskFinder::lower_labels(int from, int to) {
   }
 }
 
+/// Whether shortest ways may bend at a slot's vertex, so that its neighbours have to be told of its label.
+bool DiskFinder::bends(std::int32_t slot, std::int32_t label) const {
+  return !makes_arc(label) || mesh_.is_saddle(slot / k_batch);
+}
+
 // What is new and what is better cannot be foretold: nothing here depends on it but what is written.
 template <int Lists>
 void DiskFinder::lower_labels_of(int from, int to) {
@@ -219,7 +224,7 @@ void DiskFinder::lower_labels_of(int from, int to) {
     *end = slot;
     end += known == k_unreached;
     if constexpr (Lists > 1)
-      if (label < known) changed_.push_back(slot);
+      if (label < known && bends(slot, label)) changed_.push_back(slot);
   }
   for (int list = 0; list < Lists; ++list)
     touched_[list].resize(static_cast<std::size_t>(ends[list] - touched_[list].data()));
@@ -327,7 +332,7 @@ void DiskFinder::relax_from(std::int32_t slot) {
   const Index node = slot / k_batch;
   const int lane = slot % k_batch;
   const std::int32_t label = labels_[slot];
-  if (distance_of(label) >= limits_[lane] || (makes_arc(label) && !mesh_.is_saddle(node))) return;
+  if (distance_of(label) >= limits_[lane] || !bends(slot, label)) return;
   const auto offer = [&](Index target, double length) {
     const std::int32_t there = target * k_batch + lane;
     // Longer by more than rounding: what is collinear stays an arc.

@@ -105,6 +105,7 @@ class DiskFinder {
   void finish_disks();
   void bound_disks();
   void relax_bends();
+  bool bends(std::int32_t slot, std::int32_t label) const;
   void relax_from(std::int32_t slot);
 
   const WaveMesh& mesh_;
