@@ -44,7 +44,7 @@ def calls() -> dict[str, Call]:
     between, spread = [finest_inside.vertex_count // 2], sb.sample(finest_inside, 20)
     line = graph.path(0, 1000)
     curve = sb.SurfaceCurve(mesh, sb.trace(mesh, 0, 0.3, 10.0).surface)
-    balls = sb.Mesh(*meshes.merge(meshes.icosphere(6), meshes.icosphere(6)))
+    balls = sb.Mesh(*meshes.merge(*(meshes.icosphere(5) for _ in range(4))))
     return {
         "exact_distances": lambda job: sb.exact_distances(mesh, [0], job=job),
         "exact_distances_squeezed": lambda job: sb.exact_distances(squeezed, [0], job=job),

@@ -14,6 +14,8 @@ namespace {
 
 // Barycentric. Rays from nearer to a vertex cannot be told from its own.
 constexpr double k_at_vertex = 1e-12;
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+constexpr const char* k_text = "Measuring exact distances";
 
 SurfacePoints snapped_to_vertices(SurfacePoints points) {
   for (SurfacePoint& point : points)
@@ -29,22 +31,17 @@ void check(const Mesh& mesh, const SurfacePoints& sources, double limit) {
 }
 
 std::vector<double> distances_of(const ExactSurface& surface, const ExactPropagation& propagation) {
-  std::vector<double> result(surface.vertex_count());
-  for (Index v = 0; v < surface.vertex_count(); ++v) result[v] = propagation.distance(surface.vertex_of(v));
+  std::vector<double> result(surface.mesh().vertex_count(), k_infinity);
+  for (Index v = 0; v < surface.vertex_count(); ++v) result[surface.mesh_vertex(v)] = propagation.distance(v);
   return result;
 }
 
 std::vector<Index> owners_of(const ExactSurface& surface, const ExactPropagation& propagation) {
-  std::vector<Index> result(surface.vertex_count(), k_none);
-  for (Index v = 0; v < surface.vertex_count(); ++v) {
-    const Index vertex = surface.vertex_of(v);
-    if (std::isfinite(propagation.distance(vertex))) result[v] = propagation.owner(vertex);
-  }
+  std::vector<Index> result(surface.mesh().vertex_count(), k_none);
+  for (Index v = 0; v < surface.vertex_count(); ++v)
+    if (std::isfinite(propagation.distance(v))) result[surface.mesh_vertex(v)] = propagation.owner(v);
   return result;
 }
-
-constexpr const char* k_text = "Measuring exact distances";
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 

@@ -38,6 +38,7 @@ SurfacePoint ExactTracer::on_edge(Index halfedge, double place) const {
 
 Approach ExactTracer::approach(const SurfacePoint& point) const {
   const Mesh& mesh = surface_.mesh();
+  if (!surface_.holds(point.face)) return {};
   if (const Index vertex = vertex_at(mesh, point); vertex != k_none) return approach_vertex(surface_.vertex_of(vertex));
   const Vec3 b = normalised_barycentric(point.barycentric);
   const Index first = 3 * surface_.face_of(point.face);

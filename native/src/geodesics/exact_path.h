@@ -44,6 +44,7 @@ class ExactTracer {
 
 template <class Visit>
 void ExactTracer::visit_ways(const SurfacePoint& point, Visit&& visit) const {
+  if (!surface_.holds(point.face)) return;
   const Index first = 3 * surface_.face_of(point.face);
   for (const SourceInFace& source : surface_.sources_in(first / 3)) {
     visit((surface_.in_frame(first, point.barycentric) - surface_.in_frame(first, source.barycentric)).norm(),

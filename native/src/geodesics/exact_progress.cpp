@@ -10,23 +10,21 @@ namespace saddleback {
 namespace {
 
 // Microseconds on one machine, of which only ratios matter: a vertex in the surface's layout, in the forecast, when it
-// is reached, and when it bends what reaches it. They grow with the mesh, as less of it stays in caches.
-constexpr double k_cost_of_surface = 0.3, k_cost_of_forecast = 0.55, k_cost_of_vertex = 0.3, k_cost_of_bend = 1.6;
+// is reached, and when it bends what reaches it; and a window.
+constexpr double k_cost_of_surface = 0.3, k_cost_of_forecast = 0.62, k_cost_of_vertex = 0.3, k_cost_of_bend = 1.6;
 constexpr double k_cost_of_window = 0.038;
-constexpr double k_keeping = 1, k_sorting = 1.6;  ///< a window that is kept, in times its cost
 constexpr double k_usual_vertices = 35e3;
+// Of running with windows that are kept: sorting these moves as much memory.
+constexpr double k_sorting = 0.75, k_keeping = 1.3;  ///< the latter in times of running without keeping
 
 /// Sources that have fewer vertices, in the mean, run no longer than their forecast would.
 constexpr double k_worth_forecast = 1000;
 
-// Windows a vertex, before they are foretold: they grow with the square root of the vertices that a source has, which
-// is how many a ray passes, the slower the more the surface bends light.
-constexpr double k_where_smooth = 0.53, k_less_a_decade = 0.19, k_least = 0.07;
-constexpr double k_smooth = 1e-3;  ///< mean_angle_defect
-
+/// Windows a vertex, before they are foretold, over the square root of the vertices that a source has, which is how
+/// many a ray passes: the fewer the more the surface bends light.
 double growth_of_windows(const Mesh& mesh) {
-  const double decades = std::log10(std::max(1.0, mean_angle_defect(mesh) / k_smooth));
-  return std::max(k_least, k_where_smooth - k_less_a_decade * decades);
+  constexpr double k_where_smooth = 0.6, k_smooth = 1e-3, k_power = 0.45;
+  return k_where_smooth * std::pow(std::max(1.0, mean_angle_defect(mesh) / k_smooth), -k_power);
 }
 
 /// Share of the vertices where a shortest path may bend.
@@ -57,7 +55,8 @@ bool has_needles(const Mesh& mesh) {
 
 /// The vertices that sources reach, and how many of them the source of one has, in the mean over them all.
 struct Reach {
-  double vertices = 0, a_source = 1;
+  double held = 0;                    ///< on components with sources
+  double vertices = 0, a_source = 1;  ///< at least 1
 };
 
 /// From a sample, in space: each belongs to the nearest source, if that is within the limit and on the same component.
@@ -67,15 +66,20 @@ Reach reach_of(const ExactWork& work) {
   const std::size_t every = 1 + work.sources.size() / k_most_sources;
   std::vector<Vec3> places;
   std::vector<Index> components;
+  std::vector<bool> is_held(mesh.component_count(), false);
   for (std::size_t i = 0; i < work.sources.size(); i += every) {
     places.push_back(position(mesh, work.sources[i]));
     components.push_back(mesh.component_of(mesh.triangles()[work.sources[i].face][0]));
+    is_held[components.back()] = true;
   }
   // Disks of those that stand for others hold the others' as well.
   const double limit = work.limit * work.limit * static_cast<double>(every);
   std::vector<double> owned(places.size(), 0.0);
   const Index stride = std::max<Index>(1, mesh.vertex_count() / static_cast<Index>(k_samples));
+  Reach reach;
   for (Index v = 0; v < mesh.vertex_count(); v += stride) {
+    if (!is_held[mesh.component_of(v)]) continue;
+    reach.held += stride;
     double least = limit;
     std::size_t nearest = places.size();
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -86,17 +90,16 @@ Reach reach_of(const ExactWork& work) {
     }
     if (nearest < places.size()) owned[nearest] += stride;
   }
-  Reach reach;
   double squares = 0;
   for (const double count : owned) {
     reach.vertices += count;
     squares += count * count;
   }
-  if (reach.vertices > 0) reach.a_source = std::max(1.0, squares / reach.vertices / static_cast<double>(every));
+  reach.held = std::max(1.0, reach.held);
+  reach.vertices = std::max(1.0, reach.vertices);
+  reach.a_source = std::max(1.0, squares / reach.vertices / static_cast<double>(every));
   return reach;
 }
-
-double by_caches(double vertices, double power) { return std::pow(vertices / k_usual_vertices, power); }
 
 }  // namespace
 
@@ -104,52 +107,53 @@ ExactProgress::ExactProgress(const ExactWork& work, const JobStage& stage) : wor
   if (!stage.is_watched()) return;
   const Mesh& mesh = work.mesh;
   const Reach reach = reach_of(work);
-  const double slower = by_caches(reach.vertices, 0.5);  // what is out of reach stays out of caches
-  const double surface = k_cost_of_surface * by_caches(mesh.vertex_count(), 1.0 / 3) * mesh.vertex_count();
   likely_vertices_ = reach.vertices;
-  is_foretold_ = reach.a_source >= k_worth_forecast || has_needles(mesh);
-  cost_of_vertex_ = k_cost_of_vertex * slower;
-  cost_of_bend_ = k_cost_of_bend * slower;
-  at_vertices_ = (cost_of_vertex_ + cost_of_bend_ * bending_share(mesh)) * reach.vertices;
-  at_windows_ = k_cost_of_window * growth_of_windows(mesh) * std::sqrt(reach.a_source) * reach.vertices;
-  before_windows_ =
-      surface + (is_foretold_ ? k_cost_of_forecast * by_caches(reach.vertices, 0.25) * reach.vertices : 0);
-  const double all = before_windows_ + whole_cost(at_vertices_ + at_windows_);
-  laid_ = surface / all;
-  foretold_ = before_windows_ / all;
-}
-
-double ExactProgress::whole_cost(double of_running) const {
-  return of_running * (work_.sorts_windows ? 1 + k_keeping + k_sorting : 1);
+  const bool goes_far = has_needles(mesh);
+  is_foretold_ = reach.a_source >= k_worth_forecast || goes_far;
+  at_vertices_ = (k_cost_of_vertex + k_cost_of_bend * bending_share(mesh)) * reach.vertices;
+  at_windows_ = k_cost_of_window * growth_of_windows(mesh) * std::sqrt(goes_far ? reach.vertices : reach.a_source) *
+                reach.vertices;
+  // The larger the mesh, the less of it stays in caches.
+  of_surface_ = k_cost_of_surface * std::pow(reach.held / k_usual_vertices, 0.4) * reach.held;
+  of_forecast_ = is_foretold_ ? k_cost_of_forecast * reach.vertices : 0;
+  sorting_ = work.sorts_windows ? k_sorting : 0;
+  of_running_ = (work.sorts_windows ? k_keeping : 1) * (at_vertices_ + at_windows_);
+  laid_ = of_surface_ / (of_surface_ + of_forecast_ + (1 + sorting_) * of_running_);
 }
 
 void ExactProgress::foretell(const ExactSurface& surface, double ring_width) {
   if (!stage_.is_watched()) return;
-  double running = at_vertices_ + at_windows_;
-  if (is_foretold_) {
-    const WindowForecast::Extent extent{work_.limit, ring_width, likely_vertices_, cost_of_vertex_ / k_cost_of_window,
-                                        cost_of_bend_ / k_cost_of_window};
-    forecast_ = WindowForecast(surface, work_.sources, extent, stage_.part(laid_, foretold_));
-    running = k_cost_of_window * forecast_.total();
-  }
   per_ring_ = 1 / ring_width;
-  // By now it is known better what the time so far is a share of.
-  const double whole = whole_cost(running), all = before_windows_ + whole;
-  const double sorted = work_.sorts_windows ? whole * k_sorting / (1 + k_keeping + k_sorting) : 0;
-  run_ = (all - sorted) / all;
-  running_ = stage_.part(before_windows_ / all, run_);
+  const double laid = clock_.seconds();
+  double speed = laid / of_surface_;
+  if (is_foretold_) {
+    const double ahead = speed * of_forecast_, all = laid + ahead + speed * (1 + sorting_) * of_running_;
+    const WindowForecast::Extent extent{work_.limit, ring_width, likely_vertices_, k_cost_of_vertex / k_cost_of_window,
+                                        k_cost_of_bend / k_cost_of_window};
+    forecast_ = WindowForecast(surface, work_.sources, extent, stage_.part(laid / all, (laid + ahead) / all));
+    of_running_ = (work_.sorts_windows ? k_keeping : 1) * k_cost_of_window * forecast_.total();
+    speed = (clock_.seconds() - laid) / of_forecast_;
+  }
+  began_ = clock_.seconds();
+  expected_ = speed * of_running_;
 }
 
 void ExactProgress::update(const Done& done) {
-  running_.check();
-  if (!stage_.is_watched()) return;
-  running_.update(is_foretold_ ? share_by_rings(done) : share_by_vertices(done));
+  constexpr std::int64_t k_blocks_a_look = 16;
+  stage_.check();
+  if (!stage_.is_watched() || done.blocks % k_blocks_a_look != 0) return;
+  // What was expected counts as much as this share of the work: less than where is told how far it has come.
+  const double belief = is_foretold_ ? 0.05 : 0.5;
+  const double share = is_foretold_ ? share_by_rings(done) : share_by_vertices(done), so_far = clock_.seconds();
+  const double running = (so_far - began_ + belief * expected_) / (share + belief);
+  run_ = so_far / (so_far + running * (1 - share) + sorting_ * running);
+  stage_.update(run_);
 }
 
 /// About each source windows are the more the farther they are from it. Those of vertices that are reached may be due
 /// yet: with many sources most of them.
 double ExactProgress::share_by_vertices(const Done& done) const {
-  const double share = std::min(1.0, static_cast<double>(done.vertices) / std::max(1.0, likely_vertices_));
+  const double share = std::min(1.0, static_cast<double>(done.vertices) / likely_vertices_);
   const double reached = (at_vertices_ * share + at_windows_ * share * std::sqrt(share)) / (at_vertices_ + at_windows_);
   const auto blocks = static_cast<double>(done.blocks), left = static_cast<double>(done.blocks_left);
   return reached * blocks / (blocks + left);
@@ -166,11 +170,14 @@ double ExactProgress::share_by_rings(const Done& done) {
   const double before = forecast_.before(ring), foretold = forecast_.before(ring + 1) - before;
   const double each = before_ring_ > 0 ? before / static_cast<double>(before_ring_) : 1;
   const double within = std::min(foretold, each * static_cast<double>(windows - before_ring_));
-  return (before + within) / forecast_.total();
+  return (before + within) / std::max(1.0, forecast_.total());
 }
 
 void ExactProgress::end() {
-  running_.update(1);
+  if (!stage_.is_watched()) return;
+  const double so_far = clock_.seconds(), running = so_far - began_;
+  run_ = so_far / (so_far + sorting_ * running);
+  stage_.update(run_);
   forecast_ = {};
 }
 

@@ -6,6 +6,7 @@
 #include "saddleback/job.h"
 
 #include "geodesics/window_forecast.h"
+#include "support/work_clock.h"
 
 namespace saddleback {
 
@@ -17,8 +18,10 @@ struct ExactWork {
   bool sorts_windows = false;  ///< afterwards
 };
 
-/// How much of a propagation is done: a surface is laid out, windows are foretold, run and maybe sorted. Without a
-/// watched job nothing is foretold, nor where many sources have few vertices each: there these are counted.
+/// How much of a propagation is done: a surface is laid out, windows are foretold, run and maybe sorted. The share is
+/// the time so far of that and what is still to come, which is told from how long the parts before it took: one
+/// machine's memory, or a second call on warm pages, differs from another's. Without a watched job nothing is foretold,
+/// nor where many sources have few vertices each: there these are counted.
 class ExactProgress {
  public:
   /// So far.
@@ -41,19 +44,18 @@ class ExactProgress {
   JobStage sorting() const { return stage_.part(run_, 1); }
 
  private:
-  double whole_cost(double of_running) const;
   double share_by_vertices(const Done& done) const;
   double share_by_rings(const Done& done);
 
   const ExactWork work_;
   const JobStage stage_;
-  JobStage running_;
+  const WorkClock clock_;
   bool is_foretold_ = false;
-  double likely_vertices_ = 0;
-  double cost_of_vertex_ = 0, cost_of_bend_ = 0;
-  double before_windows_ = 0;                 ///< cost of the surface and the forecast
-  double at_vertices_ = 0, at_windows_ = 0;   ///< likely cost of running
-  double laid_ = 0, foretold_ = 0, run_ = 1;  ///< shares of the whole, so far
+  double likely_vertices_ = 0, at_vertices_ = 0, at_windows_ = 0;  ///< the latter two as costs
+  double of_surface_ = 0, of_forecast_ = 0, of_running_ = 0;       ///< likely costs
+  double sorting_ = 0;                                             ///< in times of running
+  double began_ = 0, expected_ = 0;                                ///< running, in seconds
+  double laid_ = 0, run_ = 1;                                      ///< shares of the whole
   WindowForecast forecast_;
   double per_ring_ = 0;
   std::size_t ring_ = 0, before_ring_ = 0;  ///< windows done when this ring began

@@ -17,6 +17,17 @@ constexpr double k_flat_tolerance = 1e-12;
 constexpr double k_beside = 1e-8;
 constexpr Index k_check = 1 << 12;  ///< vertices or half-edges: less than a millisecond
 
+/// Those of the components with sources, ascending.
+std::vector<Index> vertices_with_sources(const Mesh& mesh, const SurfacePoints& sources) {
+  std::vector<bool> is_held(mesh.component_count(), false);
+  for (const SurfacePoint& source : sources) is_held[mesh.component_of(mesh.triangles()[source.face][0])] = true;
+  std::vector<Index> result;
+  result.reserve(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v)
+    if (is_held[mesh.component_of(v)]) result.push_back(v);
+  return result;
+}
+
 /// A point that is no vertex as a point of each face that it lies in.
 SurfacePoints in_each_face(const Mesh& mesh, const SurfacePoint& point) {
   const Vec3 b = normalised_barycentric(point.barycentric);
@@ -36,7 +47,7 @@ SurfacePoints in_each_face(const Mesh& mesh, const SurfacePoint& point) {
 }  // namespace
 
 ExactSurface::ExactSurface(const Mesh& mesh, const SurfacePoints& sources, const JobStage& stage) : mesh_(&mesh) {
-  renumber(stage.part(0, 0.5));
+  renumber(sources, stage.part(0, 0.5));
   lay_out(stage.part(0.5, 1));
   place_sources(sources);
 }
@@ -46,17 +57,20 @@ std::size_t ExactSurface::nbytes() const {
          (vertex_of_.size() + face_of_.size() + mesh_vertex_.size() + mesh_face_.size()) * sizeof(Index);
 }
 
-void ExactSurface::renumber(const JobStage& stage) {
-  const Index vertices = mesh_->vertex_count(), faces = mesh_->face_count();
+void ExactSurface::renumber(const SurfacePoints& sources, const JobStage& stage) {
+  const Index faces = mesh_->face_count();
   const HilbertCurve curve(mesh_->positions());
+  const std::vector<Index> held = vertices_with_sources(*mesh_, sources);
+  const auto vertices = static_cast<Index>(held.size());
   std::vector<std::uint64_t> keys(vertices);
   for (Index v = 0; v < vertices; ++v) {
     if (v % k_check == 0) stage.update(0.5 * v / vertices);
-    keys[v] = curve.key(mesh_->position(v));
+    keys[v] = curve.key(mesh_->position(held[v]));
   }
   mesh_vertex_ = order_of(keys, 1, stage);
+  for (Index& v : mesh_vertex_) v = held[v];
   stage.update(0.8);
-  vertex_of_.resize(vertices);
+  vertex_of_.assign(mesh_->vertex_count(), k_none);
   for (Index v = 0; v < vertices; ++v) vertex_of_[mesh_vertex_[v]] = v;
   // A face comes with the first of its vertices: a counting sort, stable in the mesh's order.
   const auto first_corner = [&](Index face) {
@@ -64,11 +78,14 @@ void ExactSurface::renumber(const JobStage& stage) {
     return std::min({vertex_of_[t[0]], vertex_of_[t[1]], vertex_of_[t[2]]});
   };
   std::vector<Index> begins(vertices + 1, 0);
-  for (Index f = 0; f < faces; ++f) ++begins[first_corner(f) + 1];
+  const auto is_held = [&](Index face) { return vertex_of_[mesh_->triangles()[face][0]] != k_none; };
+  for (Index f = 0; f < faces; ++f)
+    if (is_held(f)) ++begins[first_corner(f) + 1];
   for (Index v = 0; v < vertices; ++v) begins[v + 1] += begins[v];
-  face_of_.resize(faces);
-  mesh_face_.resize(faces);
+  face_of_.assign(faces, k_none);
+  mesh_face_.resize(begins[vertices]);
   for (Index f = 0; f < faces; ++f) {
+    if (!is_held(f)) continue;
     face_of_[f] = begins[first_corner(f)]++;
     mesh_face_[face_of_[f]] = f;
   }
@@ -76,10 +93,10 @@ void ExactSurface::renumber(const JobStage& stage) {
 
 void ExactSurface::lay_out(const JobStage& stage) {
   const Mesh& mesh = *mesh_;
-  frames_.resize(mesh.halfedge_count());
+  frames_.resize(3 * mesh_face_.size());
   const auto beyond = [&](Index h) { return mesh.twin(h) == k_none ? k_none : halfedge_of(mesh.twin(h)); };
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (h % k_check == 0) stage.update(static_cast<double>(h) / mesh.halfedge_count());
+  for (Index h = 0; h < halfedge_count(); ++h) {
+    if (h % k_check == 0) stage.update(static_cast<double>(h) / halfedge_count());
     EdgeFrame& frame = frames_[h];
     const Index g = mesh_halfedge(h), next = Mesh::next(g), prev = Mesh::prev(g);
     frame.length = mesh.length(g);
@@ -96,8 +113,8 @@ void ExactSurface::lay_out(const JobStage& stage) {
     frame.apex = vertex_of_[mesh.apex(g)];
     frame.holds_sources = false;
   }
-  bends_.resize(mesh.vertex_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+  bends_.resize(mesh_vertex_.size());
+  for (Index v = 0; v < vertex_count(); ++v) {
     const Index original = mesh_vertex_[v];
     const bool bends =
         mesh.is_boundary(original) || mesh.total_angle(original) > 2 * std::numbers::pi + k_flat_tolerance;

@@ -28,16 +28,16 @@ struct SourceInFace {
   Vec3 barycentric;
 };
 
-/// A mesh renumbered along a Hilbert curve, and where the sources are in it. Half-edge 3f+i belongs to corner i of the
-/// renumbered face f, as in Mesh.
+/// The components of a mesh that hold sources, renumbered along a Hilbert curve, and where the sources are in them.
+/// Half-edge 3f+i belongs to corner i of the renumbered face f, as in Mesh.
 class ExactSurface {
  public:
   /// \throw Cancelled.
   ExactSurface(const Mesh& mesh, const SurfacePoints& sources, const JobStage& stage);
 
   const Mesh& mesh() const { return *mesh_; }
-  Index vertex_count() const { return mesh_->vertex_count(); }
-  Index halfedge_count() const { return mesh_->halfedge_count(); }
+  Index vertex_count() const { return static_cast<Index>(mesh_vertex_.size()); }
+  Index halfedge_count() const { return static_cast<Index>(frames_.size()); }
   const EdgeFrame& frame(Index h) const { return frames_[h]; }
 
   /// k_none on the boundary.
@@ -52,6 +52,9 @@ class ExactSurface {
   /// would.
   bool is_beside_source(Index vertex) const { return bends_[vertex] == Bends::all_round; }
 
+  /// Whether it is on a component with a source.
+  bool holds(Index mesh_face) const { return face_of_[mesh_face] != k_none; }
+
   // Between the mesh's numbers and those here.
   Index vertex_of(Index mesh_vertex) const { return vertex_of_[mesh_vertex]; }
   Index face_of(Index mesh_face) const { return face_of_[mesh_face]; }
@@ -63,7 +66,7 @@ class ExactSurface {
 
  private:
   enum class Bends : std::uint8_t { never, at_pi, all_round };
-  void renumber(const JobStage& stage);
+  void renumber(const SurfacePoints& sources, const JobStage& stage);
   void lay_out(const JobStage& stage);
   void place_sources(const SurfacePoints& sources);
 

@@ -7,7 +7,7 @@ namespace saddleback {
 namespace {
 
 constexpr double k_slack = 1e-11;  // as in the propagation
-constexpr double k_chosen = 0.7;   // of the time: then the windows that are kept are copied
+constexpr double k_chosen = 0.62;  // of the time: then the windows that are kept are copied
 
 }  // namespace
 

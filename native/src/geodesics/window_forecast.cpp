@@ -12,7 +12,7 @@ constexpr double k_pi = std::numbers::pi;
 constexpr std::size_t k_most_rings = 1 << 16;  ///< what is farther out goes into the last one
 // What goes on from a bend ends sooner than its rays tell, as its windows are narrow and lie in others' way.
 constexpr double k_from_bend = 0.5;
-// As a share of an edge: guessed distances are as exact as this, usually.
+// As a share of a face's edge or, on needles, of its height: guessed distances are as exact as this, usually.
 constexpr double k_doubt = 0.25;
 
 /// A straight line from a root at (sx, sy), on its way into the half-edge's face at (x, 0).
@@ -43,6 +43,17 @@ class RayCount {
     } else {
       if (angle + k_pi < total) follow(ray_from(vertex, angle + k_pi), k_from_bend * weight);
       if (angle - k_pi > 0) follow(ray_from(vertex, angle - k_pi), k_from_bend * weight);
+    }
+  }
+
+  /// What a source inside a face lights through each edge stays one window until vertices split it.
+  void add_source(const SourceInFace& place, double weight) {
+    for (Index h = 3 * place.face; h < 3 * place.face + 3; ++h) {
+      const Index entered = surface_.twin(h);
+      const double length = surface_.frame(h).length;
+      const Vec2 centre = surface_.in_frame(h, place.barycentric);
+      if (entered != k_none && centre.y() > 0)
+        follow({length - centre.x(), -centre.y(), length / 2, 0, entered}, weight);
     }
   }
 
@@ -117,7 +128,7 @@ class RayCount {
     for (int step = 0; step < k_most_steps && ray.halfedge != k_none; ++step) {
       const EdgeFrame& frame = surface_.frame(ray.halfedge);
       const double dx = ray.x - ray.sx, length = ray.sigma + std::sqrt(dx * dx + ray.sy * ray.sy);
-      const double least = length - k_doubt * frame.length;
+      const double least = length - k_doubt * std::min(frame.length, frame.apex_y);
       const bool is_first = length <= extent_.limit && least <= arrivals_[frame.from].distance + ray.x &&
                             least <= arrivals_[frame.to].distance + (frame.length - ray.x);
       if (!is_first) return;
@@ -173,6 +184,9 @@ WindowForecast::WindowForecast(const ExactSurface& surface, const SurfacePoints&
       following.update(static_cast<double>(i) / static_cast<double>(reached.size()));
     rays.add_vertex(reached[i], static_cast<double>(stride));
   }
+  const std::span<const SourceInFace> places = surface.sources_in_faces();
+  const std::size_t apart = std::max<std::size_t>(1, places.size() / k_samples);
+  for (std::size_t i = apart / 2; i < places.size(); i += apart) rays.add_source(places[i], static_cast<double>(apart));
   counts_ = rays.sums();
 }
 

@@ -1,0 +1,18 @@
+#pragma once
+// How long work has taken so far, for those who tell progress.
+
+namespace saddleback {
+
+/// Processor time of the thread that asks, which other work on the machine does not change; where a system does not
+/// tell it, the time of day. Only the thread that made a clock may ask it. A call takes less than a microsecond.
+class WorkClock {
+ public:
+  WorkClock() : begin_(now()) {}
+  double seconds() const { return now() - begin_; }  ///< since the clock was made
+
+ private:
+  static double now();
+  double begin_;
+};
+
+}  // namespace saddleback
