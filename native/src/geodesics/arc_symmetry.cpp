@@ -119,6 +119,7 @@ class Union {
 
   /// Empties the found arcs.
   ArcRows assemble(int threads, const JobStage& stage) {
+    constexpr double k_copying = 0.4;  // of the time, from there on
     paired_ = {};
     sort_missing(threads, stage);
     std::vector<std::int64_t> offsets(node_count_ + 1, 0);
@@ -131,8 +132,9 @@ class Union {
     });
     for (Index v = 0; v < node_count_; ++v) offsets[v + 1] += offsets[v];
     ArcWords words(offsets.back());
+    const JobStage copying = stage.part(k_copying, 1);
     parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
-      stage.check();
+      copying.update(static_cast<double>(b) / static_cast<double>(found_.size()));
       for_each_row(b, [&](Index node, std::span<const std::uint64_t> own, std::span<const MissingArc> others) {
         const auto row = words.begin() + offsets[node];
         auto end = std::copy(own.begin(), own.end(), row);

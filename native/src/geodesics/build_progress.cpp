@@ -5,12 +5,14 @@
 
 #include "saddleback/saddle_vertex_graph.h"
 
+#include "support/parallel.h"
+
 namespace saddleback {
 namespace {
 
 // Microseconds on one machine, of which only ratios matter.
 constexpr double k_laying = 1;  ///< a vertex
-constexpr double k_window = 0.025, k_arc = 0.025, k_joined_arc = 0.035;
+constexpr double k_joined_arc = 0.035;
 
 /// Where edges differ much in length windows are many more: how many times, for the accuracies in use.
 double unevenness(const Mesh& mesh) {
@@ -38,31 +40,34 @@ double BuildProgress::by_count(const Mesh&, Index k) { return 0.25 * k; }
 
 double BuildProgress::by_all(const Mesh& mesh) { return mesh.vertex_count(); }
 
-BuildProgress::BuildProgress(const Mesh& mesh, double expected, const JobStage& stage)
-    : stage_(stage), source_count_(mesh.vertex_count()), expected_(expected) {
+BuildProgress::BuildProgress(const Mesh& mesh, double expected, int threads, const JobStage& stage)
+    : stage_(stage), source_count_(mesh.vertex_count()), threads_(thread_count(threads)), expected_(expected) {
   constexpr double k_joining = 0.15;  // of finding, about
   laid_ = k_laying / (k_laying + (1 + k_joining) * expected);
 }
 
-void BuildProgress::found(const ArcWork& more) {
-  if (!stage_.is_watched()) return;
+void BuildProgress::laid(double share) {
+  laying_ = clock_.seconds();
+  stage_.update(share * laid_);
+}
+
+void BuildProgress::found(const ArcCount& more, double seconds) {
   const std::lock_guard lock(guard_);
   done_.sources += more.sources;
-  done_.windows += more.windows;
   done_.arcs += more.arcs;
+  finding_ += seconds;
   stage_.update(share());
 }
 
 double BuildProgress::share() const {
-  const double sources = static_cast<double>(done_.sources), laying = k_laying * source_count_;
+  const auto sources = static_cast<double>(done_.sources), arcs = static_cast<double>(done_.arcs);
   if (sources == 0) return laid_;
-  const auto windows = static_cast<double>(done_.windows), arcs = static_cast<double>(done_.arcs);
-  const double finding = k_window * windows + k_arc * arcs, joining = k_joined_arc * arcs;
   // What was expected counts as a few sources more: among the first ones may be none of the few that take long.
   constexpr double k_belief = 0.02;
-  const double some = k_belief * source_count_;
-  const double per_source = (finding + joining + some * expected_) / (sources + some);
-  return std::min(1.0, (laying + finding) / (laying + per_source * source_count_));
+  const double some = k_belief * source_count_, slowness = laying_ / (k_laying * source_count_);
+  const double finding = finding_ / threads_, joining = k_joined_arc * slowness * arcs / sources;
+  const double per_source = (finding + some * expected_ * slowness) / (sources + some) + joining;
+  return std::min(1.0, (laying_ + finding) / (laying_ + per_source * source_count_));
 }
 
 }  // namespace saddleback

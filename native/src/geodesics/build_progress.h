@@ -7,11 +7,13 @@
 #include "saddleback/job.h"
 #include "saddleback/mesh.h"
 
+#include "support/work_clock.h"
+
 namespace saddleback {
 
-/// What finding the arcs of some vertices took, and how many there are.
-struct ArcWork {
-  std::int64_t sources = 0, windows = 0, arcs = 0;
+/// Vertices, and arcs that start there.
+struct ArcCount {
+  std::int64_t sources = 0, arcs = 0;
 };
 
 /// How much of a build is done: tables are laid, arcs are found, and then joined with their reverses. What the last two
@@ -24,25 +26,37 @@ class BuildProgress {
   static double by_count(const Mesh& mesh, Index k);
   static double by_all(const Mesh& mesh);
 
-  BuildProgress(const Mesh& mesh, double expected, const JobStage& stage);
+  BuildProgress(const Mesh& mesh, double expected, int threads, const JobStage& stage);
 
   /// For those who only have to stop when they are asked to.
   const JobStage& stage() const { return stage_; }
-  /// Of the tables. \throw Cancelled.
-  void laid(double share) const { stage_.update(share * laid_); }
-  /// More arcs are found; from any thread. \throw Cancelled.
-  void found(const ArcWork& more);
+  /// Of the tables, by the thread that made this. \throw Cancelled.
+  void laid(double share);
+  /// Calls `find`, which finds the arcs of some vertices and returns how many of both; from any thread. \throw
+  /// Cancelled.
+  template <class Find>
+  void time(Find&& find) {
+    const bool is_watched = stage_.is_watched();
+    const WorkClock clock(is_watched);
+    const ArcCount more = find();
+    if (is_watched) found(more, clock.seconds());
+  }
   /// What is left when all arcs are found.
   JobStage joining() const { return stage_.part(share(), 1); }
 
  private:
+  void found(const ArcCount& more, double seconds);
   double share() const;
 
   const JobStage stage_;
-  const double source_count_, expected_;
-  double laid_;  ///< share of the whole
+  const double source_count_, threads_;
+  const WorkClock clock_;
+  double expected_;    ///< of finding a vertex's arcs, as below
+  double laid_;        ///< share of the whole
+  double laying_ = 0;  ///< in seconds
   std::mutex guard_;
-  ArcWork done_;
+  ArcCount done_;
+  double finding_ = 0;  ///< seconds of all threads
 };
 
 }  // namespace saddleback

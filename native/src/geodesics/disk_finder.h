@@ -54,8 +54,6 @@ class DiskFinder {
   /// False when windows were so many that it was stopped: no arc is wrong then, but some may be missing. \throw
   /// Cancelled.
   bool run(const JobStage& stage);
-  /// Of the last run.
-  int window_count() const { return window_count_; }
   /// The sightings that make a lane's arcs, in the order in which they were sighted, and k_row_padding more entries
   /// that are valid. The links are always among them.
   std::span<const std::int32_t> chosen(int lane) const { return {chosen_[lane].data(), chosen_counts_[lane]}; }

@@ -9,12 +9,11 @@ int to_sector(float sector) { return std::clamp(static_cast<int>(sector), 0, Arc
 
 }  // namespace
 
-int DiskRows::find(Index first, Index count, FoundArcs& found, const JobStage& stage) {
+void DiskRows::find(Index first, Index count, FoundArcs& found, const JobStage& stage) {
   finder_.begin(DiskFinder::Sources::nodes);
   for (int lane = 0; lane < count; ++lane) finder_.add_node(lane, first + lane);
   finder_.run(stage);
   for (int lane = 0; lane < count; ++lane) write_row(first + lane, lane, found);
-  return finder_.window_count();
 }
 
 void DiskRows::write_row(Index node, int lane, FoundArcs& found) {

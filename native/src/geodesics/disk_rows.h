@@ -16,8 +16,8 @@ class DiskRows {
       : mesh_(mesh), sectors_(sectors), codec_(codec), kernel_(kernel), finder_(mesh, kernel, rule) {}
 
   /// Appends the arcs of nodes first to first + count - 1, at most k_batch. Mesh edges are always among them.
-  /// \return the number of windows. \throw Cancelled.
-  int find(Index first, Index count, FoundArcs& found, const JobStage& stage);
+  /// \throw Cancelled.
+  void find(Index first, Index count, FoundArcs& found, const JobStage& stage);
 
  private:
   void write_row(Index node, int lane, FoundArcs& found);

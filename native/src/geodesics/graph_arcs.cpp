@@ -26,16 +26,19 @@ double room_for(double accuracy) {
 }
 
 /// So many parts of the mesh, one after the other from all over it, take as long as they would if the mesh were even.
-constexpr Index k_parts = 377;
+/// By count some vertices take thousands of times as long as others, and are neighbours: there a part has no more arcs
+/// than these.
+constexpr Index k_parts = 377, k_part_arcs = 4000;
 // Nodes whose arcs are kept together: so many that what is done for each block is nothing, so few that no thread waits
 // long for the last.
 constexpr Index k_block = 128, k_most_watched = 256, k_least_watched = 64;
 // Bytes. Of blocks that are united in another order each has a piece of its own, lest all be kept to the end.
 constexpr std::size_t k_piece = std::size_t{1} << 21, k_piece_a_node = 512;
 
-Index block_size(Index node_count, bool watched) {
-  const Index part = (node_count / k_parts + k_batch - 1) / k_batch * k_batch;
-  return watched ? std::clamp(part, k_least_watched, k_most_watched) : k_block;
+/// Neighbours that are done one after the other, for those who watch; k of a graph by count, or 0.
+Index part_size(Index node_count, Index k) {
+  const Index even = std::max(k_least_watched, (node_count / k_parts + k_batch - 1) / k_batch * k_batch);
+  return k > 0 ? std::clamp(k_part_arcs / k / k_batch * k_batch, k_batch, even) : even;
 }
 
 std::size_t piece_size(Index node_count, bool watched) {
@@ -51,11 +54,11 @@ Index scattering_step(Index count) {
 
 /// Blocks in the order in which they are done: by itself theirs, which is as near as memory can be; for those who watch
 /// a few neighbours at a time from all over the mesh, since parts of it may take longer.
-std::vector<Index> order_of_blocks(Index count, bool watched) {
+std::vector<Index> order_of_blocks(Index count, Index per_part) {
   std::vector<Index> order(count);
   std::iota(order.begin(), order.end(), 0);
-  if (!watched) return order;
-  const Index per_part = (count + k_parts - 1) / k_parts, parts = (count + per_part - 1) / per_part;
+  if (per_part >= count) return order;
+  const Index parts = (count + per_part - 1) / per_part;
   const Index step = scattering_step(parts);
   auto next = order.begin();
   for (Index i = 0; i < parts; ++i) {
@@ -67,13 +70,14 @@ std::vector<Index> order_of_blocks(Index count, bool watched) {
 
 /// Calls find(draft, count, thread) from all threads. Blocks are filled in memory that each thread keeps.
 template <class Find>
-std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, const JobStage& stage, Find&& find) {
+std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, Index k, bool watched, Find&& find) {
   const auto node_count = static_cast<Index>(search.vertices.size());
-  const Index size = block_size(node_count, stage.is_watched());
-  const std::vector<Index> order = order_of_blocks((node_count + size - 1) / size, stage.is_watched());
+  const Index part = watched ? part_size(node_count, k) : node_count;
+  const Index size = watched ? std::min(part, k_most_watched) : k_block;
+  const std::vector<Index> order = order_of_blocks((node_count + size - 1) / size, (part + size - 1) / size);
   std::vector<KeptArcs> found(order.size());
   std::vector<FoundArcs> drafts(thread_count(search.threads));
-  std::vector<ReturnedPieces> pieces(drafts.size(), ReturnedPieces(piece_size(node_count, stage.is_watched())));
+  std::vector<ReturnedPieces> pieces(drafts.size(), ReturnedPieces(piece_size(node_count, watched)));
   parallel_for(static_cast<Index>(found.size()), search.threads, 1, [&](Index i, int thread) {
     FoundArcs& draft = drafts[thread];
     draft.first_node = order[i] * size;
@@ -161,32 +165,35 @@ WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::
 std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
                                 BuildProgress& progress) {
   std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
-  return find_by_blocks(search, progress.stage(), [&](FoundArcs& found, Index count, int thread) {
+  return find_by_blocks(search, rule.k, progress.stage().is_watched(), [&](FoundArcs& found, Index count, int thread) {
     if (!finders[thread])
       finders[thread] = std::make_unique<DiskRows>(tables.mesh, tables.sectors, search.codec, search.kernel, rule);
     for (Index i = 0; i < count; i += k_batch) {
       const Index batch = std::min(k_batch, count - i);
-      const std::size_t before = found.words.size();
-      const int windows = finders[thread]->find(found.first_node + i, batch, found, progress.stage());
-      progress.found({batch, windows, std::ssize(found.words) - static_cast<std::int64_t>(before)});
+      progress.time([&]() -> ArcCount {
+        const std::int64_t before = std::ssize(found.words);
+        finders[thread]->find(found.first_node + i, batch, found, progress.stage());
+        return {batch, std::ssize(found.words) - before};
+      });
     }
   });
 }
 
 std::vector<KeptArcs> exact_arcs(const ArcSearch& search, BuildProgress& progress) {
-  constexpr std::int64_t k_waves_per_ordered = 8;  // windows that come in order take so many times as long
   std::vector<std::unique_ptr<WindowPropagator>> propagators(thread_count(search.threads));
   std::vector<std::vector<DirectArc>> rows(propagators.size());
   propagators[0] = std::make_unique<WindowPropagator>(search.unfolding);
   check_memory(search, *propagators[0], progress.stage());
-  return find_by_blocks(search, progress.stage(), [&](FoundArcs& found, Index count, int thread) {
+  return find_by_blocks(search, 0, progress.stage().is_watched(), [&](FoundArcs& found, Index count, int thread) {
     if (!propagators[thread]) propagators[thread] = std::make_unique<WindowPropagator>(search.unfolding);
     for (Index i = 0; i < count; ++i) {
       const Index vertex = search.vertices[found.first_node + i];
-      propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread],
-                                       progress.stage());
-      append_row(search, vertex, rows[thread], found);
-      progress.found({1, k_waves_per_ordered * propagators[thread]->window_count(), std::ssize(rows[thread])});
+      progress.time([&]() -> ArcCount {
+        propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread],
+                                         progress.stage());
+        append_row(search, vertex, rows[thread], found);
+        return {1, std::ssize(rows[thread])};
+      });
     }
   });
 }

@@ -58,7 +58,8 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
   const JobStage stage(job, "Building the saddle vertex graph");
-  BuildProgress progress(mesh, expected_cost(mesh, k_, accuracy_, !options.cuda_devices.empty()), stage);
+  BuildProgress progress(mesh, expected_cost(mesh, k_, accuracy_, !options.cuda_devices.empty()), options.threads,
+                         stage);
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
   progress.laid(0.25);
   order_nodes(options.threads, stage);

@@ -35,8 +35,6 @@ class WindowPropagator {
   void from_vertex(Index source, Index k, std::vector<DirectArc>& arcs, const JobStage& stage);
   /// The same for a point that need not be a vertex; the corners of its face are always among the arcs.
   void from_point(const SurfacePoint& source, Index k, std::vector<DirectArc>& arcs, const JobStage& stage);
-  /// Of the last source.
-  Index window_count() const { return static_cast<Index>(windows_.size()); }
 
  private:
   /// Part [b0, b1] of half-edge h, about to enter h's face, lit by the source at `source` (y <= 0) in the frame of h.

@@ -4,10 +4,11 @@
 namespace saddleback {
 
 /// Processor time of the thread that asks, which other work on the machine does not change; where a system does not
-/// tell it, the time of day. Only the thread that made a clock may ask it. A call takes less than a microsecond.
+/// tell it, the time of day. Only the thread that made a clock may ask it. To look takes less than a
+/// microsecond.
 class WorkClock {
  public:
-  WorkClock() : begin_(now()) {}
+  explicit WorkClock(bool is_asked = true) : begin_(is_asked ? now() : 0) {}
   double seconds() const { return now() - begin_; }  ///< since the clock was made
 
  private:
