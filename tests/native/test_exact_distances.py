@@ -258,6 +258,14 @@ def test_another_component_is_infinitely_far() -> None:
         field.paths([0, len(mesh.vertices) - 1])
 
 
+def test_parts_that_no_source_reaches_are_not_laid_out() -> None:
+    ball = meshes.icosphere(4)
+    alone = sb.ExactField(sb.Mesh(*ball), [0])
+    among = sb.ExactField(sb.Mesh(*meshes.merge(*(ball for _ in range(5)))), [0])
+    assert among.nbytes < 1.2 * alone.nbytes
+    assert np.array_equal(among.distances[: len(alone.distances)], alone.distances)
+
+
 # --- paths ------------------------------------------------------------------------------------------------------------
 
 

@@ -10,14 +10,15 @@ namespace saddleback {
 namespace {
 
 constexpr double k_most_rings = 1 << 16;  ///< farther vertices go into the last one
+constexpr double k_guessing = 0.06;       ///< of the time, usually
 
 }  // namespace
 
 DistanceProgress::DistanceProgress(const Mesh& mesh, const SurfacePoints& sources, const Extent& extent,
-                                   const JobStage& guessing, const JobStage& running)
-    : stage_(running), per_edge_(1 / mesh.mean_edge_length()) {
+                                   const JobStage& stage)
+    : stage_(stage), per_edge_(1 / mesh.mean_edge_length()) {
   if (!stage_.is_watched()) return;
-  for (const double length : ways_along_edges(mesh, sources, extent.limit / k_straighter, guessing)) {
+  for (const double length : ways_along_edges(mesh, sources, extent.limit / k_straighter, stage.part(0, k_guessing))) {
     if (std::isinf(length)) continue;
     const double edges = k_straighter * length * per_edge_;
     const auto ring = static_cast<std::size_t>(std::min(edges, k_most_rings));
@@ -25,6 +26,7 @@ DistanceProgress::DistanceProgress(const Mesh& mesh, const SurfacePoints& source
     work_[ring] += std::pow(edges, extent.growth);
   }
   std::partial_sum(work_.begin(), work_.end(), work_.begin());
+  guessed_ = clock_.seconds();
 }
 
 void DistanceProgress::reached(double distance) {
@@ -36,7 +38,11 @@ void DistanceProgress::reached(double distance) {
     const double before = i > 0 ? work_[i - 1] : 0;
     done = before + (edges - ring) * (work_[i] - before);
   }
-  stage_.update(work_.back() > 0 ? done / work_.back() : 0);
+  // What was expected counts as much as this share of the work.
+  constexpr double k_belief = 0.03;
+  const double share = work_.back() > 0 ? done / work_.back() : 0, so_far = clock_.seconds();
+  const double running = (so_far - guessed_ + k_belief * guessed_ / k_guessing) / (share + k_belief);
+  stage_.update(so_far / (so_far + running * (1 - share)));
 }
 
 }  // namespace saddleback

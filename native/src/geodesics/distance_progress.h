@@ -7,10 +7,12 @@
 #include "saddleback/job.h"
 #include "saddleback/surface_points.h"
 
+#include "support/work_clock.h"
+
 namespace saddleback {
 
-/// The work within a distance is guessed from the lengths of paths along edges, which take little of the time; without
-/// a watched job nothing is computed.
+/// The work within a distance is guessed from the lengths of paths along edges, which take little of the time, and what
+/// is still to come from the time so far; without a watched job nothing is computed.
 class DistanceProgress {
  public:
   struct Extent {
@@ -18,14 +20,15 @@ class DistanceProgress {
     double growth = 0;  ///< a vertex's share of the work grows by this power of its distance
   };
   /// \throw Cancelled.
-  DistanceProgress(const Mesh& mesh, const SurfacePoints& sources, const Extent& extent, const JobStage& guessing,
-                   const JobStage& running);
+  DistanceProgress(const Mesh& mesh, const SurfacePoints& sources, const Extent& extent, const JobStage& stage);
   /// All vertices up to that distance are done. \throw Cancelled.
   void reached(double distance);
 
  private:
   JobStage stage_;
   double per_edge_;
+  WorkClock clock_;
+  double guessed_ = 0;        ///< seconds
   std::vector<double> work_;  ///< up to and with each ring about the sources, an edge wide
 };
 

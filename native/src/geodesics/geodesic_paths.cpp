@@ -279,8 +279,11 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   const double to_source = std::sqrt(graph.mesh().vertex_count() / static_cast<double>(sources.size()));
   const double of_path = options.shorten ? 10 + 0.025 * to_source * to_source : 9 + 0.8 * to_source;
   const double of_paths = of_path * static_cast<double>(targets.size());
-  const double of_field = graph.mesh().vertex_count() + cost_of_fans(graph, sources);
-  const double share = of_field / (of_field + of_paths + cost_of_fans(graph, targets));
+  const double of_source_fans = cost_of_fans(graph, sources), of_field = graph.mesh().vertex_count() + of_source_fans;
+  const double of_fans = cost_of_fans(graph, targets, FirstFans::later);
+  const double of_fan_mesh = of_source_fans > 0 ? 0 : cost_of_fans(graph, targets) - of_fans;
+  const double all = of_field + of_fan_mesh + of_fans + of_paths;
+  const double share = of_field / all, prepared = (of_field + of_fan_mesh) / all;
   const PathField field = make_field(graph, sources, longest_path(graph, sources, targets, stage.part(0, 0)),
                                      options.threads, stage.part(0, share));
   constexpr Index k_block = 32;
@@ -289,12 +292,12 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   std::vector<GeodesicPaths> parts(blocks);
   std::vector<std::unique_ptr<PathMaker>> makers(thread_count(options.threads));
   std::vector<DirectFans> fans(makers.size());
-  FanTeam team(graph, targets, options.threads, stage.part(0, 0));
+  FanTeam team(graph, targets, options.threads, stage.part(share, prepared));
   const NearbySources nearby(graph, sources, field.point_fans);
   std::atomic<Index> done{0};
   // The rest of the time goes into one list of all points: the more of them, the more memory is touched first there.
   const double joining = (options.shorten ? 0.02 : 0.15) * std::min(1.0, count / 5e3), written = 1 - joining;
-  const JobStage following = stage.part(share, 1), writing = following.part(0, written);
+  const JobStage following = stage.part(prepared, 1), writing = following.part(0, written);
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);
     const std::span own = std::span(targets).subspan(block * k_block, std::min(k_block, count - block * k_block));

@@ -152,10 +152,10 @@ std::vector<double> SaddleVertexGraph::distances_to(const QuerySources& sources,
   check_surface_points(*mesh_, targets, "targets");
   const double source_cost = cost_of_fans(*this, sources);
   const double target_cost = cost_of_fans(*this, targets, source_cost > 0 ? FirstFans::later : FirstFans::maybe);
-  // The more sources near a target, the more straight ways there are to try.
-  constexpr double k_cost_of_sight = 1e4;
-  const double sight_cost = k_cost_of_sight * static_cast<double>(sources.points.size()) *
-                            static_cast<double>(targets.size()) / mesh_->vertex_count();
+  // The more sources, the more straight ways there are to try.
+  constexpr double k_cost_of_sight = 8, k_more_sources = 0.35;
+  const double sight_cost = k_cost_of_sight * std::pow(static_cast<double>(sources.points.size()), k_more_sources) *
+                            static_cast<double>(targets.size());
   const double all = source_cost + target_cost + mesh_->vertex_count() + sight_cost;
   const double half = source_cost / all, most = (source_cost + target_cost) / all;
   const double searched = 1 - sight_cost / all;

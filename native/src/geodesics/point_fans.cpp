@@ -16,7 +16,7 @@ namespace {
 // strip leaves the mean error as it is.
 constexpr double k_edges_an_arc = 0.15;
 // Nodes that a search expands while a fan is found: of a point by waves and one by one, of a curve.
-constexpr double k_cost_of_point = 100, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 25;
+constexpr double k_cost_of_point = 38, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 30;
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
@@ -46,13 +46,12 @@ PointFan CurveFanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve
                               const JobStage& stage) {
   if (!curve_windows_) curve_windows_ = std::make_unique<CurveWindows>(graph.unfolding());
   const RayLimits limits{.radius = options.limit, .edges = strip_width(graph)};
-  constexpr double k_guessed = 0.03, k_growth = 0.3;  // as those of polar coordinates
+  constexpr double k_growth = 0.3;
   SurfacePoints along;
   if (stage.is_watched())
     for (const CurveSegment& segment : curve.segments()) along.push_back({segment.face, segment.begin});
   const double width = std::min(options.limit, strip_width(graph) * graph.mesh().mean_edge_length());
-  DistanceProgress progress(graph.mesh(), along, {.limit = width, .growth = k_growth}, stage.part(0, k_guessed),
-                            stage.part(k_guessed, 1));
+  DistanceProgress progress(graph.mesh(), along, {.limit = width, .growth = k_growth}, stage);
   curve_windows_->from_curve(curve, limits, feet_, stage.part(0, 0), options.places, &progress);
   PointFan fan;
   add_corners(curve, fan.arcs);

@@ -32,12 +32,10 @@ void check_radius(double radius) {
 }
 
 DistanceProgress progress_of(const Mesh& mesh, const SurfacePoints& sources, double radius, const JobStage& stage) {
-  constexpr double k_guessed = 0.03;
   // Found by trying: the smoother the surface, the more windows are alive far out.
-  constexpr double k_growth = 0.3, k_growth_where_smooth = 0.65, k_smooth = 1e-3, k_rough = 1e-2;  // mean_angle_defect
-  const double defect = std::clamp(mean_angle_defect(mesh), k_smooth, k_rough);
-  const double growth = std::lerp(k_growth_where_smooth, k_growth, std::log10(defect / k_smooth));
-  return {mesh, sources, {.limit = radius, .growth = growth}, stage.part(0, k_guessed), stage.part(k_guessed, 1)};
+  constexpr double k_where_smooth = 1.1, k_smooth = 1e-3, k_power = 0.5;
+  const double growth = k_where_smooth * std::pow(std::max(1.0, mean_angle_defect(mesh) / k_smooth), -k_power);
+  return {mesh, sources, {.limit = radius, .growth = growth}, stage};
 }
 
 }  // namespace

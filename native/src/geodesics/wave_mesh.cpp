@@ -17,8 +17,9 @@ template <class Use, class Fetch, class FetchNeighbours>
 void for_each_edge(const NodeEdges& edges, int threads, const JobStage& stage, Use&& use, Fetch&& fetch,
                    FetchNeighbours&& fetch_neighbours) {
   const auto nodes = static_cast<Index>(edges.first.size()) - 1, last = static_cast<Index>(edges.halfedges.size()) - 1;
-  parallel_for((nodes + k_chunk - 1) / k_chunk, threads, 1, [&](Index chunk, int) {
-    stage.check();
+  const Index chunks = (nodes + k_chunk - 1) / k_chunk;
+  parallel_for(chunks, threads, 1, [&](Index chunk, int) {
+    stage.update(static_cast<double>(chunk) / chunks);
     const Index begin = chunk * k_chunk, end = std::min(nodes, begin + k_chunk);
     for (Index node = begin; node < end; ++node) {
       for (Index e = edges.first[node]; e < edges.first[node + 1]; ++e) {
@@ -36,8 +37,9 @@ NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int thre
     : first(vertices.size() + 1, 0), halfedges(mesh.halfedge_count()), edge_of(mesh.halfedge_count()) {
   const auto count = static_cast<Index>(vertices.size()), chunks = (count + k_chunk - 1) / k_chunk;
   std::vector<std::vector<Index>> found(chunks);  // how many a node has is known once they are
+  const JobStage finding = stage.part(0, 0.6), placing = stage.part(0.6, 1);
   parallel_for(chunks, threads, 1, [&](Index chunk, int) {
-    stage.check();
+    finding.update(static_cast<double>(chunk) / chunks);
     std::vector<Index>& out = found[chunk];
     out.reserve(8 * k_chunk);
     for (Index node = chunk * k_chunk; node < std::min(count, (chunk + 1) * k_chunk); ++node) {
@@ -53,7 +55,7 @@ NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int thre
   });
   for (Index node = 0; node < count; ++node) first[node + 1] += first[node];
   parallel_for(chunks, threads, 1, [&](Index chunk, int) {
-    stage.check();
+    placing.update(static_cast<double>(chunk) / chunks);
     Index e = first[chunk * k_chunk];
     for (const Index h : found[chunk]) {
       halfedges[e] = h;
@@ -112,7 +114,8 @@ FanMesh::FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<c
                  std::span<const Index> vertices, int threads, const JobStage& stage)
     : waves_(unfolding, edges, nodes, vertices, threads, stage.part(0, 0.7)), apex_directions_(edges.halfedges.size()) {
   for_each_edge(
-      edges, threads, stage, [&](Index, Index e, Index h) { apex_directions_[e] = unfolding.polar(Mesh::prev(h)); },
+      edges, threads, stage.part(0.7, 1),
+      [&](Index, Index e, Index h) { apex_directions_[e] = unfolding.polar(Mesh::prev(h)); },
       [&](Index h) { __builtin_prefetch(&unfolding.polar(h)); }, [](Index) {});
 }
 
