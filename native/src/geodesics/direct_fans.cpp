@@ -142,7 +142,7 @@ bool DirectFanFinder::see(const SaddleVertexGraph& graph, std::span<const Surfac
                           std::span<const double> limits, Batch batch, const JobStage& stage) {
   if (batch.empty()) return true;
   if (!waves_) {
-    mesh_ = &graph.query_cache().fan_mesh(graph, 1, stage);
+    mesh_ = &graph.query_cache().fan_mesh(graph, 1, stage.part(0, 0));
     waves_ = std::make_unique<DiskFinder>(mesh_->waves(), graph.kernel(), disk_rule(graph.k(), graph.accuracy()));
   }
   waves_->begin(DiskFinder::Sources::points);

@@ -68,7 +68,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   if (!exact_) tables.emplace(*unfolding_, nodes_, vertices_, options.threads, stage.part(0, 0));
   progress.laid(0.8);
   const double longest = tables ? longest_path_bound(tables->mesh, options.threads, stage)
-                                : longest_path_bound(mesh, nodes_, vertices_, options.threads, stage);
+                                : longest_path_bound(mesh, nodes_, vertices_, options.threads, stage.part(0, 0));
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
   const DiskRule rule =
       disk_rule(k_, accuracy_, accuracy_ > 0 ? lattice_of(*unfolding_, options.threads, stage) : Lattice::none);
