@@ -195,6 +195,45 @@ def test_many_sources_in_one_face(shape: str, count: int) -> None:
         assert np.allclose(gaps[np.arange(len(gaps)), nearest], gaps.min(axis=1), rtol=1e-11, atol=1e-15)
 
 
+def all_over(shape: str, count: int) -> tuple[sb.Mesh, sb.SurfacePoints]:
+    """A flat mesh and sources inside faces, on edges and at vertices."""
+    shapes = {
+        "needles": meshes.needles(8, 60),
+        "grid": meshes.grid(12, 12, 0.3),
+        "graded": meshes.graded_disk(1e-4, 40),
+    }
+    mesh = sb.Mesh(*shapes[shape])
+    rng = np.random.default_rng(count)
+    weights = rng.dirichlet([0.6] * 3, count)
+    weights[::5, 0] = 0
+    weights[::11] = (0, 1, 0)
+    weights /= weights.sum(axis=1)[:, None]
+    return mesh, sb.SurfacePoints(rng.integers(len(mesh.triangles), size=count).astype(np.int32), weights)
+
+
+@pytest.mark.parametrize("shape", ["needles", "grid", "graded"])
+@pytest.mark.parametrize("count", [30, 1000])
+def test_many_sources_all_over_a_plane(shape: str, count: int) -> None:
+    """What sources leave of each other's windows is what they are nearest to."""
+    mesh, sources = all_over(shape, count)
+    targets = random_points(mesh, 300, seed=2)
+    places = np.concatenate([mesh.vertices, targets.positions(mesh)])
+    gaps = np.linalg.norm(places[:, None] - sources.positions(mesh), axis=2)
+    expected = gaps.min(axis=1)
+    for found in fields(mesh, sources):
+        assert_exact(found, expected[: len(mesh.vertices)], 1e-11)
+    assert_exact(sb.ExactField(mesh, sources).distance_to(targets), expected[len(mesh.vertices) :], 1e-11)
+    nearest = sb.exact_nearest(mesh, sources)[1]
+    assert_exact(gaps[np.arange(len(nearest)), nearest], expected[: len(nearest)], 1e-11)
+
+
+def test_sources_end_the_windows_of_others_inside_needles() -> None:
+    """Far from all vertices nothing else does: windows would be the more, the more sources there are, in square."""
+    mesh = sb.Mesh(*meshes.needles(8, 200))
+    few, many = (sb.ExactField(mesh, sb.sample(mesh, count)).window_count for count in (100, 1500))
+    assert many < 4 * few
+
+
 @pytest.mark.parametrize("pair", [(0, 24), (24, 0), (0, 600), (12, 612), (300, 324)])
 def test_ties_go_to_the_smaller_index(pair: tuple[int, int]) -> None:
     mesh = sb.Mesh(*meshes.grid(25, 25))

@@ -20,6 +20,7 @@
 #include <numbers>
 
 #include "geodesics/common_length.h"
+#include "geodesics/window_trim.h"
 
 namespace saddleback {
 namespace {
@@ -104,8 +105,8 @@ void ExactPropagation::drain(WindowBlock* block, ExactProgress& progress) {
       const Window& window = block->items[i];
       if (i + k_ahead < block->size) fetch(block->items[i + k_ahead].halfedge);
       if (window.halfedge >= 0) {
-        if (surface_.frame(window.halfedge).holds_sources) [[unlikely]] {
-          cut_at_sources(window, false, [this](const Window& part) { propagate(part); });
+        if (surface_.frame(window.halfedge).source_beside != k_none) [[unlikely]] {
+          pass_sources(window);
         } else {
           propagate(window);
         }
@@ -141,6 +142,7 @@ void ExactPropagation::start() {
 /// Lights of the three edges of a face what no other source in it is nearer to.
 void ExactPropagation::start_in_face(const SourceInFace& place) {
   const Index root = surface_.vertex_count() + place.source;
+  const std::span<const SourceInFace> others = surface_.sources_in(place.face);
   for (Index h = 3 * place.face; h < 3 * place.face + 3; ++h) {
     const EdgeFrame& frame = surface_.frame(h);
     const Vec2 centre = surface_.in_frame(h, place.barycentric), to_apex = Vec2(frame.apex_x, frame.apex_y) - centre;
@@ -148,7 +150,7 @@ void ExactPropagation::start_in_face(const SourceInFace& place) {
     const Index entered = surface_.twin(h);
     if (entered == k_none || centre.y() == 0) continue;
     double begin = 0, end = frame.length;
-    for (const SourceInFace& other : surface_.sources_in(place.face)) {
+    for (const SourceInFace& other : others) {
       const Vec2 there = surface_.in_frame(h, other.barycentric);
       const double dx = there.x() - centre.x();
       const double middle = (there.squaredNorm() - centre.squaredNorm()) / (2 * dx);  // as far from either
@@ -198,30 +200,40 @@ Index ExactPropagation::owner(Index root) const {
   return root - surface_.vertex_count();
 }
 
-/// The rays on the two sides of a source are two windows from there on, as they would be if it were a vertex: "one
-/// angle, one split" holds for windows only that have no root inside them. The sources are those of the face that the
-/// window enters or, when its root is the vertex opposite, of the face that it comes out of.
-template <class Use>
-void ExactPropagation::cut_at_sources(Window window, bool comes_out, Use&& use) const {
-  const double length = surface_.frame(window.halfedge).length, sliver = k_sliver * length;
-  const Index side = comes_out ? surface_.twin(window.halfedge) : window.halfedge;
-  std::vector<double> cuts;
-  for (const SourceInFace& place : surface_.sources_in(side / 3)) {
-    Vec2 there = surface_.in_frame(side, place.barycentric);
-    if (comes_out) there = {length - there.x(), -there.y()};
-    const double dy = there.y() - window.sy;
-    const double cut = dy > 0 ? window.sx - (there.x() - window.sx) * (window.sy / dy) : there.x();
-    if (cut > window.b0 + sliver && cut < window.b1 - sliver) cuts.push_back(cut);
-  }
-  std::sort(cuts.begin(), cuts.end());
-  const double end = window.b1;
-  for (const double cut : cuts) {
-    window.b1 = cut;
-    use(window);
-    window.b0 = cut;
-  }
-  window.b1 = end;
-  use(window);
+/// Whether an end of its edge offers every point of the window a shorter way.
+inline bool ExactPropagation::is_beaten_by_corners(const Window& w) const {
+  const EdgeFrame& frame = surface_.frame(w.halfedge);
+  const double at_from = distances_[frame.from] * (1 + k_slack) - w.sigma;
+  const double at_to = distances_[frame.to] * (1 + k_slack) - w.sigma;
+  return is_less(at_from + w.b1, squared(w.b1 - w.sx, w.sy)) ||
+         is_less(at_to + (frame.length - w.b0), squared(w.b0 - w.sx, w.sy));
+}
+
+/// Most windows that sources beat are beaten by corners as well, which is told sooner.
+void ExactPropagation::pass_sources(const Window& window) {
+  if (is_beaten_by_corners(window)) return;
+  const Window part = left_by_sources(window);
+  if (part.b0 < part.b1) propagate(part);
+}
+
+/// The part of a window that no source in the faces on the two sides of its half-edge is nearer to. So none ever lies
+/// between the rays of one window, which "one angle, one split" needs: in line behind a source all is nearer to that.
+/// Of windows that are kept, which tell what is nearly nearest too, no more is cut off than this needs.
+Window ExactPropagation::left_by_sources(Window window) const {
+  const Index own = window.root - surface_.vertex_count();
+  surface_.for_sources_beside(window.halfedge, [&](const SourceBeside& other) {
+    if (other.source == own) return;
+    Window part = window;
+    trim(part, other.place);
+    if (!options_.keep_windows || part.b0 >= part.b1) {
+      window = part;
+    } else if (const double ahead = other.place.y() - window.sy; ahead > 0 && other.place.y() <= 0) {
+      const double line = window.sx - (other.place.x() - window.sx) * (window.sy / ahead);
+      if (line <= part.b0) window.b0 = std::max(window.b0, line);
+      if (line >= part.b1) window.b1 = std::min(window.b1, line);
+    }
+  });
+  return window;
 }
 
 void ExactPropagation::propagate(const Window& window) {
@@ -231,7 +243,7 @@ void ExactPropagation::propagate(const Window& window) {
   // Distances of the corners, from the root's on.
   const double at_from = distances_[frame.from] * (1 + k_slack) - sigma;
   const double at_to = distances_[frame.to] * (1 + k_slack) - sigma;
-  if (is_less(at_from + b1, squared(b1 - sx, sy)) || is_less(at_to + (length - b0), squared(b0 - sx, sy))) return;
+  if (is_beaten_by_corners(window)) return;
   const double ox = ax - sx, oy = ay - sy;
   const double split = sx - ox * (sy / oy);  // where the ray to the apex crosses the half-edge
   const double sliver = least_width(length, sx, sy, b0, b1);
@@ -368,9 +380,7 @@ void ExactPropagation::light_opposite(Index vertex, Index out, double begin, dou
     return length * (c / (a + c));
   };
   const EdgeFrame& opposite = surface_.frame(Mesh::next(out));
-  const Window window{length - opposite.apex_x, -opposite.apex_y, place(end), place(begin),
-                      distances_[vertex],       entered,          vertex};
-  cut_at_sources(window, true, [this](const Window& part) { light(part); });
+  light({length - opposite.apex_x, -opposite.apex_y, place(end), place(begin), distances_[vertex], entered, vertex});
 }
 
 }  // namespace saddleback

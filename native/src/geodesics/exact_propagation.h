@@ -65,8 +65,9 @@ class ExactPropagation {
   void offer(Index vertex, double distance, const Arrival& arrival);
   bool owns_before(const Arrival& a, const Arrival& b) const;
   void light(const Window& window);
-  template <class Use>
-  void cut_at_sources(Window window, bool comes_out, Use&& use) const;
+  void pass_sources(const Window& window);
+  Window left_by_sources(Window window) const;
+  bool is_beaten_by_corners(const Window& window) const;
   void propagate(const Window& window);
   void bend(Index vertex);
   void light_opposite(Index vertex, Index out, double begin, double end);

@@ -53,7 +53,7 @@ ExactSurface::ExactSurface(const Mesh& mesh, const SurfacePoints& sources, const
 }
 
 std::size_t ExactSurface::nbytes() const {
-  return frames_.size() * sizeof(EdgeFrame) + bends_.size() +
+  return frames_.size() * sizeof(EdgeFrame) + beside_.size() * sizeof(SourceBeside) + bends_.size() +
          (vertex_of_.size() + face_of_.size() + mesh_vertex_.size() + mesh_face_.size()) * sizeof(Index);
 }
 
@@ -111,7 +111,7 @@ void ExactSurface::lay_out(const JobStage& stage) {
     frame.from = vertex_of_[mesh.from(g)];
     frame.to = vertex_of_[mesh.to(g)];
     frame.apex = vertex_of_[mesh.apex(g)];
-    frame.holds_sources = false;
+    frame.source_beside = k_none;
   }
   bends_.resize(mesh_vertex_.size());
   for (Index v = 0; v < vertex_count(); ++v) {
@@ -135,12 +135,22 @@ void ExactSurface::place_sources(const SurfacePoints& sources) {
   }
   std::stable_sort(in_faces_.begin(), in_faces_.end(),
                    [](const SourceInFace& a, const SourceInFace& b) { return a.face < b.face; });
-  for (const SourceInFace& place : in_faces_)
-    for (Index h = 3 * place.face; h < 3 * place.face + 3; ++h) frames_[h].holds_sources = true;
+  const auto add_beside = [&](Index h, const Vec2& place, Index source) {
+    beside_.push_back({place, source, frames_[h].source_beside});
+    frames_[h].source_beside = static_cast<Index>(beside_.size()) - 1;
+  };
+  beside_.reserve(6 * in_faces_.size());
+  for (const SourceInFace& place : in_faces_) {
+    for (Index h = 3 * place.face; h < 3 * place.face + 3; ++h) {
+      const Vec2 there = in_frame(h, place.barycentric);
+      add_beside(h, there, place.source);
+      if (twin(h) != k_none) add_beside(twin(h), {frames_[h].length - there.x(), -there.y()}, place.source);
+    }
+  }
 }
 
 std::span<const SourceInFace> ExactSurface::sources_in(Index face) const {
-  if (!frames_[3 * face].holds_sources) return {};
+  if (frames_[3 * face].source_beside == k_none) return {};
   const auto [begin, end] =
       std::equal_range(in_faces_.begin(), in_faces_.end(), SourceInFace{face, 0, {}},
                        [](const SourceInFace& a, const SourceInFace& b) { return a.face < b.face; });

@@ -18,14 +18,22 @@ struct alignas(64) EdgeFrame {
   double left_length, right_length;  ///< of the face's edges from-apex and apex-to
   Index left, right;                 ///< half-edges on the far side of those two edges, k_none on the boundary
   Index from, to, apex;
-  bool holds_sources;  ///< the face does
+  Index source_beside;  ///< see ExactSurface::for_sources_beside; k_none for none
 };
+static_assert(sizeof(EdgeFrame) == 64);
 
 /// A source that is no vertex, in a face that it lies in. One on an edge lies in both faces.
 struct SourceInFace {
   Index face;
   Index source;
   Vec3 barycentric;
+};
+
+/// The same in a face on one of the two sides of a half-edge, in the frame of that.
+struct SourceBeside {
+  Vec2 place;
+  Index source;
+  Index next;  ///< of the same half-edge
 };
 
 /// The components of a mesh that hold sources, renumbered along a Hilbert curve, and where the sources are in them.
@@ -44,6 +52,11 @@ class ExactSurface {
   Index twin(Index h) const { return frames_[Mesh::prev(h)].right; }
   std::span<const SourceInFace> sources_in(Index face) const;
   std::span<const SourceInFace> sources_in_faces() const { return in_faces_; }  ///< all, by face
+  /// Visits the sources that lie in one of the two faces at a half-edge.
+  template <class Visit>
+  void for_sources_beside(Index h, Visit&& visit) const {
+    for (Index i = frames_[h].source_beside; i != k_none; i = beside_[i].next) visit(beside_[i]);
+  }
   /// Where the point of the half-edge's face is, in the frame of the half-edge.
   Vec2 in_frame(Index h, const Vec3& barycentric) const;
   /// Where a shortest path may bend: on the boundary, or the total angle exceeds 2 pi by more than rounding.
@@ -75,6 +88,7 @@ class ExactSurface {
   std::vector<EdgeFrame> frames_;
   std::vector<Bends> bends_;
   std::vector<SourceInFace> in_faces_;
+  std::vector<SourceBeside> beside_;
 };
 
 }  // namespace saddleback
