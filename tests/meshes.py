@@ -66,6 +66,13 @@ def grid(columns: int = 12, rows: int = 12, jitter: float = 0.0, seed: int = 0) 
     return vertices, _grid_triangles(columns, rows)
 
 
+def spikes(size: int = 60, height: float = 10.0, seed: int = 1) -> Arrays:
+    """A grid whose vertices are so high and low that hardly any see each other along the surface."""
+    vertices, triangles = grid(size, size)
+    vertices[:, 2] = height / (size - 1) * np.random.default_rng(seed).random(len(vertices))
+    return vertices, triangles
+
+
 def _grid_triangles(columns: int, rows: int) -> Indices:
     corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
     lower = np.column_stack([corner, corner + 1, corner + columns + 1])

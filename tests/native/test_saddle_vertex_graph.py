@@ -139,6 +139,17 @@ def test_an_exact_graph_beyond_the_memory_is_refused() -> None:
         sb.SaddleVertexGraph(sb.Mesh(*meshes.icosphere(7)), exact=True)
 
 
+def test_disks_end_where_few_vertices_are_in_sight() -> None:
+    """Spikes hide all but some thirty neighbours: bounds by edges end what is in sight but not by a shortest way."""
+    vertices, triangles = meshes.spikes()
+    mesh = sb.Mesh(vertices, triangles)
+    graph, all_in_sight = sb.SaddleVertexGraph(mesh, k=200), sb.SaddleVertexGraph(mesh, exact=True)
+    assert graph.mean_degree < 1.05 * all_in_sight.mean_degree
+    for source in (0, len(vertices) // 2):
+        exact = np.asarray(sb.exact_distances(mesh, [source]))
+        np.testing.assert_allclose(graph.distances([source]), exact, rtol=1e-3)
+
+
 def mean_error(vertices: np.ndarray, triangles: np.ndarray, expected: np.ndarray, source: int) -> float:
     found = sb.SaddleVertexGraph(sb.Mesh(vertices, triangles), k=50).distances([source])
     away = expected > 0

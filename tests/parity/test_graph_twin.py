@@ -53,6 +53,7 @@ LARGER: dict[str, Callable[[], meshes.Arrays]] = {
     "sphere": lambda: meshes.icosphere(5),
     "grid": lambda: meshes.grid(120, 90),
     "jittered": lambda: meshes.grid(90, 80, 0.3),
+    "spikes": meshes.spikes,
 }
 
 

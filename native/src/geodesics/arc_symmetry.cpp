@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "saddleback/error.h"
+
 #include "support/parallel.h"
 
 namespace saddleback {
@@ -34,6 +36,8 @@ struct Row {
 // Arcs whose rows are asked for ahead, and rows whose words are.
 constexpr int k_row_ahead = 12, k_words_ahead = 6;
 static_assert(k_row_ahead <= k_row_padding);
+
+double share_of(Index done, std::int64_t count) { return static_cast<double>(done) / static_cast<double>(count); }
 
 class Union {
  public:
@@ -119,12 +123,13 @@ class Union {
 
   /// Empties the found arcs.
   ArcRows assemble(int threads, const JobStage& stage) {
-    constexpr double k_copying = 0.4;  // of the time, from there on
+    constexpr double k_counting = 0.35, k_copying = 0.4;  // of the time, from there on
     paired_ = {};
-    sort_missing(threads, stage);
+    sort_missing(threads, stage.part(0, k_counting));
     std::vector<std::int64_t> offsets(node_count_ + 1, 0);
+    const JobStage counting = stage.part(k_counting, k_copying);
     parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
-      stage.check();
+      counting.update(share_of(b, std::ssize(found_)));
       for_each_row(b, [&](Index node, std::span<const std::uint64_t> own, std::span<const MissingArc> others) {
         const auto added = std::ranges::count_if(others, [](const MissingArc& arc) { return !arc.replaces(); });
         offsets[node + 1] = static_cast<std::int64_t>(own.size()) + added;
@@ -134,7 +139,7 @@ class Union {
     ArcWords words(offsets.back());
     const JobStage copying = stage.part(k_copying, 1);
     parallel_for(static_cast<Index>(found_.size()), threads, 4, [&](Index b, int) {
-      copying.update(static_cast<double>(b) / static_cast<double>(found_.size()));
+      copying.update(share_of(b, std::ssize(found_)));
       for_each_row(b, [&](Index node, std::span<const std::uint64_t> own, std::span<const MissingArc> others) {
         const auto row = words.begin() + offsets[node];
         auto end = std::copy(own.begin(), own.end(), row);
@@ -172,8 +177,10 @@ class Union {
     first_missing_.resize(node_count_ + 1);
     std::vector<std::atomic<std::int32_t>> counts(node_count_);
     const auto lists = static_cast<Index>(missing_.size());
+    constexpr double k_filling = 0.3, k_sorting = 0.6;  // of the time, from there on
+    const JobStage counting = stage.part(0, k_filling), filling = stage.part(k_filling, k_sorting);
     parallel_for(lists, threads, 4, [&](Index b, int) {
-      stage.check();
+      counting.update(share_of(b, lists));
       for (const MissingArc& arc : missing_[b]) counts[arc.node()].fetch_add(1, std::memory_order_relaxed);
     });
     first_missing_[0] = 0;
@@ -181,15 +188,16 @@ class Union {
       first_missing_[node + 1] = first_missing_[node] + counts[node].load(std::memory_order_relaxed);
     all_missing_.resize(first_missing_.back());
     parallel_for(lists, threads, 4, [&](Index b, int) {
-      stage.check();
+      filling.update(share_of(b, lists));
       for (const MissingArc& arc : missing_[b]) {
         const std::int32_t left = counts[arc.node()].fetch_sub(1, std::memory_order_relaxed) - 1;
         all_missing_[first_missing_[arc.node()] + left] = arc;
       }
       missing_[b] = {};
     });
+    const JobStage sorting = stage.part(k_sorting, 1);
     parallel_for(node_count_, threads, 4 * block_size_, [&](Index node, int) {
-      if (node % block_size_ == 0) stage.check();
+      if (node % block_size_ == 0) sorting.update(share_of(node, node_count_));
       std::sort(all_missing_.begin() + first_missing_[node], all_missing_.begin() + first_missing_[node + 1]);
     });
   }
@@ -237,20 +245,25 @@ KeptArcs::KeptArcs(const FoundArcs& found, ReturnedPieces& memory) : first_node(
 
 ArcRows unite_with_reverses(const ArcCodec& codec, const WaveKernel& kernel, std::vector<KeptArcs>& found, int threads,
                             const JobStage& stage) {
-  Union work(codec, kernel, found, threads, stage);
   std::atomic<Index> done{0};
   const auto for_each_block = [&](const JobStage& part, auto&& use) {
     done = 0;
     parallel_for(static_cast<Index>(found.size()), threads, 4, [&](Index b, int) {
-      part.update(static_cast<double>(done++) / static_cast<double>(found.size()));
+      part.update(share_of(done++, std::ssize(found)));
       use(b);
     });
   };
-  for_each_block(stage.part(0, 0.5), [&](Index b) { work.pair_with_later(b); });
-  for_each_block(stage.part(0.5, 0.6), [&](Index b) { work.add_unpaired(b); });
-  ArcRows arcs = work.assemble(threads, stage.part(0.6, 1));
-  stage.update(1);
-  return arcs;
+  try {
+    Union work(codec, kernel, found, threads, stage);
+    for_each_block(stage.part(0, 0.5), [&](Index b) { work.pair_with_later(b); });
+    for_each_block(stage.part(0.5, 0.6), [&](Index b) { work.add_unpaired(b); });
+    ArcRows arcs = work.assemble(threads, stage.part(0.6, 1));
+    stage.update(1);
+    return arcs;
+  } catch (const Cancelled&) {
+    free_in_background(std::move(found));
+    throw;
+  }
 }
 
 }  // namespace saddleback

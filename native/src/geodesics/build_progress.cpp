@@ -14,10 +14,11 @@ namespace {
 constexpr double k_laying = 1;  ///< a vertex
 constexpr double k_joined_arc = 0.035;
 
-/// Where edges differ much in length windows are many more: how many times, for the accuracies in use.
-double unevenness(const Mesh& mesh) {
+/// Where edges differ much in length windows are many more: how many times. `growth` is that of the number's logarithm
+/// with the spread of the lengths' logarithms.
+double unevenness(const Mesh& mesh, double growth) {
   constexpr Index k_samples = 4096;
-  constexpr double k_even = 0.85, k_growth = 2.5;  // of the logarithm's spread
+  constexpr double k_even = 0.85;
   const Index stride = std::max<Index>(1, mesh.halfedge_count() / k_samples);
   double count = 0, sum = 0, squares = 0;
   for (Index h = 0; h < mesh.halfedge_count(); h += stride) {
@@ -27,16 +28,20 @@ double unevenness(const Mesh& mesh) {
     squares += value * value;
   }
   const double variance = squares / count - sum * sum / (count * count);
-  return std::exp(k_growth * std::max(0.0, std::sqrt(std::max(0.0, variance)) - k_even));
+  return std::exp(growth * std::max(0.0, std::sqrt(std::max(0.0, variance)) - k_even));
 }
 
 }  // namespace
 
 double BuildProgress::by_accuracy(const Mesh& mesh, double accuracy) {
-  return 10 * std::pow(SaddleVertexGraphOptions::k_default_accuracy / accuracy, 0.6) * unevenness(mesh);
+  constexpr double k_growth = 2.5;  // for the accuracies in use
+  return 10 * std::pow(SaddleVertexGraphOptions::k_default_accuracy / accuracy, 0.6) * unevenness(mesh, k_growth);
 }
 
-double BuildProgress::by_count(const Mesh&, Index k) { return 0.25 * k; }
+double BuildProgress::by_count(const Mesh& mesh, Index k) {
+  constexpr double k_growth = 0.75;  // disks end by themselves
+  return 0.25 * k * unevenness(mesh, k_growth);
+}
 
 double BuildProgress::by_all(const Mesh& mesh) { return mesh.vertex_count(); }
 

@@ -15,7 +15,6 @@ namespace {
 // As in disk_finder.cpp.
 constexpr float k_disk_as_far = 1 + 1e-5f;
 constexpr float k_bend_longer = 1 + 1e-6f;
-constexpr int k_disk_generations_per_bound = 3;
 
 /// One window as its lane holds it.
 struct LaneWindow {
@@ -327,8 +326,10 @@ class WarpWaves {
 
   SADDLEBACK_STEP void bend() {
     if constexpr (All) {
-      if (++generation_ % k_disk_generations_per_bound != 0) return;
+      if (++generation_ % k_generations_per_bound != 0) return;
       bound_disk();
+      // Where few vertices are in sight: the processor bounds such disks by edges.
+      if (generation_ >= k_blind_generations && !(limit_ < distance_of(k_unreached_label))) overflow_ = true;
       relax_bends();
     }
   }

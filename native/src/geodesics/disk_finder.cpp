@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 
 namespace saddleback {
 namespace {
@@ -16,8 +17,6 @@ constexpr int k_most_windows = 1 << 20;
 constexpr float k_as_far = 1 + 1e-5f;
 constexpr float k_longer = 1 + 1e-6f;
 constexpr double k_rounding = 1e-6;
-// Finding the k-th nearest takes as long as a generation.
-constexpr int k_generations_per_bound = 3;
 // Windows end where a flank serves within this many times the tolerance. Less costs windows and arcs: with 1 a fifth
 // more of both; more lets errors exceed the accuracy here and there.
 constexpr double k_radius_tolerance = 1.5;
@@ -279,7 +278,7 @@ void DiskFinder::clear() {
 /// Lowers the radius of a lane's disk to that of the k-th nearest vertex, as far as is known.
 bool DiskFinder::bound_disk(int lane) {
   const auto& slots = touched_[lane];
-  const Index before = sources_ == Sources::nodes ? rule_.k : rule_.k - 1;  // a node is its own nearest
+  const Index before = nearest_before();
   if (static_cast<Index>(slots.size()) <= before) return false;
   // What lies beyond the radius so far does not count, and is nearly half.
   radii_.resize(slots.size());
@@ -310,7 +309,50 @@ void DiskFinder::finish_disks() {
 void DiskFinder::bound_disks() {
   if (++generation_ % k_generations_per_bound != 0) return;
   for (int lane = 0; lane < k_batch; ++lane) bound_disk(lane);
+  if (generation_ >= k_blind_generations) bound_blind_disks();
   relax_bends();
+}
+
+/// In creases fewer than k vertices are in sight: no radius would ever end the windows there.
+void DiskFinder::bound_blind_disks() {
+  std::array<bool, k_batch> blind{};
+  for (WindowColumns* side : {&now_->lefts, &now_->rights}) {
+    const std::int32_t* const edges = side->rows().edge;
+    const int count = side == &now_->lefts ? now_->left_count : now_->right_count;
+    for (int i = 0; i < count; ++i) blind[edges[i] % k_batch] = true;
+  }
+  for (int lane = 0; lane < k_batch; ++lane)
+    if (blind[lane] && limits_[lane] == k_infinity) limits_[lane] = radius_by_edges(lane);
+}
+
+/// Of the disk, from above: the k-th distance by mesh edges from the vertices with labels. The largest number where
+/// there are not so many.
+float DiskFinder::radius_by_edges(int lane) {
+  if (by_edges_.empty()) by_edges_.assign(mesh_.node_count(), k_infinity);
+  std::vector<std::pair<float, Index>> queue;
+  std::vector<Index> reached;
+  const auto offer = [&](Index node, float distance) {
+    if (distance >= by_edges_[node]) return;
+    if (by_edges_[node] == k_infinity) reached.push_back(node);
+    by_edges_[node] = distance;
+    queue.emplace_back(distance, node);
+    std::push_heap(queue.begin(), queue.end(), std::greater<>());
+  };
+  for (const std::int32_t slot : touched_[lane]) offer(slot / k_batch, distance_of(labels_[slot]));
+  float radius = std::numeric_limits<float>::max();
+  for (Index left = nearest_before() + 1; !queue.empty();) {
+    std::pop_heap(queue.begin(), queue.end(), std::greater<>());
+    const auto [distance, node] = queue.back();
+    queue.pop_back();
+    if (distance > by_edges_[node]) continue;
+    if (--left == 0) {
+      radius = distance * k_as_far;
+      break;
+    }
+    for_each_neighbour(node, [&](Index there, double length) { offer(there, distance + static_cast<float>(length)); });
+  }
+  for (const Index node : reached) by_edges_[node] = k_infinity;
+  return radius;
 }
 
 /// Behind saddle vertices windows bring no distances: there, bounds by edges count the vertices of the disk and end the
@@ -342,6 +384,12 @@ void DiskFinder::relax_from(std::int32_t slot) {
     labels_[there] = bent;
     changed_.push_back(there);
   };
+  for_each_neighbour(node, offer);
+}
+
+/// Calls offer(neighbour, length) for the mesh edges about a node.
+template <class Offer>
+void DiskFinder::for_each_neighbour(Index node, Offer&& offer) const {
   for (Index e = mesh_.begin(node); e < mesh_.end(node); ++e) {
     offer(mesh_.target(e), mesh_.length(e));
     if (!mesh_.has_left(e)) offer(mesh_.records()[e].apex, mesh_.apex(e).norm());

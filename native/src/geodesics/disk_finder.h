@@ -99,12 +99,18 @@ class DiskFinder {
   void choose();
 
   bool by_count() const { return rule_.k > 0; }
+  /// How many are nearer than the last vertex of a disk: a node is its own nearest.
+  Index nearest_before() const { return sources_ == Sources::nodes ? rule_.k : rule_.k - 1; }
   bool bound_disk(int lane);
   void finish_disks();
   void bound_disks();
+  void bound_blind_disks();
+  float radius_by_edges(int lane);
   void relax_bends();
   bool bends(std::int32_t slot, std::int32_t label) const;
   void relax_from(std::int32_t slot);
+  template <class Offer>
+  void for_each_neighbour(Index node, Offer&& offer) const;
 
   const WaveMesh& mesh_;
   const WaveKernel& kernel_;
@@ -123,6 +129,7 @@ class DiskFinder {
   alignas(64) std::array<float, k_batch> limits_{};
   std::vector<std::int32_t> changed_;  ///< slots whose neighbours may have to be told of their labels
   std::vector<float> radii_;
+  std::vector<float> by_edges_;  ///< per node, where a disk was bounded by edges; infinite in between
   std::array<std::vector<std::int32_t>, k_batch> chosen_;  ///< with room behind what was chosen
   std::array<std::size_t, k_batch> chosen_counts_{};
 };

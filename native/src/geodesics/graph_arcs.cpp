@@ -26,9 +26,9 @@ double room_for(double accuracy) {
 }
 
 /// So many parts of the mesh, one after the other from all over it, take as long as they would if the mesh were even.
-/// By count some vertices take thousands of times as long as others, and are neighbours: there a part has no more arcs
-/// than these.
-constexpr Index k_parts = 377, k_part_arcs = 4000;
+/// By count some vertices take many times as long as others, and are neighbours: there a part has no more arcs than
+/// these.
+constexpr Index k_parts = 377, k_part_arcs = 64000;
 // Nodes whose arcs are kept together: so many that what is done for each block is nothing, so few that no thread waits
 // long for the last.
 constexpr Index k_block = 128, k_most_watched = 256, k_least_watched = 64;
@@ -78,7 +78,7 @@ std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, Index k, bool watc
   std::vector<KeptArcs> found(order.size());
   std::vector<FoundArcs> drafts(thread_count(search.threads));
   std::vector<ReturnedPieces> pieces(drafts.size(), ReturnedPieces(piece_size(node_count, watched)));
-  parallel_for(static_cast<Index>(found.size()), search.threads, 1, [&](Index i, int thread) {
+  const auto find_block = [&](Index i, int thread) {
     FoundArcs& draft = drafts[thread];
     draft.first_node = order[i] * size;
     draft.counts.clear();
@@ -86,7 +86,13 @@ std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, Index k, bool watc
     draft.back_sectors.clear();
     find(draft, std::min(size, node_count - draft.first_node), thread);
     found[order[i]] = KeptArcs(draft, pieces[thread]);
-  });
+  };
+  try {
+    parallel_for(static_cast<Index>(found.size()), search.threads, 1, find_block);
+  } catch (const Cancelled&) {
+    free_in_background(std::move(found));
+    throw;
+  }
   return found;
 }
 

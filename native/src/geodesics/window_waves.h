@@ -11,6 +11,10 @@ namespace saddleback {
 /// Sources that share their generations, to fill the lanes. A *slot* is a node and one of them: node * k_batch + lane.
 inline constexpr int k_batch = 8;
 inline constexpr int k_batch_bits = 3;
+/// Disks that end by count learn their radius every so many generations: finding the k-th nearest takes as long as one.
+inline constexpr int k_generations_per_bound = 3;
+/// A disk whose radius is not known by then is bounded by mesh edges. Half as many do for nearly all.
+inline constexpr int k_blind_generations = 24;
 /// Rows may be read and written so many entries past their end.
 inline constexpr int k_row_padding = 16;
 

@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <system_error>
+#include <thread>
+#include <utility>
 #include <vector>
 
 namespace saddleback {
@@ -42,5 +45,16 @@ class ReturnedPieces {
   std::size_t piece_size_, used_ = 0, size_ = 0;
   Owner piece_;
 };
+
+/// Frees what a cancelled call leaves behind: a gigabyte of pages goes back in longer than whoever cancelled should
+/// have to wait.
+template <class T>
+void free_in_background(T abandoned) {
+  try {
+    std::thread([kept = std::move(abandoned)] {}).detach();
+  } catch (const std::system_error&) {
+    return;  // no thread is to be had: freed by now
+  }
+}
 
 }  // namespace saddleback
