@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 import saddleback as sb
-from saddleback_blender.core import runs
+from saddleback_blender.core import runs, shell_solid
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.figures import shell_faults_of
+from saddleback_blender.core.near_faces import largest_extent, near_faces
 from saddleback_blender.core.requests import Surface, TessellateRequest
 from saddleback_blender.core.results import LampShell
 from saddleback_blender.core.rib_surface import rib_surface
@@ -82,6 +83,41 @@ def test_a_place_that_crosses_becomes_thinner_and_no_other():
     height = np.unique(np.round(np.abs(shell.vertices[:, 2]), 9))
     assert 0 < shell.thinner < 0.05 and shell.crossing == 0
     np.testing.assert_allclose(height, [0.025 * 0.36, 0.025], atol=1e-9)
+
+
+def test_looking_only_about_what_moved_changes_nothing(monkeypatch):
+    """The same solid, to the bit, as when every triangle is looked at in every round."""
+    vertices, triangles = synthetic_cells.sphere(4)
+    mesh = sb.Mesh(vertices, triangles)
+    graph = sb.SaddleVertexGraph(mesh, k=30)
+    ribs = ribs_of(mesh, sb.centroidal_voronoi(graph, count=30).cells, 0.1)
+
+    def too_high(vertices, triangles):
+        """Triangles that reach beyond a slope: fewer each time, and some only after the vertices have moved."""
+        high = np.linalg.norm(vertices, axis=1) > 1.02 + 0.02 * vertices[:, 0]
+        counts.append(len(triangles))
+        return np.flatnonzero(high[triangles].any(axis=1)).astype(np.int32)
+
+    counts: list[int] = []
+    few = thicken(ribs, 0.1, too_high, runs.new_progress())
+    assert min(counts) < 0.9 * counts[0]
+    monkeypatch.setattr(shell_solid, "near_faces", lambda vertices, faces, moved, extent: np.arange(len(faces)))
+    all_of_them = thicken(ribs, 0.1, too_high, runs.new_progress())
+    assert np.array_equal(few.vertices, all_of_them.vertices) and few.crossing == all_of_them.crossing
+
+
+def test_near_faces_are_all_whose_boxes_overlap():
+    random = np.random.default_rng(3)
+    middles = random.uniform(0, 10, (4000, 1, 3))
+    vertices = (middles + random.uniform(-0.2, 0.2, (4000, 3, 3))).reshape(-1, 3)
+    triangles = np.arange(12000, dtype=np.int32).reshape(-1, 3)
+    moved = np.zeros(4000, bool)
+    moved[random.choice(4000, 20)] = True
+    found = near_faces(vertices, triangles, moved, largest_extent(vertices, triangles))
+    low, high = vertices[triangles].min(axis=1), vertices[triangles].max(axis=1)
+    overlap = ((low[:, None] <= high[moved]) & (low[moved] <= high[:, None])).all(axis=2).any(axis=1)
+    assert np.isin(np.flatnonzero(overlap), found).all() and (np.diff(found) > 0).all() and len(found) < 1000
+    assert len(near_faces(vertices, triangles, np.zeros(4000, bool), 1.0)) == 0
 
 
 def test_what_cannot_be_mended_is_told():

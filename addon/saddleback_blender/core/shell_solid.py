@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .cell_mesh import drop_unused
 from .cell_solid import vertex_normals
 from .mesh_edges import border_edges, directed_edges
+from .near_faces import largest_extent, near_faces
 from .progress import Progress
 from .requests import FindCrossings
 from .results import Indices, LampShell, Reals
@@ -28,26 +29,44 @@ LEAST_COSINE = 0.05
 
 
 def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, progress: Progress) -> LampShell:
-    """The solid, half the thickness to either side of the surface. O(t) for each of at most MOST_TIMES rounds."""
-    direction = _directions(ribs.vertices, ribs.triangles, thickness)
+    """The solid, half the thickness to either side of the surface. At most MOST_TIMES rounds: the first in O(t), those
+    after it in what lies about the places that the one before has moved.
+    """
+    direction = _directions(ribs.vertices, ribs.triangles, thickness, progress)
     vertices, triangles = drop_unused(np.column_stack([ribs.vertices, direction]), ribs.triangles[ribs.is_rib])
     places, direction = vertices[:, :3].copy(), vertices[:, 3:].copy()
     count = len(places)
     share = np.ones(count)
     faces = _closed(triangles, count)
+    there, extent = np.ones(count, bool), 0.0
     for number in range(MOST_TIMES + 1):
         progress.check()
         offset = (0.5 * thickness * share)[:, None] * direction
         solid = np.concatenate([places + offset, places - offset])
-        crossing = np.unique(find_crossings(solid, faces))
+        moved: NDArray[np.bool_] = there[faces % count].any(axis=1)
+        extent = max(extent, largest_extent(solid, faces[moved]))
+        looked_at = near_faces(solid, faces, moved, extent)
+        crossing = looked_at[np.unique(find_crossings(solid, faces[looked_at]))]
         if not len(crossing) or number == MOST_TIMES:
             break
         there = _beside(triangles, np.unique(faces[crossing] % count), count)
         share[there] *= THINNER
         if number >= FOLDED_AFTER:
-            places[there] = _mean_of_neighbours(places, triangles)[there]
-            direction[there] = _directions(places, triangles, 0.0)[there]
+            _smooth(places, direction, triangles, there)
     return LampShell(solid, faces, _pieces(triangles, count), float((share < 1.0).mean()), len(crossing))
+
+
+def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[np.bool_]) -> None:
+    """Moves the vertices `there` (n,) to the middle of their neighbours, and turns their directions to what is new."""
+    around = there
+    for _ in range(3):  # a normal, its mean over neighbours, and whether that is turned away: a ring each
+        around = _beside(triangles, np.flatnonzero(around), len(places))
+    used, number = np.unique(triangles[around[triangles].all(axis=1)], return_inverse=True)
+    near: Indices = number.reshape(-1, 3).astype(np.int32)
+    own, moved = there[used], places[used]
+    moved[own] = _Neighbours(near, len(used)).mean(moved)[own]
+    places[used] = moved
+    direction[used[own]] = _directions(moved, near, 0.0, None)[own]
 
 
 def _closed(triangles: Indices, count: int) -> Indices:
@@ -57,14 +76,17 @@ def _closed(triangles: Indices, count: int) -> Indices:
     return np.concatenate([triangles, triangles[:, ::-1] + count, *walls]).astype(np.int32)
 
 
-def _directions(vertices: Reals, triangles: Indices, thickness: float) -> Reals:
+def _directions(vertices: Reals, triangles: Indices, thickness: float, progress: Progress | None) -> Reals:
     """Unit normals (n, 3), smoothed over about the thickness, but not turned away from a triangle beside them."""
     normals = vertex_normals(vertices, triangles)
     start, end = directed_edges(triangles)
     mean_edge = float(np.linalg.norm(vertices[end] - vertices[start], axis=1).mean())
+    neighbours = _Neighbours(triangles, len(vertices))
     smooth = normals
     for _ in range(int(np.clip(4 * (thickness / mean_edge) ** 2, 1, MOST_SMOOTHING))):
-        smooth = _unit(0.2 * smooth + _mean_of_neighbours(smooth, triangles), normals)
+        if progress is not None:
+            progress.check()
+        smooth = _unit(0.2 * smooth + neighbours.mean(smooth), normals)
     corners = vertices[triangles]
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     face = _unit(face, face)
@@ -74,13 +96,31 @@ def _directions(vertices: Reals, triangles: Indices, thickness: float) -> Reals:
     return np.where(own[:, None], normals, smooth)
 
 
-def _mean_of_neighbours(values: Reals, triangles: Indices) -> Reals:
-    """Mean (n, 3) over the corners of the triangles around each vertex but itself."""
-    start, end = directed_edges(triangles)
-    both, other = np.concatenate([start, end]), np.concatenate([end, start])
-    times = np.maximum(np.bincount(both, minlength=len(values)), 1)
-    sums = [np.bincount(both, values[other, axis], minlength=len(values)) for axis in range(3)]
-    return np.column_stack(sums) / times[:, None]
+class _Neighbours:
+    """Corners of the triangles around each vertex but itself, sorted by vertex: one on two triangles counts twice."""
+
+    def __init__(self, triangles: Indices, count: int) -> None:
+        start, end = directed_edges(triangles)
+        both, other = np.concatenate([start, end]), np.concatenate([end, start])
+        self.other = other[np.argsort(both, kind="stable")]
+        times = np.bincount(both, minlength=count)
+        self.used = np.flatnonzero(times)
+        self.times = times[self.used]
+        self.first = (np.cumsum(times) - times)[self.used]
+        self.count = count
+
+    def mean(self, values: Reals) -> Reals:
+        """Mean (n, 3) of the neighbours' values; zero where there are none."""
+        means = np.zeros((self.count, 3))
+        for axis in range(3):
+            means[self.used, axis] = np.add.reduceat(values[:, axis][self.other], self.first) / self.times
+        return means
+
+    def least(self, values: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The least (n,) of each vertex's own value and its neighbours'."""
+        least = values.copy()
+        least[self.used] = np.minimum(least[self.used], np.minimum.reduceat(values[self.other], self.first))
+        return least
 
 
 def _unit(vectors: Reals, otherwise: Reals) -> Reals:
@@ -99,12 +139,13 @@ def _beside(triangles: Indices, vertices: NDArray[np.integer], count: int) -> ND
 
 def _pieces(triangles: Indices, count: int) -> int:
     """Number of connected parts: the least vertex of each spreads, in ever longer jumps."""
+    neighbours = _Neighbours(triangles, count)
     label = np.arange(count)
     while True:
-        least = label[triangles].min(axis=1)
-        spread = label.copy()
-        for corner in range(3):
-            np.minimum.at(spread, triangles[:, corner], least)
+        spread = neighbours.least(label)
+        spread = np.minimum(spread, spread[spread])
+        # Who led a part so far tells it what its members have heard.
+        np.minimum.at(spread, label, spread[np.arange(count)])
         spread = spread[spread]
         if np.array_equal(spread, label):
             return len(np.unique(label))
