@@ -43,7 +43,7 @@ def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, p
         progress.check()
         offset = (0.5 * thickness * share)[:, None] * direction
         solid = np.concatenate([places + offset, places - offset])
-        moved: NDArray[np.bool_] = there[faces % count].any(axis=1)
+        moved = np.asarray(there[faces % count].any(axis=1))
         extent = max(extent, largest_extent(solid, faces[moved]))
         looked_at = near_faces(solid, faces, moved, extent)
         crossing = looked_at[np.unique(find_crossings(solid, faces[looked_at]))]
