@@ -87,7 +87,7 @@ void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const Surfa
     return find_exactly(graph, points, views, stage, [&](std::vector<SeenNode>& seen) {
       for (const DirectArc& arc : row_) {
         const Vec2 place = arc.length * Vec2(std::cos(arc.start_angle), std::sin(arc.start_angle));
-        seen.push_back({graph.node_of(arc.vertex), k_none, arc.length, place, Vec2(arc.end_angle, 0)});
+        seen.push_back({graph.node_of(arc.vertex), k_none, true, arc.length, place, Vec2(arc.end_angle, 0)});
       }
     });
   }
@@ -171,13 +171,21 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, FanA
 }
 
 void DirectFanFinder::append_seen(int lane, std::vector<SeenNode>& seen) {
+  for (const std::int32_t i : waves_->chosen(lane)) seen.push_back(seen_node(i, true));
+  for (const std::int32_t i : waves_->served())
+    if (waves_->sightings().slot[i] % k_batch == lane) seen.push_back(seen_node(i, false));
+}
+
+SeenNode DirectFanFinder::seen_node(std::int32_t sighting, bool is_arc) {
   const SightingRows rows = waves_->sightings();
   const double unit = mesh_->waves().unit();
-  for (const std::int32_t i : waves_->chosen(lane)) {
-    const Vec2 place = unit * Vec2(rows.x[i], rows.y[i]);
-    seen.push_back({rows.slot[i] / k_batch, rows.edge[i] / k_batch, place.norm(), place,
-                    unit * Vec2(rows.from_x[i], rows.from_y[i])});
-  }
+  const Vec2 place = unit * Vec2(rows.x[sighting], rows.y[sighting]);
+  return {rows.slot[sighting] / k_batch,
+          rows.edge[sighting] / k_batch,
+          is_arc,
+          place.norm(),
+          place,
+          unit * Vec2(rows.from_x[sighting], rows.from_y[sighting])};
 }
 
 double direction_back(const SaddleVertexGraph& graph, const SeenNode& seen) {

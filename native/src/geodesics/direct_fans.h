@@ -21,6 +21,7 @@ class SaddleVertexGraph;
 struct SeenNode {
   Index node;
   Index edge;     ///< of the waves' mesh, across which it is seen; k_none: `from` is no place but the direction back, 0
+  bool is_arc;    ///< else the way over another vertex serves as well, within the accuracy
   double length;  ///< as it is
   Vec2 place;     ///< in the chart of the point's face, from the point
   Vec2 from;      ///< the start of `edge` in the same plane
@@ -67,6 +68,7 @@ class DirectFanFinder {
   void append_arcs(const SaddleVertexGraph& graph, int lane, FanAngles angles, std::vector<DirectArc>& arcs);
   void append_row(std::vector<DirectArc>& arcs);
   void append_seen(int lane, std::vector<SeenNode>& seen);
+  SeenNode seen_node(std::int32_t sighting, bool is_arc);
   /// Calls append(lane, rows.arcs) for each point inside a face.
   template <class Arc, class Append>
   void find_in_batches(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
@@ -104,7 +106,7 @@ using UseFan = std::function<void(Index, std::span<const DirectArc>)>;
 void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                   FanAngles angles, int threads, const JobStage& stage, const UseFan& use);
 
-/// The same for what points see, in no particular order.
+/// The same for what points see, in no particular order, but arcs first.
 using UseSeen = std::function<void(Index, std::span<const SeenNode>)>;
 void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                    int threads, const JobStage& stage, const UseSeen& use);

@@ -150,6 +150,7 @@ bool DiskFinder::run(const JobStage& stage) {
   }
   if (by_count()) finish_disks();
   choose();
+  if (sources_ == Sources::points) list_served();
   return now_->size() == 0;
 }
 
@@ -261,6 +262,20 @@ void DiskFinder::choose() {
   for (int lane = 0; lane < k_batch; ++lane) {
     chosen_counts_[lane] = static_cast<std::size_t>(ends[lane] - chosen_[lane].data());
     std::fill_n(ends[lane], k_row_padding, 0);
+  }
+}
+
+/// Each vertex once.
+void DiskFinder::list_served() {
+  const SightingRows rows = sightings();
+  const double slack = arc_slack(rule_);
+  served_.clear();
+  for (std::int32_t i = 0; i < sighting_count_; ++i) {
+    const std::int32_t slot = rows.slot[i], label = rows.label[i];
+    if (makes_arc(label) || label != labels_[slot]) continue;
+    if (distance_of(arcs_[slot].label) <= slack * distance_of(label)) continue;
+    arcs_[slot] = {label, i};  // both windows beside a vertex on their ray see it: the first does
+    served_.push_back(i);
   }
 }
 

@@ -107,7 +107,7 @@ void SiteMaps::label_all(int threads, const JobStage& stage) {
       const Fan& fan = fans_[site];
       if (fan.centre != k_none) add(fan.centre, site, 0);
       if (fan.last < first || fan.first >= last) continue;  // of another part of the surface
-      for (const Seen& seen : fan.seen) add(seen.node, site, seen.rounded);
+      for (const Seen& seen : fan.arcs()) add(seen.node, site, seen.rounded);
     }
   };
   if (cuda_device_ >= 0) {
@@ -121,13 +121,13 @@ void SiteMaps::label_all(int threads, const JobStage& stage) {
 /// All fans', one after the other.
 FlatSeeds SiteMaps::flat_seeds(int threads) const {
   std::vector<std::size_t> first{0};
-  for (const Fan& fan : fans_) first.push_back(first.back() + fan.seen.size() + (fan.centre != k_none ? 1 : 0));
+  for (const Fan& fan : fans_) first.push_back(first.back() + fan.arc_count + (fan.centre != k_none ? 1 : 0));
   FlatSeeds seeds;
   seeds.resize(first.back());
   parallel_for(site_count(), threads, 64, [&](Index site, int) {
     std::size_t at = first[site];
     const Fan& fan = fans_[site];
-    for (const Seen& seen : fan.seen) seeds.set(at++, {seen.node, site, seen.rounded});
+    for (const Seen& seen : fan.arcs()) seeds.set(at++, {seen.node, site, seen.rounded});
     if (fan.centre != k_none) seeds.set(at, {fan.centre, site, 0});
   });
   return seeds;
@@ -145,7 +145,7 @@ void SiteMaps::label_again(std::span<const Index> moved, const JobStage& stage) 
   for (Index site = 0; site < site_count(); ++site) {
     const Fan& fan = fans_[site];
     if (fan.centre != k_none) search.offer(fan.centre, site, 0);
-    for (const Seen& seen : fan.seen) search.offer(seen.node, site, seen.rounded);
+    for (const Seen& seen : fan.arcs()) search.offer(seen.node, site, seen.rounded);
   }
   std::vector<std::uint8_t> moves(site_count(), 0);  // its nodes, away or here
   for (const Index site : moved) moves[site] = 1;
@@ -223,8 +223,8 @@ void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reac
   if (reaches.empty()) limits.clear();
   for_each_view(graph_, points, limits, threads, stage, [&](Index i, std::span<const SeenNode> view) {
     Fan& fan = fans_[of[i]];
-    fan.seen.clear();
-    for (const SeenNode& node : view) fan.seen.push_back({node, graph_.arcs().codec().round(node.length)});
+    fan.clear();
+    for (const SeenNode& node : view) fan.add(node, graph_.arcs().codec().round(node.length));
     fan.span_nodes();
   });
   parallel_for(static_cast<Index>(at_vertices.size()), threads, 16, [&](Index i, int) {
@@ -233,10 +233,22 @@ void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reac
   });
 }
 
+void SiteMaps::Fan::clear() {
+  seen.clear();
+  from.clear();
+  arc_count = 0;
+}
+
+void SiteMaps::Fan::add(const SeenNode& node, double rounded) {
+  seen.push_back({node.node, node.edge, node.length, rounded, node.place});
+  from.emplace_back(node.from);
+  if (node.is_arc) arc_count = seen.size();
+}
+
 void SiteMaps::Fan::span_nodes() {
-  const auto [least, greatest] = std::ranges::minmax_element(seen, {}, &Seen::node);
-  first = seen.empty() ? 0 : least->node;
-  last = seen.empty() ? -1 : greatest->node;
+  const auto [least, greatest] = std::ranges::minmax_element(arcs(), {}, &Seen::node);
+  first = arc_count == 0 ? 0 : least->node;
+  last = arc_count == 0 ? -1 : greatest->node;
 }
 
 void SiteMaps::make_fan_at_vertex(Fan& fan) {
@@ -245,12 +257,12 @@ void SiteMaps::make_fan_at_vertex(Fan& fan) {
   const ArcRows& arcs = graph_.arcs();
   ArcUnfolder unfolder(graph_.unfolding());
   UnfoldedArc unfolded;
-  fan.seen.clear();
+  fan.clear();
   for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
     const double rounded = arcs.length(arc);
     const double length = unfolder.unfold(graph_.hint(node, arc), unfolded) ? unfolded.length : rounded;
     const Vec2 place = polar(length, scale * unfolded.start_angle);
-    fan.seen.push_back({{arcs.target(arc), k_none, length, place, Vec2(unfolded.end_angle, 0)}, rounded});
+    fan.add({arcs.target(arc), k_none, true, length, place, Vec2(unfolded.end_angle, 0)}, rounded);
   }
   fan.span_nodes();
 }
@@ -358,7 +370,12 @@ SiteMaps::Place SiteMaps::place_after(Index node, Index previous, Scratch& scrat
 double SiteMaps::direction_back(Index node, Scratch& scratch) const {
   const Place& place = places_[node];
   if (place.found_by == k_centre) return 0;
-  if (place.found_by == k_straight) return saddleback::direction_back(graph_, *seen_in_fan(label_[node], node));
+  if (place.found_by == k_straight) {
+    const Fan& fan = fans_[label_[node]];
+    const Seen& seen = *seen_in_fan(label_[node], node);
+    const Vec2 from = fan.from[&seen - fan.seen.data()];
+    return saddleback::direction_back(graph_, {seen.node, seen.edge, true, seen.length, seen.place, from});
+  }
   if (place.found_by == k_after_another) {
     const Index previous = node_before(node);
     scratch.unfolder.unfold(graph_.hint(previous, graph_.arcs().find(previous, node)), scratch.unfolded);

@@ -10,13 +10,14 @@
 #include "geodesics/arc_unfolding.h"
 #include "geodesics/direct_fans.h"
 #include "geodesics/twin_search.h"
+#include "tessellation/packed_vector.h"
 #include "tessellation/vertex_rings.h"
 
 namespace saddleback {
 
 /// Where a vertex lies, seen from a site.
 struct SiteVector {
-  Vec2 log = Vec2::Zero();  ///< in the site's tangent plane; as long as the distance, to rounding
+  PackedVec2 log = PackedVec2::Zero();  ///< in the site's tangent plane; as long as the distance, to rounding
   double distance = 0;
 };
 
@@ -132,15 +133,23 @@ class SiteMaps {
 
  private:
   using Wedge = VertexRings::Wedge;
-  /// Its place is not rounded: that depends on the scale, which must not show in the cells.
-  struct Seen : SeenNode {
-    double rounded;  ///< length as the graph's arcs are, for labels
+  /// As a SeenNode. What is no arc is where it is seen, but labels are the graph's.
+  struct Seen {
+    Index node, edge;
+    double length;   ///< not rounded: that depends on the scale, which must not show in the cells
+    double rounded;  ///< as the graph's arcs are, for labels
+    PackedVec2 place;
   };
   struct Fan {
     std::vector<Seen> seen;
+    std::size_t arc_count = 0;     ///< those are the first
+    std::vector<PackedVec2> from;  ///< their SeenNode::from, which few are asked for
     Index centre = k_none;         ///< the node that the site is
     std::array<Index, 3> corners;  ///< of its face
     Index first = 0, last = -1;    ///< the least and the greatest of the nodes
+    void add(const SeenNode& node, double rounded);
+    void clear();
+    std::span<const Seen> arcs() const { return {seen.data(), arc_count}; }
     void span_nodes();
   };
   /// The anchor of an edge's ends, both placed from it, seen across the edge from the third corner.
@@ -159,7 +168,7 @@ class SiteMaps {
   void group_again(std::span<const Index> moving);
   void order_sites();
   const Seen* seen_in_fan(Index site, Index node) const;
-  static Place place_straight(const SeenNode& seen) { return {seen.place, seen.length, k_none, k_straight}; }
+  static Place place_straight(const Seen& seen) { return {seen.place, seen.length, k_none, k_straight}; }
   Index node_before(Index node) const;
   Place place_after(Index node, Index previous, Scratch& scratch) const;
   bool place_own(Index node, Index site, Place& place) const;
