@@ -40,7 +40,7 @@ RayWindow rays_from_foot(double along, int side) {
 }  // namespace
 
 void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits, std::vector<CurveFoot>& feet,
-                              const JobStage& stage, const WatchedPlaces* places, DistanceProgress* progress) {
+                              const JobStage& stage, const WatchedPlaces* places, const ReportRays& report) {
   feet.clear();
   field_.begin(places);
   const auto segments = curve.segments();
@@ -66,7 +66,7 @@ void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits
     shine_from_end(segments.front(), true, 0);
     shine_from_end(segments.back(), false, curve.length());
   }
-  field_.run(limits, stage, progress);
+  field_.run(limits, stage, report);
   for (const Index vertex : field_.settled()) {
     const RayLabel& label = field_.label(vertex);
     const double distance = std::max(0.0, label.distance);

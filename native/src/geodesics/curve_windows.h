@@ -28,8 +28,7 @@ class CurveWindows {
   /// The vertices within limits.radius, in any order. Exact: each has its shortest distance, unless limits.edges says
   /// otherwise. \throw Cancelled.
   void from_curve(const SurfaceCurve& curve, const RayLimits& limits, std::vector<CurveFoot>& feet,
-                  const JobStage& stage = {}, const WatchedPlaces* places = nullptr,
-                  DistanceProgress* progress = nullptr);
+                  const JobStage& stage = {}, const WatchedPlaces* places = nullptr, const ReportRays& report = {});
   /// Distances of the last call's places: of those that see the curve, or a saddle vertex with one that does, within
   /// the limits; else infinity or the length of a longer way.
   std::span<const double> place_distances() const { return field_.places().values(); }

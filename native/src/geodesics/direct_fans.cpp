@@ -239,8 +239,10 @@ void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
       if (!limits.empty()) own_limits.push_back(limits[i]);
     }
     find(team[thread], own, own_limits, rows);
-    for (std::size_t i = 0; i < chosen.size(); ++i) use(chosen[i], rows[i]);
-    finding.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / blocks);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      use(chosen[i], rows[i]);
+      finding.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
+    }
   });
 }
 

@@ -156,7 +156,7 @@ double ExactProgress::share_by_vertices(const Done& done) const {
   const double share = std::min(1.0, static_cast<double>(done.vertices) / likely_vertices_);
   const double reached = (at_vertices_ * share + at_windows_ * share * std::sqrt(share)) / (at_vertices_ + at_windows_);
   const auto blocks = static_cast<double>(done.blocks), left = static_cast<double>(done.blocks_left);
-  return reached * blocks / (blocks + left);
+  return left > 0 ? reached * blocks / (blocks + left) : reached;
 }
 
 double ExactProgress::share_by_rings(const Done& done) {

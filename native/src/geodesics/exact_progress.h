@@ -26,10 +26,10 @@ class ExactProgress {
  public:
   /// So far.
   struct Done {
-    double distance;
-    std::int64_t windows;
-    Index vertices;                    ///< that are reached
-    std::int64_t blocks, blocks_left;  ///< of windows
+    double distance = 0;
+    std::int64_t windows = 0;                  ///< 0 where it is not known
+    Index vertices = 0;                        ///< that are reached
+    std::int64_t blocks = 0, blocks_left = 0;  ///< of windows
   };
   /// Mesh and sources outlive this object.
   ExactProgress(const ExactWork& work, const JobStage& stage);

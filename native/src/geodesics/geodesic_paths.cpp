@@ -17,6 +17,7 @@
 #include "geodesics/query_cache.h"
 #include "geodesics/window_propagation.h"
 #include "support/parallel.h"
+#include "support/work_clock.h"
 
 namespace saddleback {
 namespace {
@@ -247,6 +248,27 @@ GeodesicPaths joined(std::vector<GeodesicPaths>& parts, const JobStage& stage) {
   return paths;
 }
 
+/// Share of the time from which on the parts are joined, told from how long the calling thread takes for a point of a
+/// path: the more points, the more memory is touched first in the list of them all.
+class JoiningShare {
+ public:
+  explicit JoiningShare(std::size_t threads) : threads_(static_cast<double>(threads)) {}
+  /// By the thread that made this: it has found paths of so many more points.
+  void add(std::size_t points) {
+    constexpr double k_joined_point = 2.8e-8;  // seconds, mostly the system's, for its memory
+    points_ += static_cast<double>(points);
+    const double joining = k_joined_point * points_, finding = clock_.seconds() / threads_;
+    share_.store(joining / (finding + joining), std::memory_order_relaxed);
+  }
+  double value() const { return share_.load(std::memory_order_relaxed); }
+
+ private:
+  const double threads_;
+  const WorkClock clock_;
+  double points_ = 0;
+  std::atomic<double> share_{0.1};
+};
+
 }  // namespace
 
 GeodesicPath GeodesicPaths::path(std::size_t i) const {
@@ -295,9 +317,8 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   FanTeam team(graph, targets, options.threads, stage.part(share, prepared));
   const NearbySources nearby(graph, sources, field.point_fans);
   std::atomic<Index> done{0};
-  // The rest of the time goes into one list of all points: the more of them, the more memory is touched first there.
-  const double joining = (options.shorten ? 0.02 : 0.15) * std::min(1.0, count / 5e3), written = 1 - joining;
-  const JobStage following = stage.part(prepared, 1), writing = following.part(0, written);
+  const JobStage following = stage.part(prepared, 1);
+  JoiningShare joining(makers.size());
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);
     const std::span own = std::span(targets).subspan(block * k_block, std::min(k_block, count - block * k_block));
@@ -306,10 +327,11 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
     for (std::size_t i = 0; i < own.size(); ++i) {
       stage.check();
       makers[thread]->append(own[i], fans[thread][i], parts[block]);
-      writing.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
+      following.update((1 - joining.value()) * (done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
     }
+    if (thread == 0) joining.add(parts[block].points.size());
   });
-  GeodesicPaths paths = blocks == 1 ? std::move(parts[0]) : joined(parts, following.part(written, 1));
+  GeodesicPaths paths = blocks == 1 ? std::move(parts[0]) : joined(parts, following.part(1 - joining.value(), 1));
   stage.update(1);
   return paths;
 }

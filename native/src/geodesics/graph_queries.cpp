@@ -156,22 +156,24 @@ std::vector<double> SaddleVertexGraph::distances_to(const QuerySources& sources,
   constexpr double k_cost_of_sight = 8, k_more_sources = 0.35;
   const double sight_cost = k_cost_of_sight * std::pow(static_cast<double>(sources.points.size()), k_more_sources) *
                             static_cast<double>(targets.size());
-  const double all = source_cost + target_cost + mesh_->vertex_count() + sight_cost;
-  const double half = source_cost / all, most = (source_cost + target_cost) / all;
-  const double searched = 1 - sight_cost / all;
+  const double all = source_cost + mesh_->vertex_count() + target_cost + sight_cost;
+  const double prepared = source_cost / all, searched = (source_cost + mesh_->vertex_count()) / all;
   const WatchedPlaces places(targets);
-  const SourceFans from = find_fans(*this, sources, stage.part(0, half), {.places = &places});
-  const std::vector<PointFan> to = find_fans(*this, targets, stage.part(half, most));
+  const SourceFans from = find_fans(*this, sources, stage.part(0, prepared), {.places = &places});
   const auto search = queries_->field_searches.lease();
-  search->run(*this, seeds_of(from.fans), {}, SearchLabels::none, stage.part(most, searched));
+  search->run(*this, seeds_of(from.fans), {}, SearchLabels::none, stage.part(prepared, searched));
   const NearbySources nearby(*this, sources.points, from.fans);
   std::vector<double> result = from.at_places;
+  const auto reach = [&](Index i, const PointFan& fan) {
+    result[i] = std::min(result[i], through_fan(*search, *this, fan));
+    result[i] = nearby.least_length(targets[i], fan, result[i], stage);
+  };
   const JobStage looking = stage.part(searched, 1);
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    looking.update(static_cast<double>(i) / static_cast<double>(targets.size()));
-    result[i] = std::min(result[i], through_fan(*search, *this, to[i]));
-    result[i] = nearby.least_length(targets[i], to[i], result[i], stage);
-  }
+  for (Index i = 0; i < static_cast<Index>(targets.size()); ++i)
+    if (vertex_at(*mesh_, targets[i]) != k_none) reach(i, point_fan(*this, targets[i], {}));
+  // Looked at as soon as its fan is there: how the two share the time differs from mesh to mesh.
+  for_each_fan(*this, targets, {}, FanAngles::none, 0, looking,
+               [&](Index i, std::span<const DirectArc> arcs) { reach(i, point_fan(*this, targets[i], arcs)); });
   stage.update(1);
   return result;
 }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "geodesics/distance_progress.h"
 #include "geodesics/planar.h"
 #include "geodesics/query_cache.h"
 #include "support/parallel.h"
@@ -52,7 +53,8 @@ PointFan CurveFanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve
     for (const CurveSegment& segment : curve.segments()) along.push_back({segment.face, segment.begin});
   const double width = std::min(options.limit, strip_width(graph) * graph.mesh().mean_edge_length());
   DistanceProgress progress(graph.mesh(), along, {.limit = width, .growth = k_growth}, stage);
-  curve_windows_->from_curve(curve, limits, feet_, stage.part(0, 0), options.places, &progress);
+  curve_windows_->from_curve(curve, limits, feet_, stage.part(0, 0), options.places,
+                             [&](double distance, Index) { progress.reached(distance); });
   PointFan fan;
   add_corners(curve, fan.arcs);
   for (const CurveFoot& foot : feet_) fan.arcs.push_back({foot.vertex, foot.distance});

@@ -10,6 +10,9 @@
 
 #include "geodesics/angle_defect.h"
 #include "geodesics/curve_windows.h"
+#include "geodesics/distance_progress.h"
+#include "geodesics/exact_progress.h"
+#include "geodesics/exact_surface.h"
 #include "geodesics/point_star.h"
 #include "support/parallel.h"
 
@@ -31,11 +34,30 @@ void check_radius(double radius) {
   if (!(radius > 0)) throw InputError(message("radius: wanted a distance above 0, got ", radius));
 }
 
-DistanceProgress progress_of(const Mesh& mesh, const SurfacePoints& sources, double radius, const JobStage& stage) {
-  // Found by trying: the smoother the surface, the more windows are alive far out.
+/// A vertex's share of the work grows by about this power of its distance: the smoother the surface, the more windows
+/// are alive far out.
+double growth_of_work(const Mesh& mesh) {
   constexpr double k_where_smooth = 1.1, k_smooth = 1e-3, k_power = 0.5;
-  const double growth = k_where_smooth * std::pow(std::max(1.0, mean_angle_defect(mesh) / k_smooth), -k_power);
-  return {mesh, sources, {.limit = radius, .growth = growth}, stage};
+  return k_where_smooth * std::pow(std::max(1.0, mean_angle_defect(mesh) / k_smooth), -k_power);
+}
+
+/// Where light bends little, windows last until they meet others from round the surface, as far out as only its shape
+/// tells: there they are foretold, as those of exact distances are. That takes longer than guessing by the vertices,
+/// but not much of the longer time that there is to tell of.
+void run_about(const SurfacePoint& centre, double radius, const Mesh& mesh, RayField& field, const JobStage& stage) {
+  constexpr double k_lasting = 0.8;
+  const RayLimits limits{.radius = radius};
+  if (!stage.is_watched()) return field.run(limits, stage);
+  const SurfacePoints centres{centre};
+  const bool is_round = std::numbers::pi * radius * radius >= mesh.area();
+  if (const double growth = growth_of_work(mesh); growth < k_lasting || !is_round) {
+    DistanceProgress progress(mesh, centres, {.limit = radius, .growth = growth}, stage);
+    return field.run(limits, stage, [&](double distance, Index) { progress.reached(distance); });
+  }
+  ExactProgress progress({mesh, centres, radius}, stage);
+  progress.foretell(ExactSurface(mesh, centres, progress.laying()), field.ring_width());
+  field.run(limits, stage,
+            [&](double distance, Index vertices) { progress.update({.distance = distance, .vertices = vertices}); });
 }
 
 }  // namespace
@@ -49,8 +71,9 @@ PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const Surface
   std::vector<CurveFoot> feet;
   SurfacePoints places;
   for (const CurveSegment& segment : curve.segments()) places.push_back({segment.face, segment.begin});
-  DistanceProgress progress = progress_of(graph.mesh(), places, radius, stage);
-  windows.from_curve(curve, {.radius = radius}, feet, stage, nullptr, &progress);
+  DistanceProgress progress(graph.mesh(), places, {.limit = radius, .growth = growth_of_work(graph.mesh())}, stage);
+  windows.from_curve(curve, {.radius = radius}, feet, stage, nullptr,
+                     [&](double distance, Index) { progress.reached(distance); });
   std::ranges::sort(feet, {}, &CurveFoot::vertex);
   PolarCoordinates result;
   for (const CurveFoot& foot : feet) {
@@ -81,8 +104,7 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, doubl
   if (star.vertex() != k_none) field.add_source(star.vertex(), {0, 0, 0, false});
   const RayWindow window{Vec2::Zero(), 0, 0, 0, 0, k_none, Rays::from_point, 0, false};
   star.shine(field, window, star.begin(), star.begin() + star.total_angle());
-  DistanceProgress progress = progress_of(mesh, {point}, radius, stage);
-  field.run({.radius = radius}, stage, &progress);
+  run_about(point, radius, mesh, field, stage);
   LogMap result;
   result.vertices = field.settled();
   std::ranges::sort(result.vertices);

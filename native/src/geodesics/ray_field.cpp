@@ -173,10 +173,10 @@ bool RayField::is_too_far(const RayWindow& window, double key) const {
   return key > limits_.edges * edge;
 }
 
-void RayField::run(const RayLimits& limits, const JobStage& stage, DistanceProgress* progress) {
+void RayField::run(const RayLimits& limits, const JobStage& stage, const ReportRays& report) {
   limits_ = limits;
   while (queue_.advance() && queue_.reached() <= limits_.radius) {
-    if (progress) progress->reached(queue_.reached());
+    if (report) report(queue_.reached(), static_cast<Index>(reached_.size()));
     while (auto* const block = queue_.take()) drain(block, stage);
     // Last in the bucket: by now their distances are final, nearly always.
     for (const Index vertex : due_) bend(vertex);

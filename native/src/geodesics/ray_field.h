@@ -1,11 +1,13 @@
 #pragma once
 // Exact distances from a wave front of rays: from a point, or at right angles from a curve.
 
+#include <functional>
 #include <limits>
 #include <vector>
 
+#include "saddleback/job.h"
+
 #include "geodesics/block_queue.h"
-#include "geodesics/distance_progress.h"
 #include "geodesics/ray_barriers.h"
 #include "geodesics/ray_window.h"
 #include "geodesics/unfolding.h"
@@ -28,6 +30,9 @@ struct RayLimits {
   double edges = std::numeric_limits<double>::infinity();
 };
 
+/// Takes how far the rays have come, and to how many vertices.
+using ReportRays = std::function<void(double distance, Index vertices)>;
+
 /// Window propagation (Chen and Han 1990, filters of Xin and Wang 2009) of windows of any front, with saddle vertices
 /// sending out windows of their own: every label is that of a shortest path. A vertex on the very border of a window is
 /// updated by it (closed intervals), so that rays through the vertices of regular grids reach what lies behind them.
@@ -49,13 +54,15 @@ class RayField {
   /// What ends rays, to be filled after `begin` and before anything else; none at first.
   RayBarriers& barriers() { return barriers_; }
   /// \throw Cancelled.
-  void run(const RayLimits& limits, const JobStage& stage, DistanceProgress* progress = nullptr);
+  void run(const RayLimits& limits, const JobStage& stage, const ReportRays& report = {});
 
   /// Vertices with their final labels, in any order; those that were reached within the limits.
   const std::vector<Index>& settled() const { return settled_; }
   const RayLabel& label(Index vertex) const { return vertices_[vertex].label; }
   PlaceDistances& places() { return places_; }
   const PlaceDistances& places() const { return places_; }
+  /// Windows come in rings about the sources of this width.
+  double ring_width() const { return queue_.width(); }
 
  private:
   struct VertexState {

@@ -15,6 +15,8 @@ constexpr double k_from_bend = 0.5;
 // As a share of a face's edge or, on needles, of its height: guessed distances are as exact as this, usually.
 constexpr double k_doubt = 0.25;
 
+constexpr double k_surely = 1 - 1e-9;  ///< of squared distances
+
 /// A straight line from a root at (sx, sy), on its way into the half-edge's face at (x, 0).
 struct Ray {
   double sx, sy, x, sigma;
@@ -46,14 +48,15 @@ class RayCount {
     }
   }
 
-  /// What a source inside a face lights through each edge stays one window until vertices split it.
+  /// What a source inside a face lights through each edge stays one window until vertices split it; of its rays the one
+  /// straight ahead lasts about longest.
   void add_source(const SourceInFace& place, double weight) {
     for (Index h = 3 * place.face; h < 3 * place.face + 3; ++h) {
       const Index entered = surface_.twin(h);
       const double length = surface_.frame(h).length;
       const Vec2 centre = surface_.in_frame(h, place.barycentric);
       if (entered != k_none && centre.y() > 0)
-        follow({length - centre.x(), -centre.y(), length / 2, 0, entered}, weight);
+        follow({length - centre.x(), -centre.y(), std::clamp(length - centre.x(), 0.0, length), 0, entered}, weight);
     }
   }
 
@@ -122,7 +125,7 @@ class RayCount {
     return ray;
   }
 
-  /// Until some corner has a shorter way.
+  /// Until some corner has a shorter way, or a source.
   void follow(Ray ray, double weight) {
     constexpr int k_most_steps = 1 << 16;
     for (int step = 0; step < k_most_steps && ray.halfedge != k_none; ++step) {
@@ -131,7 +134,7 @@ class RayCount {
       const double least = length - k_doubt * std::min(frame.length, frame.apex_y);
       const bool is_first = length <= extent_.limit && least <= arrivals_[frame.from].distance + ray.x &&
                             least <= arrivals_[frame.to].distance + (frame.length - ray.x);
-      if (!is_first) return;
+      if (!is_first || is_nearer_to_source(ray, length)) return;
       count(length, weight);
       const double ox = frame.apex_x - ray.sx, oy = frame.apex_y - ray.sy;
       if (!(oy > 0)) return;
@@ -147,6 +150,16 @@ class RayCount {
         ray.halfedge = frame.right;
       }
     }
+  }
+
+  /// Than to the ray's root, from where the ray crosses its half-edge.
+  bool is_nearer_to_source(const Ray& ray, double length) const {
+    bool result = false;
+    surface_.for_sources_beside(ray.halfedge, [&](const SourceBeside& other) {
+      const double dx = other.place.x() - ray.x;
+      result = result || dx * dx + other.place.y() * other.place.y() < k_surely * length * length;
+    });
+    return result;
   }
 
   /// Onto the edge from the origin to (ax, ay), which is its x axis then.
