@@ -141,6 +141,21 @@ def test_pieces_are_counted():
     assert shell.pieces == 2 and "2 pieces" in shell_faults_of(shell)[0]
 
 
+def test_ribs_are_as_wide_as_the_cells_let_them_be():
+    """At any size of the model: no width is given."""
+    square = shapes.grid(8)
+    settings = TessellateSettings(count=20, iterations=2, k=30, make_shell=True)
+    shells = []
+    for scale in (1.0, 64.0):
+        scaled = Surface("Square", scale * square.vertices, square.triangles, len(square.vertices))
+        request = TessellateRequest(scaled, settings, find_crossings=lambda vertices, triangles: NONE)
+        shells.append(runs.tessellate(request, runs.new_progress()).shell)
+    small, large = shells
+    assert np.array_equal(small.triangles, large.triangles)
+    np.testing.assert_allclose(large.vertices, 64 * small.vertices, rtol=1e-12)
+    assert np.ptp(small.vertices[:, 2]) == pytest.approx(np.sqrt(1 / 20) / 8, rel=1e-9)
+
+
 def test_without_lines_or_with_ribs_like_hairs_there_is_a_sentence():
     vertices, triangles = synthetic_cells.sphere(2)
     mesh = sb.Mesh(vertices, triangles)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
@@ -27,6 +28,7 @@ from .settings import DistanceSettings
 from .shell_solid import thicken
 from .surface_places import compact_points, surface_points
 
+RIB_SHARE = 0.125  # of a cell's size: the width of ribs where none is given
 UNSEEN = 1e-3  # of a cell's size: sites that would move by less while they are watched rest
 
 
@@ -266,16 +268,17 @@ def _result(request: TessellateRequest, solved: _Solved, density: Reals | None) 
 def _shell(
     request: TessellateRequest, mesh: Any, solved: _Solved, key: tuple[str, ...], progress: Progress, cache: Cache
 ) -> LampShell:
-    settings, find_crossings = request.settings, request.find_crossings
+    find_crossings = request.find_crossings
     assert find_crossings is not None
+    width = request.settings.rib_width or RIB_SHARE * math.sqrt(mesh.area / len(solved.cells.areas))
+    thickness = request.settings.rib_thickness or width
 
     def build() -> LampShell:
         with progress.stage(0.99, "making the lamp shell"):
-            ribs = rib_surface(request.surface.name, mesh, solved.cells, settings.rib_width, progress)
-            return thicken(ribs, settings.rib_thickness, find_crossings, progress)
+            ribs = rib_surface(request.surface.name, mesh, solved.cells, width, progress)
+            return thicken(ribs, thickness, find_crossings, progress)
 
-    lengths = digest(settings.rib_width, settings.rib_thickness)
-    return cache.get(("shell", *key, lengths), build, lambda shell: shell.nbytes)
+    return cache.get(("shell", *key, digest(width, thickness)), build, lambda shell: shell.nbytes)
 
 
 def _edge_distance(surface: Surface, split: Any) -> Reals:

@@ -60,8 +60,8 @@ class TessellateSettings(DensitySettings):
     make_dual: bool = False
     dual_policy: str = "REPAIR"  # REPAIR, STRICT
     make_shell: bool = False
-    rib_width: float = 0.03
-    rib_thickness: float = 0.03
+    rib_width: float = 0.0  # 0 = by the cells' size
+    rib_thickness: float = 0.0  # 0 = as wide
     cell_attribute: str = "saddleback_cell"
     distance_attribute: str = "saddleback_distance"
     density_attribute: str = "saddleback_density"

@@ -105,9 +105,13 @@ TESSELLATE: dict[str, Any] = {
     "make_dual": switch("Dual Mesh", "Make a triangle mesh with one vertex for each cell: a remesh", False),
     "dual_policy": choice("Policy", "What to do where cells are too large for a mesh", DUAL_POLICIES, "REPAIR"),
     "make_shell": switch("Lamp Shell", "Make the lines between cells into one closed solid that can be printed", False),
-    "rib_width": length("Rib Width", "How wide the ribs of the lamp shell are, along the surface", 0.03, least=1e-6),
+    "rib_width": length(
+        "Rib Width", "How wide the ribs of the lamp shell are, along the surface; 0: by the cells' size", 0.0
+    ),
     "rib_thickness": length(
-        "Rib Thickness", "How thick the lamp shell is, half of it to either side of the surface", 0.03, least=1e-6
+        "Rib Thickness",
+        "How thick the lamp shell is, half of it to either side of the surface; 0: as thick as wide",
+        0.0,
     ),
     "cell_attribute": name_of("Cell Attribute", "Where each vertex's cell is written", "saddleback_cell"),
     "distance_attribute": name_of("Distance Attribute", "Where distances are written", "saddleback_distance"),
