@@ -17,7 +17,7 @@ namespace {
 // strip leaves the mean error as it is.
 constexpr double k_edges_an_arc = 0.15;
 // Nodes that a search expands while a fan is found: of a point by waves and one by one, of a curve.
-constexpr double k_cost_of_point = 38, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 30;
+constexpr double k_cost_of_point = 38, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 24;
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
@@ -125,10 +125,24 @@ double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points,
   return k_cost_of_point * (static_cast<double>(inside) + of_mesh);
 }
 
+namespace {
+
+/// Of a curve's faces, the share that it has not been in before: where it runs along itself windows are few.
+double share_of_new_faces(const SurfaceCurve& curve) {
+  std::vector<Index> faces;
+  for (const CurveSegment& segment : curve.segments()) faces.push_back(segment.face);
+  std::ranges::sort(faces);
+  const auto repeated = std::ranges::unique(faces);
+  return 1 - static_cast<double>(std::ssize(repeated)) / static_cast<double>(std::ssize(faces));
+}
+
+}  // namespace
+
 double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources) {
   double cost = cost_of_fans(graph, sources.points);
   for (const SurfaceCurve* const curve : sources.curves) {
-    const double strip = 2 * strip_width(graph) * curve->length() / graph.mesh().mean_edge_length();
+    const double length = share_of_new_faces(*curve) * curve->length();
+    const double strip = 2 * strip_width(graph) * length / graph.mesh().mean_edge_length();
     cost += k_cost_of_strip_vertex * std::min(strip, static_cast<double>(graph.mesh().vertex_count()));
   }
   return cost;
