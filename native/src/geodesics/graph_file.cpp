@@ -194,20 +194,20 @@ SaddleVertexGraph SaddleVertexGraph::load(const std::string& path, const Mesh& m
   file.read(std::span(graph.vertices_));
   std::vector<std::int64_t> offsets = read_offsets(file, header.vertex_count);
   ArcWords words(header.arc_count);
-  file.read(std::span(words), stage.part(0.05, 0.4));
+  file.read(std::span(words), stage.part(0.02, 0.24));
   if (const std::uint32_t crc = file.crc(); file.read<std::uint32_t>() != crc)
     refuse_graph_file(path, "its checksum is wrong");
 
   check_build(header, path);
   graph.nodes_ = inverse_order(graph.vertices_, path);
-  const double longest = longest_path_bound(mesh, graph.nodes_, graph.vertices_, 0, stage);
+  const double longest = longest_path_bound(mesh, graph.nodes_, graph.vertices_, 0, stage.part(0.24, 0.35));
   const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
   if (!same_codec(header, codec)) refuse_graph_file(path, "its lengths are in another unit than this mesh needs");
   if (offsets.back() != static_cast<std::int64_t>(words.size()))
     refuse_graph_file(path, message("its rows hold ", offsets.back(), " arcs instead of ", words.size()));
   graph.arcs_ = ArcRows(codec, std::move(offsets), std::move(words));
-  check_arcs(mesh, graph.arcs_, graph.vertices_, path, stage.part(0.4, 0.9));
-  graph.unfolding_ = std::make_unique<Unfolding>(mesh, 0, stage.part(0.9, 1));
+  check_arcs(mesh, graph.arcs_, graph.vertices_, path, stage.part(0.38, 0.93));
+  graph.unfolding_ = std::make_unique<Unfolding>(mesh, 0, stage.part(0.93, 1));
   graph.k_ = static_cast<Index>(header.k);
   graph.accuracy_ = header.accuracy;
   graph.exact_ = header.flags == k_exact_flag;
