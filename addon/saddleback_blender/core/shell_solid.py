@@ -145,7 +145,7 @@ def _pieces(triangles: Indices, count: int) -> int:
         spread = neighbours.least(label)
         spread = np.minimum(spread, spread[spread])
         # Who led a part so far tells it what its members have heard.
-        np.minimum.at(spread, label, spread[np.arange(count)])
+        np.minimum.at(spread, label, spread.copy())
         spread = spread[spread]
         if np.array_equal(spread, label):
             return len(np.unique(label))

@@ -21,6 +21,15 @@ constexpr double k_cost_of_point = 38, k_cost_of_exact_point = 1500, k_cost_of_s
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
+/// Of a curve's faces, the share that it has not been in before: where it runs along itself windows are few.
+double share_of_new_faces(const SurfaceCurve& curve) {
+  std::vector<Index> faces;
+  for (const CurveSegment& segment : curve.segments()) faces.push_back(segment.face);
+  std::ranges::sort(faces);
+  const auto repeated = std::ranges::unique(faces);
+  return 1 - static_cast<double>(std::ssize(repeated)) / std::max(1.0, static_cast<double>(faces.size()));
+}
+
 /// The corners of the faces that a curve passes, by the straight line inside the face.
 void add_corners(const SurfaceCurve& curve, std::vector<PointFan::Arc>& arcs) {
   const Mesh& mesh = curve.mesh();
@@ -124,19 +133,6 @@ double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points,
   const double of_mesh = inside > 0 && first == FirstFans::maybe ? fans_a_fan_mesh_costs(graph) : 0;
   return k_cost_of_point * (static_cast<double>(inside) + of_mesh);
 }
-
-namespace {
-
-/// Of a curve's faces, the share that it has not been in before: where it runs along itself windows are few.
-double share_of_new_faces(const SurfaceCurve& curve) {
-  std::vector<Index> faces;
-  for (const CurveSegment& segment : curve.segments()) faces.push_back(segment.face);
-  std::ranges::sort(faces);
-  const auto repeated = std::ranges::unique(faces);
-  return 1 - static_cast<double>(std::ssize(repeated)) / static_cast<double>(std::ssize(faces));
-}
-
-}  // namespace
 
 double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources) {
   double cost = cost_of_fans(graph, sources.points);
