@@ -11,20 +11,21 @@ namespace {
 
 // Microseconds on one machine, of which only ratios matter: a vertex in the surface's layout, in the forecast, when it
 // is reached, and when it bends what reaches it; and a window.
-constexpr double k_cost_of_surface = 0.3, k_cost_of_forecast = 0.62, k_cost_of_vertex = 0.3, k_cost_of_bend = 1.6;
+constexpr double k_cost_of_surface = 0.38, k_cost_of_forecast = 0.64, k_cost_of_vertex = 0.25, k_cost_of_bend = 1.0;
 constexpr double k_cost_of_window = 0.038;
-constexpr double k_usual_vertices = 35e3;
 // Of running with windows that are kept: sorting these moves as much memory.
 constexpr double k_sorting = 0.75, k_keeping = 1.3;  ///< the latter in times of running without keeping
 
 /// Sources that have fewer vertices, in the mean, run no longer than their forecast would.
 constexpr double k_worth_forecast = 1000;
 
-/// Windows a vertex, before they are foretold, over the square root of the vertices that a source has, which is how
-/// many a ray passes: the fewer the more the surface bends light.
-double growth_of_windows(const Mesh& mesh) {
-  constexpr double k_where_smooth = 0.6, k_smooth = 1e-3, k_power = 0.45;
-  return k_where_smooth * std::pow(std::max(1.0, mean_angle_defect(mesh) / k_smooth), -k_power);
+/// Windows a vertex, before they are foretold: about as many as a ray passes vertices of its source, until the surface
+/// bends light so much that they meet others.
+double likely_windows(const Mesh& mesh, double vertices_a_source) {
+  constexpr double k_least = 4, k_growth = 0.6, k_until_bent = 12.5, k_power = 0.4, k_least_defect = 1e-6;
+  const double straight = k_least + k_growth * std::sqrt(vertices_a_source);
+  const double bent = k_until_bent * std::pow(std::max(k_least_defect, mean_angle_defect(mesh)), -k_power);
+  return straight * bent / std::hypot(straight, bent);
 }
 
 /// Share of the vertices where a shortest path may bend.
@@ -110,14 +111,12 @@ ExactProgress::ExactProgress(const ExactWork& work, const JobStage& stage) : wor
   likely_vertices_ = reach.vertices;
   const bool goes_far = has_needles(mesh);
   is_foretold_ = reach.a_source >= k_worth_forecast || goes_far;
-  at_vertices_ = (k_cost_of_vertex + k_cost_of_bend * bending_share(mesh)) * reach.vertices;
-  at_windows_ = k_cost_of_window * growth_of_windows(mesh) * std::sqrt(goes_far ? reach.vertices : reach.a_source) *
-                reach.vertices;
-  // The larger the mesh, the less of it stays in caches.
-  of_surface_ = k_cost_of_surface * std::pow(reach.held / k_usual_vertices, 0.4) * reach.held;
+  const double at_vertices = (k_cost_of_vertex + k_cost_of_bend * bending_share(mesh)) * reach.vertices;
+  const double windows = likely_windows(mesh, goes_far ? reach.vertices : reach.a_source) * reach.vertices;
+  of_surface_ = k_cost_of_surface * reach.held;
   of_forecast_ = is_foretold_ ? k_cost_of_forecast * reach.vertices : 0;
   sorting_ = work.sorts_windows ? k_sorting : 0;
-  of_running_ = (work.sorts_windows ? k_keeping : 1) * (at_vertices_ + at_windows_);
+  of_running_ = (work.sorts_windows ? k_keeping : 1) * (at_vertices + k_cost_of_window * windows);
   laid_ = of_surface_ / (of_surface_ + of_forecast_ + (1 + sorting_) * of_running_);
 }
 
@@ -143,7 +142,7 @@ void ExactProgress::update(const Done& done) {
   stage_.check();
   if (!stage_.is_watched() || done.blocks % k_blocks_a_look != 0) return;
   // What was expected counts as much as this share of the work: less than where is told how far it has come.
-  const double belief = is_foretold_ ? 0.05 : 0.5;
+  const double belief = is_foretold_ ? 0.05 : 0.25;
   const double share = is_foretold_ ? share_by_rings(done) : share_by_vertices(done), so_far = clock_.seconds();
   const double running = (so_far - began_ + belief * expected_) / (share + belief);
   run_ = so_far / (so_far + running * (1 - share) + sorting_ * running);
@@ -153,10 +152,10 @@ void ExactProgress::update(const Done& done) {
 /// About each source windows are the more the farther they are from it. Those of vertices that are reached may be due
 /// yet: with many sources most of them.
 double ExactProgress::share_by_vertices(const Done& done) const {
+  constexpr double k_growth = 1.4;
   const double share = std::min(1.0, static_cast<double>(done.vertices) / likely_vertices_);
-  const double reached = (at_vertices_ * share + at_windows_ * share * std::sqrt(share)) / (at_vertices_ + at_windows_);
   const auto blocks = static_cast<double>(done.blocks), left = static_cast<double>(done.blocks_left);
-  return left > 0 ? reached * blocks / (blocks + left) : reached;
+  return std::pow(left > 0 ? share * blocks / (blocks + left) : share, k_growth);
 }
 
 double ExactProgress::share_by_rings(const Done& done) {

@@ -51,11 +51,11 @@ class ExactProgress {
   const JobStage stage_;
   const WorkClock clock_;
   bool is_foretold_ = false;
-  double likely_vertices_ = 0, at_vertices_ = 0, at_windows_ = 0;  ///< the latter two as costs
-  double of_surface_ = 0, of_forecast_ = 0, of_running_ = 0;       ///< likely costs
-  double sorting_ = 0;                                             ///< in times of running
-  double began_ = 0, expected_ = 0;                                ///< running, in seconds
-  double laid_ = 0, run_ = 1;                                      ///< shares of the whole
+  double likely_vertices_ = 0;
+  double of_surface_ = 0, of_forecast_ = 0, of_running_ = 0;  ///< likely costs
+  double sorting_ = 0;                                        ///< in times of running
+  double began_ = 0, expected_ = 0;                           ///< running, in seconds
+  double laid_ = 0, run_ = 1;                                 ///< shares of the whole
   WindowForecast forecast_;
   double per_ring_ = 0;
   std::size_t ring_ = 0, before_ring_ = 0;  ///< windows done when this ring began

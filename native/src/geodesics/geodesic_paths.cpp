@@ -3,21 +3,21 @@
 #include "saddleback/geodesic_paths.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 
 #include "saddleback/error.h"
 #include "saddleback/surface_curve.h"
 
+#include "geodesics/joined_paths.h"
 #include "geodesics/label_propagation.h"
 #include "geodesics/line_of_sight.h"
+#include "geodesics/path_progress.h"
 #include "geodesics/path_shortening.h"
 #include "geodesics/point_targets.h"
 #include "geodesics/query_cache.h"
 #include "geodesics/window_propagation.h"
 #include "support/parallel.h"
-#include "support/work_clock.h"
 
 namespace saddleback {
 namespace {
@@ -222,53 +222,6 @@ class PathMaker {
   LegChain chain_;
 };
 
-GeodesicPaths joined(std::vector<GeodesicPaths>& parts, const JobStage& stage) {
-  GeodesicPaths paths;
-  std::size_t points = 0, count = 0;
-  for (const GeodesicPaths& part : parts) {
-    points += part.points.size();
-    count += part.count();
-  }
-  paths.points.reserve(points);
-  paths.surface.reserve(points);
-  paths.offsets.reserve(count + 1);
-  paths.lengths.reserve(count);
-  paths.sources.reserve(count);
-  double done = 0;
-  for (GeodesicPaths& part : parts) {
-    stage.update(done++ / static_cast<double>(parts.size()));
-    const std::int64_t start = paths.offsets.back();
-    paths.points.insert(paths.points.end(), part.points.begin(), part.points.end());
-    paths.surface.insert(paths.surface.end(), part.surface.begin(), part.surface.end());
-    paths.lengths.insert(paths.lengths.end(), part.lengths.begin(), part.lengths.end());
-    paths.sources.insert(paths.sources.end(), part.sources.begin(), part.sources.end());
-    for (std::size_t i = 1; i < part.offsets.size(); ++i) paths.offsets.push_back(start + part.offsets[i]);
-    part = {};
-  }
-  return paths;
-}
-
-/// Share of the time from which on the parts are joined, told from how long the calling thread takes for a point of a
-/// path: the more points, the more memory is touched first in the list of them all.
-class JoiningShare {
- public:
-  explicit JoiningShare(std::size_t threads) : threads_(static_cast<double>(threads)) {}
-  /// By the thread that made this: it has found paths of so many more points.
-  void add(std::size_t points) {
-    constexpr double k_joined_point = 2.8e-8;  // seconds, mostly the system's, for its memory
-    points_ += static_cast<double>(points);
-    const double joining = k_joined_point * points_, finding = clock_.seconds() / threads_;
-    share_.store(joining / (finding + joining), std::memory_order_relaxed);
-  }
-  double value() const { return share_.load(std::memory_order_relaxed); }
-
- private:
-  const double threads_;
-  const WorkClock clock_;
-  double points_ = 0;
-  std::atomic<double> share_{0.1};
-};
-
 }  // namespace
 
 GeodesicPath GeodesicPaths::path(std::size_t i) const {
@@ -296,44 +249,36 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   check_surface_points(graph.mesh(), targets, "targets");
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
   const JobStage stage(job, "Finding paths");
-  // A path takes as long as some vertices of the field, more where it passes more; shortened it is laid out anew for
-  // each of its bends.
-  const double to_source = std::sqrt(graph.mesh().vertex_count() / static_cast<double>(sources.size()));
-  const double of_path = options.shorten ? 10 + 0.025 * to_source * to_source : 9 + 0.8 * to_source;
-  const double of_paths = of_path * static_cast<double>(targets.size());
-  const double of_source_fans = cost_of_fans(graph, sources), of_field = graph.mesh().vertex_count() + of_source_fans;
-  const double of_fans = cost_of_fans(graph, targets, FirstFans::later);
-  const double of_fan_mesh = of_source_fans > 0 ? 0 : cost_of_fans(graph, targets) - of_fans;
-  const double all = of_field + of_fan_mesh + of_fans + of_paths;
-  const double share = of_field / all, prepared = (of_field + of_fan_mesh) / all;
+  PathProgress progress(graph, {sources, targets, options}, stage);
   const PathField field = make_field(graph, sources, longest_path(graph, sources, targets, stage.part(0, 0)),
-                                     options.threads, stage.part(0, share));
+                                     options.threads, progress.field());
   constexpr Index k_block = 32;
   const auto count = static_cast<Index>(targets.size());
   const Index blocks = (count + k_block - 1) / k_block;
-  std::vector<GeodesicPaths> parts(blocks);
-  std::vector<std::unique_ptr<PathMaker>> makers(thread_count(options.threads));
-  std::vector<DirectFans> fans(makers.size());
-  FanTeam team(graph, targets, options.threads, stage.part(share, prepared));
+  JoinedPaths paths(blocks);
+  std::vector<GeodesicPaths> parts(thread_count(options.threads));
+  std::vector<std::unique_ptr<PathMaker>> makers(parts.size());
+  std::vector<DirectFans> fans(parts.size());
+  FanTeam team(graph, targets, options.threads, progress.fan_mesh());
   const NearbySources nearby(graph, sources, field.point_fans);
-  std::atomic<Index> done{0};
-  const JobStage following = stage.part(prepared, 1);
-  JoiningShare joining(makers.size());
+  progress.begin_paths(field.labels);
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);
-    const std::span own = std::span(targets).subspan(block * k_block, std::min(k_block, count - block * k_block));
+    const Index first = block * k_block;
+    const std::span own = std::span(targets).subspan(first, std::min(k_block, count - first));
     fans[thread].clear();
     team[thread].find(graph, own, {}, FanAngles::both, fans[thread], stage);
+    double share = 0;
     for (std::size_t i = 0; i < own.size(); ++i) {
-      stage.check();
-      makers[thread]->append(own[i], fans[thread][i], parts[block]);
-      following.update((1 - joining.value()) * (done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
+      makers[thread]->append(own[i], fans[thread][i], parts[thread]);
+      const double more = progress.share_of(first + i);
+      progress.found(more, thread);
+      share += more;
     }
-    if (thread == 0) joining.add(parts[block].points.size());
+    paths.add(block, share, parts[thread]);
   });
-  GeodesicPaths paths = blocks == 1 ? std::move(parts[0]) : joined(parts, following.part(1 - joining.value(), 1));
   stage.update(1);
-  return paths;
+  return paths.take();
 }
 
 }  // namespace saddleback

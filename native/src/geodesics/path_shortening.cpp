@@ -166,9 +166,11 @@ void PathShortener::replace(LegChain& chain, std::size_t i) {
   }
   std::swap(chain.legs[i], found_.legs[1]);
   for (std::size_t k = 2; k < found_.leg_count; ++k) {
-    chain.legs.insert(chain.legs.begin() + at + static_cast<std::ptrdiff_t>(k) - 1, std::move(found_.legs[k]));
-    found_.legs[k] = {};
-    ++chain.leg_count;
+    chain.add_leg();  // a spare one where there is one: they must not become more with every path
+    const auto first = chain.legs.begin() + at + static_cast<std::ptrdiff_t>(k) - 1;
+    const auto added = chain.legs.begin() + static_cast<std::ptrdiff_t>(chain.leg_count) - 1;
+    std::rotate(first, added, added + 1);
+    std::swap(*first, found_.legs[k]);
   }
 }
 
