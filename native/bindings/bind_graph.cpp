@@ -155,7 +155,8 @@ void bind_graph(py::module_& m) {
       .def_property_readonly("mesh", &SaddleVertexGraph::mesh, py::return_value_policy::reference, "The Mesh.")
       .def_property_readonly("arc_count", &SaddleVertexGraph::arc_count, "Directed arcs; each has its reverse.")
       .def_property_readonly("mean_degree", &SaddleVertexGraph::mean_degree, "Arcs per vertex.")
-      .def_property_readonly("nbytes", &SaddleVertexGraph::nbytes, "Memory of the arcs, bytes.")
+      .def_property_readonly("nbytes", &SaddleVertexGraph::nbytes,
+                             "Memory of the arcs, bytes; also of those that relaxations have made beside them.")
       .def_property_readonly(
           "k",
           [](const SaddleVertexGraph& graph) { return graph.k() > 0 ? py::object(py::int_(graph.k())) : py::none(); },

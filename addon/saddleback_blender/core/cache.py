@@ -19,12 +19,12 @@ class Cache:
 
     def __init__(self, limit: int) -> None:
         self._limit = limit
-        self._entries: OrderedDict[tuple[str, ...], tuple[Any, int]] = OrderedDict()
+        self._entries: OrderedDict[tuple[str, ...], tuple[Any, Callable[[Any], int]]] = OrderedDict()
         self._lock = threading.Lock()
         self.builds: Counter[str] = Counter()
 
     def get(self, key: tuple[str, ...], make: Callable[[], Value], nbytes: Callable[[Value], int]) -> Value:
-        """The value kept for `key`, or the one that `make` returns, which is then kept if it fits."""
+        """The value kept for `key`, or the one that `make` returns, which is then kept if its `nbytes` fit."""
         with self._lock:
             if key in self._entries:
                 self._entries.move_to_end(key)
@@ -33,7 +33,7 @@ class Cache:
         value = make()
         with self._lock:
             self.builds[key[0]] += 1
-            self._entries[key] = (value, nbytes(value))
+            self._entries[key] = (value, nbytes)
             self._entries.move_to_end(key)
             self._trim()
         return value
@@ -46,7 +46,7 @@ class Cache:
     def nbytes(self) -> int:
         """Sum of what is kept."""
         with self._lock:
-            return sum(nbytes for _, nbytes in self._entries.values())
+            return self._total()
 
     def resize(self, limit: int) -> None:
         """Sets the limit in bytes and drops what no longer fits."""
@@ -60,10 +60,12 @@ class Cache:
             self._entries.clear()
 
     def _trim(self) -> None:
-        total = sum(nbytes for _, nbytes in self._entries.values())
-        while total > self._limit and self._entries:
-            _, (_, nbytes) = self._entries.popitem(last=False)
-            total -= nbytes
+        while self._entries and self._total() > self._limit:
+            self._entries.popitem(last=False)
+
+    def _total(self) -> int:
+        """Values may have grown since they were made: graphs do when sites are relaxed on them."""
+        return sum(nbytes(value) for value, nbytes in self._entries.values())
 
 
 shared = Cache(2048 * 2**20)

@@ -1,6 +1,7 @@
 #pragma once
 // Cells that the next relaxation may begin with.
 
+#include <array>
 #include <memory>
 #include <mutex>
 
@@ -23,13 +24,15 @@ class CellCache {
   /// Forgets what is kept.
   void clear();
 
-  /// For the library: what is kept, and nothing from then on; and something to keep. Null is nothing.
-  std::unique_ptr<Content> take();
-  void put(std::unique_ptr<Content> content);
+  /// For the library: cells that a relaxation looked at last, and those that it showed of its result.
+  enum class Cells { relaxed, shown };
+  /// What is kept, and nothing from then on; and something to keep. Null is nothing.
+  std::unique_ptr<Content> take(Cells which);
+  void put(Cells which, std::unique_ptr<Content> content);
 
  private:
   std::mutex mutex_;
-  std::unique_ptr<Content> content_;
+  std::array<std::unique_ptr<Content>, 2> contents_;
 };
 
 }  // namespace saddleback

@@ -39,7 +39,12 @@ struct CentroidalVoronoiOptions {
   /// neither move nor have neighbours that do are not found anew: where most sites rest, iterations are short. When
   /// all would stay, the run ends. 0: all move. 1e-3 is less than one sees; energies then end higher by about 1e-5.
   double least_move = 0;
-  CellCache* cache = nullptr;          ///< cells to begin with, and afterwards those of the result
+  CellCache* cache = nullptr;  ///< cells to begin with, and afterwards those of the result
+  /// Whether sites are relaxed on a copy of the mesh of unit size, rounded to 2^-26 of that: they are the same to the
+  /// bit, as points of faces, for the mesh enlarged, shrunk or moved. The first relaxation on a graph then builds a
+  /// graph of the copy, which the graph keeps. Meshes with edges too short for that, and those whose graph takes more
+  /// than 128 MB, are relaxed as they are.
+  bool scale_free = true;
   bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
   RelaxationWatch* watch = nullptr;    ///< is shown the start and every iteration of the wanted number of sites
   int threads = 0;                     ///< 0: all cores; the result does not depend on it

@@ -19,8 +19,9 @@ struct RelaxationStep {
 /// the exchange of a pointer.
 class RelaxationWatch {
  public:
+  virtual ~RelaxationWatch() = default;
   /// Of a relaxation, after each iteration that was accepted: the energy never rises. O(sites).
-  void show(RelaxationStep step);
+  virtual void show(RelaxationStep step);
   /// Null before the first step.
   std::shared_ptr<const RelaxationStep> latest() const;
 

@@ -87,6 +87,8 @@ class SaddleVertexGraph {
   /// or accuracy out of range, several of k, accuracy and exact, or when memory would not do for the exact graph;
   /// Cancelled. Time O(V) times the windows of a disk (about 250 for the default); 8 bytes an arc.
   explicit SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options = {}, Job* job = nullptr);
+  /// The same as a part of other work.
+  SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options, const JobStage& stage);
   ~SaddleVertexGraph();
   SaddleVertexGraph(SaddleVertexGraph&&) noexcept;
 
@@ -105,7 +107,8 @@ class SaddleVertexGraph {
   bool is_exact() const { return exact_; }
   std::int64_t arc_count() const { return arcs_.count(); }
   double mean_degree() const { return static_cast<double>(arc_count()) / mesh_->vertex_count(); }
-  std::size_t nbytes() const;  ///< memory of the arcs and the order of the nodes
+  /// Memory of the arcs and the order of the nodes, also of the graph at unit size that relaxations have made.
+  std::size_t nbytes() const;
   double build_seconds() const { return build_seconds_; }
   bool built_by_cuda() const { return built_by_cuda_; }
   const DeviceTimes& device_times() const { return device_times_; }  ///< zero when no device built it

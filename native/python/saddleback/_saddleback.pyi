@@ -559,6 +559,7 @@ def centroidal_voronoi(
     held: ArrayLike | None = None,
     least_move: SupportsFloat = 0.0,
     cache: CellCache | None = None,
+    scale_free: bool = True,
     return_when_cancelled: bool = False,
     watch: RelaxationWatch | None = None,
     threads: SupportsIndex = 0,

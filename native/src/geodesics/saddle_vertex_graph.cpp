@@ -15,6 +15,7 @@
 #include "geodesics/graph_arcs.h"
 #include "geodesics/lattice.h"
 #include "geodesics/path_bound.h"
+#include "geodesics/query_cache.h"
 #include "geodesics/twin_arcs.h"
 #include "mesh/hilbert.h"
 #include "mesh/key_order.h"
@@ -52,12 +53,14 @@ double expected_cost(const Mesh& mesh, Index k, double accuracy, bool on_device)
 }  // namespace
 
 SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options, Job* job)
+    : SaddleVertexGraph(mesh, options, JobStage(job, "Building the saddle vertex graph")) {}
+
+SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options, const JobStage& stage)
     : mesh_(&mesh), k_(options.k), accuracy_(options.accuracy), exact_(options.exact) {
   check_options(mesh, options);
   if (k_ == 0 && accuracy_ == 0 && !exact_) accuracy_ = SaddleVertexGraphOptions::k_default_accuracy;
   kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
-  const JobStage stage(job, "Building the saddle vertex graph");
   BuildProgress progress(mesh, expected_cost(mesh, k_, accuracy_, !options.cuda_devices.empty()), options.threads,
                          stage);
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, stage);
@@ -103,7 +106,7 @@ SaddleVertexGraph::~SaddleVertexGraph() = default;
 SaddleVertexGraph::SaddleVertexGraph(SaddleVertexGraph&&) noexcept = default;
 
 std::size_t SaddleVertexGraph::nbytes() const {
-  return arcs_.nbytes() + (nodes_.size() + vertices_.size()) * sizeof(Index);
+  return arcs_.nbytes() + (nodes_.size() + vertices_.size()) * sizeof(Index) + queries_->nbytes_at_unit_size();
 }
 
 ArcHint SaddleVertexGraph::hint(Index node, std::int64_t arc) const {

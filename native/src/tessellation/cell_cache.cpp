@@ -36,16 +36,19 @@ std::vector<Index> numbers_before(const SurfacePoints& before, const SurfacePoin
 CellCache::CellCache() = default;
 CellCache::~CellCache() = default;
 
-void CellCache::clear() { take(); }
-
-std::unique_ptr<CellCache::Content> CellCache::take() {
-  const std::scoped_lock lock(mutex_);
-  return std::move(content_);
+void CellCache::clear() {
+  take(Cells::relaxed);
+  take(Cells::shown);
 }
 
-void CellCache::put(std::unique_ptr<Content> content) {
+std::unique_ptr<CellCache::Content> CellCache::take(Cells which) {
   const std::scoped_lock lock(mutex_);
-  content_.swap(content);
+  return std::move(contents_[static_cast<std::size_t>(which)]);
+}
+
+void CellCache::put(Cells which, std::unique_ptr<Content> content) {
+  const std::scoped_lock lock(mutex_);
+  contents_[static_cast<std::size_t>(which)].swap(content);
 }
 
 KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads, int cuda_device)
@@ -90,10 +93,10 @@ void KnownCells::look_farther(const JobStage& stage) {
   is_whole_ = true;
 }
 
-BorrowedCells::BorrowedCells(CellCache* cache, const SaddleVertexGraph& graph, std::span<const double> density,
-                             int threads, int cuda_device)
-    : cache_(cache) {
-  if (auto content = cache ? cache->take() : nullptr;
+BorrowedCells::BorrowedCells(CellCache* cache, CellCache::Cells which, const SaddleVertexGraph& graph,
+                             std::span<const double> density, int threads, int cuda_device)
+    : cache_(cache), which_(which) {
+  if (auto content = cache ? cache->take(which) : nullptr;
       content && content->cells->fits(graph, density, threads, cuda_device))
     cells_ = std::move(content->cells);
   else
@@ -101,7 +104,7 @@ BorrowedCells::BorrowedCells(CellCache* cache, const SaddleVertexGraph& graph, s
 }
 
 BorrowedCells::~BorrowedCells() {
-  if (cache_) cache_->put(std::make_unique<CellCache::Content>(std::move(cells_)));
+  if (cache_) cache_->put(which_, std::make_unique<CellCache::Content>(std::move(cells_)));
 }
 
 }  // namespace saddleback

@@ -49,8 +49,8 @@ struct CellCache::Content {
 class BorrowedCells {
  public:
   /// `cache` may be null. Both must outlive it.
-  BorrowedCells(CellCache* cache, const SaddleVertexGraph& graph, std::span<const double> density, int threads,
-                int cuda_device);
+  BorrowedCells(CellCache* cache, CellCache::Cells which, const SaddleVertexGraph& graph,
+                std::span<const double> density, int threads, int cuda_device);
   ~BorrowedCells();
   BorrowedCells(const BorrowedCells&) = delete;
   BorrowedCells& operator=(const BorrowedCells&) = delete;
@@ -59,6 +59,7 @@ class BorrowedCells {
 
  private:
   CellCache* cache_;
+  const CellCache::Cells which_;
   std::unique_ptr<KnownCells> cells_;
 };
 

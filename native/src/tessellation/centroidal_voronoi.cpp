@@ -10,6 +10,7 @@
 #include "tessellation/diagram.h"
 #include "tessellation/relaxation.h"
 #include "tessellation/stray_cells.h"
+#include "tessellation/unit_relaxation.h"
 
 namespace saddleback {
 namespace {
@@ -36,10 +37,10 @@ void check_count(const Mesh& mesh, Index count) {
   }
 }
 
-void check_fixed(const CentroidalVoronoiOptions& options, const SurfacePoints& sites) {
+void check_fixed(const CentroidalVoronoiOptions& options, Index count) {
   for (const Index site : options.fixed) {
-    if (site >= 0 && site < static_cast<Index>(sites.size())) continue;
-    throw InputError(message("fixed: wanted sites from 0 to ", sites.size() - 1, ", got ", site));
+    if (site >= 0 && site < count) continue;
+    throw InputError(message("fixed: wanted sites from 0 to ", count - 1, ", got ", site));
   }
 }
 
@@ -121,17 +122,34 @@ CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, s
 }
 
 CentroidalVoronoi relax_count(const SaddleVertexGraph& graph, Index count, RelaxationStart start, std::uint64_t seed,
-                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
+                              const CentroidalVoronoiOptions& options, const JobStage& stage, FinalCells final_cells) {
   constexpr double k_start = 0.4;  // coarse cells take nearly as long as fine ones, but few iterations
   constexpr int k_long_run = 50;
   if (!options.curves.empty()) return relax_on_curves(graph, count, seed, options, stage);
   const bool coarse = start == RelaxationStart::automatic ? options.max_iterations >= k_long_run
                                                           : start == RelaxationStart::coarse_to_fine;
   if (!coarse || options.max_iterations == 0) {
-    return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage);
+    return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage, final_cells);
   }
   return relax_sites(graph, coarse_to_fine_sites(graph, count, options, seed, stage.part(0, k_start)), options,
-                     stage.part(k_start, 1));
+                     stage.part(k_start, 1), final_cells);
+}
+
+/// The best of the starts.
+CentroidalVoronoi relax_starts(const SaddleVertexGraph& graph, Index count, RelaxationStart start, std::uint64_t seed,
+                               const CentroidalVoronoiOptions& options, const JobStage& stage, FinalCells final_cells) {
+  CentroidalVoronoi best;
+  for (int i = 0; i < options.starts; ++i) {
+    const double part = 1.0 / options.starts;
+    CentroidalVoronoi found = relax_count(graph, count, start, seed + static_cast<std::uint64_t>(i), options,
+                                          stage.part(i * part, (i + 1) * part), final_cells);
+    const bool was_cancelled = found.stop_reason == k_cancelled;
+    if (i == 0 || found.energy.back() < best.energy.back()) best = std::move(found);
+    if (!was_cancelled) continue;
+    best.stop_reason = k_cancelled;
+    break;
+  }
+  return best;
 }
 
 }  // namespace
@@ -152,6 +170,17 @@ void check_density(const Mesh& mesh, std::span<const double> density) {
   }
 }
 
+double normalised_energy(const Mesh& mesh, std::span<const double> density, double energy, std::size_t count) {
+  constexpr double k_hexagon = 5 / (36 * 1.7320508075688772);
+  double mass = 0;  // the integral of the density
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    const Triangle& t = mesh.triangles()[face];
+    const double mean = density.empty() ? 1 : (density[t[0]] + density[t[1]] + density[t[2]]) / 3;
+    mass += mesh.face_area(face) * mean;
+  }
+  return energy * static_cast<double>(count) / (2 * k_hexagon * mass * mass);
+}
+
 SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const double> density, std::uint64_t seed) {
   check_count(mesh, count);
   return sample(mesh, {.count = count, .density = density, .seed = seed, .one_per_component = true});
@@ -160,34 +189,29 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options, Job* job) {
   if (options.starts > 1) throw InputError("starts: wanted 1 where the sites are given; others are for a count");
-  return relax_sites(graph, sites, options, JobStage(job, "Finding cells"));
+  check_sites(graph.mesh(), sites);
+  check_options(graph.mesh(), options);
+  check_fixed(options, static_cast<Index>(sites.size()));
+  return relax_at_unit_size(
+      graph, options, JobStage(job, "Finding cells"),
+      [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
+          FinalCells final_cells) { return relax_sites(ground, sites, there, stage, final_cells); });
 }
 
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
                                      std::uint64_t seed, const CentroidalVoronoiOptions& options, Job* job) {
   check_options(graph.mesh(), options);
   check_count(graph.mesh(), count);
-  const JobStage stage(job, "Finding cells");
+  check_fixed(options, count);
   if (!options.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
-  CentroidalVoronoi best;
-  for (int i = 0; i < options.starts; ++i) {
-    const double part = 1.0 / options.starts;
-    CentroidalVoronoi found = relax_count(graph, count, start, seed + static_cast<std::uint64_t>(i), options,
-                                          stage.part(i * part, (i + 1) * part));
-    const bool was_cancelled = found.stop_reason == k_cancelled;
-    if (i == 0 || found.energy.back() < best.energy.back()) best = std::move(found);
-    if (!was_cancelled) continue;
-    best.stop_reason = k_cancelled;
-    break;
-  }
-  return best;
+  return relax_at_unit_size(
+      graph, options, JobStage(job, "Finding cells"),
+      [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
+          FinalCells final_cells) { return relax_starts(ground, count, start, seed, there, stage, final_cells); });
 }
 
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
-                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
-  check_sites(graph.mesh(), sites);
-  check_options(graph.mesh(), options);
-  check_fixed(options, sites);
+                              const CentroidalVoronoiOptions& options, const JobStage& stage, FinalCells final_cells) {
   const double part = 1.0 / (options.annealing + options.max_iterations + 1), shaken = (options.annealing + 1) * part;
   Relaxation relaxation(graph, sites, options, stage.part(0, part));
   CentroidalVoronoi result;
@@ -208,11 +232,11 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   const JobStage last = options.return_when_cancelled ? JobStage() : stage;
   result.sites = best.sites;
   result.held.assign(options.held.begin(), options.held.end());
-  const ClaimsOfCells claims(relaxation.cells(last));
-  result.cells = make_diagram(CellComplex(claims, options.threads, last), best.sites, last);
-  constexpr double k_hexagon = 5 / (36 * 1.7320508075688772);
-  const double mass = relaxation.mass();
-  result.normalised_energy = best.energy * static_cast<double>(sites.size()) / (2 * k_hexagon * mass * mass);
+  if (final_cells == FinalCells::found) {
+    const ClaimsOfCells claims(relaxation.cells(last));
+    result.cells = make_diagram(CellComplex(claims, options.threads, last), best.sites, last);
+  }
+  result.normalised_energy = normalised_energy(graph.mesh(), options.density, best.energy, sites.size());
   if (!options.return_when_cancelled) stage.update(1);
   return result;
 }

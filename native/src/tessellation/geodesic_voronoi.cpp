@@ -177,14 +177,17 @@ CellAt GeodesicVoronoi::locate(const Mesh& mesh, const SurfacePoint& point) cons
 
 GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                  const GeodesicVoronoiOptions& options, Job* job) {
-  const Mesh& mesh = graph.mesh();
-  check_sites(mesh, sites);
-  const JobStage stage(job, "Finding cells");
-  const VertexRings rings(graph, options.threads);
-  CellClaims cells(graph, rings, options.threads, options.cuda_device);
+  check_sites(graph.mesh(), sites);
+  return find_cells(graph, sites, options.threads, options.cuda_device, JobStage(job, "Finding cells"));
+}
+
+GeodesicVoronoi find_cells(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, int cuda_device,
+                           const JobStage& stage) {
+  const VertexRings rings(graph, threads);
+  CellClaims cells(graph, rings, threads, cuda_device);
   cells.find(sites, stage.part(0.05, 0.7));
   const ClaimsOfCells claims(cells);
-  return make_diagram(CellComplex(claims, options.threads, stage.part(0.7, 0.9)), sites, stage);
+  return make_diagram(CellComplex(claims, threads, stage.part(0.7, 0.9)), sites, stage);
 }
 
 GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {

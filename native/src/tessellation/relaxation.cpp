@@ -10,7 +10,7 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
                        const CentroidalVoronoiOptions& options, const JobStage& stage)
     : graph_(graph),
       options_(options),
-      cells_(options.cache, graph, options.density, options.threads, options.cuda_device),
+      cells_(options.cache, CellCache::Cells::relaxed, graph, options.density, options.threads, options.cuda_device),
       is_fixed_(sites.size(), 0),
       held_(graph.mesh(), options.curves, options.held, sites.size()) {
   for (const Index site : options.fixed) is_fixed_[site] = 1;
@@ -38,19 +38,6 @@ const CellClaims& Relaxation::cells(const JobStage& stage) {
   if (!cells_->is_whole() || !std::ranges::equal(last, state_.sites, same)) cells_->find(state_.sites, stage);
   cells_->look_farther(stage);
   return cells_->claims();
-}
-
-double Relaxation::mass() const {
-  double sum = 0;
-  for (Index face = 0; face < graph_.mesh().face_count(); ++face) {
-    const double area = graph_.mesh().face_area(face);
-    const Triangle& t = graph_.mesh().triangles()[face];
-    if (options_.density.empty())
-      sum += area;
-    else
-      sum += area * (options_.density[t[0]] + options_.density[t[1]] + options_.density[t[2]]) / 3;
-  }
-  return sum;
 }
 
 /// Puts sites without a cell into the cells with the most energy, one each. False when there is nothing to do.

@@ -30,9 +30,6 @@ class Relaxation {
   const CellClaims& cells(const JobStage& stage);
   /// Whether the last step that was refused would have moved no site by least_move.
   bool is_at_rest() const { return is_at_rest_; }
-  /// The integral of the density.
-  double mass() const;
-
   /// One step that lowers the energy; false when there is none. \throw Cancelled, the state as it was.
   bool advance(const JobStage& stage);
 
