@@ -18,4 +18,9 @@ double mean_angle_defect(const Mesh& mesh) {
   return sum / std::max(1.0, count);
 }
 
+double edges_until_bent(const Mesh& mesh) {
+  constexpr double k_edges = 12.5, k_power = 0.4, k_least_defect = 1e-6;
+  return k_edges * std::pow(std::max(k_least_defect, mean_angle_defect(mesh)), -k_power);
+}
+
 }  // namespace saddleback

@@ -9,4 +9,8 @@ namespace saddleback {
 /// meshes over some 0.001 on smooth ones to 0.1 on rough scans. O(1).
 double mean_angle_defect(const Mesh& mesh);
 
+/// How far windows from a point grow in number with their distance, about: farther out the surface has bent so much of
+/// their light that they meet each other. In edges, and as many windows a vertex.
+double edges_until_bent(const Mesh& mesh);
+
 }  // namespace saddleback

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double k_most_rings = 1 << 16;  ///< farther vertices go into the last one
 constexpr double k_guessing = 0.06;       ///< of the time, usually
+constexpr double k_vertex = 8;            ///< windows that take as long as a vertex itself
 
 }  // namespace
 
@@ -23,7 +24,7 @@ DistanceProgress::DistanceProgress(const Mesh& mesh, const SurfacePoints& source
     const double edges = k_straighter * length * per_edge_;
     const auto ring = static_cast<std::size_t>(std::min(edges, k_most_rings));
     if (ring >= work_.size()) work_.resize(ring + 1, 0);
-    work_[ring] += std::pow(edges, extent.growth);
+    work_[ring] += k_vertex + (extent.until_bent > 0 ? edges / std::hypot(1, edges / extent.until_bent) : 0);
   }
   std::partial_sum(work_.begin(), work_.end(), work_.begin());
   guessed_ = clock_.seconds();

@@ -22,9 +22,9 @@ constexpr double k_worth_forecast = 1000;
 /// Windows a vertex, before they are foretold: about as many as a ray passes vertices of its source, until the surface
 /// bends light so much that they meet others.
 double likely_windows(const Mesh& mesh, double vertices_a_source) {
-  constexpr double k_least = 4, k_growth = 0.6, k_until_bent = 12.5, k_power = 0.4, k_least_defect = 1e-6;
+  constexpr double k_least = 4, k_growth = 0.6;
   const double straight = k_least + k_growth * std::sqrt(vertices_a_source);
-  const double bent = k_until_bent * std::pow(std::max(k_least_defect, mean_angle_defect(mesh)), -k_power);
+  const double bent = edges_until_bent(mesh);
   return straight * bent / std::hypot(straight, bent);
 }
 

@@ -56,12 +56,11 @@ PointFan CurveFanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve
                               const JobStage& stage) {
   if (!curve_windows_) curve_windows_ = std::make_unique<CurveWindows>(graph.unfolding());
   const RayLimits limits{.radius = options.limit, .edges = strip_width(graph)};
-  constexpr double k_growth = 0.3;
   SurfacePoints along;
   if (stage.is_watched())
     for (const CurveSegment& segment : curve.segments()) along.push_back({segment.face, segment.begin});
   const double width = std::min(options.limit, strip_width(graph) * graph.mesh().mean_edge_length());
-  DistanceProgress progress(graph.mesh(), along, {.limit = width, .growth = k_growth}, stage);
+  DistanceProgress progress(graph.mesh(), along, {.limit = width}, stage);
   curve_windows_->from_curve(curve, limits, feet_, stage.part(0, 0), options.places,
                              [&](double distance, Index) { progress.reached(distance); });
   PointFan fan;

@@ -34,24 +34,17 @@ void check_radius(double radius) {
   if (!(radius > 0)) throw InputError(message("radius: wanted a distance above 0, got ", radius));
 }
 
-/// A vertex's share of the work grows by about this power of its distance: the smoother the surface, the more windows
-/// are alive far out.
-double growth_of_work(const Mesh& mesh) {
-  constexpr double k_where_smooth = 1.1, k_smooth = 1e-3, k_power = 0.5;
-  return k_where_smooth * std::pow(std::max(1.0, mean_angle_defect(mesh) / k_smooth), -k_power);
-}
-
 /// Where light bends little, windows last until they meet others from round the surface, as far out as only its shape
 /// tells: there they are foretold, as those of exact distances are. That takes longer than guessing by the vertices,
 /// but not much of the longer time that there is to tell of.
 void run_about(const SurfacePoint& centre, double radius, const Mesh& mesh, RayField& field, const JobStage& stage) {
-  constexpr double k_lasting = 0.8;
+  constexpr double k_lasting = 150;  // edges
   const RayLimits limits{.radius = radius};
   if (!stage.is_watched()) return field.run(limits, stage);
   const SurfacePoints centres{centre};
   const bool is_round = std::numbers::pi * radius * radius >= mesh.area();
-  if (const double growth = growth_of_work(mesh); growth < k_lasting || !is_round) {
-    DistanceProgress progress(mesh, centres, {.limit = radius, .growth = growth}, stage);
+  if (const double until_bent = edges_until_bent(mesh); until_bent < k_lasting || !is_round) {
+    DistanceProgress progress(mesh, centres, {.limit = radius, .until_bent = until_bent}, stage);
     return field.run(limits, stage, [&](double distance, Index) { progress.reached(distance); });
   }
   ExactProgress progress({mesh, centres, radius}, stage);
@@ -71,7 +64,9 @@ PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const Surface
   std::vector<CurveFoot> feet;
   SurfacePoints places;
   for (const CurveSegment& segment : curve.segments()) places.push_back({segment.face, segment.begin});
-  DistanceProgress progress(graph.mesh(), places, {.limit = radius, .growth = growth_of_work(graph.mesh())}, stage);
+  constexpr double k_of_a_line = 0.5;  // beside a curve there are as many windows from the start on
+  const double until_bent = k_of_a_line * edges_until_bent(graph.mesh());
+  DistanceProgress progress(graph.mesh(), places, {.limit = radius, .until_bent = until_bent}, stage);
   windows.from_curve(curve, {.radius = radius}, feet, stage, nullptr,
                      [&](double distance, Index) { progress.reached(distance); });
   std::ranges::sort(feet, {}, &CurveFoot::vertex);
