@@ -16,7 +16,7 @@ namespace saddleback {
 namespace {
 
 // Of the time that one fan takes, for each vertex of the mesh.
-constexpr double k_fan_mesh_cost = 0.04;
+constexpr double k_fan_mesh_cost = 0.035;
 // Points a thread takes at a time.
 constexpr Index k_chunk = 8 * k_batch;
 // In mean edges: a corner nearer than this has no direction in single precision, where its square is as good as zero.

@@ -153,7 +153,7 @@ std::vector<double> SaddleVertexGraph::distances_to(const QuerySources& sources,
   const double source_cost = cost_of_fans(*this, sources);
   const double target_cost = cost_of_fans(*this, targets, source_cost > 0 ? FirstFans::later : FirstFans::maybe);
   // The more sources, the more straight ways there are to try.
-  constexpr double k_cost_of_sight = 8, k_more_sources = 0.35;
+  constexpr double k_cost_of_sight = 2, k_more_sources = 0.35;
   const double sight_cost = k_cost_of_sight * std::pow(static_cast<double>(sources.points.size()), k_more_sources) *
                             static_cast<double>(targets.size());
   const double all = source_cost + mesh_->vertex_count() + target_cost + sight_cost;

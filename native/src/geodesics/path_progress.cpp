@@ -16,7 +16,7 @@ namespace {
 constexpr double k_in_disk = 0.35, k_from_one = 0.9;
 
 // A point inside a face is looked at from the sources near it, if these are nearer than so many edges.
-constexpr double k_look = 80, k_in_sight = 20;
+constexpr double k_look = 90, k_in_sight = 20;
 
 double likely_edges(const Mesh& mesh, const SurfacePoints& sources) {
   const auto count = static_cast<double>(sources.size());
