@@ -172,8 +172,7 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, FanA
 
 void DirectFanFinder::append_seen(int lane, std::vector<SeenNode>& seen) {
   for (const std::int32_t i : waves_->chosen(lane)) seen.push_back(seen_node(i, true));
-  for (const std::int32_t i : waves_->served())
-    if (waves_->sightings().slot[i] % k_batch == lane) seen.push_back(seen_node(i, false));
+  for (const std::int32_t i : waves_->served(lane)) seen.push_back(seen_node(i, false));
 }
 
 SeenNode DirectFanFinder::seen_node(std::int32_t sighting, bool is_arc) {
@@ -230,18 +229,21 @@ void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
   std::atomic<Index> done{0};
   parallel_for(blocks, threads, 1, [&](Index block, int thread) {
     auto& [own, own_limits, rows] = works[thread];
-    const std::span chosen = std::span(order).subspan(block * k_chunk, std::min(k_chunk, count - block * k_chunk));
-    own.clear();
-    own_limits.clear();
-    rows.clear();
-    for (const Index i : chosen) {
-      own.push_back(points[i]);
-      if (!limits.empty()) own_limits.push_back(limits[i]);
-    }
-    find(team[thread], own, own_limits, rows);
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      use(chosen[i], rows[i]);
-      finding.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
+    const Index end = std::min((block + 1) * k_chunk, count);
+    for (Index first = block * k_chunk; first < end; first += k_batch) {  // what they see is used while it is at hand
+      const std::span chosen = std::span(order).subspan(first, std::min<Index>(k_batch, end - first));
+      own.clear();
+      own_limits.clear();
+      rows.clear();
+      for (const Index i : chosen) {
+        own.push_back(points[i]);
+        if (!limits.empty()) own_limits.push_back(limits[i]);
+      }
+      find(team[thread], own, own_limits, rows);
+      for (std::size_t i = 0; i < chosen.size(); ++i) {
+        use(chosen[i], rows[i]);
+        finding.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
+      }
     }
   });
 }

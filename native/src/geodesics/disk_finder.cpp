@@ -269,13 +269,13 @@ void DiskFinder::choose() {
 void DiskFinder::list_served() {
   const SightingRows rows = sightings();
   const double slack = arc_slack(rule_);
-  served_.clear();
+  for (auto& lane : served_) lane.clear();
   for (std::int32_t i = 0; i < sighting_count_; ++i) {
     const std::int32_t slot = rows.slot[i], label = rows.label[i];
     if (makes_arc(label) || label != labels_[slot]) continue;
     if (distance_of(arcs_[slot].label) <= slack * distance_of(label)) continue;
     arcs_[slot] = {label, i};  // both windows beside a vertex on their ray see it: the first does
-    served_.push_back(i);
+    served_[slot % k_batch].push_back(i);
   }
 }
 

@@ -57,9 +57,9 @@ class DiskFinder {
   /// The sightings that make a lane's arcs, in the order in which they were sighted, and k_row_padding more entries
   /// that are valid. The links are always among them.
   std::span<const std::int32_t> chosen(int lane) const { return {chosen_[lane].data(), chosen_counts_[lane]}; }
-  /// Of points, all lanes' in the same order: the shortest sightings of vertices that no arc is kept to, because a way
-  /// over another vertex will do.
-  std::span<const std::int32_t> served() const { return served_; }
+  /// Of a point, in the same order: the shortest sightings of vertices that no arc is kept to, because a way over
+  /// another vertex will do.
+  std::span<const std::int32_t> served(int lane) const { return served_[lane]; }
   SightingRows sightings() { return sightings_.rows(sources_ == Sources::points); }
 
   /// Sightings of what a source is linked with by mesh edges or, of a point, by the lines to its face's corners. From a
@@ -136,7 +136,7 @@ class DiskFinder {
   std::vector<float> by_edges_;  ///< per node, where a disk was bounded by edges; infinite in between
   std::array<std::vector<std::int32_t>, k_batch> chosen_;  ///< with room behind what was chosen
   std::array<std::size_t, k_batch> chosen_counts_{};
-  std::vector<std::int32_t> served_;
+  std::array<std::vector<std::int32_t>, k_batch> served_;
 };
 
 }  // namespace saddleback

@@ -157,9 +157,9 @@ std::vector<Index> CellClaims::sites_that_moved(const SurfacePoints& sites) cons
 std::vector<double> CellClaims::reaches(const SurfacePoints& sites) const {
   const Mesh& mesh = graph_.mesh();
   std::vector<double> reaches(sites.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < std::min(sites.size(), reach_.size()); ++i) {
+  parallel_for(static_cast<Index>(std::min(sites.size(), reach_.size())), threads_, 512, [&](Index i, int) {
     if (reach_[i] > 0) reaches[i] = reach_[i] + (position(mesh, sites[i]) - position(mesh, maps_.sites()[i])).norm();
-  }
+  });
   return reaches;
 }
 
@@ -221,9 +221,8 @@ void CellClaims::find_mixed_faces() {
     const Index a = maps_.label(nodes[0]), b = maps_.label(nodes[1]), c = maps_.label(nodes[2]);
     const Index labels = a == b && b == c ? 1 : a != b && b != c && c != a ? 3 : 2;
     shared_index_[face] = labels;
-    if (labels == 1) return;
-    ++sum.rows;
-    sum.claims += labels;
+    sum.rows += labels > 1;
+    sum.claims += labels > 1 ? labels : 0;
   });
   Sum all;
   for (Sum& sum : sums) {
@@ -251,9 +250,12 @@ void CellClaims::find_mixed_faces() {
 /// are in reach then.
 void CellClaims::claim_by_cells(const JobStage& stage) {
   for (Worker& worker : workers_) worker.forget();
-  parallel_for(site_count(), threads_, 4, [&](Index i, int thread) {
+  constexpr Index k_chunk = 4;
+  parallel_for(site_count(), threads_, k_chunk, [&](Index i, int thread) {
     stage.check();
     const Index site = maps_.sites_along_curve()[i];
+    const bool goes_on = (i + 1) % k_chunk != 0 && i + 1 < site_count();  // else another thread may place the next
+    if (goes_on) maps_.fetch_cell(maps_.sites_along_curve()[i + 1]);
     if (is_kept(site)) return;
     maps_.place_cell(site, workers_[thread].scratch);
     for (const Index node : maps_.nodes(site))

@@ -38,14 +38,14 @@ struct FaceShape {
   }
 };
 
+Vec3 squared_distances(const FaceClaim& claim) {
+  return {claim.squared_distance(0), claim.squared_distance(1), claim.squared_distance(2)};
+}
+
 struct ClaimedFace {
   const FaceShape& shape;
   const FaceClaim& claim;
-  Vec3 squared_distance;
-  ClaimedFace(const FaceShape& the_shape, const FaceClaim& the_claim)
-      : shape(the_shape),
-        claim(the_claim),
-        squared_distance(claim.squared_distance(0), claim.squared_distance(1), claim.squared_distance(2)) {}
+  const Vec3& squared_distance;
 };
 
 template <std::size_t Count>
@@ -134,23 +134,31 @@ class SharedFace {
   void integrate(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add);
 
  private:
+  struct Corner {
+    Vec3 at;
+    double lead;
+  };
   template <class Add>
   void cut_in_two(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add);
+  bool is_beaten(std::span<const FaceClaim> claims, std::size_t claim) const;
   CellMoments part_of(const FaceShape& shape, std::span<const FaceClaim> claims, Index rival);
+  void clip(const Vec3& lead);
 
-  std::vector<Index> rivals_;  ///< claims that are nearest somewhere, as far as corners tell
-  std::vector<Vec3> polygon_, clipped_;
+  std::vector<Vec3> squared_distances_;  ///< of all claims
+  std::vector<Index> rivals_;            ///< claims that are nearest somewhere, as far as corners tell
+  std::vector<Corner> polygon_, clipped_;
 };
 
-/// Whether one claim is nowhere nearer than another.
-bool is_beaten(const FaceClaim& claim, const FaceClaim& by) {
-  bool ties = true;
-  for (int i = 0; i < 3; ++i) {
-    const double difference = claim.squared_distance(i) - by.squared_distance(i);
-    if (difference < 0) return false;
-    ties = ties && difference == 0;
+/// Whether a claim is nowhere nearer than one of the others.
+bool SharedFace::is_beaten(std::span<const FaceClaim> claims, std::size_t claim) const {
+  const Vec3& own = squared_distances_[claim];
+  for (std::size_t other = 0; other < claims.size(); ++other) {
+    const Vec3& theirs = squared_distances_[other];
+    if (other == claim || own[0] < theirs[0] || own[1] < theirs[1] || own[2] < theirs[2]) continue;
+    const bool ties = own[0] == theirs[0] && own[1] == theirs[1] && own[2] == theirs[2];
+    if (!ties || claims[other].site < claims[claim].site) return true;
   }
-  return !ties || by.site < claim.site;
+  return false;
 }
 
 CellMoments& operator+=(CellMoments& sum, const CellMoments& part) {
@@ -171,15 +179,14 @@ CellMoments& operator-=(CellMoments& sum, const CellMoments& part) {
 
 template <class Add>
 void SharedFace::integrate(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add) {
+  squared_distances_.clear();
+  for (const FaceClaim& claim : claims) squared_distances_.push_back(squared_distances(claim));
   rivals_.clear();
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    bool beaten = false;
-    for (std::size_t j = 0; j < claims.size() && !beaten; ++j) beaten = j != i && is_beaten(claims[i], claims[j]);
-    if (!beaten) rivals_.push_back(static_cast<Index>(i));
-  }
+  for (std::size_t i = 0; i < claims.size(); ++i)
+    if (!is_beaten(claims, i)) rivals_.push_back(static_cast<Index>(i));
   if (rivals_.size() == 1) {
     CellMoments all;
-    add_whole({shape, claims[rivals_.front()]}, all);
+    add_whole({shape, claims[rivals_.front()], squared_distances_[rivals_.front()]}, all);
     add(claims[rivals_.front()].site, all);
   } else if (rivals_.size() == 2) {
     cut_in_two(shape, claims, add);
@@ -192,7 +199,8 @@ void SharedFace::integrate(const FaceShape& shape, std::span<const FaceClaim> cl
 template <class Add>
 void SharedFace::cut_in_two(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add) {
   constexpr double k_most_of_it = 0.9;  // what is left is too little to be told from a difference
-  const ClaimedFace first(shape, claims[rivals_[0]]), second(shape, claims[rivals_[1]]);
+  const Index a = rivals_[0], b = rivals_[1];
+  const ClaimedFace first{shape, claims[a], squared_distances_[a]}, second{shape, claims[b], squared_distances_[b]};
   const Vec3 lead = first.squared_distance - second.squared_distance;
   const Cut cut = cut_where_zero(lead);
   const bool second_is_lone = lead[cut.lone] > 0;
@@ -215,24 +223,28 @@ void SharedFace::cut_in_two(const FaceShape& shape, std::span<const FaceClaim> c
 
 /// What the other rivals leave of the face.
 CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const FaceClaim> claims, Index rival) {
-  const ClaimedFace face(shape, claims[rival]);
-  polygon_ = {Vec3::Unit(0), Vec3::Unit(1), Vec3::Unit(2)};
-  for (const Index other : rivals_) {
-    if (other == rival) continue;
-    const Vec3 lead = ClaimedFace(shape, claims[other]).squared_distance - face.squared_distance;
-    clipped_.clear();
-    for (std::size_t i = 0; i < polygon_.size(); ++i) {
-      const Vec3 &from = polygon_[i], &to = polygon_[(i + 1) % polygon_.size()];
-      const double at_from = lead.dot(from), at_to = lead.dot(to);
-      if (at_from >= 0) clipped_.push_back(from);
-      if ((at_from >= 0) != (at_to >= 0)) clipped_.push_back(from + at_from / (at_from - at_to) * (to - from));
-    }
-    polygon_.swap(clipped_);
-  }
+  const ClaimedFace face{shape, claims[rival], squared_distances_[rival]};
+  polygon_.resize(3);
+  for (int i = 0; i < 3; ++i) polygon_[i].at = Vec3::Unit(i);
+  for (const Index other : rivals_)
+    if (other != rival) clip(squared_distances_[other] - face.squared_distance);
   CellMoments sum;
   for (std::size_t i = 1; i + 1 < polygon_.size(); ++i)
-    add_triangle(face, polygon_[0], polygon_[i], polygon_[i + 1], sum);
+    add_triangle(face, polygon_[0].at, polygon_[i].at, polygon_[i + 1].at, sum);
   return sum;
+}
+
+/// Leaves of the polygon where another claim does not lead.
+void SharedFace::clip(const Vec3& lead) {
+  for (Corner& corner : polygon_) corner.lead = lead.dot(corner.at);
+  clipped_.clear();
+  for (std::size_t i = 0; i < polygon_.size(); ++i) {
+    const Corner &from = polygon_[i], &to = polygon_[i + 1 < polygon_.size() ? i + 1 : 0];
+    if (from.lead >= 0) clipped_.push_back(from);
+    if ((from.lead >= 0) == (to.lead >= 0)) continue;
+    clipped_.push_back({from.at + from.lead / (from.lead - to.lead) * (to.at - from.at), 0});
+  }
+  polygon_.swap(clipped_);
 }
 
 /// The sums of a stretch of shared faces, of the few cells that are met there.
@@ -298,6 +310,18 @@ CellIntegrals::CellIntegrals(const SaddleVertexGraph& graph, const VertexRings& 
   });
 }
 
+/// Asks memory for what the first nodes of a cell need.
+void CellIntegrals::fetch_cell(const CellClaims& claims, Index site) const {
+  const std::span<const Index> own = claims.maps().nodes(site);
+  for (const Index node : own.first(std::min(own.size(), k_ahead))) {
+    claims.maps().fetch(node);
+    if (claims.is_at_border(node))
+      rings_.fetch(node);
+    else
+      __builtin_prefetch(&nodes_[node]);
+  }
+}
+
 /// The parts about a cell's own vertices of the faces that it owns whole.
 CellMoments CellIntegrals::whole_faces(const CellClaims& claims, Index site) const {
   CellMoments sum;
@@ -336,6 +360,7 @@ std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::v
   parallel_for(claims.site_count(), threads_, 16, [&](Index i, int) {
     stage.check();
     const Index site = claims.maps().sites_along_curve()[i];
+    if (i + 1 < claims.site_count()) fetch_cell(claims, claims.maps().sites_along_curve()[i + 1]);
     if (!claims.is_as_before(site)) cells[site] = whole_faces(claims, site);
   });
   // By stretches of faces that are always the same: sums depend neither on the number of threads nor on other cells.

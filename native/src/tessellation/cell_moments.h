@@ -42,6 +42,7 @@ class CellIntegrals {
   struct Node {
     double weight = 0, bulge = 0, area = 0;
   };
+  void fetch_cell(const CellClaims& claims, Index site) const;
   CellMoments whole_faces(const CellClaims& claims, Index site) const;
 
   const VertexRings& rings_;

@@ -31,7 +31,9 @@ constexpr double k_arc_rounding = 2e-9;
 constexpr double k_least_miss = 1e-3;
 
 // How many nodes ahead what lies around a node is fetched from memory: by distance they follow in no order of memory.
+// The first of a cell are fetched while the cell before is placed.
 constexpr int k_ahead = 8;
+constexpr std::size_t k_fetched_seen = 48, k_line = 64;
 
 // Square of the least angle at which an edge must be seen: what lies beyond one seen end-on cannot be told from it.
 constexpr double k_end_on = 1e-10;
@@ -107,7 +109,7 @@ void SiteMaps::label_all(int threads, const JobStage& stage) {
       const Fan& fan = fans_[site];
       if (fan.centre != k_none) add(fan.centre, site, 0);
       if (fan.last < first || fan.first >= last) continue;  // of another part of the surface
-      for (const Seen& seen : fan.arcs()) add(seen.node, site, seen.rounded);
+      for (std::size_t i = 0; i < fan.arc_count; ++i) add(fan.nodes[i], site, fan.rounded[i]);
     }
   };
   if (cuda_device_ >= 0) {
@@ -127,7 +129,7 @@ FlatSeeds SiteMaps::flat_seeds(int threads) const {
   parallel_for(site_count(), threads, 64, [&](Index site, int) {
     std::size_t at = first[site];
     const Fan& fan = fans_[site];
-    for (const Seen& seen : fan.arcs()) seeds.set(at++, {seen.node, site, seen.rounded});
+    for (std::size_t i = 0; i < fan.arc_count; ++i) seeds.set(at++, {fan.nodes[i], site, fan.rounded[i]});
     if (fan.centre != k_none) seeds.set(at, {fan.centre, site, 0});
   });
   return seeds;
@@ -145,7 +147,7 @@ void SiteMaps::label_again(std::span<const Index> moved, const JobStage& stage) 
   for (Index site = 0; site < site_count(); ++site) {
     const Fan& fan = fans_[site];
     if (fan.centre != k_none) search.offer(fan.centre, site, 0);
-    for (const Seen& seen : fan.arcs()) search.offer(seen.node, site, seen.rounded);
+    for (std::size_t i = 0; i < fan.arc_count; ++i) search.offer(fan.nodes[i], site, fan.rounded[i]);
   }
   std::vector<std::uint8_t> moves(site_count(), 0);  // its nodes, away or here
   for (const Index site : moved) moves[site] = 1;
@@ -223,9 +225,9 @@ void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reac
   if (reaches.empty()) limits.clear();
   for_each_view(graph_, points, limits, threads, stage, [&](Index i, std::span<const SeenNode> view) {
     Fan& fan = fans_[of[i]];
-    fan.clear();
-    for (const SeenNode& node : view) fan.add(node, graph_.arcs().codec().round(node.length));
-    fan.span_nodes();
+    fan.resize(view.size());
+    for (std::size_t k = 0; k < view.size(); ++k) fan.set(k, view[k], graph_.arcs().codec().round(view[k].length));
+    fan.set_arcs(std::ranges::partition_point(view, &SeenNode::is_arc) - view.begin());
   });
   parallel_for(static_cast<Index>(at_vertices.size()), threads, 16, [&](Index i, int) {
     stage.check();
@@ -233,22 +235,24 @@ void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reac
   });
 }
 
-void SiteMaps::Fan::clear() {
-  seen.clear();
-  from.clear();
-  arc_count = 0;
+void SiteMaps::Fan::resize(std::size_t count) {
+  nodes.resize(count);
+  rounded.resize(count);
+  seen.resize(count);
+  from.resize(count);
 }
 
-void SiteMaps::Fan::add(const SeenNode& node, double rounded) {
-  seen.push_back({node.node, node.edge, node.length, rounded, node.place});
-  from.emplace_back(node.from);
-  if (node.is_arc) arc_count = seen.size();
+void SiteMaps::Fan::set(std::size_t i, const SeenNode& node, double length_rounded) {
+  nodes[i] = node.node;
+  rounded[i] = length_rounded;
+  seen[i] = {node.length, node.place, node.edge};
+  from[i] = node.from;
 }
 
-void SiteMaps::Fan::span_nodes() {
-  const auto [least, greatest] = std::ranges::minmax_element(arcs(), {}, &Seen::node);
-  first = arc_count == 0 ? 0 : least->node;
-  last = arc_count == 0 ? -1 : greatest->node;
+void SiteMaps::Fan::set_arcs(std::ptrdiff_t count) {
+  arc_count = static_cast<std::size_t>(count);
+  first = count == 0 ? 0 : *std::min_element(nodes.begin(), nodes.begin() + count);
+  last = count == 0 ? -1 : *std::max_element(nodes.begin(), nodes.begin() + count);
 }
 
 void SiteMaps::make_fan_at_vertex(Fan& fan) {
@@ -257,14 +261,17 @@ void SiteMaps::make_fan_at_vertex(Fan& fan) {
   const ArcRows& arcs = graph_.arcs();
   ArcUnfolder unfolder(graph_.unfolding());
   UnfoldedArc unfolded;
-  fan.clear();
-  for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
+  const std::int64_t begin = arcs.first(node), count = arcs.first(node + 1) - begin;
+  fan.resize(static_cast<std::size_t>(count));
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::int64_t arc = begin + i;
     const double rounded = arcs.length(arc);
     const double length = unfolder.unfold(graph_.hint(node, arc), unfolded) ? unfolded.length : rounded;
     const Vec2 place = polar(length, scale * unfolded.start_angle);
-    fan.add({arcs.target(arc), k_none, true, length, place, Vec2(unfolded.end_angle, 0)}, rounded);
+    fan.set(static_cast<std::size_t>(i), {arcs.target(arc), k_none, true, length, place, Vec2(unfolded.end_angle, 0)},
+            rounded);
   }
-  fan.span_nodes();
+  fan.set_arcs(count);
 }
 
 /// Each thread counts, and later places, its own stretch of the nodes: a label's nodes are in their order.
@@ -300,6 +307,18 @@ void SiteMaps::order_sites() {
   for (const auto& [face, site] : keys) order_.push_back(site);
 }
 
+void SiteMaps::fetch_cell(Index site) const {
+  const auto own = nodes(site);
+  for (const Index node : own.first(std::min<std::size_t>(own.size(), k_ahead))) {
+    fetch(node);
+    rings_.fetch(node);
+  }
+  const Fan& fan = fans_[site];
+  const std::size_t count = std::min(fan.nodes.size(), k_fetched_seen);
+  for (std::size_t i = 0; i < count; i += k_line / sizeof(Index)) __builtin_prefetch(&fan.nodes[i]);
+  for (std::size_t i = 0; i < count; i += k_line / sizeof(double)) __builtin_prefetch(&fan.rounded[i]);
+}
+
 void SiteMaps::place_cell(Index site, Scratch& scratch) {
   const auto first = nodes_.begin() + first_node_[site], last = nodes_.begin() + first_node_[site + 1];
   std::sort(first, last,
@@ -310,10 +329,10 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
   scratch.answers.clear();
   const Fan& fan = fans_[site];
   // Straight ones first: each may serve as the end of an edge that others are seen across.
-  for (std::size_t i = 0; i < fan.seen.size(); ++i) {
-    const Seen& seen = fan.seen[i];
-    scratch.table[seen.node] = {scratch.round, static_cast<Index>(i)};
-    if (label_[seen.node] == site && seen.rounded <= distance_[seen.node]) places_[seen.node] = place_straight(seen);
+  for (std::size_t i = 0; i < fan.nodes.size(); ++i) {
+    const Index node = fan.nodes[i];
+    scratch.table[node] = {scratch.round, static_cast<Index>(i)};
+    if (label_[node] == site && fan.rounded[i] <= distance_[node]) places_[node] = place_straight(fan.seen[i]);
   }
   if (fan.centre != k_none && label_[fan.centre] == site) places_[fan.centre] = {.found_by = k_centre};
   for (auto node = first; node != last; ++node) {
@@ -325,10 +344,11 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
   }
 }
 
-const SiteMaps::Seen* SiteMaps::seen_in_fan(Index site, Index node) const {
-  const auto& seen = fans_[site].seen;
-  const auto found = std::ranges::find(seen, node, &Seen::node);
-  return found != seen.end() ? &*found : nullptr;
+/// Which of a site's fan a node is; k_none for none of it.
+Index SiteMaps::find_in_fan(Index site, Index node) const {
+  const auto& nodes = fans_[site].nodes;
+  const auto found = std::ranges::find(nodes, node);
+  return found != nodes.end() ? static_cast<Index>(found - nodes.begin()) : k_none;
 }
 
 /// Whether a path may bend where it comes from `back` and goes on towards `out`, so much that it counts.
@@ -372,9 +392,9 @@ double SiteMaps::direction_back(Index node, Scratch& scratch) const {
   if (place.found_by == k_centre) return 0;
   if (place.found_by == k_straight) {
     const Fan& fan = fans_[label_[node]];
-    const Seen& seen = *seen_in_fan(label_[node], node);
-    const Vec2 from = fan.from[&seen - fan.seen.data()];
-    return saddleback::direction_back(graph_, {seen.node, seen.edge, true, seen.length, seen.place, from});
+    const Index i = find_in_fan(label_[node], node);
+    const Seen& seen = fan.seen[i];
+    return saddleback::direction_back(graph_, {node, seen.edge, true, seen.length, seen.place, fan.from[i]});
   }
   if (place.found_by == k_after_another) {
     const Index previous = node_before(node);
@@ -502,19 +522,19 @@ bool SiteMaps::find(Index site, Index node, Scratch& scratch, SiteVector& vector
     vector = {};
     return true;
   }
-  const Seen* seen = nullptr;
+  Index seen = k_none;
   if (scratch.site == site) {
     const Scratch::Known known = scratch.table[node];
     if (known.round == scratch.round && known.at < 0) {
       vector = scratch.answers[~known.at].vector;
       return scratch.answers[~known.at].found;
     }
-    if (known.round == scratch.round) seen = &fans_[site].seen[known.at];
+    if (known.round == scratch.round) seen = known.at;
   } else {
-    seen = seen_in_fan(site, node);
+    seen = find_in_fan(site, node);
   }
-  if (seen) {
-    vector = {seen->place, seen->length};
+  if (seen != k_none) {
+    vector = {fans_[site].seen[seen].place, fans_[site].seen[seen].length};
     return true;
   }
   const bool found = place_near(node, site, scratch, vector);

@@ -117,6 +117,8 @@ class SiteMaps {
     /// Before other sites are labelled.
     void forget();
   };
+  /// Asks memory for what place_cell looks up: cells have few nodes, so that while one is placed the next is fetched.
+  void fetch_cell(Index site) const;
   /// Places the nodes of a label, once. What is asked for this site next is found faster.
   void place_cell(Index site, Scratch& scratch);
   /// From the site of its label, which must have been placed.
@@ -135,22 +137,24 @@ class SiteMaps {
   using Wedge = VertexRings::Wedge;
   /// As a SeenNode. What is no arc is where it is seen, but labels are the graph's.
   struct Seen {
-    Index node, edge;
-    double length;   ///< not rounded: that depends on the scale, which must not show in the cells
-    double rounded;  ///< as the graph's arcs are, for labels
+    double length;  ///< not rounded: that depends on the scale, which must not show in the cells
     PackedVec2 place;
+    Index edge;
   };
+  /// What is looked at of all nodes that are seen lies apart from what few are asked for.
   struct Fan {
+    std::vector<Index> nodes;
+    std::vector<double> rounded;  ///< lengths as the graph's arcs are, for labels
     std::vector<Seen> seen;
     std::size_t arc_count = 0;     ///< those are the first
     std::vector<PackedVec2> from;  ///< their SeenNode::from, which few are asked for
     Index centre = k_none;         ///< the node that the site is
     std::array<Index, 3> corners;  ///< of its face
     Index first = 0, last = -1;    ///< the least and the greatest of the nodes
-    void add(const SeenNode& node, double rounded);
-    void clear();
-    std::span<const Seen> arcs() const { return {seen.data(), arc_count}; }
-    void span_nodes();
+    void resize(std::size_t count);
+    void set(std::size_t i, const SeenNode& node, double length_rounded);
+    /// The first `count` are arcs.
+    void set_arcs(std::ptrdiff_t count);
   };
   /// The anchor of an edge's ends, both placed from it, seen across the edge from the third corner.
   struct Sight {
@@ -167,7 +171,7 @@ class SiteMaps {
   void group_nodes(int threads);
   void group_again(std::span<const Index> moving);
   void order_sites();
-  const Seen* seen_in_fan(Index site, Index node) const;
+  Index find_in_fan(Index site, Index node) const;
   static Place place_straight(const Seen& seen) { return {seen.place, seen.length, k_none, k_straight}; }
   Index node_before(Index node) const;
   Place place_after(Index node, Index previous, Scratch& scratch) const;
