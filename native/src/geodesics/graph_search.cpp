@@ -20,8 +20,8 @@ constexpr double k_bucket_width = 2;
 constexpr double k_median = 0.5;
 // How many entries ahead a row's place, and then the row itself, is fetched; of long rows the beginning, by which the
 // processor sees what comes.
-constexpr int k_fetch_offset = 4, k_fetch_row = 2;
-constexpr std::int64_t k_most_fetched = 32;
+constexpr int k_fetch_offset = 6, k_fetch_row = 3;
+constexpr std::int64_t k_most_fetched = 64;
 constexpr int k_words_a_line = 8;
 // Arcs between two looks at the job: about a millisecond, also where rows are very long.
 constexpr std::int64_t k_arcs_a_check = 1 << 18;
