@@ -45,6 +45,11 @@ double BuildProgress::by_count(const Mesh& mesh, Index k) {
 
 double BuildProgress::by_all(const Mesh& mesh) { return mesh.vertex_count(); }
 
+double BuildProgress::by_rule(const Mesh& mesh, Index k, double accuracy) {
+  if (k > 0) return by_count(mesh, k);
+  return accuracy > 0 ? by_accuracy(mesh, accuracy) : by_all(mesh);
+}
+
 BuildProgress::BuildProgress(const Mesh& mesh, double expected, int threads, const JobStage& stage)
     : stage_(stage), source_count_(mesh.vertex_count()), threads_(thread_count(threads)), expected_(expected) {
   constexpr double k_joining = 0.15;  // of finding, about

@@ -25,6 +25,8 @@ class BuildProgress {
   static double by_accuracy(const Mesh& mesh, double accuracy);
   static double by_count(const Mesh& mesh, Index k);
   static double by_all(const Mesh& mesh);
+  /// By the one that is not 0, or all.
+  static double by_rule(const Mesh& mesh, Index k, double accuracy);
 
   BuildProgress(const Mesh& mesh, double expected, int threads, const JobStage& stage);
 

@@ -44,9 +44,7 @@ void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
 /// What finding the arcs of a vertex is expected to take.
 double expected_cost(const Mesh& mesh, Index k, double accuracy, bool on_device) {
   constexpr double k_device_cost = 0.05;  // beside that of the tables, which the processor lays
-  const double cost = k > 0          ? BuildProgress::by_count(mesh, k)
-                      : accuracy > 0 ? BuildProgress::by_accuracy(mesh, accuracy)
-                                     : BuildProgress::by_all(mesh);
+  const double cost = BuildProgress::by_rule(mesh, k, accuracy);
   return on_device ? k_device_cost * cost : cost;
 }
 

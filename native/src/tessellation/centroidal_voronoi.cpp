@@ -193,7 +193,7 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
   check_options(graph.mesh(), options);
   check_fixed(options, static_cast<Index>(sites.size()));
   return relax_at_unit_size(
-      graph, options, JobStage(job, "Finding cells"),
+      graph, sites.size(), options, JobStage(job, "Finding cells"),
       [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
           FinalCells final_cells) { return relax_sites(ground, sites, there, stage, final_cells); });
 }
@@ -205,7 +205,7 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count
   check_fixed(options, count);
   if (!options.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
   return relax_at_unit_size(
-      graph, options, JobStage(job, "Finding cells"),
+      graph, static_cast<std::size_t>(count), options, JobStage(job, "Finding cells"),
       [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
           FinalCells final_cells) { return relax_starts(ground, count, start, seed, there, stage, final_cells); });
 }

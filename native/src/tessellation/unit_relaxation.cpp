@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "geodesics/build_progress.h"
 #include "geodesics/query_cache.h"
 #include "geodesics/unit_graph.h"
 #include "tessellation/cell_cache.h"
@@ -12,8 +13,15 @@
 namespace saddleback {
 namespace {
 
-// In iterations.
-constexpr double k_building = 8, k_showing = 1;
+constexpr double k_showing = 3;  ///< in iterations
+
+/// What building the graph takes, in iterations of so many sites.
+double cost_of_building(const SaddleVertexGraph& graph, std::size_t count) {
+  constexpr double k_of_search = 0.5, k_of_vertex = 0.34, k_of_site = 4.2;  // microseconds on one machine
+  const double vertices = graph.mesh().vertex_count();
+  const double building = k_of_search * BuildProgress::by_rule(graph.mesh(), graph.k(), graph.accuracy()) * vertices;
+  return building / (k_of_vertex * vertices + k_of_site * static_cast<double>(count));
+}
 
 /// Tells energies as they are on the mesh itself.
 class WatchOfUnit : public RelaxationWatch {
@@ -59,12 +67,14 @@ GeodesicVoronoi shown_cells(const SaddleVertexGraph& graph, const SurfacePoints&
 
 }  // namespace
 
-CentroidalVoronoi relax_at_unit_size(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& options,
-                                     const JobStage& stage, const Relax& relax) {
+CentroidalVoronoi relax_at_unit_size(const SaddleVertexGraph& graph, std::size_t count,
+                                     const CentroidalVoronoiOptions& options, const JobStage& stage,
+                                     const Relax& relax) {
   const double iterations = options.annealing + options.max_iterations;
   if (!options.scale_free || iterations == 0) return relax(graph, options, stage, FinalCells::found);
   QueryCache& known = graph.query_cache();
-  const double building = known.has_unit_graph() ? 0 : k_building, whole = building + 1 + iterations + k_showing;
+  const double building = known.has_unit_graph() ? 0 : cost_of_building(graph, count),
+               whole = building + 1 + iterations + k_showing;
   const UnitGraph* const unit =
       known.unit_graph(graph, options.threads, options.cuda_device, stage.part(0, building / whole));
   const JobStage relaxing = stage.part(building / whole, 1 - k_showing / whole);

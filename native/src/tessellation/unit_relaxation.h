@@ -13,8 +13,10 @@ using Relax = std::function<CentroidalVoronoi(const SaddleVertexGraph&, const Ce
 
 /// Calls `relax` with the graph of the mesh at unit size and options that say the same there, then finds the cells of
 /// the sites on the graph itself. With the graph and the options as they are where nothing moves, the options do not
-/// want it or there is no such graph. \throw Cancelled, as `relax` and centroidal_voronoi.
-CentroidalVoronoi relax_at_unit_size(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& options,
-                                     const JobStage& stage, const Relax& relax);
+/// want it or there is no such graph. `count` sites, for those who watch. \throw Cancelled, as `relax` and
+/// centroidal_voronoi.
+CentroidalVoronoi relax_at_unit_size(const SaddleVertexGraph& graph, std::size_t count,
+                                     const CentroidalVoronoiOptions& options, const JobStage& stage,
+                                     const Relax& relax);
 
 }  // namespace saddleback
