@@ -1,11 +1,14 @@
 #include "geodesics/unit_graph.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "saddleback/error.h"
+
+#include "geodesics/common_length.h"
 
 namespace saddleback {
 namespace {
@@ -37,18 +40,6 @@ Box box_of(const Mesh& mesh) {
   return {0.5 * (least + most), 0.5 * (most - least).maxCoeff()};
 }
 
-/// Length that only few edges fall short of, from a sample. O(1).
-double short_edge(const Mesh& mesh) {
-  constexpr Index k_sample = 4096;
-  std::vector<double> lengths;
-  for (Index h = 0; h < mesh.halfedge_count(); h += 1 + mesh.halfedge_count() / k_sample)
-    lengths.push_back(mesh.length(h));
-  const auto chosen =
-      lengths.begin() + static_cast<std::ptrdiff_t>(k_short_share * static_cast<double>(lengths.size()));
-  std::nth_element(lengths.begin(), chosen, lengths.end());
-  return *chosen;
-}
-
 /// Three a vertex, in the cube.
 std::vector<double> rounded_coordinates(const Mesh& mesh, const Box& box) {
   std::vector<double> xyz;
@@ -71,7 +62,7 @@ bool is_same(const Mesh& mesh, std::span<const double> xyz) {
 
 /// None where it is in the cube already, or rounding spoils it.
 std::optional<Mesh> mesh_in_cube(const Mesh& mesh, const Box& box, const JobStage& stage) {
-  if (short_edge(mesh) < std::ldexp(k_shortest_edge * box.half, -k_grid_bits)) return {};
+  if (edge_length_at(mesh, k_short_share) < std::ldexp(k_shortest_edge * box.half, -k_grid_bits)) return {};
   const std::vector<double> xyz = rounded_coordinates(mesh, box);
   if (is_same(mesh, xyz)) return {};
   const std::span<const Triangle> triangles = mesh.triangles();
