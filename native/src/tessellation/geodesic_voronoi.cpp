@@ -187,7 +187,9 @@ GeodesicVoronoi find_cells(const SaddleVertexGraph& graph, const SurfacePoints& 
   CellClaims cells(graph, rings, threads, cuda_device);
   cells.find(sites, stage.part(0.05, 0.7));
   const ClaimsOfCells claims(cells);
-  return make_diagram(CellComplex(claims, threads, stage.part(0.7, 0.9)), sites, stage);
+  GeodesicVoronoi result = make_diagram(CellComplex(claims, threads, stage.part(0.7, 0.9)), sites, stage);
+  stage.update(1);
+  return result;
 }
 
 GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {

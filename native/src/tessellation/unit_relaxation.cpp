@@ -1,6 +1,5 @@
 #include "tessellation/unit_relaxation.h"
 
-#include <algorithm>
 #include <deque>
 #include <optional>
 #include <utility>
@@ -77,8 +76,8 @@ CentroidalVoronoi relax_at_unit_size(const SaddleVertexGraph& graph, std::size_t
                whole = building + 1 + iterations + k_showing;
   const UnitGraph* const unit =
       known.unit_graph(graph, options.threads, options.cuda_device, stage.part(0, building / whole));
+  if (!unit) return relax(graph, options, stage, FinalCells::found);  // to know that took no time
   const JobStage relaxing = stage.part(building / whole, 1 - k_showing / whole);
-  if (!unit) return relax(graph, options, relaxing, FinalCells::found);
   const double area_unit = unit->size * unit->size, energy_unit = area_unit * area_unit;
   const CurvesThere curves(options.curves, graph.mesh(), unit->mesh);
   CentroidalVoronoiOptions there = options;
@@ -91,6 +90,7 @@ CentroidalVoronoi relax_at_unit_size(const SaddleVertexGraph& graph, std::size_t
       normalised_energy(graph.mesh(), options.density, result.energy.back(), result.sites.size());
   const JobStage showing = options.return_when_cancelled ? JobStage() : stage.part(1 - k_showing / whole, 1);
   result.cells = shown_cells(graph, result.sites, options, showing);
+  showing.update(1);
   return result;
 }
 
