@@ -310,20 +310,26 @@ void CellClaims::compare() {
 
 /// The faces about a node that are shared and have no earlier node of the cell's. How far the site sees their corners.
 double CellClaims::claim_from(Index node, Index site, Worker& worker) {
-  double farthest = 0;
+  const SiteVector own = maps_.own(node);
+  double farthest = own.distance;
+  Index last = k_none;  // the wedge before ends where this one begins
+  SiteVector at_last;
   for (const VertexRings::Wedge& wedge : rings_.around(node)) {
     const Index from = maps_.label(wedge.from), to = maps_.label(wedge.to);
     if ((from == site && (to == site || wedge.from < node)) || (to == site && wedge.to < node)) continue;
-    const Index face = wedge.side / 3;
+    const Index face = wedge.side / 3, start = wedge.side % 3;
     const Row& row = rows_[shared_index_[face]];
     FaceClaim& claim = claims_[row.first + (from < site) + (to < site && to != from)];
     claim.face = face;
     claim.site = site;
-    const auto& nodes = rings_.face(face).nodes;
-    for (int i = 0; i < 3; ++i) {
-      maps_.find(site, nodes[i], worker.scratch, claim.corner[i]);  // each is beside the cell
-      farthest = std::max(farthest, claim.corner[i].distance);
-    }
+    if (wedge.from != last) maps_.find(site, wedge.from, worker.scratch, at_last);  // each is beside the cell
+    claim.corner[start] = at_last;
+    farthest = std::max(farthest, at_last.distance);
+    last = wedge.to;
+    maps_.find(site, last, worker.scratch, at_last);
+    claim.corner[Mesh::next(start)] = at_last;
+    claim.corner[Mesh::prev(start)] = own;
+    farthest = std::max(farthest, at_last.distance);
   }
   return farthest;
 }

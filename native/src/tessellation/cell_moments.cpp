@@ -1,5 +1,5 @@
 // Faces that one cell owns whole are summed about their vertices: what a vertex weighs does not change. Shared faces
-// are cut.
+// are cut, and about the vertices beside them the whole ones are summed one by one.
 
 #include "tessellation/cell_moments.h"
 
@@ -315,15 +315,12 @@ void CellIntegrals::fetch_cell(const CellClaims& claims, Index site) const {
   const std::span<const Index> own = claims.maps().nodes(site);
   for (const Index node : own.first(std::min(own.size(), k_ahead))) {
     claims.maps().fetch(node);
-    if (claims.is_at_border(node))
-      rings_.fetch(node);
-    else
-      __builtin_prefetch(&nodes_[node]);
+    __builtin_prefetch(&nodes_[node]);
   }
 }
 
-/// The parts about a cell's own vertices of the faces that it owns whole.
-CellMoments CellIntegrals::whole_faces(const CellClaims& claims, Index site) const {
+/// All faces about those of a cell's own vertices that are not at its border.
+CellMoments CellIntegrals::within(const CellClaims& claims, Index site) const {
   CellMoments sum;
   const std::span<const Index> own = claims.maps().nodes(site);
   for (std::size_t i = 0; i < own.size(); ++i) {
@@ -332,25 +329,29 @@ CellMoments CellIntegrals::whole_faces(const CellClaims& claims, Index site) con
       claims.maps().fetch(own[i + k_ahead]);
     }
     const Index node = own[i];
-    Node about;
-    if (claims.is_at_border(node)) {
-      for (const VertexRings::Wedge& wedge : rings_.around(node)) {
-        if (claims.shared_index(wedge.side / 3) != k_none) continue;
-        const Face& face = faces_[wedge.side / 3];
-        about.weight += face.weight[Mesh::prev(wedge.side) % 3];
-        about.bulge += face.bulge / 3;
-        about.area += face.area / 3;
-      }
-    } else {
-      about = nodes_[node];
-    }
-    const SiteVector seen = claims.maps().own(node);
-    sum.mass += about.weight;
-    sum.moment += about.weight * seen.log;
-    sum.energy += about.weight * seen.distance * seen.distance - about.bulge;
-    sum.area += about.area;
+    if (!claims.is_at_border(node)) add_about(nodes_[node], claims.maps().own(node), sum);
   }
   return sum;
+}
+
+/// A face that one cell owns whole: the parts about those of its corners that are at the cell's border.
+bool CellIntegrals::add_at_border(const CellClaims& claims, Index face, CellMoments& sum) const {
+  bool any = false;
+  for (int i = 0; i < 3; ++i) {
+    const Index node = rings_.face(face).nodes[i];
+    if (!claims.is_at_border(node)) continue;
+    any = true;
+    const Face& whole = faces_[face];
+    add_about({whole.weight[i], whole.bulge / 3, whole.area / 3}, claims.maps().own(node), sum);
+  }
+  return any;
+}
+
+void CellIntegrals::add_about(const Node& about, const SiteVector& seen, CellMoments& sum) {
+  sum.mass += about.weight;
+  sum.moment += about.weight * seen.log;
+  sum.energy += about.weight * seen.distance * seen.distance - about.bulge;
+  sum.area += about.area;
 }
 
 std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::vector<CellMoments> before,
@@ -361,7 +362,7 @@ std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::v
     stage.check();
     const Index site = claims.maps().sites_along_curve()[i];
     if (i + 1 < claims.site_count()) fetch_cell(claims, claims.maps().sites_along_curve()[i + 1]);
-    if (!claims.is_as_before(site)) cells[site] = whole_faces(claims, site);
+    if (!claims.is_as_before(site)) cells[site] = within(claims, site);
   });
   // By stretches of faces that are always the same: sums depend neither on the number of threads nor on other cells.
   constexpr Index k_stretch = 4096;
@@ -387,10 +388,16 @@ std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::v
                               [&](Index site, const CellMoments& part) { stretch_sums.add(site, part); });
       }
     };
-    const CellClaims::Stretch within =
-        claims.shared_within(stretch * k_stretch, std::min(rings_.face_count(), (stretch + 1) * k_stretch));
-    integrate(within.first, within.last);
-    integrate(within.first_late, within.last_late);
+    const Index first = stretch * k_stretch, last = std::min(rings_.face_count(), first + k_stretch);
+    for (Index face = first; face < last; ++face) {
+      if (claims.shared_index(face) != k_none) continue;
+      const Index site = claims.maps().label(rings_.face(face).nodes[0]);
+      CellMoments part;
+      if (!claims.is_as_before(site) && add_at_border(claims, face, part)) stretch_sums.add(site, part);
+    }
+    const CellClaims::Stretch shared = claims.shared_within(first, last);
+    integrate(shared.first, shared.last);
+    integrate(shared.first_late, shared.last_late);
     sums[stretch] = stretch_sums.entries();
   });
   for (const auto& entries : sums) {

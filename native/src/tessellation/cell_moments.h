@@ -43,7 +43,9 @@ class CellIntegrals {
     double weight = 0, bulge = 0, area = 0;
   };
   void fetch_cell(const CellClaims& claims, Index site) const;
-  CellMoments whole_faces(const CellClaims& claims, Index site) const;
+  CellMoments within(const CellClaims& claims, Index site) const;
+  bool add_at_border(const CellClaims& claims, Index face, CellMoments& sum) const;
+  static void add_about(const Node& about, const SiteVector& seen, CellMoments& sum);
 
   const VertexRings& rings_;
   const int threads_;

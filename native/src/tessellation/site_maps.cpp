@@ -238,15 +238,15 @@ void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reac
 void SiteMaps::Fan::resize(std::size_t count) {
   nodes.resize(count);
   rounded.resize(count);
-  seen.resize(count);
-  from.resize(count);
+  places.resize(count);
+  across.resize(count);
 }
 
 void SiteMaps::Fan::set(std::size_t i, const SeenNode& node, double length_rounded) {
   nodes[i] = node.node;
   rounded[i] = length_rounded;
-  seen[i] = {node.length, node.place, node.edge};
-  from[i] = node.from;
+  places[i] = node.place;
+  across[i] = {node.from, node.edge};
 }
 
 void SiteMaps::Fan::set_arcs(std::ptrdiff_t count) {
@@ -317,6 +317,7 @@ void SiteMaps::fetch_cell(Index site) const {
   const std::size_t count = std::min(fan.nodes.size(), k_fetched_seen);
   for (std::size_t i = 0; i < count; i += k_line / sizeof(Index)) __builtin_prefetch(&fan.nodes[i]);
   for (std::size_t i = 0; i < count; i += k_line / sizeof(double)) __builtin_prefetch(&fan.rounded[i]);
+  for (std::size_t i = 0; i < count; i += k_line / sizeof(PackedVec2)) __builtin_prefetch(&fan.places[i]);
 }
 
 void SiteMaps::place_cell(Index site, Scratch& scratch) {
@@ -332,7 +333,7 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
   for (std::size_t i = 0; i < fan.nodes.size(); ++i) {
     const Index node = fan.nodes[i];
     scratch.table[node] = {scratch.round, static_cast<Index>(i)};
-    if (label_[node] == site && fan.rounded[i] <= distance_[node]) places_[node] = place_straight(fan.seen[i]);
+    if (label_[node] == site && fan.rounded[i] <= distance_[node]) places_[node] = place_straight(fan.places[i]);
   }
   if (fan.centre != k_none && label_[fan.centre] == site) places_[fan.centre] = {.found_by = k_centre};
   for (auto node = first; node != last; ++node) {
@@ -393,8 +394,8 @@ double SiteMaps::direction_back(Index node, Scratch& scratch) const {
   if (place.found_by == k_straight) {
     const Fan& fan = fans_[label_[node]];
     const Index i = find_in_fan(label_[node], node);
-    const Seen& seen = fan.seen[i];
-    return saddleback::direction_back(graph_, {node, seen.edge, true, seen.length, seen.place, fan.from[i]});
+    const auto& [from, edge] = fan.across[i];
+    return saddleback::direction_back(graph_, {node, edge, true, place.distance, fan.places[i], from});
   }
   if (place.found_by == k_after_another) {
     const Index previous = node_before(node);
@@ -534,7 +535,8 @@ bool SiteMaps::find(Index site, Index node, Scratch& scratch, SiteVector& vector
     seen = find_in_fan(site, node);
   }
   if (seen != k_none) {
-    vector = {fans_[site].seen[seen].place, fans_[site].seen[seen].length};
+    const PackedVec2& place = fans_[site].places[seen];
+    vector = {place, place.norm()};
     return true;
   }
   const bool found = place_near(node, site, scratch, vector);

@@ -135,19 +135,18 @@ class SiteMaps {
 
  private:
   using Wedge = VertexRings::Wedge;
-  /// As a SeenNode. What is no arc is where it is seen, but labels are the graph's.
-  struct Seen {
-    double length;  ///< not rounded: that depends on the scale, which must not show in the cells
-    PackedVec2 place;
-    Index edge;
-  };
-  /// What is looked at of all nodes that are seen lies apart from what few are asked for.
+  /// As SeenNodes. What is no arc is where it is seen, but labels are the graph's. What is looked at of all nodes lies
+  /// apart from what few are asked for.
   struct Fan {
     std::vector<Index> nodes;
-    std::vector<double> rounded;  ///< lengths as the graph's arcs are, for labels
-    std::vector<Seen> seen;
-    std::size_t arc_count = 0;     ///< those are the first
-    std::vector<PackedVec2> from;  ///< their SeenNode::from, which few are asked for
+    std::vector<double> rounded;     ///< lengths as the graph's arcs are, for labels
+    std::vector<PackedVec2> places;  ///< not rounded: that depends on the scale, which must not show in the cells
+    std::size_t arc_count = 0;       ///< those are the first
+    struct Across {
+      PackedVec2 from;
+      Index edge;
+    };
+    std::vector<Across> across;    ///< SeenNode::edge and its start
     Index centre = k_none;         ///< the node that the site is
     std::array<Index, 3> corners;  ///< of its face
     Index first = 0, last = -1;    ///< the least and the greatest of the nodes
@@ -172,7 +171,7 @@ class SiteMaps {
   void group_again(std::span<const Index> moving);
   void order_sites();
   Index find_in_fan(Index site, Index node) const;
-  static Place place_straight(const Seen& seen) { return {seen.place, seen.length, k_none, k_straight}; }
+  static Place place_straight(const Vec2& place) { return {place, place.norm(), k_none, k_straight}; }
   Index node_before(Index node) const;
   Place place_after(Index node, Index previous, Scratch& scratch) const;
   bool place_own(Index node, Index site, Place& place) const;
