@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 
@@ -29,7 +31,9 @@ std::uint64_t pair_key(Index site, Index other) {
   return static_cast<std::uint64_t>(site) << 32 | static_cast<std::uint32_t>(other);
 }
 
-constexpr double k_unknown = -1;  ///< distance of a corner that is yet to be laid down
+// Of a corner that is yet to be laid down.
+constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
+bool is_unknown(const PackedVec2& corner) { return std::isnan(corner.x()); }
 
 /// The nearest of two sites at an edge's start and at its end, as lower_envelope tells them.
 std::array<Index, 2> winners(const EdgeLine& a, const EdgeLine& b) {
@@ -52,7 +56,7 @@ struct CellClaims::Worker {
   explicit Worker(const SiteMaps& maps) : scratch(maps), known(k_known) {}
   SiteMaps::Scratch scratch;
   std::vector<Wish> wishes;
-  std::vector<const FaceClaim*> claims;
+  std::vector<const CellClaim*> claims;
   std::vector<Index> fresh;
   std::vector<EdgeLine> lines;
   std::vector<EdgePiece> pieces;
@@ -87,7 +91,7 @@ struct CellClaims::Worker {
 /// Corners that no path in the graph places: those of long faces that cells without vertices cross. The first face
 /// that lays them decides, for all.
 struct CellClaims::Laid {
-  std::unordered_map<std::uint64_t, SiteVector> vectors;
+  std::unordered_map<std::uint64_t, PackedVec2> corners;
 };
 
 CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads, int cuda_device)
@@ -157,8 +161,10 @@ std::vector<Index> CellClaims::sites_that_moved(const SurfacePoints& sites) cons
 std::vector<double> CellClaims::reaches(const SurfacePoints& sites) const {
   const Mesh& mesh = graph_.mesh();
   std::vector<double> reaches(sites.size(), std::numeric_limits<double>::infinity());
-  parallel_for(static_cast<Index>(std::min(sites.size(), reach_.size())), threads_, 512, [&](Index i, int) {
-    if (reach_[i] > 0) reaches[i] = reach_[i] + (position(mesh, sites[i]) - position(mesh, maps_.sites()[i])).norm();
+  parallel_for(site_count(), threads_, 512, [&](Index i, int) {
+    const Index site = maps_.sites_along_curve()[i];
+    if (site >= static_cast<Index>(sites.size()) || !(reach_[site] > 0)) return;
+    reaches[site] = reach_[site] + (position(mesh, sites[site]) - position(mesh, maps_.sites()[site])).norm();
   });
   return reaches;
 }
@@ -181,7 +187,7 @@ void CellClaims::renumber(std::span<const Index> before) {
     reach[site] = reach_[old];
     has_laid[site] = has_laid_[old];
   }
-  for (FaceClaim& claim : claims_) {
+  for (CellClaim& claim : claims_) {
     if (claim.site != k_none) claim.site = now[claim.site];
   }
   reach_.swap(reach);
@@ -271,17 +277,17 @@ void CellClaims::keep_claims() {
     std::ranges::transform(rings_.face(row.face).nodes, labels.begin(), [&](Index node) { return maps_.label(node); });
     std::ranges::sort(labels);
     const auto rest = std::ranges::unique(labels);
-    FaceClaim* claim = &claims_[row.first];
+    CellClaim* claim = &claims_[row.first];
     for (auto label = labels.begin(); label != rest.begin(); ++label, ++claim)
       if (is_kept(*label)) *claim = *kept_claim(row.face, *label);
   });
 }
 
 /// Null where there is none.
-const FaceClaim* CellClaims::kept_claim(Index face, Index site) const {
+const CellClaim* CellClaims::kept_claim(Index face, Index site) const {
   if (!is_kept(site)) return nullptr;
   const auto claims = before_.on(face);
-  const auto found = std::ranges::find(claims, site, &FaceClaim::site);
+  const auto found = std::ranges::find(claims, site, &CellClaim::site);
   return found != claims.end() ? &*found : nullptr;
 }
 
@@ -289,15 +295,15 @@ const FaceClaim* CellClaims::kept_claim(Index face, Index site) const {
 void CellClaims::compare() {
   is_as_before_.assign(site_count(), maps_.keeps_any());
   if (!maps_.keeps_any()) return;
-  const auto differ = [&](std::span<const FaceClaim> claims) {
-    for (const FaceClaim& claim : claims)
+  const auto differ = [&](std::span<const CellClaim> claims) {
+    for (const CellClaim& claim : claims)
       if (claim.site != k_none) std::atomic_ref(is_as_before_[claim.site]).store(0, std::memory_order_relaxed);
   };
   for (Index site = 0; site < site_count(); ++site)
     if (!is_kept(site)) is_as_before_[site] = 0;
   parallel_for(shared_count(), threads_, 512, [&](Index shared, int) {
     const auto now = claims(shared), then = before_.on(face(shared));
-    const auto same = [&](const FaceClaim& a, const FaceClaim& b) { return a.site == b.site && is_kept(a.site); };
+    const auto same = [&](const CellClaim& a, const CellClaim& b) { return a.site == b.site && is_kept(a.site); };
     if (std::ranges::equal(now, then, same)) return;
     differ(now);
     differ(then);
@@ -319,24 +325,25 @@ double CellClaims::claim_from(Index node, Index site, Worker& worker) {
     if ((from == site && (to == site || wedge.from < node)) || (to == site && wedge.to < node)) continue;
     const Index face = wedge.side / 3, start = wedge.side % 3;
     const Row& row = rows_[shared_index_[face]];
-    FaceClaim& claim = claims_[row.first + (from < site) + (to < site && to != from)];
+    CellClaim& claim = claims_[row.first + (from < site) + (to < site && to != from)];
     claim.face = face;
     claim.site = site;
     if (wedge.from != last) maps_.find(site, wedge.from, worker.scratch, at_last);  // each is beside the cell
-    claim.corner[start] = at_last;
+    claim.corner[start] = at_last.log;
     farthest = std::max(farthest, at_last.distance);
     last = wedge.to;
     maps_.find(site, last, worker.scratch, at_last);
-    claim.corner[Mesh::next(start)] = at_last;
-    claim.corner[Mesh::prev(start)] = own;
+    claim.corner[Mesh::next(start)] = at_last.log;
+    claim.corner[Mesh::prev(start)] = own.log;
     farthest = std::max(farthest, at_last.distance);
   }
   return farthest;
 }
 
 /// May be called by several threads at once.
-void CellClaims::reach_corners(const FaceClaim& claim) {
-  const double farthest = std::max({claim.corner[0].distance, claim.corner[1].distance, claim.corner[2].distance});
+void CellClaims::reach_corners(const CellClaim& claim) {
+  const double farthest =
+      std::sqrt(std::max({claim.squared_distance(0), claim.squared_distance(1), claim.squared_distance(2)}));
   const std::atomic_ref reach(reach_[claim.site]);
   for (double before = reach.load(std::memory_order_relaxed); before < farthest;)
     if (reach.compare_exchange_weak(before, farthest, std::memory_order_relaxed)) break;
@@ -357,8 +364,8 @@ void CellClaims::find_wishes_of_sites(const SurfacePoints& sites) {
 }
 
 /// False where corners are left to be laid down.
-bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& worker, FaceClaim& claim) const {
-  if (const FaceClaim* const kept = kept_claim(face, site)) {
+bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& worker, CellClaim& claim) const {
+  if (const CellClaim* const kept = kept_claim(face, site)) {
     claim = *kept;
     return true;
   }
@@ -367,31 +374,31 @@ bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& wo
   bool complete = true;
   for (int i = 0; i < 3; ++i) {
     const Worker::Known& known = worker.find(maps_, site, nodes[i]);
-    claim.corner[i] = known.vector;
+    claim.corner[i] = known.vector.log;
     if (known.found) continue;
-    const auto found = laid.vectors.find(pair_key(site, nodes[i]));
-    if (found != laid.vectors.end())
+    const auto found = laid.corners.find(pair_key(site, nodes[i]));
+    if (found != laid.corners.end())
       claim.corner[i] = found->second;
     else
-      claim.corner[i].distance = k_unknown, complete = false;
+      claim.corner[i].setConstant(k_unknown), complete = false;
   }
   return complete;
 }
 
 /// Completes a claim from the same site's on the face beyond the side.
-void CellClaims::lay_corners(Index side, Laid& laid, FaceClaim& claim) const {
+void CellClaims::lay_corners(Index side, Laid& laid, CellClaim& claim) const {
   const int start = side % 3, end = Mesh::next(side) % 3, apex = Mesh::prev(side) % 3;
   const VertexRings::Face& face = rings_.face(side / 3);
   const Index twin = face.twins[start];
-  visit_claims(twin / 3, [&](const FaceClaim& beyond) {
+  visit_claims(twin / 3, [&](const CellClaim& beyond) {
     if (beyond.site != claim.site) return;
     claim.corner[start] = beyond.corner[Mesh::next(twin) % 3];
     claim.corner[end] = beyond.corner[twin % 3];
   });
-  if (claim.corner[apex].distance != k_unknown) return;
+  if (!is_unknown(claim.corner[apex])) return;
   const auto key = pair_key(claim.site, face.nodes[apex]);
-  const SiteVector beside = maps_.laid_beside(rings_.halfedge(side), claim.corner[start], claim.corner[end]);
-  claim.corner[apex] = laid.vectors.try_emplace(key, beside).first->second;
+  const PackedVec2 beside = maps_.laid_beside(rings_.halfedge(side), claim.corner[start], claim.corner[end]);
+  claim.corner[apex] = laid.corners.try_emplace(key, beside).first->second;
 }
 
 /// Makes the claims that are wished for; each face and site once.
@@ -400,13 +407,13 @@ void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid) {
   std::vector<std::uint8_t> complete(count);
   late_.resize(first + count);
   parallel_for(count, threads_, 64, [&](Index i, int thread) {
-    FaceClaim& claim = late_[first + i].claim;
+    CellClaim& claim = late_[first + i].claim;
     complete[i] = make_claim(wishes[i].face, wishes[i].site, laid, workers_[thread], claim);
     if (complete[i]) reach_corners(claim);
   });
   for (Index i = 0; i < count; ++i) {
     if (complete[i]) continue;
-    FaceClaim& claim = late_[first + i].claim;
+    CellClaim& claim = late_[first + i].claim;
     has_laid_[claim.site] = 1;
     if (wishes[i].side != k_none) lay_corners(wishes[i].side, laid, claim);
     reach_corners(claim);
@@ -484,15 +491,15 @@ void CellClaims::merge_late() {
   std::vector<Row> late_rows(late_faces_.size());
   parallel_for(static_cast<Index>(late_rows.size()), threads_, 256, [&](Index i, int) {
     Row& row = late_rows[i] = {late_faces_[i], 0, 0};
-    visit_claims(row.face, [&](const FaceClaim&) { ++row.count; });
+    visit_claims(row.face, [&](const CellClaim&) { ++row.count; });
   });
   for (Row& row : late_rows) end += row.count, row.first = end - row.count;
   claims_.resize(end);
   parallel_for(static_cast<Index>(late_rows.size()), threads_, 64, [&](Index i, int) {
-    FaceClaim* const row = claims_.data() + late_rows[i].first;
-    FaceClaim* next = row;
-    visit_claims(late_rows[i].face, [&](const FaceClaim& claim) { *next++ = claim; });
-    std::sort(row, next, [](const FaceClaim& a, const FaceClaim& b) { return a.site < b.site; });
+    CellClaim* const row = claims_.data() + late_rows[i].first;
+    CellClaim* next = row;
+    visit_claims(late_rows[i].face, [&](const CellClaim& claim) { *next++ = claim; });
+    std::sort(row, next, [](const CellClaim& a, const CellClaim& b) { return a.site < b.site; });
   });
   for (const Row& row : late_rows) {
     Index& shared = shared_index_[row.face];
@@ -508,7 +515,7 @@ void CellClaims::merge_late() {
 template <class Visit>
 void CellClaims::visit_claims(Index face, Visit&& visit) const {
   if (shared_index_[face] != k_none) {
-    for (const FaceClaim& claim : claims(shared_index_[face])) visit(claim);
+    for (const CellClaim& claim : claims(shared_index_[face])) visit(claim);
   }
   for (Index i = late_index_[face]; i != k_none; i = late_[i].before) visit(late_[i].claim);
 }
@@ -520,22 +527,22 @@ bool CellClaims::is_settled(Index face) const {
   if (late_index_[face] != k_none) return false;
   const auto all = claims(shared_index_[face]);
   const auto& nodes = rings_.face(face).nodes;
-  std::array<const FaceClaim*, 3> nearest;
+  std::array<const CellClaim*, 3> nearest;
   for (int i = 0; i < 3; ++i) {
     nearest[i] = all.data();
-    for (const FaceClaim& claim : all)
+    for (const CellClaim& claim : all)
       if (claim.squared_distance(i) < nearest[i]->squared_distance(i)) nearest[i] = &claim;
     if (nearest[i]->site != maps_.label(nodes[i])) return false;
   }
   if (all.size() == 2) return true;
   for (int i = 0; i < 3; ++i) {
     const int end = (i + 1) % 3;
-    const FaceClaim &a = *nearest[i], &b = *nearest[end];
+    const CellClaim &a = *nearest[i], &b = *nearest[end];
     const double at_start = b.squared_distance(i) - a.squared_distance(i),
                  at_end = a.squared_distance(end) - b.squared_distance(end);
     const double t = &a == &b ? 0 : at_start / (at_start + at_end);
     const double nearer = (1 - t) * a.squared_distance(i) + t * a.squared_distance(end);
-    for (const FaceClaim& other : all) {
+    for (const CellClaim& other : all) {
       if (&other == &a || &other == &b) continue;
       const double value = (1 - t) * other.squared_distance(i) + t * other.squared_distance(end);
       if (!(value > (1 + k_margin) * nearer)) return false;
@@ -548,7 +555,7 @@ bool CellClaims::is_settled(Index face) const {
 void CellClaims::find_wishes(Index face, Worker& worker) const {
   worker.claims.clear();
   worker.fresh.clear();
-  visit_claims(face, [&](const FaceClaim& claim) { worker.claims.push_back(&claim); });
+  visit_claims(face, [&](const CellClaim& claim) { worker.claims.push_back(&claim); });
   for (Index i = late_index_[face]; i != k_none && i >= first_fresh_; i = late_[i].before)
     worker.fresh.push_back(late_[i].claim.site);
   const VertexRings::Face& here = rings_.face(face);
@@ -563,7 +570,7 @@ void CellClaims::find_wishes(Index face, Worker& worker) const {
       if (is_fresh) wish_for({twin / 3, site, twin}, worker.wishes);
     };
     worker.lines.clear();
-    for (const FaceClaim* claim : worker.claims) worker.lines.push_back(claim->line_along(side));
+    for (const CellClaim* claim : worker.claims) worker.lines.push_back(claim->line_along(side));
     if (worker.lines.size() == 2) {
       for (const Index site : winners(worker.lines[0], worker.lines[1])) wish(site);
       continue;
@@ -577,7 +584,7 @@ bool CellClaims::is_claimed(Index face, Index site) const {
   for (Index i = late_index_[face]; i != k_none; i = late_[i].before)
     if (late_[i].claim.site == site) return true;
   const Index shared = shared_index_[face];
-  return shared != k_none && std::ranges::find(claims(shared), site, &FaceClaim::site) != claims(shared).end();
+  return shared != k_none && std::ranges::find(claims(shared), site, &CellClaim::site) != claims(shared).end();
 }
 
 /// A claim on the face unless it is there; on a face that one cell owned so far, one of that cell, too.

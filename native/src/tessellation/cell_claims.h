@@ -14,13 +14,23 @@ namespace saddleback {
 /// \throw InputError naming the first offender: no sites, a site off the mesh, a component without a site.
 void check_sites(const Mesh& mesh, const SurfacePoints& sites);
 
-/// A site that may own a part of a face, and how it sees the face's corners.
+/// A site that may own a part of a face, and how far the face's corners are from it. Squared, as they are compared:
+/// roots would lose ties.
 struct FaceClaim {
   Index face, site;
-  std::array<SiteVector, 3> corner;
-  double squared_distance(int i) const { return corner[i].distance * corner[i].distance; }
+  std::array<double, 3> squared_distance;  ///< of the corners
   EdgeLine line_along(Index halfedge) const {
-    return {site, squared_distance(halfedge % 3), squared_distance(Mesh::next(halfedge) % 3)};
+    return {site, squared_distance[halfedge % 3], squared_distance[Mesh::next(halfedge) % 3]};
+  }
+};
+
+/// The same with where the corners are, from the site in its tangent plane. There are many: nothing is told twice.
+struct CellClaim {
+  Index face, site;
+  std::array<PackedVec2, 3> corner;
+  double squared_distance(int i) const { return corner[i].squaredNorm(); }
+  EdgeLine line_along(Index side) const {
+    return {site, squared_distance(side % 3), squared_distance(Mesh::next(side) % 3)};
   }
 };
 
@@ -101,7 +111,7 @@ class CellClaims {
   /// Number of a face among the shared ones, k_none for others.
   Index shared_index(Index face) const { return shared_index_[face]; }
   /// Of a shared face, by site. Their corners are the face's.
-  std::span<const FaceClaim> claims(Index shared) const {
+  std::span<const CellClaim> claims(Index shared) const {
     return {claims_.data() + rows_[shared].first, static_cast<std::size_t>(rows_[shared].count)};
   }
   /// All, and where those of a shared face begin; some between belong to no face.
@@ -131,8 +141,8 @@ class CellClaims {
   struct Before {
     LargeArray<Index> shared_index;
     LargeArray<Row> rows;
-    LargeArray<FaceClaim> claims;
-    std::span<const FaceClaim> on(Index face) const {
+    LargeArray<CellClaim> claims;
+    std::span<const CellClaim> on(Index face) const {
       if (shared_index.empty() || shared_index[face] == k_none) return {};
       const Row& row = rows[shared_index[face]];
       return {claims.data() + row.first, static_cast<std::size_t>(row.count)};
@@ -146,7 +156,7 @@ class CellClaims {
   void remember();
   void find_mixed_faces();
   void keep_claims();
-  const FaceClaim* kept_claim(Index face, Index site) const;
+  const CellClaim* kept_claim(Index face, Index site) const;
   void compare();
   void claim_by_cells(const JobStage& stage);
   double claim_from(Index node, Index site, Worker& worker);
@@ -155,11 +165,11 @@ class CellClaims {
   void forget_late();
   std::vector<Wish> all_wishes();
   void merge_late();
-  void reach_corners(const FaceClaim& claim);
+  void reach_corners(const CellClaim& claim);
   void mark_border(Index face);
   void grant(const std::vector<Wish>& wishes, Laid& laid);
-  bool make_claim(Index face, Index site, const Laid& laid, Worker& worker, FaceClaim& claim) const;
-  void lay_corners(Index side, Laid& laid, FaceClaim& claim) const;
+  bool make_claim(Index face, Index site, const Laid& laid, Worker& worker, CellClaim& claim) const;
+  void lay_corners(Index side, Laid& laid, CellClaim& claim) const;
   template <class Visit>
   void visit_claims(Index face, Visit&& visit) const;
   bool is_settled(Index face) const;
@@ -176,7 +186,7 @@ class CellClaims {
   LargeArray<Index> shared_index_;  ///< by face
   LargeArray<Row> rows_;
   Index mixed_count_ = 0;  ///< of rows_, those of faces whose corners' labels differ
-  LargeArray<FaceClaim> claims_;
+  LargeArray<CellClaim> claims_;
   std::vector<std::uint8_t> at_border_;  ///< by node
   std::vector<double> reach_;  ///< by site: how far it sees the farthest corner that it claims; 0 where it claims none
   std::vector<std::uint8_t> has_laid_;      ///< by site: corners were laid for it; who asks first has a say
@@ -186,7 +196,7 @@ class CellClaims {
   Before before_;
   // Found while claims spread:
   struct Late {
-    FaceClaim claim;
+    CellClaim claim;
     Index before;  ///< the face's one before, k_none for the first
   };
   std::vector<Index> late_index_;  ///< by face: its last one in late_, or k_none

@@ -67,7 +67,7 @@ void CellComplex::divide_faces(int threads, const JobStage& stage) {
 void CellComplex::divide(Index shared, FacePartition& partition) const {
   std::vector<FacePlane> planes;
   for (const FaceClaim& claim : claims_.claims(shared)) {
-    planes.push_back({claim.site, {claim.squared_distance(0), claim.squared_distance(1), claim.squared_distance(2)}});
+    planes.push_back({claim.site, claim.squared_distance});
   }
   const Index face = claims_.face(shared);
   partition.build(planes);
@@ -150,7 +150,7 @@ void CellComplex::label_vertices() {
     const Triangle& t = mesh_.triangles()[claims_.face(shared)];
     for (const FaceClaim& claim : claims_.claims(shared)) {
       for (int corner = 0; corner < 3; ++corner) {
-        const double distance = claim.corner[corner].distance;
+        const double distance = std::sqrt(claim.squared_distance[corner]);
         if (distance >= (1 - k_rounding) * vertex_distance_[t[corner]]) continue;
         vertex_site_[t[corner]] = claim.site;
         vertex_distance_[t[corner]] = distance;

@@ -38,13 +38,13 @@ struct FaceShape {
   }
 };
 
-Vec3 squared_distances(const FaceClaim& claim) {
+Vec3 squared_distances(const CellClaim& claim) {
   return {claim.squared_distance(0), claim.squared_distance(1), claim.squared_distance(2)};
 }
 
 struct ClaimedFace {
   const FaceShape& shape;
-  const FaceClaim& claim;
+  const CellClaim& claim;
   const Vec3& squared_distance;
 };
 
@@ -55,8 +55,7 @@ void integrate(const ClaimedFace& face, const std::array<QuadraturePoint, Count>
     const Vec3 x = at(q, a, b, c);
     const double weight = area * q.weight * face.shape.weight(x);
     sum.mass += weight;
-    sum.moment +=
-        weight * (x[0] * face.claim.corner[0].log + x[1] * face.claim.corner[1].log + x[2] * face.claim.corner[2].log);
+    sum.moment += weight * (x[0] * face.claim.corner[0] + x[1] * face.claim.corner[1] + x[2] * face.claim.corner[2]);
     sum.energy += weight * (face.squared_distance.dot(x) - face.shape.bulge(x));
   }
 }
@@ -76,7 +75,7 @@ void add_whole(const ClaimedFace& face, CellMoments& sum) {
   const Face& whole = face.shape.face;
   for (int i = 0; i < 3; ++i) {
     sum.mass += whole.weight[i];
-    sum.moment += whole.weight[i] * face.claim.corner[i].log;
+    sum.moment += whole.weight[i] * face.claim.corner[i];
     sum.energy += whole.weight[i] * face.squared_distance[i];
   }
   sum.energy -= whole.bulge;
@@ -117,7 +116,7 @@ class Tip {
     share[cut_.left] = cut_.on_left / 3;
     share[cut_.right] = cut_.on_right / 3;
     const auto& corner = face.claim.corner;
-    const Vec2 mean = share[0] * corner[0].log + share[1] * corner[1].log + share[2] * corner[2].log;
+    const Vec2 mean = share[0] * corner[0] + share[1] * corner[1] + share[2] * corner[2];
     return {area_, area_, area_ * mean, area_ * (share.dot(face.squared_distance) - bulge_)};
   }
 
@@ -131,7 +130,7 @@ class SharedFace {
  public:
   /// Calls add(site, moments) for every part.
   template <class Add>
-  void integrate(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add);
+  void integrate(const FaceShape& shape, std::span<const CellClaim> claims, Add&& add);
 
  private:
   struct Corner {
@@ -139,9 +138,9 @@ class SharedFace {
     double lead;
   };
   template <class Add>
-  void cut_in_two(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add);
-  bool is_beaten(std::span<const FaceClaim> claims, std::size_t claim) const;
-  CellMoments part_of(const FaceShape& shape, std::span<const FaceClaim> claims, Index rival);
+  void cut_in_two(const FaceShape& shape, std::span<const CellClaim> claims, Add&& add);
+  bool is_beaten(std::span<const CellClaim> claims, std::size_t claim) const;
+  CellMoments part_of(const FaceShape& shape, std::span<const CellClaim> claims, Index rival);
   void clip(const Vec3& lead);
 
   std::vector<Vec3> squared_distances_;  ///< of all claims
@@ -150,7 +149,7 @@ class SharedFace {
 };
 
 /// Whether a claim is nowhere nearer than one of the others.
-bool SharedFace::is_beaten(std::span<const FaceClaim> claims, std::size_t claim) const {
+bool SharedFace::is_beaten(std::span<const CellClaim> claims, std::size_t claim) const {
   const Vec3& own = squared_distances_[claim];
   for (std::size_t other = 0; other < claims.size(); ++other) {
     const Vec3& theirs = squared_distances_[other];
@@ -178,9 +177,9 @@ CellMoments& operator-=(CellMoments& sum, const CellMoments& part) {
 }
 
 template <class Add>
-void SharedFace::integrate(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add) {
+void SharedFace::integrate(const FaceShape& shape, std::span<const CellClaim> claims, Add&& add) {
   squared_distances_.clear();
-  for (const FaceClaim& claim : claims) squared_distances_.push_back(squared_distances(claim));
+  for (const CellClaim& claim : claims) squared_distances_.push_back(squared_distances(claim));
   rivals_.clear();
   for (std::size_t i = 0; i < claims.size(); ++i)
     if (!is_beaten(claims, i)) rivals_.push_back(static_cast<Index>(i));
@@ -197,7 +196,7 @@ void SharedFace::integrate(const FaceShape& shape, std::span<const FaceClaim> cl
 
 /// One straight cut: a corner on one side of it, two on the other.
 template <class Add>
-void SharedFace::cut_in_two(const FaceShape& shape, std::span<const FaceClaim> claims, Add&& add) {
+void SharedFace::cut_in_two(const FaceShape& shape, std::span<const CellClaim> claims, Add&& add) {
   constexpr double k_most_of_it = 0.9;  // what is left is too little to be told from a difference
   const Index a = rivals_[0], b = rivals_[1];
   const ClaimedFace first{shape, claims[a], squared_distances_[a]}, second{shape, claims[b], squared_distances_[b]};
@@ -222,7 +221,7 @@ void SharedFace::cut_in_two(const FaceShape& shape, std::span<const FaceClaim> c
 }
 
 /// What the other rivals leave of the face.
-CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const FaceClaim> claims, Index rival) {
+CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const CellClaim> claims, Index rival) {
   const ClaimedFace face{shape, claims[rival], squared_distances_[rival]};
   polygon_.resize(3);
   for (int i = 0; i < 3; ++i) polygon_[i].at = Vec3::Unit(i);
@@ -380,7 +379,7 @@ std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::v
     const auto integrate = [&](Index first, Index last) {
       for (Index shared = first; shared < last; ++shared) {
         const auto rivals = claims.claims(shared);
-        if (std::ranges::all_of(rivals, [&](const FaceClaim& claim) { return claims.is_as_before(claim.site); }))
+        if (std::ranges::all_of(rivals, [&](const CellClaim& claim) { return claims.is_as_before(claim.site); }))
           continue;
         const Index face = claims.face(shared);
         const FaceShape shape(faces_[face], density_.empty() ? nullptr : &density_[face]);

@@ -14,7 +14,7 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 bool is_beaten(const FaceClaim& claim, const std::vector<FaceClaim>& claims) {
   return std::ranges::any_of(claims, [&](const FaceClaim& other) {
     for (int i = 0; i < 3; ++i)
-      if (!(other.corner[i].distance < claim.corner[i].distance)) return false;
+      if (!(other.squared_distance[i] < claim.squared_distance[i])) return false;
     return true;
   });
 }
@@ -28,7 +28,7 @@ const ExactField::Sight* find_sight(const std::vector<ExactField::Sight>& sights
 double distance_at(const FaceRefinement::Part& part, const FaceClaim& claim, const Vec3& x) {
   double squared = 0;
   for (int i = 0; i < 3; ++i)
-    squared += x[i] * claim.squared_distance(i) - x[i] * x[(i + 1) % 3] * part.length[i] * part.length[i];
+    squared += x[i] * claim.squared_distance[i] - x[i] * x[(i + 1) % 3] * part.length[i] * part.length[i];
   return std::sqrt(std::max(0.0, squared));
 }
 
@@ -113,9 +113,9 @@ void ExactParts::find_claims(const FaceRefinement::Part& part, std::vector<FaceC
       bool may_own = true;
       for (int i = 0; i < 3; ++i) {
         const double to_next = part.length[i], to_last = part.length[(i + 2) % 3];
-        claim.corner[i].distance =
-            std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
-        const double lead = claim.corner[i].distance - nearest_[part.corner[i]].distance;
+        const double least = std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
+        claim.squared_distance[i] = least * least;
+        const double lead = least - nearest_[part.corner[i]].distance;
         may_own = may_own && lead <= 2 * std::max(to_next, to_last);
       }
       if (may_own) claims.push_back(claim);

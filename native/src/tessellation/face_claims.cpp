@@ -17,7 +17,11 @@ ClaimsOfCells::ClaimsOfCells(const CellClaims& cells)
   for (Index i = 0; i < shared_count(); ++i) {
     shared_index_[faces_[i]] = i;
     const auto claims = cells.claims(cells.shared_index(cells.rings().face_of(faces_[i])));
-    for (const FaceClaim& claim : claims) claims_.push_back({faces_[i], claim.site, claim.corner});
+    for (const CellClaim& claim : claims) {
+      const std::array<double, 3> squared{claim.squared_distance(0), claim.squared_distance(1),
+                                          claim.squared_distance(2)};
+      claims_.push_back({faces_[i], claim.site, squared});
+    }
     first_.push_back(static_cast<Index>(claims_.size()));
   }
 }

@@ -131,8 +131,7 @@ void copy_claims(const FaceClaims& claims, GeodesicVoronoi& out) {
   for (Index face = 0; face < claims.mesh().face_count(); ++face) {
     if (const Index shared = claims.shared_index(face); shared != k_none) {
       for (const FaceClaim& claim : claims.claims(shared)) {
-        out.claims.push_back(
-            {claim.site, {claim.squared_distance(0), claim.squared_distance(1), claim.squared_distance(2)}});
+        out.claims.push_back({claim.site, claim.squared_distance});
       }
     }
     out.face_claims.push_back(static_cast<Index>(out.claims.size()));

@@ -98,7 +98,8 @@ bool Relaxation::advance_by(TangentField direction, const TangentField& slope, c
   for (int halving = 0; halving <= k_most_halvings; ++halving, length /= 2) {
     TangentField steps = direction;
     for (Vec2& step : steps) step *= length;
-    Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads);
+    Moved moved =
+        move_sites(graph_.mesh(), state_.sites, steps, options_.threads, cells_->claims().maps().sites_along_curve());
     std::vector<double> along = held_.move(state_.along, state_.sites, steps, moved);
     RelaxationState next = evaluate(moved.sites, std::move(along), stage);
     if (!(next.energy <= state_.energy + k_least_share * length * promise)) continue;
@@ -118,7 +119,8 @@ bool Relaxation::advance_by(TangentField direction, const TangentField& slope, c
 TangentField Relaxation::go(TangentField steps, const JobStage& stage) {
   hold(state_, steps);
   shorten(steps);
-  Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads);
+  Moved moved =
+      move_sites(graph_.mesh(), state_.sites, steps, options_.threads, cells_->claims().maps().sites_along_curve());
   std::vector<double> along = held_.move(state_.along, state_.sites, steps, moved);
   go_to(std::move(moved.sites), std::move(along), stage);
   return std::move(moved.steps);

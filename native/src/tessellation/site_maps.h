@@ -131,7 +131,7 @@ class SiteMaps {
   /// node of its label.
   bool find(Index site, Index node, Scratch& scratch, SiteVector& vector) const;
   /// Beyond an edge whose ends are known, the third corner of the half-edge's face laid in the plane.
-  SiteVector laid_beside(Index halfedge, const SiteVector& from, const SiteVector& to) const;
+  PackedVec2 laid_beside(Index halfedge, const PackedVec2& from, const PackedVec2& to) const;
 
  private:
   using Wedge = VertexRings::Wedge;

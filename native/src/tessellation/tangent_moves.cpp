@@ -44,11 +44,14 @@ double tangent_heading(const Mesh& mesh, const SurfacePoint& point, double chart
   return angle_about(mesh, point, chart_angle) / surface_scale(mesh, point);
 }
 
-Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads) {
+Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads,
+                 std::span<const Index> order) {
   Moved moved{SurfacePoints(sites.size()), TangentField(sites.size(), Vec2::Zero()),
               TangentField(sites.size(), Vec2(1, 0))};
-  parallel_for(static_cast<Index>(sites.size()), threads, 64,
-               [&](Index i, int) { move_site(mesh, sites[i], steps[i], i, moved); });
+  parallel_for(static_cast<Index>(sites.size()), threads, 64, [&](Index i, int) {
+    const Index site = order.empty() ? i : order[i];
+    move_site(mesh, sites[site], steps[site], site, moved);
+  });
   return moved;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Sites that move along geodesics, and tangent vectors that they carry along.
 
+#include <span>
 #include <vector>
 
 #include "saddleback/surface_points.h"
@@ -19,8 +20,10 @@ struct Moved {
 
 /// Moves every site along its step by the exponential map. A step of length 0, or one that cannot be traced (round a
 /// spike thinner than rounding a curve turns without end), leaves its site. Parallel transport along straightest
-/// geodesics keeps the angle to the geodesic. O(faces crossed).
-Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads);
+/// geodesics keeps the angle to the geodesic. O(faces crossed). `order`: of all sites, in which they lie close in
+/// memory one after the other; any will do, and none, for the same result.
+Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentField& steps, int threads,
+                 std::span<const Index> order = {});
 
 /// A direction given in the chart of the point's face as an angle of the point's tangent plane.
 double tangent_heading(const Mesh& mesh, const SurfacePoint& point, double chart_angle);

@@ -1,0 +1,156 @@
+// Method: labels by shortest paths in the graph, from the vertices that sites see.
+
+#include <algorithm>
+#include <utility>
+
+#include "geodesics/parted_search.h"
+#include "support/parallel.h"
+#include "tessellation/relabelling.h"
+#include "tessellation/site_maps.h"
+
+namespace saddleback {
+
+void SiteMaps::label_all(int threads, const JobStage& stage) {
+  bare_.clear();
+  const auto seeds_of = [&](Index first, Index last, std::vector<NodeSeed>& seeds) {
+    const auto add = [&](Index node, Index site, double distance) {
+      if (node >= first && node < last) seeds.push_back({node, site, distance});
+    };
+    for (Index site = 0; site < site_count(); ++site) {
+      const Fan& fan = fans_[site];
+      if (fan.centre != k_none) add(fan.centre, site, 0);
+      if (fan.last < first || fan.first >= last) continue;  // of another part of the surface
+      for (std::size_t i = 0; i < fan.arc_count; ++i) add(fan.nodes[i], site, fan.rounded[i]);
+    }
+  };
+  if (cuda_device_ >= 0) {
+    twin_nearest_sources(graph_, cuda_device_, flat_seeds(threads), stage, distance_, label_);
+  } else {
+    nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
+  }
+  group_nodes(threads);
+}
+
+/// All fans', one after the other.
+FlatSeeds SiteMaps::flat_seeds(int threads) const {
+  std::vector<std::size_t> first{0};
+  for (const Fan& fan : fans_) first.push_back(first.back() + fan.arc_count + (fan.centre != k_none ? 1 : 0));
+  FlatSeeds seeds;
+  seeds.resize(first.back());
+  parallel_for(site_count(), threads, 64, [&](Index site, int) {
+    std::size_t at = first[site];
+    const Fan& fan = fans_[site];
+    for (std::size_t i = 0; i < fan.arc_count; ++i) seeds.set(at++, {fan.nodes[i], site, fan.rounded[i]});
+    if (fan.centre != k_none) seeds.set(at, {fan.centre, site, 0});
+  });
+  return seeds;
+}
+
+/// What was nearest to sites that have moved, and what is nearer to them now.
+void SiteMaps::label_again(std::span<const Index> moved, const JobStage& stage) {
+  std::vector<Index> loose = std::exchange(bare_, {});
+  for (const Index site : moved) {
+    const auto own = nodes(site);
+    loose.insert(loose.end(), own.begin(), own.end());
+  }
+  Relabelling search(graph_, distance_, label_);
+  search.loosen(loose);
+  for (Index site = 0; site < site_count(); ++site) {
+    const Fan& fan = fans_[site];
+    if (fan.centre != k_none) search.offer(fan.centre, site, 0);
+    for (std::size_t i = 0; i < fan.arc_count; ++i) search.offer(fan.nodes[i], site, fan.rounded[i]);
+  }
+  std::vector<std::uint8_t> moves(site_count(), 0);  // its nodes, away or here
+  for (const Index site : moved) moves[site] = 1;
+  std::vector<Index> moving = std::move(loose);
+  search.run(stage, [&](Index site) {
+    if (std::exchange(moves[site], 1) != 0) return;
+    const auto own = nodes(site);
+    moving.insert(moving.end(), own.begin(), own.end());
+  });
+  for (Index site = 0; site < site_count(); ++site) is_kept_[site] = moves[site] == 0;
+  group_again(moving);
+}
+
+/// All nodes of cells that are made anew are `moving`.
+void SiteMaps::group_again(std::span<const Index> moving) {
+  std::vector<Index> first(site_count() + 1, 0), grouped(label_.size());
+  for (const Index node : moving) ++first[label_[node] + 1];
+  for (Index site = 0; site < site_count(); ++site)
+    first[site + 1] = first[site] + (is_kept(site) ? static_cast<Index>(nodes(site).size()) : first[site + 1]);
+  for (Index site = 0; site < site_count(); ++site)
+    if (is_kept(site)) std::ranges::copy(nodes(site), grouped.begin() + first[site]);
+  std::vector<Index> cursor(first.begin(), first.end() - 1);
+  for (const Index node : moving) grouped[cursor[label_[node]]++] = node;
+  first_node_.swap(first);
+  nodes_.swap(grouped);
+}
+
+void SiteMaps::renumber(std::span<const Index> before) {
+  const auto count = static_cast<Index>(before.size());
+  std::vector<Index> now(sites_.size(), k_none), first{0}, grouped;
+  SurfacePoints sites(count, {k_none, Vec3::Zero()});
+  std::vector<Fan> fans(count);
+  std::vector<double> limits(count, 0);
+  grouped.reserve(nodes_.size());
+  for (Index site = 0; site < count; ++site) {
+    if (const Index old = before[site]; old != k_none) {
+      now[old] = site;
+      sites[site] = sites_[old];
+      fans[site] = std::move(fans_[old]);
+      limits[site] = limits_[old];
+      const auto own = nodes(old);
+      grouped.insert(grouped.end(), own.begin(), own.end());
+    }
+    first.push_back(static_cast<Index>(grouped.size()));
+  }
+  for (Index node = 0; node < static_cast<Index>(label_.size()); ++node) {
+    if (label_[node] == k_none) continue;  // bare already
+    label_[node] = now[label_[node]];
+    if (label_[node] == k_none) bare_.push_back(node);
+  }
+  std::ranges::transform(order_, order_.begin(), [&](Index old) { return now[old]; });
+  std::erase(order_, k_none);
+  for (Index site = 0; site < count; ++site)
+    if (before[site] == k_none) order_.push_back(site);
+  sites_.swap(sites);
+  fans_.swap(fans);
+  limits_.swap(limits);
+  first_node_.swap(first);
+  nodes_.swap(grouped);
+}
+
+/// Each thread counts, and later places, its own stretch of the nodes: a label's nodes are in their order.
+void SiteMaps::group_nodes(int threads) {
+  constexpr Index k_least_stretch = 1 << 14;
+  const auto sites = static_cast<std::size_t>(site_count());
+  const Index count = mesh_.vertex_count(), worth_it = count / std::max(k_least_stretch, site_count());
+  const Index stretches = std::clamp(worth_it, 1, thread_count(threads));
+  const auto begin = [&](Index stretch) { return static_cast<Index>(std::int64_t{count} * stretch / stretches); };
+  std::vector<Index> cursors(static_cast<std::size_t>(stretches) * sites, 0);
+  const auto in_stretches = [&](auto&& visit) {
+    parallel_for(stretches, threads, 1, [&](Index stretch, int) {
+      Index* const cursor = &cursors[static_cast<std::size_t>(stretch) * sites];
+      for (Index node = begin(stretch); node < begin(stretch + 1); ++node) visit(node, cursor[label_[node]]);
+    });
+  };
+  in_stretches([](Index, Index& cursor) { ++cursor; });
+  first_node_.assign(sites + 1, 0);
+  for (std::size_t site = 0; site < sites; ++site) {
+    Index next = first_node_[site];
+    for (std::size_t at = site; at < cursors.size(); at += sites) next += std::exchange(cursors[at], next);
+    first_node_[site + 1] = next;
+  }
+  nodes_.resize(label_.size());
+  in_stretches([&](Index node, Index& cursor) { nodes_[cursor++] = node; });
+}
+
+void SiteMaps::order_sites() {
+  std::vector<std::pair<Index, Index>> keys;
+  for (Index site = 0; site < site_count(); ++site) keys.emplace_back(rings_.face_of(sites_[site].face), site);
+  std::ranges::sort(keys);
+  order_.clear();
+  for (const auto& [face, site] : keys) order_.push_back(site);
+}
+
+}  // namespace saddleback
