@@ -1,5 +1,7 @@
 // CentroidalVoronoi, what shows and what keeps its cells, and the function that makes it.
 
+#include <pybind11/stl.h>
+
 #include "saddleback/centroidal_voronoi.h"
 
 #include "cells.h"
@@ -71,8 +73,8 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
               const std::string& method, const py::object& max_iterations, const py::object& tolerance,
               const py::object& seed, const std::string& start, const py::object& starts, const py::object& annealing,
               const py::object& fixed, const py::object& curves, const py::object& held, const py::object& least_move,
-              const py::object& cache, bool scale_free, bool return_when_cancelled, const py::object& watch,
-              const py::object& threads, const std::string& device, const py::object& job) {
+              const py::object& cache, bool scale_free, bool closed_ball, bool return_when_cancelled,
+              const py::object& watch, const py::object& threads, const std::string& device, const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   ArrayIn<double> weights;
@@ -91,6 +93,7 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
                                    .starts = as_integer(starts, "starts"),
                                    .annealing = as_integer(annealing, "annealing"),
                                    .least_move = as_real(least_move, "least_move"),
+                                   .closed_ball = closed_ball,
                                    .cache = as_cache(cache, graph),
                                    .scale_free = scale_free,
                                    .return_when_cancelled = return_when_cancelled,
@@ -158,6 +161,12 @@ least_move : float
     would stay, the run ends. 1e-3 is less than one sees.
 cache : CellCache, optional
     Cells to begin with, and afterwards those of the result.
+closed_ball : bool
+    Afterwards move sites from where they are least needed to where the cells break the closed-ball property (a cell that
+    is no disk, two cells that meet twice, ...), and relax all again as far as nothing breaks it: the dual of just `count`
+    sites is then a triangulation of the surface. Fixed sites stay, held ones stay on their curves. The energy may end
+    above where the first relaxation did. Where no site can be spared, or 40 rounds of moving some do not help, or ten do
+    not leave fewer faults, the sites are left as they were, and `CentroidalVoronoi.issues` tells so.
 scale_free : bool
     Relax on a copy of the mesh of unit size, its coordinates rounded to 2^-26 of that: the sites are then the same, to
     the bit of their faces and barycentric coordinates, for the mesh enlarged, shrunk or moved. Otherwise the last bit of
@@ -212,7 +221,8 @@ void bind_relaxation(py::module_& m) {
   py::class_<RelaxationWatch>(m, "RelaxationWatch", py::module_local(),
                               R"(Shows the sites of a relaxation while it goes on in another thread.
 
-Pass it as ``watch=`` to `centroidal_voronoi`. Coarse cells and annealing, which make the start, are not shown.)")
+Pass it as ``watch=`` to `centroidal_voronoi`. Coarse cells and annealing, which make the start, are not shown. After an exchange of
+sites (`closed_ball`) the iterations begin again.)")
       .def(py::init<>())
       .def("latest", &latest_step, "The `RelaxationStep` that was reached, None before the first. O(1).");
 
@@ -241,14 +251,23 @@ the same to the bit. About 1 KB a vertex, and the graph, are kept.)")
           [](const py::object& self) {
             return view_of(std::span<const double>(py::cast<const Relaxed&>(self).result.energy), self);
           },
-          "(iterations + 1,) float64: at the start and after each iteration; never rises.")
+          "(iterations + 1,) float64: at the start and after each iteration; never rises. After an exchange of sites "
+          "(`closed_ball`) those of the relaxation that followed.")
       .def_property_readonly(
           "iterations", [](const Relaxed& r) { return r.result.iterations; }, "Iterations done.")
       .def_property_readonly(
           "converged", [](const Relaxed& r) { return r.result.converged; }, "False when max_iterations ended it.")
       .def_property_readonly(
           "stop_reason", [](const Relaxed& r) { return r.result.stop_reason; },
-          "\"tolerance\", \"no step lowers the energy\", \"least_move\", \"max_iterations\" or \"cancelled\".")
+          "\"tolerance\", \"no step lowers the energy\", \"least_move\", \"max_iterations\" or \"cancelled\"; "
+          "\"closed_ball\" where "
+          "no more steps kept the dual a triangulation.")
+      .def_property_readonly(
+          "exchanged", [](const Relaxed& r) { return r.result.exchanged; },
+          "How many sites `closed_ball` moved to where the dual's topology needs them.")
+      .def_property_readonly(
+          "issues", [](const Relaxed& r) { return r.result.issues; },
+          "With `closed_ball`, a list of DualIssue: where the cells' dual is no triangulation all the same.")
       .def_property_readonly(
           "held",
           [](const Relaxed& r) {
@@ -269,8 +288,9 @@ the same to the bit. About 1 KB a vertex, and the graph, are kept.)")
         py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("start") = "auto",
         py::arg("starts") = 1, py::arg("annealing") = 0, py::arg("fixed") = py::none(), py::arg("curves") = py::none(),
         py::arg("held") = py::none(), py::arg("least_move") = 0.0, py::arg("cache") = py::none(),
-        py::arg("scale_free") = true, py::arg("return_when_cancelled") = false, py::arg("watch") = py::none(),
-        py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(), k_centroidal_doc);
+        py::arg("scale_free") = true, py::arg("closed_ball") = false, py::arg("return_when_cancelled") = false,
+        py::arg("watch") = py::none(), py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(),
+        k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

@@ -127,6 +127,20 @@ def test_the_panel_tells_quality_and_energy_and_faults_are_a_warning(capfd):
     assert not jobs.state.figures
 
 
+def test_the_count_is_kept_unless_that_is_switched_off():
+    source = sphere_source()
+    for vertex in source.data.vertices:
+        vertex.co = (0.15 * vertex.co.x, 0.15 * vertex.co.y, 2 * vertex.co.z)
+    wanted = {"count": 60, "iterations": 20, "k": 60}
+    kept = remeshed(source, **wanted)
+    assert len(kept.data.vertices) == 60 and len(kept.data.polygons) == 2 * 60 - 4
+    assert not kept.data.validate()
+    assert "moved to where the dual mesh needs them" in jobs.state.line and "added" not in jobs.state.line
+    more = remeshed(source, keep_count=False, **wanted)
+    assert len(more.data.vertices) > 60 and len(more.data.polygons) == 2 * len(more.data.vertices) - 4
+    assert "moved" not in jobs.state.line and "vertices added to the dual mesh" in jobs.state.line
+
+
 def cut_cube(cuts):
     """A cube of quads: `cuts` more lines across each face."""
     bpy.ops.mesh.primitive_cube_add(size=2)

@@ -67,6 +67,34 @@ def test_too_few_cells_are_told_when_strict_and_mended_by_repair():
     assert not repaired.dual.issues and not faults_of(repaired.dual) and euler(repaired.dual.triangles) == 2
 
 
+def needle():
+    vertices, triangles = synthetic_cells.sphere(4)
+    return Surface("Needle", vertices * (0.15, 0.15, 2.0), triangles, len(vertices))
+
+
+@pytest.mark.parametrize("policy", ["STRICT", "REPAIR"])
+def test_the_count_is_kept_by_cells_that_move_to_where_the_mesh_needs_them(policy):
+    cache = Cache(2**30)
+    wanted = {"count": 60, "iterations": 20, "k": 60, "dual_policy": policy}
+    plain, kept = (run(needle(), cache, keep_count=keep, **wanted) for keep in (False, True))
+    assert cache.builds["cells"] == 2
+    assert plain.exchanged == 0 and (plain.dual.issues if policy == "STRICT" else plain.dual.added)
+    assert kept.exchanged > 0 and not kept.dual.issues and kept.dual.added == 0
+    np.testing.assert_array_equal(kept.dual.vertices, kept.sites_position)
+    assert len(np.unique(kept.dual.triangles)) == 60 and euler(kept.dual.triangles) == 2
+
+
+def test_sites_are_moved_for_a_dual_mesh_only_and_only_where_they_may_move():
+    cache = Cache(2**30)
+    wanted = {"count": 60, "iterations": 20, "k": 60}
+    without = run(needle(), cache, make_dual=False, **wanted)
+    plain = run(needle(), cache, keep_count=False, **wanted)
+    np.testing.assert_array_equal(without.sites_position, plain.sites_position)
+    assert cache.builds["cells"] == 1
+    at_random = run(needle(), cache, **{**wanted, "iterations": 0})
+    assert at_random.exchanged == 0 and at_random.dual.added > 0
+
+
 def test_only_some_faults_are_told_one_by_one():
     none = np.empty((0, 3))
     dual = Dual(none, none.astype(np.int32), none, none, 0, tuple(f"fault {i}" for i in range(5)))

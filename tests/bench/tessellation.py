@@ -69,6 +69,7 @@ def ours(mesh: sb.Mesh, cells: int) -> Iterator[str]:
             count=cells,
             method=method,
             annealing=annealing,
+            closed_ball=annealing > 0,
             max_iterations=iterations,
             tolerance=1e-7,
             seed=1,
@@ -77,7 +78,8 @@ def ours(mesh: sb.Mesh, cells: int) -> Iterator[str]:
         seconds = time.process_time() - start
         vertices, triangles, issues = relaxed.cells.dual("strict")
         steps = f"{annealing} + {relaxed.iterations}" if annealing else f"{relaxed.iterations}"
-        name = f"{method}, {steps} steps, E {relaxed.normalised_energy:.4f}"
+        moved = f", {relaxed.exchanged} moved" if relaxed.exchanged else ""
+        name = f"{method}, {steps} steps, E {relaxed.normalised_energy:.4f}{moved}"
         yield row(name, mesh, seconds, annealing + relaxed.iterations + 1, vertices, triangles)
         if issues:
             yield f"  {len(issues)} issues, first: {issues[0]}"

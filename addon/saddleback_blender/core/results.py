@@ -81,6 +81,7 @@ class CellsResult:
     dual: Dual | None = None  # where it was wanted
     shell: LampShell | None = None  # where it was wanted
     figures: Figures | None = None  # None where the sites have no triangle
+    exchanged: int = 0  # cells that were moved to where the dual mesh needs them
 
     @property
     def count(self) -> int:

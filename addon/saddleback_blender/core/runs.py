@@ -59,6 +59,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         settings.method if iterations else "",
         _starts(request),
         _annealing(request, iterations),
+        _closed_ball(request, iterations),
         density if sites is None or iterations else None,
         *_held(request),
     )
@@ -178,6 +179,7 @@ class _Solved:
     iterations: int
     stop_reason: str
     normalised_energy: float | None  # None where nothing was relaxed
+    exchanged: int  # sites that were moved for the sake of the dual mesh
 
 
 def _held(request: TessellateRequest) -> tuple[object, ...]:
@@ -199,6 +201,11 @@ def _annealing(request: TessellateRequest, iterations: int) -> int:
     return request.settings.annealing if iterations and request.live is None else 0
 
 
+def _closed_ball(request: TessellateRequest, iterations: int) -> bool:
+    """Whether sites may be exchanged for the sake of the dual mesh: not those that are to stay where they are."""
+    return bool(iterations) and request.settings.make_dual and request.settings.keep_count
+
+
 def _solve(
     request: TessellateRequest,
     mesh: Any,
@@ -210,7 +217,7 @@ def _solve(
 ) -> _Solved:
     sb, settings = native.load(), request.settings
     points = None if sites is None else surface_points(mesh, sites)
-    energy, done, reason, normalised = np.empty(0), 0, "sites kept", None
+    energy, done, reason, normalised, exchanged = np.empty(0), 0, "sites kept", None, 0
     if points is None or iterations:
         choice: dict[str, Any] = {"sites": points}
         if points is None:
@@ -225,12 +232,13 @@ def _solve(
             cvt = sb.centroidal_voronoi(
                 graph, density=density, method=settings.method.lower(), max_iterations=iterations, seed=settings.seed,
                 starts=_starts(request), annealing=_annealing(request, iterations),
+                closed_ball=_closed_ball(request, iterations),
                 start="auto" if live is None else "sample", least_move=0.0 if live is None else UNSEEN,
                 return_when_cancelled=live is not None, watch=watch, threads=request.threads, job=job, **choice,
             )  # fmt: skip
         cells = cvt.cells
         energy, done, reason = np.asarray(cvt.energy, np.float64), int(cvt.iterations), str(cvt.stop_reason)
-        normalised = float(cvt.normalised_energy)
+        normalised, exchanged = float(cvt.normalised_energy), int(cvt.exchanged)
     else:
         with progress.stage(0.9, "finding the cells") as job:
             cells = sb.geodesic_voronoi(graph, points, threads=request.threads, job=job)
@@ -239,7 +247,7 @@ def _solve(
     vertices, triangles = mesh.vertices, mesh.triangles
     positions = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
     normals = normals_at(vertices, triangles, faces, barycentric)
-    return _Solved(cells, positions, normals, energy, done, reason, normalised)
+    return _Solved(cells, positions, normals, energy, done, reason, normalised, exchanged)
 
 
 def _result(request: TessellateRequest, solved: _Solved, density: Reals | None) -> CellsResult:
@@ -262,6 +270,7 @@ def _result(request: TessellateRequest, solved: _Solved, density: Reals | None) 
         energy=solved.energy,
         iterations=solved.iterations,
         stop_reason=solved.stop_reason,
+        exchanged=solved.exchanged,
     )
 
 

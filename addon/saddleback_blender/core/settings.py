@@ -59,6 +59,7 @@ class TessellateSettings(DensitySettings):
     instance_scale: float = 1.0
     make_dual: bool = False
     dual_policy: str = "REPAIR"  # REPAIR, STRICT
+    keep_count: bool = True  # of vertices of the dual mesh: one for each cell wherever that can be
     make_shell: bool = False
     rib_width: float = 0.0  # 0 = by the cells' size
     rib_thickness: float = 0.0  # 0 = as wide

@@ -42,6 +42,7 @@ ENDS = {
     "no step lowers the energy": " until nothing got better",
     "least_move": " until nothing moved",
     "cancelled": " until it was stopped",
+    "closed_ball": " as far as the dual mesh stayed whole",
 }
 
 
@@ -192,10 +193,12 @@ def _steps(result: CellsResult) -> str:
 
 
 def _added(result: CellsResult) -> str:
-    """How many vertices the dual mesh has beyond one a cell."""
-    if result.dual is None or not result.dual.added:
+    """What the dual mesh needed: cells elsewhere, vertices beyond one a cell."""
+    if result.dual is None:
         return ""
-    return f", {result.dual.added} vertices added to the dual mesh"
+    moved = "1 cell" if result.exchanged == 1 else f"{result.exchanged} cells"
+    exchanged = f", {moved} moved to where the dual mesh needs them" if result.exchanged else ""
+    return exchanged + (f", {result.dual.added} vertices added to the dual mesh" if result.dual.added else "")
 
 
 def _lost(source: bpy.types.Object) -> str:

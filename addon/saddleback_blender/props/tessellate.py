@@ -104,6 +104,12 @@ TESSELLATE: dict[str, Any] = {
     ),
     "make_dual": switch("Dual Mesh", "Make a triangle mesh with one vertex for each cell: a remesh", False),
     "dual_policy": choice("Policy", "What to do where cells are too large for a mesh", DUAL_POLICIES, "REPAIR"),
+    "keep_count": switch(
+        "Keep Count",
+        "One vertex for each cell: cells move from where they are needed least to where the dual mesh would have "
+        "faults. Where that is not enough, the policy says what to do",
+        True,
+    ),
     "make_shell": switch("Lamp Shell", "Make the lines between cells into one closed solid that can be printed", False),
     "rib_width": length(
         "Rib Width", "How wide the ribs of the lamp shell are, along the surface; 0: by the cells' size", 0.0

@@ -119,6 +119,7 @@ def draw_dual(layout: bpy.types.UILayout, settings: Any) -> None:
     """The remesh."""
     layout.active = settings.make_dual
     layout.prop(settings, "dual_policy", text="Policy")
+    layout.prop(settings, "keep_count")
 
 
 def draw_shell(layout: bpy.types.UILayout, settings: Any) -> None:

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "saddleback/cell_cache.h"
-#include "saddleback/geodesic_voronoi.h"
+#include "saddleback/dual_mesh.h"
 #include "saddleback/relaxation_watch.h"
 #include "saddleback/surface_curve.h"
 
@@ -39,6 +39,11 @@ struct CentroidalVoronoiOptions {
   /// neither move nor have neighbours that do are not found anew: where most sites rest, iterations are short. When
   /// all would stay, the run ends. 0: all move. 1e-3 is less than one sees; energies then end higher by about 1e-5.
   double least_move = 0;
+  /// Whether sites are moved afterwards from where they are least needed to where the cells break the closed-ball
+  /// property (see DualIssue), and all relaxed again as far as nothing breaks it: `count` sites then have a
+  /// triangulation of the surface as their dual. Where no site can be spared, or 40 rounds of moving some do not help,
+  /// or ten do not leave fewer faults, they are left as they were, and `issues` tells so.
+  bool closed_ball = false;
   CellCache* cache = nullptr;  ///< cells to begin with, and afterwards those of the result
   /// Whether sites are relaxed on a copy of the mesh of unit size, rounded to 2^-26 of that: they are the same to the
   /// bit, as points of faces, for the mesh enlarged, shrunk or moved. The first relaxation on a graph then builds a
@@ -46,23 +51,30 @@ struct CentroidalVoronoiOptions {
   /// than 128 MB, are relaxed as they are.
   bool scale_free = true;
   bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
-  RelaxationWatch* watch = nullptr;    ///< is shown the start and every iteration of the wanted number of sites
-  int threads = 0;                     ///< 0: all cores; the result does not depend on it
-  int cuda_device = -1;                ///< as in GeodesicVoronoiOptions, in every iteration
+  /// Is shown the start and every iteration of the wanted number of sites; after an exchange for `closed_ball` from 0
+  /// on again, and those at which the cells were looked at.
+  RelaxationWatch* watch = nullptr;
+  int threads = 0;       ///< 0: all cores; the result does not depend on it
+  int cuda_device = -1;  ///< as in GeodesicVoronoiOptions, in every iteration
 };
 
 struct CentroidalVoronoi {
   SurfacePoints sites;
   std::vector<Index> held;  ///< (n,) the curve that each site is held on, k_none for free ones; empty: all are free
   GeodesicVoronoi cells;
-  std::vector<double> energy;  ///< of the (annealed) start and after each iteration; never rises
+  /// Of the (annealed) start and after each iteration; never rises. After an exchange of sites those of the relaxation
+  /// that followed, which may end above where the first one did; so `iterations`.
+  std::vector<double> energy;
   int iterations = 0;
   bool converged = false;
-  /// "tolerance", "no step lowers the energy", "least_move", "max_iterations", "cancelled"
+  /// "tolerance", "no step lowers the energy", "least_move", "max_iterations", "cancelled"; "closed_ball" where
+  /// no more steps kept the property
   std::string stop_reason;
   /// Energy without a scale, near 1 for many cells that are nearly regular hexagons: energy n / (2 G M^2) with
   /// G = 5 / (36 sqrt 3) and M the integral of the density. 1 is the least possible in a plane without a border.
   double normalised_energy = 0;
+  Index exchanged = 0;            ///< sites that `closed_ball` moved to where they are needed more
+  std::vector<DualIssue> issues;  ///< with `closed_ball`: where the cells break the closed-ball property all the same
 };
 
 /// A start for `count` cells: sampled by density and seed, at least one site on every component.

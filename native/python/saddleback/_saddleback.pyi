@@ -521,6 +521,10 @@ class CentroidalVoronoi:
     def stop_reason(self) -> str: ...
     @property
     def normalised_energy(self) -> float: ...
+    @property
+    def exchanged(self) -> int: ...
+    @property
+    def issues(self) -> list[DualIssue]: ...
 
 @final
 class RelaxationStep:
@@ -560,6 +564,7 @@ def centroidal_voronoi(
     least_move: SupportsFloat = 0.0,
     cache: CellCache | None = None,
     scale_free: bool = True,
+    closed_ball: bool = False,
     return_when_cancelled: bool = False,
     watch: RelaxationWatch | None = None,
     threads: SupportsIndex = 0,

@@ -231,4 +231,16 @@ std::vector<DualIssue> find_dual_issues(const Mesh& mesh, const GeodesicVoronoi&
   return IssueFinder(mesh, cells).take();
 }
 
+SurfacePoints places_to_mend(const std::vector<DualIssue>& issues, Index cell_count) {
+  std::vector<std::uint8_t> mended(cell_count, 0);
+  SurfacePoints places;
+  for (const DualIssue& issue : issues) {
+    if (mended[issue.cell] || (issue.other != k_none && mended[issue.other])) continue;
+    mended[issue.cell] = 1;
+    if (issue.other != k_none) mended[issue.other] = 1;
+    places.push_back(issue.place);
+  }
+  return places;
+}
+
 }  // namespace saddleback

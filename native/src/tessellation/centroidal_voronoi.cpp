@@ -7,8 +7,10 @@
 #include "saddleback/sample.h"
 
 #include "tessellation/annealing.h"
+#include "tessellation/cell_topology.h"
+#include "tessellation/closed_ball.h"
 #include "tessellation/diagram.h"
-#include "tessellation/relaxation.h"
+#include "tessellation/relaxation_run.h"
 #include "tessellation/stray_cells.h"
 #include "tessellation/unit_relaxation.h"
 
@@ -62,39 +64,6 @@ void shake(Relaxation& relaxation, const CentroidalVoronoiOptions& options, cons
   keep_the_better(stage);
 }
 
-/// Small falls, one after the other, that end a run. A quasi-Newton step may be poor and the next one good.
-int patience(RelaxationMethod method) { return method == RelaxationMethod::lbfgs ? 3 : 1; }
-
-void show(const Relaxation& relaxation, const CentroidalVoronoiOptions& options, const CentroidalVoronoi& result) {
-  if (options.watch) options.watch->show({relaxation.state().sites, result.iterations, relaxation.state().energy});
-}
-
-void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage,
-           CentroidalVoronoi& result) {
-  const double part = 1.0 / std::max(options.max_iterations, 1);
-  int small_falls = 0;
-  while (result.iterations < options.max_iterations) {
-    const JobStage step =
-        stage.part(result.iterations * part, (result.iterations + 1) * part,
-                   message("Relaxing cells, step ", result.iterations + 1, " of ", options.max_iterations));
-    if (!relaxation.advance(step)) {
-      result.converged = true;
-      result.stop_reason = relaxation.is_at_rest() ? "least_move" : "no step lowers the energy";
-      return;
-    }
-    const double energy = relaxation.state().energy, fall = result.energy.back() - energy;
-    result.energy.push_back(energy);
-    ++result.iterations;
-    show(relaxation, options, result);
-    small_falls = fall <= options.tolerance * energy ? small_falls + 1 : 0;
-    if (small_falls < patience(options.method)) continue;
-    result.converged = true;
-    result.stop_reason = "tolerance";
-    return;
-  }
-  result.stop_reason = "max_iterations";
-}
-
 /// Sites on the curves and others, relaxed. Where the cell of a free site reaches across a curve, the site is put onto
 /// it, and all are relaxed again: first a few steps, after which most such cells are known.
 CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, std::uint64_t seed,
@@ -111,6 +80,7 @@ CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, s
     on_curves.max_iterations =
         round == 0 ? std::min(options.max_iterations, k_first_iterations) : options.max_iterations;
     on_curves.held = start.held;
+    on_curves.closed_ball = options.closed_ball && on_curves.max_iterations == options.max_iterations;
     const JobStage part = stage.part(1 - std::pow(0.5, round), 1 - std::pow(0.5, round + 1));
     CentroidalVoronoi result = relax_sites(graph, start.sites, on_curves, part);
     if (result.stop_reason == k_cancelled || options.max_iterations == 0 || round == k_most_rounds) return result;
@@ -135,6 +105,12 @@ CentroidalVoronoi relax_count(const SaddleVertexGraph& graph, Index count, Relax
                      stage.part(k_start, 1), final_cells);
 }
 
+/// Has fewer faults, where those are looked for, or as many and less energy.
+bool is_better(const CentroidalVoronoi& one, const CentroidalVoronoi& other) {
+  if (one.issues.size() != other.issues.size()) return one.issues.size() < other.issues.size();
+  return one.energy.back() < other.energy.back();
+}
+
 /// The best of the starts.
 CentroidalVoronoi relax_starts(const SaddleVertexGraph& graph, Index count, RelaxationStart start, std::uint64_t seed,
                                const CentroidalVoronoiOptions& options, const JobStage& stage, FinalCells final_cells) {
@@ -144,7 +120,8 @@ CentroidalVoronoi relax_starts(const SaddleVertexGraph& graph, Index count, Rela
     CentroidalVoronoi found = relax_count(graph, count, start, seed + static_cast<std::uint64_t>(i), options,
                                           stage.part(i * part, (i + 1) * part), final_cells);
     const bool was_cancelled = found.stop_reason == k_cancelled;
-    if (i == 0 || found.energy.back() < best.energy.back()) best = std::move(found);
+    const bool is_known = !was_cancelled || !options.closed_ball;  // what is wrong with it
+    if (i == 0 || (is_known && is_better(found, best))) best = std::move(found);
     if (!was_cancelled) continue;
     best.stop_reason = k_cancelled;
     break;
@@ -192,10 +169,12 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
   check_sites(graph.mesh(), sites);
   check_options(graph.mesh(), options);
   check_fixed(options, static_cast<Index>(sites.size()));
-  return relax_at_unit_size(
+  CentroidalVoronoi result = relax_at_unit_size(
       graph, sites.size(), options, JobStage(job, "Finding cells"),
       [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
           FinalCells final_cells) { return relax_sites(ground, sites, there, stage, final_cells); });
+  if (options.closed_ball) result.issues = find_dual_issues(graph.mesh(), result.cells);
+  return result;
 }
 
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
@@ -204,30 +183,43 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count
   check_count(graph.mesh(), count);
   check_fixed(options, count);
   if (!options.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
-  return relax_at_unit_size(
+  CentroidalVoronoi result = relax_at_unit_size(
       graph, static_cast<std::size_t>(count), options, JobStage(job, "Finding cells"),
       [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
           FinalCells final_cells) { return relax_starts(ground, count, start, seed, there, stage, final_cells); });
+  if (options.closed_ball) result.issues = find_dual_issues(graph.mesh(), result.cells);
+  return result;
 }
 
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                               const CentroidalVoronoiOptions& options, const JobStage& stage, FinalCells final_cells) {
-  const double part = 1.0 / (options.annealing + options.max_iterations + 1), shaken = (options.annealing + 1) * part;
+  constexpr double k_first = 0.5;  // of the steps, where sites may be exchanged after them
+  const double part = 1.0 / (options.annealing + options.max_iterations + 1), shaken = (options.annealing + 1) * part,
+               relaxed = options.closed_ball ? shaken + k_first * (1 - shaken) : 1;
   Relaxation relaxation(graph, sites, options, stage.part(0, part));
-  CentroidalVoronoi result;
+  RelaxationLog log;
+  Exchange exchange;
   const auto begin = [&] {
-    result.energy.push_back(relaxation.state().energy);
-    show(relaxation, options, result);
+    log = log_of_start(relaxation);
+    show(relaxation, options, log);
   };
   try {
     shake(relaxation, options, stage.part(part, shaken));
     begin();
-    relax(relaxation, options, stage.part(shaken, 1), result);
+    relax(relaxation, options, stage.part(shaken, relaxed), log);
+    if (options.closed_ball) close_balls(relaxation, options, stage.part(relaxed, 1), log, exchange);
   } catch (const Cancelled&) {
     if (!options.return_when_cancelled) throw;
-    if (result.energy.empty()) begin();
-    result.stop_reason = k_cancelled;
+    if (log.energy.empty()) begin();
+    log.stop_reason = k_cancelled;
   }
+  CentroidalVoronoi result;
+  result.exchanged = exchange.moved;
+  result.issues = std::move(exchange.left);
+  result.energy = std::move(log.energy);
+  result.iterations = log.iterations;
+  result.converged = log.converged;
+  result.stop_reason = std::move(log.stop_reason);
   const RelaxationState& best = relaxation.state();
   const JobStage last = options.return_when_cancelled ? JobStage() : stage;
   result.sites = best.sites;

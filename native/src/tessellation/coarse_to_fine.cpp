@@ -91,6 +91,7 @@ SurfacePoints start(const SaddleVertexGraph& graph, Index count, const Centroida
   CentroidalVoronoiOptions rough = options;
   rough.fixed = {};
   rough.annealing = 0;
+  rough.closed_ball = false;
   rough.max_iterations = std::min(options.max_iterations, k_most_coarse_iterations);
   rough.tolerance = std::max(options.tolerance, k_coarse_tolerance);
   rough.return_when_cancelled = false;

@@ -53,19 +53,6 @@ void add_fan(const std::vector<Index>& around, const std::vector<Vec3>& vertices
   }
 }
 
-/// One place for each cell concerned: neighbours' complaints have often one cause.
-SurfacePoints places_to_mend(const std::vector<DualIssue>& issues, Index cell_count) {
-  std::vector<std::uint8_t> mended(cell_count, 0);
-  SurfacePoints places;
-  for (const DualIssue& issue : issues) {
-    if (mended[issue.cell] || (issue.other != k_none && mended[issue.other])) continue;
-    mended[issue.cell] = 1;
-    if (issue.other != k_none) mended[issue.other] = 1;
-    places.push_back(issue.place);
-  }
-  return places;
-}
-
 std::string first_issues(const std::vector<DualIssue>& issues) {
   constexpr std::size_t k_named = 3;
   std::string text;

@@ -12,6 +12,7 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
       options_(options),
       cells_(options.cache, CellCache::Cells::relaxed, graph, options.density, options.threads, options.cuda_device),
       is_fixed_(sites.size(), 0),
+      is_resting_(sites.size(), 0),
       held_(graph.mesh(), options.curves, options.held, sites.size()) {
   for (const Index site : options.fixed) is_fixed_[site] = 1;
   SurfacePoints start = sites;
@@ -30,6 +31,11 @@ RelaxationState Relaxation::evaluate(SurfacePoints sites, std::vector<double> al
   return state;
 }
 
+void Relaxation::rest(std::vector<std::uint8_t> sites) {
+  is_resting_ = std::move(sites);
+  memory_.forget();
+}
+
 const CellClaims& Relaxation::cells(const JobStage& stage) {
   const SurfacePoints& last = cells_->claims().maps().sites();
   const auto same = [](const SurfacePoint& a, const SurfacePoint& b) {
@@ -46,7 +52,7 @@ bool Relaxation::revive_empty_cells(const JobStage& stage) {
   for (Index i = 0; i < static_cast<Index>(state_.moments.size()); ++i) {
     if (state_.moments[i].area > 0)
       rich.push_back(i);
-    else if (!is_fixed_[i] && !held_.is_held(i))
+    else if (is_free(i))
       empty.push_back(i);
   }
   if (empty.empty()) return false;
@@ -85,6 +91,11 @@ bool Relaxation::advance(const JobStage& stage) {
     memory_.forget();
   }
   return advance_by(lloyd_direction(), slope, stage);
+}
+
+bool Relaxation::advance_to_centres(const JobStage& stage) {
+  is_at_rest_ = false;
+  return advance_by(lloyd_direction(), gradient(state_), stage);
 }
 
 /// Takes the first of shorter and shorter steps that lowers the energy by a share of what its slope promises.
@@ -163,7 +174,7 @@ TangentField Relaxation::quasi_newton_direction(const TangentField& slope) const
 /// Leaves of a field what fixed and held sites may do.
 void Relaxation::hold(const RelaxationState& state, TangentField& field) const {
   for (std::size_t i = 0; i < field.size(); ++i) {
-    if (is_fixed_[i]) field[i].setZero();
+    if (is_fixed_[i] || is_resting_[i]) field[i].setZero();
   }
   held_.project(state.along, state.sites, field);
 }

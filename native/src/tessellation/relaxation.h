@@ -25,13 +25,20 @@ class Relaxation {
  public:
   Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& sites, const CentroidalVoronoiOptions& options,
              const JobStage& stage);
+  const Mesh& mesh() const { return graph_.mesh(); }
   const RelaxationState& state() const { return state_; }
+  /// Neither fixed nor held on a curve.
+  bool is_free(Index site) const { return !is_fixed_[site] && !held_.is_held(site); }
+  /// From now on these sites, (n,), stay as the fixed ones do, until others are named.
+  void rest(std::vector<std::uint8_t> sites);
   /// Of the state's sites: found again where others were looked at last. \throw Cancelled.
   const CellClaims& cells(const JobStage& stage);
   /// Whether the last step that was refused would have moved no site by least_move.
   bool is_at_rest() const { return is_at_rest_; }
   /// One step that lowers the energy; false when there is none. \throw Cancelled, the state as it was.
   bool advance(const JobStage& stage);
+  /// The same by a step of Lloyd's, whatever the method is.
+  bool advance_to_centres(const JobStage& stage);
 
   /// To the centre of each cell; none for fixed sites, along their curves for held ones.
   TangentField lloyd_direction() const;
@@ -55,7 +62,7 @@ class Relaxation {
   const SaddleVertexGraph& graph_;
   const CentroidalVoronoiOptions& options_;
   const BorrowedCells cells_;  ///< of the sites that were looked at last
-  std::vector<std::uint8_t> is_fixed_;
+  std::vector<std::uint8_t> is_fixed_, is_resting_;
   const HeldSites held_;
   RelaxationState state_;
   LimitedMemory memory_;
