@@ -25,19 +25,20 @@ class Guess {
       : surface_(surface),
         extent_(extent),
         queue_(common_length(surface.mesh())),
-        arrivals_(surface.vertex_count(),
-                  {std::numeric_limits<double>::infinity(), 0, 0, 0, GuessedArrival::k_at_source, k_none, k_none}) {}
+        arrivals_(surface.vertex_count(), {std::numeric_limits<double>::infinity(), 0, 0, 0,
+                                           GuessedArrival::k_at_source, k_none, k_none, k_none}) {}
 
   void start(const SurfacePoints& sources) {
     for (Index i = 0; i < static_cast<Index>(sources.size()); ++i) {
       const Index vertex = vertex_at(surface_.mesh(), sources[i]);
-      if (vertex != k_none) offer(surface_.vertex_of(vertex), {0, 0, 0, 0, GuessedArrival::k_at_source, k_none, i});
+      if (vertex != k_none)
+        offer(surface_.vertex_of(vertex), {0, 0, 0, 0, GuessedArrival::k_at_source, k_none, i, k_none});
     }
     for (const SourceInFace& place : surface_.sources_in_faces()) {
       for (Index h = 3 * place.face; h < 3 * place.face + 3; ++h) {
         const EdgeFrame& frame = surface_.frame(h);
         const Vec2 to_apex = Vec2(frame.apex_x, frame.apex_y) - surface_.in_frame(h, place.barycentric);
-        offer(frame.apex, {to_apex.norm(), 0, to_apex.x(), to_apex.y(), h, k_none, place.source});
+        offer(frame.apex, {to_apex.norm(), 0, to_apex.x(), to_apex.y(), h, k_none, place.source, k_none});
       }
     }
   }
@@ -85,23 +86,39 @@ class Guess {
 
   void along_edge(Index from, Index to, double length) {
     const GuessedArrival& before = arrivals_[from];
-    const double sigma = surface_.may_bend(from) ? before.distance : before.sigma;
-    offer(to, {before.distance + length, sigma, 0, 0, GuessedArrival::k_along_edge, from, before.source});
+    const bool bends = surface_.may_bend(from) && before.halfedge != GuessedArrival::k_at_source;
+    const double sigma = bends ? before.distance : before.sigma;
+    const Index root = bends ? from : before.root;
+    offer(to, {before.distance + length, sigma, 0, 0, GuessedArrival::k_along_edge, from, before.source, root});
   }
 
-  /// To the apex, from a root that is as far as they say from both ends of the half-edge.
+  /// The last vertex that both ways bend at; k_none where that is the source. Ways from two roots side by side told of
+  /// one that is much too near.
+  Index common_root(Index a, Index b) const {
+    constexpr int k_most_steps = 16;
+    for (int step = 0; step < k_most_steps && a != b; ++step) {
+      const bool goes_on = b == k_none || (a != k_none && arrivals_[a].distance > arrivals_[b].distance);
+      Index& later = goes_on ? a : b;
+      later = arrivals_[later].root;
+    }
+    return a == b ? a : k_none;
+  }
+
+  /// To the apex, from the common root of both ends of the half-edge, which is as far from them as they say.
   void through_face(Index h) {
     const EdgeFrame& frame = surface_.frame(h);
     const GuessedArrival &a = arrivals_[frame.from], &b = arrivals_[frame.to];
     if (a.source != b.source || a.source == k_none) return;
     if (arrivals_[frame.apex].distance <= std::min(a.distance, b.distance)) return;
-    const double sigma = std::min(a.sigma, b.sigma), to_a = a.distance - sigma, to_b = b.distance - sigma;
+    const Index root = common_root(a.root, b.root);
+    const double sigma = root == k_none ? 0 : arrivals_[root].distance;
+    const double to_a = a.distance - sigma, to_b = b.distance - sigma;
     const double x = ((to_a - to_b) * (to_a + to_b) / frame.length + frame.length) / 2;
     const double y = -std::sqrt(std::max(0.0, (to_a - x) * (to_a + x)));
     const double ox = frame.apex_x - x, oy = frame.apex_y - y;
     const double crossing = x - ox * (y / oy);
     if (!(crossing >= 0 && crossing <= frame.length)) return;
-    offer(frame.apex, {sigma + std::sqrt(ox * ox + oy * oy), sigma, ox, oy, h, k_none, a.source});
+    offer(frame.apex, {sigma + std::sqrt(ox * ox + oy * oy), sigma, ox, oy, h, k_none, a.source, root});
   }
 
   const ExactSurface& surface_;

@@ -18,6 +18,7 @@ struct GuessedArrival {
   Index halfedge;   ///< through whose face it comes, to the apex; or one of those above
   Index from;       ///< along an edge: from this vertex
   Index source;
+  Index root;  ///< the vertex that it bent at last, k_none where it is the source
 };
 
 struct GuessExtent {
