@@ -37,6 +37,7 @@ def calls() -> dict[str, Call]:
     many, some = sb.sample(mesh, 2000), sb.sample(mesh, 300, seed=1)
     vertices = np.arange(0, mesh.vertex_count, 4, dtype=np.int32)
     small = sb.Mesh(*meshes.torus(40, 16))
+    torus = sb.Mesh(*meshes.torus(500, 100))
     squeezed = sb.Mesh(mesh.vertices * [1, 1, 0.3], mesh.triangles)
     open_tube = sb.Mesh(*meshes.cylinder(200, 200, 1.0, 3.0))
     finer_inside = sb.Mesh(*graded_disk(80, 100))
@@ -50,7 +51,10 @@ def calls() -> dict[str, Call]:
         "exact_distances_squeezed": lambda job: sb.exact_distances(squeezed, [0], job=job),
         "exact_distances_open": lambda job: sb.exact_distances(open_tube, [0], job=job),
         "exact_distances_graded": lambda job: sb.exact_distances(finest_inside, between, job=job),
+        "exact_distances_torus": lambda job: sb.exact_distances(torus, [0], job=job),
+        "exact_distances_limit": lambda job: sb.exact_distances(mesh, [0], 1.5, job=job),
         "exact_distances_parts": lambda job: sb.exact_distances(balls, [0], job=job),
+        "exact_field": lambda job: sb.ExactField(mesh, [0], job=job),
         "exact_nearest_graded": lambda job: sb.exact_nearest(finest_inside, spread, job=job),
         "exact_nearest": lambda job: sb.exact_nearest(mesh, many, job=job),
         "exact_nearest_few": lambda job: sb.exact_nearest(mesh, some, job=job),
@@ -110,7 +114,10 @@ def furthest_off(call: Call) -> float:
         "exact_distances_squeezed",
         "exact_distances_open",
         "exact_distances_graded",
+        "exact_distances_torus",
+        "exact_distances_limit",
         "exact_distances_parts",
+        "exact_field",
         "exact_nearest_graded",
         "exact_nearest",
         "exact_nearest_few",

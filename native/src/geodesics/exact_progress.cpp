@@ -11,10 +11,12 @@ namespace {
 
 // Microseconds on one machine, of which only ratios matter: a vertex in the surface's layout, in the forecast, when it
 // is reached, and when it bends what reaches it; and a window.
-constexpr double k_cost_of_surface = 0.38, k_cost_of_forecast = 0.64, k_cost_of_vertex = 0.25, k_cost_of_bend = 1.0;
-constexpr double k_cost_of_window = 0.038;
-// Of running with windows that are kept: sorting these moves as much memory.
-constexpr double k_sorting = 0.75, k_keeping = 1.3;  ///< the latter in times of running without keeping
+constexpr double k_cost_of_surface = 0.5, k_cost_of_forecast = 0.64, k_cost_of_vertex = 0.38, k_cost_of_bend = 1.5;
+constexpr double k_cost_of_window = 0.058;
+/// A face whose corners lie far from each other in memory takes so much longer to lay out.
+constexpr double k_cost_of_far_corners = 1.0;
+// Of running with windows that are kept, until sorting was tried.
+constexpr double k_sorting = 0.6, k_keeping = 1.7;  ///< the latter in times of running without keeping
 
 /// Sources that have fewer vertices, in the mean, run no longer than their forecast would.
 constexpr double k_worth_forecast = 1000;
@@ -22,9 +24,9 @@ constexpr double k_worth_forecast = 1000;
 /// Windows a vertex, before they are foretold: about as many as a ray passes vertices of its source, until the surface
 /// bends light so much that they meet others.
 double likely_windows(const Mesh& mesh, double vertices_a_source) {
-  constexpr double k_least = 4, k_growth = 0.6;
+  constexpr double k_least = 4, k_growth = 0.52, k_last = 0.87;
   const double straight = k_least + k_growth * std::sqrt(vertices_a_source);
-  const double bent = edges_until_bent(mesh);
+  const double bent = k_last * edges_until_bent(mesh);
   return straight * bent / std::hypot(straight, bent);
 }
 
@@ -38,6 +40,19 @@ double bending_share(const Mesh& mesh) {
     ++count;
   }
   return bending / count;
+}
+
+/// Share of the faces whose corners are no neighbours in memory, nor in a cache.
+double share_of_far_corners(const Mesh& mesh) {
+  constexpr Index k_samples = 4096, k_far = 1 << 15;
+  const Index stride = std::max<Index>(1, mesh.face_count() / k_samples);
+  double far = 0, count = 0;
+  for (Index face = 0; face < mesh.face_count(); face += stride) {
+    const auto [first, last] = std::minmax_element(mesh.triangles()[face].begin(), mesh.triangles()[face].end());
+    far += *last - *first > k_far;
+    ++count;
+  }
+  return far / count;
 }
 
 /// Among needles vertices are reached long before their windows end.
@@ -74,7 +89,8 @@ Reach reach_of(const ExactWork& work) {
     is_held[components.back()] = true;
   }
   // Disks of those that stand for others hold the others' as well.
-  const double limit = work.limit * work.limit * static_cast<double>(every);
+  constexpr double k_straighter = 0.9;  // lines through space than ways along a common surface
+  const double limit = std::pow(k_straighter * work.limit, 2) * static_cast<double>(every);
   std::vector<double> owned(places.size(), 0.0);
   const Index stride = std::max<Index>(1, mesh.vertex_count() / static_cast<Index>(k_samples));
   Reach reach;
@@ -112,8 +128,10 @@ ExactProgress::ExactProgress(const ExactWork& work, const JobStage& stage) : wor
   const bool goes_far = has_needles(mesh);
   is_foretold_ = reach.a_source >= k_worth_forecast || goes_far;
   const double at_vertices = (k_cost_of_vertex + k_cost_of_bend * bending_share(mesh)) * reach.vertices;
-  const double windows = likely_windows(mesh, goes_far ? reach.vertices : reach.a_source) * reach.vertices;
-  of_surface_ = k_cost_of_surface * reach.held;
+  constexpr double k_until_limit = 0.9;  // of the windows near one many would have gone on
+  const double windows = (reach.vertices < reach.held ? k_until_limit : 1) * reach.vertices *
+                         likely_windows(mesh, goes_far ? reach.vertices : reach.a_source);
+  of_surface_ = k_cost_of_surface * (1 + k_cost_of_far_corners * share_of_far_corners(mesh)) * reach.held;
   of_forecast_ = is_foretold_ ? k_cost_of_forecast * reach.vertices : 0;
   sorting_ = work.sorts_windows ? k_sorting : 0;
   of_running_ = (work.sorts_windows ? k_keeping : 1) * (at_vertices + k_cost_of_window * windows);
@@ -131,7 +149,7 @@ void ExactProgress::foretell(const ExactSurface& surface, double ring_width) {
                                         k_cost_of_bend / k_cost_of_window};
     forecast_ = WindowForecast(surface, work_.sources, extent, stage_.part(laid / all, (laid + ahead) / all));
     of_running_ = (work_.sorts_windows ? k_keeping : 1) * k_cost_of_window * forecast_.total();
-    speed = (clock_.seconds() - laid) / of_forecast_;
+    speed = clock_.seconds() / (of_surface_ + of_forecast_);
   }
   began_ = clock_.seconds();
   expected_ = speed * of_running_;
@@ -145,8 +163,22 @@ void ExactProgress::update(const Done& done) {
   const double belief = is_foretold_ ? 0.05 : 0.25;
   const double share = is_foretold_ ? share_by_rings(done) : share_by_vertices(done), so_far = clock_.seconds();
   const double running = (so_far - began_ + belief * expected_) / (share + belief);
+  if (tried_ > 0)
+    sorting_ = trying_ / static_cast<double>(tried_) * static_cast<double>(done.windows) / (so_far - began_);
   run_ = so_far / (so_far + running * (1 - share) + sorting_ * running);
   stage_.update(run_);
+}
+
+void ExactProgress::kept(std::int64_t windows, std::size_t bytes) {
+  if (tried_ == 0) return;
+  const double needed = static_cast<double>(windows) * static_cast<double>(needed_) / static_cast<double>(tried_);
+  pages_.extend(static_cast<std::size_t>(needed) * bytes);
+}
+
+void ExactProgress::tried_sorting(std::int64_t windows, std::int64_t needed, double seconds) {
+  tried_ += windows;
+  needed_ += needed;
+  trying_ += seconds;
 }
 
 /// About each source windows are the more the farther they are from it. Those of vertices that are reached may be due
@@ -178,6 +210,7 @@ void ExactProgress::end() {
   run_ = so_far / (so_far + sorting_ * running);
   stage_.update(run_);
   forecast_ = {};
+  pages_.release();
 }
 
 }  // namespace saddleback

@@ -6,6 +6,7 @@
 #include "saddleback/job.h"
 
 #include "geodesics/window_forecast.h"
+#include "support/prefaulted_pages.h"
 #include "support/work_clock.h"
 
 namespace saddleback {
@@ -37,6 +38,12 @@ class ExactProgress {
   JobStage laying() const { return stage_.part(0, laid_); }
   /// Of windows in rings of that width about the sources. \throw Cancelled. O(V).
   void foretell(const ExactSurface& surface, double ring_width);
+  bool is_watched() const { return stage_.is_watched(); }
+  /// So many windows are kept so far, each of which will need so many bytes when they are sorted. These are touched as
+  /// windows are kept: on fresh pages that may take as long as the rest of it.
+  void kept(std::int64_t windows, std::size_t bytes);
+  /// Sorting some of the windows was tried: how many of them are needed, and the seconds that it would take.
+  void tried_sorting(std::int64_t windows, std::int64_t needed, double seconds);
   /// \throw Cancelled.
   void update(const Done& done);
   /// All windows are done. \throw Cancelled.
@@ -54,9 +61,12 @@ class ExactProgress {
   double likely_vertices_ = 0;
   double of_surface_ = 0, of_forecast_ = 0, of_running_ = 0;  ///< likely costs
   double sorting_ = 0;                                        ///< in times of running
+  std::int64_t tried_ = 0, needed_ = 0;                       ///< windows that sorting was tried with
+  double trying_ = 0;                                         ///< seconds
   double began_ = 0, expected_ = 0;                           ///< running, in seconds
   double laid_ = 0, run_ = 1;                                 ///< shares of the whole
   WindowForecast forecast_;
+  PrefaultedPages pages_;
   double per_ring_ = 0;
   std::size_t ring_ = 0, before_ring_ = 0;  ///< windows done when this ring began
 };

@@ -20,6 +20,7 @@
 #include <numbers>
 
 #include "geodesics/common_length.h"
+#include "geodesics/exact_windows.h"
 #include "geodesics/window_trim.h"
 
 namespace saddleback {
@@ -119,11 +120,35 @@ void ExactPropagation::drain(WindowBlock* block, ExactProgress& progress) {
     if (options_.keep_windows) {
       queue_->keep(block);
       kept_.push_back(block);
+      if (progress.is_watched()) tell_kept(progress);
     } else {
       queue_->give_back(block);
     }
     block = next;
   }
+}
+
+/// Now and then looks at some windows of long ago as sorting them will; the first of them only bring what is around.
+void ExactPropagation::tell_kept(ExactProgress& progress) const {
+  constexpr std::size_t k_apart = 1 << 14, k_first = 64, k_blocks = 128;
+  progress.kept(window_count_, k_bytes_of_kept_window);
+  if (kept_.size() % k_apart != 0) return;
+  std::int64_t windows = 0, needed = 0;
+  const auto look = [&](auto begin, auto end) {
+    windows = needed = 0;
+    for (auto block = begin; block != end; ++block) {
+      for (const Window& window : std::span((*block)->items, static_cast<std::size_t>((*block)->size))) {
+        if (window.halfedge < 0) continue;
+        ++windows;
+        if (!is_needless(surface_, *this, window)) ++needed;
+      }
+    }
+  };
+  const auto middle = kept_.begin() + static_cast<std::ptrdiff_t>(kept_.size() / 2);
+  look(middle - k_first, middle);
+  const WorkClock clock;
+  look(middle, middle + k_blocks);
+  progress.tried_sorting(windows, needed, clock.seconds() / k_choosing);
 }
 
 void ExactPropagation::start() {

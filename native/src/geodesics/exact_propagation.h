@@ -62,6 +62,7 @@ class ExactPropagation {
   void start_in_face(const SourceInFace& place);
   void fetch(Index halfedge) const;
   void drain(WindowBlock* block, ExactProgress& progress);
+  void tell_kept(ExactProgress& progress) const;
   void offer(Index vertex, double distance, const Arrival& arrival);
   bool owns_before(const Arrival& a, const Arrival& b) const;
   void light(const Window& window);

@@ -47,8 +47,9 @@ SurfacePoints in_each_face(const Mesh& mesh, const SurfacePoint& point) {
 }  // namespace
 
 ExactSurface::ExactSurface(const Mesh& mesh, const SurfacePoints& sources, const JobStage& stage) : mesh_(&mesh) {
-  renumber(sources, stage.part(0, 0.5));
-  lay_out(stage.part(0.5, 1));
+  constexpr double k_renumbered = 0.2;  // of the time
+  renumber(sources, stage.part(0, k_renumbered));
+  lay_out(stage.part(k_renumbered, 1));
   place_sources(sources);
 }
 
@@ -93,11 +94,12 @@ void ExactSurface::renumber(const SurfacePoints& sources, const JobStage& stage)
 
 void ExactSurface::lay_out(const JobStage& stage) {
   const Mesh& mesh = *mesh_;
-  frames_.resize(3 * mesh_face_.size());
+  const auto halfedges = static_cast<Index>(3 * mesh_face_.size());
+  frames_.reserve(halfedges);
   const auto beyond = [&](Index h) { return mesh.twin(h) == k_none ? k_none : halfedge_of(mesh.twin(h)); };
-  for (Index h = 0; h < halfedge_count(); ++h) {
-    if (h % k_check == 0) stage.update(static_cast<double>(h) / halfedge_count());
-    EdgeFrame& frame = frames_[h];
+  for (Index h = 0; h < halfedges; ++h) {
+    if (h % k_check == 0) stage.update(static_cast<double>(h) / halfedges);
+    EdgeFrame& frame = frames_.emplace_back();
     const Index g = mesh_halfedge(h), next = Mesh::next(g), prev = Mesh::prev(g);
     frame.length = mesh.length(g);
     frame.left_length = mesh.length(prev);

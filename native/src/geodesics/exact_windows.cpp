@@ -7,21 +7,33 @@ namespace saddleback {
 namespace {
 
 constexpr double k_slack = 1e-11;  // as in the propagation
-constexpr double k_chosen = 0.62;  // of the time: then the windows that are kept are copied
+
+double root_distance(const ExactSurface& surface, const ExactPropagation& propagation, Index root) {
+  return root < surface.vertex_count() ? propagation.distance(root) : 0.0;
+}
 
 }  // namespace
+
+bool is_needless(const ExactSurface& surface, const ExactPropagation& propagation, const Window& w) {
+  if (w.sigma > root_distance(surface, propagation, w.root)) return true;  // found nearer later on, and lit again
+  const EdgeFrame& frame = surface.frame(w.halfedge);
+  const double at_from = propagation.distance(frame.from) * (1 + k_slack) - w.sigma;
+  const double at_to = propagation.distance(frame.to) * (1 + k_slack) - w.sigma;
+  return at_from + w.b1 < std::hypot(w.sx - w.b1, w.sy) ||
+         at_to + (frame.length - w.b0) < std::hypot(w.sx - w.b0, w.sy);
+}
 
 KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation, const JobStage& stage)
     : surface_(surface), propagation_(propagation), begins_(surface.halfedge_count() + 1, 0) {
   const auto blocks = static_cast<double>(propagation.kept().size());
-  const JobStage choosing = stage.part(0, k_chosen), copying = stage.part(k_chosen, 1);
+  const JobStage choosing = stage.part(0, k_choosing), copying = stage.part(k_choosing, 1);
   double done = 0;
   for (WindowBlock* const block : propagation.kept()) {
     choosing.update(done++ / blocks);
     Index count = 0;
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->items[i];
-      if (window.halfedge < 0 || is_needless(window)) continue;
+      if (window.halfedge < 0 || is_needless(surface, propagation, window)) continue;
       ++begins_[window.halfedge + 1];
       block->items[count++] = window;
     }
@@ -44,25 +56,12 @@ KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& pr
   stage.update(1);
 }
 
-double KeptWindows::root_distance(Index root) const {
-  return root < surface_.vertex_count() ? propagation_.distance(root) : 0.0;
-}
-
-bool KeptWindows::is_needless(const Window& w) const {
-  if (w.sigma > root_distance(w.root)) return true;  // the root was found nearer later on, and lit the same again
-  const EdgeFrame& frame = surface_.frame(w.halfedge);
-  const double at_from = propagation_.distance(frame.from) * (1 + k_slack) - w.sigma;
-  const double at_to = propagation_.distance(frame.to) * (1 + k_slack) - w.sigma;
-  return at_from + w.b1 < std::hypot(w.sx - w.b1, w.sy) ||
-         at_to + (frame.length - w.b0) < std::hypot(w.sx - w.b0, w.sy);
-}
-
 SightLine KeptWindows::way_through(std::int64_t i, Index halfedge, const Vec2& point) const {
   const KeptWindow& w = windows_[i];
   const Vec2 image(w.sx, w.sy), line = point - image;
   const double straight = line.y() > 0 ? w.sx - line.x() * (w.sy / line.y()) : std::clamp(point.x(), w.b0, w.b1);
   const double crossing = std::clamp(straight, w.b0, w.b1);
-  double distance = root_distance(roots_[i]);
+  double distance = root_distance(surface_, propagation_, roots_[i]);
   if (crossing == straight) {
     distance += line.norm();
   } else {  // round the window's end

@@ -15,6 +15,12 @@ struct KeptWindow {
   double sx, sy, b0, b1;
 };
 
+inline constexpr std::size_t k_bytes_of_kept_window = sizeof(KeptWindow) + sizeof(Index);
+inline constexpr double k_choosing = 0.75;  ///< share of the time of sorting: then windows are copied to their places
+
+/// Whether some corner of its edge offers all of a window a shorter way, or its root a longer one than it has by now.
+bool is_needless(const ExactSurface& surface, const ExactPropagation& propagation, const Window& window);
+
 /// A straight line from a root through a half-edge to a point of the face beyond it.
 struct SightLine {
   double distance = std::numeric_limits<double>::infinity();  ///< of the point, the root's included
@@ -40,9 +46,7 @@ class KeptWindows {
   std::size_t nbytes() const;
 
  private:
-  bool is_needless(const Window& window) const;
   SightLine way_through(std::int64_t i, Index halfedge, const Vec2& point) const;
-  double root_distance(Index root) const;
 
   const ExactSurface& surface_;
   const ExactPropagation& propagation_;

@@ -94,6 +94,7 @@ class KeptPages {
  public:
   KeptPages() : most_(find_most()), pages_(std::make_unique<char*[]>(most_)) {}
 
+  std::size_t most() const { return most_ * k_huge; }
   /// Puts pages in the place of the first ones of fresh memory.
   void lay(void* memory, std::size_t size) {
     const std::lock_guard lock(mutex_);
@@ -150,7 +151,11 @@ void free_large(void* memory, std::size_t size) noexcept {
   if (kept_size < had) munmap(static_cast<char*>(memory) + kept_size, had - kept_size);
 }
 
+std::size_t most_kept_large() { return kept_pages().most(); }
+
 #else
+
+std::size_t most_kept_large() { return 0; }
 
 void* allocate_large(std::size_t size) {
   void* const memory = std::malloc(size ? size : 1);
