@@ -51,6 +51,7 @@ SOLVABLE = [
     ("needle", needle(), 60, 0),
     ("needle", needle(), 120, 1),
     ("thin tube", meshes.cylinder(32, 60, 0.2, 3.0), 16, 0),  # closed bisectors, with a border
+    ("sheet with holes", meshes.holes(25), 40, 0),
     ("sheet with holes", meshes.holes(25), 50, 0),
     ("two parts", meshes.two_components(), 30, 0),
     ("two parts", meshes.two_components(), 40, 1),

@@ -240,3 +240,30 @@ def test_sheets_that_almost_touch_stay_apart() -> None:
     inner = (np.minimum(mesh.vertices[:, :2], 1 - mesh.vertices[:, :2]) > 0.3).all(axis=1)
     sheet = cells.sites.positions(mesh)[cells.vertex_cell, 2]
     assert (sheet[inner] * mesh.vertices[inner, 2] > 0).all()
+
+
+def sieve(holes: int = 6, bridge: int = 1) -> meshes.Arrays:
+    """A square full of square holes, with bridges between them that are as narrow as so many faces."""
+    step = 3 + bridge
+    vertices, triangles = meshes.grid(holes * step + bridge + 1, holes * step + bridge + 1)
+    middle = vertices[triangles].mean(axis=1)[:, :2] * (holes * step + bridge)
+    inside = ((middle % step) > bridge).all(axis=1)
+    return meshes.without_unused(vertices, triangles[~inside])
+
+
+def test_bridges_as_narrow_as_a_face_are_parted_by_sites_on_their_borders() -> None:
+    mesh = sb.Mesh(*sieve())
+    assert len(mesh.boundary_loops) == 37
+    cells = relaxed_cells(mesh, 100)
+    on_border = np.zeros(len(mesh.vertices), bool)
+    on_border[np.concatenate(mesh.boundary_loops)] = True
+    meets_twice = [issue for issue in cells.dual("strict").issues if issue.kind == "two_borders"]
+    assert len(meets_twice) > 20
+    for issue in meets_twice:
+        corners = issue.place.barycentric[0] > 0
+        assert on_border[mesh.triangles[issue.place.faces[0]][corners]].all()
+        assert cells.locate(issue.place)[0][0] == issue.cell
+    dual = cells.dual()
+    check_triangulation(mesh, dual)
+    assert dual.added < 400  # 761 where they are far from the sites and settle
+    np.testing.assert_array_equal(dual.vertices[:100], cells.sites.positions(mesh))

@@ -49,9 +49,10 @@ struct DualMesh {
 /// The dual of given cells. O(cells + boundaries).
 DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells);
 
-/// The dual by a policy. Repair puts a site where a violation is worst, lets the new sites find their middles, and
-/// looks again. \throw InputError when violations exist and the policy is to fail, or when no number of sites mends
-/// them (the mesh is too coarse for what lies between the cells: subdivide it); Cancelled.
+/// The dual by a policy. Repair puts a site where a violation is worst, lets the new sites find their middles (those on
+/// the mesh's boundary stay), and looks again. \throw InputError when violations exist and the policy is to fail, or
+/// when no number of sites mends them (the mesh is too coarse for what lies between the cells: subdivide it);
+/// Cancelled.
 DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, DualPolicy policy, int threads = 0,
                    Job* job = nullptr);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "tessellation/border_arcs.h"
+
 namespace saddleback {
 namespace {
 
@@ -115,12 +117,13 @@ class IssueFinder {
       ++arcs[rays[0].left];
       ++arcs[rays[0].right];
     }
+    const std::vector<std::optional<SurfacePoint>> on_border = places_on_borders(mesh_, cells_, stars_);
     for (Index cell = 0; cell < static_cast<Index>(cells_.sites.size()); ++cell) {
       if (cells_.areas[cell] == 0) continue;  // coincides with another site
       if (characteristic[cell] != 1)
-        add(Kind::not_a_disk, cell, k_none, far_[cell]);
+        add(Kind::not_a_disk, cell, k_none, on_border[cell].value_or(far_[cell]));
       else if (arcs[cell] > 2)
-        add(Kind::two_borders, cell, k_none, far_[cell]);
+        add(Kind::two_borders, cell, k_none, on_border[cell].value_or(far_[cell]));
     }
   }
 
@@ -241,6 +244,13 @@ SurfacePoints places_to_mend(const std::vector<DualIssue>& issues, Index cell_co
     places.push_back(issue.place);
   }
   return places;
+}
+
+bool is_on_boundary(const Mesh& mesh, const SurfacePoint& place) {
+  if (const Index vertex = vertex_at(mesh, place); vertex != k_none) return mesh.is_boundary(vertex);
+  for (int side = 0; side < 3; ++side)
+    if (mesh.twin(3 * place.face + side) == k_none && place.barycentric[(side + 2) % 3] == 0) return true;
+  return false;
 }
 
 }  // namespace saddleback

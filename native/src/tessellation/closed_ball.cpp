@@ -66,7 +66,7 @@ void mark_more(const GeodesicVoronoi& cells, const std::vector<DualIssue>& issue
 Exchange exchange(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage) {
   const Mesh& mesh = relaxation.mesh();
   const auto count = static_cast<Index>(relaxation.state().sites.size());
-  std::vector<std::uint8_t> is_moved(count, 0);
+  std::vector<std::uint8_t> is_moved(count, 0), settles(count, 0);
   std::vector<DualIssue> first;
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (int round = 0, vain = 0; round <= k_most_rounds && vain <= k_vain_rounds; ++round) {
@@ -89,9 +89,10 @@ Exchange exchange(Relaxation& relaxation, const CentroidalVoronoiOptions& option
     for (std::size_t i = 0; i < spare.size(); ++i) {
       next.sites[spare[i]] = places[i];
       is_moved[spare[i]] = 1;
+      settles[spare[i]] = is_on_boundary(mesh, places[i]) ? 0 : 1;
     }
     next.restore(relaxation, here.part(0.1, 0.3));
-    relaxation.rest(others_than(is_moved));
+    relaxation.rest(others_than(settles));
     for (int step = 0; step < k_settling_steps && relaxation.advance_to_centres(here.part(0.3, 1)); ++step) {}
   }
   return {0, std::move(first)};

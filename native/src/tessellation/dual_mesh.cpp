@@ -13,7 +13,7 @@ namespace {
 
 // Sites are added in rounds: those that mend one cell may show what is wrong beside it.
 constexpr int k_repair_rounds = 40;
-// New sites find their middles by a few of Lloyd's steps.
+// New sites find their middles by a few of Lloyd's steps, but for those on the mesh's boundary.
 constexpr int k_settling_steps = 3;
 
 /// Twice the distance of the site from a bisector: of two mirror images in the plane of one of its straight bits, the
@@ -73,7 +73,10 @@ DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, 
     if (issues.empty()) break;
     SurfacePoints sites = current.sites;
     const SurfacePoints more = places_to_mend(issues, static_cast<Index>(sites.size()));
-    sites.insert(sites.end(), more.begin(), more.end());
+    for (const SurfacePoint& place : more) {
+      if (is_on_boundary(mesh, place)) fixed.push_back(static_cast<Index>(sites.size()));
+      sites.push_back(place);
+    }
     const JobStage part = stage.part(static_cast<double>(round) / k_repair_rounds, (round + 1.0) / k_repair_rounds);
     CentroidalVoronoiOptions options;
     options.fixed = fixed;
