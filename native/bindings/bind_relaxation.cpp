@@ -260,8 +260,7 @@ the same to the bit. About 1 KB a vertex, and the graph, are kept.)")
       .def_property_readonly(
           "stop_reason", [](const Relaxed& r) { return r.result.stop_reason; },
           "\"tolerance\", \"no step lowers the energy\", \"least_move\", \"max_iterations\" or \"cancelled\"; "
-          "\"closed_ball\" where "
-          "no more steps kept the dual a triangulation.")
+          "\"closed_ball\" where no more steps kept the dual a triangulation.")
       .def_property_readonly(
           "exchanged", [](const Relaxed& r) { return r.result.exchanged; },
           "How many sites `closed_ball` moved to where the dual's topology needs them.")

@@ -383,10 +383,9 @@ def test_annealed_cells_are_more_even_than_relaxed_ones() -> None:
     """At equal numbers of steps, from the same samples: a relaxation ends at the next rest, which luck decides."""
     mesh = sb.Mesh(*meshes.torus(72, 30))
     graph = sb.SaddleVertexGraph(mesh, k=20)
-    seeds = 8  # means of four differ by a tenth from one set of seeds to another
-    irregular, energy = np.empty((2, seeds)), np.empty((2, seeds))
+    irregular, energy = np.empty((2, 4)), np.empty((2, 4))
     for row, (annealing, iterations) in enumerate(((0, 200), (150, 50))):
-        for seed in range(seeds):
+        for seed in range(4):
             relaxed = sb.centroidal_voronoi(
                 graph,
                 count=400,
@@ -402,8 +401,8 @@ def test_annealed_cells_are_more_even_than_relaxed_ones() -> None:
             dual = relaxed.cells.dual("strict")
             irregular[row, seed] = sb.triangle_quality(dual.vertices, dual.triangles).irregular
             energy[row, seed] = relaxed.normalised_energy
-    assert irregular[1].mean() < 0.95 * irregular[0].mean()
-    assert energy[1].mean() - 1 < 0.95 * (energy[0].mean() - 1)  # 1 is the hexagons'
+    assert irregular[1].mean() < 0.85 * irregular[0].mean()
+    assert energy[1].mean() < energy[0].mean() - 0.001
     assert energy[1].mean() < 1.009 < energy[0].mean()
 
 

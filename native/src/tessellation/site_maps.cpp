@@ -100,7 +100,7 @@ void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reac
                          const JobStage& stage) {
   // Sites are asked for so much more than they reach, that they may reach farther; beside cells that stay they may soon
   // reach much farther.
-  constexpr double k_growth = 1.04, k_growth_of_few = 1.6;
+  constexpr double k_growth = 1.1, k_growth_of_few = 1.6;
   std::vector<Index> at_vertices;
   SurfacePoints points;
   std::vector<double> limits;
