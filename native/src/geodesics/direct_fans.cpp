@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "saddleback/saddle_vertex_graph.h"
 
@@ -209,11 +210,10 @@ FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> p
 
 namespace {
 
-/// Calls find(finder, points, limits, rows) for stretches of points and use(i, row) for each of them.
+/// Calls find(finder, points, limits, rows) for stretches of points in that order and use(i, row) for each of them.
 template <class Arc, class Find, class Use>
-void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
-                  int threads, const JobStage& stage, Find&& find, Use&& use) {
-  const std::vector<Index> order = inside_in_order(graph, points);
+void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const Index> order,
+                  std::span<const double> limits, int threads, const JobStage& stage, Find&& find, Use&& use) {
   if (order.empty()) return;
   const auto count = static_cast<Index>(order.size()), blocks = (count + k_chunk - 1) / k_chunk;
   const double of_mesh = graph.is_exact() ? 0 : fans_a_fan_mesh_costs(graph);
@@ -253,7 +253,7 @@ void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
 void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                   FanAngles angles, int threads, const JobStage& stage, const UseFan& use) {
   for_each_row<DirectArc>(
-      graph, points, limits, threads, stage,
+      graph, points, inside_in_order(graph, points), limits, threads, stage,
       [&](DirectFanFinder& finder, const auto& own, const auto& own_limits, DirectFans& fans) {
         finder.find(graph, own, own_limits, angles, fans, stage);
       },
@@ -262,8 +262,10 @@ void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
 
 void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                    int threads, const JobStage& stage, const UseSeen& use) {
+  std::vector<Index> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
   for_each_row<SeenNode>(
-      graph, points, limits, threads, stage,
+      graph, points, order, limits, threads, stage,
       [&](DirectFanFinder& finder, const auto& own, const auto& own_limits, FanViews& views) {
         finder.find(graph, own, own_limits, views, stage);
       },

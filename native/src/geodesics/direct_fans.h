@@ -106,7 +106,8 @@ using UseFan = std::function<void(Index, std::span<const DirectArc>)>;
 void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                   FanAngles angles, int threads, const JobStage& stage, const UseFan& use);
 
-/// The same for what points see, in no particular order, but arcs first.
+/// The same for what points see, in no particular order, but arcs first. No point is a vertex, and those that lie
+/// together on the surface best come together.
 using UseSeen = std::function<void(Index, std::span<const SeenNode>)>;
 void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                    int threads, const JobStage& stage, const UseSeen& use);

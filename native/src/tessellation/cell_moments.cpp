@@ -90,11 +90,15 @@ struct Cut {
   Vec3 right_end() const { return (1 - on_right) * Vec3::Unit(lone) + on_right * Vec3::Unit(right); }
 };
 
+/// Bit i: whether the number is above 0.
+unsigned positive(const Vec3& v) {
+  return static_cast<unsigned>(v[0] > 0) | static_cast<unsigned>(v[1] > 0) << 1 | static_cast<unsigned>(v[2] > 0) << 2;
+}
+
 /// `lead`: above 0 where the second of two claims is nearer; not so at all corners, nor at none.
 Cut cut_where_zero(const Vec3& lead) {
-  int lone = 0;
-  while ((lead[lone] > 0) == (lead[(lone + 1) % 3] > 0) || (lead[lone] > 0) == (lead[(lone + 2) % 3] > 0)) ++lone;
-  const int left = (lone + 1) % 3, right = (lone + 2) % 3;
+  constexpr std::array<std::int8_t, 8> k_lone{-1, 0, 1, 2, 2, 1, 0, -1};  // which corner it is cannot be foretold
+  const int lone = k_lone[positive(lead)], left = (lone + 1) % 3, right = (lone + 2) % 3;
   return {lone, left, right, lead[lone] / (lead[lone] - lead[left]), lead[lone] / (lead[lone] - lead[right])};
 }
 
@@ -138,7 +142,9 @@ class SharedFace {
     double lead;
   };
   template <class Add>
-  void cut_in_two(const FaceShape& shape, std::span<const CellClaim> claims, Add&& add);
+  static void integrate_two(const FaceShape& shape, const CellClaim& a, const CellClaim& b, Add&& add);
+  template <class Add>
+  static void cut_in_two(const ClaimedFace& first, const ClaimedFace& second, Add&& add);
   bool is_beaten(std::span<const CellClaim> claims, std::size_t claim) const;
   CellMoments part_of(const FaceShape& shape, std::span<const CellClaim> claims, Index rival);
   void clip(const Vec3& lead);
@@ -178,6 +184,7 @@ CellMoments& operator-=(CellMoments& sum, const CellMoments& part) {
 
 template <class Add>
 void SharedFace::integrate(const FaceShape& shape, std::span<const CellClaim> claims, Add&& add) {
+  if (claims.size() == 2) return integrate_two(shape, claims[0], claims[1], add);
   squared_distances_.clear();
   for (const CellClaim& claim : claims) squared_distances_.push_back(squared_distances(claim));
   rivals_.clear();
@@ -188,18 +195,30 @@ void SharedFace::integrate(const FaceShape& shape, std::span<const CellClaim> cl
     add_whole({shape, claims[rivals_.front()], squared_distances_[rivals_.front()]}, all);
     add(claims[rivals_.front()].site, all);
   } else if (rivals_.size() == 2) {
-    cut_in_two(shape, claims, add);
+    const Index a = rivals_[0], b = rivals_[1];
+    cut_in_two({shape, claims[a], squared_distances_[a]}, {shape, claims[b], squared_distances_[b]}, add);
   } else {
     for (const Index rival : rivals_) add(claims[rival].site, part_of(shape, claims, rival));
   }
 }
 
+/// Most faces have two claims, by site: of ties the first has all.
+template <class Add>
+void SharedFace::integrate_two(const FaceShape& shape, const CellClaim& a, const CellClaim& b, Add&& add) {
+  const Vec3 of_a = squared_distances(a), of_b = squared_distances(b);
+  const bool has_a = positive(of_b - of_a) != 0, has_b = positive(of_a - of_b) != 0;
+  const ClaimedFace first{shape, a, of_a}, second{shape, b, of_b};
+  if (has_a && has_b) return cut_in_two(first, second, add);
+  CellMoments all;
+  add_whole(has_b ? second : first, all);
+  add(has_b ? b.site : a.site, all);
+}
+
 /// One straight cut: a corner on one side of it, two on the other.
 template <class Add>
-void SharedFace::cut_in_two(const FaceShape& shape, std::span<const CellClaim> claims, Add&& add) {
+void SharedFace::cut_in_two(const ClaimedFace& first, const ClaimedFace& second, Add&& add) {
   constexpr double k_most_of_it = 0.9;  // what is left is too little to be told from a difference
-  const Index a = rivals_[0], b = rivals_[1];
-  const ClaimedFace first{shape, claims[a], squared_distances_[a]}, second{shape, claims[b], squared_distances_[b]};
+  const FaceShape& shape = first.shape;
   const Vec3 lead = first.squared_distance - second.squared_distance;
   const Cut cut = cut_where_zero(lead);
   const bool second_is_lone = lead[cut.lone] > 0;

@@ -1,6 +1,7 @@
 // Method: labels by shortest paths in the graph, from the vertices that sites see.
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "geodesics/parted_search.h"
@@ -145,12 +146,17 @@ void SiteMaps::group_nodes(int threads) {
   in_stretches([&](Index node, Index& cursor) { nodes_[cursor++] = node; });
 }
 
+/// The order of the last time has what is next to each other now nearly in order already.
 void SiteMaps::order_sites() {
+  if (order_.size() != sites_.size()) {
+    order_.resize(sites_.size());
+    std::iota(order_.begin(), order_.end(), 0);
+  }
   std::vector<std::pair<Index, Index>> keys;
-  for (Index site = 0; site < site_count(); ++site) keys.emplace_back(rings_.face_of(sites_[site].face), site);
+  keys.reserve(order_.size());
+  for (const Index site : order_) keys.emplace_back(rings_.face_of(sites_[site].face), site);
   std::ranges::sort(keys);
-  order_.clear();
-  for (const auto& [face, site] : keys) order_.push_back(site);
+  std::ranges::transform(keys, order_.begin(), &std::pair<Index, Index>::second);
 }
 
 }  // namespace saddleback

@@ -77,45 +77,49 @@ void SiteMaps::label_nodes(const SurfacePoints& sites, std::span<const double> r
   keeps_any_ = others && 2 * others->size() <= sites.size();  // else labels are found as soon from the start
   sites_ = sites;
   order_sites();
-  std::vector<Index> anew;
-  if (keeps_any_) {
-    anew = *others;
-  } else {
-    anew.resize(sites.size());
-    std::iota(anew.begin(), anew.end(), 0);
+  if (!keeps_any_) {
     fans_.resize(sites.size());
     limits_.resize(sites.size());
   }
   is_kept_.assign(sites.size(), keeps_any_);
-  for (const Index site : anew) is_kept_[site] = 0;
-  make_fans(anew, reaches, threads, stage.part(0, 0.5));
+  if (keeps_any_)
+    for (const Index site : *others) is_kept_[site] = 0;
+  make_fans(reaches, threads, stage.part(0, 0.5));
   if (keeps_any_) {
-    label_again(anew, stage.part(0.5, 1));
+    label_again(*others, stage.part(0.5, 1));
   } else {
     label_all(threads, stage.part(0.5, 1));
   }
 }
 
-void SiteMaps::make_fans(std::span<const Index> of, std::span<const double> reaches, int threads,
-                         const JobStage& stage) {
+/// Of the sites that are not kept.
+void SiteMaps::make_fans(std::span<const double> reaches, int threads, const JobStage& stage) {
   // Sites are asked for so much more than they reach, that they may reach farther; beside cells that stay they may soon
   // reach much farther.
   constexpr double k_growth = 1.1, k_growth_of_few = 1.6;
-  std::vector<Index> at_vertices;
-  SurfacePoints points;
-  std::vector<double> limits;
-  for (const Index site : of) {
+  parallel_for(site_count(), threads, 256, [&](Index i, int) {
+    const Index site = order_[i];
+    if (is_kept(site)) return;
     const Index vertex = vertex_at(mesh_, sites_[site]);
     fans_[site].centre = vertex == k_none ? k_none : graph_.node_of(vertex);
     fans_[site].corners = rings_.face(rings_.face_of(sites_[site].face)).nodes;
     limits_[site] = reaches.empty() ? k_infinity : (keeps_any_ ? k_growth_of_few : k_growth) * reaches[site];
-    if (vertex != k_none) at_vertices.push_back(site);
+  });
+  std::vector<Index> at_vertices, inside;
+  SurfacePoints points;
+  std::vector<double> limits;
+  for (const Index site : order_) {
+    if (is_kept(site)) continue;
+    if (fans_[site].centre != k_none) {
+      at_vertices.push_back(site);
+      continue;
+    }
+    inside.push_back(site);
     points.push_back(sites_[site]);
-    limits.push_back(limits_[site]);
+    if (!reaches.empty()) limits.push_back(limits_[site]);
   }
-  if (reaches.empty()) limits.clear();
   for_each_view(graph_, points, limits, threads, stage, [&](Index i, std::span<const SeenNode> view) {
-    Fan& fan = fans_[of[i]];
+    Fan& fan = fans_[inside[i]];
     fan.resize(view.size());
     for (std::size_t k = 0; k < view.size(); ++k) fan.set(k, view[k], graph_.arcs().codec().round(view[k].length));
     fan.set_arcs(std::ranges::partition_point(view, &SeenNode::is_arc) - view.begin());

@@ -165,7 +165,7 @@ class SiteMaps {
   void label_all(int threads, const JobStage& stage);
   FlatSeeds flat_seeds(int threads) const;
   void label_again(std::span<const Index> moved, const JobStage& stage);
-  void make_fans(std::span<const Index> of, std::span<const double> reaches, int threads, const JobStage& stage);
+  void make_fans(std::span<const double> reaches, int threads, const JobStage& stage);
   void make_fan_at_vertex(Fan& fan);
   void group_nodes(int threads);
   void group_again(std::span<const Index> moving);
