@@ -59,20 +59,21 @@ Index node_of(const SaddleVertexGraph&, const NodeSeed& seed) { return seed.node
 }  // namespace
 
 void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
-                      SearchLabels labels, const JobStage& stage) {
-  run_from(graph, seeds, options, labels, stage);
+                      SearchLabels labels, const JobStage& stage, double reached) {
+  run_from(graph, seeds, options, labels, stage, reached);
 }
 
 void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const QueryOptions& options,
                       SearchLabels labels, const JobStage& stage) {
-  run_from(graph, seeds, options, labels, stage);
+  run_from(graph, seeds, options, labels, stage, 1);
 }
 
 template <class AnySeed>
 void GraphSearch::run_from(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const QueryOptions& options,
-                           SearchLabels labels, const JobStage& stage) {
+                           SearchLabels labels, const JobStage& stage, double reached) {
   bound_ = std::nextafter(options.limit, k_infinity);
   clear(graph, labels);
+  likely_ = reached * graph.arcs().node_count();
   if (options.method == QueryMethod::dijkstra) {
     // With the portable loop over a row: together the search that the fast one is checked against.
     Heap heap;
@@ -90,6 +91,7 @@ void GraphSearch::clear(const SaddleVertexGraph& graph, SearchLabels labels) {
   predecessors_.assign(labels == SearchLabels::sources_and_predecessors ? count : 0, k_none);
   first_ = 0;
   last_ = static_cast<Index>(count);
+  likely_ = std::max(1.0, static_cast<double>(count));
   goes_on_ = false;
 }
 
@@ -157,7 +159,7 @@ void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGrap
     arcs_to_check -= end - offsets[entry.node];
     if (arcs_to_check < 0) {
       arcs_to_check = k_arcs_a_check;
-      stage.update(static_cast<double>(expanded) / static_cast<double>(distances_.size()));
+      stage.update(static_cast<double>(expanded) / likely_);
     }
     if (with_sources) offer.label = sources_[entry.node];
     for (std::int64_t first = offsets[entry.node]; first < end; first += LoweredNodes::k_most) {

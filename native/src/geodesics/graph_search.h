@@ -33,9 +33,10 @@ enum class SearchLabels { none, sources, sources_and_predecessors };
 /// run; one a thread and graph.
 class GraphSearch {
  public:
-  /// \throw Cancelled. O(arcs) with buckets, O(arcs + V log V) with Dijkstra's heap.
+  /// `reached`: share of the nodes, about, within the limit; for those who watch. \throw Cancelled. O(arcs) with
+  /// buckets, O(arcs + V log V) with Dijkstra's heap.
   void run(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
-           SearchLabels labels, const JobStage& stage);
+           SearchLabels labels, const JobStage& stage, double reached = 1);
   void run(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const QueryOptions& options,
            SearchLabels labels, const JobStage& stage);
 
@@ -62,7 +63,7 @@ class GraphSearch {
  private:
   template <class AnySeed>
   void run_from(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const QueryOptions& options,
-                SearchLabels labels, const JobStage& stage);
+                SearchLabels labels, const JobStage& stage, double reached);
   void clear(const SaddleVertexGraph& graph, SearchLabels labels);
   template <class AnySeed>
   void propagate_in_buckets(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const JobStage& stage);
@@ -74,7 +75,8 @@ class GraphSearch {
   double bound_ = 0;  ///< what unreached nodes hold: the first number that is beyond the limit
   std::vector<double> distances_;
   std::vector<Index> sources_, predecessors_;
-  Index first_ = 0, last_ = 0;  ///< the nodes that are expanded
+  Index first_ = 0, last_ = 0;  ///< the nodes that may be expanded
+  double likely_ = 1;           ///< how many will be
   bool goes_on_ = false;        ///< nodes have been expanded at distances that may still fall
   std::vector<Index> crossed_;
   BucketQueue buckets_;

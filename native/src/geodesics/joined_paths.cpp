@@ -6,15 +6,18 @@
 namespace saddleback {
 namespace {
 
-/// Room for as many items as there will be, about: a list that grows little by little is copied again and again.
+/// Room for as many items as there will be, about, and early: a list that turns out too short near the end is copied
+/// whole, which takes as long as much of the work.
 template <class T>
 void make_room(std::vector<T>& items, std::size_t more, double share) {
-  constexpr double k_margin = 1.1, k_growth = 1.5;
+  constexpr double k_margin = 1.2, k_doubt = 1.05, k_early = 0.5, k_growth = 1.5;
   const std::size_t wanted = items.size() + more;
-  if (wanted <= items.capacity()) return;
-  const double likely = k_margin * static_cast<double>(wanted) / std::min(1.0, share);
-  items.reserve(std::max({wanted, static_cast<std::size_t>(likely),
-                          static_cast<std::size_t>(k_growth * static_cast<double>(items.capacity()))}));
+  const double likely = static_cast<double>(wanted) / std::min(1.0, share);
+  const auto capacity = static_cast<double>(items.capacity());
+  const bool has_room = wanted <= items.capacity();
+  if (has_room && (share > k_early || k_doubt * likely <= capacity)) return;
+  const double room = std::max(k_margin * likely, has_room ? 0 : k_growth * capacity);
+  items.reserve(std::max(wanted, static_cast<std::size_t>(room)));
 }
 
 template <class T>

@@ -5,10 +5,10 @@
 namespace saddleback {
 
 LabelField propagate_labels(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
-                            bool with_predecessors, const JobStage& stage) {
+                            bool with_predecessors, const JobStage& stage, double reached) {
   const auto search = graph.query_cache().field_searches.lease();
   const SearchLabels labels = with_predecessors ? SearchLabels::sources_and_predecessors : SearchLabels::sources;
-  search->run(graph, seeds, options, labels, stage);
+  search->run(graph, seeds, options, labels, stage, reached);
   const Index count = graph.mesh().vertex_count();
   LabelField field;
   field.distance.resize(count);

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <mutex>
 
-#include "geodesics/distance_progress.h"
 #include "geodesics/planar.h"
 #include "geodesics/query_cache.h"
 #include "support/parallel.h"
@@ -17,7 +16,7 @@ namespace {
 // strip leaves the mean error as it is.
 constexpr double k_edges_an_arc = 0.15;
 // Nodes that a search expands while a fan is found: of a point by waves and one by one, of a curve.
-constexpr double k_cost_of_point = 28, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 24;
+constexpr double k_cost_of_point = 28, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 30;
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
@@ -28,6 +27,18 @@ double share_of_new_faces(const SurfaceCurve& curve) {
   std::ranges::sort(faces);
   const auto repeated = std::ranges::unique(faces);
   return 1 - static_cast<double>(std::ssize(repeated)) / std::max(1.0, static_cast<double>(faces.size()));
+}
+
+/// The longest edge of the faces that a curve passes, in the mean over its length: rays are measured by it.
+double longest_edge_beside(const SurfaceCurve& curve) {
+  double sum = 0, length = 0;
+  for (const CurveSegment& segment : curve.segments()) {
+    const Index h = 3 * segment.face;
+    const Mesh& mesh = curve.mesh();
+    sum += segment.length * std::max({mesh.length(h), mesh.length(h + 1), mesh.length(h + 2)});
+    length += segment.length;
+  }
+  return length > 0 ? sum / length : curve.mesh().mean_edge_length();
 }
 
 /// The corners of the faces that a curve passes, by the straight line inside the face.
@@ -56,13 +67,10 @@ PointFan CurveFanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve
                               const JobStage& stage) {
   if (!curve_windows_) curve_windows_ = std::make_unique<CurveWindows>(graph.unfolding());
   const RayLimits limits{.radius = options.limit, .edges = strip_width(graph)};
-  SurfacePoints along;
-  if (stage.is_watched())
-    for (const CurveSegment& segment : curve.segments()) along.push_back({segment.face, segment.begin});
-  const double width = std::min(options.limit, strip_width(graph) * graph.mesh().mean_edge_length());
-  DistanceProgress progress(graph.mesh(), along, {.limit = width}, stage);
+  // As many windows at any distance: the strip is narrow.
+  const double width = std::min(options.limit, strip_width(graph) * longest_edge_beside(curve));
   curve_windows_->from_curve(curve, limits, feet_, stage.part(0, 0), options.places,
-                             [&](double distance, Index) { progress.reached(distance); });
+                             [&](double distance, Index) { stage.update(distance / width); });
   PointFan fan;
   add_corners(curve, fan.arcs);
   for (const CurveFoot& foot : feet_) fan.arcs.push_back({foot.vertex, foot.distance});

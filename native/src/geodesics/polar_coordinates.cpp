@@ -64,8 +64,9 @@ PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const Surface
   std::vector<CurveFoot> feet;
   SurfacePoints places;
   for (const CurveSegment& segment : curve.segments()) places.push_back({segment.face, segment.begin});
-  constexpr double k_of_a_line = 0.5;  // beside a curve there are as many windows from the start on
-  const double until_bent = k_of_a_line * edges_until_bent(graph.mesh());
+  // Beside a curve there are as many windows from the start on, on smooth surfaces more and more.
+  constexpr double k_of_a_line = 0.05, k_power = 1.5;
+  const double until_bent = k_of_a_line * std::pow(edges_until_bent(graph.mesh()), k_power);
   DistanceProgress progress(graph.mesh(), places, {.limit = radius, .until_bent = until_bent}, stage);
   windows.from_curve(curve, {.radius = radius}, feet, stage, nullptr,
                      [&](double distance, Index) { progress.reached(distance); });
