@@ -5,6 +5,7 @@
 
 #include "saddleback/saddle_vertex_graph.h"
 
+#include "geodesics/needles.h"
 #include "support/parallel.h"
 
 namespace saddleback {
@@ -34,8 +35,9 @@ double unevenness(const Mesh& mesh, double growth) {
 }  // namespace
 
 double BuildProgress::by_accuracy(const Mesh& mesh, double accuracy) {
-  constexpr double k_growth = 2.5;  // for the accuracies in use
-  return 10 * std::pow(SaddleVertexGraphOptions::k_default_accuracy / accuracy, 0.6) * unevenness(mesh, k_growth);
+  constexpr double k_growth = 2.5, k_needles = 10;  // for the accuracies in use
+  return (has_needles(mesh) ? k_needles : 1) * 10 *
+         std::pow(SaddleVertexGraphOptions::k_default_accuracy / accuracy, 0.6) * unevenness(mesh, k_growth);
 }
 
 double BuildProgress::by_count(const Mesh& mesh, Index k) {

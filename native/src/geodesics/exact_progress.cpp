@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geodesics/angle_defect.h"
+#include "geodesics/needles.h"
 
 namespace saddleback {
 namespace {
@@ -53,20 +54,6 @@ double share_of_far_corners(const Mesh& mesh) {
     ++count;
   }
   return far / count;
-}
-
-/// Among needles vertices are reached long before their windows end.
-bool has_needles(const Mesh& mesh) {
-  constexpr Index k_samples = 4096;
-  constexpr double k_long = 20, k_share = 0.1;
-  const Index stride = std::max<Index>(1, mesh.face_count() / k_samples);
-  double needles = 0, count = 0;
-  for (Index face = 0; face < mesh.face_count(); face += stride) {
-    const double longest = std::max({mesh.length(3 * face), mesh.length(3 * face + 1), mesh.length(3 * face + 2)});
-    needles += longest * longest > 2 * k_long * mesh.face_area(face);
-    ++count;
-  }
-  return needles > k_share * count;
 }
 
 /// The vertices that sources reach, and how many of them the source of one has, in the mean over them all.
@@ -125,7 +112,7 @@ ExactProgress::ExactProgress(const ExactWork& work, const JobStage& stage) : wor
   const Mesh& mesh = work.mesh;
   const Reach reach = reach_of(work);
   likely_vertices_ = reach.vertices;
-  const bool goes_far = has_needles(mesh);
+  const bool goes_far = has_needles(mesh);  // vertices are reached long before their windows end
   is_foretold_ = reach.a_source >= k_worth_forecast || goes_far;
   const double at_vertices = (k_cost_of_vertex + k_cost_of_bend * bending_share(mesh)) * reach.vertices;
   constexpr double k_until_limit = 0.9;  // of the windows near one many would have gone on

@@ -42,7 +42,8 @@ struct PathField {
 PathField make_field(const SaddleVertexGraph& graph, const SurfacePoints& sources, double limit, int threads,
                      const JobStage& stage) {
   PathField field{sources, {}, {}, {}};
-  const double cost = cost_of_fans(graph, sources), share = cost / (cost + graph.mesh().vertex_count());
+  const double cost = cost_of_fans(graph, sources),
+               share = PathProgress::k_with_angles * cost / PathProgress::cost_of_field(graph, cost);
   field.fans = direct_fans(graph, sources, threads, stage.part(0, share));
   for (std::size_t i = 0; i < sources.size(); ++i)
     field.point_fans.push_back(point_fan(graph, sources[i], field.fans[i]));

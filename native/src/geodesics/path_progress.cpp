@@ -28,7 +28,7 @@ double likely_edges(const Mesh& mesh, const SurfacePoints& sources) {
 PathProgress::PathProgress(const SaddleVertexGraph& graph, const Work& work, const JobStage& stage)
     : graph_(graph), work_(work), stage_(stage), threads_(thread_count(work.options.threads)) {
   const double of_source_fans = cost_of_fans(graph, work.sources);
-  const double of_field = graph.mesh().vertex_count() + of_source_fans;
+  const double of_field = cost_of_field(graph, of_source_fans);
   const double of_fans = cost_of_fans(graph, work.targets, FirstFans::later);
   const double of_fan_mesh = of_source_fans > 0 ? 0 : cost_of_fans(graph, work.targets) - of_fans;
   const double edges = likely_edges(graph.mesh(), work.sources);
@@ -40,6 +40,11 @@ PathProgress::PathProgress(const SaddleVertexGraph& graph, const Work& work, con
   const double all = before_ + (inside * cost_inside(edges) + count * cost_of_path(edges)) / threads_;
   with_field_ = of_field / all;
   prepared_ = before_ / all;
+}
+
+double PathProgress::cost_of_field(const SaddleVertexGraph& graph, double of_fans) {
+  constexpr double k_seeds = 0.4;  // each arc of the fans is one
+  return (k_with_angles + k_seeds) * of_fans + graph.mesh().vertex_count();
 }
 
 /// The first arcs take a search among many, the edges that are crossed farther on little; shortened each is laid out

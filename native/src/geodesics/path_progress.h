@@ -22,6 +22,9 @@ class PathProgress {
   };
   PathProgress(const SaddleVertexGraph& graph, const Work& work, const JobStage& stage);
 
+  /// The fans of sources cost so many times those without angles, that much together with the field from them.
+  static constexpr double k_with_angles = 1.2;
+  static double cost_of_field(const SaddleVertexGraph& graph, double of_fans);
   /// Of the fans of sources and the field, and then of what fans of targets need.
   JobStage field() const { return stage_.part(0, with_field_); }
   JobStage fan_mesh() const { return stage_.part(with_field_, prepared_); }

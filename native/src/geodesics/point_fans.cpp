@@ -4,6 +4,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "geodesics/needles.h"
 #include "geodesics/planar.h"
 #include "geodesics/query_cache.h"
 #include "support/parallel.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr double k_edges_an_arc = 0.15;
 // Nodes that a search expands while a fan is found: of a point by waves and one by one, of a curve.
 constexpr double k_cost_of_point = 28, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 30;
+// Among needles each has so many more windows.
+constexpr double k_of_needles = 6;
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
@@ -138,7 +141,8 @@ double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points,
       points, [&](const SurfacePoint& point) { return vertex_at(graph.mesh(), point) == k_none; });
   if (graph.is_exact()) return k_cost_of_exact_point * static_cast<double>(inside);
   const double of_mesh = inside > 0 && first == FirstFans::maybe ? fans_a_fan_mesh_costs(graph) : 0;
-  return k_cost_of_point * (static_cast<double>(inside) + of_mesh);
+  const double of_point = inside > 0 && has_needles(graph.mesh()) ? k_of_needles * k_cost_of_point : k_cost_of_point;
+  return of_point * (static_cast<double>(inside) + of_mesh);
 }
 
 double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources) {
@@ -146,7 +150,8 @@ double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources)
   for (const SurfaceCurve* const curve : sources.curves) {
     const double length = share_of_new_faces(*curve) * curve->length();
     const double strip = 2 * strip_width(graph) * length / graph.mesh().mean_edge_length();
-    cost += k_cost_of_strip_vertex * std::min(strip, static_cast<double>(graph.mesh().vertex_count()));
+    cost += (has_needles(graph.mesh()) ? k_of_needles : 1) * k_cost_of_strip_vertex *
+            std::min(strip, static_cast<double>(graph.mesh().vertex_count()));
   }
   return cost;
 }

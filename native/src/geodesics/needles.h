@@ -1,0 +1,11 @@
+#pragma once
+// Meshes with many long and thin faces, on which all that goes by windows takes longer than its vertices tell.
+
+#include "saddleback/mesh.h"
+
+namespace saddleback {
+
+/// Whether a tenth of some thousand faces are twenty times as long as high, or more. O(1).
+bool has_needles(const Mesh& mesh);
+
+}  // namespace saddleback
