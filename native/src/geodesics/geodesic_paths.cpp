@@ -261,7 +261,11 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   std::vector<std::unique_ptr<PathMaker>> makers(parts.size());
   std::vector<DirectFans> fans(parts.size());
   FanTeam team(graph, targets, options.threads, progress.fan_mesh());
-  const NearbySources nearby(graph, sources, field.point_fans);
+  const bool any_inside = std::ranges::any_of(
+      targets, [&](const SurfacePoint& target) { return vertex_at(graph.mesh(), target) == k_none; });
+  const SurfacePoints no_sources;  // vertices are reached by the field alone
+  const NearbySources nearby(graph, any_inside ? sources : no_sources,
+                             any_inside ? std::span<const PointFan>(field.point_fans) : std::span<const PointFan>());
   progress.begin_paths(field.labels);
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);

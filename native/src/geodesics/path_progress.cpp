@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "geodesics/needles.h"
 #include "geodesics/point_fans.h"
 #include "support/parallel.h"
 
@@ -15,8 +16,9 @@ namespace {
 // From a single one it is farther, as far as the surface is long.
 constexpr double k_in_disk = 0.35, k_from_one = 0.9;
 
-// A point inside a face is looked at from the sources near it, if these are nearer than so many edges.
-constexpr double k_look = 90, k_in_sight = 20;
+// A point inside a face is looked at from the sources near it, if these are nearer than so many edges; among needles
+// for so many times longer.
+constexpr double k_look = 90, k_in_sight = 20, k_of_needles = 6;
 
 double likely_edges(const Mesh& mesh, const SurfacePoints& sources) {
   const auto count = static_cast<double>(sources.size());
@@ -26,7 +28,11 @@ double likely_edges(const Mesh& mesh, const SurfacePoints& sources) {
 }  // namespace
 
 PathProgress::PathProgress(const SaddleVertexGraph& graph, const Work& work, const JobStage& stage)
-    : graph_(graph), work_(work), stage_(stage), threads_(thread_count(work.options.threads)) {
+    : graph_(graph),
+      work_(work),
+      stage_(stage),
+      threads_(thread_count(work.options.threads)),
+      of_look_((has_needles(graph.mesh()) ? k_of_needles : 1) * k_look) {
   const double of_source_fans = cost_of_fans(graph, work.sources);
   const double of_field = cost_of_field(graph, of_source_fans);
   const double of_fans = cost_of_fans(graph, work.targets, FirstFans::later);
@@ -43,7 +49,7 @@ PathProgress::PathProgress(const SaddleVertexGraph& graph, const Work& work, con
 }
 
 double PathProgress::cost_of_field(const SaddleVertexGraph& graph, double of_fans) {
-  constexpr double k_seeds = 0.4;  // each arc of the fans is one
+  constexpr double k_seeds = 0.3;  // each arc of the fans is one
   return (k_with_angles + k_seeds) * of_fans + graph.mesh().vertex_count();
 }
 
@@ -56,7 +62,7 @@ double PathProgress::cost_of_path(double edges) const {
 }
 
 /// What a target inside a face takes beside.
-double PathProgress::cost_inside(double edges) const { return of_fan_ + (edges < k_in_sight ? k_look : 0); }
+double PathProgress::cost_inside(double edges) const { return of_fan_ + (edges < k_in_sight ? of_look_ : 0); }
 
 void PathProgress::begin_paths(const LabelField& field) {
   const Mesh& mesh = graph_.mesh();

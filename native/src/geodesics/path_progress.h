@@ -23,7 +23,7 @@ class PathProgress {
   PathProgress(const SaddleVertexGraph& graph, const Work& work, const JobStage& stage);
 
   /// The fans of sources cost so many times those without angles, that much together with the field from them.
-  static constexpr double k_with_angles = 1.2;
+  static constexpr double k_with_angles = 1.8;
   static double cost_of_field(const SaddleVertexGraph& graph, double of_fans);
   /// Of the fans of sources and the field, and then of what fans of targets need.
   JobStage field() const { return stage_.part(0, with_field_); }
@@ -43,6 +43,7 @@ class PathProgress {
   const Work work_;
   const JobStage stage_;
   const double threads_;
+  const double of_look_;  ///< cost, of seeing a target inside a face from the sources near it
   const WorkClock clock_;
   double before_;                 ///< cost of what comes before the paths
   double with_field_, prepared_;  ///< shares of the whole
