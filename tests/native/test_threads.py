@@ -3,9 +3,14 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+import saddleback as sb
+from tests import meshes
+
+TASKS = Path("/proc/self/task")
 SCRIPT = """
 import os
 before = dict(os.environ)
@@ -36,3 +41,16 @@ def test_idle_threads_spin_shortly() -> None:
 def test_the_users_wish_is_respected() -> None:
     assert "'77'" in shown(GOMP_SPINCOUNT="77")
     assert "'10000'" not in shown(OMP_WAIT_POLICY="active")
+
+
+@pytest.mark.skipif(not TASKS.exists(), reason="the system does not show a program's threads")
+def test_threads_stay_from_loop_to_loop() -> None:
+    """To begin one takes longer than most loops, of which an iteration has dozens, some with few pieces of work."""
+    graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.grid(60, 60)), k=40, threads=6)
+
+    def threads_after_relaxing() -> set[str]:
+        sb.centroidal_voronoi(graph, count=200, max_iterations=5, tolerance=0, threads=6)
+        return {task.name for task in TASKS.iterdir()}
+
+    before = threads_after_relaxing()
+    assert threads_after_relaxing() <= before
