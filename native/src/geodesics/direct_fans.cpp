@@ -18,8 +18,8 @@ namespace {
 
 // Of the time that one fan takes, for each vertex of the mesh.
 constexpr double k_fan_mesh_cost = 0.035;
-// Points a thread takes at a time.
-constexpr Index k_chunk = 8 * k_batch;
+// Points a thread takes at a time, fewer where each has only so many chunks.
+constexpr Index k_most_at_once = 8 * k_batch, k_chunks_a_thread = 4;
 // In mean edges: a corner nearer than this has no direction in single precision, where its square is as good as zero.
 constexpr double k_nearest = 1e-18;
 
@@ -215,12 +215,14 @@ template <class Arc, class Find, class Use>
 void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const Index> order,
                   std::span<const double> limits, int threads, const JobStage& stage, Find&& find, Use&& use) {
   if (order.empty()) return;
-  const auto count = static_cast<Index>(order.size()), blocks = (count + k_chunk - 1) / k_chunk;
+  const auto count = static_cast<Index>(order.size());
+  const Index share = count / (k_chunks_a_thread * thread_count(threads)) / k_batch * k_batch;
+  const Index chunk = std::clamp<Index>(share, k_batch, k_most_at_once), blocks = (count + chunk - 1) / chunk;
   const double of_mesh = graph.is_exact() ? 0 : fans_a_fan_mesh_costs(graph);
   const double before = of_mesh > 0 ? of_mesh / (of_mesh + count) : 0;
   FanTeam team(graph, points, threads, stage.part(0, before));
   const JobStage finding = stage.part(before, 1);
-  struct Work {
+  struct alignas(k_apart) Work {
     std::vector<SurfacePoint> points;
     std::vector<double> limits;
     FanRows<Arc> rows;
@@ -229,8 +231,8 @@ void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
   std::atomic<Index> done{0};
   parallel_for(blocks, threads, 1, [&](Index block, int thread) {
     auto& [own, own_limits, rows] = works[thread];
-    const Index end = std::min((block + 1) * k_chunk, count);
-    for (Index first = block * k_chunk; first < end; first += k_batch) {  // what they see is used while it is at hand
+    const Index end = std::min((block + 1) * chunk, count);
+    for (Index first = block * chunk; first < end; first += k_batch) {  // what they see is used while it is at hand
       const std::span chosen = std::span(order).subspan(first, std::min<Index>(k_batch, end - first));
       own.clear();
       own_limits.clear();

@@ -52,7 +52,7 @@ void check_sites(const Mesh& mesh, const SurfacePoints& sites) {
 }
 
 /// A thread's own memory.
-struct CellClaims::Worker {
+struct alignas(k_apart) CellClaims::Worker {
   explicit Worker(const SiteMaps& maps) : scratch(maps), known(k_known) {}
   SiteMaps::Scratch scratch;
   std::vector<Wish> wishes;
@@ -161,7 +161,7 @@ std::vector<Index> CellClaims::sites_that_moved(const SurfacePoints& sites) cons
 std::vector<double> CellClaims::reaches(const SurfacePoints& sites) const {
   const Mesh& mesh = graph_.mesh();
   std::vector<double> reaches(sites.size(), std::numeric_limits<double>::infinity());
-  parallel_for(site_count(), threads_, 512, [&](Index i, int) {
+  parallel_for(site_count(), threads_, 128, [&](Index i, int) {
     const Index site = maps_.sites_along_curve()[i];
     if (site >= static_cast<Index>(sites.size()) || !(reach_[site] > 0)) return;
     reaches[site] = reach_[site] + (position(mesh, sites[site]) - position(mesh, maps_.sites()[site])).norm();
@@ -406,7 +406,7 @@ void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid) {
   const auto count = static_cast<Index>(wishes.size()), first = static_cast<Index>(late_.size());
   std::vector<std::uint8_t> complete(count);
   late_.resize(first + count);
-  parallel_for(count, threads_, 64, [&](Index i, int thread) {
+  parallel_for(count, threads_, 32, [&](Index i, int thread) {
     CellClaim& claim = late_[first + i].claim;
     complete[i] = make_claim(wishes[i].face, wishes[i].site, laid, workers_[thread], claim);
     if (complete[i]) reach_corners(claim);
@@ -468,7 +468,7 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
   std::vector<Index> changed;  // empty: all shared faces
   while (true) {
     const auto count = static_cast<Index>(changed.empty() ? rows_.size() : changed.size());
-    parallel_for(count, threads_, 256, [&](Index i, int thread) {
+    parallel_for(count, threads_, 128, [&](Index i, int thread) {
       stage.check();
       const Index face = changed.empty() ? rows_[i].face : changed[i];
       if (!is_settled(face)) find_wishes(face, workers_[thread]);

@@ -385,7 +385,7 @@ std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::v
   // By stretches of faces that are always the same: sums depend neither on the number of threads nor on other cells.
   constexpr Index k_stretch = 4096;
   const Index stretches = (rings_.face_count() + k_stretch - 1) / k_stretch;
-  struct Worker {
+  struct alignas(k_apart) Worker {
     SharedFace face;
     StretchSums sums;
   };

@@ -32,19 +32,18 @@ void SiteMaps::label_all(int threads, const JobStage& stage) {
   group_nodes(threads);
 }
 
-/// All fans', one after the other.
-FlatSeeds SiteMaps::flat_seeds(int threads) const {
+/// All fans', one after the other, in memory that is kept: fresh pages take longer than the seeds.
+const FlatSeeds& SiteMaps::flat_seeds(int threads) {
   std::vector<std::size_t> first{0};
   for (const Fan& fan : fans_) first.push_back(first.back() + fan.arc_count + (fan.centre != k_none ? 1 : 0));
-  FlatSeeds seeds;
-  seeds.resize(first.back());
+  seeds_.resize(first.back());
   parallel_for(site_count(), threads, 64, [&](Index site, int) {
     std::size_t at = first[site];
     const Fan& fan = fans_[site];
-    for (std::size_t i = 0; i < fan.arc_count; ++i) seeds.set(at++, {fan.nodes[i], site, fan.rounded[i]});
-    if (fan.centre != k_none) seeds.set(at, {fan.centre, site, 0});
+    for (std::size_t i = 0; i < fan.arc_count; ++i) seeds_.set(at++, {fan.nodes[i], site, fan.rounded[i]});
+    if (fan.centre != k_none) seeds_.set(at, {fan.centre, site, 0});
   });
-  return seeds;
+  return seeds_;
 }
 
 /// What was nearest to sites that have moved, and what is nearer to them now.

@@ -69,7 +69,7 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, int
 
 void SiteMaps::Scratch::forget() {
   site = k_none;
-  std::ranges::fill(beside, Beside());
+  ++age;
 }
 
 void SiteMaps::label_nodes(const SurfacePoints& sites, std::span<const double> reaches,
@@ -337,7 +337,8 @@ const SiteMaps::Place* SiteMaps::end_of_edge(Index node, Index site, Scratch* de
 /// Beyond edges of the site's own cell; remembered.
 bool SiteMaps::beside_own(Index node, Index site, Scratch& scratch, Place& place) const {
   Scratch::Beside& entry = scratch.beside[slot_of(site, node) % Scratch::k_beside];
-  if (entry.node != node || entry.site != site) {
+  if (entry.age != scratch.age || entry.node != node || entry.site != site) {
+    entry.age = scratch.age;
     entry.node = node;
     entry.site = site;
     entry.found = place_beside(node, site, nullptr, entry.place);

@@ -95,11 +95,13 @@ class SiteMaps {
     /// A vertex beside a cell is asked for by several faces: the last answers are kept.
     struct Beside {
       Index node = k_none, site = k_none;
+      std::uint32_t age = 0;
       bool found = false;
       Place place;
     };
     static constexpr std::size_t k_beside = 1024;
     std::vector<Beside> beside;
+    std::uint32_t age = 0;  ///< answers of earlier ones are forgotten
 
     /// What is known of the nodes about the last site: which of its fan they are or, below 0, ~ of the answer.
     struct Known {
@@ -163,7 +165,7 @@ class SiteMaps {
   };
 
   void label_all(int threads, const JobStage& stage);
-  FlatSeeds flat_seeds(int threads) const;
+  const FlatSeeds& flat_seeds(int threads);
   void label_again(std::span<const Index> moved, const JobStage& stage);
   void make_fans(std::span<const double> reaches, int threads, const JobStage& stage);
   void make_fan_at_vertex(Fan& fan);
@@ -206,6 +208,7 @@ class SiteMaps {
   std::vector<Index> label_;
   std::vector<double> distance_;           ///< in the graph
   std::vector<Index> nodes_, first_node_;  ///< by label
+  FlatSeeds seeds_;                        ///< for a device
   LargeArray<Place> places_;
 };
 

@@ -48,7 +48,7 @@ Moved move_sites(const Mesh& mesh, const SurfacePoints& sites, const TangentFiel
                  std::span<const Index> order) {
   Moved moved{SurfacePoints(sites.size()), TangentField(sites.size(), Vec2::Zero()),
               TangentField(sites.size(), Vec2(1, 0))};
-  parallel_for(static_cast<Index>(sites.size()), threads, 64, [&](Index i, int) {
+  parallel_for(static_cast<Index>(sites.size()), threads, 32, [&](Index i, int) {
     const Index site = order.empty() ? i : order[i];
     move_site(mesh, sites[site], steps[site], site, moved);
   });
