@@ -97,7 +97,7 @@ unsigned positive(const Vec3& v) {
 
 /// `lead`: above 0 where the second of two claims is nearer; not so at all corners, nor at none.
 Cut cut_where_zero(const Vec3& lead) {
-  constexpr std::array<std::int8_t, 8> k_lone{-1, 0, 1, 2, 2, 1, 0, -1};  // which corner it is cannot be foretold
+  constexpr std::array<int, 8> k_lone{-1, 0, 1, 2, 2, 1, 0, -1};  // which corner it is cannot be foretold
   const int lone = k_lone[positive(lead)], left = (lone + 1) % 3, right = (lone + 2) % 3;
   return {lone, left, right, lead[lone] / (lead[lone] - lead[left]), lead[lone] / (lead[lone] - lead[right])};
 }
