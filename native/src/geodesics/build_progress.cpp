@@ -13,7 +13,7 @@ namespace {
 
 // Microseconds on one machine, of which only ratios matter.
 constexpr double k_laying = 1;  ///< a vertex
-constexpr double k_joined_arc = 0.035;
+constexpr double k_joined_arc = 0.028;
 
 /// Where edges differ much in length windows are many more: how many times. `growth` is that of the number's logarithm
 /// with the spread of the lengths' logarithms.
