@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "saddleback/geodesic_centre.h"
 
@@ -61,11 +62,15 @@ class CellTriangles {
 /// One cell as weighted barycentric sums: its mean in a tangent plane is that of the corners of its faces.
 class CellMass {
  public:
-  CellMass(const Mesh& mesh, const CellTriangles& triangles, Index cell, std::span<const double> density) {
+  /// Begins with another cell, in the memory of the last.
+  void begin(const Mesh& mesh, const CellTriangles& triangles, Index cell, std::span<const double> density) {
+    parts_.clear();
+    order_.clear();
+    mass_ = 0;
     triangles.visit(cell, [&](Index face, const Vec3& a, const Vec3& b, const Vec3& c) {
-      faces_.push_back(face);
-      shares_.push_back(share(mesh, face, density, a, b, c));
-      mass_ += shares_.back().sum();
+      order_.emplace_back(face, static_cast<Index>(parts_.size()));
+      parts_.push_back(share(mesh, face, density, a, b, c));
+      mass_ += parts_.back().sum();
     });
     merge();
   }
@@ -97,31 +102,29 @@ class CellMass {
 
   /// Each face once, in increasing order.
   void merge() {
-    std::vector<Index> order(faces_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
-    std::ranges::stable_sort(order, {}, [&](Index i) { return faces_[i]; });
-    std::vector<Index> faces;
-    std::vector<Vec3> shares;
-    for (const Index i : order) {
-      if (faces.empty() || faces.back() != faces_[i]) {
-        faces.push_back(faces_[i]);
-        shares.push_back(shares_[i]);
+    std::ranges::sort(order_);
+    faces_.clear();
+    shares_.clear();
+    for (const auto& [face, part] : order_) {
+      if (faces_.empty() || faces_.back() != face) {
+        faces_.push_back(face);
+        shares_.push_back(parts_[part]);
       } else {
-        shares.back() += shares_[i];
+        shares_.back() += parts_[part];
       }
     }
-    faces_.swap(faces);
-    shares_.swap(shares);
   }
 
+  std::vector<Vec3> parts_;                     ///< shares of a triangle each
+  std::vector<std::pair<Index, Index>> order_;  ///< their faces and numbers
   std::vector<Index> faces_;
   std::vector<Vec3> shares_;  ///< by corner
   double mass_ = 0;
 };
 
-SurfacePoint centre_of(const Mesh& mesh, const CellMass& cell, SurfacePoint place, double size) {
+SurfacePoint centre_of(const Mesh& mesh, const CellMass& cell, PatchLog& log, SurfacePoint place, double size) {
   if (!(cell.mass() > 0)) return place;
-  PatchLog log(mesh, cell.faces());
+  log.begin(cell.faces());
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < k_most_steps; ++i) {
     if (!log.run(place)) break;
@@ -147,10 +150,17 @@ SurfacePoints cell_centres(const Mesh& mesh, const GeodesicVoronoi& cells, std::
   const CellTriangles triangles(cells);
   const auto count = static_cast<Index>(cells.areas.size());
   SurfacePoints centres(count);
-  parallel_for(count, threads, 8, [&](Index cell, int) {
+  struct alignas(k_apart) Worker {
+    explicit Worker(const Mesh& mesh) : log(mesh) {}
+    CellMass mass;
+    PatchLog log;
+  };
+  std::vector<Worker> workers(thread_count(threads), Worker(mesh));
+  parallel_for(count, threads, 8, [&](Index cell, int thread) {
     stage.check();
-    centres[cell] =
-        centre_of(mesh, CellMass(mesh, triangles, cell, density), cells.sites[cell], std::sqrt(cells.areas[cell]));
+    auto& [mass, log] = workers[thread];
+    mass.begin(mesh, triangles, cell, density);
+    centres[cell] = centre_of(mesh, mass, log, cells.sites[cell], std::sqrt(cells.areas[cell]));
   });
   stage.update(1);
   return centres;

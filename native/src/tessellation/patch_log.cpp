@@ -24,30 +24,38 @@ Vec2 polar(double length, double angle) { return {length * std::cos(angle), leng
 
 }  // namespace
 
-PatchLog::PatchLog(const Mesh& mesh, std::span<const Index> faces) : mesh_(mesh), faces_(faces) {
+void PatchLog::begin(std::span<const Index> faces) {
+  faces_ = faces;
   number_vertices();
-  first_.assign(vertices_.size() + 1, 0);
-  for (const auto& corners : corners_)
-    for (const Index vertex : corners) ++first_[vertex + 1];
-  for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) first_[vertex + 1] += first_[vertex];
-  around_.resize(3 * faces.size());
-  std::vector<Index> next(first_.begin(), first_.end() - 1);
-  for (Index face = 0; face < static_cast<Index>(faces.size()); ++face)
-    for (const Index vertex : corners_[face]) around_[next[vertex]++] = face;
+  list_faces_around();
+  edges_.clear();
   edges_.reserve(3 * faces.size());
   for (const Index face : faces) {
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-      const double length = mesh.length(h), right = mesh.length(Mesh::next(h)), left = mesh.length(Mesh::prev(h));
+      const double length = mesh_.length(h), right = mesh_.length(Mesh::next(h)), left = mesh_.length(Mesh::prev(h));
       const double share = 1 / (2 * length), x = (left * left - right * right + length * length) * share;
       edges_.push_back({length, share, left, right, {x, std::sqrt(std::max(0.0, left * left - x * x))}});
     }
   }
 }
 
+/// Those before a vertex's own are counted one place ahead, where the next ones are put then.
+void PatchLog::list_faces_around() {
+  first_.assign(vertices_.size() + 2, 0);
+  for (const auto& corners : corners_)
+    for (const Index vertex : corners) ++first_[vertex + 2];
+  for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) first_[vertex + 2] += first_[vertex + 1];
+  around_.resize(3 * faces_.size());
+  for (Index face = 0; face < static_cast<Index>(faces_.size()); ++face)
+    for (const Index vertex : corners_[face]) around_[first_[vertex + 1]++] = face;
+}
+
 /// In the order in which faces name them.
 void PatchLog::number_vertices() {
   const std::size_t size = std::bit_ceil(4 * faces_.size() + 1);
-  std::vector<Index> table(size, k_none);
+  table_.assign(size, k_none);
+  vertices_.clear();
+  corners_.clear();
   vertices_.reserve(faces_.size());
   corners_.reserve(faces_.size());
   for (const Index face : faces_) {
@@ -55,12 +63,12 @@ void PatchLog::number_vertices() {
     for (int i = 0; i < 3; ++i) {
       const Index vertex = mesh_.triangles()[face][i];
       std::size_t slot = k_spread * static_cast<std::uint32_t>(vertex) & (size - 1);
-      while (table[slot] != k_none && vertices_[table[slot]] != vertex) slot = (slot + 1) & (size - 1);
-      if (table[slot] == k_none) {
-        table[slot] = static_cast<Index>(vertices_.size());
+      while (table_[slot] != k_none && vertices_[table_[slot]] != vertex) slot = (slot + 1) & (size - 1);
+      if (table_[slot] == k_none) {
+        table_[slot] = static_cast<Index>(vertices_.size());
         vertices_.push_back(vertex);
       }
-      corners[i] = table[slot];
+      corners[i] = table_[slot];
     }
   }
 }

@@ -15,8 +15,9 @@ namespace saddleback {
 /// flat and convex; of second order elsewhere.
 class PatchLog {
  public:
-  /// `faces` in increasing order. The mesh must outlive it. O(n log n).
-  PatchLog(const Mesh& mesh, std::span<const Index> faces);
+  explicit PatchLog(const Mesh& mesh) : mesh_(mesh) {}
+  /// Begins with other faces, in increasing order, in the memory of the last. Mesh and faces must outlive it. O(n).
+  void begin(std::span<const Index> faces);
 
   /// From a point of a face of the patch; false when that is none of its faces. O(n log n).
   bool run(const SurfacePoint& centre);
@@ -36,6 +37,7 @@ class PatchLog {
     Vec2 apex;
   };
   void number_vertices();
+  void list_faces_around();
   Index local_face(Index face) const;
   void start_in_face(const SurfacePoint& centre, Index local);
   void start_at_vertex(Index vertex);
@@ -48,6 +50,7 @@ class PatchLog {
   std::span<const Index> faces_;
   std::vector<Index> vertices_;                ///< of the mesh
   std::vector<std::array<Index, 3>> corners_;  ///< of each face, into vertices_
+  std::vector<Index> table_;                   ///< by hash: into vertices_
   std::vector<Index> first_, around_;          ///< faces at each vertex
   std::vector<EdgeShape> edges_;               ///< by face and edge
   std::vector<Vec2> places_;
