@@ -24,7 +24,7 @@ DistanceProgress::DistanceProgress(const Mesh& mesh, const SurfacePoints& source
     const double edges = k_straighter * length * per_edge_;
     const auto ring = static_cast<std::size_t>(std::min(edges, k_most_rings));
     if (ring >= work_.size()) work_.resize(ring + 1, 0);
-    work_[ring] += k_vertex + (extent.until_bent > 0 ? edges / std::hypot(1, edges / extent.until_bent) : 0);
+    work_[ring] += k_vertex + edges / std::hypot(1, edges / extent.until_bent);
   }
   std::partial_sum(work_.begin(), work_.end(), work_.begin());
   guessed_ = clock_.seconds();

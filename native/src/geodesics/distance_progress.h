@@ -17,7 +17,7 @@ class DistanceProgress {
  public:
   struct Extent {
     double limit = std::numeric_limits<double>::infinity();  ///< where the propagation ends
-    double until_bent = 0;  ///< edges up to which a vertex has the more windows the farther it is
+    double until_bent;  ///< edges up to which a vertex has the more windows the farther it is
   };
   /// \throw Cancelled.
   DistanceProgress(const Mesh& mesh, const SurfacePoints& sources, const Extent& extent, const JobStage& stage);

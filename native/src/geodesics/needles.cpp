@@ -17,4 +17,9 @@ bool has_needles(const Mesh& mesh) {
   return needles > k_share * count;
 }
 
+double needle_factor(const Mesh& mesh) {
+  constexpr double k_longer = 6;
+  return has_needles(mesh) ? k_longer : 1;
+}
+
 }  // namespace saddleback

@@ -16,9 +16,8 @@ namespace {
 // From a single one it is farther, as far as the surface is long.
 constexpr double k_in_disk = 0.35, k_from_one = 0.9;
 
-// A point inside a face is looked at from the sources near it, if these are nearer than so many edges; among needles
-// for so many times longer.
-constexpr double k_look = 90, k_in_sight = 20, k_of_needles = 6;
+// A point inside a face is looked at from the sources near it, if these are nearer than so many edges.
+constexpr double k_look = 90, k_in_sight = 20;
 
 double likely_edges(const Mesh& mesh, const SurfacePoints& sources) {
   const auto count = static_cast<double>(sources.size());
@@ -32,7 +31,7 @@ PathProgress::PathProgress(const SaddleVertexGraph& graph, const Work& work, con
       work_(work),
       stage_(stage),
       threads_(thread_count(work.options.threads)),
-      of_look_((has_needles(graph.mesh()) ? k_of_needles : 1) * k_look) {
+      of_look_(needle_factor(graph.mesh()) * k_look) {
   const double of_source_fans = cost_of_fans(graph, work.sources);
   const double of_field = cost_of_field(graph, of_source_fans);
   const double of_fans = cost_of_fans(graph, work.targets, FirstFans::later);

@@ -22,8 +22,9 @@ class PathProgress {
   };
   PathProgress(const SaddleVertexGraph& graph, const Work& work, const JobStage& stage);
 
-  /// The fans of sources cost so many times those without angles, that much together with the field from them.
+  /// How many times the cost of fans, as cost_of_fans tells it, those with angles are: paths need them.
   static constexpr double k_with_angles = 1.8;
+  /// Of the sources' fans, which cost so much without angles, and of the field from them.
   static double cost_of_field(const SaddleVertexGraph& graph, double of_fans);
   /// Of the fans of sources and the field, and then of what fans of targets need.
   JobStage field() const { return stage_.part(0, with_field_); }

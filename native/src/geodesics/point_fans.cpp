@@ -18,8 +18,6 @@ namespace {
 constexpr double k_edges_an_arc = 0.15;
 // Nodes that a search expands while a fan is found: of a point by waves and one by one, of a curve.
 constexpr double k_cost_of_point = 28, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 30;
-// Among needles each has so many more windows.
-constexpr double k_of_needles = 6;
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
@@ -141,8 +139,8 @@ double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points,
       points, [&](const SurfacePoint& point) { return vertex_at(graph.mesh(), point) == k_none; });
   if (graph.is_exact()) return k_cost_of_exact_point * static_cast<double>(inside);
   const double of_mesh = inside > 0 && first == FirstFans::maybe ? fans_a_fan_mesh_costs(graph) : 0;
-  const double of_point = inside > 0 && has_needles(graph.mesh()) ? k_of_needles * k_cost_of_point : k_cost_of_point;
-  return of_point * (static_cast<double>(inside) + of_mesh);
+  if (inside == 0) return 0;
+  return needle_factor(graph.mesh()) * k_cost_of_point * (static_cast<double>(inside) + of_mesh);
 }
 
 double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources) {
@@ -150,7 +148,7 @@ double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources)
   for (const SurfaceCurve* const curve : sources.curves) {
     const double length = share_of_new_faces(*curve) * curve->length();
     const double strip = 2 * strip_width(graph) * length / graph.mesh().mean_edge_length();
-    cost += (has_needles(graph.mesh()) ? k_of_needles : 1) * k_cost_of_strip_vertex *
+    cost += needle_factor(graph.mesh()) * k_cost_of_strip_vertex *
             std::min(strip, static_cast<double>(graph.mesh().vertex_count()));
   }
   return cost;
