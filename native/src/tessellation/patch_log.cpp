@@ -26,6 +26,11 @@ Vec2 polar(double length, double angle) { return {length * std::cos(angle), leng
 
 void PatchLog::begin(std::span<const Index> faces) {
   faces_ = faces;
+  for (const Index face : faces) {  // in no order of memory: all are asked for before any is waited for
+    __builtin_prefetch(&mesh_.triangles()[face]);
+    __builtin_prefetch(&mesh_.lengths()[3 * face]);
+    __builtin_prefetch(&mesh_.lengths()[3 * face + 2]);
+  }
   number_vertices();
   list_faces_around();
   edges_.clear();
@@ -87,6 +92,9 @@ bool PatchLog::run(const SurfacePoint& centre) {
   visited_.assign(vertices_.size(), 0);
   visits_ = 0;
   heap_.clear();
+  ways_.clear();
+  last_way_.assign(vertices_.size(), k_none);
+  first_face_ = k_none;
   if (const Index vertex = vertex_at(mesh_, centre); vertex != k_none)
     start_at_vertex(vertex);
   else
@@ -105,7 +113,8 @@ bool PatchLog::run(const SurfacePoint& centre) {
 void PatchLog::start_in_face(const SurfacePoint& centre, Index local) {
   const FaceChart chart(mesh_, centre.face);
   const Vec2 at = chart.to_plane(centre.barycentric);
-  for (int i = 0; i < 3; ++i) offer(corners_[local][i], chart.corner[i] - at, (chart.corner[i] - at).norm());
+  for (int i = 0; i < 3; ++i) begin_with(corners_[local][i], chart.corner[i] - at, (chart.corner[i] - at).norm());
+  if (centre.barycentric.minCoeff() > k_on_edge) first_face_ = local;
   // On an edge, the face beyond lies just as near.
   for (int i = 0; i < 3; ++i) {
     const Index h = 3 * centre.face + i, twin = mesh_.twin(h);
@@ -117,7 +126,7 @@ void PatchLog::start_in_face(const SurfacePoint& centre, Index local) {
     const Vec2 apex = other.corner[(twin + 2) % 3] - from;
     const Vec2 &here = chart.corner[(i + 1) % 3], back = (chart.corner[i] - here) / mesh_.length(h);
     const Vec2 turned = along.dot(apex) * back + cross(along, apex) * Vec2(-back.y(), back.x());
-    offer(corners_[beyond][(twin + 2) % 3], here + turned - at, (here + turned - at).norm());
+    begin_with(corners_[beyond][(twin + 2) % 3], here + turned - at, (here + turned - at).norm());
   }
 }
 
@@ -129,9 +138,9 @@ void PatchLog::start_at_vertex(Index vertex) {
   for (Index h = mesh_.first_halfedge(vertex); h != k_none;) {
     if (const Index face = local_face(Mesh::face_of(h)); face != k_none) {
       const Index last = Mesh::prev(h);
-      offer(corners_[face][(h + 1) % 3], polar(mesh_.length(h), scale * angle), mesh_.length(h));
-      offer(corners_[face][last % 3], polar(mesh_.length(last), scale * (angle + mesh_.corner_angle(h))),
-            mesh_.length(last));
+      const double next_angle = angle + mesh_.corner_angle(h);
+      begin_with(corners_[face][(h + 1) % 3], polar(mesh_.length(h), scale * angle), mesh_.length(h));
+      begin_with(corners_[face][last % 3], polar(mesh_.length(last), scale * next_angle), mesh_.length(last));
     }
     angle += mesh_.corner_angle(h);
     h = mesh_.rotate(h);
@@ -139,8 +148,19 @@ void PatchLog::start_at_vertex(Index vertex) {
   }
 }
 
-void PatchLog::offer(Index vertex, const Vec2& place, double distance) {
-  if (!(distance < (1 - k_rounding) * distances_[vertex])) return;
+/// Than the vertex is by the ways so far, by more than rounding.
+bool PatchLog::is_nearer(Index vertex, double distance) const {
+  return distance < (1 - k_rounding) * distances_[vertex];
+}
+
+void PatchLog::begin_with(Index vertex, const Vec2& place, double distance) {
+  if (is_nearer(vertex, distance)) offer({vertex, k_none, k_none}, place, distance);
+}
+
+void PatchLog::offer(const Way& way, const Vec2& place, double distance) {
+  const Index vertex = way.vertex;
+  last_way_[vertex] = static_cast<Index>(ways_.size());
+  ways_.push_back(way);
   distances_[vertex] = distance;
   places_[vertex] = place;
   changed_[vertex] = visits_;
@@ -148,44 +168,100 @@ void PatchLog::offer(Index vertex, const Vec2& place, double distance) {
   std::push_heap(heap_.begin(), heap_.end());
 }
 
-/// From a vertex across its two edges of a face, unless that was done from their other ends, from the same places.
+/// From a vertex across its two edges of a face, unless that was done from their other ends, from the same places, or
+/// the corner beyond is nearer than both ends.
 void PatchLog::visit_face(Index local, Index vertex) {
   const auto& corners = corners_[local];
   const int at = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2, next = (at + 1) % 3, last = (at + 2) % 3;
-  const auto is_done_from = [&](Index other) { return visited_[other] > std::max(changed_[other], changed_[vertex]); };
-  if (!is_done_from(corners[next])) see_across(local, at);
-  if (!is_done_from(corners[last])) see_across(local, last);
+  const Index after = corners[next], before = corners[last];
+  const double nearest = distances_[vertex];
+  const auto serves = [&](Index other, Index beyond) {
+    return distances_[beyond] > std::min(nearest, distances_[other]) &&
+           visited_[other] <= std::max(changed_[other], changed_[vertex]);
+  };
+  if (serves(after, before)) see_across(local, at);
+  if (serves(before, after)) see_across(local, last);
 }
 
 /// Straight on along an edge, in the direction of its start.
-void PatchLog::walk(Index from, Index to, double length) {
-  const double distance = distances_[from] + length;
-  const double before = places_[from].norm();
-  if (before > 0) offer(to, places_[from] * (distance / before), distance);
+void PatchLog::walk(const Way& way, double length) {
+  const double distance = distances_[way.from] + length;
+  if (!is_nearer(way.vertex, distance)) return;
+  const double before = places_[way.from].norm();
+  if (before > 0) offer(way, places_[way.from] * (distance / before), distance);
+}
+
+/// The centre below an edge that runs along the x axis, the corner above: its foot on the edge's line and the square of
+/// how far it is from there, not above 0 where the distances make no triangle.
+PatchLog::Foot PatchLog::foot_of_centre(const EdgeShape& edge, double to_start, double to_end) {
+  const double square = to_start * to_start;
+  const double x = (square - to_end * to_end + edge.length * edge.length) * edge.share;
+  return {x, square - x * x};
 }
 
 /// The corner of a face opposite an edge whose ends are placed.
 void PatchLog::see_across(Index local, int edge) {
   const Index a = corners_[local][edge], b = corners_[local][(edge + 1) % 3], c = corners_[local][(edge + 2) % 3];
   const double to_a = distances_[a], to_b = distances_[b], known = distances_[c];
-  if (known <= std::min(to_a, to_b)) return;
-  const EdgeShape& shape = edges_[3 * local + edge];
+  const Index across = 3 * local + edge;
+  const EdgeShape& shape = edges_[across];
   if (to_a < k_far && to_b < k_far) {
-    // The edge runs along the x axis, the corner above, the centre below.
-    const double square_a = to_a * to_a, length = shape.length;
-    const double x = (square_a - to_b * to_b + length * length) * shape.share, y = square_a - x * x;
-    if (y > 0) {
-      const Vec2 centre(x, -std::sqrt(y)), ray = shape.apex - centre, back_a = -centre, back_b(length - x, -centre.y());
+    if (const auto [x, depth_2] = foot_of_centre(shape, to_a, to_b); depth_2 > 0) {
+      // Ways along the edges are no shorter than the ray, and most rays are no shorter than the way that is known:
+      // that is told without roots. A ray's square is the sum below and twice the height times the root of depth_2.
+      const double beside = shape.apex.x() - x, height = shape.apex.y();
+      const double room = known * known - (beside * beside + height * height + depth_2);
+      if (!(room > 0 && room * room > 4 * height * height * depth_2)) return;
+      const Vec2 centre(x, -std::sqrt(depth_2)), ray = shape.apex - centre;
+      const Vec2 back_a = -centre, back_b(shape.length - x, -centre.y());
       if (cross(ray, back_a) >= 0 && cross(back_b, ray) >= 0) {
-        const double nearer = (1 - k_rounding) * known;
-        if (const double square = ray.squaredNorm(); square < nearer * nearer)
-          offer(c, seen_between(places_[a], places_[b], back_a, back_b, ray), std::sqrt(square));
+        if (const double distance = ray.norm(); is_nearer(c, distance))
+          offer({c, across, k_none}, seen_between(places_[a], places_[b], back_a, back_b, ray), distance);
         return;
       }
     }
   }
-  if (to_a < k_far) walk(a, c, shape.left);
-  if (to_b < k_far) walk(b, c, shape.right);
+  if (to_a < k_far) walk({c, across, a}, shape.left);
+  if (to_b < k_far) walk({c, across, b}, shape.right);
+}
+
+bool PatchLog::run_again(const SurfacePoint& centre) {
+  if (first_face_ == k_none || faces_[first_face_] != centre.face || centre.barycentric.minCoeff() <= k_on_edge)
+    return false;
+  const FaceChart chart(mesh_, centre.face);
+  const Vec2 at = chart.to_plane(centre.barycentric);
+  for (int i = 0; i < 3; ++i) {
+    const Index vertex = corners_[first_face_][i];
+    places_[vertex] = chart.corner[i] - at;
+    distances_[vertex] = places_[vertex].norm();
+  }
+  for (Index i = 0; i < static_cast<Index>(ways_.size()); ++i) {
+    const Way& way = ways_[i];
+    if (way.edge != k_none && last_way_[way.vertex] == i && !follow(way, i)) return false;
+  }
+  return true;
+}
+
+/// Places a vertex by the way of that number; false where it does not lead there, or from what was placed later.
+bool PatchLog::follow(const Way& way, Index number) {
+  const Index local = way.edge / 3, edge = way.edge % 3;
+  const Index a = corners_[local][edge], b = corners_[local][(edge + 1) % 3];
+  if (last_way_[a] > number || last_way_[b] > number) return false;
+  const EdgeShape& shape = edges_[way.edge];
+  Vec2& place = places_[way.vertex];
+  double& distance = distances_[way.vertex];
+  if (way.from != k_none) {
+    const double before = places_[way.from].norm();
+    distance = distances_[way.from] + (way.from == a ? shape.left : shape.right);
+    place = places_[way.from] * (distance / before);
+    return before > 0;
+  }
+  const auto [x, depth_2] = foot_of_centre(shape, distances_[a], distances_[b]);
+  if (!(depth_2 > 0)) return false;
+  const Vec2 centre(x, -std::sqrt(depth_2)), ray = shape.apex - centre, back_b(shape.length - x, -centre.y());
+  place = seen_between(places_[a], places_[b], -centre, back_b, ray);
+  distance = ray.norm();
+  return true;
 }
 
 }  // namespace saddleback

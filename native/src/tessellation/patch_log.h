@@ -21,6 +21,10 @@ class PatchLog {
 
   /// From a point of a face of the patch; false when that is none of its faces. O(n log n).
   bool run(const SurfacePoint& centre);
+  /// From a point near the last one, to all vertices by the ways that led there last: those to a few might be shorter
+  /// on the other side of a vertex, by a square of what the point has moved. False, and then run must be called, where
+  /// the ways are not known to go on from there. O(n).
+  bool run_again(const SurfacePoint& centre);
   /// Where the corners of the i-th face lie in the plane, with the axes of SiteMaps. After run.
   const Vec2& log(Index i, int corner) const { return places_[corners_[i][corner]]; }
 
@@ -36,6 +40,11 @@ class PatchLog {
     double left, right;    ///< from the corner to the edge's start and end
     Vec2 apex;
   };
+  /// How a vertex was placed.
+  struct Way {
+    Index vertex, edge;  ///< edge: as in edges_, opposite it in a face; k_none: it was known from the start
+    Index from;          ///< the vertex before, along a side of the face; k_none: none, straight across the edge
+  };
   void number_vertices();
   void list_faces_around();
   Index local_face(Index face) const;
@@ -43,8 +52,15 @@ class PatchLog {
   void start_at_vertex(Index vertex);
   void visit_face(Index local, Index vertex);
   void see_across(Index local, int edge);
-  void offer(Index vertex, const Vec2& place, double distance);
-  void walk(Index from, Index to, double length);
+  struct Foot {
+    double x, depth_squared;
+  };
+  static Foot foot_of_centre(const EdgeShape& edge, double to_start, double to_end);
+  bool is_nearer(Index vertex, double distance) const;
+  void begin_with(Index vertex, const Vec2& place, double distance);
+  void offer(const Way& way, const Vec2& place, double distance);
+  void walk(const Way& way, double length);
+  bool follow(const Way& way, Index number);
 
   const Mesh& mesh_;
   std::span<const Index> faces_;
@@ -58,6 +74,9 @@ class PatchLog {
   Index visits_ = 0;                      ///< so far, of vertices taken from the heap
   std::vector<Index> changed_, visited_;  ///< at which visit a vertex was last placed, and visited
   std::vector<Reached> heap_;
+  Index first_face_ = k_none;    ///< in which run began, k_none where it lay on a border of it
+  std::vector<Way> ways_;        ///< that were taken, in order
+  std::vector<Index> last_way_;  ///< by vertex: of them
 };
 
 }  // namespace saddleback
