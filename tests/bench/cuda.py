@@ -22,7 +22,7 @@ RULES: tuple[dict[str, Any], ...] = ({"k": 100}, {"accuracy": 5e-3})
 TIMES = 5
 PARTS = ("upload", "order", "find", "unite", "download")
 PLANE = (("uniform", 10**5), ("uniform", 10**6), ("uniform", 10**7)) + tuple(
-    (kind, 10**6) for kind in ("clusters", "grid", "duplicates", "nearly_collinear")
+    (kind, 10**6) for kind in ("clusters", "grid", "duplicates", "nearly_collinear", "circle")
 )
 HEAD = "".join(f"{part:>10}" for part in PARTS) + "   wall    CPU  ms, and who did what"
 

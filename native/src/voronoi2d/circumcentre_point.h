@@ -5,6 +5,33 @@
 
 namespace saddleback::voronoi2d {
 
+/// The terms of a product less another's, summed up from the smallest; all that `predicates::detail::cross` comes to
+/// where no difference has a rest.
+SADDLEBACK_HOST_DEVICE inline double careful_difference(double a, double b, double c, double d) {
+  using namespace predicates;
+  double left, left_rest, right, right_rest;
+  two_product(a, b, left, left_rest);
+  two_product(c, d, right, right_rest);
+  right = -right;
+  right_rest = -right_rest;
+  const bool left_first = fabs(left_rest) < fabs(right_rest);
+  const double first = left_first ? left_rest : right_rest;
+  const double next_left = left_first ? left : left_rest, next_right = left_first ? right_rest : right;
+  const bool left_next = fabs(next_left) < fabs(next_right);
+  const double second = left_next ? next_left : next_right;
+  double third = left_first ? right_rest : left_rest, fourth = left_first ? right : left;  // both of one
+  if (left_first != left_next) {
+    const bool left_third = fabs(left) < fabs(right);
+    third = left_third ? left : right;
+    fourth = left_third ? right : left;
+  }
+  double total, rest_1, rest_2, rest_3;
+  two_sum(first, second, total, rest_1);
+  two_sum(total, third, total, rest_2);
+  two_sum(total, fourth, total, rest_3);
+  return plus(plus(plus(rest_1, rest_2), rest_3), total);
+}
+
 /// The point equally far from three sites, counter-clockwise, not on a line. Differences count from `a`; the
 /// determinant is exact where it would lose digits, so that the relative error stays at a few roundings however flat
 /// the triangle is. Overflows only where the point itself does.
@@ -17,10 +44,19 @@ SADDLEBACK_HOST_DEVICE inline predicates::Point2 circumcentre_point(const predic
   double det = left - right;
   constexpr double k_cancelled = 0x1p-10;
   if (fabs(det) < k_cancelled * (fabs(left) + fabs(right))) {
-    const auto exact =
-        detail::cross(difference(b.x, a.x), difference(b.y, a.y), difference(c.x, a.x), difference(c.y, a.y));
-    det = 0;
-    for (int i = 0; i < exact.size; ++i) det += exact.terms[i];
+    double ux, uy, vx, vy, rests[4];
+    two_sum(b.x, -a.x, ux, rests[0]);
+    two_sum(b.y, -a.y, uy, rests[1]);
+    two_sum(c.x, -a.x, vx, rests[2]);
+    two_sum(c.y, -a.y, vy, rests[3]);
+    if (rests[0] == 0 && rests[1] == 0 && rests[2] == 0 && rests[3] == 0) {  // as of most that lie so close together
+      det = careful_difference(ux, vy, uy, vx);
+    } else {
+      const auto exact =
+          detail::cross(difference(b.x, a.x), difference(b.y, a.y), difference(c.x, a.x), difference(c.y, a.y));
+      det = 0;
+      for (int i = 0; i < exact.size; ++i) det += exact.terms[i];
+    }
   }
   const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
   return {a.x + 0.5 * ((cy * b2 - by * c2) / det), a.y + 0.5 * ((bx * c2 - cx * b2) / det)};

@@ -7,13 +7,12 @@
 // sites lie on a lattice, decides between the others. What cannot be decided here, or not among the tile's sites, is
 // left to `device_far_cells.cuh`.
 
-#include "predicates/plane_predicates.h"
+#include "support/index_range.cuh"
+#include "voronoi2d/device_plane_signs.cuh"
 #include "voronoi2d/device_tile_sites.cuh"
 
 namespace saddleback::voronoi2d {
 namespace {
-
-using predicates::Point2;
 
 constexpr int k_slots = 16;  ///< room for a cell's neighbours; the lists of larger ones are in the pool
 
@@ -28,18 +27,6 @@ struct DeviceLists {
   std::int32_t* far;  ///< ranks of cells that were not found yet
   int* far_count;
 };
-
-/// The sign of the circle test for d, a, b, c, counted from d; `is_exact` when the terms have no rounding errors.
-__device__ inline int circle_sign(double ax, double ay, double bx, double by, double cx, double cy, bool is_exact,
-                                  bool& is_known) {
-  const double bxcy = bx * cy, cxby = cx * by, cxay = cx * ay, axcy = ax * cy, axby = ax * by, bxay = bx * ay;
-  const double a_lift = ax * ax + ay * ay, b_lift = bx * bx + by * by, c_lift = cx * cx + cy * cy;
-  const double det = a_lift * (bxcy - cxby) + b_lift * (cxay - axcy) + c_lift * (axby - bxay);
-  const double magnitude =
-      (fabs(bxcy) + fabs(cxby)) * a_lift + (fabs(cxay) + fabs(axcy)) * b_lift + (fabs(axby) + fabs(bxay)) * c_lift;
-  is_known = is_exact || fabs(det) > predicates::detail::k_circle_bound * magnitude;
-  return (det > 0) - (det < 0);
-}
 
 __device__ inline unsigned ordered(float value) {
   const unsigned bits = __float_as_uint(value);
@@ -314,6 +301,28 @@ struct TileRange {
   const std::int32_t *begins, *count;
   int* taken;
   std::int32_t first, last;
+  IndexRange sites;  ///< of all launches
+  int most_far;      ///< all are left where there are more cells to find by other means, and many of those so far
+  int* are_left;     ///< whether they are
+
+  __device__ std::int32_t end() const { return min(*count, last); }
+  /// The next tile; when there is none the end, or what lies behind it.
+  __device__ std::int32_t take(const int* far_count) const {
+    const std::int32_t tile = first + atomicAdd(taken, 1);
+    judge(*static_cast<const volatile int*>(far_count), tile);
+    return has_left() ? last : tile;
+  }
+  __device__ bool has_left() const { return *static_cast<volatile int*>(are_left); }
+  /// After so many other cells.
+  __device__ void judge(int far) const { judge(far, first + *static_cast<volatile int*>(taken)); }
+
+ private:
+  __device__ void judge(int far, std::int32_t next) const {
+    if (far <= most_far) return;
+    constexpr int k_many = 4;  // of as many one
+    const std::int32_t done = (next < *count ? begins[next] : sites.end) - sites.begin;
+    if (far > done / k_many) *are_left = 1;
+  }
 };
 
 __global__ void __launch_bounds__(k_tile_threads)
@@ -323,13 +332,16 @@ __global__ void __launch_bounds__(k_tile_threads)
   __shared__ int tile;
   const int lane = threadIdx.x % 32, warp = threadIdx.x / 32, count = *tiles.count;
   const auto leave = [&](std::int32_t rank) {
-    if (lane == 0) lists.far[atomicAdd(lists.far_count, 1)] = rank;
+    if (lane != 0) return;
+    const int far = atomicAdd(lists.far_count, 1);
+    lists.far[far] = rank;
+    if (far % 256 == 0) tiles.judge(far);  // often enough
   };
   while (true) {
     __syncthreads();
-    if (threadIdx.x == 0) tile = tiles.first + atomicAdd(tiles.taken, 1);
+    if (threadIdx.x == 0) tile = tiles.take(lists.far_count);
     __syncthreads();
-    if (tile >= min(count, tiles.last)) return;
+    if (tile >= tiles.end()) return;
     const std::int32_t begin = tiles.begins[tile], end = tile + 1 < count ? tiles.begins[tile + 1] : tree.site_count;
     TileSites sites(memory, tree);
     if (!sites.gather(begin, end)) {
@@ -339,7 +351,9 @@ __global__ void __launch_bounds__(k_tile_threads)
     CellWinder winder(sites);
     for (int i = warp; i < memory.own_count; i += k_tile_warps) {
       const int own = memory.own[i];
-      if (!winder.wind(own, lists)) leave(memory.rank[own]);
+      if (winder.wind(own, lists)) continue;
+      leave(memory.rank[own]);
+      if (__any_sync(k_warp, tiles.has_left())) break;
     }
   }
 }

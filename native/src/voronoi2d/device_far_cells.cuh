@@ -8,29 +8,6 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-/// The sign of the circle test for d, a, b, c, exactly. Unknown where a difference from d has more digits than a
-/// double.
-__device__ __noinline__ int exact_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d, bool& is_known) {
-  using namespace predicates;
-  is_known = true;
-  const auto away = [&](double value, double from) {
-    double sum, rest;
-    two_sum(value, -from, sum, rest);
-    is_known = is_known && rest == 0;
-    Expansion<1> result;
-    result.push(sum);
-    return result;
-  };
-  const Expansion<1> ax = away(a.x, d.x), ay = away(a.y, d.y), bx = away(b.x, d.x), by = away(b.y, d.y),
-                     cx = away(c.x, d.x), cy = away(c.y, d.y);
-  if (!is_known) return 0;
-  const auto part = [](const Expansion<1>& px, const Expansion<1>& py, const Expansion<1>& qx, const Expansion<1>& qy,
-                       const Expansion<1>& rx, const Expansion<1>& ry) {
-    return product(sum(product(px, px), product(py, py)), sum(product(qx, ry), product(qy, rx), -1));
-  };
-  return sum(sum(part(ax, ay, bx, by, cx, cy), part(bx, by, cx, cy, ax, ay)), part(cx, cy, ax, ay, bx, by)).sign();
-}
-
 struct FarMemory {
   static constexpr int k_most = 192;
   std::int32_t ahead[k_most], behind[k_most];  ///< neighbours from the nearest on, one way and the other
@@ -154,9 +131,7 @@ class FarWinder {
       if (site == n || site == best || !is_left(n_at, p)) return false;
       if (best < 0) return true;
       bool is_known;
-      int sign = circle_sign(n_x, n_y, best_at.x - site_.x, best_at.y - site_.y, p.x - site_.x, p.y - site_.y, false,
-                             is_known);
-      if (!is_known) sign = exact_circle_sign(n_at, best_at, p, site_, is_known);
+      const int sign = known_circle_sign(n_at, best_at, p, site_, is_known);
       if (!is_known) fails_ = true;
       return sign == 0 ? is_left(best_at, p) : turn_ * sign < 0;
     };
@@ -232,6 +207,7 @@ constexpr int k_far_threads = 128;
 struct FarCells {
   const std::int32_t* ranks;
   const int* count;
+  const int* are_left;  ///< whether none is to be taken
   int* next;
   int* failures;
   int most_failures;
@@ -240,7 +216,8 @@ struct FarCells {
   __device__ std::int32_t take() const {
     const int all = *count;
     int i = 0;
-    if (threadIdx.x % 32 == 0) i = *static_cast<volatile int*>(failures) > most_failures ? all : atomicAdd(next, 1);
+    if (threadIdx.x % 32 == 0)
+      i = *are_left || *static_cast<volatile int*>(failures) > most_failures ? all : atomicAdd(next, 1);
     i = __shfl_sync(k_warp, i, 0);
     return i < all ? ranks[i] : -1;
   }

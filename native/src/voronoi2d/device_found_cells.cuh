@@ -1,11 +1,13 @@
 #pragma once
 // Cells as they are found, by all or a part of the sites: first those of many sites at once, then one by one those that
-// took other means.
+// took other means; all in another way where these are many.
 
+#include <limits>
 #include <vector>
 
 #include "support/device_stream.h"
 #include "voronoi2d/device_far_cells.cuh"
+#include "voronoi2d/device_merged_cells.cuh"
 #include "voronoi2d/device_numbering.cuh"
 #include "voronoi2d/device_weighted_cells.cuh"
 #include "voronoi2d/device_weighted_far_cells.cuh"
@@ -29,20 +31,9 @@ class FoundCells {
   void share(const PlanePart& part) {
     part.arrays.share(part.member, counts_.data(), part.begins, stream_);
     part.arrays.share(part.member, is_open_.data(), part.begins, stream_);
-    add_up(counts_, offsets_, stream_);  // the last count is 0
+    add_sides();
   }
 
-  /// Waits for the cells. \return how many neighbours all have together.
-  std::int32_t finish(DeviceTimes& times) const {
-    int counters[k_counters];
-    std::int32_t sides = 0;
-    check_cuda(cudaMemcpyAsync(&sides, offsets_.data() + count_, sizeof sides, cudaMemcpyDeviceToHost, stream_),
-               "counting sides");
-    counters_.read(counters);
-    times.second_pass = counters[k_far];
-    if (counters[k_failed] > 0) throw LeftOver();
-    return sides;
-  }
   const DeviceBuffer<std::int32_t>& offsets() const { return offsets_; }
   DeviceBuffer<std::int32_t> take_offsets() { return std::move(offsets_); }
 
@@ -68,20 +59,47 @@ class FoundCells {
         failed_(static_cast<std::size_t>(k_most_failures) + 4096, stream),
         pool_(static_cast<std::size_t>(count_) / 4 + 65536, stream),
         is_open_(static_cast<std::size_t>(count_), stream),
-        counters_(5, stream) {}
+        counters_(k_counters, stream) {}
 
   void begin() {
     counts_.fill_bytes(0);
     counters_.fill_bytes(0);
   }
+  void add_sides() { add_up(counts_, offsets_, stream_); }  // the last count is 0
+
+  struct Count {
+    int far, failed;
+    bool are_left;
+    std::int32_t sides;
+  };
+  /// Of what was started before; waits for it.
+  Count count() const {
+    int counters[k_counters];
+    std::int32_t sides = 0;
+    check_cuda(cudaMemcpyAsync(&sides, offsets_.data() + count_, sizeof sides, cudaMemcpyDeviceToHost, stream_),
+               "counting sides");
+    counters_.read(counters);
+    return {counters[k_far], counters[k_failed], counters[k_left] != 0, sides};
+  }
+
+  /// \return how many neighbours all have together.
+  static std::int32_t settle(const Count& found, DeviceTimes& times) {
+    times.second_pass = found.far;
+    if (found.failed > 0) throw LeftOver();
+    return found.sides;
+  }
+
+  void make_pool(std::size_t size) { pool_ = DeviceBuffer<std::int32_t>(size, stream_); }
   int* next() { return counters_.data() + k_next; }  ///< of tiles, or whatever cells are found by
-  /// Calls kernel(far cells, how many, counter of those taken, where others fail and how often) for those left.
+  int* are_left() { return counters_.data() + k_left; }
+  /// Calls kernel(far cells, how many, counter of those taken, where others fail and how often) for those left, if not
+  /// all are.
   template <class Kernel>
   void find_others(Kernel&& kernel) {
     DeviceLists failing = lists();
     failing.far = failed_.data();
-    kernel(FarCells{far_.data(), counters_.data() + k_far, counters_.data() + k_next_far, counters_.data() + k_failed,
-                    k_most_failures},
+    kernel(FarCells{far_.data(), counters_.data() + k_far, are_left(), counters_.data() + k_next_far,
+                    counters_.data() + k_failed, k_most_failures},
            failing);
     check_cuda(cudaGetLastError(), "finding far cells");
   }
@@ -90,7 +108,7 @@ class FoundCells {
   std::int32_t count_;
 
  private:
-  enum { k_next, k_far, k_next_far, k_failed, k_pool, k_counters };
+  enum { k_next, k_far, k_next_far, k_failed, k_pool, k_left, k_counters };
   static constexpr int k_most_failures = 64;
   DeviceBuffer<std::int32_t> slots_, counts_, offsets_, far_, failed_, pool_;
   DeviceBuffer<std::uint8_t> is_open_;
@@ -109,27 +127,54 @@ class CellFinder : public FoundCells {
   /// Where the members' cells begin, and the last one's end.
   const std::vector<std::int32_t>& begins() const { return parts_.sites; }
 
-  /// Does not wait for the last tiles; calls report() in between where there are many.
+  /// Does not wait for the last tiles, unless others wait for these cells; calls report() in between where there are
+  /// many.
   template <class Report>
   void start(int member, int device, Report&& report) {
+    member_ = static_cast<std::size_t>(member);
+    device_ = device;
+    constexpr int k_many = 32;  // of as many one
+    find(mine().count() / k_many, report);
+    if (begins().size() > 2) find_left(count());
+  }
+
+  /// Waits for the cells. \return how many neighbours all have together.
+  std::int32_t finish(DeviceTimes& times, Stopwatch& watch) {
+    Count found = count();
+    if (begins().size() == 2 && find_left(found)) {
+      add_sides();
+      watch.end();
+      found = count();
+      found.far = std::max(found.far, count_);
+    }
+    return settle(found, times);
+  }
+
+ private:
+  IndexRange mine() const { return {parts_.sites[member_], parts_.sites[member_ + 1]}; }
+
+  /// Leaves all to other means where there are more cells than `most_far`, and many of those so far, that tiles cannot
+  /// tell: the sites are not such as tiles are made for.
+  template <class Report>
+  void find(int most_far, Report&& report) {
     const BoxLevels boxes(order_.at(), count_, stream_);
-    const auto at = static_cast<std::size_t>(member);
-    const std::int32_t sites = parts_.sites[at + 1] - parts_.sites[at];
     begin();
     constexpr std::size_t k_shared = sizeof(TileMemory);
     check_cuda(cudaFuncSetAttribute(find_cells_of_tiles, cudaFuncAttributeMaxDynamicSharedMemorySize, k_shared),
                "asking for shared memory");
     check_cuda(cudaFuncSetAttribute(find_cells_of_tiles, cudaFuncAttributePreferredSharedMemoryCarveout, 100),
                "asking for shared memory");
-    const int blocks = blocks_of(reinterpret_cast<const void*>(find_cells_of_tiles), k_tile_threads, k_shared, device);
+    const int blocks = blocks_of(reinterpret_cast<const void*>(find_cells_of_tiles), k_tile_threads, k_shared, device_);
     constexpr std::int32_t k_tiles_per_launch = 1 << 17;  // some tens of milliseconds
     // Of one part the number of tiles is not known here: they are half full and less.
-    const std::int32_t launches = 1 + sites / (k_tile_sites * k_tiles_per_launch) * 4, last = parts_.tiles[at + 1];
+    const std::int32_t launches = 1 + mine().count() / (k_tile_sites * k_tiles_per_launch) * 4,
+                       last = parts_.tiles[member_ + 1];
     for (std::int32_t i = 0; i < launches; ++i) {
-      const std::int32_t first = parts_.tiles[at] + i * k_tiles_per_launch;
+      const std::int32_t first = parts_.tiles[member_] + i * k_tiles_per_launch;
       const bool is_last = i + 1 == launches || last - first <= k_tiles_per_launch;
-      const TileRange range{tiles_.begins(), tiles_.count(), next(), first,
-                            is_last ? last : first + k_tiles_per_launch};
+      const TileRange range{
+          tiles_.begins(), tiles_.count(), next(),    first, is_last ? last : first + k_tiles_per_launch,
+          mine(),          most_far,       are_left()};
       check_cuda(cudaMemsetAsync(range.taken, 0, sizeof(int), stream_), "clearing a counter");
       find_cells_of_tiles<<<blocks, k_tile_threads, k_shared, stream_>>>(boxes.tree(), range, lists());
       check_cuda(cudaGetLastError(), "finding cells");
@@ -137,16 +182,36 @@ class CellFinder : public FoundCells {
       check_cuda(cudaStreamSynchronize(stream_), "finding cells");
       report(static_cast<double>(i) / launches);
     }
-    const int far_blocks = blocks_of(reinterpret_cast<const void*>(find_far_cells), k_far_threads, 0, device);
+    const int far_blocks = blocks_of(reinterpret_cast<const void*>(find_far_cells), k_far_threads, 0, device_);
     find_others([&](const FarCells& far, const DeviceLists& to) {
       find_far_cells<<<far_blocks, k_far_threads, 0, stream_>>>(boxes.tree(), far, to);
     });
   }
 
- private:
+  /// Finds all of them by other means where that was left. \return whether it was.
+  bool find_left(const Count& found) {
+    if (!found.are_left) return false;
+    if (merge()) return true;
+    find(std::numeric_limits<int>::max(), [](double) {});
+    return true;
+  }
+
+  bool merge() {
+    if (count_ > std::numeric_limits<std::int32_t>::max() / (2 * MergedMesh::k_edges)) return false;
+    begin();
+    make_pool(6 * static_cast<std::size_t>(count_));  // as many neighbours as all have together
+    MergedSites sites(order_.at(), order_.places(), count_, stream_);
+    sites.merge(blocks_of(reinterpret_cast<const void*>(merge_far_sites), k_threads, 0, device_));
+    // Several members number what lies between their cells in steps by the square of a cell's neighbours.
+    constexpr int k_any = std::numeric_limits<int>::max(), k_most_shared = 1024;
+    return sites.list(mine(), begins().size() == 2 ? k_any : k_most_shared, lists());
+  }
+
   const DeviceOrder& order_;
   const Tiles tiles_;
   const Tiles::Parts parts_;
+  std::size_t member_ = 0;
+  int device_ = 0;
 };
 
 /// Those of weighted sites.
@@ -159,6 +224,8 @@ class WeightedCellFinder : public FoundCells {
     begins_.push_back(count_);
   }
   const std::vector<std::int32_t>& begins() const { return begins_; }
+  /// Waits for the cells. \return how many neighbours all have together.
+  std::int32_t finish(DeviceTimes& times, Stopwatch&) const { return settle(count(), times); }
 
   template <class Report>
   void start(int member, int device, Report&& report) {

@@ -107,7 +107,7 @@ class Builder {
     team_.meet();
     HostCopies copies(stream);
     copy_sites(order, sites, part, copies);
-    const std::int32_t sides = cells.finish(times);
+    const std::int32_t sides = cells.finish(times, watch);
     times.find = watch.read();
     report(Share::find);
     watch.start();
