@@ -56,7 +56,7 @@ __global__ void look_for_extremes(const double* lengths, std::int32_t count, int
 __global__ void note_saddles(EdgeRecord* records, std::int32_t count, const std::uint8_t* saddles) {
   for (auto i = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); i < count;
        i += static_cast<std::int32_t>(gridDim.x * blockDim.x))
-    records[i].apex_is_saddle = saddles[records[i].apex];
+    if (saddles[records[i].apex] != 0) records[i].clearances |= k_saddle_bit;
 }
 
 struct Work {

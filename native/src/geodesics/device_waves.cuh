@@ -32,6 +32,7 @@ struct LaneApex {
   float way;
   bool direct, is_saddle;
   std::int32_t left, right, node;
+  std::uint32_t clearances;
 };
 
 /// A source from its first windows to its row of arcs.
@@ -280,7 +281,8 @@ class WarpWaves {
     apex.left = record.left;
     apex.right = record.right;
     apex.node = record.apex;
-    apex.is_saddle = record.apex_is_saddle != 0;
+    apex.is_saddle = (record.clearances & k_saddle_bit) != 0;
+    apex.clearances = record.clearances & ~k_saddle_bit;
     apex.view = view_apex(static_cast<float>(apex.x), static_cast<float>(apex.y), w.rays);
     apex.direct = apex.view.inside;
     if constexpr (!All) {
@@ -367,7 +369,8 @@ class WarpWaves {
                          {ring == 0 ? w.rays.left_reach : w.rays.right_reach, ring == 0 ? w.left_way : w.right_way},
                          mesh_.excess, w.most);
     }
-    const bool keep = child.useful && is_within(child, most);
+    const std::uint32_t clearance = ring == 0 ? apex.clearances & k_upper_half : apex.clearances << 16;
+    const bool keep = child.useful && is_within(child, most, __int_as_float(static_cast<std::int32_t>(clearance)));
     const unsigned keeping = __ballot_sync(k_warp, keep);
     const int count = ring == 0 ? left_count_ : right_count_;
     if (count + __popc(keeping) > k_ring) {

@@ -59,7 +59,7 @@ class WindowColumns : public WaveColumns<4, 9, 4> {
   }
 };
 
-class ApexColumns : public WaveColumns<2, 4, 3> {
+class ApexColumns : public WaveColumns<2, 4, 4> {
  public:
   /// From row `first` on.
   ApexRows rows(int first) {
@@ -71,7 +71,8 @@ class ApexColumns : public WaveColumns<2, 4, 3> {
             .to_left = single(3) + first,
             .left = integer(0) + first,
             .right = integer(1) + first,
-            .slot = integer(2) + first};
+            .slot = integer(2) + first,
+            .clearances = integer(3) + first};
   }
 };
 

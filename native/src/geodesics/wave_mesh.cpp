@@ -1,13 +1,20 @@
 #include "geodesics/wave_mesh.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 
+#include "geodesics/planar.h"
 #include "support/parallel.h"
 
 namespace saddleback {
 namespace {
 
 constexpr Index k_chunk = 1024;
+// Relative, of positions of single precision.
+constexpr double k_clearance_rounding = 1e-3;
 // Edges whose half-edges' records are asked for ahead, and edges whose neighbours' are.
 constexpr Index k_records_ahead = 24, k_neighbours_ahead = 12;
 
@@ -97,6 +104,46 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span
         __builtin_prefetch(&nodes[mesh.apex(h)]);
         __builtin_prefetch(&nodes[mesh.to(h)]);
       });
+  find_clearances(threads);
+}
+
+/// Straight on from a point of an edge a way comes to a vertex across sides that all meet at one of the edge's ends, or
+/// it leaves the faces about that end across the edges opposite it. Among the faces about an end the vertex is off the
+/// edge by the angle between them at least, or sideways behind.
+void WaveMesh::find_clearances(int threads) {
+  struct About {
+    double clearance = std::numeric_limits<double>::infinity();  ///< from the node to the edges opposite it
+    double shortest = std::numeric_limits<double>::infinity();   ///< edge
+  };
+  LargeArray<About> about(node_count());
+  parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
+    for (Index e = begin(node); e < end(node); ++e) {
+      const Vec2 target(length(e), 0), far = apex(e);
+      about[node].clearance = std::min(about[node].clearance, distance_to_segment(Vec2(0, 0), target, far));
+      about[node].shortest = std::min({about[node].shortest, length(e), far.norm()});
+    }
+  });
+  LargeArray<float> clearances(records_.size());
+  parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
+    const auto beside = [](const About& end, const Vec2& along, const Vec2& to_apex) {
+      const double sine =
+          along.dot(to_apex) > 0 ? std::abs(cross(along, to_apex)) / (along.norm() * to_apex.norm()) : 1;
+      return std::min(end.clearance, sine * end.shortest);
+    };
+    for (Index e = begin(node); e < end(node); ++e) {
+      const Vec2 target(length(e), 0), far = apex(e);
+      const double least = std::min({distance_to_segment(far, Vec2(0, 0), target), beside(about[node], target, far),
+                                     beside(about[targets_[e]], -target, far - target)});
+      clearances[e] = static_cast<float>(least * (1 - k_clearance_rounding));
+    }
+  });
+  const auto upper_half = [&](Index edge) {
+    return edge < 0 ? 0U : std::bit_cast<std::uint32_t>(clearances[edge]) >> 16;
+  };
+  parallel_for(edge_count(), threads, k_chunk, [&](Index e, int) {
+    EdgeRecord& record = records_[e];
+    record.clearances = upper_half(record.left) << 16 | (upper_half(record.right) & ~k_saddle_bit);
+  });
 }
 
 Index WaveMesh::edge_between(Index from, Index to) const {

@@ -55,6 +55,8 @@ class WaveMesh {
   const std::uint8_t* saddles() const { return saddles_.data(); }
 
  private:
+  void find_clearances(int threads);
+
   LargeArray<EdgeRecord> records_;
   std::vector<Index> first_;
   LargeArray<Index> targets_;

@@ -22,10 +22,13 @@ inline constexpr int k_row_padding = 16;
 /// A face's corner is at from + a * (to - from) + b * (to - from turned left).
 struct alignas(32) EdgeRecord {
   double a, b;
-  std::int32_t left, right;     ///< edge records behind (from, apex) and (apex, to); -1 at the boundary
-  std::int32_t apex;            ///< node
-  std::int32_t apex_is_saddle;  ///< on a CUDA device, which fills it in
+  std::int32_t left, right;  ///< edge records behind (from, apex) and (apex, to); -1 at the boundary
+  std::int32_t apex;         ///< node
+  /// How far it is at least from the edges behind the two sides to the next vertex beyond them: the upper halves of two
+  /// floats, of the left one and the right one. A CUDA device notes in the lowest bit whether the apex is a saddle.
+  std::uint32_t clearances;
 };
+inline constexpr std::uint32_t k_saddle_bit = 1;
 
 /// Windows, a row a quantity. The source is at the origin of a plane of its own; a window shines through the part of a
 /// half-edge between two rays, each through a vertex that the source sees along it: its *flanks*.
@@ -47,6 +50,7 @@ struct ApexRows {
   float *reach, *from_right, *to_left;  ///< distance; its offsets from the rays, positive inside
   std::int32_t *left, *right;           ///< edge * k_batch + lane, negative at the boundary
   std::int32_t* slot;
+  std::int32_t* clearances;  ///< of the record
 };
 
 /// Vertices seen, a row a sighting.

@@ -20,8 +20,8 @@ int sight(const WaveScene& scene, const WindowRows& w, int count, const ApexRows
   const Ints lane_mask = Simd::fill_int(k_batch - 1);
   for (int i = 0; i < count; i += Simd::width) {
     Doubles a{}, b{};
-    Ints left{}, right{}, apex{};
-    Simd::load_records(scene.edges, w.edge + i, a, b, left, right, apex);
+    Ints left{}, right{}, apex{}, clearances{};
+    Simd::load_records(scene.edges, w.edge + i, a, b, left, right, apex, clearances);
     const Doubles from_x = Simd::load(w.from_x + i), from_y = Simd::load(w.from_y + i);
     const Doubles along_x = Simd::load(w.to_x + i) - from_x, along_y = Simd::load(w.to_y + i) - from_y;
     const Doubles x = from_x + (a * along_x - b * along_y), y = from_y + (a * along_y + b * along_x);
@@ -32,6 +32,7 @@ int sight(const WaveScene& scene, const WindowRows& w, int count, const ApexRows
     Simd::store(apexes.left + i, (left << k_batch_bits) + lane);
     Simd::store(apexes.right + i, (right << k_batch_bits) + lane);
     Simd::store(apexes.slot + i, slot);
+    Simd::store(apexes.clearances + i, clearances);
 
     const Rays rays = load_rays(w, i);
     const ApexView view = view_apex(Simd::narrow(x), Simd::narrow(y), rays);
@@ -111,8 +112,10 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
       right_most = Simd::pick(covered, right_bound, most);
     }
 
-    const Ints root = Simd::load(w.root + i);
-    if (const Mask keep = left.useful & is_within(left, left_most); Simd::any(keep)) {
+    const Ints root = Simd::load(w.root + i), clearances = Simd::load(apexes.clearances + i);
+    const Floats left_clearance = Simd::floats_of(clearances & Simd::fill_int(k_upper_half));
+    const Floats right_clearance = Simd::floats_of(clearances << 16);
+    if (const Mask keep = left.useful & is_within(left, left_most, left_clearance); Simd::any(keep)) {
       const auto packing = Simd::packing(keep);
       packing.store(lefts.from_x + l, from_dx);
       packing.store(lefts.from_y + l, from_dy);
@@ -136,7 +139,7 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
       packing.store(lefts.root + l, root);
       l += packing.count();
     }
-    if (const Mask keep = right.useful & is_within(right, right_most); Simd::any(keep)) {
+    if (const Mask keep = right.useful & is_within(right, right_most, right_clearance); Simd::any(keep)) {
       const auto packing = Simd::packing(keep);
       packing.store(rights.from_x + r, apex_dx);
       packing.store(rights.from_y + r, apex_dy);

@@ -25,6 +25,8 @@ constexpr float k_on_ray = 1e-6f;
 constexpr float k_shorter = (1 - 1e-6f) * (1 - 1e-6f);
 // Of the half-edge: narrower windows serve no further vertex.
 constexpr float k_narrow = 1e-6f;
+// Of a record's clearances: the left one.
+constexpr std::int32_t k_upper_half = ~0xffff;
 
 SADDLEBACK_STEP Floats square(Floats a) { return a * a; }
 SADDLEBACK_STEP Floats length_squared(Floats x, Floats y) { return x * x + y * y; }
@@ -143,9 +145,10 @@ SADDLEBACK_STEP Child look_at(const Side& side) {
   return {useful, begin_2, end_2, begin_ahead, end_ahead, foot_2, length_2};
 }
 
-/// Whether the light's nearest point, an end or the source's foot on the side, is nearer than `most`.
-SADDLEBACK_STEP Mask is_within(const Child& child, Floats most) {
-  const Floats zero = Simd::fill(0), most_2 = square(most);
+/// Whether the light may reach a vertex nearer than `most`: its nearest point on the side, an end or the source's foot,
+/// is nearer by more than how far the next vertex beyond the side is at least.
+SADDLEBACK_STEP Mask is_within(const Child& child, Floats most, Floats clearance) {
+  const Floats zero = Simd::fill(0), most_2 = square(Simd::max(most - clearance, zero));
   return Simd::pick(zero < child.begin_ahead, child.begin_squared < most_2,
                     Simd::pick(child.end_ahead < zero, child.end_squared < most_2,
                                child.foot_squared < most_2 * child.length_squared));

@@ -116,7 +116,7 @@ struct Simd : Vectors<8> {
   /// Each record as two registers' quarters, transposed: fewer instructions than gathers.
   template <class Record>
   static void load_records(const Record* records, const std::int32_t* edges, Doubles& a, Doubles& b, Ints& left,
-                           Ints& right, Ints& apex) {
+                           Ints& right, Ints& apex, Ints& clearances) {
     const auto quarter = [&](int lane, int part) {
       const char* const record = reinterpret_cast<const char*>(records + (edges[lane] >> 3));
       return _mm_load_ps(reinterpret_cast<const float*>(record + 16 * part));
@@ -133,8 +133,9 @@ struct Simd : Vectors<8> {
     const __m256d pq = doubles(_mm256_unpacklo_ps(p, q)), rs = doubles(_mm256_unpacklo_ps(r, s));
     left = reinterpret_cast<Ints>(_mm256_unpacklo_pd(pq, rs));
     right = reinterpret_cast<Ints>(_mm256_unpackhi_pd(pq, rs));
-    apex = reinterpret_cast<Ints>(
-        _mm256_unpacklo_pd(doubles(_mm256_unpackhi_ps(p, q)), doubles(_mm256_unpackhi_ps(r, s))));
+    const __m256d high_pq = doubles(_mm256_unpackhi_ps(p, q)), high_rs = doubles(_mm256_unpackhi_ps(r, s));
+    apex = reinterpret_cast<Ints>(_mm256_unpacklo_pd(high_pq, high_rs));
+    clearances = reinterpret_cast<Ints>(_mm256_unpackhi_pd(high_pq, high_rs));
   }
 };
 

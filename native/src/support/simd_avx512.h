@@ -66,7 +66,7 @@ struct Simd : Vectors<16> {
   /// Each record as two registers' quarters, transposed: fewer instructions than gathers.
   template <class Record>
   static void load_records(const Record* records, const std::int32_t* edges, Doubles& a, Doubles& b, Ints& left,
-                           Ints& right, Ints& apex) {
+                           Ints& right, Ints& apex, Ints& clearances) {
     const auto four = [&](int p, int q, int r, int s, int part) {
       const auto quarter = [&](int lane) {
         const char* const record = reinterpret_cast<const char*>(records + (edges[lane] >> 3));
@@ -85,7 +85,9 @@ struct Simd : Vectors<16> {
     const __m512i pq = _mm512_unpacklo_epi32(p, q), rs = _mm512_unpacklo_epi32(r, s);
     left = reinterpret_cast<Ints>(_mm512_unpacklo_epi64(pq, rs));
     right = reinterpret_cast<Ints>(_mm512_unpackhi_epi64(pq, rs));
-    apex = reinterpret_cast<Ints>(_mm512_unpacklo_epi64(_mm512_unpackhi_epi32(p, q), _mm512_unpackhi_epi32(r, s)));
+    const __m512i high_pq = _mm512_unpackhi_epi32(p, q), high_rs = _mm512_unpackhi_epi32(r, s);
+    apex = reinterpret_cast<Ints>(_mm512_unpacklo_epi64(high_pq, high_rs));
+    clearances = reinterpret_cast<Ints>(_mm512_unpackhi_epi64(high_pq, high_rs));
   }
 
  private:

@@ -69,7 +69,7 @@ struct Simd : Vectors<4> {
   }
   template <class Record>
   static void load_records(const Record* records, const std::int32_t* edges, Doubles& a, Doubles& b, Ints& left,
-                           Ints& right, Ints& apex) {
+                           Ints& right, Ints& apex, Ints& clearances) {
     const Record &p = records[edges[0] >> 3], &q = records[edges[1] >> 3], &r = records[edges[2] >> 3],
                  &s = records[edges[3] >> 3];
     a = {Half{p.a, q.a}, Half{r.a, s.a}};
@@ -77,6 +77,8 @@ struct Simd : Vectors<4> {
     left = Ints{p.left, q.left, r.left, s.left};
     right = Ints{p.right, q.right, r.right, s.right};
     apex = Ints{p.apex, q.apex, r.apex, s.apex};
+    const auto bits = [](const Record& record) { return static_cast<std::int32_t>(record.clearances); };
+    clearances = Ints{bits(p), bits(q), bits(r), bits(s)};
   }
 };
 
