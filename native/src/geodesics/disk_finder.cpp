@@ -18,8 +18,8 @@ constexpr float k_as_far = 1 + 1e-5f;
 constexpr float k_longer = 1 + 1e-6f;
 constexpr double k_rounding = 1e-6;
 // Windows end where a flank serves within this many times the tolerance. Less costs windows and arcs: with 1 a tenth
-// more of both; with 1.5 errors come as near as a fiftieth to the accuracy here and there.
-constexpr double k_radius_tolerance = 1.2;
+// more of both; more lets errors come near the accuracy here and there, with 1.5 to a fiftieth.
+constexpr double k_radius_tolerance = 1.1;
 // The same on lattices, and what two shorter arcs may be longer by, as parts of the tolerance. Found on grids of cells
 // from 1 : 1 to 20 : 1.
 constexpr double k_lattice_radius_tolerance = 0.5, k_stretched_radius_tolerance = 0.3, k_lattice_detour = 0.7;
