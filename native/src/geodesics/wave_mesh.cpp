@@ -107,9 +107,10 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span
   find_clearances(threads);
 }
 
-/// Straight on from a point of an edge a way comes to a vertex across sides that all meet at one of the edge's ends, or
-/// it leaves the faces about that end across the edges opposite it. Among the faces about an end the vertex is off the
-/// edge by the angle between them at least, or sideways behind.
+/// From a point of an edge a straight way comes to the corner beyond, or it crosses a side, and with it the faces about
+/// one of the edge's ends. There it comes to a vertex, which is off the edge by the face's angle at that end at least,
+/// or it leaves across an edge opposite the end. Laid flat, the two edges are nearest to each other at an end of one of
+/// them: that is one of those vertices, or one of the first edge's ends and an edge opposite it.
 void WaveMesh::find_clearances(int threads) {
   struct About {
     double clearance = std::numeric_limits<double>::infinity();  ///< from the node to the edges opposite it

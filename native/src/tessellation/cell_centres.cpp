@@ -21,7 +21,7 @@ namespace {
 constexpr double k_tolerance = 1e-6;
 constexpr int k_most_steps = 50;
 // A step this short, relative to the size of the cell, leaves the ways to all corners but a few as they are.
-constexpr double k_least_turn = 2e-3;
+constexpr double k_short_step = 2e-3;
 // Steps shrink several times each, until they are what the maps from two places differ by.
 constexpr double k_least_shrinking = 0.5;
 
@@ -131,7 +131,7 @@ SurfacePoint centre_of(const Mesh& mesh, const CellMass& cell, PatchLog& log, Su
   log.begin(cell.faces());
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < k_most_steps; ++i) {
-    const bool is_near = before <= k_least_turn * size;
+    const bool is_near = before <= k_short_step * size;
     if (!(is_near && log.run_again(place)) && !log.run(place)) break;
     const Vec2 step = cell.mean(log);
     const double length = step.norm();

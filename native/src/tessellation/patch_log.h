@@ -40,6 +40,9 @@ class PatchLog {
     double left, right;    ///< from the corner to the edge's start and end
     Vec2 apex;
   };
+  struct Foot {
+    double x, depth_squared;
+  };
   /// How a vertex was placed.
   struct Way {
     Index vertex, edge;  ///< edge: as in edges_, opposite it in a face; k_none: it was known from the start
@@ -52,9 +55,6 @@ class PatchLog {
   void start_at_vertex(Index vertex);
   void visit_face(Index local, Index vertex);
   void see_across(Index local, int edge);
-  struct Foot {
-    double x, depth_squared;
-  };
   static Foot foot_of_centre(const EdgeShape& edge, double to_start, double to_end);
   bool is_nearer(Index vertex, double distance) const;
   void begin_with(Index vertex, const Vec2& place, double distance);
