@@ -1,6 +1,7 @@
 // Method: labels by shortest paths in the graph, from the vertices that sites see.
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -13,23 +14,58 @@ namespace saddleback {
 
 void SiteMaps::label_all(int threads, const JobStage& stage) {
   bare_.clear();
-  const auto seeds_of = [&](Index first, Index last, std::vector<NodeSeed>& seeds) {
-    const auto add = [&](Index node, Index site, double distance) {
-      if (node >= first && node < last) seeds.push_back({node, site, distance});
-    };
-    for (Index site = 0; site < site_count(); ++site) {
-      const Fan& fan = fans_[site];
-      if (fan.centre != k_none) add(fan.centre, site, 0);
-      if (fan.last < first || fan.first >= last) continue;  // of another part of the surface
-      for (std::size_t i = 0; i < fan.arc_count; ++i) add(fan.nodes[i], site, fan.rounded[i]);
-    }
-  };
   if (cuda_device_ >= 0) {
     twin_nearest_sources(graph_, cuda_device_, flat_seeds(threads), stage, distance_, label_);
   } else {
-    nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
+    label_what_is_seen(threads);
+    if (!sweep_labels(threads, stage)) search_labels(threads, stage);
   }
   group_nodes(threads);
+}
+
+/// The nearest of the sites that have an arc to a node. Each thread has a stretch of the nodes.
+void SiteMaps::label_what_is_seen(int threads) {
+  constexpr Index k_least_stretch = 4096;
+  const Index count = mesh_.vertex_count();
+  const Index stretches = std::clamp(count / k_least_stretch, 1, thread_count(threads));
+  distance_.resize(count);
+  label_.resize(count);
+  const auto end = [&](Index stretch) { return static_cast<Index>(std::int64_t{count} * stretch / stretches); };
+  parallel_for(stretches, threads, 1, [&](Index stretch, int) {
+    const Index first = end(stretch), last = end(stretch + 1);
+    std::fill(distance_.begin() + first, distance_.begin() + last, std::numeric_limits<double>::infinity());
+    std::fill(label_.begin() + first, label_.begin() + last, k_none);
+    const auto offer = [&](Index node, Index site, double distance) {
+      if (node < first || node >= last || distance > distance_[node]) return;
+      if (distance == distance_[node] && site >= label_[node]) return;
+      distance_[node] = distance;
+      label_[node] = site;
+    };
+    for (const Index site : order_) {
+      const Fan& fan = fans_[site];
+      if (fan.centre != k_none) offer(fan.centre, site, 0);
+      if (fan.last < first || fan.first >= last) continue;  // of another part of the surface
+      for (std::size_t i = 0; i < fan.arc_count; ++i) offer(fan.nodes[i], site, fan.rounded[i]);
+    }
+  });
+}
+
+/// False where it does not pay, or has not led everywhere.
+bool SiteMaps::sweep_labels(int threads, const JobStage& stage) {
+  constexpr Index k_most_nodes = 32;  // a site: cells of more are found sooner from bucket to bucket
+  if (std::int64_t{k_most_nodes} * site_count() < mesh_.vertex_count()) return false;
+  if (!std::exchange(has_labelled_, true)) return false;  // the tables pay from the second time on
+  if (!sweep_) sweep_.emplace(graph_, threads, stage);
+  return sweep_->run(distance_, label_, stage);
+}
+
+/// From what has a label.
+void SiteMaps::search_labels(int threads, const JobStage& stage) {
+  const auto seeds_of = [&](Index first, Index last, std::vector<NodeSeed>& seeds) {
+    for (Index node = first; node < last; ++node)
+      if (label_[node] != k_none) seeds.push_back({node, label_[node], distance_[node]});
+  };
+  nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
 }
 
 /// All fans', one after the other, in memory that is kept: fresh pages take longer than the seeds.

@@ -9,6 +9,7 @@
 
 #include "geodesics/arc_unfolding.h"
 #include "geodesics/direct_fans.h"
+#include "geodesics/nearest_sweep.h"
 #include "geodesics/twin_search.h"
 #include "tessellation/packed_vector.h"
 #include "tessellation/vertex_rings.h"
@@ -165,6 +166,9 @@ class SiteMaps {
   };
 
   void label_all(int threads, const JobStage& stage);
+  void label_what_is_seen(int threads);
+  bool sweep_labels(int threads, const JobStage& stage);
+  void search_labels(int threads, const JobStage& stage);
   const FlatSeeds& flat_seeds(int threads);
   void label_again(std::span<const Index> moved, const JobStage& stage);
   void make_fans(std::span<const double> reaches, int threads, const JobStage& stage);
@@ -206,7 +210,9 @@ class SiteMaps {
   bool keeps_any_ = false;
   std::vector<Index> bare_;  ///< nodes of sites that are gone
   std::vector<Index> label_;
-  std::vector<double> distance_;           ///< in the graph
+  std::vector<double> distance_;  ///< in the graph
+  bool has_labelled_ = false;     ///< and may do so again
+  std::optional<NearestSweep> sweep_;
   std::vector<Index> nodes_, first_node_;  ///< by label
   FlatSeeds seeds_;                        ///< for a device
   LargeArray<Place> places_;
