@@ -76,30 +76,31 @@ std::vector<Index> inside_in_order(const SaddleVertexGraph& graph, std::span<con
 
 void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
                            std::span<const double> limits, FanAngles angles, DirectFans& fans, const JobStage& stage) {
-  if (graph.is_exact())
-    return find_exactly(graph, points, fans, stage, [&](std::vector<DirectArc>& arcs) { append_row(arcs); });
-  find_in_batches(graph, points, limits, fans, stage,
-                  [&](int lane, std::vector<DirectArc>& arcs) { append_arcs(graph, lane, angles, arcs); });
+  see_each(graph, points, limits, stage, [&](std::size_t, int lane) {
+    if (lane >= 0 && graph.is_exact()) append_row(fans.arcs);
+    if (lane >= 0 && !graph.is_exact()) append_arcs(graph, lane, angles, fans.arcs);
+    fans.offsets.push_back(std::ssize(fans.arcs));
+  });
 }
 
-void DirectFanFinder::find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
-                           std::span<const double> limits, FanViews& views, const JobStage& stage) {
-  if (graph.is_exact()) {
-    return find_exactly(graph, points, views, stage, [&](std::vector<SeenNode>& seen) {
-      for (const DirectArc& arc : row_) {
-        const Vec2 place = arc.length * Vec2(std::cos(arc.start_angle), std::sin(arc.start_angle));
-        seen.push_back({graph.node_of(arc.vertex), k_none, true, arc.length, place, Vec2(arc.end_angle, 0)});
-      }
-    });
-  }
-  find_in_batches(graph, points, limits, views, stage,
-                  [&](int lane, std::vector<SeenNode>& seen) { append_seen(lane, seen); });
+void DirectFanFinder::view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
+                           std::span<const double> limits, const JobStage& stage, const UseSeen& use) {
+  see_each(graph, points, limits, stage, [&](std::size_t i, int lane) {
+    if (lane < 0) return;
+    if (!graph.is_exact()) return use(static_cast<Index>(i), SeenView(*waves_, lane, mesh_->waves().unit()));
+    listed_.clear();
+    for (const DirectArc& arc : row_) {
+      const Vec2 place = arc.length * Vec2(std::cos(arc.start_angle), std::sin(arc.start_angle));
+      listed_.push_back({graph.node_of(arc.vertex), k_none, true, arc.length, place, Vec2(arc.end_angle, 0)});
+    }
+    use(static_cast<Index>(i), SeenView(listed_));
+  });
 }
 
-template <class Arc, class Append>
-void DirectFanFinder::find_in_batches(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
-                                      std::span<const double> limits, FanRows<Arc>& rows, const JobStage& stage,
-                                      Append&& append) {
+template <class Each>
+void DirectFanFinder::see_each(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
+                               std::span<const double> limits, const JobStage& stage, Each&& each) {
+  if (graph.is_exact()) return see_each_exactly(graph, points, stage, each);
   for (std::size_t i = 0; i < points.size();) {
     batch_.clear();
     std::size_t end = i;
@@ -107,29 +108,28 @@ void DirectFanFinder::find_in_batches(const SaddleVertexGraph& graph, std::span<
       if (!is_vertex(graph.mesh(), points[end])) batch_.push_back(end);
     const bool together = see(graph, points, limits, batch_, stage);
     for (int lane = 0; i < end; ++i) {
-      if (lane < std::ssize(batch_) && batch_[lane] == i) {
-        // So many windows that all were stopped: alone each may need fewer.
-        if (!together) see(graph, points, limits, Batch(batch_).subspan(lane, 1), stage);
-        append(together ? lane : 0, rows.arcs);
-        ++lane;
+      if (lane == std::ssize(batch_) || batch_[lane] != i) {
+        each(i, -1);
+        continue;
       }
-      rows.offsets.push_back(std::ssize(rows.arcs));
+      // So many windows that all were stopped: alone each may need fewer.
+      if (!together) see(graph, points, limits, Batch(batch_).subspan(lane, 1), stage);
+      each(i, together ? lane : 0);
+      ++lane;
     }
   }
 }
 
 /// One by one, in order of distance.
-template <class Arc, class Append>
-void DirectFanFinder::find_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
-                                   FanRows<Arc>& rows, const JobStage& stage, Append&& append) {
+template <class Each>
+void DirectFanFinder::see_each_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
+                                       const JobStage& stage, Each&& each) {
   if (!propagator_) propagator_ = std::make_unique<WindowPropagator>(graph.unfolding());
-  for (const SurfacePoint& point : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
     stage.check();
-    if (!is_vertex(graph.mesh(), point)) {
-      propagator_->from_point(point, exact_width(graph), row_, stage);
-      append(rows.arcs);
-    }
-    rows.offsets.push_back(std::ssize(rows.arcs));
+    const bool is_inside = !is_vertex(graph.mesh(), points[i]);
+    if (is_inside) propagator_->from_point(points[i], exact_width(graph), row_, stage);
+    each(i, is_inside ? 0 : -1);
   }
 }
 
@@ -171,23 +171,6 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, FanA
   append_row(arcs);
 }
 
-void DirectFanFinder::append_seen(int lane, std::vector<SeenNode>& seen) {
-  for (const std::int32_t i : waves_->chosen(lane)) seen.push_back(seen_node(i, true));
-  for (const std::int32_t i : waves_->served(lane)) seen.push_back(seen_node(i, false));
-}
-
-SeenNode DirectFanFinder::seen_node(std::int32_t sighting, bool is_arc) {
-  const SightingRows rows = waves_->sightings();
-  const double unit = mesh_->waves().unit();
-  const Vec2 place = unit * Vec2(rows.x[sighting], rows.y[sighting]);
-  return {rows.slot[sighting] / k_batch,
-          rows.edge[sighting] / k_batch,
-          is_arc,
-          place.norm(),
-          place,
-          unit * Vec2(rows.from_x[sighting], rows.from_y[sighting])};
-}
-
 double direction_back(const SaddleVertexGraph& graph, const SeenNode& seen) {
   if (seen.edge == k_none) return seen.from.x();
   const Vec2 along = seen.from - seen.place;
@@ -210,10 +193,11 @@ FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> p
 
 namespace {
 
-/// Calls find(finder, points, limits, rows) for stretches of points in that order and use(i, row) for each of them.
-template <class Arc, class Find, class Use>
-void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const Index> order,
-                  std::span<const double> limits, int threads, const JobStage& stage, Find&& find, Use&& use) {
+/// Calls see(finder, thread, batch, points, limits) for batches of the order, with what `points` and `limits` have of
+/// them.
+template <class See>
+void for_each_batch(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const Index> order,
+                    std::span<const double> limits, int threads, const JobStage& stage, See&& see) {
   if (order.empty()) return;
   const auto count = static_cast<Index>(order.size());
   const Index share = count / (k_chunks_a_thread * thread_count(threads)) / k_batch * k_batch;
@@ -225,27 +209,23 @@ void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
   struct alignas(k_apart) Work {
     std::vector<SurfacePoint> points;
     std::vector<double> limits;
-    FanRows<Arc> rows;
   };
   std::vector<Work> works(thread_count(threads));
   std::atomic<Index> done{0};
   parallel_for(blocks, threads, 1, [&](Index block, int thread) {
-    auto& [own, own_limits, rows] = works[thread];
+    auto& [own, own_limits] = works[thread];
     const Index end = std::min((block + 1) * chunk, count);
     for (Index first = block * chunk; first < end; first += k_batch) {  // what they see is used while it is at hand
-      const std::span chosen = std::span(order).subspan(first, std::min<Index>(k_batch, end - first));
+      const std::span batch = order.subspan(first, std::min<Index>(k_batch, end - first));
       own.clear();
       own_limits.clear();
-      rows.clear();
-      for (const Index i : chosen) {
+      for (const Index i : batch) {
         own.push_back(points[i]);
         if (!limits.empty()) own_limits.push_back(limits[i]);
       }
-      find(team[thread], own, own_limits, rows);
-      for (std::size_t i = 0; i < chosen.size(); ++i) {
-        use(chosen[i], rows[i]);
-        finding.update(static_cast<double>(done.fetch_add(1, std::memory_order_relaxed) + 1) / count);
-      }
+      see(team[thread], thread, batch, own, own_limits);
+      const auto size = static_cast<Index>(batch.size());
+      finding.update(static_cast<double>(done.fetch_add(size, std::memory_order_relaxed) + size) / count);
     }
   });
 }
@@ -254,26 +234,30 @@ void for_each_row(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
 
 void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                   FanAngles angles, int threads, const JobStage& stage, const UseFan& use) {
-  for_each_row<DirectArc>(
-      graph, points, inside_in_order(graph, points), limits, threads, stage,
-      [&](DirectFanFinder& finder, const auto& own, const auto& own_limits, DirectFans& fans) {
-        finder.find(graph, own, own_limits, angles, fans, stage);
-      },
-      use);
+  const std::vector<Index> order = inside_in_order(graph, points);
+  struct alignas(k_apart) Rows {
+    DirectFans fans;
+  };
+  std::vector<Rows> rows(thread_count(threads));
+  for_each_batch(graph, points, order, limits, threads, stage,
+                 [&](DirectFanFinder& finder, int thread, auto batch, const auto& own, const auto& own_limits) {
+                   DirectFans& fans = rows[thread].fans;
+                   fans.clear();
+                   finder.find(graph, own, own_limits, angles, fans, stage);
+                   for (std::size_t i = 0; i < batch.size(); ++i) use(batch[i], fans[i]);
+                 });
 }
 
 void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                    int threads, const JobStage& stage, const UseSeen& use) {
   std::vector<Index> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  for_each_row<SeenNode>(
-      graph, points, order, limits, threads, stage,
-      [&](DirectFanFinder& finder, const auto& own, const auto& own_limits, FanViews& views) {
-        finder.find(graph, own, own_limits, views, stage);
-      },
-      use);
+  for_each_batch(graph, points, order, limits, threads, stage,
+                 [&](DirectFanFinder& finder, int, auto batch, const auto& own, const auto& own_limits) {
+                   finder.view(graph, own, own_limits, stage,
+                               [&](Index i, const SeenView& view) { use(batch[i], view); });
+                 });
 }
-
 DirectFans direct_fans(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, int threads,
                        const JobStage& stage) {
   std::vector<std::vector<DirectArc>> rows(points.size());

@@ -43,7 +43,39 @@ struct FanRows {
   }
 };
 using DirectFans = FanRows<DirectArc>;  ///< each row by vertex
-using FanViews = FanRows<SeenNode>;     ///< in no particular order
+
+/// What one point sees, where it was found: arcs first, else in no particular order.
+class SeenView {
+ public:
+  /// The source in a lane of waves that have run; the view lasts until they run again.
+  SeenView(DiskFinder& waves, int lane, double unit)
+      : chosen_(waves.chosen(lane)), served_(waves.served(lane)), rows_(waves.sightings()), unit_(unit) {}
+  /// Arcs all.
+  explicit SeenView(std::span<const SeenNode> listed) : listed_(listed) {}
+
+  std::size_t size() const { return listed_.size() + chosen_.size() + served_.size(); }
+  std::size_t arc_count() const { return listed_.size() + chosen_.size(); }
+  /// Calls visit(i, node) for all.
+  template <class Visit>
+  void visit(Visit&& visit) const {
+    std::size_t next = 0;
+    for (const SeenNode& node : listed_) visit(next++, node);
+    for (const std::int32_t i : chosen_) visit(next++, seen_node(i, true));
+    for (const std::int32_t i : served_) visit(next++, seen_node(i, false));
+  }
+
+ private:
+  SeenNode seen_node(std::int32_t i, bool is_arc) const {
+    const Vec2 place = unit_ * Vec2(rows_.x[i], rows_.y[i]), from = unit_ * Vec2(rows_.from_x[i], rows_.from_y[i]);
+    return {rows_.slot[i] / k_batch, rows_.edge[i] / k_batch, is_arc, place.norm(), place, from};
+  }
+  std::span<const SeenNode> listed_;
+  std::span<const std::int32_t> chosen_, served_;
+  SightingRows rows_{};
+  double unit_ = 0;
+};
+/// Takes what the point of an index sees. May be called by several threads at once.
+using UseSeen = std::function<void(Index, const SeenView&)>;
 
 /// Whether the angles of arcs are wanted, which are as much work as all else about an arc.
 enum class FanAngles { none, both };
@@ -58,8 +90,9 @@ class DirectFanFinder {
   /// none (nor for the exact graph).
   void find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
             FanAngles angles, DirectFans& fans, const JobStage& stage);
-  void find(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
-            FanViews& views, const JobStage& stage);
+  /// Calls use(i, view) for every point that is no vertex.
+  void view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+            const JobStage& stage, const UseSeen& use);
 
  private:
   using Batch = std::span<const std::size_t>;
@@ -67,22 +100,21 @@ class DirectFanFinder {
            Batch batch, const JobStage& stage);
   void append_arcs(const SaddleVertexGraph& graph, int lane, FanAngles angles, std::vector<DirectArc>& arcs);
   void append_row(std::vector<DirectArc>& arcs);
-  void append_seen(int lane, std::vector<SeenNode>& seen);
-  SeenNode seen_node(std::int32_t sighting, bool is_arc);
-  /// Calls append(lane, rows.arcs) for each point inside a face.
-  template <class Arc, class Append>
-  void find_in_batches(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
-                       std::span<const double> limits, FanRows<Arc>& rows, const JobStage& stage, Append&& append);
-  /// Calls append(rows.arcs) for each point inside a face, with what it sees in row_.
-  template <class Arc, class Append>
-  void find_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, FanRows<Arc>& rows,
-                    const JobStage& stage, Append&& append);
+  /// Calls each(i, lane) for every point in order, while what it sees is at hand: in a lane of the waves or, for the
+  /// exact graph, in row_. Lane -1: it is a vertex.
+  template <class Each>
+  void see_each(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
+                const JobStage& stage, Each&& each);
+  template <class Each>
+  void see_each_exactly(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, const JobStage& stage,
+                        Each&& each);
 
   const FanMesh* mesh_ = nullptr;
   std::unique_ptr<DiskFinder> waves_;
   std::unique_ptr<WindowPropagator> propagator_;  ///< for the exact graph
   std::vector<std::size_t> batch_;
   std::vector<DirectArc> row_;
+  std::vector<SeenNode> listed_;
 };
 
 /// How many fans could be found in the time that the first ones wait for what all need; 0 when that is there.
@@ -106,9 +138,7 @@ using UseFan = std::function<void(Index, std::span<const DirectArc>)>;
 void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                   FanAngles angles, int threads, const JobStage& stage, const UseFan& use);
 
-/// The same for what points see, in no particular order, but arcs first. No point is a vertex, and those that lie
-/// together on the surface best come together.
-using UseSeen = std::function<void(Index, std::span<const SeenNode>)>;
+/// The same for what points see. No point is a vertex, and those that lie together on the surface best come together.
 void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                    int threads, const JobStage& stage, const UseSeen& use);
 

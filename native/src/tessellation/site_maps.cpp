@@ -118,11 +118,12 @@ void SiteMaps::make_fans(std::span<const double> reaches, int threads, const Job
     points.push_back(sites_[site]);
     if (!reaches.empty()) limits.push_back(limits_[site]);
   }
-  for_each_view(graph_, points, limits, threads, stage, [&](Index i, std::span<const SeenNode> view) {
+  const ArcCodec& codec = graph_.arcs().codec();
+  for_each_view(graph_, points, limits, threads, stage, [&](Index i, const SeenView& view) {
     Fan& fan = fans_[inside[i]];
     fan.resize(view.size());
-    for (std::size_t k = 0; k < view.size(); ++k) fan.set(k, view[k], graph_.arcs().codec().round(view[k].length));
-    fan.set_arcs(std::ranges::partition_point(view, &SeenNode::is_arc) - view.begin());
+    view.visit([&](std::size_t k, const SeenNode& node) { fan.set(k, node, codec.round(node.length)); });
+    fan.set_arcs(static_cast<std::ptrdiff_t>(view.arc_count()));
   });
   parallel_for(static_cast<Index>(at_vertices.size()), threads, 16, [&](Index i, int) {
     stage.check();
