@@ -85,6 +85,14 @@ class CellMass {
       for (int corner = 0; corner < 3; ++corner) sum += shares_[i][corner] * log.log(static_cast<Index>(i), corner);
     return sum / mass_;
   }
+  Vec3 mean_in_space(const Mesh& mesh) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const Triangle& corners = mesh.triangles()[faces_[i]];
+      for (int corner = 0; corner < 3; ++corner) sum += shares_[i][corner] * mesh.positions()[corners[corner]];
+    }
+    return sum / mass_;
+  }
 
  private:
   static Vec3 share(const Mesh& mesh, Index face, std::span<const double> density, const Vec3& a, const Vec3& b,
@@ -126,9 +134,32 @@ class CellMass {
   double mass_ = 0;
 };
 
-SurfacePoint centre_of(const Mesh& mesh, const CellMass& cell, PatchLog& log, SurfacePoint place, double size) {
-  if (!(cell.mass() > 0)) return place;
+/// A vector in space, as the face's plane has it, in the face's chart. Zero where the face has no plane.
+Vec2 in_chart(const Mesh& mesh, Index face, const Vec3& vector) {
+  const Triangle& t = mesh.triangles()[face];
+  const Vec3 a = mesh.positions()[t[1]] - mesh.positions()[t[0]], b = mesh.positions()[t[2]] - mesh.positions()[t[0]];
+  const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm(), va = vector.dot(a), vb = vector.dot(b);
+  const double determinant = aa * bb - ab * ab;
+  if (!(determinant > 0)) return Vec2::Zero();
+  const double along_a = (va * bb - vb * ab) / determinant, along_b = (vb * aa - va * ab) / determinant;
+  const FaceChart chart(mesh, face);
+  return along_a * (chart.corner[1] - chart.corner[0]) + along_b * (chart.corner[2] - chart.corner[0]);
+}
+
+/// Where the search for the centre begins: as far from the site as the cell's mean in space is, which mostly spares a
+/// map of the cell; the site where that is not in the cell.
+SurfacePoint first_place(const Mesh& mesh, const CellMass& cell, const SurfacePoint& site, double size) {
+  if (vertex_at(mesh, site) != k_none) return site;
+  const Vec2 step = in_chart(mesh, site.face, cell.mean_in_space(mesh) - position(mesh, site));
+  if (!(step.norm() < size)) return site;
+  const SurfacePoint moved = move_sites(mesh, {site}, {step}, 1).sites.front();
+  return std::ranges::binary_search(cell.faces(), moved.face) ? moved : site;
+}
+
+SurfacePoint centre_of(const Mesh& mesh, const CellMass& cell, PatchLog& log, const SurfacePoint& site, double size) {
+  if (!(cell.mass() > 0)) return site;
   log.begin(cell.faces());
+  SurfacePoint place = first_place(mesh, cell, site, size);
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < k_most_steps; ++i) {
     const bool is_near = before <= k_short_step * size;
