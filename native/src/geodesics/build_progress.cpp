@@ -13,7 +13,7 @@ namespace {
 
 // Microseconds on one machine, of which only ratios matter.
 constexpr double k_laying = 1;  ///< a vertex
-constexpr double k_joined_arc = 0.028;
+constexpr double k_joined_arc = 0.024;
 
 /// Where edges differ much in length windows are many more: how many times. `growth` is that of the number's logarithm
 /// with the spread of the lengths' logarithms.
@@ -32,17 +32,22 @@ double unevenness(const Mesh& mesh, double growth) {
   return std::exp(growth * std::max(0.0, std::sqrt(std::max(0.0, variance)) - k_even));
 }
 
+double among_needles(const Mesh& mesh) {
+  constexpr double k_longer = 16;
+  return has_needles(mesh) ? k_longer : 1;
+}
+
 }  // namespace
 
 double BuildProgress::by_accuracy(const Mesh& mesh, double accuracy) {
-  constexpr double k_growth = 2.5, k_needles = 10;  // for the accuracies in use
-  return (has_needles(mesh) ? k_needles : 1) * 10 *
-         std::pow(SaddleVertexGraphOptions::k_default_accuracy / accuracy, 0.6) * unevenness(mesh, k_growth);
+  constexpr double k_growth = 2.5, k_usual = 6, k_power = 0.75;  // for the accuracies in use
+  return among_needles(mesh) * k_usual * std::pow(SaddleVertexGraphOptions::k_default_accuracy / accuracy, k_power) *
+         unevenness(mesh, k_growth);
 }
 
 double BuildProgress::by_count(const Mesh& mesh, Index k) {
-  constexpr double k_growth = 0.75;  // disks end by themselves
-  return 0.25 * k * unevenness(mesh, k_growth);
+  constexpr double k_growth = 0.75, k_each = 0.14;  // disks end by themselves
+  return among_needles(mesh) * k_each * k * unevenness(mesh, k_growth);
 }
 
 double BuildProgress::by_all(const Mesh& mesh) { return mesh.vertex_count(); }
@@ -58,9 +63,9 @@ BuildProgress::BuildProgress(const Mesh& mesh, double expected, int threads, con
   laid_ = k_laying / (k_laying + (1 + k_joining) * expected);
 }
 
-void BuildProgress::laid(double share) {
+void BuildProgress::laid() {
   laying_ = clock_.seconds();
-  stage_.update(share * laid_);
+  stage_.update(laid_);
 }
 
 void BuildProgress::found(const ArcCount& more, double seconds) {
@@ -77,7 +82,9 @@ double BuildProgress::share() const {
   // What was expected counts as a few sources more: among the first ones may be none of the few that take long.
   constexpr double k_belief = 0.02;
   const double some = k_belief * source_count_, slowness = laying_ / (k_laying * source_count_);
-  const double finding = finding_ / threads_, joining = k_joined_arc * slowness * arcs / sources;
+  constexpr double k_least_share = 0.7;  // fresh pages may hold up the tables: finding tells that
+  const double finding = finding_ / threads_, as_found = finding / sources / expected_;
+  const double joining = k_joined_arc * std::clamp(as_found, k_least_share * slowness, slowness) * arcs / sources;
   const double per_source = (finding + some * expected_ * slowness) / (sources + some) + joining;
   return std::min(1.0, (laying_ + finding) / (laying_ + per_source * source_count_));
 }

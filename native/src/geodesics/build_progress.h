@@ -32,8 +32,10 @@ class BuildProgress {
 
   /// For those who only have to stop when they are asked to.
   const JobStage& stage() const { return stage_; }
-  /// Of the tables, by the thread that made this. \throw Cancelled.
-  void laid(double share);
+  /// Of the tables, from one share of their time to another.
+  JobStage laying(double begin, double end) const { return stage_.part(begin * laid_, end * laid_); }
+  /// They are. By the thread that made this. \throw Cancelled.
+  void laid();
   /// Calls `find`, which finds the arcs of some vertices and returns how many of both; from any thread. \throw
   /// Cancelled.
   template <class Find>

@@ -54,7 +54,7 @@ void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits
     }
   }
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    stage.check();
+    stage.update(static_cast<double>(i) / static_cast<double>(segments.size()));
     if (places) reach_places(segments[i]);
     shine_from_segment(segments[i], 1);
     shine_from_segment(segments[i], -1);
@@ -66,6 +66,7 @@ void CurveWindows::from_curve(const SurfaceCurve& curve, const RayLimits& limits
     shine_from_end(segments.front(), true, 0);
     shine_from_end(segments.back(), false, curve.length());
   }
+  stage.update(1);
   field_.run(limits, stage, report);
   for (const Index vertex : field_.settled()) {
     const RayLabel& label = field_.label(vertex);

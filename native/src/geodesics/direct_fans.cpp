@@ -12,12 +12,13 @@
 #include "geodesics/planar.h"
 #include "geodesics/query_cache.h"
 #include "support/parallel.h"
+#include "support/scattering_step.h"
 
 namespace saddleback {
 namespace {
 
 // Of the time that one fan takes, for each vertex of the mesh.
-constexpr double k_fan_mesh_cost = 0.035;
+constexpr double k_fan_mesh_cost = 0.07;
 // Points a thread takes at a time, fewer where each has only so many chunks.
 constexpr Index k_most_at_once = 8 * k_batch, k_chunks_a_thread = 4;
 // In mean edges: a corner nearer than this has no direction in single precision, where its square is as good as zero.
@@ -193,11 +194,14 @@ FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> p
 
 namespace {
 
+/// Of the parts: scattered for those who watch, since those of one side may take longer.
+enum class Parts { in_order, scattered };
+
 /// Calls see(finder, thread, batch, points, limits) for batches of the order, with what `points` and `limits` have of
 /// them.
 template <class See>
 void for_each_batch(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const Index> order,
-                    std::span<const double> limits, int threads, const JobStage& stage, See&& see) {
+                    std::span<const double> limits, Parts parts, int threads, const JobStage& stage, See&& see) {
   if (order.empty()) return;
   const auto count = static_cast<Index>(order.size());
   const Index share = count / (k_chunks_a_thread * thread_count(threads)) / k_batch * k_batch;
@@ -212,7 +216,9 @@ void for_each_batch(const SaddleVertexGraph& graph, std::span<const SurfacePoint
   };
   std::vector<Work> works(thread_count(threads));
   std::atomic<Index> done{0};
-  parallel_for(blocks, threads, 1, [&](Index block, int thread) {
+  const Index step = parts == Parts::scattered ? scattering_step(blocks) : 1;
+  parallel_for(blocks, threads, 1, [&](Index turn, int thread) {
+    const auto block = static_cast<Index>(std::int64_t{turn} * step % blocks);
     auto& [own, own_limits] = works[thread];
     const Index end = std::min((block + 1) * chunk, count);
     for (Index first = block * chunk; first < end; first += k_batch) {  // what they see is used while it is at hand
@@ -239,7 +245,8 @@ void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
     DirectFans fans;
   };
   std::vector<Rows> rows(thread_count(threads));
-  for_each_batch(graph, points, order, limits, threads, stage,
+  const Parts parts = stage.is_watched() ? Parts::scattered : Parts::in_order;
+  for_each_batch(graph, points, order, limits, parts, threads, stage,
                  [&](DirectFanFinder& finder, int thread, auto batch, const auto& own, const auto& own_limits) {
                    DirectFans& fans = rows[thread].fans;
                    fans.clear();
@@ -252,7 +259,7 @@ void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint>
                    int threads, const JobStage& stage, const UseSeen& use) {
   std::vector<Index> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  for_each_batch(graph, points, order, limits, threads, stage,
+  for_each_batch(graph, points, order, limits, Parts::in_order, threads, stage,
                  [&](DirectFanFinder& finder, int, auto batch, const auto& own, const auto& own_limits) {
                    finder.view(graph, own, own_limits, stage,
                                [&](Index i, const SeenView& view) { use(batch[i], view); });

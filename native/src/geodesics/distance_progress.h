@@ -11,25 +11,31 @@
 
 namespace saddleback {
 
-/// The work within a distance is guessed from the lengths of paths along edges, which take little of the time, and what
-/// is still to come from the time so far; without a watched job nothing is computed.
+/// The windows of each ring about the sources are guessed from ways along edges, which take little of the time, and
+/// what is still to come from the time so far; without a watched job nothing is computed. Every vertex of the front
+/// splits a window. Windows end where the surface has bent their light so much that they meet others, and with the
+/// front where it meets itself; but where curvature alone draws it together, as on the far side of a sphere, they live
+/// on, more and more side by side.
 class DistanceProgress {
  public:
-  struct Extent {
-    double limit = std::numeric_limits<double>::infinity();  ///< where the propagation ends
-    double until_bent;  ///< edges up to which a vertex has the more windows the farther it is
-  };
-  /// \throw Cancelled.
-  DistanceProgress(const Mesh& mesh, const SurfacePoints& sources, const Extent& extent, const JobStage& stage);
-  /// All vertices up to that distance are done. \throw Cancelled.
-  void reached(double distance);
+  /// Up to a distance. `clock`: since when the stage has lasted. \throw Cancelled.
+  DistanceProgress(const Mesh& mesh, const SurfacePoints& sources, double limit, const WorkClock& clock,
+                   const JobStage& stage);
+  /// The propagation has come so far, to so many vertices. \throw Cancelled.
+  void reached(double distance, Index vertices);
 
  private:
+  /// Work up to a ring or a part of it.
+  double work_before(double ring) const;
+
   JobStage stage_;
-  double per_edge_;
+  double per_edge_, limit_;
   WorkClock clock_;
-  double guessed_ = 0;        ///< seconds
-  std::vector<double> work_;  ///< up to and with each ring about the sources, an edge wide
+  double guessing_ = 0;  ///< seconds
+  double began_ = -1;    ///< the propagation, seconds; below 0 before
+  // Up to and without each ring, an edge wide as ways along edges tell it.
+  std::vector<double> vertices_{0.0}, work_{0.0};
+  std::size_t ring_ = 0;  ///< that has been come to
 };
 
 }  // namespace saddleback

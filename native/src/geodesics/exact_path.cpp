@@ -142,6 +142,7 @@ GeodesicPath ExactTracer::path(const SurfacePoint& target) const {
   }
   GeodesicPath result;
   result.surface.assign(backwards.rbegin(), backwards.rend());
+  result.points.reserve(result.surface.size());
   for (const SurfacePoint& point : result.surface) result.points.push_back(position(mesh, point));
   for (std::size_t i = 1; i < result.points.size(); ++i)
     result.length += (result.points[i] - result.points[i - 1]).norm();

@@ -12,10 +12,10 @@ namespace {
 
 // Microseconds on one machine, of which only ratios matter: a vertex in the surface's layout, in the forecast, when it
 // is reached, and when it bends what reaches it; and a window.
-constexpr double k_cost_of_surface = 0.5, k_cost_of_forecast = 0.64, k_cost_of_vertex = 0.38, k_cost_of_bend = 1.5;
+constexpr double k_cost_of_surface = 0.5, k_cost_of_forecast = 0.95, k_cost_of_vertex = 0.38, k_cost_of_bend = 1.5;
 constexpr double k_cost_of_window = 0.058;
 /// A face whose corners lie far from each other in memory takes so much longer to lay out.
-constexpr double k_cost_of_far_corners = 1.0;
+constexpr double k_cost_of_far_corners = 0.7;
 // Of running with windows that are kept, until sorting was tried.
 constexpr double k_sorting = 0.6, k_keeping = 1.7;  ///< the latter in times of running without keeping
 
@@ -25,8 +25,8 @@ constexpr double k_worth_forecast = 1000;
 /// Windows a vertex, before they are foretold: about as many as a ray passes vertices of its source, until the surface
 /// bends light so much that they meet others.
 double likely_windows(const Mesh& mesh, double vertices_a_source) {
-  constexpr double k_least = 4, k_growth = 0.52, k_last = 0.87;
-  const double straight = k_least + k_growth * std::sqrt(vertices_a_source);
+  constexpr double k_least = 4, k_growth = 0.52, k_power = 0.54, k_last = 1;
+  const double straight = k_least + k_growth * std::pow(vertices_a_source, k_power);
   const double bent = k_last * edges_until_bent(mesh);
   return straight * bent / std::hypot(straight, bent);
 }
@@ -115,9 +115,7 @@ ExactProgress::ExactProgress(const ExactWork& work, const JobStage& stage) : wor
   const bool goes_far = has_needles(mesh);  // vertices are reached long before their windows end
   is_foretold_ = reach.a_source >= k_worth_forecast || goes_far;
   const double at_vertices = (k_cost_of_vertex + k_cost_of_bend * bending_share(mesh)) * reach.vertices;
-  constexpr double k_until_limit = 0.9;  // of the windows near one many would have gone on
-  const double windows = (reach.vertices < reach.held ? k_until_limit : 1) * reach.vertices *
-                         likely_windows(mesh, goes_far ? reach.vertices : reach.a_source);
+  const double windows = reach.vertices * likely_windows(mesh, goes_far ? reach.vertices : reach.a_source);
   of_surface_ = k_cost_of_surface * (1 + k_cost_of_far_corners * share_of_far_corners(mesh)) * reach.held;
   of_forecast_ = is_foretold_ ? k_cost_of_forecast * reach.vertices : 0;
   sorting_ = work.sorts_windows ? k_sorting : 0;
@@ -136,7 +134,7 @@ void ExactProgress::foretell(const ExactSurface& surface, double ring_width) {
                                         k_cost_of_bend / k_cost_of_window};
     forecast_ = WindowForecast(surface, work_.sources, extent, stage_.part(laid / all, (laid + ahead) / all));
     of_running_ = (work_.sorts_windows ? k_keeping : 1) * k_cost_of_window * forecast_.total();
-    speed = clock_.seconds() / (of_surface_ + of_forecast_);
+    speed = (clock_.seconds() - laid) / of_forecast_;  // as little held up by memory as windows are
   }
   began_ = clock_.seconds();
   expected_ = speed * of_running_;
@@ -171,10 +169,11 @@ void ExactProgress::tried_sorting(std::int64_t windows, std::int64_t needed, dou
 /// About each source windows are the more the farther they are from it. Those of vertices that are reached may be due
 /// yet: with many sources most of them.
 double ExactProgress::share_by_vertices(const Done& done) const {
-  constexpr double k_growth = 1.4;
+  constexpr double k_growth = 1.4, k_growth_to_limit = 1.55;  // there windows of vertices beyond it are not due
+  const double growth = std::isinf(work_.limit) ? k_growth : k_growth_to_limit;
   const double share = std::min(1.0, static_cast<double>(done.vertices) / likely_vertices_);
   const auto blocks = static_cast<double>(done.blocks), left = static_cast<double>(done.blocks_left);
-  return std::pow(left > 0 ? share * blocks / (blocks + left) : share, k_growth);
+  return std::pow(left > 0 ? share * blocks / (blocks + left) : share, growth);
 }
 
 double ExactProgress::share_by_rings(const Done& done) {

@@ -28,7 +28,7 @@ class ExactProgress {
   /// So far.
   struct Done {
     double distance = 0;
-    std::int64_t windows = 0;                  ///< 0 where it is not known
+    std::int64_t windows = 0;
     Index vertices = 0;                        ///< that are reached
     std::int64_t blocks = 0, blocks_left = 0;  ///< of windows
   };

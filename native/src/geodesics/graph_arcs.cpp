@@ -12,6 +12,7 @@
 #include "geodesics/window_propagation.h"
 #include "support/memory.h"
 #include "support/parallel.h"
+#include "support/scattering_step.h"
 
 namespace saddleback {
 namespace {
@@ -43,13 +44,6 @@ Index part_size(Index node_count, Index k) {
 
 std::size_t piece_size(Index node_count, bool watched) {
   return watched ? 0 : std::min(k_piece, k_piece_a_node * static_cast<std::size_t>(node_count));
-}
-
-/// A step that leads through all of `count` parts, far from those before: the golden section of them, or near it.
-Index scattering_step(Index count) {
-  auto step = static_cast<Index>(count * 0.618034);
-  while (std::gcd(step, count) != 1) ++step;
-  return step;
 }
 
 /// Blocks in the order in which they are done: by itself theirs, which is as near as memory can be; for those who watch
@@ -95,6 +89,9 @@ std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, Index k, bool watc
   }
   return found;
 }
+
+// Of the time in which tables for waves are laid, until the end of each.
+constexpr double k_with_edges = 0.08, k_with_mesh = 0.87;
 
 int sector_of(double angle, double total_angle) {
   return std::clamp(static_cast<int>(angle / total_angle * ArcCodec::k_sectors), 0, ArcCodec::k_sectors - 1);
@@ -160,13 +157,15 @@ DiskRule disk_rule(Index k, double accuracy, Lattice lattice) {
 
 WaveTables::WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices,
                        int threads, const JobStage& stage)
-    : WaveTables(unfolding, (check_mesh_size(unfolding.mesh()), NodeEdges(unfolding.mesh(), vertices, threads, stage)),
+    : WaveTables(unfolding,
+                 (check_mesh_size(unfolding.mesh()),
+                  NodeEdges(unfolding.mesh(), vertices, threads, stage.part(0, k_with_edges))),
                  nodes, vertices, threads, stage) {}
 
 WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
                        std::span<const Index> vertices, int threads, const JobStage& stage)
-    : mesh(unfolding, edges, nodes, vertices, threads, stage),
-      sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage) {}
+    : mesh(unfolding, edges, nodes, vertices, threads, stage.part(k_with_edges, k_with_mesh)),
+      sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage.part(k_with_mesh, 1)) {}
 
 std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
                                 BuildProgress& progress) {

@@ -76,8 +76,8 @@ struct QueryStages {
   QueryStages(const SaddleVertexGraph& graph, const QuerySources& sources, double field_count, double limit,
               const JobStage& stage)
       : reached(share_within(graph.mesh(), sources, limit, stage)) {
-    const double cost = cost_of_fans(graph, sources),
-                 share = cost / (cost + field_count * reached * graph.mesh().vertex_count());
+    const double cost = cost_of_fans(graph, sources), vertices = field_count * reached * graph.mesh().vertex_count(),
+                 share = cost / (cost + std::max(vertices, cost_of_seeds(graph, sources.points)));
     fans = stage.part(0, share);
     fields = stage.part(share, 1);
   }
@@ -183,7 +183,8 @@ std::vector<double> SaddleVertexGraph::distances_to(const QuerySources& sources,
   check(*this, sources);
   check_surface_points(*mesh_, targets, "targets");
   const double source_cost = cost_of_fans(*this, sources);
-  const double target_cost = cost_of_fans(*this, targets, source_cost > 0 ? FirstFans::later : FirstFans::maybe);
+  const bool after_points = cost_of_fans(*this, sources.points) > 0;
+  const double target_cost = cost_of_fans(*this, targets, after_points ? FirstFans::later : FirstFans::maybe);
   // The more sources, the more straight ways there are to try.
   constexpr double k_cost_of_sight = 2, k_more_sources = 0.35;
   const double sight_cost = k_cost_of_sight * std::pow(static_cast<double>(sources.points.size()), k_more_sources) *

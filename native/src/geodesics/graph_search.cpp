@@ -25,6 +25,7 @@ constexpr std::int64_t k_most_fetched = 64;
 constexpr int k_words_a_line = 8;
 // Arcs between two looks at the job: about a millisecond, also where rows are very long.
 constexpr std::int64_t k_arcs_a_check = 1 << 18;
+constexpr std::size_t k_seeds_a_check = 1 << 14;
 
 /// Dijkstra's queue, with the same face as the buckets.
 class Heap {
@@ -131,7 +132,10 @@ void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGrap
   const std::int64_t* const offsets = graph.arcs().offsets().data();
   const bool with_sources = !sources_.empty(), with_predecessors = !predecessors_.empty();
 
-  for (const AnySeed& seed : seeds) {
+  const double of_seeds = k_cost_of_seed * static_cast<double>(seeds.size()), all = of_seeds + likely_;
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    if (i % k_seeds_a_check == k_seeds_a_check - 1) stage.update(k_cost_of_seed * static_cast<double>(i) / all);
+    const AnySeed& seed = seeds[i];
     const Index node = node_of(graph, seed);
     if (seed.distance > distances_[node] || seed.distance >= bound_) continue;
     if (seed.distance == distances_[node] && (!with_sources || seed.source >= sources_[node])) continue;
@@ -159,7 +163,7 @@ void GraphSearch::propagate(Queue& queue, RelaxRow relax, const SaddleVertexGrap
     arcs_to_check -= end - offsets[entry.node];
     if (arcs_to_check < 0) {
       arcs_to_check = k_arcs_a_check;
-      stage.update(static_cast<double>(expanded) / likely_);
+      stage.update((of_seeds + static_cast<double>(expanded)) / all);
     }
     if (with_sources) offer.label = sources_[entry.node];
     for (std::int64_t first = offsets[entry.node]; first < end; first += LoweredNodes::k_most) {

@@ -25,6 +25,9 @@ struct NodeSeed {
   double distance;
 };
 
+/// What a seed takes, in nodes that are expanded in the time.
+inline constexpr double k_cost_of_seed = 0.1;
+
 /// What a search keeps beside the distances.
 enum class SearchLabels { none, sources, sources_and_predecessors };
 

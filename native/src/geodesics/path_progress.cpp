@@ -53,11 +53,11 @@ double PathProgress::cost_of_field(const SaddleVertexGraph& graph, double of_fan
 }
 
 /// The first arcs take a search among many, the edges that are crossed farther on little; shortened each is laid out
-/// again.
+/// again, the more often the longer the path is.
 double PathProgress::cost_of_path(double edges) const {
-  constexpr double k_end = 2, k_near = 5, k_near_edge = 2.5, k_edge = 0.6, k_shortened_edge = 4;
-  return k_end + k_near_edge * std::min(edges, k_near) +
-         (k_edge + (work_.options.shorten ? k_shortened_edge : 0)) * edges;
+  constexpr double k_end = 2, k_near = 5, k_near_edge = 2.5, k_edge = 1, k_shortened = 2.4, k_longer = 1.25;
+  return k_end + k_near_edge * std::min(edges, k_near) + k_edge * edges +
+         (work_.options.shorten ? k_shortened * std::pow(edges, k_longer) : 0);
 }
 
 /// What a target inside a face takes beside.

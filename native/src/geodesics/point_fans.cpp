@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <mutex>
 
 #include "geodesics/needles.h"
@@ -18,6 +19,7 @@ namespace {
 constexpr double k_edges_an_arc = 0.15;
 // Nodes that a search expands while a fan is found: of a point by waves and one by one, of a curve.
 constexpr double k_cost_of_point = 28, k_cost_of_exact_point = 1500, k_cost_of_strip_vertex = 30;
+constexpr double k_vertices_a_segment = 1;  ///< at least so many take as long, also where a curve runs along itself
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
@@ -30,17 +32,46 @@ double share_of_new_faces(const SurfaceCurve& curve) {
   return 1 - static_cast<double>(std::ssize(repeated)) / std::max(1.0, static_cast<double>(faces.size()));
 }
 
-/// The longest edge of the faces that a curve passes, in the mean over its length: rays are measured by it.
-double longest_edge_beside(const SurfaceCurve& curve) {
-  double sum = 0, length = 0;
-  for (const CurveSegment& segment : curve.segments()) {
-    const Index h = 3 * segment.face;
-    const Mesh& mesh = curve.mesh();
-    sum += segment.length * std::max({mesh.length(h), mesh.length(h + 1), mesh.length(h + 2)});
-    length += segment.length;
+/// How much of a strip is done when its rays have come so far: beside each segment it is as wide as so many of the
+/// edges there, by which rays are measured, and full of so many vertices.
+class StripProgress {
+ public:
+  StripProgress(std::span<const CurveSegment> segments, const Mesh& mesh, const RayLimits& limits)
+      : vertices_(mesh.vertex_count()) {
+    for (const CurveSegment& segment : segments) {
+      const Index h = 3 * segment.face;
+      const double edge = std::max({mesh.length(h), mesh.length(h + 1), mesh.length(h + 2)});
+      parts_.push_back({std::min(limits.radius, limits.edges * edge), segment.length / (edge * edge)});
+    }
+    std::ranges::sort(parts_, {}, &Part::width);
+    for (const Part& part : parts_) {
+      wide_ += part.density;
+      all_ += part.width * part.density;
+    }
   }
-  return length > 0 ? sum / length : curve.mesh().mean_edge_length();
-}
+
+  /// Of rays that have come to `distance`, which never falls from call to call, when so many vertices are reached: all
+  /// of them, maybe, before the strip is as wide as it could be.
+  double share(double distance, Index reached) {
+    constexpr double k_growth = 1.3;  // farther out vertices have more windows
+    for (; next_ < parts_.size() && parts_[next_].width <= distance; ++next_) {
+      narrow_ += parts_[next_].width * parts_[next_].density;
+      wide_ -= parts_[next_].density;
+    }
+    const double width = all_ > 0 ? std::min(1.0, (narrow_ + distance * std::max(0.0, wide_)) / all_) : 1;
+    return std::max(std::pow(width, k_growth), reached / vertices_);
+  }
+
+ private:
+  struct Part {
+    double width, density;  ///< vertices for each step away from the segment, about
+  };
+  const double vertices_;
+  std::vector<Part> parts_;    ///< narrow ones first
+  std::size_t next_ = 0;       ///< the first one that is not done
+  double narrow_ = 0;          ///< work in those that are
+  double wide_ = 0, all_ = 0;  ///< density of the others; the work in all
+};
 
 /// The corners of the faces that a curve passes, by the straight line inside the face.
 void add_corners(const SurfaceCurve& curve, std::vector<PointFan::Arc>& arcs) {
@@ -66,12 +97,15 @@ void sort_arcs(std::vector<PointFan::Arc>& arcs) {
 
 PointFan CurveFanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve& curve, const FanOptions& options,
                               const JobStage& stage) {
+  constexpr double k_made = 0.1, k_begun = 0.05;  // of the time
+  const double made = curve_windows_ ? 0 : k_made, begun = made + k_begun;
   if (!curve_windows_) curve_windows_ = std::make_unique<CurveWindows>(graph.unfolding());
   const RayLimits limits{.radius = options.limit, .edges = strip_width(graph)};
-  // As many windows at any distance: the strip is narrow.
-  const double width = std::min(options.limit, strip_width(graph) * longest_edge_beside(curve));
-  curve_windows_->from_curve(curve, limits, feet_, stage.part(0, 0), options.places,
-                             [&](double distance, Index) { stage.update(distance / width); });
+  const JobStage running = stage.part(begun, 1);
+  StripProgress progress(stage.is_watched() ? curve.segments() : std::span<const CurveSegment>(), graph.mesh(), limits);
+  curve_windows_->from_curve(
+      curve, limits, feet_, stage.part(made, begun), options.places,
+      [&](double distance, Index reached) { running.update(progress.share(distance, reached)); });
   PointFan fan;
   add_corners(curve, fan.arcs);
   for (const CurveFoot& foot : feet_) fan.arcs.push_back({foot.vertex, foot.distance});
@@ -114,7 +148,8 @@ SourceFans find_fans(const SaddleVertexGraph& graph, const QuerySources& sources
   const JobStage rest = stage.part(share, 1);
   std::vector<ScratchPool<CurveFanFinder>::Lease> finders;
   if (!sources.curves.empty()) {
-    for (int thread = 0; thread < thread_count(options.threads); ++thread)
+    const auto count = static_cast<int>(sources.curves.size());
+    for (int thread = 0; thread < std::min(thread_count(options.threads), count); ++thread)
       finders.push_back(graph.query_cache().curve_fan_finders.lease());
   }
   std::atomic<std::size_t> done{0};
@@ -149,9 +184,14 @@ double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources)
     const double length = share_of_new_faces(*curve) * curve->length();
     const double strip = 2 * strip_width(graph) * length / graph.mesh().mean_edge_length();
     cost += needle_factor(graph.mesh()) * k_cost_of_strip_vertex *
-            std::min(strip, static_cast<double>(graph.mesh().vertex_count()));
+            std::max(std::min(strip, static_cast<double>(graph.mesh().vertex_count())),
+                     k_vertices_a_segment * static_cast<double>(curve->segments().size()));
   }
   return cost;
+}
+
+double cost_of_seeds(const SaddleVertexGraph& graph, const SurfacePoints& points) {
+  return k_cost_of_seed * graph.mean_degree() * static_cast<double>(points.size());
 }
 
 std::vector<Seed> seeds_of(std::span<const PointFan> fans) {

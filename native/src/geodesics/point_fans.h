@@ -64,6 +64,8 @@ enum class FirstFans { maybe, later };
 double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources);
 double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, FirstFans first = FirstFans::maybe);
 
+/// What a search needs at least that begins with the arcs of these points' fans, as above.
+double cost_of_seeds(const SaddleVertexGraph& graph, const SurfacePoints& points);
 /// Each fan's arcs as seeds of its own source.
 std::vector<Seed> seeds_of(std::span<const PointFan> fans);
 

@@ -8,11 +8,8 @@
 #include "saddleback/error.h"
 #include "saddleback/trace.h"
 
-#include "geodesics/angle_defect.h"
 #include "geodesics/curve_windows.h"
 #include "geodesics/distance_progress.h"
-#include "geodesics/exact_progress.h"
-#include "geodesics/exact_surface.h"
 #include "geodesics/point_star.h"
 #include "support/parallel.h"
 
@@ -21,6 +18,8 @@ namespace {
 
 // Barycentric. From nearer to a vertex rays past it on both sides cannot be told from each other.
 constexpr double k_at_vertex = 1e-10;
+// Of the time; then what is found is sorted and written down.
+constexpr double k_measured = 0.97;
 
 /// The centre of a map: a vertex where it is as good as one.
 SurfacePoint centre_of(const SurfacePoint& given) {
@@ -34,25 +33,6 @@ void check_radius(double radius) {
   if (!(radius > 0)) throw InputError(message("radius: wanted a distance above 0, got ", radius));
 }
 
-/// Where light bends little, windows last until they meet others from round the surface, as far out as only its shape
-/// tells: there they are foretold, as those of exact distances are. That takes longer than guessing by the vertices,
-/// but not much of the longer time that there is to tell of.
-void run_about(const SurfacePoint& centre, double radius, const Mesh& mesh, RayField& field, const JobStage& stage) {
-  constexpr double k_lasting = 150;  // edges
-  const RayLimits limits{.radius = radius};
-  if (!stage.is_watched()) return field.run(limits, stage);
-  const SurfacePoints centres{centre};
-  const bool is_round = std::numbers::pi * radius * radius >= mesh.area();
-  if (const double until_bent = edges_until_bent(mesh); until_bent < k_lasting || !is_round) {
-    DistanceProgress progress(mesh, centres, {.limit = radius, .until_bent = until_bent}, stage);
-    return field.run(limits, stage, [&](double distance, Index) { progress.reached(distance); });
-  }
-  ExactProgress progress({mesh, centres, radius}, stage);
-  progress.foretell(ExactSurface(mesh, centres, progress.laying()), field.ring_width());
-  field.run(limits, stage,
-            [&](double distance, Index vertices) { progress.update({.distance = distance, .vertices = vertices}); });
-}
-
 }  // namespace
 
 PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const SurfaceCurve& curve, double radius, Job* job) {
@@ -60,16 +40,14 @@ PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const Surface
     throw InputError("curve: it lies on another mesh than the graph's");
   check_radius(radius);
   const JobStage stage(job, "Measuring from the curve");
+  const WorkClock clock(stage.is_watched());
   CurveWindows windows(graph.unfolding());
   std::vector<CurveFoot> feet;
   SurfacePoints places;
   for (const CurveSegment& segment : curve.segments()) places.push_back({segment.face, segment.begin});
-  // Beside a curve there are as many windows from the start on, on smooth surfaces more and more.
-  constexpr double k_of_a_line = 0.05, k_power = 1.5;
-  const double until_bent = k_of_a_line * std::pow(edges_until_bent(graph.mesh()), k_power);
-  DistanceProgress progress(graph.mesh(), places, {.limit = radius, .until_bent = until_bent}, stage);
-  windows.from_curve(curve, {.radius = radius}, feet, stage, nullptr,
-                     [&](double distance, Index) { progress.reached(distance); });
+  DistanceProgress progress(graph.mesh(), places, radius, clock, stage.part(0, k_measured));
+  windows.from_curve(curve, {.radius = radius}, feet, stage.part(0, 0), nullptr,
+                     [&](double distance, Index vertices) { progress.reached(distance, vertices); });
   std::ranges::sort(feet, {}, &CurveFoot::vertex);
   PolarCoordinates result;
   for (const CurveFoot& foot : feet) {
@@ -93,6 +71,7 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, doubl
   check_surface_point(mesh, centre, "centre");
   check_radius(radius);
   const JobStage stage(job, "Measuring about the point");
+  const WorkClock clock(stage.is_watched());
   const SurfacePoint point = centre_of(centre);
   RayField field(graph.unfolding());
   field.begin();
@@ -100,7 +79,8 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, doubl
   if (star.vertex() != k_none) field.add_source(star.vertex(), {0, 0, 0, false});
   const RayWindow window{Vec2::Zero(), 0, 0, 0, 0, k_none, Rays::from_point, 0, false};
   star.shine(field, window, star.begin(), star.begin() + star.total_angle());
-  run_about(point, radius, mesh, field, stage);
+  DistanceProgress progress(mesh, {point}, radius, clock, stage.part(0, k_measured));
+  field.run({.radius = radius}, stage, [&](double distance, Index vertices) { progress.reached(distance, vertices); });
   LogMap result;
   result.vertices = field.settled();
   std::ranges::sort(result.vertices);

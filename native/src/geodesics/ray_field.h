@@ -61,8 +61,6 @@ class RayField {
   const RayLabel& label(Index vertex) const { return vertices_[vertex].label; }
   PlaceDistances& places() { return places_; }
   const PlaceDistances& places() const { return places_; }
-  /// Windows come in rings about the sources of this width.
-  double ring_width() const { return queue_.width(); }
 
  private:
   struct VertexState {

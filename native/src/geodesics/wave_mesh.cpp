@@ -82,8 +82,9 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span
   saddles_.resize(vertices.size());
   const Index *const twins = mesh.twins().data(), *const edge_of = edges.edge_of.data();
   const auto edge_behind = [&](Index h) { return twins[h] == k_none ? k_none : edge_of[twins[h]]; };
+  constexpr double k_recorded = 0.63;  // of the time
   for_each_edge(
-      edges, threads, stage,
+      edges, threads, stage.part(0, k_recorded),
       [&](Index node, Index e, Index h) {
         if (e == first_[node]) saddles_[node] = mesh.is_saddle(vertices[node]);
         const Index apex = mesh.apex(h);
@@ -104,20 +105,26 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span
         __builtin_prefetch(&nodes[mesh.apex(h)]);
         __builtin_prefetch(&nodes[mesh.to(h)]);
       });
-  find_clearances(threads);
+  find_clearances(threads, stage.part(k_recorded, 1));
 }
 
 /// From a point of an edge a straight way comes to the corner beyond, or it crosses a side, and with it the faces about
 /// one of the edge's ends. There it comes to a vertex, which is off the edge by the face's angle at that end at least,
 /// or it leaves across an edge opposite the end. Laid flat, the two edges are nearest to each other at an end of one of
 /// them: that is one of those vertices, or one of the first edge's ends and an edge opposite it.
-void WaveMesh::find_clearances(int threads) {
+void WaveMesh::find_clearances(int threads, const JobStage& stage) {
+  constexpr double k_about = 0.35, k_cleared = 0.9;  // of the time, until then
+  const JobStage first = stage.part(0, k_about), second = stage.part(k_about, k_cleared);
+  const auto look = [this](const JobStage& part, Index node) {
+    if (node % k_chunk == 0) part.update(static_cast<double>(node) / node_count());
+  };
   struct About {
     double clearance = std::numeric_limits<double>::infinity();  ///< from the node to the edges opposite it
     double shortest = std::numeric_limits<double>::infinity();   ///< edge
   };
   LargeArray<About> about(node_count());
   parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
+    look(first, node);
     for (Index e = begin(node); e < end(node); ++e) {
       const Vec2 target(length(e), 0), far = apex(e);
       about[node].clearance = std::min(about[node].clearance, distance_to_segment(Vec2(0, 0), target, far));
@@ -126,6 +133,7 @@ void WaveMesh::find_clearances(int threads) {
   });
   LargeArray<float> clearances(records_.size());
   parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
+    look(second, node);
     const auto beside = [](const About& end, const Vec2& along, const Vec2& to_apex) {
       const double sine =
           along.dot(to_apex) > 0 ? std::abs(cross(along, to_apex)) / (along.norm() * to_apex.norm()) : 1;

@@ -55,7 +55,7 @@ class WaveMesh {
   const std::uint8_t* saddles() const { return saddles_.data(); }
 
  private:
-  void find_clearances(int threads);
+  void find_clearances(int threads, const JobStage& stage);
 
   LargeArray<EdgeRecord> records_;
   std::vector<Index> first_;

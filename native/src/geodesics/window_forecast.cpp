@@ -12,8 +12,9 @@ constexpr double k_pi = std::numbers::pi;
 constexpr std::size_t k_most_rings = 1 << 16;  ///< what is farther out goes into the last one
 // What goes on from a bend ends sooner than its rays tell, as its windows are narrow and lie in others' way.
 constexpr double k_from_bend = 0.5;
-// As a share of a face's edge or, on needles, of its height: guessed distances are as exact as this, usually.
-constexpr double k_doubt = 0.25;
+// As a share of a face's edge or, on needles, of its height: guessed distances are as exact as this. Usually they are
+// more so, but on a sphere all are too short, and rays that end for that miss what comes last, where most windows are.
+constexpr double k_doubt = 0.5;
 
 constexpr double k_surely = 1 - 1e-9;  ///< of squared distances
 
