@@ -12,7 +12,7 @@ namespace saddleback {
 namespace {
 
 constexpr double k_most_rings = 1 << 16;            ///< farther vertices go into the last one
-constexpr double k_laid = 0.05, k_guessing = 0.06;  ///< of the time, usually: what comes before, and this
+constexpr double k_laid = 0.03, k_guessing = 0.05;  ///< of the time, usually: what comes before, and this
 constexpr double k_vertex = 8;                      ///< windows that take as long as a vertex itself
 // How much farther than the limit ways are followed: they may be longer than it seems.
 constexpr double k_farther = 1.15;
@@ -103,8 +103,8 @@ void DistanceProgress::reached(double distance, Index vertices) {
   constexpr double k_too_short = 0.8, k_too_long = 1.25;
   while (ring_ + 2 < vertices_.size() && vertices_[ring_ + 1] <= vertices) ++ring_;
   const double more = vertices_[ring_ + 1] - vertices_[ring_],
-               ring = static_cast<double>(ring_) +
-                      (more > 0 ? std::clamp((vertices - vertices_[ring_]) / more, 0.0, 1.0) : 0.0);
+               within = more > 0 ? std::clamp((vertices - vertices_[ring_]) / more, 0.0, 1.0) : 0.0,
+               ring = static_cast<double>(ring_) + within;
   double all = work_.back();
   if (!std::isinf(limit_))
     all = work_before(limit_ * per_edge_ *

@@ -8,7 +8,8 @@ LabelField propagate_labels(const SaddleVertexGraph& graph, std::span<const Seed
                             bool with_predecessors, const JobStage& stage, double reached) {
   const auto search = graph.query_cache().field_searches.lease();
   const SearchLabels labels = with_predecessors ? SearchLabels::sources_and_predecessors : SearchLabels::sources;
-  search->run(graph, seeds, options, labels, stage, reached);
+  constexpr double k_searched = 0.92;  // of the time
+  search->run(graph, seeds, options, labels, stage.part(0, k_searched), reached);
   const Index count = graph.mesh().vertex_count();
   LabelField field;
   field.distance.resize(count);
@@ -19,6 +20,7 @@ LabelField propagate_labels(const SaddleVertexGraph& graph, std::span<const Seed
     field.predecessor.resize(count);
     search->write_predecessors(graph, field.predecessor);
   }
+  stage.update(1);
   return field;
 }
 
