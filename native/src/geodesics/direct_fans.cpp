@@ -9,6 +9,7 @@
 #include "saddleback/saddle_vertex_graph.h"
 
 #include "geodesics/graph_arcs.h"
+#include "geodesics/needles.h"
 #include "geodesics/planar.h"
 #include "geodesics/query_cache.h"
 #include "support/parallel.h"
@@ -194,7 +195,8 @@ FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> p
 
 namespace {
 
-/// Of the parts: scattered for those who watch, since those of one side may take longer.
+/// Of the parts. For those who watch they are scattered among needles, where those of one side may take much longer;
+/// elsewhere neighbours, which are at hand in memory, save a twentieth of the time.
 enum class Parts { in_order, scattered };
 
 /// Calls see(finder, thread, batch, points, limits) for batches of the order, with what `points` and `limits` have of
@@ -245,7 +247,8 @@ void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
     DirectFans fans;
   };
   std::vector<Rows> rows(thread_count(threads));
-  const Parts parts = stage.is_watched() ? Parts::scattered : Parts::in_order;
+  const bool is_uneven = stage.is_watched() && has_needles(graph.mesh());
+  const Parts parts = is_uneven ? Parts::scattered : Parts::in_order;
   for_each_batch(graph, points, order, limits, parts, threads, stage,
                  [&](DirectFanFinder& finder, int thread, auto batch, const auto& own, const auto& own_limits) {
                    DirectFans& fans = rows[thread].fans;
