@@ -10,9 +10,9 @@ namespace saddleback {
 namespace {
 
 // Less inertia or larger pushes keep the cells from settling, smaller ones let pairs rest where they are.
-constexpr double k_inertia = 0.95;   // of the last step
+constexpr double k_inertia = 0.9;    // of the last step
 constexpr double k_warmth = 0.02;    // first pushes, in roots of the cell's area: the deviation of either coordinate
-constexpr std::uint64_t k_seed = 1;  // any
+constexpr std::uint64_t k_seed = 3;  // any
 
 /// Two independent normal numbers of deviation 1 (G. Box, M. Muller 1958).
 Vec2 normal_pair(std::uint64_t key, std::uint64_t counter) {
