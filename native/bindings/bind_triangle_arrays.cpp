@@ -67,6 +67,18 @@ py::array boundary_distance(const py::object& vertices, const py::object& triang
       [&] { return cell_boundary_distance(points_of(xyz), triangles_of(indices), owners.values, farthest); }));
 }
 
+py::array crossings(const py::object& vertices, const py::object& triangles, const py::object& threads,
+                    const py::object& job) {
+  const ArrayIn<double> xyz = as_points3(vertices, "vertices");
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const Index count = as_integer(threads, "threads");
+  Job* const token = as_job(job);
+  return to_rows<Index>(without_gil([&] {
+    const JobStage stage(token, "Looking for triangles that pass through each other");
+    return self_crossings(points_of(xyz), triangles_of(indices), count, stage);
+  }));
+}
+
 }  // namespace
 
 void bind_triangle_arrays(py::module_& m) {
@@ -167,6 +179,31 @@ Returns
 Notes
 -----
 O(V + T) for a fixed number of rings. Vector distance transform: P.-E. Danielsson, Euclidean distance mapping, 1980.)");
+  m.def("self_crossings", &crossings, py::arg("vertices"), py::arg("triangles"), py::kw_only(), py::arg("threads") = 0,
+        py::arg("job") = py::none(),
+        R"(Find the triangles that pass through each other.
+
+Exact for the coordinates as they are. Triangles that only touch, lie in one plane or share an edge are no such pair.
+
+Parameters
+----------
+vertices : (V, 3) float array
+triangles : (T, 3) int array
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+(k, 2) int32
+    Numbers of triangles, the smaller first, in order. About O(T log T).
+
+Raises
+------
+InputError
+    A corner that is no vertex.
+Cancelled
+    The job was cancelled.)");
 }
 
 }  // namespace saddleback::bindings

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 namespace saddleback {
@@ -65,5 +66,12 @@ CellBoundary cell_boundary(std::span<const Triangle> triangles, std::span<const 
 /// where the nearest segment may be nearest to no vertex on the way. \throw InputError for a wrong number of cells.
 std::vector<double> cell_boundary_distance(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                                            std::span<const Index> triangle_cell, double limit);
+
+/// Pairs of triangles that pass through each other, the smaller number first, in order: an edge of one goes from one
+/// side of the other to its other side. Exact for coordinates as they are; triangles that only touch, lie in one plane
+/// or share an edge are no such pair. The same for any number of threads (0: all cores). \throw Cancelled.
+/// About O(T log T).
+std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                                                 int threads, const JobStage& stage);
 
 }  // namespace saddleback

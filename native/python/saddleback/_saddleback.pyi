@@ -484,6 +484,9 @@ def border_edges(triangles: ArrayLike, vertex_count: SupportsIndex) -> tuple[_In
 def cut_at_level(
     fields: ArrayLike, triangles: ArrayLike, column: SupportsIndex, level: SupportsFloat
 ) -> tuple[_Floats, _Indices, _Indices, NDArray[np.bool_]]: ...
+def self_crossings(
+    vertices: ArrayLike, triangles: ArrayLike, *, threads: SupportsIndex = 0, job: Job | None = None
+) -> _Indices: ...
 def cell_boundary(
     triangles: ArrayLike, triangle_cell: ArrayLike, vertex_count: SupportsIndex
 ) -> tuple[_Indices, _Indices]: ...
