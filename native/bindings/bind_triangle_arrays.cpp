@@ -201,7 +201,7 @@ Returns
 Raises
 ------
 InputError
-    A corner that is no vertex.
+    A corner that is no vertex, a vertex that is not finite.
 Cancelled
     The job was cancelled.)");
 }

@@ -84,6 +84,8 @@ def test_nothing_and_bad_input() -> None:
     assert sb.self_crossings(np.zeros((0, 3)), np.zeros((0, 3), np.int32)).shape == (0, 2)
     with pytest.raises(sb.InputError, match="triangle 0 names vertex 3"):
         sb.self_crossings(np.zeros((3, 3)), [[0, 1, 3]])
+    with pytest.raises(sb.InputError, match="vertex 1 is not finite"):
+        sb.self_crossings([[0, 0, 0], [np.nan, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     job = sb.Job()
     job.cancel()
     with pytest.raises(sb.Cancelled):

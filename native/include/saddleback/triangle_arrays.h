@@ -69,8 +69,8 @@ std::vector<double> cell_boundary_distance(std::span<const Vec3> vertices, std::
 
 /// Pairs of triangles that pass through each other, the smaller number first, in order: an edge of one goes from one
 /// side of the other to its other side. Exact for coordinates as they are; triangles that only touch, lie in one plane
-/// or share an edge are no such pair. The same for any number of threads (0: all cores). \throw Cancelled.
-/// About O(T log T).
+/// or share an edge are no such pair. The same for any number of threads (0: all cores). \throw Cancelled,
+/// InputError for a vertex that is not finite. About O(T log T).
 std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                                                  int threads, const JobStage& stage);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "saddleback/error.h"
 #include "saddleback/triangle_arrays.h"
 
 #include "mesh/corner_table.h"
@@ -138,6 +139,8 @@ class Crossings {
 std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                                                  int threads, const JobStage& stage) {
   check_corners(triangles, static_cast<Index>(vertices.size()));
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+    if (!vertices[v].allFinite()) throw InputError(message("vertices: vertex ", v, " is not finite"));
   const Crossings crossings(vertices, triangles);
   const auto count = static_cast<Index>(triangles.size());
   std::vector<Box> boxes(count);
