@@ -1,6 +1,6 @@
-// Finding a graph's arcs on a CUDA device. A warp takes a source at a time, with all its windows in shared
-// memory; sources that overflow it are done again with room in global memory, and what overflows even that is left to
-// the caller. The answer is the processor's, to the bit.
+// Finding a graph's arcs on a CUDA device. A warp takes a source or two at a time, with all their windows in shared
+// memory; sources that overflow it are done again with more room, and what overflows even that is left to the caller.
+// The answer is the processor's, to the bit.
 
 #include <algorithm>
 #include <numeric>
@@ -12,6 +12,7 @@
 
 #include "geodesics/device_arcs.h"
 #include "geodesics/device_boundary.cuh"
+#include "geodesics/device_row_writer.cuh"
 #include "geodesics/device_union.cuh"
 #include "geodesics/device_waves.cuh"
 #include "support/device_stream.h"
@@ -21,29 +22,40 @@
 namespace saddleback {
 namespace {
 
-constexpr int k_draft_room = 2048;
-constexpr int k_large_draft_room = 1 << 15;
 // Sources between two looks at whether to go on: a few milliseconds.
 constexpr std::int32_t k_sources_per_launch = 1 << 18;
 
-/// Room for the windows of a source and the vertices that it reaches. What overflows one goes on to the next.
-template <bool All_, int Ring, int Slots, bool RingsAreShared>
+/// Most memory that the warps of a block share, of any device: what fewer have room for is told when it runs.
+constexpr std::size_t k_shared_bytes = 227 << 10;
+
+/// Room for the windows of a warp's sources and the vertices that they reach; what is not in shared memory is in global
+/// memory. What overflows one goes on to the next.
+template <bool All_, int Windows, int Slots, int Seats_, bool TableIsShared, bool PoolIsShared>
 struct Room {
-  static constexpr bool All = All_;
-  [[maybe_unused]] static constexpr bool rings_are_shared = RingsAreShared;
+  static constexpr bool All = All_, table_is_shared = TableIsShared, pool_is_shared = PoolIsShared;
+  static constexpr int Seats = Seats_;
   using Table = WaveTable<All, Slots>;
-  using Rings = WaveRings<All, Ring>;
-  [[maybe_unused]] static constexpr std::size_t shared_bytes = sizeof(Table) + (RingsAreShared ? sizeof(Rings) : 0);
+  using Pool = WindowPool<All, Windows>;
+  using Best = BestSightings<Table, Seats>;
+  static_assert(sizeof(Best) <= sizeof(Pool));
+  static constexpr std::size_t warp_bytes = (TableIsShared ? sizeof(Table) : 0) + (PoolIsShared ? sizeof(Pool) : 0);
+  static constexpr int k_most_warps = 24;
+  static constexpr int Warps =
+      warp_bytes * k_most_warps <= k_shared_bytes ? k_most_warps : static_cast<int>(k_shared_bytes / warp_bytes);
 };
+/// By the arcs that are asked for. Fewer windows at once leave room for more sources at once.
 template <bool All>
-using SmallRoom = Room<All, 48, 256, true>;
+using SmallRoom = Room<All, All ? 80 : 96, All ? 256 : 384, All ? 1 : 2, true, true>;
 template <bool All>
-using MiddleRoom = Room<All, All ? 160 : 112, 512, false>;
+using MiddleRoom = Room<All, All ? 144 : 128, All ? 384 : 512, 1, true, true>;
 template <bool All>
-using WideRoom = Room<All, 512, 2048, false>;
-/// In global memory, two thousand sources at a time.
+using WideRoom = Room<All, All ? 256 : 192, 768, 1, true, true>;
 template <bool All>
-using LargeRoom = Room<All, 4096, 1 << 14, false>;
+using HugeRoom = Room<All, 512, 2048, 1, true, false>;
+/// A thousand sources at a time.
+template <bool All>
+using LastRoom = Room<All, 8192, 1 << 14, 1, false, false>;
+constexpr int k_most_in_last = 1024;
 
 /// Whether there are edges that are none for WarpWaves.
 __global__ void look_for_extremes(const double* lengths, std::int32_t count, int* has_extremes) {
@@ -59,67 +71,84 @@ __global__ void note_saddles(EdgeRecord* records, std::int32_t count, const std:
     if (saddles[records[i].apex] != 0) records[i].clearances |= k_saddle_bit;
 }
 
+/// The vertices at the other ends of the mesh edges about each node. At the boundary the last edge's face has a side
+/// that is no edge of the node's. `more` counts the blocks behind those of the nodes.
+__global__ void list_neighbours(DeviceMesh mesh, std::int32_t nodes, Neighbour* neighbours, std::int32_t* more) {
+  const auto node = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (node >= nodes) return;
+  const std::int32_t begin = mesh.first[node], end = mesh.first[node + 1];
+  const bool has_other_side = end > begin && mesh.records[end - 1].left < 0;
+  std::int32_t block = node, filled = 0, left = end - begin + (has_other_side ? 1 : 0);
+  const auto add = [&](std::int32_t target, double length) {
+    if (filled == Neighbour::k_block - 1 && left > 1) {
+      const std::int32_t next = nodes + atomicAdd(more, 1);
+      neighbours[block * Neighbour::k_block + filled] = {Neighbour::k_link | static_cast<std::uint32_t>(next), 0};
+      block = next;
+      filled = 0;
+    }
+    const std::uint32_t key = DiskKey<1>::pack(target, 0, mesh.saddles[target] != 0);
+    neighbours[block * Neighbour::k_block + filled++] = {key, static_cast<float>(length)};
+    --left;
+  };
+  for (std::int32_t e = begin; e < end; ++e) add(mesh.targets[e], mesh.lengths[e]);
+  if (has_other_side) {
+    const EdgeRecord& last = mesh.records[end - 1];
+    const double length = mesh.lengths[end - 1];
+    add(last.apex, norm_of(last.a * length, last.b * length));
+  }
+  for (; filled < Neighbour::k_block; ++filled)
+    neighbours[block * Neighbour::k_block + filled] = {Neighbour::k_none, 0};
+}
+
 struct Work {
-  const int* fails;           ///< whether all do
-  const std::int32_t* nodes;  ///< null: all from `begin` on
+  const int* fails;            ///< whether all do
+  const std::int32_t* nodes;   ///< null: all from `begin` on
+  const std::int32_t* listed;  ///< how many nodes; null: `count`
   std::int32_t begin, count;
   std::int32_t* next;      ///< counts what is taken
   std::int32_t* failed;    ///< nodes
   std::int32_t* failures;  ///< their number
 };
 
+/// Global memory of all warps.
 template <class Room>
-__device__ void work_through(const DeviceMesh& mesh, const Work& work, typename Room::Table& table,
-                             typename Room::Rings& rings, Sighting* draft, int draft_room, const DeviceRows& rows) {
-  const int lane = threadIdx.x & 31;
-  WarpWaves<Room::All, typename Room::Table, typename Room::Rings> waves(mesh, table, rings, draft, draft_room);
+struct Scratch {
+  typename Room::Table* tables;
+  typename Room::Pool* pools;
+  Sighting* drafts;
+};
+
+/// Warps that have nothing in common but the memory that they divide among themselves.
+template <class Room>
+__global__ void __launch_bounds__(32 * Room::Warps, 1)
+    find_arcs(DeviceMesh mesh, Work work, Scratch<Room> scratch, DeviceRows rows) {
+  extern __shared__ __align__(16) char memory[];
+  using Table = typename Room::Table;
+  using Pool = typename Room::Pool;
+  using Waves = WarpWaves<Table, Pool, Room::Seats>;
+  const int lane = threadIdx.x & 31, warp = static_cast<int>(threadIdx.x) / 32;
+  const std::size_t place = static_cast<std::size_t>(blockIdx.x) * (blockDim.x / 32) + warp;
+  char* const own = memory + warp * Room::warp_bytes;
+  Table& table = Room::table_is_shared ? *reinterpret_cast<Table*>(own) : scratch.tables[place];
+  Pool& pool = Room::pool_is_shared ? *reinterpret_cast<Pool*>(own + sizeof table) : scratch.pools[place];
+  Waves waves(mesh, table, pool, scratch.drafts + place * Table::Draft, Table::Draft);
+  const std::int32_t count = work.listed ? *work.listed : work.count;
   while (true) {
     std::int32_t number = 0;
-    if (lane == 0) number = atomicAdd(work.next, 1);
-    number = __shfl_sync(k_warp, number, 0);
-    if (number >= work.count) return;
-    const std::int32_t node = work.nodes ? work.nodes[number] : work.begin + number;
-    waves.begin(node);
-    if (*work.fails == 0 && waves.run()) {
-      int count = 0;
-      waves.for_each_kept([&](const Sighting&, unsigned kept) { count += __popc(kept); });
-      const RowPlace row = rows.reserve(node, count);
-      std::int64_t at = row.first;
-      waves.for_each_kept([&](const Sighting& seen, unsigned kept) {
-        if (row.fits && (kept >> lane & 1)) {
-          const auto [word, back_sector] = waves.arc_of(seen);
-          rows.put(at + __popc(kept & ((1u << lane) - 1)), word, back_sector);
-        }
-        at += __popc(kept);
-      });
-    } else if (lane == 0) {
-      work.failed[atomicAdd(work.failures, 1)] = node;
+    if (lane == 0) number = atomicAdd(work.next, Room::Seats);
+    number = uniform(number);
+    if (number >= count) return;
+    const WarpSources sources{work.nodes ? work.nodes[number] : work.begin + number, min(Room::Seats, count - number)};
+    bool done = false;
+    if (*work.fails == 0) {
+      waves.begin(sources);
+      done = waves.run();
+      auto& best = reinterpret_cast<typename Room::Best&>(pool);
+      if (done) done = RowWriter<Waves, Table, Room::Seats>(mesh, waves, best).write(rows);
     }
+    if (!done && lane < sources.count) work.failed[atomicAdd(work.failures, 1)] = sources.node + lane;
     __syncwarp();
   }
-}
-
-/// One warp a block. The table is in shared memory, and the rings where they are small.
-template <class Room>
-__global__ void __launch_bounds__(32)
-    find_arcs(DeviceMesh mesh, Work work, typename Room::Rings* rings, Sighting* drafts, DeviceRows rows) {
-  extern __shared__ __align__(16) char memory[];
-  auto& table = *reinterpret_cast<typename Room::Table*>(memory);
-  Sighting* const draft = drafts + static_cast<std::size_t>(blockIdx.x) * k_draft_room;
-  if constexpr (Room::rings_are_shared) {
-    auto& own = *reinterpret_cast<typename Room::Rings*>(memory + sizeof table);
-    work_through<Room>(mesh, work, table, own, draft, k_draft_room, rows);
-  } else {
-    work_through<Room>(mesh, work, table, rings[blockIdx.x], draft, k_draft_room, rows);
-  }
-}
-
-/// One warp a block, in global memory.
-template <class Room>
-__global__ void __launch_bounds__(32) find_large_disks(DeviceMesh mesh, Work work, typename Room::Table* tables,
-                                                       typename Room::Rings* rings, Sighting* drafts, DeviceRows rows) {
-  work_through<Room>(mesh, work, tables[blockIdx.x], rings[blockIdx.x],
-                     drafts + static_cast<std::size_t>(blockIdx.x) * k_large_draft_room, k_large_draft_room, rows);
 }
 
 /// Host memory of the request, on the device.
@@ -135,6 +164,7 @@ class Tables {
         apex_sectors_(edges(r), stream),
         per_radian_(nodes(r), stream),
         saddles_(nodes(r), stream),
+        neighbours_(r.k > 0 ? Neighbour::k_block * neighbour_blocks(r) : 0, stream),
         mesh_{records_.data(),
               first_.data(),
               targets_.data(),
@@ -149,7 +179,8 @@ class Tables {
               r.k,
               r.detour,
               r.excess,
-              r.slack} {
+              r.slack,
+              neighbours_.data()} {
     HostCopies copies(stream);
     const auto fill = [&](const auto* from, auto& to) { copies.to_device(from, to.size(), to.data()); };
     fill(r.records, records_);
@@ -164,17 +195,28 @@ class Tables {
     copies.finish();
     note_saddles<<<256, 256, 0, stream>>>(records_.data(), r.edge_count, saddles_.data());
     check_cuda(cudaGetLastError(), "noting saddles");
+    if (r.k > 0) {
+      constexpr int k_threads = 256;
+      const auto blocks = static_cast<unsigned>(r.node_count / k_threads + 1);
+      DeviceBuffer<std::int32_t> more(1, stream);
+      more.fill_bytes(0);
+      list_neighbours<<<blocks, k_threads, 0, stream>>>(mesh_, r.node_count, neighbours_.data(), more.data());
+      check_cuda(cudaGetLastError(), "listing neighbours");
+    }
   }
   const DeviceMesh& mesh() const { return mesh_; }
 
  private:
   static std::size_t edges(const ArcTwinRequest& r) { return static_cast<std::size_t>(r.edge_count); }
   static std::size_t nodes(const ArcTwinRequest& r) { return static_cast<std::size_t>(r.node_count); }
+  /// At most: all but the last of a node's blocks hold seven, and it has one more neighbour than edges.
+  static std::size_t neighbour_blocks(const ArcTwinRequest& r) { return nodes(r) + (edges(r) + nodes(r)) / 7; }
   DeviceBuffer<EdgeRecord> records_;
   DeviceBuffer<std::int32_t> first_, targets_;
   DeviceBuffer<double> lengths_;
   DeviceBuffer<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;
   DeviceBuffer<std::uint8_t> saddles_;
+  DeviceBuffer<Neighbour> neighbours_;
   DeviceMesh mesh_;
 };
 
@@ -203,8 +245,10 @@ class ArcFinder {
         caller_(caller),
         stream_(stream),
         tables_(request, stream),
-        failed_(static_cast<std::size_t>(part.nodes.count()), stream),
-        counters_(2, stream),
+        failed_{DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream),
+                DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream)},
+        next_(1, stream),
+        failures_(k_passes, stream),
         has_extremes_(1, stream),
         rows_(request.node_count, first_guess(request, part.nodes), request.packing.target_mask, stream) {
     has_extremes_.fill_bytes(0);
@@ -214,7 +258,12 @@ class ArcFinder {
 
   void find(DeviceTimes& times) {
     while (true) {
-      find_all(times);
+      rows_.clear();
+      if (request_.k > 0) {
+        find_all<true>(times);
+      } else {
+        find_all<false>(times);
+      }
       const std::int64_t wanted = rows_.words_wanted();
       if (wanted <= rows_.room()) return;
       rows_ = RowStore(request_.node_count, wanted + wanted / 16, request_.packing.target_mask, stream_);
@@ -223,82 +272,40 @@ class ArcFinder {
   RowStore& rows() { return rows_; }
 
  private:
+  /// Rooms that a source may go through.
+  static constexpr std::size_t k_passes = 4;
+
+  template <bool All>
   void find_all(DeviceTimes& times) {
-    rows_.clear();
-    times.second_pass = times.by_processor = 0;
-    if (request_.k > 0) {
-      find_by_size<true>(request_.k <= 40, times);
+    failures_.fill_bytes(0);
+    if (is_small()) {
+      find_in<SmallRoom<All>>(0);
+    } else if (is_middle()) {
+      find_in<MiddleRoom<All>>(0);
     } else {
-      find_by_size<false>(request_.excess >= 6e-3, times);
+      find_in<WideRoom<All>>(0);
     }
+    find_in<WideRoom<All>>(1);
+    times.second_pass = failures(0);
+    times.by_processor = 0;
+    if (failures(1) > 0) find_in<HugeRoom<All>>(2);
+    if (failures(1) > 0 && failures(2) > 0) find_in<LastRoom<All>>(3);
+    if (failures(1) == 0 || failures(2) == 0 || failures(3) == 0) return;
+    find_rest(failures(3), times);
   }
 
-  /// `small` when most sources need little memory: then more of them run at once.
-  template <bool All>
-  void find_by_size(bool small, DeviceTimes& times) {
-    std::vector<std::int32_t> left;
-    bool all = true;
-    const auto pass = [&]<class Room>(std::type_identity<Room>) {
-      left = find_in_shared<Room>(all ? nullptr : &left);
-      all = false;
-    };
-    if (small) pass(std::type_identity<SmallRoom<All>>());
-    if (all || !left.empty()) pass(std::type_identity<MiddleRoom<All>>());
-    times.second_pass = static_cast<std::int64_t>(left.size());
-    if (!left.empty()) pass(std::type_identity<WideRoom<All>>());
-    if (!left.empty()) find_large<All>(left, times);
-  }
-
-  /// Of all nodes or those listed. \return what did not find room.
-  template <class Room>
-  std::vector<std::int32_t> find_in_shared(const std::vector<std::int32_t>* nodes) {
-    const auto kernel = find_arcs<Room>;
-    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, Room::shared_bytes),
-               "asking for shared memory");
-    // Rings that are not in shared memory had better be in the cache beside it.
-    constexpr int k_carveout = Room::rings_are_shared ? 100 : 75;
-    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, k_carveout),
-               "asking for shared memory");
-    const int blocks = blocks_of(reinterpret_cast<const void*>(kernel), Room::shared_bytes);
-    DeviceBuffer<Sighting> drafts(static_cast<std::size_t>(blocks) * k_draft_room, stream_);
-    DeviceBuffer<typename Room::Rings> rings(Room::rings_are_shared ? 0 : static_cast<std::size_t>(blocks), stream_);
-    const std::int32_t all = nodes ? static_cast<std::int32_t>(nodes->size()) : part_.nodes.count();
-    const DeviceBuffer<std::int32_t> list(
-        nodes ? std::span<const std::int32_t>(*nodes) : std::span<const std::int32_t>(), stream_);
-    counters_.fill_bytes(0);
-    for (std::int32_t begin = 0; begin < all; begin += k_sources_per_launch) {
-      report(nodes ? 0.99 : static_cast<double>(begin) / all);
-      const std::int32_t count = std::min(k_sources_per_launch, all - begin);
-      check_cuda(cudaMemsetAsync(counters_.data(), 0, sizeof(std::int32_t), stream_), "clearing a counter");
-      const Work part = work(nodes ? list.data() + begin : nullptr, part_.nodes.begin + begin, count, failed_);
-      kernel<<<std::min(blocks, count), 32, Room::shared_bytes, stream_>>>(tables_.mesh(), part, rings.data(),
-                                                                           drafts.data(), rows_.view());
-      check_cuda(cudaGetLastError(), "finding arcs");
-      if (all > k_sources_per_launch) check_cuda(cudaStreamSynchronize(stream_), "finding arcs");
+  /// By the processor. What ends the windows of one node there may be those of others of its batch: all have to be
+  /// done.
+  void find_rest(std::int32_t count, DeviceTimes& times) {
+    std::vector<std::int32_t> failed(static_cast<std::size_t>(count)), left;
+    failed_[1].read(failed);
+    times.by_processor = count;
+    std::ranges::sort(failed);  // they failed in any order
+    for (const std::int32_t node : failed) {
+      const std::int32_t first = node / k_batch * k_batch;
+      if (!left.empty() && first <= left.back()) continue;
+      for (std::int32_t n = first; n < std::min(first + k_batch, part_.nodes.end); ++n) left.push_back(n);
     }
-    return failures(failed_);
-  }
-
-  template <bool All>
-  void find_large(const std::vector<std::int32_t>& nodes, DeviceTimes& times) {
-    using Room = LargeRoom<All>;
-    const auto kernel = find_large_disks<Room>;
-    const int most = blocks_of(reinterpret_cast<const void*>(kernel), 0);
-    const int blocks = std::min({most, static_cast<int>(nodes.size()), 2048});
-    DeviceBuffer<Sighting> drafts(static_cast<std::size_t>(blocks) * k_large_draft_room, stream_);
-    DeviceBuffer<typename Room::Table> tables(static_cast<std::size_t>(blocks), stream_);
-    DeviceBuffer<typename Room::Rings> rings(static_cast<std::size_t>(blocks), stream_);
-    const DeviceBuffer<std::int32_t> list(nodes, stream_);
-    DeviceBuffer<std::int32_t> failed(nodes.size(), stream_);
-    counters_.fill_bytes(0);
-    kernel<<<blocks, 32, 0, stream_>>>(tables_.mesh(),
-                                       work(list.data(), 0, static_cast<std::int32_t>(nodes.size()), failed),
-                                       tables.data(), rings.data(), drafts.data(), rows_.view());
-    check_cuda(cudaGetLastError(), "finding arcs of large disks");
-    std::vector<std::int32_t> left = failures(failed);
-    times.by_processor = static_cast<std::int64_t>(left.size());
-    if (left.empty()) return;
-    std::ranges::sort(left);
     caller_.ask([&](const ArcTwinCaller& caller) {
       FoundRows found{};
       if (!caller.find_rows(caller.self, left.data(), static_cast<std::int32_t>(left.size()), &found)) return false;
@@ -307,32 +314,74 @@ class ArcFinder {
     });
   }
 
-  int blocks_of(const void* kernel, std::size_t shared) const {
+  bool is_small() const { return request_.k > 0 ? request_.k <= 50 : request_.excess >= 3e-3; }
+  bool is_middle() const { return request_.k <= 110; }
+
+  /// Of all nodes or, from the second pass on, those that failed in the one before.
+  template <class Room>
+  void find_in(std::size_t pass) {
+    const auto kernel = find_arcs<Room>;
+    const void* const code = reinterpret_cast<const void*>(kernel);
+    const int warps = warps_of_block(Room::warp_bytes, Room::Warps);
+    const std::size_t shared = warps * Room::warp_bytes;
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)),
+               "asking for shared memory");
+    // Pools that are not in shared memory had better be in the cache beside it.
+    constexpr int k_carveout = Room::pool_is_shared ? 100 : 75;
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, k_carveout),
+               "asking for shared memory");
+    const std::int32_t all = part_.nodes.count();
+    int blocks = std::min(blocks_of(code, 32 * warps, shared), (all / Room::Seats + warps) / warps);
+    if (!Room::table_is_shared) blocks = std::min(blocks, k_most_in_last / warps);
+    const auto places = static_cast<std::size_t>(blocks) * warps;
+    DeviceBuffer<Sighting> drafts(places * Room::Table::Draft, stream_);
+    DeviceBuffer<typename Room::Table> tables(Room::table_is_shared ? 0 : places, stream_);
+    DeviceBuffer<typename Room::Pool> pools(Room::pool_is_shared ? 0 : places, stream_);
+    for (std::int32_t begin = 0; begin < all; begin += k_sources_per_launch) {
+      report(pass > 0 ? 0.99 : static_cast<double>(begin) / all);
+      next_.fill_bytes(0);
+      Work work{has_extremes_.data(),
+                nullptr,
+                nullptr,
+                part_.nodes.begin + begin,
+                std::min(k_sources_per_launch, all - begin),
+                next_.data(),
+                failed_[pass % 2].data(),
+                failures_.data() + pass};
+      if (pass > 0) {
+        work.nodes = failed_[1 - pass % 2].data();
+        work.listed = failures_.data() + pass - 1;
+      }
+      kernel<<<blocks, 32 * warps, shared, stream_>>>(tables_.mesh(), work,
+                                                      {tables.data(), pools.data(), drafts.data()}, rows_.view());
+      check_cuda(cudaGetLastError(), "finding arcs");
+      if (pass > 0) break;
+      if (all > k_sources_per_launch) check_cuda(cudaStreamSynchronize(stream_), "finding arcs");
+    }
+  }
+
+  /// Warps for which a block has the memory.
+  int warps_of_block(std::size_t warp_bytes, int most) const {
+    int bytes = 0;
+    check_cuda(cudaDeviceGetAttribute(&bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, part_.device),
+               "asking for the size of shared memory");
+    if (warp_bytes == 0) return most;
+    const int warps = std::min(most, static_cast<int>(static_cast<std::size_t>(bytes) / warp_bytes));
+    if (warps == 0) throw std::runtime_error("the device has too little shared memory for the graph");
+    return warps;
+  }
+
+  int blocks_of(const void* kernel, int threads, std::size_t shared) const {
     int per_processor = 0, processors = 0;
-    check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, kernel, 32, shared),
+    check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, kernel, threads, shared),
                "asking for occupancy");
     check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, part_.device),
                "asking for the number of processors");
     return std::max(1, per_processor) * processors;
   }
 
-  Work work(const std::int32_t* nodes, std::int32_t begin, std::int32_t count, DeviceBuffer<std::int32_t>& failed) {
-    return {has_extremes_.data(), nodes, begin, count, counters_.data(), failed.data(), counters_.data() + 1};
-  }
-
-  std::vector<std::int32_t> failures(const DeviceBuffer<std::int32_t>& failed) {
-    std::int32_t counts[2];
-    counters_.read(counts);
-    std::vector<std::int32_t> nodes(static_cast<std::size_t>(counts[1]));
-    if (!nodes.empty()) {
-      check_cuda(cudaMemcpyAsync(nodes.data(), failed.data(), nodes.size() * sizeof(std::int32_t),
-                                 cudaMemcpyDeviceToHost, stream_),
-                 "copying from the device");
-      check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
-      std::ranges::sort(nodes);  // they failed in any order
-    }
-    return nodes;
-  }
+  /// Of a pass. Waits for the stream.
+  std::int32_t failures(std::size_t pass) const { return failures_.value_at(pass); }
 
   void report(double fraction) const {
     caller_.report(part_.member, Share::upload + (Share::find - Share::upload) * fraction);
@@ -343,7 +392,9 @@ class ArcFinder {
   TeamCaller<ArcTwinCaller>& caller_;
   cudaStream_t stream_;
   Tables tables_;
-  DeviceBuffer<std::int32_t> failed_, counters_, has_extremes_;
+  DeviceBuffer<std::int32_t> failed_[2];  ///< nodes that failed in passes of even and of odd number
+  DeviceBuffer<std::int32_t> next_, failures_;
+  DeviceBuffer<int> has_extremes_;
   RowStore rows_;
 };
 
@@ -351,8 +402,9 @@ class ArcFinder {
 std::uint64_t bytes_needed(const ArcTwinRequest& r, IndexRange range) {
   const auto edges = static_cast<std::uint64_t>(r.edge_count), nodes = static_cast<std::uint64_t>(r.node_count);
   const auto words = static_cast<std::uint64_t>(first_guess(r, range));
-  constexpr std::uint64_t k_drafts = std::uint64_t{96} << 20;
-  return edges * (sizeof(EdgeRecord) + 24) + nodes * 48 + words * (13 + 10) + k_drafts;
+  constexpr std::uint64_t k_drafts = std::uint64_t{160} << 20;
+  const std::uint64_t neighbours = r.k > 0 ? sizeof(Neighbour) * Neighbour::k_block * (nodes + (edges + nodes) / 7) : 0;
+  return edges * (sizeof(EdgeRecord) + 24) + nodes * 48 + neighbours + words * (13 + 10) + k_drafts;
 }
 
 /// A graph found by one or several devices, each the rows of a range of nodes.
@@ -375,7 +427,8 @@ class Builder {
   std::size_t members() const { return static_cast<std::size_t>(team_.members()); }
   Part part(int member) const {
     const auto begin_of = [&](std::int64_t i) {
-      return static_cast<std::int32_t>(request_.node_count * i / team_.members());
+      const auto begin = static_cast<std::int32_t>(request_.node_count * i / team_.members());
+      return i == team_.members() ? begin : begin / k_batch * k_batch;  // no batch is divided
     };
     return {member, team_.device(member), {begin_of(member), begin_of(member + 1)}};
   }

@@ -23,7 +23,8 @@ __global__ void select_arcs(DeviceRows rows, IndexRange nodes, IndexRange ends, 
   };
   int total = 0;
   for (int base = 0; base < count; base += 32) total += __popc(chosen_of(base));
-  const RowPlace row = chosen.reserve(node, total);
+  const RowPlace row = chosen.reserve(total);
+  if (lane == 0) chosen.note(node, row.first, total);
   if (!row.fits) return;
   std::int64_t at = row.first;
   for (int base = 0; base < count; base += 32) {
@@ -46,7 +47,7 @@ inline RowStore rows_across(RowStore& rows, IndexRange nodes, IndexRange ends, c
   const auto choose = [&](std::int64_t room) {
     RowStore chosen(rows.nodes(), room, rows.target_mask(), stream);
     chosen.clear();
-    select_arcs<<<blocks, k_block_threads, 0, stream>>>(rows.view(), nodes, ends, chosen.view());
+    if (blocks > 0) select_arcs<<<blocks, k_block_threads, 0, stream>>>(rows.view(), nodes, ends, chosen.view());
     check_cuda(cudaGetLastError(), "choosing arcs");
     return chosen;
   };

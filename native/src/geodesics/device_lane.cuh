@@ -19,7 +19,8 @@ struct Simd {
   using Mask = bool;
   SADDLEBACK_STEP static float fill(float value) { return value; }
   SADDLEBACK_STEP static float pick(bool mask, float yes, float no) { return mask ? yes : no; }
-  SADDLEBACK_STEP static bool pick(bool mask, bool yes, bool no) { return mask ? yes : no; }
+  /// Without a branch.
+  SADDLEBACK_STEP static bool pick(bool mask, bool yes, bool no) { return (mask & yes) | (!mask & no); }
   SADDLEBACK_STEP static float min(float a, float b) { return a < b ? a : b; }
   SADDLEBACK_STEP static float max(float a, float b) { return a > b ? a : b; }
   // Quotients and roots as IEEE's, by the steps that compilers take for numbers that are neither huge nor tiny, but

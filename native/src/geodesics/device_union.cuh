@@ -31,16 +31,16 @@ struct DeviceRows {
   std::int64_t room;
   std::uint64_t target_mask;
 
-  /// By all lanes of a warp.
-  __device__ RowPlace reserve(std::int32_t node, int count) const {
+  /// Place for words, of one row or several. By all lanes of a warp.
+  __device__ RowPlace reserve(int count) const {
     unsigned long long first = 0;
-    if ((threadIdx.x & 31) == 0) {
-      first = atomicAdd(taken, static_cast<unsigned long long>(count));
-      firsts[node] = static_cast<std::int64_t>(first);
-      counts[node] = count;
-    }
+    if ((threadIdx.x & 31) == 0) first = atomicAdd(taken, static_cast<unsigned long long>(count));
     first = __shfl_sync(0xffffffffu, first, 0);
     return {static_cast<std::int64_t>(first), static_cast<std::int64_t>(first) + count <= room};
+  }
+  __device__ void note(std::int32_t node, std::int64_t first, int count) const {
+    firsts[node] = first;
+    counts[node] = count;
   }
   __device__ void put(std::int64_t at, std::uint64_t word, std::uint8_t back_sector) const {
     words[at] = word;

@@ -10,9 +10,6 @@ namespace {
 
 constexpr float k_infinity = std::numeric_limits<float>::infinity();
 const std::int32_t k_unreached = std::bit_cast<std::int32_t>(k_infinity);
-// Windows per source are 200 to 1,000 on any sane mesh; needles by the thousand round one vertex may exceed that
-// without end, and stopping only costs arcs, never correctness.
-constexpr int k_most_windows = 1 << 20;
 // Vertices as far as the k-th, but for rounding, belong to the disk: on regular meshes there are many.
 constexpr float k_as_far = 1 + 1e-5f;
 constexpr float k_longer = 1 + 1e-6f;

@@ -15,6 +15,9 @@ inline constexpr int k_batch_bits = 3;
 inline constexpr int k_generations_per_bound = 3;
 /// A disk whose radius is not known by then is bounded by mesh edges. Half as many do for nearly all.
 inline constexpr int k_blind_generations = 24;
+/// Windows of a batch after which no more are followed. There are 200 to 1,000 a source on any sane mesh; needles by
+/// the thousand round one vertex may exceed that without end, and stopping only costs arcs, never correctness.
+inline constexpr int k_most_windows = 1 << 20;
 /// Rows may be read and written so many entries past their end.
 inline constexpr int k_row_padding = 16;
 

@@ -5,6 +5,9 @@ namespace saddleback {
 
 constexpr unsigned k_warp = 0xffffffffu;
 
+/// A number that all lanes have, said so that the compiler knows it too: loops up to it need not gather lanes again.
+__device__ inline int uniform(int value) { return __shfl_sync(k_warp, value, 0); }
+
 /// The least of all lanes' numbers.
 __device__ inline unsigned warp_min(unsigned value) {
 #if __CUDA_ARCH__ >= 800

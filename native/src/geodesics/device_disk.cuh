@@ -1,0 +1,247 @@
+#pragma once
+// What a warp knows of the vertices about its sources: labels by slot, and, where disks end by count, their radius.
+
+#include <cstdint>
+
+#include "geodesics/device_wave_memory.cuh"
+#include "support/warp.cuh"
+
+namespace saddleback {
+namespace {
+
+// As in disk_finder.cpp.
+constexpr float k_disk_as_far = 1 + 1e-5f;
+constexpr float k_bend_longer = 1 + 1e-6f;
+
+/// The twin of DiskFinder's labels. `Seats` sources share the table.
+template <class Table, int Seats>
+class WarpDisk {
+  static constexpr int k_slots = Table::Slots;
+
+ public:
+  static constexpr bool All = Table::All;
+  static_assert(!All || Seats == 1);
+
+  SADDLEBACK_STEP WarpDisk(const DeviceMesh& mesh, Table& table)
+      : mesh_(mesh), table_(table), lane_(threadIdx.x & 31) {}
+
+  SADDLEBACK_STEP void clear() {
+    const int4 unreached{k_unreached_label, k_unreached_label, k_unreached_label, k_unreached_label};
+    const int4 empty{-1, -1, -1, -1};
+    for (int i = lane_; i < k_slots / 4; i += 32) {
+      reinterpret_cast<int4*>(table_.labels)[i] = unreached;
+      reinterpret_cast<int4*>(table_.keys)[i] = empty;
+    }
+    if constexpr (All)
+      for (int i = lane_; i < k_slots / 32; i += 32) table_.changed[i] = 0;
+    limit_ = distance_of(k_unreached_label);
+    overflow_ = false;
+    __syncwarp();
+  }
+
+  SADDLEBACK_STEP float radius() const { return limit_; }
+  SADDLEBACK_STEP bool is_bounded() const { return limit_ < distance_of(k_unreached_label); }
+  SADDLEBACK_STEP bool overflowed() const { return overflow_; }
+  SADDLEBACK_STEP std::int32_t label(int slot) const { return table_.labels[slot]; }
+  SADDLEBACK_STEP std::int32_t node(int slot) const { return DiskKey<Seats>::node(table_.keys[slot]); }
+
+  /// A node whose slot is looked for.
+  struct Claim {
+    bool active;
+    std::uint32_t key;
+    int bucket;
+    int slot;  ///< negative: not there yet
+  };
+  /// The slots of the lanes' nodes, made if need be, are found in two steps with room for other work between them,
+  /// since memory takes its time. By all lanes of the warp; of no meaning for those that are not active.
+  SADDLEBACK_STEP Claim claim(bool active, std::uint32_t key) {
+    Claim claim{active, key, static_cast<int>(__umulhi(key * 2654435769u, k_slots / 4)), -1};
+    look_up(claim);
+    return claim;
+  }
+  SADDLEBACK_STEP int settle(Claim claim) {
+    int tries = 0;
+    while (__any_sync(k_warp, claim.active && claim.slot < 0)) {
+      if (++tries > k_slots / 2) {
+        overflow_ = true;
+        break;
+      }
+      __syncwarp();
+      if (claim.active && claim.slot < 0) look_up(claim);
+      __syncwarp();
+    }
+    return max(claim.slot, 0);
+  }
+  SADDLEBACK_STEP int insert(bool active, std::uint32_t key) { return settle(claim(active, key)); }
+
+  /// `bends` unless only straight ways are known to go on from there: neighbours then have to be told of the label.
+  SADDLEBACK_STEP void lower(int slot, std::int32_t label, bool bends) {
+    const std::int32_t before = atomicMin(&table_.labels[slot], label);
+    if constexpr (All)
+      if (bends && label < before) atomicOr(&table_.changed[slot / 32], 1u << (slot % 32));
+  }
+
+  /// Lowers the radius of the disk to that of the k-th nearest vertex, as far as is known.
+  SADDLEBACK_STEP bool bound() {
+    __syncwarp();
+    const int wanted = mesh_.k + 1;  // a node is its own nearest
+    std::int32_t low = -1, high = min(__float_as_int(limit_), k_unreached_label - 1);
+    int below = 0, through = 0;  // labels up to low, and up to high
+    high = last_up_to(high);
+    through = count_up_to(high);
+    if (through < wanted) return false;
+    for (bool guesses = true; through != wanted && high - low > 1; guesses = !guesses) {
+      const std::int32_t middle = guesses ? guess(low, high, below, through, wanted) : low + (high - low) / 2;
+      const int there = count_up_to(middle);
+      if (there >= wanted) {
+        high = middle;
+        through = there;
+      } else {
+        low = middle;
+        below = there;
+      }
+    }
+    const float radius = distance_of(last_up_to(high)) * k_disk_as_far;
+    if (!(radius < limit_)) return false;
+    limit_ = radius;
+    return true;
+  }
+
+  /// As DiskFinder::relax_bends: what bends make of the labels does not depend on the order in which they are told.
+  SADDLEBACK_STEP void relax_bends() {
+    if (!is_bounded()) return;
+    while (const int count = list_changed()) {
+      const int tellers = list_tellers(count);
+      for (int i = 0; i < tellers; i += 32 / Neighbour::k_block) tell_neighbours(i, tellers);
+      if (__any_sync(k_warp, overflow_)) return;
+    }
+  }
+
+ private:
+  /// In one bucket of four, which are filled from the first entry on: what is in none of a bucket that has room is
+  /// nowhere.
+  SADDLEBACK_STEP void look_up(Claim& claim) {
+    const uint4 there = reinterpret_cast<const uint4*>(table_.keys)[claim.bucket];
+    const bool has_room = there.w == k_no_key;
+    int at = there.x == claim.key ? 0 : -1;
+    at = there.y == claim.key ? 1 : at;
+    at = there.z == claim.key ? 2 : at;
+    at = there.w == claim.key ? 3 : at;
+    if (claim.active && at < 0 && has_room) {
+      int vacant = there.z == k_no_key ? 2 : 3;
+      vacant = there.y == k_no_key ? 1 : vacant;
+      vacant = there.x == k_no_key ? 0 : vacant;
+      const std::uint32_t before = atomicCAS(&table_.keys[4 * claim.bucket + vacant], k_no_key, claim.key);
+      at = before == k_no_key || before == claim.key ? vacant : -1;
+    }
+    if (at >= 0) claim.slot = 4 * claim.bucket + at;
+    if (at < 0 && !has_room) claim.bucket = claim.bucket + 1 < k_slots / 4 ? claim.bucket + 1 : 0;
+  }
+
+  template <class Use>
+  SADDLEBACK_STEP void for_each_label(Use&& use) const {
+    const int4* const labels = reinterpret_cast<const int4*>(table_.labels);
+#pragma unroll 4
+    for (int i = lane_; i < k_slots / 4; i += 32) {
+      const int4 four = labels[i];
+      use(four.x);
+      use(four.y);
+      use(four.z);
+      use(four.w);
+    }
+  }
+  SADDLEBACK_STEP int count_up_to(std::int32_t most) const {
+    int count = 0;
+    for_each_label([&](std::int32_t label) { count += label <= most; });
+    return warp_sum(count);
+  }
+  SADDLEBACK_STEP std::int32_t last_up_to(std::int32_t most) const {
+    std::int32_t last = 0;
+    for_each_label([&](std::int32_t label) { last = max(last, label <= most ? label : 0); });
+    return warp_max(last);
+  }
+  /// Between two labels, as if vertices were spread evenly over the disk.
+  SADDLEBACK_STEP static std::int32_t guess(std::int32_t low, std::int32_t high, int below, int through, int wanted) {
+    const float inner = low < 0 ? 0 : distance_of(low), outer = distance_of(high);
+    const float share = Simd::quotient(static_cast<float>(wanted - below), static_cast<float>(through - below));
+    const float radius = Simd::sqrt(inner * inner + (outer * outer - inner * inner) * share);
+    return max(low + 1, min(__float_as_int(radius), high - 1));
+  }
+
+  /// Takes slots that are marked as changed into the list of those to do. \return how many
+  SADDLEBACK_STEP int list_changed() {
+    __syncwarp();
+    int count = 0;
+    for (int base = 0; base < k_slots / 32 && count < Table::Todo; base += 32) {
+      const int at = base + lane_;
+      std::uint32_t word = at < k_slots / 32 ? table_.changed[at] : 0;
+      if (__any_sync(k_warp, word != 0)) count = list_word(word, at, count);
+    }
+    __syncwarp();
+    return count;
+  }
+  /// What the list has no room for stays marked.
+  SADDLEBACK_STEP int list_word(std::uint32_t word, int at, int count) {
+    const int through = sum_through(__popc(word));
+    int next = count + through - __popc(word);
+    const bool any = word != 0;
+    for (; word != 0 && next < Table::Todo; word &= word - 1)
+      table_.todo[next++] = static_cast<std::uint16_t>(32 * at + __ffs(static_cast<int>(word)) - 1);
+    if (any) table_.changed[at] = word;
+    return min(count + __shfl_sync(k_warp, through, 31), Table::Todo);
+  }
+
+  /// Keeps those on the list that have something to tell. \return how many
+  SADDLEBACK_STEP int list_tellers(int count) {
+    int tellers = 0;
+    for (int base = 0; base < count; base += 32) {
+      const int slot = table_.todo[min(base + lane_, count - 1)];
+      const std::int32_t label = table_.labels[slot];
+      const bool tells = base + lane_ < count && distance_of(label) < limit_ &&
+                         ((label & 1) != 0 || DiskKey<Seats>::is_saddle(table_.keys[slot]));
+      const unsigned lanes = __ballot_sync(k_warp, tells);
+      __syncwarp();
+      if (tells) table_.todo[tellers + __popc(lanes & ((1u << lane_) - 1))] = static_cast<std::uint16_t>(slot);
+      tellers += __popc(lanes);
+      __syncwarp();
+    }
+    return tellers;
+  }
+
+  /// Of the list, from the `first` on, as many as there are blocks' worth of lanes.
+  SADDLEBACK_STEP void tell_neighbours(int first, int count) {
+    const int number = first + lane_ / Neighbour::k_block, last = lane_ | (Neighbour::k_block - 1);
+    const int slot = table_.todo[min(number, count - 1)];
+    const float before = distance_of(table_.labels[slot]);
+    std::int32_t block = number < count ? node(slot) : -1;
+    do {
+      Neighbour there{Neighbour::k_none, 0};
+      if (block >= 0) there = mesh_.neighbours[block * Neighbour::k_block + (lane_ & (Neighbour::k_block - 1))];
+      const bool is_node = (there.key & Neighbour::k_link) == 0;
+      const int other = insert(is_node, there.key);
+      if (is_node) lower(other, label_of((before + there.length) * k_bend_longer, false), true);
+      const bool goes_on = !is_node && there.key != Neighbour::k_none;
+      block = __shfl_sync(k_warp, goes_on ? static_cast<std::int32_t>(there.key & ~Neighbour::k_link) : -1, last);
+      __syncwarp();
+    } while (__any_sync(k_warp, block >= 0));
+  }
+
+  /// The sum of what the lanes up to this one have.
+  SADDLEBACK_STEP int sum_through(int value) const {
+#pragma unroll
+    for (int step = 1; step < 32; step *= 2) {
+      const int before = __shfl_up_sync(k_warp, value, step);
+      value += lane_ >= step ? before : 0;
+    }
+    return value;
+  }
+
+  const DeviceMesh& mesh_;
+  Table& table_;
+  int lane_;
+  float limit_ = 0;
+  bool overflow_ = false;
+};
+
+}  // namespace
+}  // namespace saddleback

@@ -1,0 +1,175 @@
+#pragma once
+// From what a warp's sources have seen to their rows of arcs.
+
+#include <cstdint>
+
+#include "geodesics/device_union.cuh"
+#include "geodesics/device_waves.cuh"
+
+namespace saddleback {
+namespace {
+
+/// Takes the place of the windows when there are none any more.
+template <class Table, int Seats>
+struct BestSightings {
+  static constexpr int Slots = Table::Slots, Kept = 2 * Slots / Seats;
+  std::int32_t labels[Slots];         ///< of the shortest arcs
+  std::int32_t numbers[Slots];        ///< in the draft, of the first of them
+  std::uint16_t slots[Table::Draft];  ///< of the sightings
+  std::uint16_t kept[Seats][Kept];
+};
+
+SADDLEBACK_STEP int to_sector(float sector) {
+  const int whole = static_cast<int>(sector);
+  return whole < 0 ? 0 : whole > 255 ? 255 : whole;
+}
+
+/// As DiskFinder::choose and DiskRows do it.
+template <class Waves, class Table, int Seats>
+class RowWriter {
+  using Best = BestSightings<Table, Seats>;
+
+ public:
+  SADDLEBACK_STEP RowWriter(const DeviceMesh& mesh, const Waves& waves, Best& best)
+      : mesh_(mesh), waves_(waves), best_(best), lane_(threadIdx.x & 31) {}
+
+  /// False when there is not the room.
+  SADDLEBACK_STEP bool write(const DeviceRows& rows) {
+    find_best();
+    int counts[Seats] = {};
+    if (!list_kept(counts)) return false;
+    int total = 0;
+    for (int seat = 0; seat < Seats; ++seat) total += counts[seat];
+    const RowPlace place = rows.reserve(total);
+    std::int64_t first = place.first;
+    for (int seat = 0; seat < Seats; ++seat) {
+      if (lane_ == 0 && seat < waves_.sources().count) rows.note(waves_.sources().node + seat, first, counts[seat]);
+      first += counts[seat];
+    }
+    if (place.fits) {
+      for (int base = 0; base < total; base += 32 * k_at_once) put(rows, place.first, base, total, counts[0]);
+    }
+    __syncwarp();
+    return true;
+  }
+
+ private:
+  static_assert(Seats <= 2);
+  static constexpr int k_at_once = 2;
+  SADDLEBACK_STEP static int root_of(const Sighting& seen) { return seen.root < 0 ? ~seen.root : seen.root; }
+
+  SADDLEBACK_STEP void find_best() {
+    for (int i = lane_; i < Table::Slots; i += 32) {
+      best_.labels[i] = k_unreached_label;
+      best_.numbers[i] = k_unreached_label;
+    }
+    __syncwarp();
+    const Sighting* const draft = waves_.draft();
+#pragma unroll 4
+    for (int i = lane_; i < waves_.arcs(); i += 32) {
+      const int2 seen{draft[i].slot, draft[i].label};
+      best_.slots[i] = static_cast<std::uint16_t>(seen.x);
+      atomicMin(&best_.labels[seen.x], seen.y);
+    }
+    __syncwarp();
+#pragma unroll 4
+    for (int i = lane_; i < waves_.arcs(); i += 32) {
+      const int slot = best_.slots[i];
+      if (best_.labels[slot] == draft[i].label) atomicMin(&best_.numbers[slot], i);
+    }
+    __syncwarp();
+  }
+
+  /// An arc that is not the shortest way stays as long as others may rely on it; edges stay even where something
+  /// shorter, but no arc, was found.
+  SADDLEBACK_STEP bool is_kept(int number) const {
+    const int slot = best_.slots[number];
+    const float reach = distance_of(best_.labels[slot]);
+    const bool stays = reach <= mesh_.slack * static_cast<double>(distance_of(waves_.disk().label(slot))) &&
+                       reach <= waves_.disk().radius();
+    const bool is_shortest = best_.numbers[slot] == number;
+    return number < waves_.links() ? is_shortest || !stays : is_shortest && stays;
+  }
+
+  SADDLEBACK_STEP bool list_kept(int (&counts)[Seats]) {
+    bool fits = waves_.arcs() <= 1 << 16;
+    for (int base = 0; base < waves_.arcs() && fits; base += 32) {
+      const int number = base + lane_;
+      const bool kept = number < waves_.arcs() && is_kept(number);
+      const int seat = Seats > 1 && kept ? RootEdge::seat(root_of(waves_.draft()[number])) : 0;
+#pragma unroll
+      for (int s = 0; s < Seats; ++s) {
+        const unsigned lanes = __ballot_sync(k_warp, kept && seat == s);
+        fits = fits && counts[s] + __popc(lanes) <= Best::Kept;
+        if (kept && seat == s && fits)
+          best_.kept[s][counts[s] + __popc(lanes & ((1u << lane_) - 1))] = static_cast<std::uint16_t>(number);
+        counts[s] += __popc(lanes);
+      }
+    }
+    __syncwarp();
+    return fits;
+  }
+
+  /// What of the mesh an arc's directions go by.
+  struct Aim {
+    std::int32_t target;
+    float leaving, back, per_radian, per_radian_back;
+  };
+  SADDLEBACK_STEP Aim aim_of(const Sighting& seen) const {
+    const int number = root_of(seen);
+    const std::int32_t node = waves_.sources().node + RootEdge::seat(number);
+    const std::int32_t root = mesh_.first[node] + RootEdge::edge(number);
+    Aim aim{waves_.disk().node(seen.slot), 256, 0, 0, 0};
+    if (seen.root >= 0) {
+      aim.leaving = mesh_.sectors[root];
+      aim.back = mesh_.apex_sectors[seen.edge];
+      aim.per_radian = mesh_.per_radian[node];
+      aim.per_radian_back = mesh_.per_radian[aim.target];
+    } else if (seen.edge == 0) {
+      aim.leaving = mesh_.sectors[root];
+      aim.back = mesh_.reverse_sectors[root];
+    } else {  // at the boundary
+      aim.back = mesh_.apex_sectors[root];
+    }
+    return aim;
+  }
+
+  /// Arcs from the `base`-th on, of which the first source has `count`. What several need of memory is on its way at
+  /// once.
+  SADDLEBACK_STEP void put(const DeviceRows& rows, std::int64_t first, int base, int total, int count) const {
+    Sighting seen[k_at_once];
+    Aim aims[k_at_once];
+#pragma unroll
+    for (int n = 0; n < k_at_once; ++n) {
+      const int i = min(base + 32 * n + lane_, total - 1), seat = Seats > 1 && i >= count ? 1 : 0;
+      seen[n] = waves_.draft()[best_.kept[seat][seat == 0 ? i : i - count]];
+    }
+#pragma unroll
+    for (int n = 0; n < k_at_once; ++n) aims[n] = aim_of(seen[n]);
+#pragma unroll
+    for (int n = 0; n < k_at_once; ++n)
+      if (base + 32 * n + lane_ < total) put(rows, first + base + 32 * n + lane_, seen[n], aims[n]);
+  }
+
+  SADDLEBACK_STEP void put(const DeviceRows& rows, std::int64_t at, const Sighting& seen, const Aim& aim) const {
+    float leaving = aim.leaving, back = aim.back;
+    if (seen.root >= 0) {
+      const float x = static_cast<float>(seen.place.x), y = static_cast<float>(seen.place.y);
+      const float side_x = static_cast<float>(seen.from.x - seen.place.x);
+      const float side_y = static_cast<float>(seen.from.y - seen.place.y);
+      leaving += angle_of(x, y) * aim.per_radian;
+      back += angle_back(x, y, side_x, side_y) * aim.per_radian_back;
+    }
+    const double length = norm_of(seen.place.x, seen.place.y);
+    rows.put(at, mesh_.packing.pack(aim.target, to_sector(leaving), length * mesh_.unit),
+             static_cast<std::uint8_t>(to_sector(back)));
+  }
+
+  const DeviceMesh& mesh_;
+  const Waves& waves_;
+  Best& best_;
+  int lane_;
+};
+
+}  // namespace
+}  // namespace saddleback
