@@ -14,6 +14,8 @@
 namespace saddleback::voronoi2d {
 namespace {
 
+// How far about a tile sites are looked at, in mean distances, at first and for cells that need more.
+constexpr double k_margin = 2.75, k_wide_margin = 4.25;
 constexpr int k_slots = 16;  ///< room for a cell's neighbours; the lists of larger ones are in the pool
 
 /// Neighbours as they are found, by rank.
@@ -98,8 +100,11 @@ __device__ inline Touch touch(const Near& n, const Near& p) {
 /// One warp's cell.
 class CellWinder {
  public:
-  __device__ explicit CellWinder(const TileSites& tile) : tile_(tile), memory_(tile.memory()) {
-    scale_ = __longlong_as_double(static_cast<long long>(1023 - ilogb(tile.grid_size())) << 52);
+  __device__ explicit CellWinder(const TileSites& tile) : tile_(tile), memory_(tile.memory()) {}
+
+  /// With the sites that were gathered.
+  __device__ void begin() {
+    scale_ = __longlong_as_double(static_cast<long long>(1023 - ilogb(tile_.grid_size())) << 52);
   }
 
   /// False when it takes other means.
@@ -108,6 +113,12 @@ class CellWinder {
     site_ = memory_.at[own];
     return wind_among<false>(lists) || wind_among<true>(lists);
   }
+  /// The same for cells that are not to be found among the nearest sites.
+  __device__ bool wind_wide(int own, const DeviceLists& lists) {
+    own_ = own;
+    site_ = memory_.at[own];
+    return wind_among<true>(lists);
+  }
 
  private:
   static constexpr int k_each = 2, k_reach = 2;
@@ -115,8 +126,8 @@ class CellWinder {
   template <bool All>
   __device__ bool wind_among(const DeviceLists& lists) {
     if (All) {
-      const DeviceBox& box = tile_.box();
-      set_reach(box.low[0], box.high[0], box.low[1], box.high[1]);
+      const DeviceBox& known = tile_.known();
+      set_reach(known.low[0], known.high[0], known.low[1], known.high[1]);
     } else if (!load_candidates()) {
       return false;
     }
@@ -170,10 +181,12 @@ class CellWinder {
       total += row_length;
     }
     if (total > 32 * k_each) return false;
-    const DeviceBox& box = tile_.box();
+    const DeviceBox &box = tile_.box(), &known = tile_.known();
     const double grid = tile_.grid_size();
-    set_reach(box.low[0] + left * grid, fmin(box.high[0], box.low[0] + (right + 1) * grid), box.low[1] + bottom * grid,
-              fmin(box.high[1], box.low[1] + (top + 1) * grid));
+    set_reach(left == 0 ? known.low[0] : box.low[0] + left * grid,
+              right + 1 == width ? known.high[0] : box.low[0] + (right + 1) * grid,
+              bottom == 0 ? known.low[1] : box.low[1] + bottom * grid,
+              top + 1 == tile_.height() ? known.high[1] : box.low[1] + (top + 1) * grid);
     for (int j = 0; j < k_each; ++j) {
       if (at_[j] == own_) at_[j] = -1;
       near_[j] = {0, 0, INFINITY};
@@ -342,19 +355,30 @@ __global__ void __launch_bounds__(k_tile_threads)
     if (threadIdx.x == 0) tile = tiles.take(lists.far_count);
     __syncthreads();
     if (tile >= tiles.end()) return;
-    const std::int32_t begin = tiles.begins[tile], end = tile + 1 < count ? tiles.begins[tile + 1] : tree.site_count;
+    const std::int32_t begin = tiles.begins[tile], end = tile + 1 < count ? tiles.begins[tile + 1] : tiles.sites.end;
     TileSites sites(memory, tree);
-    if (!sites.gather(begin, end)) {
+    CellWinder winder(sites);
+    sites.clear_failing();
+    if (!sites.gather(begin, end, k_margin)) {
       for (std::int32_t rank = begin + warp; rank < end; rank += k_tile_warps) leave(rank);
       continue;
     }
-    CellWinder winder(sites);
-    for (int i = warp; i < memory.own_count; i += k_tile_warps) {
-      const int own = memory.own[i];
-      if (winder.wind(own, lists)) continue;
-      leave(memory.rank[own]);
+    winder.begin();
+    for (int i = warp; i < memory.own_count; i += k_tile_warps)
+      if (!winder.wind(memory.own[i], lists)) sites.note_failing(memory.rank[memory.own[i]]);
+    __syncthreads();
+    if (!sites.has_failing()) continue;
+    // These are tried once more, among as many sites as there is room for.
+    const bool is_wide = sites.gather(begin, end, k_wide_margin);
+    winder.begin();
+    for (int i = warp; is_wide && i < memory.own_count; i += k_tile_warps) {
+      const std::int32_t rank = memory.rank[memory.own[i]];
+      if (!sites.is_failing(rank) || winder.wind_wide(memory.own[i], lists)) continue;
+      leave(rank);
       if (__any_sync(k_warp, tiles.has_left())) break;
     }
+    for (std::int32_t rank = begin + warp; !is_wide && rank < end; rank += k_tile_warps)
+      if (sites.is_failing(rank)) leave(rank);
   }
 }
 

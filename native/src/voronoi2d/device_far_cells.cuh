@@ -127,8 +127,12 @@ class FarWinder {
     const auto is_left = [&](const Point2& from, const Point2& p) {
       return turn_ * static_cast<int>(orient_2d(site_, from, p)) > 0;
     };
+    const auto is_in_reach = [&](const Point2& p) {
+      const double dx = p.x - site_.x - centre_x, dy = p.y - site_.y - centre_y;
+      return radius2 == INFINITY || dx * dx + dy * dy <= radius2;
+    };
     const auto is_better = [&](const Point2& p, std::int32_t site) {
-      if (site == n || site == best || !is_left(n_at, p)) return false;
+      if (site == n || site == best || !is_in_reach(p) || !is_left(n_at, p)) return false;
       if (best < 0) return true;
       bool is_known;
       const int sign = known_circle_sign(n_at, best_at, p, site_, is_known);

@@ -118,20 +118,19 @@ class FoundCells {
 /// The cells of sites without weights.
 class CellFinder : public FoundCells {
  public:
-  CellFinder(const DeviceOrder& order, int members, cudaStream_t stream)
+  CellFinder(const DeviceOrder& order, int member, int members, cudaStream_t stream)
       : FoundCells(order.cell_count(), stream),
         order_(order),
-        tiles_(order.places(), count_, stream),
-        parts_(tiles_.parts(members, count_)) {}
+        tiles_(order.places(), count_, member, members, stream),
+        member_(static_cast<std::size_t>(member)) {}
 
   /// Where the members' cells begin, and the last one's end.
-  const std::vector<std::int32_t>& begins() const { return parts_.sites; }
+  const std::vector<std::int32_t>& begins() const { return tiles_.bounds(); }
 
   /// Does not wait for the last tiles, unless others wait for these cells; calls report() in between where there are
   /// many.
   template <class Report>
-  void start(int member, int device, Report&& report) {
-    member_ = static_cast<std::size_t>(member);
+  void start(int device, Report&& report) {
     device_ = device;
     constexpr int k_many = 32;  // of as many one
     find(mine().count() / k_many, report);
@@ -151,7 +150,7 @@ class CellFinder : public FoundCells {
   }
 
  private:
-  IndexRange mine() const { return {parts_.sites[member_], parts_.sites[member_ + 1]}; }
+  IndexRange mine() const { return {begins()[member_], begins()[member_ + 1]}; }
 
   /// Leaves all to other means where there are more cells than `most_far`, and many of those so far, that tiles cannot
   /// tell: the sites are not such as tiles are made for.
@@ -166,14 +165,14 @@ class CellFinder : public FoundCells {
                "asking for shared memory");
     const int blocks = blocks_of(reinterpret_cast<const void*>(find_cells_of_tiles), k_tile_threads, k_shared, device_);
     constexpr std::int32_t k_tiles_per_launch = 1 << 17;  // some tens of milliseconds
-    // Of one part the number of tiles is not known here: they are half full and less.
-    const std::int32_t launches = 1 + mine().count() / (k_tile_sites * k_tiles_per_launch) * 4,
-                       last = parts_.tiles[member_ + 1];
+    // The number of tiles is not known here: they are half full and less.
+    const std::int32_t launches = 1 + mine().count() / (k_tile_sites * k_tiles_per_launch) * 4;
     for (std::int32_t i = 0; i < launches; ++i) {
-      const std::int32_t first = parts_.tiles[member_] + i * k_tiles_per_launch;
-      const bool is_last = i + 1 == launches || last - first <= k_tiles_per_launch;
+      const std::int32_t first = i * k_tiles_per_launch;
+      const bool is_last = i + 1 == launches;
+      constexpr std::int32_t k_all = std::numeric_limits<std::int32_t>::max();
       const TileRange range{
-          tiles_.begins(), tiles_.count(), next(),    first, is_last ? last : first + k_tiles_per_launch,
+          tiles_.begins(), tiles_.count(), next(),    first, is_last ? k_all : first + k_tiles_per_launch,
           mine(),          most_far,       are_left()};
       check_cuda(cudaMemsetAsync(range.taken, 0, sizeof(int), stream_), "clearing a counter");
       find_cells_of_tiles<<<blocks, k_tile_threads, k_shared, stream_>>>(boxes.tree(), range, lists());
@@ -209,7 +208,6 @@ class CellFinder : public FoundCells {
 
   const DeviceOrder& order_;
   const Tiles tiles_;
-  const Tiles::Parts parts_;
   std::size_t member_ = 0;
   int device_ = 0;
 };
@@ -217,8 +215,10 @@ class CellFinder : public FoundCells {
 /// Those of weighted sites.
 class WeightedCellFinder : public FoundCells {
  public:
-  WeightedCellFinder(const VisibleSites& sites, int members, cudaStream_t stream)
-      : FoundCells(sites.count(), stream), boxes_(sites.at(), sites.weights(), sites.count(), stream) {
+  WeightedCellFinder(const VisibleSites& sites, int member, int members, cudaStream_t stream)
+      : FoundCells(sites.count(), stream),
+        boxes_(sites.at(), sites.weights(), sites.count(), stream),
+        member_(static_cast<std::size_t>(member)) {
     const std::int64_t rows = boxes_.tree().boxes.counts[0];
     for (int i = 0; i < members; ++i) begins_.push_back(static_cast<std::int32_t>(rows * i / members * 32));
     begins_.push_back(count_);
@@ -228,12 +228,11 @@ class WeightedCellFinder : public FoundCells {
   std::int32_t finish(DeviceTimes& times, Stopwatch&) const { return settle(count(), times); }
 
   template <class Report>
-  void start(int member, int device, Report&& report) {
+  void start(int device, Report&& report) {
     begin();
-    const auto at = static_cast<std::size_t>(member);
     const int blocks = blocks_of(reinterpret_cast<const void*>(find_weighted_cells), k_row_threads, 0, device);
     constexpr std::int32_t k_rows_per_launch = 1 << 15;  // some milliseconds
-    const IndexRange rows{begins_[at] / 32, (begins_[at + 1] + 31) / 32};
+    const IndexRange rows{begins_[member_] / 32, (begins_[member_ + 1] + 31) / 32};
     for (std::int32_t first = rows.begin; first < rows.end; first += k_rows_per_launch) {
       const IndexRange some{first, std::min(rows.end, first + k_rows_per_launch)};
       check_cuda(cudaMemsetAsync(next(), 0, sizeof(int), stream_), "clearing a counter");
@@ -251,6 +250,7 @@ class WeightedCellFinder : public FoundCells {
 
  private:
   const WeightedBoxes boxes_;
+  std::size_t member_;
   std::vector<std::int32_t> begins_;
 };
 

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
+#include <utility>
+#include <vector>
 
 #include "support/device_buffer.h"
+#include "support/index_range.cuh"
 #include "voronoi2d/curve_place.h"
 #include "voronoi2d/device_kept.cuh"
 
@@ -117,15 +120,18 @@ __global__ void sort_squares(const double2* sites, std::int32_t count, const std
   }
 }
 
-__global__ void mark_distinct(const double2* sites, std::int32_t count, const std::int32_t* order,
-                              std::int32_t* is_first) {
+/// Sites in their order, and which of them differ from the one before.
+__global__ void gather_sites(const double2* sites, std::int32_t count, const std::int32_t* order, double2* sorted,
+                             std::int32_t* is_first) {
   const std::int32_t i = thread_number();
   if (i >= count) return;
+  const double2 p = sites[order[i]];
   bool differs = i == 0;
   if (i > 0) {
-    const double2 p = sites[order[i]], q = sites[order[i - 1]];
+    const double2 q = sites[order[i - 1]];
     differs = p.x != q.x || p.y != q.y;
   }
+  sorted[i] = p;
   is_first[i] = differs;
 }
 
@@ -136,43 +142,48 @@ struct RankedSites {
   std::uint32_t* places;
 };
 
-__global__ void rank_sites(const double2* sites, std::int32_t count, const std::int32_t* order,
+__global__ void rank_sites(const double2* sorted, std::int32_t count, const std::int32_t* order,
                            const std::uint32_t* places, const std::int32_t* firsts_up_to, RankedSites ranked) {
   const std::int32_t i = thread_number();
   if (i >= count) return;
   const std::int32_t rank = firsts_up_to[i] - 1;
   if (i > 0 && firsts_up_to[i - 1] == rank + 1) return;
-  ranked.at[rank] = sites[order[i]];
+  ranked.at[rank] = sorted[i];
   ranked.original[rank] = order[i];
   ranked.places[rank] = places[i];
 }
 
+/// Where sites are, by index, for those of `share`.
 __global__ void find_equals(std::int32_t count, const std::int32_t* order, const std::int32_t* firsts_up_to,
-                            const std::int32_t* original, std::int32_t* site_of, std::int32_t* cell_places) {
+                            const std::int32_t* original, IndexRange share, std::int32_t* site_of,
+                            std::int32_t* cell_places) {
   const std::int32_t i = thread_number();
-  if (i >= count) return;
+  if (i >= count || !share.holds(order[i])) return;
   const std::int32_t rank = firsts_up_to[i] - 1;
   site_of[order[i]] = original[rank];
   cell_places[order[i]] = rank;
 }
 
+/// The same where no two are equal.
+__global__ void place_distinct(std::int32_t count, const std::int32_t* order, IndexRange share, std::int32_t* site_of,
+                               std::int32_t* cell_places) {
+  const std::int32_t i = thread_number();
+  if (i >= count) return;
+  if (share.holds(i)) site_of[i] = i;
+  if (share.holds(order[i])) cell_places[order[i]] = i;
+}
+
 /// The sites by rank, and for every site the rank of its place.
 class DeviceOrder {
  public:
-  DeviceOrder(std::int32_t count, cudaStream_t stream)
-      : stream_(stream),
-        count_(count),
-        at_(size(), stream),
-        original_(size(), stream),
-        site_of_(size(), stream),
-        cell_places_(size(), stream),
-        ranked_places_(size(), stream) {}
+  DeviceOrder(std::int32_t count, cudaStream_t stream) : stream_(stream), count_(count), at_(size(), stream) {}
 
   enum class Found { order, not_for_the_device };
 
-  /// sort(places, order) is the processor's, see PlaneTwinCaller; it may throw.
+  /// Of the sites of `share` also finds where they are, see site_of. sort(places, order) is the processor's, see
+  /// PlaneTwinCaller; it may throw.
   template <class Sort>
-  Found find(const double2* sites, Sort&& sort) {
+  Found find(const double2* sites, IndexRange share, Sort&& sort) {
     const Extent extent = measure_all(sites);
     // Beyond that the processor scales the sites, or says what is wrong with them.
     constexpr double k_largest = 0x1p250, k_smallest = 0x1p-216;
@@ -210,21 +221,13 @@ class DeviceOrder {
       order = DeviceBuffer<std::int32_t>(sorted, stream_);
       check_cuda(cudaStreamSynchronize(stream_), "copying to the device");
     }
-    mark_distinct<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, order.data(), firsts.data());
+    gather_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, order.data(), at_.data(), firsts.data());
     check_cuda(cudaGetLastError(), "finding equal sites");
     with_scratch(stream_, "counting sites", [&](void* scratch, std::size_t& bytes) {
       return cub::DeviceScan::InclusiveSum(scratch, bytes, firsts.data(), firsts.data(), count_, stream_);
     });
-    rank_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, order.data(), places.data(), firsts.data(),
-                                                              {at_.data(), original_.data(), ranked_places_.data()});
-    check_cuda(cudaGetLastError(), "ranking sites");
-    find_equals<<<blocks_for(count_), k_threads, 0, stream_>>>(count_, order.data(), firsts.data(), original_.data(),
-                                                               site_of_.data(), cell_places_.data());
-    check_cuda(cudaGetLastError(), "finding equal sites");
-    check_cuda(
-        cudaMemcpyAsync(&cell_count_, firsts.data() + count_ - 1, sizeof cell_count_, cudaMemcpyDeviceToHost, stream_),
-        "counting sites");
-    check_cuda(cudaStreamSynchronize(stream_), "counting sites");
+    cell_count_ = firsts.value_at(size() - 1);
+    rank(std::move(places), std::move(order), firsts, share);
     return Found::order;
   }
 
@@ -237,11 +240,40 @@ class DeviceOrder {
   const double2* at() const { return at_.data(); }
   const std::int32_t* original() const { return original_.data(); }
   const std::uint32_t* places() const { return ranked_places_.data(); }
+  /// By index; of the share that was asked for.
   const std::int32_t* site_of() const { return site_of_.data(); }
   const std::int32_t* cell_places() const { return cell_places_.data(); }
 
  private:
   std::size_t size() const { return static_cast<std::size_t>(count_); }
+
+  /// From all sites to those that have cells.
+  void rank(DeviceBuffer<std::uint32_t> places, DeviceBuffer<std::int32_t> order,
+            const DeviceBuffer<std::int32_t>& firsts, IndexRange share) {
+    const unsigned blocks = blocks_for(count_);
+    if (share.count() > 0) {
+      site_of_ = DeviceBuffer<std::int32_t>(size(), stream_);
+      cell_places_ = DeviceBuffer<std::int32_t>(size(), stream_);
+    }
+    if (cell_count_ == count_) {
+      original_ = std::move(order);
+      ranked_places_ = std::move(places);
+      if (share.count() > 0)
+        place_distinct<<<blocks, k_threads, 0, stream_>>>(count_, original_.data(), share, site_of_.data(),
+                                                          cell_places_.data());
+    } else {
+      DeviceBuffer<double2> ranked(size(), stream_);
+      original_ = DeviceBuffer<std::int32_t>(size(), stream_);
+      ranked_places_ = DeviceBuffer<std::uint32_t>(size(), stream_);
+      rank_sites<<<blocks, k_threads, 0, stream_>>>(at_.data(), count_, order.data(), places.data(), firsts.data(),
+                                                    {ranked.data(), original_.data(), ranked_places_.data()});
+      at_ = std::move(ranked);
+      if (share.count() > 0)
+        find_equals<<<blocks, k_threads, 0, stream_>>>(count_, order.data(), firsts.data(), original_.data(), share,
+                                                       site_of_.data(), cell_places_.data());
+    }
+    check_cuda(cudaGetLastError(), "ranking sites");
+  }
 
   Extent measure_all(const double2* sites) {
     const unsigned blocks = std::min(blocks_for(count_), 1024u);

@@ -20,6 +20,7 @@ struct TileMemory {
   std::uint16_t begins[k_grid_cells + 1];
   std::int32_t frontier[2][k_frontier];
   int frontier_count[2], found_count, own_count, is_lattice;
+  unsigned failing[k_tile_sites / 32];  ///< own sites, by rank in the tile, whose cells take other sites
   int grid_counts[k_grid_cells + 1];
 };
 
@@ -28,27 +29,47 @@ class TileSites {
  public:
   __device__ TileSites(TileMemory& memory, const DeviceTree& tree) : memory_(memory), tree_(tree) {}
 
-  /// By all threads of the block. False when there are too many.
-  __device__ bool gather(std::int32_t begin, std::int32_t end) {
+  /// With the sites beside the tile as far as `margin`, in mean distances, or less far where they are many. By all
+  /// threads of the block. False when there are too many.
+  __device__ bool gather(std::int32_t begin, std::int32_t end, double margin) {
     begin_ = begin;
     end_ = end;
     const DeviceBox box = own_box();
     const double width = box.high[0] - box.low[0], height = box.high[1] - box.low[1];
     const double count = end - begin;
-    constexpr double k_margin = 2.75;  // in mean distances; larger circles are left to the tree
-    double margin = k_margin * fmax(sqrt(width * height / count), fmax(width, height) / count);
+    double beside = margin * fmax(sqrt(width * height / count), fmax(width, height) / count);
     constexpr int k_attempts = 4;
-    for (int attempt = 0; attempt < k_attempts; ++attempt, margin *= 0.4) {
-      box_ = {{box.low[0] - margin, box.low[1] - margin}, {box.high[0] + margin, box.high[1] + margin}};
+    for (int attempt = 0; attempt < k_attempts; ++attempt, beside *= 0.4) {
+      box_ = {{box.low[0] - beside, box.low[1] - beside}, {box.high[0] + beside, box.high[1] + beside}};
       if (!find_in_box()) continue;
+      know_outside();
       sort_into_grid();
       return true;
     }
     return false;
   }
 
+  /// Own sites whose cells are to be found among more sites. By a warp.
+  __device__ void clear_failing() {
+    if (threadIdx.x < k_tile_sites / 32) memory_.failing[threadIdx.x] = 0;
+  }
+  __device__ void note_failing(std::int32_t rank) {
+    const auto i = static_cast<unsigned>(rank - begin_);
+    if (threadIdx.x % 32 == 0) atomicOr(&memory_.failing[i / 32], 1u << i % 32);
+  }
+  __device__ bool is_failing(std::int32_t rank) const {
+    const auto i = static_cast<unsigned>(rank - begin_);
+    return memory_.failing[i / 32] >> i % 32 & 1;
+  }
+  __device__ bool has_failing() const {
+    unsigned any = 0;
+    for (int i = 0; i < k_tile_sites / 32; ++i) any |= memory_.failing[i];
+    return any != 0;
+  }
+
   __device__ const TileMemory& memory() const { return memory_; }
-  __device__ const DeviceBox& box() const { return box_; }  ///< all sites in it are known
+  __device__ const DeviceBox& box() const { return box_; }
+  __device__ const DeviceBox& known() const { return known_; }  ///< all sites in it are known; infinite beyond the last
   __device__ double grid_size() const { return grid_; }
   __device__ int width() const { return width_; }
   __device__ int height() const { return height_; }
@@ -120,6 +141,16 @@ class TileSites {
     return memory_.found_count <= k_seen_sites;
   }
 
+  /// Where the box ends outside of all sites, nothing is farther out.
+  __device__ void know_outside() {
+    const int top = tree_.levels - 1, lane = threadIdx.x % 32;
+    const DeviceBox all = joined(tree_.boxes[top][min(lane, tree_.counts[top] - 1)]);
+    for (int k = 0; k < 2; ++k) {
+      known_.low[k] = box_.low[k] <= all.low[k] ? -INFINITY : box_.low[k];
+      known_.high[k] = box_.high[k] >= all.high[k] ? INFINITY : box_.high[k];
+    }
+  }
+
   __device__ void sort_into_grid() {
     const int count = memory_.found_count;
     const double width = box_.high[0] - box_.low[0], height = box_.high[1] - box_.low[1];
@@ -176,7 +207,7 @@ class TileSites {
 
   TileMemory& memory_;
   const DeviceTree& tree_;
-  DeviceBox box_{};
+  DeviceBox box_{}, known_{};
   double grid_ = 1, inverse_grid_ = 1;
   int width_ = 1, height_ = 1;
   std::int32_t begin_ = 0, end_ = 0;

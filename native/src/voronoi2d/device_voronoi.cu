@@ -74,19 +74,19 @@ class Builder {
     if (request_.weights) weights = upload(request_.weights, stream, [&](double) { report(Share::upload); });
     times.upload = watch.lap();
     report(Share::upload);
-    DeviceOrder order =
-        ordered(request_.sites_are_there ? reinterpret_cast<const double2*>(request_.sites) : uploaded.data(), stream);
+    DeviceOrder order = ordered(
+        member, request_.sites_are_there ? reinterpret_cast<const double2*>(request_.sites) : uploaded.data(), stream);
     std::optional<VisibleSites> visible;
     if (request_.weights) visible.emplace(seen(order, weights.data(), stream));
     times.order = watch.lap();
     report(Share::order);
     if (visible) {
-      WeightedCellFinder cells(*visible, team_.members(), stream);
+      WeightedCellFinder cells(*visible, member, team_.members(), stream);
       const CellSites sites{visible->count(), visible->at(), visible->weights(), visible->original(),
                             visible->cell_places()};
       find(member, cells, sites, order, watch, own_stream);
     } else {
-      CellFinder cells(order, team_.members(), stream);
+      CellFinder cells(order, member, team_.members(), stream);
       find(member, cells, {order.cell_count(), order.at(), nullptr, order.original(), order.cell_places()}, order,
            watch, own_stream);
     }
@@ -100,7 +100,7 @@ class Builder {
     DeviceTimes& times = times_[static_cast<std::size_t>(member)];
     const cudaStream_t stream = *own_stream;
     const PlanePart part{arrays_, member, cells.begins()};
-    cells.start(member, device, [&](double done) { report(Share::order + (Share::find - Share::order) * done); });
+    cells.start(device, [&](double done) { report(Share::order + (Share::find - Share::order) * done); });
     cells.share(part);
     watch.end();
     if (member == 0 && !request_.kept) make_room(sites.count);
@@ -206,9 +206,11 @@ class Builder {
     kept.release();
   }
 
-  DeviceOrder ordered(const double2* sites, cudaStream_t stream) {
+  DeviceOrder ordered(int member, const double2* sites, cudaStream_t stream) {
     DeviceOrder order(request_.count, stream);
-    const DeviceOrder::Found found = order.find(sites, [&](std::uint32_t* places, std::int32_t* sorted) {
+    const bool asks_for_places = !(request_.kept && request_.only_triangles);
+    const IndexRange share = asks_for_places ? share_of(member, request_.count) : IndexRange{0, 0};
+    const DeviceOrder::Found found = order.find(sites, share, [&](std::uint32_t* places, std::int32_t* sorted) {
       if (request_.sites_are_there) throw LeftOver();
       caller_.ask([&](const PlaneTwinCaller& caller) { return caller.sort(caller.self, places, sorted); });
     });
@@ -221,13 +223,16 @@ class Builder {
     caller_.ask([&](const PlaneTwinCaller& caller) { return caller.make_room(caller.self, most, &to_); });
   }
 
+  IndexRange share_of(int member, std::int32_t count) const {
+    const auto begin = [&](std::int64_t i) { return static_cast<std::int32_t>(count * i / team_.members()); };
+    return {begin(member), begin(member + 1)};
+  }
+
   /// Each member copies its share.
   void copy_sites(const DeviceOrder& order, const CellSites& sites, const PlanePart& part, HostCopies& copies) const {
     const auto copy = [&](const std::int32_t* from, std::int32_t count, std::int32_t* to) {
-      const auto begin = static_cast<std::ptrdiff_t>(static_cast<std::int64_t>(count) * part.member / team_.members());
-      const auto end =
-          static_cast<std::ptrdiff_t>(static_cast<std::int64_t>(count) * (part.member + 1) / team_.members());
-      copies.to_host(from + begin, static_cast<std::size_t>(end - begin), to ? to + begin : to);
+      const IndexRange share = share_of(part.member, count);
+      copies.to_host(from + share.begin, static_cast<std::size_t>(share.count()), to ? to + share.begin : to);
     };
     copy(order.site_of(), request_.count, to_.site_of);
     copy(sites.cell_places, request_.count, to_.cell_places);
