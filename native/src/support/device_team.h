@@ -132,6 +132,14 @@ class TeamArrays {
   /// last ends. Complete on return.
   template <class Number>
   void share(int member, Number* mine, std::span<const std::int32_t> begins, cudaStream_t stream) {
+    start_sharing(member, mine, begins, stream, stream);
+    finish_sharing(stream);
+  }
+  /// The same beside other work: what `stream` has written so far is copied by another stream, and there when
+  /// finish_sharing(that stream) returns. No member may share anything else in between.
+  template <class Number>
+  void start_sharing(int member, Number* mine, std::span<const std::int32_t> begins, cudaStream_t stream,
+                     cudaStream_t aside) {
     const int members = team_.members();
     if (members == 1) return;
     arrays_[static_cast<std::size_t>(member)] = mine;
@@ -144,10 +152,13 @@ class TeamArrays {
       if (begin == end) continue;
       check_cuda(
           cudaMemcpyPeerAsync(mine + begin, team_.device(member), static_cast<const Number*>(arrays_[at]) + begin,
-                              team_.device(other), (end - begin) * sizeof(Number), stream),
+                              team_.device(other), (end - begin) * sizeof(Number), aside),
           "copying between devices");
     }
-    check_cuda(cudaStreamSynchronize(stream), "copying between devices");
+  }
+  void finish_sharing(cudaStream_t aside) {
+    if (team_.members() == 1) return;
+    check_cuda(cudaStreamSynchronize(aside), "copying between devices");
     team_.meet();
   }
 

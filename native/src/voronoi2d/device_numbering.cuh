@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "support/device_stream.h"
 #include "support/device_team.h"
 #include "support/index_range.cuh"
 #include "voronoi2d/circumcentre_point.h"
@@ -132,11 +133,20 @@ __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
                                      cells.point(cells.neighbour(first))) != predicates::Sign::negative;
 }
 
+/// Which cells are joined: all, or at first those that lie among others of the same part, then the rest.
+enum class Joined { all, inner, outer };
+
 /// Edges belong to the lower of their cells.
+template <Joined Which>
 __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, DeviceNumbers numbers) {
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
   const std::int32_t first = cells.offsets[cell], end = cells.offsets[cell + 1];
+  if (Which != Joined::all) {
+    bool is_inner = true;
+    for (std::int32_t side = first; side < end; ++side) is_inner &= cells.mine.holds(cells.neighbour(side));
+    if (is_inner != (Which == Joined::inner)) return;
+  }
   bool fits = cells.weights || winds_once(cells, cell);  // with weights they are known to
   std::int32_t edge = edges_before[cell];
   for (std::int32_t side = first; side < end; ++side) {
@@ -383,11 +393,21 @@ class DeviceDiagram {
     gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, cell_sides_.data(),
                                                    counts_.data());
     check_cuda(cudaGetLastError(), "gathering cells");
-    part_.arrays.share(part_.member, cell_sides_.data(), side_parts_, stream_);
     add_up_all(edges_);
     edge_parts_ = part_.rows(before_, edges_);
-    if (!part_.is_all()) corner_vertices_.fill_bytes(k_unknown_byte);
-    join_sides<<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+    if (part_.is_all()) {
+      join_sides<Joined::all><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+    } else {
+      const Stream aside;
+      part_.arrays.start_sharing(part_.member, cell_sides_.data(), side_parts_, stream_, aside);
+      const IndexRange own = part_.range(side_parts_);
+      check_cuda(cudaMemsetAsync(corner_vertices_.data() + own.begin, k_unknown_byte,
+                                 size(own.count()) * sizeof(std::int32_t), stream_),
+                 "clearing memory");
+      join_sides<Joined::inner><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+      part_.arrays.finish_sharing(aside);
+      join_sides<Joined::outer><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+    }
     check_cuda(cudaGetLastError(), "joining cells");
     expect_sum<<<1, 1, 0, stream_>>>(misfits_.data() + 1, 0, misfits_.data());
     check_cuda(cudaGetLastError(), "joining cells");
