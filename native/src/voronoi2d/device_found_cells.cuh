@@ -27,10 +27,9 @@ inline int blocks_of(const void* kernel, int threads, std::size_t shared, int de
 /// The neighbours of the cells, of which every member of a team finds a part.
 class FoundCells {
  public:
-  /// All members' cells, where there are several.
+  /// How many neighbours all members' cells have, where there are several.
   void share(const PlanePart& part) {
     part.arrays.share(part.member, counts_.data(), part.begins, stream_);
-    part.arrays.share(part.member, is_open_.data(), part.begins, stream_);
     add_sides();
   }
 
