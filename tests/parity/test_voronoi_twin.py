@@ -219,9 +219,11 @@ def test_too_little_memory_is_told_before_anything_runs() -> None:
 
 
 @pytest.mark.parametrize("device", DEVICES)
-def test_cancelled_within_a_moment(device: str) -> None:
-    sites = make("uniform", 5_000_000, seed=2)
-    sb.voronoi_2d(sites[:100_000], device=device)  # the device is awake
+@pytest.mark.parametrize(("kind", "count"), [("uniform", 5_000_000), ("two_rings", 400_000)])
+def test_cancelled_within_a_moment(kind: str, count: int, device: str) -> None:
+    sites = make(kind, count, seed=2)
+    uniform = make("uniform", 100_000, seed=2)
+    sb.voronoi_2d(uniform, device=device)  # the device is awake
     job = sb.Job()
     asked = [0.0]
 

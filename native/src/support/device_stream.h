@@ -2,9 +2,11 @@
 // A CUDA device's work in order, its clock and its memory.
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -99,6 +101,30 @@ class Stream {
  private:
   cudaStream_t stream_ = nullptr;
 };
+
+/// Waits for a stream. Calls poll(another stream) now and then, which may throw: then stop(that stream) has to see to
+/// it that the work ends soon, and what was thrown goes on once it has.
+template <class Poll, class Stop>
+void wait_polling(cudaStream_t stream, Poll&& poll, Stop&& stop) {
+  using Clock = std::chrono::steady_clock;
+  using namespace std::chrono_literals;
+  const Stream aside;
+  try {
+    for (auto asked = Clock::now();;) {
+      const cudaError_t state = cudaStreamQuery(stream);
+      if (state == cudaSuccess) return;
+      if (state != cudaErrorNotReady) check_cuda(state, "waiting for the device");
+      if (Clock::now() - asked < 20ms) continue;
+      poll(aside);
+      asked = Clock::now();
+      std::this_thread::sleep_for(500us);
+    }
+  } catch (...) {
+    stop(aside);
+    (void)cudaStreamSynchronize(stream);
+    throw;
+  }
+}
 
 /// Lets the device's pool keep what is freed: asking the driver for memory takes longer than most kernels.
 inline void keep_freed_memory(int device) {

@@ -221,7 +221,9 @@ struct FarCells {
     const int all = *count;
     int i = 0;
     if (threadIdx.x % 32 == 0)
-      i = *are_left || *static_cast<volatile int*>(failures) > most_failures ? all : atomicAdd(next, 1);
+      i = *static_cast<const volatile int*>(are_left) || *static_cast<volatile int*>(failures) > most_failures
+              ? all
+              : atomicAdd(next, 1);
     i = __shfl_sync(k_warp, i, 0);
     return i < all ? ranks[i] : -1;
   }

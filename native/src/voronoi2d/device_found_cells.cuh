@@ -71,9 +71,22 @@ class FoundCells {
     bool are_left;
     std::int32_t sides;
   };
-  /// Of what was started before; waits for it.
-  Count count() const {
+  /// Of what was started before; waits for it, and calls report(share done of the last cells) now and then, which may
+  /// throw.
+  template <class Report>
+  Count count(Report&& report) {
     int counters[k_counters];
+    wait_polling(
+        stream_,
+        [&](cudaStream_t aside) {
+          check_cuda(cudaMemcpyAsync(counters, counters_.data(), sizeof counters, cudaMemcpyDeviceToHost, aside),
+                     "counting cells");
+          check_cuda(cudaStreamSynchronize(aside), "counting cells");
+          report(std::min(1.0, static_cast<double>(counters[k_next_far]) / std::max(1, counters[k_far])));
+        },
+        [&](cudaStream_t aside) {  // as if all were left to other means
+          (void)cudaMemsetAsync(counters_.data() + k_left, 1, sizeof(int), aside);
+        });
     std::int32_t sides = 0;
     check_cuda(cudaMemcpyAsync(&sides, offsets_.data() + count_, sizeof sides, cudaMemcpyDeviceToHost, stream_),
                "counting sides");
@@ -126,29 +139,37 @@ class CellFinder : public FoundCells {
   /// Where the members' cells begin, and the last one's end.
   const std::vector<std::int32_t>& begins() const { return tiles_.bounds(); }
 
-  /// Does not wait for the last tiles, unless others wait for these cells; calls report() in between where there are
-  /// many.
+  /// Does not wait for the last cells, unless others wait for these; calls report(share done) in between where there
+  /// are many.
   template <class Report>
   void start(int device, Report&& report) {
     device_ = device;
     constexpr int k_many = 32;  // of as many one
     find(mine().count() / k_many, report);
-    if (begins().size() > 2) find_left(count());
+    if (begins().size() > 2) find_left(count(of_last(report)), report);
   }
 
   /// Waits for the cells. \return how many neighbours all have together.
-  std::int32_t finish(DeviceTimes& times, Stopwatch& watch) {
-    Count found = count();
-    if (begins().size() == 2 && find_left(found)) {
+  template <class Report>
+  std::int32_t finish(DeviceTimes& times, Stopwatch& watch, Report&& report) {
+    Count found = count(of_last(report));
+    if (begins().size() == 2 && find_left(found, report)) {
       add_sides();
       watch.end();
-      found = count();
+      found = count(of_last(report));
       found.far = std::max(found.far, count_);
     }
     return settle(found, times);
   }
 
  private:
+  /// Of all time: until the tiles are done.
+  static constexpr double k_tiles = 0.9;
+  template <class Report>
+  static auto of_last(Report& report) {
+    return [&report](double done) { report(k_tiles + (1 - k_tiles) * done); };
+  }
+
   IndexRange mine() const { return {begins()[member_], begins()[member_ + 1]}; }
 
   /// Leaves all to other means where there are more cells than `most_far`, and many of those so far, that tiles cannot
@@ -178,7 +199,7 @@ class CellFinder : public FoundCells {
       check_cuda(cudaGetLastError(), "finding cells");
       if (is_last) break;
       check_cuda(cudaStreamSynchronize(stream_), "finding cells");
-      report(static_cast<double>(i) / launches);
+      report(k_tiles * i / launches);
     }
     const int far_blocks = blocks_of(reinterpret_cast<const void*>(find_far_cells), k_far_threads, 0, device_);
     find_others([&](const FarCells& far, const DeviceLists& to) {
@@ -187,14 +208,16 @@ class CellFinder : public FoundCells {
   }
 
   /// Finds all of them by other means where that was left. \return whether it was.
-  bool find_left(const Count& found) {
+  template <class Report>
+  bool find_left(const Count& found, Report& report) {
     if (!found.are_left) return false;
-    if (merge()) return true;
-    find(std::numeric_limits<int>::max(), [](double) {});
+    if (merge([&] { report(k_tiles); })) return true;
+    find(std::numeric_limits<int>::max(), report);
     return true;
   }
 
-  bool merge() {
+  template <class Poll>
+  bool merge(Poll&& poll) {
     if (count_ > std::numeric_limits<std::int32_t>::max() / (2 * MergedMesh::k_edges)) return false;
     begin();
     make_pool(6 * static_cast<std::size_t>(count_));  // as many neighbours as all have together
@@ -202,7 +225,7 @@ class CellFinder : public FoundCells {
     sites.merge(blocks_of(reinterpret_cast<const void*>(merge_far_sites), k_threads, 0, device_));
     // Several members number what lies between their cells in steps by the square of a cell's neighbours.
     constexpr int k_any = std::numeric_limits<int>::max(), k_most_shared = 1024;
-    return sites.list(mine(), begins().size() == 2 ? k_any : k_most_shared, lists());
+    return sites.list(mine(), begins().size() == 2 ? k_any : k_most_shared, lists(), poll);
   }
 
   const DeviceOrder& order_;
@@ -224,7 +247,10 @@ class WeightedCellFinder : public FoundCells {
   }
   const std::vector<std::int32_t>& begins() const { return begins_; }
   /// Waits for the cells. \return how many neighbours all have together.
-  std::int32_t finish(DeviceTimes& times, Stopwatch&) const { return settle(count(), times); }
+  template <class Report>
+  std::int32_t finish(DeviceTimes& times, Stopwatch&, Report&& report) {
+    return settle(count([&](double done) { report(k_rows + (1 - k_rows) * done); }), times);
+  }
 
   template <class Report>
   void start(int device, Report&& report) {
@@ -239,7 +265,7 @@ class WeightedCellFinder : public FoundCells {
       check_cuda(cudaGetLastError(), "finding cells");
       if (some.end == rows.end) break;
       check_cuda(cudaStreamSynchronize(stream_), "finding cells");
-      report(static_cast<double>(some.end - rows.begin) / rows.count());
+      report(k_rows * (some.end - rows.begin) / rows.count());
     }
     const int far_blocks = blocks_of(reinterpret_cast<const void*>(find_far_weighted_cells), k_far_threads, 0, device);
     find_others([&](const FarCells& far, const DeviceLists& to) {
@@ -248,6 +274,7 @@ class WeightedCellFinder : public FoundCells {
   }
 
  private:
+  static constexpr double k_rows = 0.9;  ///< of all time, until they are done
   const WeightedBoxes boxes_;
   std::size_t member_;
   std::vector<std::int32_t> begins_;

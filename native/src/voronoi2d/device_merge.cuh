@@ -21,6 +21,7 @@ struct MergedMesh {
   const double2* sites;
   HalfEdge* halves;
   std::int32_t* leaving;  ///< from a corner of a triangulation, counter-clockwise along its border; -1: there is none
+  const int* failed;      ///< whether what is merged is of no use any more
 
   static constexpr int k_edges = 3;  ///< room, for each site
   static SADDLEBACK_HOST_DEVICE std::int32_t twin(std::int32_t half) { return half ^ 1; }
@@ -80,6 +81,12 @@ class Merger {
  private:
   /// A tenth of a second. A million sites along one curve take less than a hundred, evenly in a square some thousands.
   static constexpr int k_most_steps = 1 << 17;
+  static constexpr int k_steps_between_looks = 1 << 12;
+
+  SADDLEBACK_HOST_DEVICE void count_step() {
+    if (++steps_ > k_most_steps) fails_ = true;
+    if (steps_ % k_steps_between_looks == 0 && *static_cast<const volatile int*>(mesh_.failed) != 0) fails_ = true;
+  }
 
   SADDLEBACK_HOST_DEVICE bool comes_first(std::int32_t a, std::int32_t b) const {
     const double2 p = mesh_.sites[a], q = mesh_.sites[b];
@@ -115,7 +122,7 @@ class Merger {
     std::int32_t clockwise = mesh_.leaving[left_], onward = mesh_.leaving[right_];
     if (clockwise >= 0) clockwise = halves[clockwise].before;
     while (true) {
-      if (++steps_ > k_most_steps) fails_ = true;
+      count_step();
       if (fails_) break;
       if (clockwise >= 0 && is_below(halves[clockwise].to)) {
         left_ = halves[clockwise].to;
@@ -187,7 +194,7 @@ class Merger {
     while (true) {
       const std::int32_t back = MergedMesh::twin(base_), left = next_left_, right = next_right_;
       if (left == back && right == base_) return true;
-      if (++steps_ > k_most_steps) fails_ = true;
+      count_step();
       if (fails_) return true;
       const HalfEdge on_left = halves[left], on_right = halves[right];
       const HalfEdge left_twin = halves[MergedMesh::twin(left)], right_twin = halves[MergedMesh::twin(right)];

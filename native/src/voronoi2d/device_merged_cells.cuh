@@ -6,6 +6,7 @@
 // Every site is a part. Who is the second of two to come to where they meet merges them and goes on; the first has
 // nothing left to do.
 
+#include "support/device_stream.h"
 #include "support/index_range.cuh"
 #include "voronoi2d/device_cells.cuh"
 #include "voronoi2d/device_merge.cuh"
@@ -197,7 +198,7 @@ class MergedSites {
         parts_(2 * static_cast<std::size_t>(count), stream),
         waiting_(2 * static_cast<std::size_t>(block_count(count)), stream),
         counters_(3, stream),
-        tree_{{sites, halves_.data(), leaving_.data()},
+        tree_{{sites, halves_.data(), leaving_.data(), counters_.data() + 2},
               places,
               count,
               parts_.data(),
@@ -216,14 +217,19 @@ class MergedSites {
     check_cuda(cudaGetLastError(), "merging sites");
   }
 
-  /// Fills the lists of some cells. Waits for the device. \return false when something cannot be told, takes too long,
-  /// or a cell has too many neighbours.
-  bool list(IndexRange ranks, int most_neighbours, const DeviceLists& lists) const {
+  /// Fills the lists of some cells. Waits for the device; poll() may throw meanwhile. \return false when something
+  /// cannot be told, takes too long, or a cell has too many neighbours.
+  template <class Poll>
+  bool list(IndexRange ranks, int most_neighbours, const DeviceLists& lists, Poll&& poll) {
     const std::int32_t edges = MergedMesh::k_edges * tree_.count;
     find_leaving<<<blocks_for(edges), k_threads, 0, stream_>>>(tree_.mesh, edges);
     check_cuda(cudaGetLastError(), "listing cells");
     list_merged_cells<<<blocks_for(ranks.count()), k_threads, 0, stream_>>>(tree_, ranks, most_neighbours, lists);
     check_cuda(cudaGetLastError(), "listing cells");
+    int* const failed = counters_.data() + 2;
+    wait_polling(
+        stream_, [&](cudaStream_t) { poll(); },
+        [&](cudaStream_t aside) { (void)cudaMemsetAsync(failed, 1, sizeof *failed, aside); });
     return counters_.value_at(2) == 0;
   }
 

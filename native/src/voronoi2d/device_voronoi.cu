@@ -100,14 +100,15 @@ class Builder {
     DeviceTimes& times = times_[static_cast<std::size_t>(member)];
     const cudaStream_t stream = *own_stream;
     const PlanePart part{arrays_, member, cells.begins()};
-    cells.start(device, [&](double done) { report(Share::order + (Share::find - Share::order) * done); });
+    const auto report_cells = [&](double done) { report(Share::order + (Share::find - Share::order) * done); };
+    cells.start(device, report_cells);
     cells.share(part);
     watch.end();
     if (member == 0 && !request_.kept) make_room(sites.count);
     team_.meet();
     HostCopies copies(stream);
     copy_sites(order, sites, part, copies);
-    const std::int32_t sides = cells.finish(times, watch);
+    const std::int32_t sides = cells.finish(times, watch, report_cells);
     times.find = watch.read();
     report(Share::find);
     watch.start();
