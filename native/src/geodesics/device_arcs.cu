@@ -278,20 +278,25 @@ class ArcFinder {
   template <bool All>
   void find_all(DeviceTimes& times) {
     failures_.fill_bytes(0);
+    const std::int32_t all = part_.nodes.count();
     if (is_small()) {
-      find_in<SmallRoom<All>>(0);
+      find_in<SmallRoom<All>>(0, all);
     } else if (is_middle()) {
-      find_in<MiddleRoom<All>>(0);
+      find_in<MiddleRoom<All>>(0, all);
     } else {
-      find_in<WideRoom<All>>(0);
+      find_in<WideRoom<All>>(0, all);
     }
-    find_in<WideRoom<All>>(1);
+    find_in<WideRoom<All>>(1, all);  // does not wait to know how many are left
     times.second_pass = failures(0);
     times.by_processor = 0;
-    if (failures(1) > 0) find_in<HugeRoom<All>>(2);
-    if (failures(1) > 0 && failures(2) > 0) find_in<LastRoom<All>>(3);
-    if (failures(1) == 0 || failures(2) == 0 || failures(3) == 0) return;
-    find_rest(failures(3), times);
+    std::int32_t left = failures(1);
+    if (left == 0) return;
+    find_in<HugeRoom<All>>(2, left);
+    left = failures(2);
+    if (left == 0) return;
+    find_in<LastRoom<All>>(3, left);
+    left = failures(3);
+    if (left > 0) find_rest(left, times);
   }
 
   /// By the processor. What ends the windows of one node there may be those of others of its batch: all have to be
@@ -317,9 +322,10 @@ class ArcFinder {
   bool is_small() const { return request_.k > 0 ? request_.k <= 50 : request_.excess >= 3e-3; }
   bool is_middle() const { return request_.k <= 110; }
 
-  /// Of all nodes or, from the second pass on, those that failed in the one before.
+  /// Of all nodes or, from the second pass on, those that failed in the one before: `most` at most, so that no more
+  /// warps get memory than find work.
   template <class Room>
-  void find_in(std::size_t pass) {
+  void find_in(std::size_t pass, std::int32_t most) {
     const auto kernel = find_arcs<Room>;
     const void* const code = reinterpret_cast<const void*>(kernel);
     const int warps = warps_of_block(Room::warp_bytes, Room::Warps);
@@ -331,7 +337,7 @@ class ArcFinder {
     check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, k_carveout),
                "asking for shared memory");
     const std::int32_t all = part_.nodes.count();
-    int blocks = std::min(blocks_of(code, 32 * warps, shared), (all / Room::Seats + warps) / warps);
+    int blocks = std::min(blocks_of(code, 32 * warps, shared), (most / Room::Seats + warps) / warps);
     if (!Room::table_is_shared) blocks = std::min(blocks, k_most_in_last / warps);
     const auto places = static_cast<std::size_t>(blocks) * warps;
     DeviceBuffer<Sighting> drafts(places * Room::Table::Draft, stream_);
