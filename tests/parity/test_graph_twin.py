@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -77,6 +79,13 @@ def fan(rim: int) -> meshes.Arrays:
     return np.vstack([np.zeros(3), around]), spokes.astype(np.int32)
 
 
+@pytest.mark.parametrize("k", [40, 100, 150])
+def test_disks_in_creases_are_bounded_by_edges_on_the_device(k: int, tmp_path: Path) -> None:
+    mesh = sb.Mesh(*meshes.spikes())
+    expect_twins(mesh, tmp_path, k=k)
+    assert sb.SaddleVertexGraph(mesh, k=k, device="cuda").device_times["by_processor"] == 0
+
+
 def test_what_is_too_much_for_the_device_the_processor_does(tmp_path: Path) -> None:
     expect_twins(sb.Mesh(*fan(6000)), tmp_path, k=8)  # more windows at the hub than there is room for
 
@@ -136,3 +145,25 @@ def test_progress_and_cancel(device: str) -> None:
     job.cancel()
     with pytest.raises(sb.Cancelled):
         sb.SaddleVertexGraph(mesh, device=device, job=job)
+
+
+@pytest.mark.parametrize("rule", [{"accuracy": 5e-3}, {"k": 100}], ids=["accuracy", "k"])
+def test_cancelled_within_a_moment_among_needles(rule: dict[str, Any]) -> None:
+    vertices, triangles = meshes.cylinder(500, 40)
+    mesh = sb.Mesh(vertices * [1, 1, 250], triangles)
+    sb.SaddleVertexGraph(sb.Mesh(*meshes.grid(40, 40)), device="cuda", **rule)  # the device is awake
+    job = sb.Job()
+    asked = [0.0]
+
+    def stop() -> None:
+        time.sleep(0.1)
+        asked[0] = time.perf_counter()
+        job.cancel()
+
+    thread = threading.Thread(target=stop)
+    thread.start()
+    with pytest.raises(sb.Cancelled):
+        while True:
+            sb.SaddleVertexGraph(mesh, device="cuda", job=job, **rule)
+    assert time.perf_counter() - asked[0] < 0.15
+    thread.join()

@@ -101,7 +101,7 @@ __global__ void list_neighbours(DeviceMesh mesh, std::int32_t nodes, Neighbour* 
 }
 
 struct Work {
-  const int* fails;            ///< whether all do
+  const volatile int* fails;   ///< whether all do
   const std::int32_t* nodes;   ///< null: all from `begin` on
   const std::int32_t* listed;  ///< how many nodes; null: `count`
   std::int32_t begin, count;
@@ -115,6 +115,7 @@ template <class Room>
 struct Scratch {
   typename Room::Table* tables;
   typename Room::Pool* pools;
+  EdgeDistances<Room::Table::Slots>* edges;  ///< where disks end by count
   Sighting* drafts;
 };
 
@@ -131,22 +132,33 @@ __global__ void __launch_bounds__(32 * Room::Warps, 1)
   char* const own = memory + warp * Room::warp_bytes;
   Table& table = Room::table_is_shared ? *reinterpret_cast<Table*>(own) : scratch.tables[place];
   Pool& pool = Room::pool_is_shared ? *reinterpret_cast<Pool*>(own + sizeof table) : scratch.pools[place];
-  Waves waves(mesh, table, pool, scratch.drafts + place * Table::Draft, Table::Draft);
+  Waves waves(mesh, table, pool, scratch.edges + place, scratch.drafts + place * Table::Draft, Table::Draft);
   const std::int32_t count = work.listed ? *work.listed : work.count;
   while (true) {
     std::int32_t number = 0;
     if (lane == 0) number = atomicAdd(work.next, Room::Seats);
     number = uniform(number);
     if (number >= count) return;
-    const WarpSources sources{work.nodes ? work.nodes[number] : work.begin + number, min(Room::Seats, count - number)};
-    bool done = false;
-    if (*work.fails == 0) {
-      waves.begin(sources);
-      done = waves.run();
-      auto& best = reinterpret_cast<typename Room::Best&>(pool);
-      if (done) done = RowWriter<Waves, Table, Room::Seats>(mesh, waves, best).write(rows);
+    const std::int32_t first = work.nodes ? work.nodes[number] : work.begin + number;
+    const int taken = min(Room::Seats, count - number);
+    // What is too much for several together may do for each.
+    for (int seat = 0, together = taken; seat < taken;) {
+      const WarpSources sources{first + seat, together};
+      bool done = false;
+      if (*work.fails == 0) {
+        waves.begin(sources);
+        done = waves.run();
+        auto& best = reinterpret_cast<typename Room::Best&>(pool);
+        if (done) done = RowWriter<Waves, Table, Room::Seats>(mesh, waves, best).write(rows);
+      }
+      __syncwarp();
+      if (!done && together > 1) {
+        together = 1;
+        continue;
+      }
+      if (!done && lane == 0) work.failed[atomicAdd(work.failures, 1)] = sources.node;
+      seat += together;
     }
-    if (!done && lane < sources.count) work.failed[atomicAdd(work.failures, 1)] = sources.node + lane;
     __syncwarp();
   }
 }
@@ -249,10 +261,10 @@ class ArcFinder {
                 DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream)},
         next_(1, stream),
         failures_(k_passes, stream),
-        has_extremes_(1, stream),
+        fails_(1, stream),
         rows_(request.node_count, first_guess(request, part.nodes), request.packing.target_mask, stream) {
-    has_extremes_.fill_bytes(0);
-    look_for_extremes<<<256, 256, 0, stream>>>(tables_.mesh().lengths, request.edge_count, has_extremes_.data());
+    fails_.fill_bytes(0);
+    look_for_extremes<<<256, 256, 0, stream>>>(tables_.mesh().lengths, request.edge_count, fails_.data());
     check_cuda(cudaGetLastError(), "looking at edges");
   }
 
@@ -279,31 +291,33 @@ class ArcFinder {
   void find_all(DeviceTimes& times) {
     failures_.fill_bytes(0);
     const std::int32_t all = part_.nodes.count();
+    std::size_t passes = 0;
     if (is_small()) {
-      find_in<SmallRoom<All>>(0, all);
+      find_in<SmallRoom<All>>(passes++, all);
     } else if (is_middle()) {
-      find_in<MiddleRoom<All>>(0, all);
-    } else {
-      find_in<WideRoom<All>>(0, all);
+      find_in<MiddleRoom<All>>(passes++, all);
     }
-    find_in<WideRoom<All>>(1, all);  // does not wait to know how many are left
+    find_in<WideRoom<All>>(passes++, all);  // the second does not wait to know how many are left
+    wait();
     times.second_pass = failures(0);
     times.by_processor = 0;
-    std::int32_t left = failures(1);
-    if (left == 0) return;
-    find_in<HugeRoom<All>>(2, left);
-    left = failures(2);
-    if (left == 0) return;
-    find_in<LastRoom<All>>(3, left);
-    left = failures(3);
-    if (left > 0) find_rest(left, times);
+    std::int32_t left = failures(passes - 1);
+    if (left > 0) {
+      find_in<HugeRoom<All>>(passes++, left);
+      left = failures(passes - 1);
+    }
+    if (left > 0) {
+      find_in<LastRoom<All>>(passes++, left);
+      left = failures(passes - 1);
+    }
+    if (left > 0) find_rest(left, failed_[(passes - 1) % 2], times);
   }
 
   /// By the processor. What ends the windows of one node there may be those of others of its batch: all have to be
   /// done.
-  void find_rest(std::int32_t count, DeviceTimes& times) {
+  void find_rest(std::int32_t count, const DeviceBuffer<std::int32_t>& nodes, DeviceTimes& times) {
     std::vector<std::int32_t> failed(static_cast<std::size_t>(count)), left;
-    failed_[1].read(failed);
+    nodes.read(failed);
     times.by_processor = count;
     std::ranges::sort(failed);  // they failed in any order
     for (const std::int32_t node : failed) {
@@ -343,10 +357,11 @@ class ArcFinder {
     DeviceBuffer<Sighting> drafts(places * Room::Table::Draft, stream_);
     DeviceBuffer<typename Room::Table> tables(Room::table_is_shared ? 0 : places, stream_);
     DeviceBuffer<typename Room::Pool> pools(Room::pool_is_shared ? 0 : places, stream_);
+    DeviceBuffer<EdgeDistances<Room::Table::Slots>> edges(Room::Table::All ? places : 0, stream_);
     for (std::int32_t begin = 0; begin < all; begin += k_sources_per_launch) {
       report(pass > 0 ? 0.99 : static_cast<double>(begin) / all);
       next_.fill_bytes(0);
-      Work work{has_extremes_.data(),
+      Work work{fails_.data(),
                 nullptr,
                 nullptr,
                 part_.nodes.begin + begin,
@@ -358,12 +373,19 @@ class ArcFinder {
         work.nodes = failed_[1 - pass % 2].data();
         work.listed = failures_.data() + pass - 1;
       }
-      kernel<<<blocks, 32 * warps, shared, stream_>>>(tables_.mesh(), work,
-                                                      {tables.data(), pools.data(), drafts.data()}, rows_.view());
+      kernel<<<blocks, 32 * warps, shared, stream_>>>(
+          tables_.mesh(), work, {tables.data(), pools.data(), edges.data(), drafts.data()}, rows_.view());
       check_cuda(cudaGetLastError(), "finding arcs");
       if (pass > 0) break;
-      if (all > k_sources_per_launch) check_cuda(cudaStreamSynchronize(stream_), "finding arcs");
+      if (all > k_sources_per_launch) wait();
     }
+  }
+
+  /// For what was started; whoever asks to stop is not kept waiting by sources that take long.
+  void wait() {
+    wait_polling(
+        stream_, [&](cudaStream_t) { report(0.99); },
+        [&](cudaStream_t aside) { (void)cudaMemsetAsync(fails_.data(), 1, sizeof(int), aside); });
   }
 
   /// Warps for which a block has the memory.
@@ -387,7 +409,10 @@ class ArcFinder {
   }
 
   /// Of a pass. Waits for the stream.
-  std::int32_t failures(std::size_t pass) const { return failures_.value_at(pass); }
+  std::int32_t failures(std::size_t pass) {
+    wait();
+    return failures_.value_at(pass);
+  }
 
   void report(double fraction) const {
     caller_.report(part_.member, Share::upload + (Share::find - Share::upload) * fraction);
@@ -400,7 +425,7 @@ class ArcFinder {
   Tables tables_;
   DeviceBuffer<std::int32_t> failed_[2];  ///< nodes that failed in passes of even and of odd number
   DeviceBuffer<std::int32_t> next_, failures_;
-  DeviceBuffer<int> has_extremes_;
+  DeviceBuffer<int> fails_;  ///< whether all sources do: there are extremes, or the caller asked to stop
   RowStore rows_;
 };
 

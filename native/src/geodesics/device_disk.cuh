@@ -13,6 +13,55 @@ namespace {
 constexpr float k_disk_as_far = 1 + 1e-5f;
 constexpr float k_bend_longer = 1 + 1e-6f;
 
+template <class Use>
+SADDLEBACK_STEP void for_each_label(const std::int32_t* labels, int slots, Use&& use) {
+  const int4* const fours = reinterpret_cast<const int4*>(labels);
+#pragma unroll 4
+  for (int i = static_cast<int>(threadIdx.x & 31); i < slots / 4; i += 32) {
+    const int4 four = fours[i];
+    use(four.x);
+    use(four.y);
+    use(four.z);
+    use(four.w);
+  }
+}
+SADDLEBACK_STEP int count_up_to(const std::int32_t* labels, int slots, std::int32_t most) {
+  int count = 0;
+  for_each_label(labels, slots, [&](std::int32_t label) { count += label <= most; });
+  return warp_sum(count);
+}
+SADDLEBACK_STEP std::int32_t last_up_to(const std::int32_t* labels, int slots, std::int32_t most) {
+  std::int32_t last = 0;
+  for_each_label(labels, slots, [&](std::int32_t label) { last = max(last, label <= most ? label : 0); });
+  return warp_max(last);
+}
+/// Between two labels, as if vertices were spread evenly over the disk.
+SADDLEBACK_STEP std::int32_t guess_label(std::int32_t low, std::int32_t high, int below, int through, int wanted) {
+  const float inner = low < 0 ? 0 : distance_of(low), outer = distance_of(high);
+  const float share = Simd::quotient(static_cast<float>(wanted - below), static_cast<float>(through - below));
+  const float radius = Simd::sqrt(inner * inner + (outer * outer - inner * inner) * share);
+  return max(low + 1, min(__float_as_int(radius), high - 1));
+}
+/// The n-th of the labels in the order of their sizes, of those up to `most`; k_unreached_label when there are not so
+/// many. By all lanes of a warp.
+SADDLEBACK_STEP std::int32_t nth_label(const std::int32_t* labels, int slots, int n, std::int32_t most) {
+  std::int32_t low = -1, high = last_up_to(labels, slots, min(most, k_unreached_label - 1));
+  int below = 0, through = count_up_to(labels, slots, high);  // labels up to low, and up to high
+  if (through < n) return k_unreached_label;
+  for (bool guesses = true; through != n && high - low > 1; guesses = !guesses) {
+    const std::int32_t middle = guesses ? guess_label(low, high, below, through, n) : low + (high - low) / 2;
+    const int there = count_up_to(labels, slots, middle);
+    if (there >= n) {
+      high = middle;
+      through = there;
+    } else {
+      low = middle;
+      below = there;
+    }
+  }
+  return last_up_to(labels, slots, high);
+}
+
 /// The twin of DiskFinder's labels. `Seats` sources share the table.
 template <class Table, int Seats>
 class WarpDisk {
@@ -42,6 +91,7 @@ class WarpDisk {
   SADDLEBACK_STEP float radius() const { return limit_; }
   SADDLEBACK_STEP bool is_bounded() const { return limit_ < distance_of(k_unreached_label); }
   SADDLEBACK_STEP bool overflowed() const { return overflow_; }
+  SADDLEBACK_STEP bool overflowed_anywhere() const { return __any_sync(k_warp, overflow_); }
   SADDLEBACK_STEP std::int32_t label(int slot) const { return table_.labels[slot]; }
   SADDLEBACK_STEP std::int32_t node(int slot) const { return DiskKey<Seats>::node(table_.keys[slot]); }
 
@@ -84,24 +134,11 @@ class WarpDisk {
   /// Lowers the radius of the disk to that of the k-th nearest vertex, as far as is known.
   SADDLEBACK_STEP bool bound() {
     __syncwarp();
-    const int wanted = mesh_.k + 1;  // a node is its own nearest
-    std::int32_t low = -1, high = min(__float_as_int(limit_), k_unreached_label - 1);
-    int below = 0, through = 0;  // labels up to low, and up to high
-    high = last_up_to(high);
-    through = count_up_to(high);
-    if (through < wanted) return false;
-    for (bool guesses = true; through != wanted && high - low > 1; guesses = !guesses) {
-      const std::int32_t middle = guesses ? guess(low, high, below, through, wanted) : low + (high - low) / 2;
-      const int there = count_up_to(middle);
-      if (there >= wanted) {
-        high = middle;
-        through = there;
-      } else {
-        low = middle;
-        below = there;
-      }
-    }
-    const float radius = distance_of(last_up_to(high)) * k_disk_as_far;
+    const std::int32_t last = nth_label(table_.labels, k_slots, mesh_.k + 1, __float_as_int(limit_));
+    if (last == k_unreached_label) return false;
+    return lower_radius(distance_of(last) * k_disk_as_far);  // a node is its own nearest
+  }
+  SADDLEBACK_STEP bool lower_radius(float radius) {
     if (!(radius < limit_)) return false;
     limit_ = radius;
     return true;
@@ -112,12 +149,41 @@ class WarpDisk {
     if (!is_bounded()) return;
     while (const int count = list_changed()) {
       const int tellers = list_tellers(count);
-      for (int i = 0; i < tellers; i += 32 / Neighbour::k_block) tell_neighbours(i, tellers);
-      if (__any_sync(k_warp, overflow_)) return;
+      for (int i = 0; i < tellers; i += 32 / Neighbour::k_block) tell_neighbours(i, tellers, Bend{table_});
+      if (overflowed_anywhere()) return;
     }
   }
 
+  /// Of the list, from the `first` on, as many as there are blocks' worth of lanes: rule.offer(disk, slot of a
+  /// neighbour, rule.from(slot), length of the edge). By all lanes of the warp.
+  template <class Rule>
+  SADDLEBACK_STEP void tell_neighbours(int first, int count, const Rule& rule) {
+    const int number = first + lane_ / Neighbour::k_block, last = lane_ | (Neighbour::k_block - 1);
+    const int slot = table_.todo[min(number, count - 1)];
+    const float from = rule.from(slot);
+    std::int32_t block = number < count ? node(slot) : -1;
+    do {
+      Neighbour there{Neighbour::k_none, 0};
+      if (block >= 0) there = mesh_.neighbours[block * Neighbour::k_block + (lane_ & (Neighbour::k_block - 1))];
+      const bool is_node = (there.key & Neighbour::k_link) == 0;
+      const int other = insert(is_node, there.key);
+      if (is_node) rule.offer(*this, other, from, there.length);
+      const bool goes_on = !is_node && there.key != Neighbour::k_none;
+      block = __shfl_sync(k_warp, goes_on ? static_cast<std::int32_t>(there.key & ~Neighbour::k_link) : -1, last);
+      __syncwarp();
+    } while (__any_sync(k_warp, block >= 0));
+  }
+
  private:
+  /// Told where shortest ways bend: longer by more than rounding, so that what is collinear stays an arc.
+  struct Bend {
+    const Table& table;
+    SADDLEBACK_STEP float from(int slot) const { return distance_of(table.labels[slot]); }
+    SADDLEBACK_STEP void offer(WarpDisk& disk, int slot, float from, float length) const {
+      disk.lower(slot, label_of((from + length) * k_bend_longer, false), true);
+    }
+  };
+
   /// In one bucket of four, which are filled from the first entry on: what is in none of a bucket that has room is
   /// nowhere.
   SADDLEBACK_STEP void look_up(Claim& claim) {
@@ -136,36 +202,6 @@ class WarpDisk {
     }
     if (at >= 0) claim.slot = 4 * claim.bucket + at;
     if (at < 0 && !has_room) claim.bucket = claim.bucket + 1 < k_slots / 4 ? claim.bucket + 1 : 0;
-  }
-
-  template <class Use>
-  SADDLEBACK_STEP void for_each_label(Use&& use) const {
-    const int4* const labels = reinterpret_cast<const int4*>(table_.labels);
-#pragma unroll 4
-    for (int i = lane_; i < k_slots / 4; i += 32) {
-      const int4 four = labels[i];
-      use(four.x);
-      use(four.y);
-      use(four.z);
-      use(four.w);
-    }
-  }
-  SADDLEBACK_STEP int count_up_to(std::int32_t most) const {
-    int count = 0;
-    for_each_label([&](std::int32_t label) { count += label <= most; });
-    return warp_sum(count);
-  }
-  SADDLEBACK_STEP std::int32_t last_up_to(std::int32_t most) const {
-    std::int32_t last = 0;
-    for_each_label([&](std::int32_t label) { last = max(last, label <= most ? label : 0); });
-    return warp_max(last);
-  }
-  /// Between two labels, as if vertices were spread evenly over the disk.
-  SADDLEBACK_STEP static std::int32_t guess(std::int32_t low, std::int32_t high, int below, int through, int wanted) {
-    const float inner = low < 0 ? 0 : distance_of(low), outer = distance_of(high);
-    const float share = Simd::quotient(static_cast<float>(wanted - below), static_cast<float>(through - below));
-    const float radius = Simd::sqrt(inner * inner + (outer * outer - inner * inner) * share);
-    return max(low + 1, min(__float_as_int(radius), high - 1));
   }
 
   /// Takes slots that are marked as changed into the list of those to do. \return how many
@@ -206,24 +242,6 @@ class WarpDisk {
       __syncwarp();
     }
     return tellers;
-  }
-
-  /// Of the list, from the `first` on, as many as there are blocks' worth of lanes.
-  SADDLEBACK_STEP void tell_neighbours(int first, int count) {
-    const int number = first + lane_ / Neighbour::k_block, last = lane_ | (Neighbour::k_block - 1);
-    const int slot = table_.todo[min(number, count - 1)];
-    const float before = distance_of(table_.labels[slot]);
-    std::int32_t block = number < count ? node(slot) : -1;
-    do {
-      Neighbour there{Neighbour::k_none, 0};
-      if (block >= 0) there = mesh_.neighbours[block * Neighbour::k_block + (lane_ & (Neighbour::k_block - 1))];
-      const bool is_node = (there.key & Neighbour::k_link) == 0;
-      const int other = insert(is_node, there.key);
-      if (is_node) lower(other, label_of((before + there.length) * k_bend_longer, false), true);
-      const bool goes_on = !is_node && there.key != Neighbour::k_none;
-      block = __shfl_sync(k_warp, goes_on ? static_cast<std::int32_t>(there.key & ~Neighbour::k_link) : -1, last);
-      __syncwarp();
-    } while (__any_sync(k_warp, block >= 0));
   }
 
   /// The sum of what the lanes up to this one have.

@@ -74,10 +74,10 @@ struct alignas(16) Sighting {
 
 /// What belongs to a window, by its indices.
 struct alignas(16) WindowLinks {
-  std::int32_t edge;   ///< its record or, once its apex is sighted, the one behind its face's left side
+  std::int32_t edge;   ///< its record
   std::uint32_t ends;  ///< slots of the half-edge's ends, see EndSlots
   std::uint32_t root;  ///< RootEdge; above it the slot of the apex, once it is sighted
-  std::int32_t right;  ///< record behind its face's right side, once the apex is sighted
+  float most;          ///< radius beyond which the window serves nothing; where disks end by count, the disk's
 };
 
 /// Two slots in one word, left below right.
@@ -110,25 +110,22 @@ struct Light {
   static constexpr int k_right = 1 << 14, k_last = 1 << 15, k_place = k_right - 1;
 };
 
-/// A warp's windows. Each has a place. *Left* is 0 and *right* is 1 of what there is two of.
+/// A warp's windows. Each has a place. *Left* is 0 and *right* is 1 of what there is two of. Less for each leaves room
+/// for more warps: what of a window is soon computed again is not kept.
 template <bool All_, int Windows_>
 struct alignas(16) WindowPool {
   static constexpr bool All = All_;
   static constexpr int Windows = Windows_;
   static constexpr int Lights = All ? Windows + Windows / 4 : Windows + 3 * Windows / 8;
-  static constexpr int Rights = Windows;  ///< where they begin in `order`
   static_assert(Windows <= Light::k_place && Windows % 8 == 0);
   using Place = std::conditional_t<(Windows <= 256), std::uint8_t, std::uint16_t>;
   double2 ends[2][Windows];  ///< of the half-edge: start, which is on the left, and end
-  double2 apexes[Windows];   ///< far corners of the faces
   WindowLinks links[Windows];
-  float4 views[All ? 1 : Windows];  ///< of the apexes: distance, offsets from the left and the right ray, and way
   WindowRay<All> rays[2][Windows];
-  float most[All ? 1 : Windows];      ///< radii beyond which windows serve nothing
-  std::uint32_t clearances[Windows];  ///< of the records
+  float ways[All ? 1 : Windows];  ///< to the apexes, once they are sighted
   std::uint16_t lights[Lights];
-  Place order[2][2 * Rights];  ///< of this generation and the next: windows behind left sides, then behind right ones
-  Place free[Windows];         ///< places without windows
+  Place order[Windows];  ///< of a generation: windows behind left sides, and from the end on those behind right ones
+  Place free[Windows];   ///< places without windows
 };
 
 /// The vertices that the sources reached.

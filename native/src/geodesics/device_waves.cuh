@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "geodesics/device_disk.cuh"
+#include "geodesics/device_edge_bound.cuh"
 #include "geodesics/device_wave_memory.cuh"
 #include "support/warp.cuh"
 
@@ -28,10 +28,14 @@ class WarpWaves {
   static constexpr int k_windows = Pool::Windows, k_lanes_per_seat = 32 / Seats;
 
  public:
+  using Edges = EdgeDistances<Table::Slots>;
   /// `draft` has room for the sightings that make arcs.
-  SADDLEBACK_STEP WarpWaves(const DeviceMesh& mesh, Table& table, Pool& pool, Sighting* draft, int draft_room)
+  SADDLEBACK_STEP WarpWaves(const DeviceMesh& mesh, Table& table, Pool& pool, Edges* edges, Sighting* draft,
+                            int draft_room)
       : mesh_(mesh),
+        table_(table),
         pool_(pool),
+        edges_(edges),
         disk_(mesh, table),
         draft_(draft),
         draft_room_(draft_room),
@@ -42,7 +46,6 @@ class WarpWaves {
     sources_ = sources;
     arcs_ = generation_ = windows_ = 0;
     count_[0] = count_[1] = 0;
-    now_ = 0;
     overflow_ = false;
     for (int i = lane_; i < k_windows; i += 32) pool_.free[i] = static_cast<Place>(i);
     free_count_ = k_windows;
@@ -75,7 +78,6 @@ class WarpWaves {
       count_[0] = count_[1] = 0;
       const int lights = uniform(lights_);
       for (int base = 0; base < lights; base += 32) pass_on(base, lights);
-      now_ ^= 1;
     }
     if constexpr (All) {
       for (bool smaller = true; smaller && !overflowed();) {
@@ -131,14 +133,14 @@ class WarpWaves {
       overflow_ = true;
     } else if (opens) {
       const int place = pool_.free[free_count_ - 1 - rank(opening)];
-      pool_.order[now_][count_[0] + rank(opening)] = static_cast<Place>(place);
+      pool_.order[count_[0] + rank(opening)] = static_cast<Place>(place);
       pool_.ends[0][place] = corner;
       pool_.ends[1][place] = {length, 0};
       pool_.rays[0][place] =
           ray_of(static_cast<float>(corner.x / other), static_cast<float>(corner.y / other), static_cast<float>(other));
       pool_.rays[1][place] = ray_of(1, 0, static_cast<float>(length));
-      pool_.links[place] = {record.right, EndSlots::pack(apex, to), static_cast<std::uint32_t>(root), 0};
-      if constexpr (!All) pool_.most[place] = distance_of(k_unreached_label);
+      pool_.links[place] = {record.right, EndSlots::pack(apex, to), static_cast<std::uint32_t>(root),
+                            distance_of(k_unreached_label)};
     }
     free_count_ -= opened;
     count_[0] += opened;
@@ -169,16 +171,14 @@ class WarpWaves {
   SADDLEBACK_STEP void sight(int base, int lefts, int all) {
     const bool active = base + lane_ < all;
     const int p = active ? base + lane_ : base;
-    const int place = pool_.order[now_][p < lefts ? p : p - lefts + Pool::Rights];
+    const int place = pool_.order[p < lefts ? p : k_windows - 1 - (p - lefts)];
     const WindowLinks links = pool_.links[place];
     const EdgeRecord record = mesh_.records[links.edge];
     const double2 from = pool_.ends[0][place], to = pool_.ends[1][place];
     const Ray left = pool_.rays[0][place], right = pool_.rays[1][place];
     const auto root = static_cast<int>(links.root);
-    const auto claim = disk_.claim(true, apex_key(record, RootEdge::seat(root)));
-    const double along_x = to.x - from.x, along_y = to.y - from.y;
-    const double2 apex{from.x + (record.a * along_x - record.b * along_y),
-                       from.y + (record.a * along_y + record.b * along_x)};
+    const auto claim = disk_.claim(active, apex_key(record, RootEdge::seat(root)));
+    const double2 apex = apex_of(record, from, to);
     Rays rays{right.x, right.y, left.x, left.y, 0, 0};
     if constexpr (!All) {
       rays.right_reach = right.reach;
@@ -196,11 +196,8 @@ class WarpWaves {
     const std::int32_t label = label_of(view.reach, direct);
     __syncwarp();  // nobody looks at the first window any more
     if (active) {
-      if constexpr (!All) pool_.views[place] = {view.reach, view.to_left, view.from_right, way};
-      pool_.apexes[place] = apex;
-      pool_.links[place] = {record.left, links.ends, links.root | static_cast<std::uint32_t>(slot) << RootEdge::k_bits,
-                            record.right};
-      pool_.clearances[place] = record.clearances;
+      if constexpr (!All) pool_.ways[place] = way;
+      pool_.links[place].root = links.root | static_cast<std::uint32_t>(slot) << RootEdge::k_bits;
       if (view.in_sight) disk_.lower(slot, label, !direct || (record.clearances & k_saddle_bit) != 0);
     }
     const bool makes = active & direct;
@@ -210,6 +207,11 @@ class WarpWaves {
     const float tolerance = k_on_ray * view.reach;
     list_lights(active, place, active & (record.left >= 0) & (tolerance < view.to_left),
                 active & (record.right >= 0) & (tolerance < view.from_right));
+  }
+
+  SADDLEBACK_STEP static double2 apex_of(const EdgeRecord& record, const double2& from, const double2& to) {
+    const double along_x = to.x - from.x, along_y = to.y - from.y;
+    return {from.x + (record.a * along_x - record.b * along_y), from.y + (record.a * along_y + record.b * along_x)};
   }
 
   SADDLEBACK_STEP void list_lights(bool active, int place, bool left, bool right) {
@@ -231,9 +233,17 @@ class WarpWaves {
     if constexpr (All) {
       if (++generation_ % k_generations_per_bound != 0) return;
       disk_.bound();
-      // Where few vertices are in sight: the processor bounds such disks by edges.
-      if (generation_ >= k_blind_generations && !disk_.is_bounded()) overflow_ = true;
+      if (generation_ >= k_blind_generations && !disk_.is_bounded()) bound_by_edges();
       disk_.relax_bends();
+    }
+  }
+
+  /// In creases fewer than k vertices are in sight: no radius would ever end the windows there.
+  SADDLEBACK_STEP void bound_by_edges() {
+    if constexpr (All) {
+      const float radius = radius_by_edges(mesh_.neighbours, mesh_.k, &table_, edges_);
+      if (radius < 0) overflow_ = true;
+      disk_.lower_radius(max(radius, 0.0f));
     }
   }
 
@@ -245,39 +255,36 @@ class WarpWaves {
     const int place = light & Light::k_place, s = light / Light::k_right & 1;
     const WindowLinks links = pool_.links[place];
     const auto apex_slot = static_cast<int>(links.root >> RootEdge::k_bits);
-    const double2 near = pool_.ends[s][place], far = pool_.ends[1 - s][place], apex = pool_.apexes[place];
+    const EdgeRecord record = mesh_.records[links.edge];
+    const double2 from = pool_.ends[0][place], to = pool_.ends[1][place], near = pool_.ends[s][place];
     const Ray near_ray = pool_.rays[s][place], far_ray = pool_.rays[1 - s][place];
-    const std::uint32_t clearances = pool_.clearances[place];
+    const float way = All ? 0 : pool_.ways[All ? 0 : place];
     const float near_label = distance_of(disk_.label(EndSlots::slot(links.ends, s)));
     const float far_label = distance_of(disk_.label(EndSlots::slot(links.ends, 1 - s)));
     const float apex_label = distance_of(disk_.label(apex_slot));
+    const double2 apex = apex_of(record, from, to);
     // Right sides are seen in a mirror.
     const float flip = s == 0 ? 1 : -1;
     const float apex_x = static_cast<float>(apex.x), apex_y = flip * static_cast<float>(apex.y);
-    float4 view;
-    if constexpr (All) {
-      const ApexView seen =
-          view_apex(apex_x, apex_y, {far_ray.x, flip * far_ray.y, near_ray.x, flip * near_ray.y, 0, 0});
-      view = {seen.reach, seen.to_left, seen.from_right, 0};
-    } else {
-      view = pool_.views[place];
-    }
-    const float reach = view.x, off = All || s == 0 ? view.y : view.z, in = All || s == 0 ? view.z : view.y;
-    const bool cut = k_on_ray * reach < in;
+    const float from_x = static_cast<float>(from.x), from_y = flip * static_cast<float>(from.y);
+    const float to_x = static_cast<float>(to.x), to_y = flip * static_cast<float>(to.y);
+    const ApexView view = view_apex(apex_x, apex_y, {far_ray.x, flip * far_ray.y, near_ray.x, flip * near_ray.y, 0, 0});
+    const float reach = view.reach;
+    const bool cut = k_on_ray * reach < view.from_right;
     const Side side{active,
                     cut,
-                    static_cast<float>(near.x),
-                    flip * static_cast<float>(near.y),
-                    static_cast<float>(far.x),
-                    flip * static_cast<float>(far.y),
+                    s == 0 ? from_x : to_x,
+                    s == 0 ? from_y : to_y,
+                    s == 0 ? to_x : from_x,
+                    s == 0 ? to_y : from_y,
                     apex_x,
                     apex_y,
                     near_ray.x,
                     flip * near_ray.y,
                     far_ray.x,
                     flip * far_ray.y,
-                    off,
-                    in,
+                    view.to_left,
+                    view.from_right,
                     near_label,
                     far_label,
                     apex_label};
@@ -288,28 +295,28 @@ class WarpWaves {
     last_ray.y = cut ? flip * ray.y : far_ray.y;
     float most = disk_.radius();
     if constexpr (!All) {
-      most = pool_.most[place];
+      most = links.most;
       if (__any_sync(k_warp, cut)) {
-        const float bound = bound_child(side, ray, {reach, view.w}, {near_ray.reach, near_ray.way}, mesh_.excess, most);
+        const float bound = bound_child(side, ray, {reach, way}, {near_ray.reach, near_ray.way}, mesh_.excess, most);
         most = cut ? bound : most;
       }
       last_ray.reach = cut ? reach : far_ray.reach;
-      last_ray.way = cut ? view.w : far_ray.way;
+      last_ray.way = cut ? way : far_ray.way;
     }
-    const std::uint32_t clearance = s == 0 ? clearances & k_upper_half : (clearances & ~k_saddle_bit) << 16;
+    const std::uint32_t clearance =
+        s == 0 ? record.clearances & k_upper_half : (record.clearances & ~k_saddle_bit) << 16;
     const bool keep = child.useful & is_within(child, most, __int_as_float(static_cast<std::int32_t>(clearance)));
 
     const int heir = settle(active, keep, (light & Light::k_last) != 0, place);
     const int number = count_children(keep, s);
     if (keep & !overflow_) {
-      pool_.order[now_ ^ 1][number] = static_cast<Place>(heir);
+      pool_.order[number] = static_cast<Place>(heir);
       pool_.ends[s][heir] = near;
       pool_.ends[1 - s][heir] = apex;
       pool_.rays[s][heir] = near_ray;
       pool_.rays[1 - s][heir] = last_ray;
-      pool_.links[heir] = {s == 0 ? links.edge : links.right, EndSlots::replaced(links.ends, 1 - s, apex_slot),
-                           links.root & ((1u << RootEdge::k_bits) - 1), 0};
-      if constexpr (!All) pool_.most[heir] = most;
+      pool_.links[heir] = {s == 0 ? record.left : record.right, EndSlots::replaced(links.ends, 1 - s, apex_slot),
+                           links.root & ((1u << RootEdge::k_bits) - 1), most};
     }
     __syncwarp();
   }
@@ -331,21 +338,23 @@ class WarpWaves {
   SADDLEBACK_STEP int count_children(bool keep, int side) {
     const unsigned all = __ballot_sync(k_warp, keep), rights = __ballot_sync(k_warp, keep & (side == 1));
     const unsigned lefts = all & ~rights;
-    const int number = side == 0 ? count_[0] + rank(lefts) : Pool::Rights + count_[1] + rank(rights);
+    const int number = side == 0 ? count_[0] + rank(lefts) : k_windows - 1 - (count_[1] + rank(rights));
     count_[0] += __popc(lefts);
     count_[1] += __popc(rights);
     return number;
   }
 
   const DeviceMesh& mesh_;
+  Table& table_;
   Pool& pool_;
+  Edges* edges_;  ///< where disks end by count
   WarpDisk<Table, Seats> disk_;
   Sighting* draft_;
   int draft_room_, lane_;
   unsigned below_;  ///< lanes before this one
   WarpSources sources_{0, 0};
   int count_[2] = {0, 0};  ///< windows of the generation that is being made, behind left and right sides
-  int free_count_ = 0, lights_ = 0, now_ = 0;
+  int free_count_ = 0, lights_ = 0;
   int arcs_ = 0, links_ = 0, generation_ = 0, windows_ = 0;
   bool overflow_ = false;
 };

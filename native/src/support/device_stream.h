@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -102,25 +103,35 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
-/// Waits for a stream. Calls poll(another stream) now and then, which may throw: then stop(that stream) has to see to
-/// it that the work ends soon, and what was thrown goes on once it has.
-template <class Poll, class Stop>
-void wait_polling(cudaStream_t stream, Poll&& poll, Stop&& stop) {
+/// Waits for a stream; calls poll() now and then, which may throw.
+template <class Poll>
+void wait_polling(cudaStream_t stream, Poll&& poll) {
   using Clock = std::chrono::steady_clock;
   using namespace std::chrono_literals;
-  const Stream aside;
+  for (auto asked = Clock::now();;) {
+    const cudaError_t state = cudaStreamQuery(stream);
+    if (state == cudaSuccess) return;
+    if (state != cudaErrorNotReady) check_cuda(state, "waiting for the device");
+    if (Clock::now() - asked < 20ms) continue;
+    poll();
+    asked = Clock::now();
+    std::this_thread::sleep_for(500us);
+  }
+}
+
+/// The same, with another stream for poll(stream). When that throws, stop(stream) has to see to it that the work ends
+/// soon, and what was thrown goes on once it has.
+template <class Poll, class Stop>
+void wait_polling(cudaStream_t stream, Poll&& poll, Stop&& stop) {
+  std::optional<Stream> other;  // making one takes longer than most waits
+  const auto aside = [&]() -> cudaStream_t {
+    if (!other) other.emplace();
+    return *other;
+  };
   try {
-    for (auto asked = Clock::now();;) {
-      const cudaError_t state = cudaStreamQuery(stream);
-      if (state == cudaSuccess) return;
-      if (state != cudaErrorNotReady) check_cuda(state, "waiting for the device");
-      if (Clock::now() - asked < 20ms) continue;
-      poll(aside);
-      asked = Clock::now();
-      std::this_thread::sleep_for(500us);
-    }
+    wait_polling(stream, [&] { poll(aside()); });
   } catch (...) {
-    stop(aside);
+    stop(aside());
     (void)cudaStreamSynchronize(stream);
     throw;
   }

@@ -164,7 +164,7 @@ class HostCopies {
       const bool is_up = piece->kind == cudaMemcpyHostToDevice;
       if (is_up) std::memcpy(memory, piece->from, piece->size);
       start({is_up ? memory : piece->from, is_up ? piece->to : memory, piece->size, piece->kind, piece->after});
-      wait_aside(poll);
+      wait_polling(aside_, [&] { poll(copied_share()); });
       if (!is_up) std::memcpy(piece->to, memory, piece->size);
       --open_;
     }
@@ -172,22 +172,6 @@ class HostCopies {
 
   /// Of the pieces, while no thread changes them.
   double copied_share() const { return added_ == 0 ? 0 : 1 - static_cast<double>(open_) / static_cast<double>(added_); }
-
-  /// Until the device has copied all that was started.
-  template <class Poll>
-  void wait_aside(Poll&& poll) {
-    using Clock = std::chrono::steady_clock;
-    using namespace std::chrono_literals;
-    for (auto asked = Clock::now();;) {
-      const cudaError_t state = cudaStreamQuery(aside_);
-      if (state == cudaSuccess) return;
-      if (state != cudaErrorNotReady) check_cuda(state, "copying between host and device");
-      if (Clock::now() - asked < 20ms) continue;
-      poll(copied_share());
-      asked = Clock::now();
-      std::this_thread::sleep_for(500us);
-    }
-  }
 
   void close() {
     {
