@@ -43,7 +43,7 @@ struct TwinReason {
 
 /// Functions that never throw and keep nothing of what they are given, but for graphs until they are dropped.
 struct CudaTwins {
-  static constexpr int k_version = 7;  ///< of this table and of all that it passes
+  static constexpr int k_version = 8;  ///< of this table and of all that it passes
   int version = k_version;
   /// See geodesics/arc_twin.h.
   TwinStatus (*find_arcs)(const ArcTwinRequest&, const ArcTwinCaller&, DeviceTimes&, TwinReason&) = nullptr;

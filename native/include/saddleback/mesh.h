@@ -50,6 +50,7 @@ class Mesh {
   /// First half-edge out of a vertex in counter-clockwise order; on a boundary vertex the one whose clockwise side is
   /// the boundary. Go on with `rotate` until k_none (boundary) or the first again.
   Index first_halfedge(Index vertex) const { return first_halfedges_[vertex]; }
+  std::span<const Index> first_halfedges() const { return first_halfedges_; }
   /// The next half-edge counter-clockwise out of the same vertex, k_none where the boundary comes.
   Index rotate(Index h) const { return twins_[prev(h)]; }
 
@@ -58,6 +59,7 @@ class Mesh {
   bool is_boundary(Index vertex) const { return boundary_[vertex] != 0; }
   /// Interior vertex whose total angle exceeds 2 pi, or any boundary vertex: where a shortest path may bend.
   bool is_saddle(Index vertex) const { return saddle_[vertex] != 0; }
+  std::span<const std::uint8_t> saddles() const { return saddle_; }  ///< of all vertices: whether they are
   Index component_of(Index vertex) const { return components_[vertex]; }
   std::span<const double> total_angles() const { return total_angles_; }
   std::span<const Index> components() const { return components_; }  ///< labels in the order of their first vertices

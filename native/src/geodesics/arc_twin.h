@@ -23,16 +23,17 @@ struct ArcTwinRequest {
   float detour = 1, excess = 0;
   double slack = 1;
 
-  // The mesh, as WaveMesh and WaveSectors hold it.
-  std::int32_t node_count = 0, edge_count = 0;
-  const EdgeRecord* records = nullptr;
-  const std::int32_t* first = nullptr;  ///< (node_count + 1,)
-  const std::int32_t* targets = nullptr;
-  const double* lengths = nullptr;
-  const float *sectors = nullptr, *reverse_sectors = nullptr, *apex_sectors = nullptr;
-  const float* per_radian = nullptr;      ///< per node
-  const std::uint8_t* saddles = nullptr;  ///< per node
+  // The mesh, as Mesh and Unfolding hold it.
+  std::int32_t node_count = 0, edge_count = 0;                ///< vertices and half-edges
+  const std::int32_t *triangles = nullptr, *twins = nullptr;  ///< per half-edge
+  const double *lengths = nullptr, *polars = nullptr;         ///< per half-edge
+  const double* face_areas = nullptr;                         ///< per face
+  const std::int32_t* first_halfedges = nullptr;              ///< per vertex
+  const double* total_angles = nullptr;                       ///< per vertex
+  const std::uint8_t* saddles = nullptr;                      ///< per vertex
+  const std::int32_t *nodes = nullptr, *vertices = nullptr;   ///< of the vertices, and of the nodes
   double unit = 1;
+  int sector_count = 0;  ///< of a full turn
   ArcPacking packing;
 };
 

@@ -12,6 +12,7 @@
 
 #include "geodesics/device_arcs.h"
 #include "geodesics/device_boundary.cuh"
+#include "geodesics/device_mesh_tables.cuh"
 #include "geodesics/device_row_writer.cuh"
 #include "geodesics/device_union.cuh"
 #include "geodesics/device_waves.cuh"
@@ -62,42 +63,6 @@ __global__ void look_for_extremes(const double* lengths, std::int32_t count, int
   for (auto i = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); i < count;
        i += static_cast<std::int32_t>(gridDim.x * blockDim.x))
     if (!(lengths[i] < k_longest && lengths[i] * k_longest > 1)) *has_extremes = 1;
-}
-
-/// Sees to it that who looks a record up need not look up its apex as well.
-__global__ void note_saddles(EdgeRecord* records, std::int32_t count, const std::uint8_t* saddles) {
-  for (auto i = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); i < count;
-       i += static_cast<std::int32_t>(gridDim.x * blockDim.x))
-    if (saddles[records[i].apex] != 0) records[i].clearances |= k_saddle_bit;
-}
-
-/// The vertices at the other ends of the mesh edges about each node. At the boundary the last edge's face has a side
-/// that is no edge of the node's. `more` counts the blocks behind those of the nodes.
-__global__ void list_neighbours(DeviceMesh mesh, std::int32_t nodes, Neighbour* neighbours, std::int32_t* more) {
-  const auto node = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (node >= nodes) return;
-  const std::int32_t begin = mesh.first[node], end = mesh.first[node + 1];
-  const bool has_other_side = end > begin && mesh.records[end - 1].left < 0;
-  std::int32_t block = node, filled = 0, left = end - begin + (has_other_side ? 1 : 0);
-  const auto add = [&](std::int32_t target, double length) {
-    if (filled == Neighbour::k_block - 1 && left > 1) {
-      const std::int32_t next = nodes + atomicAdd(more, 1);
-      neighbours[block * Neighbour::k_block + filled] = {Neighbour::k_link | static_cast<std::uint32_t>(next), 0};
-      block = next;
-      filled = 0;
-    }
-    const std::uint32_t key = DiskKey<1>::pack(target, 0, mesh.saddles[target] != 0);
-    neighbours[block * Neighbour::k_block + filled++] = {key, static_cast<float>(length)};
-    --left;
-  };
-  for (std::int32_t e = begin; e < end; ++e) add(mesh.targets[e], mesh.lengths[e]);
-  if (has_other_side) {
-    const EdgeRecord& last = mesh.records[end - 1];
-    const double length = mesh.lengths[end - 1];
-    add(last.apex, norm_of(last.a * length, last.b * length));
-  }
-  for (; filled < Neighbour::k_block; ++filled)
-    neighbours[block * Neighbour::k_block + filled] = {Neighbour::k_none, 0};
 }
 
 struct Work {
@@ -162,75 +127,6 @@ __global__ void __launch_bounds__(32 * Room::Warps, 1)
     __syncwarp();
   }
 }
-
-/// Host memory of the request, on the device.
-class Tables {
- public:
-  Tables(const ArcTwinRequest& r, cudaStream_t stream)
-      : records_(edges(r), stream),
-        first_(nodes(r) + 1, stream),
-        targets_(edges(r), stream),
-        lengths_(edges(r), stream),
-        sectors_(edges(r), stream),
-        reverse_sectors_(edges(r), stream),
-        apex_sectors_(edges(r), stream),
-        per_radian_(nodes(r), stream),
-        saddles_(nodes(r), stream),
-        neighbours_(r.k > 0 ? Neighbour::k_block * neighbour_blocks(r) : 0, stream),
-        mesh_{records_.data(),
-              first_.data(),
-              targets_.data(),
-              lengths_.data(),
-              sectors_.data(),
-              reverse_sectors_.data(),
-              apex_sectors_.data(),
-              per_radian_.data(),
-              saddles_.data(),
-              r.unit,
-              r.packing,
-              r.k,
-              r.detour,
-              r.excess,
-              r.slack,
-              neighbours_.data()} {
-    HostCopies copies(stream);
-    const auto fill = [&](const auto* from, auto& to) { copies.to_device(from, to.size(), to.data()); };
-    fill(r.records, records_);
-    fill(r.first, first_);
-    fill(r.targets, targets_);
-    fill(r.lengths, lengths_);
-    fill(r.sectors, sectors_);
-    fill(r.reverse_sectors, reverse_sectors_);
-    fill(r.apex_sectors, apex_sectors_);
-    fill(r.per_radian, per_radian_);
-    fill(r.saddles, saddles_);
-    copies.finish();
-    note_saddles<<<256, 256, 0, stream>>>(records_.data(), r.edge_count, saddles_.data());
-    check_cuda(cudaGetLastError(), "noting saddles");
-    if (r.k > 0) {
-      constexpr int k_threads = 256;
-      const auto blocks = static_cast<unsigned>(r.node_count / k_threads + 1);
-      DeviceBuffer<std::int32_t> more(1, stream);
-      more.fill_bytes(0);
-      list_neighbours<<<blocks, k_threads, 0, stream>>>(mesh_, r.node_count, neighbours_.data(), more.data());
-      check_cuda(cudaGetLastError(), "listing neighbours");
-    }
-  }
-  const DeviceMesh& mesh() const { return mesh_; }
-
- private:
-  static std::size_t edges(const ArcTwinRequest& r) { return static_cast<std::size_t>(r.edge_count); }
-  static std::size_t nodes(const ArcTwinRequest& r) { return static_cast<std::size_t>(r.node_count); }
-  /// At most: all but the last of a node's blocks hold seven, and it has one more neighbour than edges.
-  static std::size_t neighbour_blocks(const ArcTwinRequest& r) { return nodes(r) + (edges(r) + nodes(r)) / 7; }
-  DeviceBuffer<EdgeRecord> records_;
-  DeviceBuffer<std::int32_t> first_, targets_;
-  DeviceBuffer<double> lengths_;
-  DeviceBuffer<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;
-  DeviceBuffer<std::uint8_t> saddles_;
-  DeviceBuffer<Neighbour> neighbours_;
-  DeviceMesh mesh_;
-};
 
 /// Words that memory is taken for at first; more are found to be needed when they are.
 std::int64_t first_guess(const ArcTwinRequest& r, IndexRange nodes) {
@@ -422,7 +318,7 @@ class ArcFinder {
   Part part_;
   TeamCaller<ArcTwinCaller>& caller_;
   cudaStream_t stream_;
-  Tables tables_;
+  MeshTables tables_;
   DeviceBuffer<std::int32_t> failed_[2];  ///< nodes that failed in passes of even and of odd number
   DeviceBuffer<std::int32_t> next_, failures_;
   DeviceBuffer<int> fails_;  ///< whether all sources do: there are extremes, or the caller asked to stop
@@ -431,11 +327,9 @@ class ArcFinder {
 
 /// What a build takes at most of a device that has these nodes, in bytes; rows once more for the union.
 std::uint64_t bytes_needed(const ArcTwinRequest& r, IndexRange range) {
-  const auto edges = static_cast<std::uint64_t>(r.edge_count), nodes = static_cast<std::uint64_t>(r.node_count);
   const auto words = static_cast<std::uint64_t>(first_guess(r, range));
   constexpr std::uint64_t k_drafts = std::uint64_t{160} << 20;
-  const std::uint64_t neighbours = r.k > 0 ? sizeof(Neighbour) * Neighbour::k_block * (nodes + (edges + nodes) / 7) : 0;
-  return edges * (sizeof(EdgeRecord) + 24) + nodes * 48 + neighbours + words * (13 + 10) + k_drafts;
+  return MeshTables::bytes_needed(r) + static_cast<std::uint64_t>(r.node_count) * 48 + words * (13 + 10) + k_drafts;
 }
 
 /// A graph found by one or several devices, each the rows of a range of nodes.

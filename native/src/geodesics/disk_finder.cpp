@@ -44,8 +44,8 @@ bool makes_arc(std::int32_t label) { return (label & 1) == 0; }
 
 }  // namespace
 
-WaveScene wave_scene(const WaveMesh& mesh, const DiskRule& rule) {
-  return {mesh.records(), nullptr, nullptr, static_cast<float>(1 + detour_of(rule)),
+WaveScene wave_scene(const EdgeRecord* records, const DiskRule& rule) {
+  return {records, nullptr, nullptr, static_cast<float>(1 + detour_of(rule)),
           static_cast<float>(radius_tolerance(rule.lattice) * rule.tolerance)};
 }
 
@@ -153,7 +153,7 @@ bool DiskFinder::run(const JobStage& stage) {
 
 /// Sights all windows of this generation, then splits them into the next.
 void DiskFinder::advance() {
-  WaveScene scene = wave_scene(mesh_, rule_);
+  WaveScene scene = wave_scene(mesh_.records(), rule_);
   scene.labels = labels_.data();
   scene.limits = limits_.data();
   const int before = sighting_count_;

@@ -24,7 +24,7 @@ struct DiskRule {
 };
 
 /// What windows of the rule look up: labels and limits are still to be set.
-WaveScene wave_scene(const WaveMesh& mesh, const DiskRule& rule);
+WaveScene wave_scene(const EdgeRecord* records, const DiskRule& rule);
 /// What an arc may be longer by than the shortest way found.
 double arc_slack(const DiskRule& rule);
 

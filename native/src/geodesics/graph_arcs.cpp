@@ -141,15 +141,14 @@ void check_memory(const ArcSearch& search, WindowPropagator& propagator, const J
                            " are free; give accuracy=1e-3 instead, or call exact_distances for the sources you need"));
 }
 
-/// \throw InputError for more triangles than slots can be numbered for.
+}  // namespace
+
 void check_mesh_size(const Mesh& mesh) {
   constexpr Index k_most_edges = std::numeric_limits<std::int32_t>::max() / k_batch;
   if (mesh.halfedge_count() <= k_most_edges) return;
   throw InputError(message("mesh: ", mesh.face_count(), " triangles are more than a graph can be built for (",
                            k_most_edges / 3, ")"));
 }
-
-}  // namespace
 
 DiskRule disk_rule(Index k, double accuracy, Lattice lattice) {
   return {.k = k, .tolerance = accuracy > 0 ? room_for(accuracy) * accuracy : 0, .lattice = lattice};

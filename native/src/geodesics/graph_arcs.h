@@ -24,6 +24,9 @@ struct WaveTables {
              std::span<const Index> vertices, int threads, const JobStage& stage);
 };
 
+/// \throw InputError for more triangles than slots can be numbered for.
+void check_mesh_size(const Mesh& mesh);
+
 /// Where arcs are looked for.
 struct ArcSearch {
   const Unfolding& unfolding;

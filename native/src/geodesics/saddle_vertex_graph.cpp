@@ -61,16 +61,19 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
     : mesh_(&mesh), k_(options.k), accuracy_(options.accuracy), exact_(options.exact) {
   check_options(mesh, options);
   if (k_ == 0 && accuracy_ == 0 && !exact_) accuracy_ = SaddleVertexGraphOptions::k_default_accuracy;
+  const bool on_device = !options.cuda_devices.empty();  // which lays tables of its own
+  if (on_device && exact_)
+    throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
   kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
-  BuildProgress progress(mesh, expected_cost(mesh, k_, accuracy_, !options.cuda_devices.empty()), options.threads,
-                         stage);
+  BuildProgress progress(mesh, expected_cost(mesh, k_, accuracy_, on_device), options.threads, stage);
   unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, progress.laying(0, k_unfolded));
   order_nodes(options.threads, progress.laying(k_unfolded, k_ordered));
   std::optional<WaveTables> tables;
-  if (!exact_)
+  if (on_device) check_mesh_size(mesh);
+  if (!exact_ && !on_device)
     tables.emplace(*unfolding_, nodes_, vertices_, options.threads, progress.laying(k_ordered, k_laid_for_waves));
-  const JobStage bounding = progress.laying(k_laid_for_waves, k_bounded);
+  const JobStage bounding = progress.laying(tables ? k_laid_for_waves : k_ordered, k_bounded);
   const double longest = tables ? longest_path_bound(tables->mesh, options.threads, bounding)
                                 : longest_path_bound(mesh, nodes_, vertices_, options.threads, bounding);
   bounding.update(1);
@@ -79,9 +82,8 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
       disk_rule(k_, accuracy_, accuracy_ > 0 ? lattice_of(*unfolding_, options.threads, stage) : Lattice::none);
   progress.laid();
   const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
-  if (!options.cuda_devices.empty()) {
-    if (exact_) throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
-    arcs_ = twin_arcs(search, *tables, rule, options.cuda_devices, device_times_, progress.joining());
+  if (on_device) {
+    arcs_ = twin_arcs(search, rule, options.cuda_devices, device_times_, progress.joining());
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;

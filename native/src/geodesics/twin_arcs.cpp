@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "geodesics/arc_twin.h"
@@ -15,8 +16,8 @@ namespace {
 /// Answers the twin's calls.
 class Caller {
  public:
-  Caller(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, const JobStage& stage)
-      : search_(search), tables_(tables), rule_(rule), stage_(stage) {}
+  Caller(const ArcSearch& search, const DiskRule& rule, const JobStage& stage)
+      : search_(search), rule_(rule), stage_(stage) {}
 
   ArcTwinCaller calls() {
     return {this,
@@ -44,6 +45,8 @@ class Caller {
  private:
   /// In the batches in which disk_arcs finds them: what ends the windows of one is the same then.
   FoundRows find_rows(std::span<const Index> nodes) {
+    if (!tables_)
+      tables_.emplace(search_.unfolding, search_.nodes, search_.vertices, search_.threads, stage_.part(0, 0));
     std::vector<std::span<const Index>> batches;
     for (std::size_t i = 0; i < nodes.size();) {
       std::size_t end = i + 1;
@@ -56,7 +59,7 @@ class Caller {
     parallel_for(static_cast<Index>(batches.size()), search_.threads, 1, [&](Index b, int thread) {
       if (!finders[thread])
         finders[thread] =
-            std::make_unique<DiskRows>(tables_.mesh, tables_.sectors, search_.codec, search_.kernel, rule_);
+            std::make_unique<DiskRows>(tables_->mesh, tables_->sectors, search_.codec, search_.kernel, rule_);
       const Index first = batches[b].front() / k_batch * k_batch;
       const Index count = std::min(k_batch, static_cast<Index>(search_.vertices.size()) - first);
       found[b].first_node = first;
@@ -84,7 +87,7 @@ class Caller {
   }
 
   const ArcSearch& search_;
-  const WaveTables& tables_;
+  std::optional<WaveTables> tables_;  ///< the device has its own
   const DiskRule& rule_;
   const JobStage& stage_;
   TwinGuard guard_;
@@ -97,12 +100,11 @@ class Caller {
 
 }  // namespace
 
-ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, std::span<const int> devices,
-                  DeviceTimes& times, const JobStage& stage) {
+ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, std::span<const int> devices, DeviceTimes& times,
+                  const JobStage& stage) {
   const CudaTwins& twins = loaded_twins();
-  const WaveMesh& mesh = tables.mesh;
-  const WaveSectors& sectors = tables.sectors;
-  const WaveScene scene = wave_scene(mesh, rule);
+  const Mesh& mesh = search.unfolding.mesh();
+  const WaveScene scene = wave_scene(nullptr, rule);
   ArcTwinRequest request;
   request.devices = devices.data();
   request.device_count = static_cast<int>(devices.size());
@@ -111,21 +113,23 @@ ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskR
   request.detour = scene.detour;
   request.excess = scene.excess;
   request.slack = arc_slack(rule);
-  request.node_count = mesh.node_count();
-  request.edge_count = mesh.edge_count();
-  request.records = mesh.records();
-  request.first = mesh.firsts();
-  request.targets = mesh.targets();
-  request.lengths = mesh.lengths();
-  request.sectors = sectors.sectors();
-  request.reverse_sectors = sectors.reverse_sectors();
-  request.apex_sectors = sectors.apex_sectors();
-  request.per_radian = sectors.per_radians();
-  request.saddles = mesh.saddles();
-  request.unit = mesh.unit();
+  request.node_count = mesh.vertex_count();
+  request.edge_count = mesh.halfedge_count();
+  request.triangles = mesh.triangles().front().data();
+  request.twins = mesh.twins().data();
+  request.lengths = mesh.lengths().data();
+  request.polars = search.unfolding.polars().data();
+  request.face_areas = mesh.face_areas().data();
+  request.first_halfedges = mesh.first_halfedges().data();
+  request.total_angles = mesh.total_angles().data();
+  request.saddles = mesh.saddles().data();
+  request.nodes = search.nodes.data();
+  request.vertices = search.vertices.data();
+  request.unit = mesh.mean_edge_length();
+  request.sector_count = ArcCodec::k_sectors;
   request.packing = search.codec.packing();
 
-  Caller caller(search, tables, rule, stage);
+  Caller caller(search, rule, stage);
   TwinReason reason;
   caller.guard().check(twins.find_arcs(request, caller.calls(), times, reason), reason);
   return caller.take();

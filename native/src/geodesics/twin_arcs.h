@@ -10,7 +10,7 @@
 namespace saddleback {
 
 /// As unite_with_reverses(disk_arcs(...)), to the bit. \throw DeviceError when the device cannot do it; Cancelled.
-ArcRows twin_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule, std::span<const int> devices,
-                  DeviceTimes& times, const JobStage& stage);
+ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, std::span<const int> devices, DeviceTimes& times,
+                  const JobStage& stage);
 
 }  // namespace saddleback

@@ -1,5 +1,6 @@
 #include "geodesics/unfolding.h"
 
+#include "geodesics/unfolded_corner.h"
 #include "support/parallel.h"
 
 namespace saddleback {
@@ -9,9 +10,7 @@ Unfolding::Unfolding(const Mesh& mesh, int threads, const JobStage& stage)
   parallel_for(mesh.halfedge_count(), threads, 4096, [&](Index h, int) {
     stage.check();
     const double base = mesh.length(h), left = mesh.length(Mesh::prev(h)), right = mesh.length(Mesh::next(h));
-    // x from the lengths, factored against cancellation on needles; y from the area, which the mesh computes stably.
-    const double x = (base + (left - right) * ((left + right) / base)) / 2;
-    apexes_[h] = {x, 2 * mesh.face_area(Mesh::face_of(h)) / base};
+    apexes_[h] = {corner_along(base, left, right), corner_off(base, mesh.face_area(Mesh::face_of(h)))};
   });
   parallel_for(mesh.vertex_count(), threads, 1024, [&](Index v, int) {
     stage.check();

@@ -1,6 +1,8 @@
 #pragma once
 // Tables for unfolding faces into a plane, a record a half-edge.
 
+#include <span>
+
 #include "saddleback/job.h"
 #include "saddleback/large_array.h"
 #include "saddleback/mesh.h"
@@ -17,6 +19,7 @@ class Unfolding {
   const Vec2& apex(Index h) const { return apexes_[h]; }
   /// Surface angle of h at its origin: counter-clockwise from first_halfedge, 0 to total_angle, radians.
   const double& polar(Index h) const { return polars_[h]; }
+  std::span<const double> polars() const { return polars_; }
   /// The same for the edge of h seen from to(h): also where h has no twin.
   double polar_of_reverse(Index h) const {
     const Index t = mesh_->twin(h);

@@ -13,8 +13,6 @@ namespace saddleback {
 namespace {
 
 constexpr Index k_chunk = 1024;
-// Relative, of positions of single precision.
-constexpr double k_clearance_rounding = 1e-3;
 // Edges whose half-edges' records are asked for ahead, and edges whose neighbours' are.
 constexpr Index k_records_ahead = 24, k_neighbours_ahead = 12;
 

@@ -47,12 +47,10 @@ class WaveMesh {
   /// The edge from one node to another. O(degree).
   Index edge_between(Index from, Index to) const;
 
-  /// Whole tables, for those who copy them elsewhere: per node, with the number of edges at the end; per edge; per
-  /// edge; per node.
+  /// Whole tables: per node, with the number of edges at the end; per edge; per edge.
   const Index* firsts() const { return first_.data(); }
   const Index* targets() const { return targets_.data(); }
   const double* lengths() const { return lengths_.data(); }
-  const std::uint8_t* saddles() const { return saddles_.data(); }
 
  private:
   void find_clearances(int threads, const JobStage& stage);
@@ -94,12 +92,6 @@ class WaveSectors {
   /// Of the way from its face's apex to its origin.
   float apex_sector(Index edge) const { return apex_sectors_[edge]; }
   float per_radian(Index node) const { return per_radian_[node]; }
-
-  /// Whole tables, as WaveMesh's.
-  const float* sectors() const { return sectors_.data(); }
-  const float* reverse_sectors() const { return reverse_sectors_.data(); }
-  const float* apex_sectors() const { return apex_sectors_.data(); }
-  const float* per_radians() const { return per_radian_.data(); }
 
  private:
   LargeArray<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;

@@ -32,6 +32,8 @@ struct alignas(32) EdgeRecord {
   std::uint32_t clearances;
 };
 inline constexpr std::uint32_t k_saddle_bit = 1;
+/// Of clearances, relative: of positions of single precision.
+inline constexpr double k_clearance_rounding = 1e-3;
 
 /// Windows, a row a quantity. The source is at the origin of a plane of its own; a window shines through the part of a
 /// half-edge between two rays, each through a vertex that the source sees along it: its *flanks*.
