@@ -55,51 +55,120 @@ struct AddedArc {
   std::uint64_t word;
 };
 
-/// Puts each arc, or its reverse where that is shorter, into `own`; counts and lists the reverses that rows of `range`
-/// lack. Of other nodes' rows it is enough to have the arcs that end in there.
-__global__ void pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t nodes, IndexRange range, std::uint64_t* own,
-                          std::int32_t* added_counts, AddedArc* added, unsigned long long* added_count,
-                          std::int64_t added_room) {
+/// No arc's word: none is as long as the longest that there is a number for.
+constexpr std::uint64_t k_unpaired = ~std::uint64_t{0};
+
+/// Reverses that rows of `range` lack, in any order.
+struct AddedArcs {
+  IndexRange range;
+  std::int32_t* counts;  ///< per row
+  AddedArc* arcs;
+  unsigned long long* count;
+  std::int64_t room;
+
+  /// Of a node's arcs from `first` on: the lane's own is the `i`-th of each 32 where bit i of `lacking` is set. By all
+  /// lanes of a warp, of which one counts for all: single additions to one place would wait for one another.
+  __device__ void add(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node, std::int64_t first,
+                      unsigned lacking) const {
+    const int lane = threadIdx.x & 31, mine = __popc(lacking);
+    int through = mine;
+#pragma unroll
+    for (int step = 1; step < 32; step *= 2) {
+      const int before = __shfl_up_sync(0xffffffffu, through, step);
+      through += lane >= step ? before : 0;
+    }
+    const int all = __shfl_sync(0xffffffffu, through, 31);
+    if (all == 0) return;
+    unsigned long long before = 0;
+    if (lane == 0) before = atomicAdd(count, static_cast<unsigned long long>(all));
+    auto at = static_cast<std::int64_t>(__shfl_sync(0xffffffffu, before, 0)) + through - mine;
+    for (; lacking != 0; lacking &= lacking - 1, ++at) {
+      const std::int64_t arc = first + 32 * (__ffs(static_cast<int>(lacking)) - 1) + lane;
+      const std::int32_t row = rows.targets[arc] - range.begin, number = atomicAdd(&counts[row], 1);
+      if (at < room) arcs[at] = {row, number, packing.reversed(node, rows.back_sectors[arc], rows.words[arc])};
+    }
+    __syncwarp();
+  }
+};
+
+/// Arcs of a row that are looked at before those whose reverses are missing are listed: bits of a word.
+constexpr int k_arcs_at_once = 32 * 32;
+
+/// Where a node is among `count` targets from `first` on, negative if it is not. `targets` is aligned, and a few beyond
+/// the last can be read.
+__device__ inline std::int64_t find_target(const std::int32_t* targets, std::int64_t first, int count,
+                                           std::int32_t node) {
+  const int4* const fours = reinterpret_cast<const int4*>(targets) + first / 4;
+  const int before = static_cast<int>(first % 4), end = before + count;
+  for (int at = 0; at < end; at += 4) {
+    const int4 four = fours[at / 4];
+    unsigned here =
+        (four.x == node ? 1 : 0) | (four.y == node ? 2 : 0) | (four.z == node ? 4 : 0) | (four.w == node ? 8 : 0);
+    if (at == 0) here &= ~0u << before;  // others' rows
+    if (at + 4 > end) here &= (1u << (end - at)) - 1;
+    if (here != 0) return first - before + at + __ffs(static_cast<int>(here)) - 1;
+  }
+  return -1;
+}
+
+// Nodes whose arcs a block pairs: neighbours, that have most of the rows that are searched in common, so that these are
+// in the processor's cache.
+constexpr int k_pair_threads = 512, k_nodes_per_block = 16;
+
+/// Puts into `own`, of each arc to a larger node and of its reverse, the shorter one; lists the reverses that there are
+/// not. Of nodes out of the range it is enough to have the arcs that end within.
+__device__ void pair_arcs_of(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node, std::int64_t first,
+                             int count, std::uint64_t* own, const AddedArcs& added) {
+  unsigned lacking = 0;
+  for (int i = threadIdx.x & 31; i < count; i += 32) {
+    const std::int64_t arc = first + i;
+    const std::int32_t target = rows.targets[arc];
+    if (target <= node) continue;
+    const std::int64_t reverse = find_target(rows.targets, rows.firsts[target], rows.counts[target], node);
+    const std::uint64_t word = rows.words[arc];
+    std::uint64_t kept = word;
+    if (reverse >= 0) {
+      const std::uint64_t back = rows.words[reverse];
+      const std::uint64_t length_there = back & packing.length_mask, length_here = word & packing.length_mask;
+      if (length_there < length_here) kept = packing.reversed(target, rows.back_sectors[reverse], back);
+      own[reverse] = length_here < length_there ? packing.reversed(node, rows.back_sectors[arc], word) : back;
+    } else if (added.range.holds(target)) {
+      lacking |= 1u << i / 32;
+    }
+    own[arc] = kept;
+  }
+  __syncwarp();
+  added.add(rows, packing, node, first, lacking);
+}
+
+__global__ void __launch_bounds__(k_pair_threads)
+    pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t nodes, std::uint64_t* own, AddedArcs added) {
+  const std::int32_t first = static_cast<std::int32_t>(blockIdx.x) * k_nodes_per_block;
+  const std::int32_t end = min(nodes, first + k_nodes_per_block);
+  for (std::int32_t node = first + static_cast<int>(threadIdx.x) / 32; node < end; node += k_pair_threads / 32)
+    for (int begin = 0; begin < rows.counts[node]; begin += k_arcs_at_once)
+      pair_arcs_of(rows, packing, node, rows.firsts[node] + begin, min(k_arcs_at_once, rows.counts[node] - begin), own,
+                   added);
+}
+
+/// What has not been paired so far has no reverse.
+__global__ void find_unpaired(DeviceRows rows, ArcPacking packing, std::int32_t nodes, std::uint64_t* own,
+                              AddedArcs added) {
   const int lane = threadIdx.x & 31;
   const std::int32_t node =
       static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
   if (node >= nodes) return;
-  const std::int64_t first = rows.firsts[node];
-  const int count = rows.counts[node];
-  for (int base = 0; base < count; base += 32) {
-    const int mine = base + lane;
-    std::int64_t reverse = -1, other_first = 0;
-    std::int32_t target = 0;
-    int other_count = 0;
-    if (mine < count) {
-      target = rows.targets[first + mine];
-      other_first = rows.firsts[target];
-      other_count = rows.counts[target];
+  for (int begin = 0; begin < rows.counts[node]; begin += k_arcs_at_once) {
+    const std::int64_t first = rows.firsts[node] + begin;
+    const int count = min(k_arcs_at_once, rows.counts[node] - begin);
+    unsigned lacking = 0;
+    for (int i = lane; i < count; i += 32) {
+      if (own[first + i] != k_unpaired) continue;
+      own[first + i] = rows.words[first + i];
+      if (added.range.holds(rows.targets[first + i])) lacking |= 1u << i / 32;
     }
-    for (int j = 0; j < min(32, count - base); ++j) {  // the whole warp searches one row after the other
-      const std::int64_t there = __shfl_sync(0xffffffffu, other_first, j);
-      const int length = __shfl_sync(0xffffffffu, other_count, j);
-      for (int at = 0; at < length; at += 32) {
-        const unsigned here = __ballot_sync(0xffffffffu, at + lane < length && rows.targets[there + at + lane] == node);
-        if (here == 0) continue;
-        if (lane == j) reverse = there + at + __ffs(static_cast<int>(here)) - 1;
-        break;
-      }
-    }
-    if (mine >= count) continue;
-    const std::uint64_t word = rows.words[first + mine];
-    std::uint64_t kept = word;
-    if (reverse >= 0) {
-      const std::uint64_t back = rows.words[reverse];
-      if ((back & packing.length_mask) < (word & packing.length_mask))
-        kept = packing.reversed(target, rows.back_sectors[reverse], back);
-    } else if (range.holds(target)) {
-      const std::int32_t number = atomicAdd(&added_counts[target - range.begin], 1);
-      const auto at = static_cast<std::int64_t>(atomicAdd(added_count, 1ull));
-      if (at < added_room)
-        added[at] = {target - range.begin, number, packing.reversed(node, rows.back_sectors[first + mine], word)};
-    }
-    own[first + mine] = kept;
+    __syncwarp();
+    added.add(rows, packing, node, first, lacking);
   }
 }
 
@@ -152,7 +221,7 @@ class RowStore {
         firsts_(static_cast<std::size_t>(nodes), stream),
         counts_(static_cast<std::size_t>(nodes), stream),
         words_(static_cast<std::size_t>(room), stream),
-        targets_(static_cast<std::size_t>(room), stream),
+        targets_(static_cast<std::size_t>(room) + k_read_beyond, stream),
         back_sectors_(static_cast<std::size_t>(room), stream),
         taken_(1, stream) {}
 
@@ -182,14 +251,14 @@ class RowStore {
   /// For `room` words, of which `taken` are there.
   void make_room(std::int64_t taken, std::int64_t room) {
     if (room <= room_) return;
-    const auto grow = [&](auto& buffer) {
-      std::remove_reference_t<decltype(buffer)> larger(static_cast<std::size_t>(room), stream_);
+    const auto grow = [&](auto& buffer, std::int64_t size) {
+      std::remove_reference_t<decltype(buffer)> larger(static_cast<std::size_t>(size), stream_);
       copy(larger.data(), buffer.data(), static_cast<std::size_t>(taken));
       buffer = std::move(larger);
     };
-    grow(words_);
-    grow(targets_);
-    grow(back_sectors_);
+    grow(words_, room);
+    grow(targets_, room + k_read_beyond);
+    grow(back_sectors_, room);
     room_ = room;
   }
 
@@ -217,6 +286,8 @@ class RowStore {
   }
 
  private:
+  static constexpr std::int64_t k_read_beyond = 4;  ///< see find_target
+
   template <class Number>
   void copy(Number* to, const Number* from, std::size_t count) {
     check_cuda(cudaMemcpyAsync(to, from, count * sizeof(Number), cudaMemcpyDefault, stream_), "copying rows");
@@ -246,11 +317,14 @@ class DeviceUnion {
     DeviceBuffer<AddedArc> added(static_cast<std::size_t>(found), stream);
     DeviceBuffer<unsigned long long> added_count(1, stream);
     DeviceBuffer<std::int64_t> totals(places, stream), added_totals(places, stream), added_first(places, stream);
+    own.fill_bytes(0xff);  // k_unpaired
     added_counts.fill_bytes(0);
     added_count.fill_bytes(0);
-    pair_arcs<<<row_blocks(rows.nodes()), k_block_threads, 0, stream>>>(rows.view(), packing, rows.nodes(), range,
-                                                                        own.data(), added_counts.data(), added.data(),
-                                                                        added_count.data(), found);
+    const AddedArcs adding{range, added_counts.data(), added.data(), added_count.data(), found};
+    const auto pair_blocks = static_cast<unsigned>(rows.nodes() / k_nodes_per_block + 1);
+    pair_arcs<<<pair_blocks, k_pair_threads, 0, stream>>>(rows.view(), packing, rows.nodes(), own.data(), adding);
+    find_unpaired<<<row_blocks(rows.nodes()), k_block_threads, 0, stream>>>(rows.view(), packing, rows.nodes(),
+                                                                            own.data(), adding);
     check_cuda(cudaGetLastError(), "pairing arcs");
     const auto place_blocks = static_cast<unsigned>(range.count() / k_block_threads + 1);
     add_counts<<<place_blocks, k_block_threads, 0, stream>>>(rows.view().counts, added_counts.data(), range,
