@@ -34,7 +34,6 @@ struct ArcTwinRequest {
   const std::int32_t *nodes = nullptr, *vertices = nullptr;   ///< of the vertices, and of the nodes
   double unit = 1;
   int sector_count = 0;  ///< of a full turn
-  ArcPacking packing;
 };
 
 /// Rows of arcs that the caller found.
@@ -50,6 +49,9 @@ struct ArcTwinCaller {
   void* self = nullptr;
   /// Tells the share done; false: stop.
   bool (*keep_going)(void* self, double fraction) = nullptr;
+  /// Tells how arcs are packed, once; false: stop. It takes the caller a while, so that it had better be asked while
+  /// the mesh is on its way.
+  bool (*choose_packing)(void* self, ArcPacking* packing) = nullptr;
   /// Finds the arcs of nodes that are too much for the device; false: stop.
   bool (*find_rows)(void* self, const std::int32_t* nodes, std::int32_t count, FoundRows* rows) = nullptr;
   /// Makes room for the graph's offsets (node_count + 1) and words; false: stop.

@@ -147,18 +147,20 @@ struct Part {
 
 class ArcFinder {
  public:
-  ArcFinder(const ArcTwinRequest& request, const Part& part, TeamCaller<ArcTwinCaller>& caller, cudaStream_t stream)
+  template <class ChoosePacking>
+  ArcFinder(const ArcTwinRequest& request, const Part& part, TeamCaller<ArcTwinCaller>& caller, cudaStream_t stream,
+            ChoosePacking&& choose_packing)
       : request_(request),
         part_(part),
         caller_(caller),
         stream_(stream),
-        tables_(request, stream),
+        tables_(request, stream, choose_packing),
         failed_{DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream),
                 DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream)},
         next_(1, stream),
         failures_(k_passes, stream),
         fails_(1, stream),
-        rows_(request.node_count, first_guess(request, part.nodes), request.packing.target_mask, stream) {
+        rows_(request.node_count, first_guess(request, part.nodes), packing().target_mask, stream) {
     fails_.fill_bytes(0);
     look_for_extremes<<<256, 256, 0, stream>>>(tables_.mesh().lengths, request.edge_count, fails_.data());
     check_cuda(cudaGetLastError(), "looking at edges");
@@ -174,10 +176,11 @@ class ArcFinder {
       }
       const std::int64_t wanted = rows_.words_wanted();
       if (wanted <= rows_.room()) return;
-      rows_ = RowStore(request_.node_count, wanted + wanted / 16, request_.packing.target_mask, stream_);
+      rows_ = RowStore(request_.node_count, wanted + wanted / 16, packing().target_mask, stream_);
     }
   }
   RowStore& rows() { return rows_; }
+  const ArcPacking& packing() const { return tables_.mesh().packing; }
 
  private:
   /// Rooms that a source may go through.
@@ -366,12 +369,12 @@ class Builder {
     DeviceTimes& times = times_[at];
     const Stream stream;
     Stopwatch watch(stream);
-    ArcFinder finder(request_, mine, caller_, stream);
+    ArcFinder finder(request_, mine, caller_, stream, [&] { return packing(mine.member); });
     times.upload = watch.lap();
     finder.find(times);
     times.find = watch.lap();
     exchange(mine, finder.rows(), stream);
-    DeviceUnion arcs(request_.packing, finder.rows(), mine.nodes, stream);
+    DeviceUnion arcs(finder.packing(), finder.rows(), mine.nodes, stream);
     times.unite = watch.lap();
     caller_.report(mine.member, Share::unite);
     counts_[at] = arcs.count();
@@ -387,6 +390,14 @@ class Builder {
               words_);
     copies.finish([&](double share) { caller_.report(mine.member, Share::unite + (1 - Share::unite) * share); });
     times.download = watch.lap();
+  }
+
+  /// The first asks for all.
+  const ArcPacking& packing(int member) {
+    if (member == 0)
+      caller_.ask([&](const ArcTwinCaller& caller) { return caller.choose_packing(caller.self, &packing_); });
+    team_.meet();
+    return packing_;
   }
 
   /// Gets from the others what pairing needs of their rows.
@@ -416,6 +427,7 @@ class Builder {
   std::vector<std::vector<std::optional<RowStore>>> across_;  ///< by member and by whom they are chosen for
   std::vector<std::int64_t> counts_;                          ///< words, by member
   std::vector<DeviceTimes> times_;
+  ArcPacking packing_;
   std::int64_t* offsets_ = nullptr;
   std::uint64_t* words_ = nullptr;
 };

@@ -190,7 +190,9 @@ __global__ void list_neighbours(DeviceMesh mesh, std::int32_t nodes, Neighbour* 
 /// Owns what DeviceMesh shows.
 class MeshTables {
  public:
-  MeshTables(const ArcTwinRequest& r, cudaStream_t stream)
+  /// Calls choose_packing() while the mesh is copied.
+  template <class ChoosePacking>
+  MeshTables(const ArcTwinRequest& r, cudaStream_t stream, ChoosePacking&& choose_packing)
       : stream_(stream),
         nodes_(r.node_count),
         edges_(r.edge_count),
@@ -214,13 +216,13 @@ class MeshTables {
               per_radian_.data(),
               saddles_.data(),
               r.unit,
-              r.packing,
+              {},
               r.k,
               r.detour,
               r.excess,
               r.slack,
               neighbours_.data()} {
-    lay(r);
+    lay(r, choose_packing);
     if (r.k > 0) {
       DeviceBuffer<std::int32_t> more(1, stream);
       more.fill_bytes(0);
@@ -250,7 +252,8 @@ class MeshTables {
     return nodes + (static_cast<std::size_t>(r.edge_count) + nodes) / 7;
   }
 
-  void lay(const ArcTwinRequest& r) {
+  template <class ChoosePacking>
+  void lay(const ArcTwinRequest& r, ChoosePacking&& choose_packing) {
     DeviceBuffer<std::int32_t> triangles(per_edge(), stream_), twins(per_edge(), stream_);
     DeviceBuffer<double> lengths(per_edge(), stream_), areas(per_edge() / 3, stream_), polars(per_edge(), stream_);
     DeviceBuffer<std::int32_t> first_halfedges(per_node(), stream_), nodes(per_node(), stream_);
@@ -269,6 +272,7 @@ class MeshTables {
     fill(r.saddles, saddles);
     fill(r.nodes, nodes);
     fill(r.vertices, vertices);
+    mesh_.packing = choose_packing();
     copies.finish();
     lay({triangles.data(), twins.data(), lengths.data(), areas.data(), polars.data(), first_halfedges.data(),
          total_angles.data(), saddles.data(), nodes.data(), vertices.data(), r.unit,

@@ -97,12 +97,13 @@ int sector_of(double angle, double total_angle) {
   return std::clamp(static_cast<int>(angle / total_angle * ArcCodec::k_sectors), 0, ArcCodec::k_sectors - 1);
 }
 
-void append_row(const ArcSearch& search, Index vertex, const std::vector<DirectArc>& row, FoundArcs& found) {
+void append_row(const ArcSearch& search, const ArcCodec& codec, Index vertex, const std::vector<DirectArc>& row,
+                FoundArcs& found) {
   const Mesh& mesh = search.unfolding.mesh();
   found.counts.push_back(static_cast<std::int32_t>(row.size()));
   for (const DirectArc& arc : row) {
     const int sector = sector_of(arc.start_angle, mesh.total_angle(vertex));
-    found.words.push_back(search.codec.pack(search.nodes[arc.vertex], sector, arc.length));
+    found.words.push_back(codec.pack(search.nodes[arc.vertex], sector, arc.length));
     found.back_sectors.push_back(static_cast<std::uint8_t>(sector_of(arc.end_angle, mesh.total_angle(arc.vertex))));
   }
 }
@@ -166,12 +167,12 @@ WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::
     : mesh(unfolding, edges, nodes, vertices, threads, stage.part(k_with_edges, k_with_mesh)),
       sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage.part(k_with_mesh, 1)) {}
 
-std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
-                                BuildProgress& progress) {
+std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
+                                const DiskRule& rule, BuildProgress& progress) {
   std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
   return find_by_blocks(search, rule.k, progress.stage().is_watched(), [&](FoundArcs& found, Index count, int thread) {
     if (!finders[thread])
-      finders[thread] = std::make_unique<DiskRows>(tables.mesh, tables.sectors, search.codec, search.kernel, rule);
+      finders[thread] = std::make_unique<DiskRows>(tables.mesh, tables.sectors, codec, search.kernel, rule);
     for (Index i = 0; i < count; i += k_batch) {
       const Index batch = std::min(k_batch, count - i);
       progress.time([&]() -> ArcCount {
@@ -183,7 +184,7 @@ std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const WaveTables& table
   });
 }
 
-std::vector<KeptArcs> exact_arcs(const ArcSearch& search, BuildProgress& progress) {
+std::vector<KeptArcs> exact_arcs(const ArcSearch& search, const ArcCodec& codec, BuildProgress& progress) {
   std::vector<std::unique_ptr<WindowPropagator>> propagators(thread_count(search.threads));
   std::vector<std::vector<DirectArc>> rows(propagators.size());
   propagators[0] = std::make_unique<WindowPropagator>(search.unfolding);
@@ -195,7 +196,7 @@ std::vector<KeptArcs> exact_arcs(const ArcSearch& search, BuildProgress& progres
       progress.time([&]() -> ArcCount {
         propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread],
                                          progress.stage());
-        append_row(search, vertex, rows[thread], found);
+        append_row(search, codec, vertex, rows[thread], found);
         return {1, std::ssize(rows[thread])};
       });
     }

@@ -31,7 +31,6 @@ void check_mesh_size(const Mesh& mesh);
 struct ArcSearch {
   const Unfolding& unfolding;
   std::span<const Index> nodes, vertices;  ///< nodes of the vertices, vertices of the nodes
-  const ArcCodec& codec;
   const WaveKernel& kernel;
   int threads = 0;
 };
@@ -40,12 +39,12 @@ struct ArcSearch {
 DiskRule disk_rule(Index k, double accuracy, Lattice lattice = Lattice::none);
 
 /// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
-std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const WaveTables& tables, const DiskRule& rule,
-                                BuildProgress& progress);
+std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
+                                const DiskRule& rule, BuildProgress& progress);
 
 /// All straight geodesics of the mesh. \throw InputError when the graph would not fit into memory; Cancelled. O(V^2 log
 /// V).
-std::vector<KeptArcs> exact_arcs(const ArcSearch& search, BuildProgress& progress);
+std::vector<KeptArcs> exact_arcs(const ArcSearch& search, const ArcCodec& codec, BuildProgress& progress);
 
 /// The fastest kernel that this machine runs for "auto", or the one named. \throw InputError when there is none.
 const WaveKernel& wave_kernel(const std::string& instructions);

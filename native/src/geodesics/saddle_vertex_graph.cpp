@@ -74,21 +74,25 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   if (!exact_ && !on_device)
     tables.emplace(*unfolding_, nodes_, vertices_, options.threads, progress.laying(k_ordered, k_laid_for_waves));
   const JobStage bounding = progress.laying(tables ? k_laid_for_waves : k_ordered, k_bounded);
-  const double longest = tables ? longest_path_bound(tables->mesh, options.threads, bounding)
-                                : longest_path_bound(mesh, nodes_, vertices_, options.threads, bounding);
-  bounding.update(1);
-  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
+  const auto choose_codec = [&] {
+    const double longest = tables ? longest_path_bound(tables->mesh, options.threads, bounding)
+                                  : longest_path_bound(mesh, nodes_, vertices_, options.threads, bounding);
+    bounding.update(1);
+    return ArcCodec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
+  };
   const DiskRule rule =
       disk_rule(k_, accuracy_, accuracy_ > 0 ? lattice_of(*unfolding_, options.threads, stage) : Lattice::none);
-  progress.laid();
-  const ArcSearch search{*unfolding_, nodes_, vertices_, codec, *kernel_, options.threads};
+  const ArcSearch search{*unfolding_, nodes_, vertices_, *kernel_, options.threads};
   if (on_device) {
-    arcs_ = twin_arcs(search, rule, options.cuda_devices, device_times_, progress.joining());
+    progress.laid();
+    arcs_ = twin_arcs(search, choose_codec, rule, options.cuda_devices, device_times_, progress.joining());
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;
   }
-  auto found = exact_ ? exact_arcs(search, progress) : disk_arcs(search, *tables, rule, progress);
+  const ArcCodec codec = choose_codec();
+  progress.laid();
+  auto found = exact_ ? exact_arcs(search, codec, progress) : disk_arcs(search, codec, *tables, rule, progress);
   tables.reset();
   arcs_ = unite_with_reverses(codec, *kernel_, found, options.threads, progress.joining());
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

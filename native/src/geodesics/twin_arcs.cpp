@@ -16,14 +16,19 @@ namespace {
 /// Answers the twin's calls.
 class Caller {
  public:
-  Caller(const ArcSearch& search, const DiskRule& rule, const JobStage& stage)
-      : search_(search), rule_(rule), stage_(stage) {}
+  Caller(const ArcSearch& search, const std::function<ArcCodec()>& choose_codec, const DiskRule& rule,
+         const JobStage& stage)
+      : search_(search), choose_codec_(choose_codec), rule_(rule), stage_(stage) {}
 
   ArcTwinCaller calls() {
     return {this,
             [](void* self, double fraction) {
               auto& caller = *static_cast<Caller*>(self);
               return caller.guard_.run([&] { caller.stage_.update(fraction); });
+            },
+            [](void* self, ArcPacking* packing) {
+              auto& caller = *static_cast<Caller*>(self);
+              return caller.guard_.run([&] { *packing = caller.codec_.emplace(caller.choose_codec_()).packing(); });
             },
             [](void* self, const std::int32_t* nodes, std::int32_t count, FoundRows* rows) {
               auto& caller = *static_cast<Caller*>(self);
@@ -40,7 +45,7 @@ class Caller {
             }};
   }
   const TwinGuard& guard() const { return guard_; }
-  ArcRows take() { return {search_.codec, std::move(offsets_), std::move(words_)}; }
+  ArcRows take() { return {*codec_, std::move(offsets_), std::move(words_)}; }
 
  private:
   /// In the batches in which disk_arcs finds them: what ends the windows of one is the same then.
@@ -58,8 +63,7 @@ class Caller {
     std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search_.threads));
     parallel_for(static_cast<Index>(batches.size()), search_.threads, 1, [&](Index b, int thread) {
       if (!finders[thread])
-        finders[thread] =
-            std::make_unique<DiskRows>(tables_->mesh, tables_->sectors, search_.codec, search_.kernel, rule_);
+        finders[thread] = std::make_unique<DiskRows>(tables_->mesh, tables_->sectors, *codec_, search_.kernel, rule_);
       const Index first = batches[b].front() / k_batch * k_batch;
       const Index count = std::min(k_batch, static_cast<Index>(search_.vertices.size()) - first);
       found[b].first_node = first;
@@ -87,10 +91,12 @@ class Caller {
   }
 
   const ArcSearch& search_;
+  const std::function<ArcCodec()>& choose_codec_;
   std::optional<WaveTables> tables_;  ///< the device has its own
   const DiskRule& rule_;
   const JobStage& stage_;
   TwinGuard guard_;
+  std::optional<ArcCodec> codec_;
   std::vector<std::int64_t> offsets_;
   ArcWords words_;
   std::vector<std::int32_t> counts_;
@@ -100,8 +106,8 @@ class Caller {
 
 }  // namespace
 
-ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, std::span<const int> devices, DeviceTimes& times,
-                  const JobStage& stage) {
+ArcRows twin_arcs(const ArcSearch& search, const std::function<ArcCodec()>& choose_codec, const DiskRule& rule,
+                  std::span<const int> devices, DeviceTimes& times, const JobStage& stage) {
   const CudaTwins& twins = loaded_twins();
   const Mesh& mesh = search.unfolding.mesh();
   const WaveScene scene = wave_scene(nullptr, rule);
@@ -127,9 +133,8 @@ ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, std::span<const
   request.vertices = search.vertices.data();
   request.unit = mesh.mean_edge_length();
   request.sector_count = ArcCodec::k_sectors;
-  request.packing = search.codec.packing();
 
-  Caller caller(search, rule, stage);
+  Caller caller(search, choose_codec, rule, stage);
   TwinReason reason;
   caller.guard().check(twins.find_arcs(request, caller.calls(), times, reason), reason);
   return caller.take();

@@ -1,6 +1,7 @@
 #pragma once
 // A graph's arcs found by the twin on a CUDA device.
 
+#include <functional>
 #include <span>
 
 #include "saddleback/cuda_twins.h"
@@ -9,8 +10,9 @@
 
 namespace saddleback {
 
-/// As unite_with_reverses(disk_arcs(...)), to the bit. \throw DeviceError when the device cannot do it; Cancelled.
-ArcRows twin_arcs(const ArcSearch& search, const DiskRule& rule, std::span<const int> devices, DeviceTimes& times,
-                  const JobStage& stage);
+/// As unite_with_reverses(disk_arcs(...)), to the bit. `choose_codec` is called while the mesh is copied to the device.
+/// \throw DeviceError when the device cannot do it; Cancelled.
+ArcRows twin_arcs(const ArcSearch& search, const std::function<ArcCodec()>& choose_codec, const DiskRule& rule,
+                  std::span<const int> devices, DeviceTimes& times, const JobStage& stage);
 
 }  // namespace saddleback
