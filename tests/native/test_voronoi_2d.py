@@ -201,6 +201,49 @@ def test_the_same_bytes_for_any_circles_and_threads(kind):
     assert len(results) == 1
 
 
+def rings(n: int) -> plane_sites.Points:
+    around = plane_sites.circle(n // 6, np.random.default_rng(n))
+    return np.vstack([around * (1 + 0.3 * ring) for ring in range(6)])
+
+
+def spiral(n: int) -> plane_sites.Points:
+    away = np.sqrt(np.linspace(0.01, 1, n))
+    return np.column_stack([away * np.cos(40 * away), away * np.sin(40 * away)])
+
+
+def parabola(n: int) -> plane_sites.Points:
+    x = np.linspace(-1, 1, n)
+    return np.column_stack([x, x * x])
+
+
+@pytest.mark.parametrize("n", [60, 600, 6000])
+@pytest.mark.parametrize("curves", [rings, spiral, parabola])
+def test_sites_along_curves_are_exactly_right(curves, n):
+    """Halves of a ring have nothing but sites of their borders in common with the whole within it."""
+    sites = curves(n)
+    whole = sb.voronoi_2d(sites, circles=1)
+    assert plane_sites.faults(whole) == []
+    for circles in (2, 3, n // 20, n // 4):
+        parts = sb.voronoi_2d(sites, circles=circles, threads=1)
+        assert parts.edges.tobytes() == whole.edges.tobytes()
+        assert parts.edge_sites.tobytes() == whole.edge_sites.tobytes()
+
+
+def test_rings_take_about_as_long_as_any_sites():
+    """Not the square of their number: that would be a hundred times as long."""
+
+    def seconds(sites: plane_sites.Points) -> float:
+        best = float("inf")
+        for _ in range(3):
+            start = time.perf_counter()
+            sb.voronoi_2d(sites, threads=1)
+            best = min(best, time.perf_counter() - start)
+        return best
+
+    rng = np.random.default_rng(2)
+    assert seconds(plane_sites.two_rings(80_000, rng)) < 15 * seconds(plane_sites.uniform(80_000, rng))
+
+
 def test_a_million_sites_stop_within_a_moment():
     sites = plane_sites.uniform(10**6, np.random.default_rng(9))
     job = sb.Job()

@@ -1,5 +1,7 @@
-// The gap between two convex hulls is closed with triangles from one common tangent to the other; then triangles are
-// exchanged, from these on, until all edges pass the circle test. All decisions are exact.
+// The gap between two convex hulls is closed with triangles from one common tangent to the other, and triangles that
+// are in the way of these go. Then triangles are exchanged, from the new ones on, until all edges pass the circle test:
+// few if any. Exchanges alone would do, but between curves, where whole fans of triangles have to go, their number is
+// that of the sites squared. All decisions are exact.
 
 #include "voronoi2d/join_meshes.h"
 
@@ -51,7 +53,7 @@ bool MeshJoiner::join(MeshPart& first, MeshPart& second, MeshPart& result) {
   } else if (!sides.right->has_triangles) {
     join_sites(result, *sides.right, sides.left_end, sides.is_upright, true);
   } else {
-    close_gap(result, sides.left_end, sides.right_end);
+    close_gap(result, sides);
   }
   restore(doubtful_);
   return true;
@@ -83,7 +85,33 @@ void MeshJoiner::set_twins(Index a, Index b) {
 
 // With the one hull left, the other right: from the tangent below both upwards. Each triangle has its base on the one
 // before and its tip at the next site of either hull, at that whose circle leaves the other outside.
-void MeshJoiner::close_gap(MeshPart& result, Index left, Index right) {
+void MeshJoiner::close_gap(MeshPart& result, const Sides& sides) {
+  Gap gap = gap_between(sides);
+  list_rims(gap);
+  const Index lowest_left = gap.left;
+  Index first = k_none;
+  while (true) {
+    while (remove_behind(result, gap, true)) {}
+    while (remove_behind(result, gap, false)) {}
+    const bool sees_left = sees(gap, left_rim_), sees_right = sees(gap, right_rim_);
+    if (!sees_left && !sees_right) break;
+    const bool is_left = sees_left && (!sees_right || place_in_circle(gap, left_rim_.back().site,
+                                                                      right_rim_.back().site) != Sign::positive);
+    const Index half = close_further(result, gap, is_left);
+    if (first == k_none) first = half;
+  }
+  for (const Index half : loose_)
+    if (half >= 0 && mesh_.twins[half] < 0) leaving_[mesh_.triangles[half]] = half;
+  for (const auto* rim : {&left_rim_, &right_rim_})
+    for (const RimEdge& edge : *rim)
+      if (edge.half >= 0) mesh_.twins[edge.half] = k_none;
+  leaving_[lowest_left] = first;
+  leaving_[gap.right] = gap.base;
+}
+
+/// Its first base: a tangent below both.
+MeshJoiner::Gap MeshJoiner::gap_between(const Sides& sides) const {
+  Index left = sides.left_end, right = sides.right_end;
   while (true) {
     const Index right_next = target(leaving_[right]);
     if (turn(left, right, right_next) == Sign::negative) {
@@ -94,34 +122,118 @@ void MeshJoiner::close_gap(MeshPart& result, Index left, Index right) {
     if (turn(left, right, left_before) != Sign::negative) break;
     left = left_before;
   }
-  const Index lowest_left = left;
-  Index first = k_none, base = k_none;
-  while (true) {
-    const Index left_side = leaving_[left], right_side = before_on_border(leaving_[right]);
-    const Index left_tip = target(left_side), right_tip = mesh_.triangles[right_side];
-    const bool sees_left = turn(left, right, left_tip) == Sign::positive,
-               sees_right = turn(left, right, right_tip) == Sign::positive;
-    if (!sees_left && !sees_right) break;
-    const bool is_left = sees_left && (!sees_right || predicates::in_circle_by_steps(
-                                                          mesh_.point(left), mesh_.point(right), mesh_.point(left_tip),
-                                                          mesh_.point(right_tip)) != Sign::positive);
-    const Index half = add_triangle(result, left, right, is_left ? left_tip : right_tip);
-    if (base == k_none)
-      first = half;
-    else
-      set_twins(half, base);
-    if (is_left) {
-      set_twins(half + 2, left_side);
-      base = half + 1;
-      left = left_tip;
-    } else {
-      set_twins(half + 1, right_side);
-      base = half + 2;
-      right = right_tip;
+  return {sides.left, sides.right, left, right, k_none};
+}
+
+/// Of the circle through the base and a site above it: where another site is.
+Sign MeshJoiner::place_in_circle(const Gap& gap, Index tip, Index site) const {
+  return predicates::in_circle_by_steps(mesh_.point(gap.left), mesh_.point(gap.right), mesh_.point(tip),
+                                        mesh_.point(site));
+}
+
+/// A triangle on the base, with its tip at the next site of a rim. \return its half-edge along the base.
+Index MeshJoiner::close_further(MeshPart& result, Gap& gap, bool is_left) {
+  std::vector<RimEdge>& rim = is_left ? left_rim_ : right_rim_;
+  const RimEdge edge = rim.back();
+  rim.pop_back();
+  const Index half = add_triangle(result, gap.left, gap.right, edge.site);
+  for (Index k = 0; k < 3; ++k)
+    if (Index& from = leaving_[mesh_.triangles[half + k]]; from == k_none) from = half + k;
+  if (gap.base != k_none) set_twins(half, gap.base);
+  attach(is_left ? half + 2 : half + 1, edge);
+  gap.base = is_left ? half + 1 : half + 2;
+  (is_left ? gap.left : gap.right) = edge.site;
+  return half;
+}
+
+/// The whole borders, from the base on: counter-clockwise on the left, clockwise on the right.
+void MeshJoiner::list_rims(const Gap& gap) {
+  loose_.clear();
+  left_rim_.clear();
+  right_rim_.clear();
+  for (Index site = gap.right; right_rim_.empty() || site != gap.right; site = target(leaving_[site]))
+    right_rim_.push_back({site, leaving_[site]});
+  for (Index site = gap.left; left_rim_.empty() || site != gap.left; site = target(leaving_[site]))
+    left_rim_.push_back({target(leaving_[site]), leaving_[site]});
+  std::reverse(left_rim_.begin(), left_rim_.end());
+  for (const auto* rim : {&left_rim_, &right_rim_})
+    for (std::size_t place = 0; place < rim->size(); ++place) note_place(*rim, place);
+}
+
+bool MeshJoiner::sees(const Gap& gap, const std::vector<RimEdge>& rim) const {
+  return !rim.empty() && turn(gap.left, gap.right, rim.back().site) == Sign::positive;
+}
+
+/// Takes away the triangle behind the next edge of a rim if it is in the way: its other sides become the rim's. Where
+/// there is no triangle behind one of these, the edge has the gap on both sides or is the border of all.
+bool MeshJoiner::remove_behind(MeshPart& result, const Gap& gap, bool is_left) {
+  std::vector<RimEdge>& rim = is_left ? left_rim_ : right_rim_;
+  if (!sees(gap, rim) || !is_in_the_way(gap, rim.back(), is_left ? *gap.left_part : *gap.right_part)) return false;
+  const RimEdge edge = rim.back();
+  const Index above = is_left ? next_half(edge.half) : previous_half(edge.half);
+  const Index below = is_left ? previous_half(edge.half) : next_half(edge.half);
+  const Index site = mesh_.triangles[previous_half(edge.half)];
+  const Index beyond_above = mesh_.twins[above], beyond_below = mesh_.twins[below];
+  rim.pop_back();
+  take_out(result, gap, edge.half);
+  const auto push = [&](Index to, Index beyond) {
+    if (beyond < 0) {
+      loose_.push_back(k_none);
+      RimEdge& other_side = rim[place_of(beyond)];
+      beyond = other_side.half = ~static_cast<Index>(loose_.size() - 1);
     }
+    rim.push_back({to, beyond});
+    note_place(rim, rim.size() - 1);
+  };
+  push(edge.site, beyond_above);
+  push(site, beyond_below);
+  return true;
+}
+
+/// Half-edges along a border have where they are in their rim as a twin, below k_none, as long as the gap is open.
+void MeshJoiner::note_place(const std::vector<RimEdge>& rim, std::size_t place) {
+  if (rim[place].half >= 0) mesh_.twins[rim[place].half] = k_none - 1 - static_cast<Index>(place);
+}
+std::size_t MeshJoiner::place_of(Index twin) { return static_cast<std::size_t>(k_none - 1 - twin); }
+
+/// Whether the third site of the triangle behind an edge is in the circle through the base and the edge's end.
+bool MeshJoiner::is_in_the_way(const Gap& gap, const RimEdge& edge, const MeshPart& part) const {
+  if (edge.half < 0) return false;
+  const Index site = mesh_.triangles[previous_half(edge.half)];
+  if (site < part.begin || site >= part.end) return false;  // the triangle closes the gap further down
+  return place_in_circle(gap, edge.site, site) == Sign::positive;
+}
+
+void MeshJoiner::take_out(MeshPart& result, const Gap& gap, Index half) {
+  const Index halves[3] = {half, next_half(half), previous_half(half)};
+  for (const Index each : halves) {
+    Index& from = leaving_[mesh_.triangles[each]];
+    if (from >= 0 && from / 4 == half / 4) from = other_leaving(gap, each);
   }
-  leaving_[lowest_left] = first;
-  leaving_[right] = base;
+  for (const Index each : halves) {
+    const Index beyond = mesh_.twins[each];
+    if (beyond < 0) continue;
+    mesh_.twins[beyond] = k_none;
+    mesh_.twins[beyond | 3] &= ~(1 << (beyond & 3));
+  }
+  result.free.emplace_back(half / 4, half / 4 + 1);
+}
+
+/// A half-edge from where `half` begins, of another triangle; k_none where only a new triangle will have one.
+Index MeshJoiner::other_leaving(const Gap& gap, Index half) const {
+  const Index site = mesh_.triangles[half], before = mesh_.twins[previous_half(half)], beyond = mesh_.twins[half];
+  if (before >= 0) return before;
+  if (beyond >= 0) return next_half(beyond);
+  if (gap.base >= 0 && site == gap.left) return next_half(gap.base);
+  return gap.base >= 0 && site == gap.right ? gap.base : k_none;
+}
+
+/// Joins a new triangle to what is behind an edge of a rim.
+void MeshJoiner::attach(Index half, const RimEdge& edge) {
+  if (edge.half >= 0) return set_twins(half, edge.half);
+  Index& other = loose_[~edge.half];
+  if (other >= 0) return set_twins(half, other);
+  other = half;
 }
 
 // Away from the line that parts them, each site is outside of the hull so far.

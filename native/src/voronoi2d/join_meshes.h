@@ -1,5 +1,5 @@
 #pragma once
-// Two triangulations side by side become one (L. Guibas and J. Stolfi, 1985, with exchanges instead of removals).
+// Two triangulations side by side become one (L. Guibas and J. Stolfi, 1985).
 
 #include <utility>
 #include <vector>
@@ -30,7 +30,7 @@ class MeshJoiner {
   MeshJoiner(const PlanarMesh& mesh, Index* leaving) : mesh_(mesh), leaving_(leaving) {}
 
   /// True when `result` is Delaunay's triangulation of both; false when nothing was done, because neither has triangles
-  /// or no line parts them. O(changes) and as much as the border.
+  /// or no line parts them. O(changes) and as much as the borders.
   bool join(MeshPart& first, MeshPart& second, MeshPart& result);
   /// Makes a triangulation Delaunay's (C. L. Lawson, 1977). `doubtful`: half-edges among whose edges are all that do
   /// not pass the circle test or whose triangles share a circle; used up.
@@ -51,7 +51,30 @@ class MeshJoiner {
   Index before_on_border(Index half) const;
   Index add_triangle(MeshPart& part, Index a, Index b, Index c);
   void set_twins(Index a, Index b);
-  void close_gap(MeshPart& result, Index left, Index right);
+  /// An edge of a part's border, on the way around it from the base of the gap.
+  struct RimEdge {
+    Index site;  ///< where the way comes to
+    Index half;  ///< in the triangle behind it, or ~ the number of a loose edge
+  };
+  /// What lies between the parts, and is about to be closed.
+  struct Gap {
+    const MeshPart *left_part, *right_part;
+    Index left, right;  ///< ends of the base
+    Index base;         ///< half-edge from right to left; k_none at first
+  };
+  void close_gap(MeshPart& result, const Sides& sides);
+  Gap gap_between(const Sides& sides) const;
+  predicates::Sign place_in_circle(const Gap& gap, Index tip, Index site) const;
+  Index close_further(MeshPart& result, Gap& gap, bool is_left);
+  void list_rims(const Gap& gap);
+  void note_place(const std::vector<RimEdge>& rim, std::size_t place);
+  static std::size_t place_of(Index twin);
+  bool sees(const Gap& gap, const std::vector<RimEdge>& rim) const;
+  bool remove_behind(MeshPart& result, const Gap& gap, bool is_left);
+  bool is_in_the_way(const Gap& gap, const RimEdge& edge, const MeshPart& part) const;
+  void take_out(MeshPart& result, const Gap& gap, Index half);
+  Index other_leaving(const Gap& gap, Index half) const;
+  void attach(Index half, const RimEdge& edge);
   void join_sites(MeshPart& result, const MeshPart& sites, Index nearest, bool is_upright, bool is_ascending);
   Index join_site(MeshPart& result, Index site, Index nearest);
   void exchange(Index half);
@@ -59,6 +82,8 @@ class MeshJoiner {
   PlanarMesh mesh_;
   Index* leaving_;
   std::vector<Index> doubtful_, order_;
+  std::vector<RimEdge> left_rim_, right_rim_;  ///< the next one last
+  std::vector<Index> loose_;                   ///< edges without triangles: the half-edge of that which one gets first
 };
 
 }  // namespace saddleback::voronoi2d
