@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,6 +11,7 @@ import pytest
 
 import saddleback as sb
 from tests import meshes
+from tests.parity.cancelling import expect_to_stop_within_a_moment
 
 RULES: tuple[dict[str, Any], ...] = ({"accuracy": 0.05}, {"accuracy": 5e-3}, {"accuracy": 1e-3}, {"k": 6}, {"k": 40})
 DEVICES = ("cuda", "cuda:0,0,0", "cuda:all")  # one, one in three parts, and all, a part each
@@ -152,18 +151,4 @@ def test_cancelled_within_a_moment_among_needles(rule: dict[str, Any]) -> None:
     vertices, triangles = meshes.cylinder(500, 40)
     mesh = sb.Mesh(vertices * [1, 1, 250], triangles)
     sb.SaddleVertexGraph(sb.Mesh(*meshes.grid(40, 40)), device="cuda", **rule)  # the device is awake
-    job = sb.Job()
-    asked = [0.0]
-
-    def stop() -> None:
-        time.sleep(0.1)
-        asked[0] = time.perf_counter()
-        job.cancel()
-
-    thread = threading.Thread(target=stop)
-    thread.start()
-    with pytest.raises(sb.Cancelled):
-        while True:
-            sb.SaddleVertexGraph(mesh, device="cuda", job=job, **rule)
-    assert time.perf_counter() - asked[0] < 0.15
-    thread.join()
+    expect_to_stop_within_a_moment(lambda job: sb.SaddleVertexGraph(mesh, device="cuda", job=job, **rule), after=0.1)

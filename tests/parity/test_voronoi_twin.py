@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import threading
-import time
 
 import numpy as np
 import pytest
 
 import saddleback as sb
 from tests.native import plane_sites
+from tests.parity.cancelling import expect_to_stop_within_a_moment
 
 DEVICES = ("cuda", "cuda:0,0,0", "cuda:all")  # one, one in three parts, and all, a part each
 ARRAYS = ("sites", "site_of", "vertices", "edges", "edge_sites", "edge_directions", "delaunay", "areas", "centroids")
@@ -224,18 +223,4 @@ def test_cancelled_within_a_moment(kind: str, count: int, device: str) -> None:
     sites = make(kind, count, seed=2)
     uniform = make("uniform", 100_000, seed=2)
     sb.voronoi_2d(uniform, device=device)  # the device is awake
-    job = sb.Job()
-    asked = [0.0]
-
-    def stop() -> None:
-        time.sleep(0.05)
-        asked[0] = time.perf_counter()
-        job.cancel()
-
-    thread = threading.Thread(target=stop)
-    thread.start()
-    with pytest.raises(sb.Cancelled):
-        while True:
-            sb.voronoi_2d(sites, device=device, job=job)
-    assert time.perf_counter() - asked[0] < 0.15
-    thread.join()
+    expect_to_stop_within_a_moment(lambda job: sb.voronoi_2d(sites, device=device, job=job), after=0.05)

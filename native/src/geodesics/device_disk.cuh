@@ -218,7 +218,7 @@ class WarpDisk {
   }
   /// What the list has no room for stays marked.
   SADDLEBACK_STEP int list_word(std::uint32_t word, int at, int count) {
-    const int through = sum_through(__popc(word));
+    const int through = warp_sum_through(__popc(word));
     int next = count + through - __popc(word);
     const bool any = word != 0;
     for (; word != 0 && next < Table::Todo; word &= word - 1)
@@ -242,16 +242,6 @@ class WarpDisk {
       __syncwarp();
     }
     return tellers;
-  }
-
-  /// The sum of what the lanes up to this one have.
-  SADDLEBACK_STEP int sum_through(int value) const {
-#pragma unroll
-    for (int step = 1; step < 32; step *= 2) {
-      const int before = __shfl_up_sync(k_warp, value, step);
-      value += lane_ >= step ? before : 0;
-    }
-    return value;
   }
 
   const DeviceMesh& mesh_;

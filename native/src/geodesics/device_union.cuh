@@ -8,6 +8,7 @@
 #include "support/device_buffer.h"
 #include "support/host_copies.h"
 #include "support/index_range.cuh"
+#include "support/warp.cuh"
 
 namespace saddleback {
 namespace {
@@ -70,13 +71,7 @@ struct AddedArcs {
   /// lanes of a warp, of which one counts for all: single additions to one place would wait for one another.
   __device__ void add(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node, std::int64_t first,
                       unsigned lacking) const {
-    const int lane = threadIdx.x & 31, mine = __popc(lacking);
-    int through = mine;
-#pragma unroll
-    for (int step = 1; step < 32; step *= 2) {
-      const int before = __shfl_up_sync(0xffffffffu, through, step);
-      through += lane >= step ? before : 0;
-    }
+    const int lane = threadIdx.x & 31, mine = __popc(lacking), through = warp_sum_through(mine);
     const int all = __shfl_sync(0xffffffffu, through, 31);
     if (all == 0) return;
     unsigned long long before = 0;

@@ -240,11 +240,9 @@ class WarpWaves {
 
   /// In creases fewer than k vertices are in sight: no radius would ever end the windows there.
   SADDLEBACK_STEP void bound_by_edges() {
-    if constexpr (All) {
-      const float radius = radius_by_edges(mesh_.neighbours, mesh_.k, &table_, edges_);
-      if (radius < 0) overflow_ = true;
-      disk_.lower_radius(max(radius, 0.0f));
-    }
+    const float radius = radius_by_edges(mesh_.neighbours, mesh_.k, &table_, edges_);
+    if (radius < 0) overflow_ = true;
+    disk_.lower_radius(max(radius, 0.0f));
   }
 
   /// The light on 32 sides becomes windows of the next generation. Lanes without one do what the first does, and write

@@ -1,11 +1,7 @@
 #pragma once
 // A face laid flat by the lengths of its edges, on the processor and on a CUDA device alike.
 
-#ifdef __CUDACC__
-#define SADDLEBACK_HOST_DEVICE __host__ __device__
-#else
-#define SADDLEBACK_HOST_DEVICE
-#endif
+#include "saddleback/host_device.h"
 
 namespace saddleback {
 

@@ -5,11 +5,7 @@
 
 #include <cmath>
 
-#ifdef __CUDACC__
-#define SADDLEBACK_HOST_DEVICE __host__ __device__
-#else
-#define SADDLEBACK_HOST_DEVICE
-#endif
+#include "saddleback/host_device.h"
 
 namespace saddleback::predicates {
 

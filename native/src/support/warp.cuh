@@ -37,4 +37,15 @@ __device__ inline int warp_sum(int value) {
 #endif
 }
 
+/// Of what the lanes up to this one have.
+__device__ inline int warp_sum_through(int value) {
+  const int lane = threadIdx.x & 31;
+#pragma unroll
+  for (int step = 1; step < 32; step *= 2) {
+    const int before = __shfl_up_sync(k_warp, value, step);
+    value += lane >= step ? before : 0;
+  }
+  return value;
+}
+
 }  // namespace saddleback

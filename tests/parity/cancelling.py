@@ -1,0 +1,30 @@
+"""Work on a device that is stopped in its midst."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+
+import saddleback as sb
+
+
+def expect_to_stop_within_a_moment(work: Callable[[sb.Job], object], after: float) -> None:
+    """Does the work again and again until it is asked to stop, `after` some seconds; then it ends in 0.15."""
+    job = sb.Job()
+    asked = [0.0]
+
+    def stop() -> None:
+        time.sleep(after)
+        asked[0] = time.perf_counter()
+        job.cancel()
+
+    thread = threading.Thread(target=stop)
+    thread.start()
+    with pytest.raises(sb.Cancelled):
+        while True:
+            work(job)
+    assert time.perf_counter() - asked[0] < 0.15
+    thread.join()
