@@ -3,13 +3,14 @@
 // and WaveSectors. Laying them on the processor took as long as all the rest of a graph's construction, and copying
 // them twice as long as copying the mesh.
 
-#include <cub/device/device_scan.cuh>
 #include <math_constants.h>
 
 #include "geodesics/arc_twin.h"
 #include "geodesics/device_wave_memory.cuh"
 #include "geodesics/unfolded_corner.h"
 #include "support/device_buffer.h"
+#include "support/device_launch.cuh"
+#include "support/device_scratch.cuh"
 #include "support/host_copies.h"
 
 namespace saddleback {
@@ -54,10 +55,6 @@ struct MeshInMaking {
   double2* about;                     ///< per node: from there to the edges opposite it, at least; the shortest edge
   float* clearances;                  ///< per edge
 };
-
-__device__ inline std::int32_t thread_number() {
-  return static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
-}
 
 /// The last count is 0, so that sums before each have the sum of all at the end.
 __global__ void count_edges(RawMesh raw, std::int32_t nodes, std::int32_t* counts) {
@@ -242,8 +239,6 @@ class MeshTables {
   }
 
  private:
-  static constexpr int k_threads = 256;
-  static unsigned blocks_for(std::int32_t count) { return static_cast<unsigned>(count / k_threads + 1); }
   std::size_t per_edge() const { return static_cast<std::size_t>(edges_); }
   std::size_t per_node() const { return static_cast<std::size_t>(nodes_); }
   /// At most: all but the last of a node's blocks hold seven, and it has one more neighbour than edges.
@@ -289,24 +284,13 @@ class MeshTables {
                             saddles_.data(),  halfedges.data(),        edge_of.data(),       about.data(),
                             clearances.data()};
     count_edges<<<blocks_for(nodes_ + 1), k_threads, 0, stream_>>>(raw, nodes_, counts.data());
-    add_up(counts);
+    add_up(counts, first_, stream_);
     list_edges<<<blocks_for(nodes_), k_threads, 0, stream_>>>(raw, nodes_, mesh);
     lay_edges<<<blocks_for(edges_), k_threads, 0, stream_>>>(raw, edges_, mesh);
     look_about<<<blocks_for(nodes_), k_threads, 0, stream_>>>(nodes_, mesh);
     find_clearances<<<blocks_for(edges_), k_threads, 0, stream_>>>(raw, edges_, mesh);
     note_clearances<<<blocks_for(edges_), k_threads, 0, stream_>>>(edges_, mesh);
     check_cuda(cudaGetLastError(), "laying tables");
-  }
-
-  void add_up(const DeviceBuffer<std::int32_t>& counts) {
-    const auto sum = [&](void* scratch, std::size_t& bytes) {
-      check_cuda(cub::DeviceScan::ExclusiveSum(scratch, bytes, counts.data(), first_.data(), nodes_ + 1, stream_),
-                 "adding up");
-    };
-    std::size_t bytes = 0;
-    sum(nullptr, bytes);
-    DeviceBuffer<std::uint8_t> scratch(bytes, stream_);
-    sum(scratch.data(), bytes);
   }
 
   cudaStream_t stream_;

@@ -1,11 +1,11 @@
 #pragma once
 // Rows of arcs on the device as they are found, and their union with their reverses: the twin of arc_symmetry.
 
-#include <cub/device/device_scan.cuh>
 #include <vector>
 
 #include "geodesics/arc_twin.h"
 #include "support/device_buffer.h"
+#include "support/device_scratch.cuh"
 #include "support/host_copies.h"
 #include "support/index_range.cuh"
 #include "support/warp.cuh"
@@ -325,8 +325,8 @@ class DeviceUnion {
     add_counts<<<place_blocks, k_block_threads, 0, stream>>>(rows.view().counts, added_counts.data(), range,
                                                              totals.data(), added_totals.data());
     check_cuda(cudaGetLastError(), "counting arcs");
-    scan(totals, offsets_);
-    scan(added_totals, added_first);
+    add_up(totals, offsets_, stream);
+    add_up(added_totals, added_first, stream);
     unsigned long long missing = 0;
     check_cuda(cudaMemcpyAsync(&count_, offsets_.data() + range.count(), sizeof count_, cudaMemcpyDeviceToHost, stream),
                "counting arcs");
@@ -361,14 +361,6 @@ class DeviceUnion {
  private:
   static unsigned row_blocks(std::int32_t rows) {
     return static_cast<unsigned>((rows + k_rows_per_block - 1) / k_rows_per_block);
-  }
-  void scan(const DeviceBuffer<std::int64_t>& from, DeviceBuffer<std::int64_t>& to) {
-    const int count = static_cast<int>(from.size());
-    std::size_t bytes = 0;
-    check_cuda(cub::DeviceScan::ExclusiveSum(nullptr, bytes, from.data(), to.data(), count, stream_), "adding up");
-    DeviceBuffer<std::uint8_t> scratch(bytes, stream_);
-    check_cuda(cub::DeviceScan::ExclusiveSum(scratch.data(), bytes, from.data(), to.data(), count, stream_),
-               "adding up");
   }
 
   cudaStream_t stream_;

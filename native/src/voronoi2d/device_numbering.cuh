@@ -292,13 +292,6 @@ __global__ void add_ends(IndexRange edges, DeviceNumbers numbers) {
   }
 }
 
-inline void add_up(const DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::int32_t>& sums, cudaStream_t stream) {
-  const auto count = static_cast<int>(counts.size());
-  with_scratch(stream, "adding up", [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts.data(), sums.data(), count, stream);
-  });
-}
-
 /// A vertex about which d cells lie has d - 2 triangles.
 __global__ void count_triangles(DeviceCells cells, DeviceNumbers numbers, std::int32_t* counts) {
   const std::int32_t cell = cells.of_thread();

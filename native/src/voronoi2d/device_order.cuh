@@ -8,31 +8,14 @@
 #include <vector>
 
 #include "support/device_buffer.h"
+#include "support/device_launch.cuh"
+#include "support/device_scratch.cuh"
 #include "support/index_range.cuh"
 #include "voronoi2d/curve_place.h"
 #include "voronoi2d/device_kept.cuh"
 
 namespace saddleback::voronoi2d {
 namespace {
-
-constexpr int k_threads = 256;
-/// At least one, which finds nothing to do where there is nothing.
-inline unsigned blocks_for(std::int64_t count) {
-  return static_cast<unsigned>(std::max<std::int64_t>(1, (count + k_threads - 1) / k_threads));
-}
-
-__device__ inline std::int32_t thread_number() {
-  return static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
-}
-
-/// Calls cub's function(scratch, bytes) twice: for the size of its memory, and to work.
-template <class Function>
-void with_scratch(cudaStream_t stream, const char* doing, Function&& function) {
-  std::size_t bytes = 0;
-  check_cuda(function(nullptr, bytes), doing);
-  DeviceBuffer<std::uint8_t> scratch(bytes, stream);
-  check_cuda(function(static_cast<void*>(scratch.data()), bytes), doing);
-}
 
 struct Extent {
   double low[2], high[2];

@@ -1,0 +1,21 @@
+#pragma once
+// Kernels with a thread for each of some things.
+
+#include <algorithm>
+#include <cstdint>
+
+namespace saddleback {
+namespace {
+
+constexpr int k_threads = 256;
+/// At least one, which finds nothing to do where there is nothing.
+inline unsigned blocks_for(std::int64_t count) {
+  return static_cast<unsigned>(std::max<std::int64_t>(1, (count + k_threads - 1) / k_threads));
+}
+
+__device__ inline std::int32_t thread_number() {
+  return static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
+}
+
+}  // namespace
+}  // namespace saddleback
