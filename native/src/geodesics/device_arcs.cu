@@ -198,6 +198,7 @@ class ArcFinder {
     }
     find_in<WideRoom<All>>(passes++, all);  // the second does not wait to know how many are left
     times.second_pass = failures(0);
+    report(done_ = 0.99);
     times.by_processor = 0;
     std::int32_t left = failures(passes - 1);
     if (left > 0) {
@@ -257,8 +258,7 @@ class ArcFinder {
     DeviceBuffer<typename Room::Pool> pools(Room::pool_is_shared ? 0 : places, stream_);
     DeviceBuffer<EdgeDistances<Room::Table::Slots>> edges(Room::Table::All ? places : 0, stream_);
     for (std::int32_t begin = 0; begin < all; begin += k_sources_per_launch) {
-      begun_ = pass > 0 ? 0.99 : static_cast<double>(begin) / all;
-      report(begun_);
+      if (pass == 0) report(done_ = static_cast<double>(begin) / all);
       next_.fill_bytes(0);
       Work work{fails_.data(),
                 nullptr,
@@ -283,7 +283,7 @@ class ArcFinder {
   /// For what was started; whoever asks to stop is not kept waiting by sources that take long.
   void wait() {
     wait_polling(
-        stream_, [&](cudaStream_t) { report(begun_); },
+        stream_, [&](cudaStream_t) { report(done_); },
         [&](cudaStream_t aside) { (void)cudaMemsetAsync(fails_.data(), 1, sizeof(int), aside); });
   }
 
@@ -326,7 +326,7 @@ class ArcFinder {
   DeviceBuffer<std::int32_t> next_, failures_;
   DeviceBuffer<int> fails_;  ///< whether all sources do: there are extremes, or the caller asked to stop
   RowStore rows_;
-  double begun_ = 0;  ///< share of the sources
+  double done_ = 0;  ///< share of the sources, as far as is known
 };
 
 /// What a build takes at most of a device that has these nodes, in bytes; rows once more for the union.
