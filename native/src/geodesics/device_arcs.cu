@@ -36,7 +36,7 @@ struct Room {
   static constexpr bool All = All_, table_is_shared = TableIsShared, pool_is_shared = PoolIsShared;
   static constexpr int Seats = Seats_;
   using Table = WaveTable<All, Slots>;
-  using Pool = WindowPool<All, Windows>;
+  using Pool = WindowPool<All, Windows, Slots>;
   using Best = BestSightings<Table, Seats>;
   static_assert(sizeof(Best) <= sizeof(Pool));
   static constexpr std::size_t warp_bytes = (TableIsShared ? sizeof(Table) : 0) + (PoolIsShared ? sizeof(Pool) : 0);
@@ -46,7 +46,7 @@ struct Room {
 };
 /// By the arcs that are asked for. Fewer windows at once leave room for more sources at once.
 template <bool All>
-using SmallRoom = Room<All, All ? 80 : 96, All ? 256 : 384, All ? 1 : 2, true, true>;
+using SmallRoom = Room<All, All ? 80 : 88, All ? 256 : 384, All ? 1 : 2, true, true>;
 template <bool All>
 using MiddleRoom = Room<All, All ? 144 : 128, All ? 384 : 512, 1, true, true>;
 template <bool All>
@@ -97,7 +97,7 @@ __global__ void __launch_bounds__(32 * Room::Warps, 1)
   char* const own = memory + warp * Room::warp_bytes;
   Table& table = Room::table_is_shared ? *reinterpret_cast<Table*>(own) : scratch.tables[place];
   Pool& pool = Room::pool_is_shared ? *reinterpret_cast<Pool*>(own + sizeof table) : scratch.pools[place];
-  Waves waves(mesh, table, pool, scratch.edges + place, scratch.drafts + place * Table::Draft, Table::Draft);
+  Waves waves(mesh, table, pool, scratch.edges + place, scratch.drafts + place * Table::Draft);
   const std::int32_t count = work.listed ? *work.listed : work.count;
   while (true) {
     std::int32_t number = 0;
@@ -333,7 +333,7 @@ class ArcFinder {
 std::uint64_t bytes_needed(const ArcTwinRequest& r, IndexRange range) {
   const auto words = static_cast<std::uint64_t>(first_guess(r, range));
   constexpr std::uint64_t k_drafts = std::uint64_t{160} << 20;
-  return MeshTables::bytes_needed(r) + static_cast<std::uint64_t>(r.node_count) * 48 + words * (13 + 10) + k_drafts;
+  return MeshTables::bytes_needed(r) + static_cast<std::uint64_t>(r.node_count) * 48 + words * (21 + 10) + k_drafts;
 }
 
 /// A graph found by one or several devices, each the rows of a range of nodes.

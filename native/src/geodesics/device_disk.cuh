@@ -13,28 +13,47 @@ namespace {
 constexpr float k_disk_as_far = 1 + 1e-5f;
 constexpr float k_bend_longer = 1 + 1e-6f;
 
-template <class Use>
-SADDLEBACK_STEP void for_each_label(const std::int32_t* labels, int slots, Use&& use) {
-  const int4* const fours = reinterpret_cast<const int4*>(labels);
-#pragma unroll 4
-  for (int i = static_cast<int>(threadIdx.x & 31); i < slots / 4; i += 32) {
-    const int4 four = fours[i];
-    use(four.x);
-    use(four.y);
-    use(four.z);
-    use(four.w);
+/// Labels that a warp looks through again and again: few are kept at hand.
+template <int Slots>
+class LookedThrough {
+  static constexpr int k_fours = Slots / 128;
+  static constexpr bool at_hand = k_fours <= 4;
+
+ public:
+  SADDLEBACK_STEP explicit LookedThrough(const std::int32_t* labels)
+      : labels_(reinterpret_cast<const int4*>(labels) + (threadIdx.x & 31)) {
+    if constexpr (at_hand) {
+#pragma unroll
+      for (int i = 0; i < k_fours; ++i) fours_[i] = labels_[32 * i];
+    }
   }
-}
-SADDLEBACK_STEP int count_up_to(const std::int32_t* labels, int slots, std::int32_t most) {
-  int count = 0;
-  for_each_label(labels, slots, [&](std::int32_t label) { count += label <= most; });
-  return warp_sum(count);
-}
-SADDLEBACK_STEP std::int32_t last_up_to(const std::int32_t* labels, int slots, std::int32_t most) {
-  std::int32_t last = 0;
-  for_each_label(labels, slots, [&](std::int32_t label) { last = max(last, label <= most ? label : 0); });
-  return warp_max(last);
-}
+  SADDLEBACK_STEP int count_up_to(std::int32_t most) const {
+    int count = 0;
+    each([&](std::int32_t label) { count += label <= most; });
+    return warp_sum(count);
+  }
+  SADDLEBACK_STEP std::int32_t last_up_to(std::int32_t most) const {
+    std::int32_t last = 0;
+    each([&](std::int32_t label) { last = max(last, label <= most ? label : 0); });
+    return warp_max(last);
+  }
+
+ private:
+  template <class Use>
+  SADDLEBACK_STEP void each(Use&& use) const {
+#pragma unroll 4
+    for (int i = 0; i < k_fours; ++i) {
+      const int4 four = at_hand ? fours_[at_hand ? i : 0] : labels_[32 * i];
+      use(four.x);
+      use(four.y);
+      use(four.z);
+      use(four.w);
+    }
+  }
+
+  const int4* labels_;  ///< the lane's own
+  int4 fours_[at_hand ? k_fours : 1];
+};
 /// Between two labels, as if vertices were spread evenly over the disk.
 SADDLEBACK_STEP std::int32_t guess_label(std::int32_t low, std::int32_t high, int below, int through, int wanted) {
   const float inner = low < 0 ? 0 : distance_of(low), outer = distance_of(high);
@@ -44,13 +63,15 @@ SADDLEBACK_STEP std::int32_t guess_label(std::int32_t low, std::int32_t high, in
 }
 /// The n-th of the labels in the order of their sizes, of those up to `most`; k_unreached_label when there are not so
 /// many. By all lanes of a warp.
-SADDLEBACK_STEP std::int32_t nth_label(const std::int32_t* labels, int slots, int n, std::int32_t most) {
-  std::int32_t low = -1, high = last_up_to(labels, slots, min(most, k_unreached_label - 1));
-  int below = 0, through = count_up_to(labels, slots, high);  // labels up to low, and up to high
+template <int Slots>
+SADDLEBACK_STEP std::int32_t nth_label(const std::int32_t* those, int n, std::int32_t most) {
+  const LookedThrough<Slots> labels(those);
+  std::int32_t low = -1, high = labels.last_up_to(min(most, k_unreached_label - 1));
+  int below = 0, through = labels.count_up_to(high);  // labels up to low, and up to high
   if (through < n) return k_unreached_label;
   for (bool guesses = true; through != n && high - low > 1; guesses = !guesses) {
     const std::int32_t middle = guesses ? guess_label(low, high, below, through, n) : low + (high - low) / 2;
-    const int there = count_up_to(labels, slots, middle);
+    const int there = labels.count_up_to(middle);
     if (there >= n) {
       high = middle;
       through = there;
@@ -59,7 +80,7 @@ SADDLEBACK_STEP std::int32_t nth_label(const std::int32_t* labels, int slots, in
       below = there;
     }
   }
-  return last_up_to(labels, slots, high);
+  return labels.last_up_to(high);
 }
 
 /// The twin of DiskFinder's labels. `Seats` sources share the table.
@@ -134,7 +155,7 @@ class WarpDisk {
   /// Lowers the radius of the disk to that of the k-th nearest vertex, as far as is known.
   SADDLEBACK_STEP bool bound() {
     __syncwarp();
-    const std::int32_t last = nth_label(table_.labels, k_slots, mesh_.k + 1, __float_as_int(limit_));
+    const std::int32_t last = nth_label<k_slots>(table_.labels, mesh_.k + 1, __float_as_int(limit_));
     if (last == k_unreached_label) return false;
     return lower_radius(distance_of(last) * k_disk_as_far);  // a node is its own nearest
   }

@@ -34,7 +34,7 @@ class EdgeFront {
     }
     __syncwarp();
     while (true) {
-      limit_ = nth_label(distances_.known, k_slots, wanted_, limit_);
+      limit_ = nth_label<k_slots>(distances_.known, wanted_, limit_);
       const int count = list_nearest();
       if (count == 0) break;
       for (int i = 0; i < count; i += 32 / Neighbour::k_block) disk_.tell_neighbours(i, count, Tell{distances_});

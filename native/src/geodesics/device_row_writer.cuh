@@ -17,6 +17,8 @@ struct BestSightings {
   std::int32_t numbers[Slots];        ///< in the draft, of the first of them
   std::uint16_t slots[Table::Draft];  ///< of the sightings
   std::uint16_t kept[Seats][Kept];
+  static constexpr int k_words = Table::Draft / 32 + 1;
+  std::uint32_t begins[k_words];  ///< bits: the sighting is its generation's first
 };
 
 SADDLEBACK_STEP int to_sector(float sector) {
@@ -56,28 +58,62 @@ class RowWriter {
  private:
   static_assert(Seats <= 2);
   static constexpr int k_at_once = 2;
-  SADDLEBACK_STEP static int root_of(const Sighting& seen) { return seen.root < 0 ? ~seen.root : seen.root; }
+  static constexpr int k_first_kept = 1 << 15;  ///< in the list of what is kept: of its generation
 
   SADDLEBACK_STEP void find_best() {
     for (int i = lane_; i < Table::Slots; i += 32) {
       best_.labels[i] = k_unreached_label;
       best_.numbers[i] = k_unreached_label;
     }
+    for (int i = lane_; i < Best::k_words; i += 32) best_.begins[i] = 0;
     __syncwarp();
     const Sighting* const draft = waves_.draft();
 #pragma unroll 4
     for (int i = lane_; i < waves_.arcs(); i += 32) {
-      const int2 seen{draft[i].slot, draft[i].label};
-      best_.slots[i] = static_cast<std::uint16_t>(seen.x);
-      atomicMin(&best_.labels[seen.x], seen.y);
+      const uint2 seen{draft[i].ids, static_cast<unsigned>(draft[i].label)};
+      const int slot = static_cast<int>(seen.x >> RootEdge::k_bits);
+      const auto label = static_cast<std::int32_t>(seen.y);
+      best_.slots[i] = static_cast<std::uint16_t>(slot);
+      atomicMin(&best_.labels[slot], label & ~Sighting::k_new_generation);
+      if (label < 0) atomicOr(&best_.begins[i / 32], 1u << i % 32);
     }
     __syncwarp();
+    bool tied = false;
 #pragma unroll 4
     for (int i = lane_; i < waves_.arcs(); i += 32) {
       const int slot = best_.slots[i];
-      if (best_.labels[slot] == draft[i].label) atomicMin(&best_.numbers[slot], i);
+      if (best_.labels[slot] == label_of(draft[i])) tied |= atomicMin(&best_.numbers[slot], i) != k_unreached_label;
     }
+    if (__any_sync(k_warp, tied)) break_ties();
     __syncwarp();
+  }
+
+  SADDLEBACK_STEP static std::int32_t label_of(const Sighting& seen) {
+    return seen.label & ~Sighting::k_new_generation;
+  }
+  SADDLEBACK_STEP static std::uint64_t order_of(const Sighting& seen) {
+    return order_in_generation(seen.turns, RootEdge::edge(seen.root()));
+  }
+
+  /// Of sightings of the same label it is the processor's first that counts.
+  SADDLEBACK_STEP void break_ties() {
+    __syncwarp();
+    const Sighting* const draft = waves_.draft();
+    for (int i = lane_; i < waves_.arcs(); i += 32) {
+      const int slot = best_.slots[i];
+      if (best_.labels[slot] != label_of(draft[i])) continue;
+      for (int first = best_.numbers[slot]; comes_before(i, first);) {
+        const int before = first;
+        first = atomicCAS(&best_.numbers[slot], before, i);
+        if (first == before) break;
+      }
+    }
+  }
+  SADDLEBACK_STEP bool comes_before(int a, int b) const {
+    bool same_generation = min(a, b) >= waves_.links();
+    for (int i = min(a, b) + 1; i <= max(a, b) && same_generation; ++i)
+      same_generation = (best_.begins[i / 32] >> i % 32 & 1) == 0;
+    return same_generation ? order_of(waves_.draft()[a]) < order_of(waves_.draft()[b]) : a < b;
   }
 
   /// An arc that is not the shortest way stays as long as others may rely on it; edges stay even where something
@@ -91,19 +127,27 @@ class RowWriter {
     return number < waves_.links() ? is_shortest || !stays : is_shortest && stays;
   }
 
+  /// What the source is linked with is in its order already, as if each were a generation.
   SADDLEBACK_STEP bool list_kept(int (&counts)[Seats]) {
-    bool fits = waves_.arcs() <= 1 << 16;
+    bool fits = waves_.arcs() <= k_first_kept;
+    int generations = 0, last[Seats] = {};  // so far; of the last that is kept
     for (int base = 0; base < waves_.arcs() && fits; base += 32) {
       const int number = base + lane_;
       const bool kept = number < waves_.arcs() && is_kept(number);
-      const int seat = Seats > 1 && kept ? RootEdge::seat(root_of(waves_.draft()[number])) : 0;
+      const int seat = Seats > 1 && kept ? RootEdge::seat(waves_.draft()[number].root()) : 0;
+      const std::uint32_t begins = best_.begins[base / 32];
+      const int generation = generations + __popc(begins & (2u << lane_) - 1);
+      generations += __popc(begins);
 #pragma unroll
       for (int s = 0; s < Seats; ++s) {
-        const unsigned lanes = __ballot_sync(k_warp, kept && seat == s);
+        const unsigned lanes = __ballot_sync(k_warp, kept && seat == s), below = lanes & ((1u << lane_) - 1);
         fits = fits && counts[s] + __popc(lanes) <= Best::Kept;
+        const int before = __shfl_sync(k_warp, generation, 31 - __clz(static_cast<int>(below)));
+        const bool is_first = number < waves_.links() || (below != 0 ? before : last[s]) != generation;
         if (kept && seat == s && fits)
-          best_.kept[s][counts[s] + __popc(lanes & ((1u << lane_) - 1))] = static_cast<std::uint16_t>(number);
+          best_.kept[s][counts[s] + __popc(below)] = static_cast<std::uint16_t>(number | (is_first ? k_first_kept : 0));
         counts[s] += __popc(lanes);
+        if (lanes != 0) last[s] = __shfl_sync(k_warp, generation, 31 - __clz(static_cast<int>(lanes)));
       }
     }
     __syncwarp();
@@ -112,15 +156,18 @@ class RowWriter {
 
   /// What of the mesh an arc's directions go by.
   struct Aim {
+    bool is_window;
+    std::uint64_t order;
     std::int32_t target;
     float leaving, back, per_radian, per_radian_back;
   };
-  SADDLEBACK_STEP Aim aim_of(const Sighting& seen) const {
-    const int number = root_of(seen);
-    const std::int32_t node = waves_.sources().node + RootEdge::seat(number);
-    const std::int32_t root = mesh_.first[node] + RootEdge::edge(number);
-    Aim aim{waves_.disk().node(seen.slot), 256, 0, 0, 0};
-    if (seen.root >= 0) {
+  SADDLEBACK_STEP Aim aim_of(int kept, const Sighting& seen) const {
+    const std::int32_t node = waves_.sources().node + RootEdge::seat(seen.root());
+    const std::int32_t root = mesh_.first[node] + RootEdge::edge(seen.root());
+    const bool is_window = (kept & k_first_kept - 1) >= waves_.links();
+    const std::uint64_t order = order_of(seen) | ((kept & k_first_kept) != 0 ? k_new_generation : 0);
+    Aim aim{is_window, order, waves_.disk().node(seen.slot()), 256, 0, 0, 0};
+    if (is_window) {
       aim.leaving = mesh_.sectors[root];
       aim.back = mesh_.apex_sectors[seen.edge];
       aim.per_radian = mesh_.per_radian[node];
@@ -137,15 +184,17 @@ class RowWriter {
   /// Arcs from the `base`-th on, of which the first source has `count`. What several need of memory is on its way at
   /// once.
   SADDLEBACK_STEP void put(const DeviceRows& rows, std::int64_t first, int base, int total, int count) const {
+    int kept[k_at_once];
     Sighting seen[k_at_once];
     Aim aims[k_at_once];
 #pragma unroll
     for (int n = 0; n < k_at_once; ++n) {
       const int i = min(base + 32 * n + lane_, total - 1), seat = Seats > 1 && i >= count ? 1 : 0;
-      seen[n] = waves_.draft()[best_.kept[seat][seat == 0 ? i : i - count]];
+      kept[n] = best_.kept[seat][seat == 0 ? i : i - count];
+      seen[n] = waves_.draft()[kept[n] & k_first_kept - 1];
     }
 #pragma unroll
-    for (int n = 0; n < k_at_once; ++n) aims[n] = aim_of(seen[n]);
+    for (int n = 0; n < k_at_once; ++n) aims[n] = aim_of(kept[n], seen[n]);
 #pragma unroll
     for (int n = 0; n < k_at_once; ++n)
       if (base + 32 * n + lane_ < total) put(rows, first + base + 32 * n + lane_, seen[n], aims[n]);
@@ -153,7 +202,7 @@ class RowWriter {
 
   SADDLEBACK_STEP void put(const DeviceRows& rows, std::int64_t at, const Sighting& seen, const Aim& aim) const {
     float leaving = aim.leaving, back = aim.back;
-    if (seen.root >= 0) {
+    if (aim.is_window) {
       const float x = static_cast<float>(seen.place.x), y = static_cast<float>(seen.place.y);
       const float side_x = static_cast<float>(seen.from.x - seen.place.x);
       const float side_y = static_cast<float>(seen.from.y - seen.place.y);
@@ -163,6 +212,7 @@ class RowWriter {
     const double length = norm_of(seen.place.x, seen.place.y);
     rows.put(at, mesh_.packing.pack(aim.target, to_sector(leaving), length * mesh_.unit),
              static_cast<std::uint8_t>(to_sector(back)));
+    rows.order[at] = aim.order;
   }
 
   const DeviceMesh& mesh_;

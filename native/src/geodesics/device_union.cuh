@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geodesics/arc_twin.h"
+#include "geodesics/device_sighting_order.cuh"
 #include "support/device_buffer.h"
 #include "support/device_scratch.cuh"
 #include "support/host_copies.h"
@@ -28,6 +29,7 @@ struct DeviceRows {
   std::uint64_t* words;
   std::int32_t* targets;  ///< of the words, to search in
   std::uint8_t* back_sectors;
+  std::uint64_t* order;  ///< in the generation, of the word's sighting; see k_new_generation
   unsigned long long* taken;
   std::int64_t room;
   std::uint64_t target_mask;
@@ -186,7 +188,7 @@ __global__ void shift_offsets(std::int64_t* offsets, std::size_t count, std::int
   if (i < count) offsets[i] += by;
 }
 
-/// A row's own arcs in their order, then those that were added, sorted.
+/// A row's own arcs in the processor's order, then those that were added, sorted.
 __global__ void write_rows(DeviceRows rows, IndexRange range, const std::uint64_t* own, const std::uint64_t* added,
                            const std::int64_t* added_first, const std::int64_t* offsets, std::uint64_t* words) {
   const int lane = threadIdx.x & 31;
@@ -195,7 +197,7 @@ __global__ void write_rows(DeviceRows rows, IndexRange range, const std::uint64_
   if (row >= range.count()) return;
   const std::int64_t first = rows.firsts[range.begin + row], to = offsets[row];
   const int count = rows.counts[range.begin + row];
-  for (int i = lane; i < count; i += 32) words[to + i] = own[first + i];
+  for (int i = lane; i < count; i += 32) words[to + place_in_order(rows.order + first, count, i)] = own[first + i];
   const std::uint64_t* const others = added + added_first[row];
   const int other_count = static_cast<int>(added_first[row + 1] - added_first[row]);
   for (int i = lane; i < other_count; i += 32) {
@@ -218,6 +220,7 @@ class RowStore {
         words_(static_cast<std::size_t>(room), stream),
         targets_(static_cast<std::size_t>(room) + k_read_beyond, stream),
         back_sectors_(static_cast<std::size_t>(room), stream),
+        order_(static_cast<std::size_t>(room), stream),
         taken_(1, stream) {}
 
   void clear() {
@@ -225,8 +228,8 @@ class RowStore {
     counts_.fill_bytes(0);
   }
   DeviceRows view() {
-    return {firsts_.data(),       counts_.data(), words_.data(), targets_.data(),
-            back_sectors_.data(), taken_.data(),  room_,         target_mask_};
+    return {firsts_.data(), counts_.data(), words_.data(), targets_.data(), back_sectors_.data(),
+            order_.data(),  taken_.data(),  room_,         target_mask_};
   }
   std::int32_t nodes() const { return nodes_; }
   std::int64_t room() const { return room_; }
@@ -254,6 +257,7 @@ class RowStore {
     grow(words_, room);
     grow(targets_, room + k_read_beyond);
     grow(back_sectors_, room);
+    grow(order_, room);
     room_ = room;
   }
 
@@ -266,9 +270,11 @@ class RowStore {
       std::vector<std::int32_t> targets(found.word_count);
       for (std::size_t i = 0; i < targets.size(); ++i)
         targets[i] = static_cast<std::int32_t>(found.words[i] & target_mask_);
+      const std::vector<std::uint64_t> order(found.word_count, k_new_generation);  // it is theirs already
       copy(words_.data() + first, found.words, found.word_count);
       copy(targets_.data() + first, targets.data(), targets.size());
       copy(back_sectors_.data() + first, found.back_sectors, found.word_count);
+      copy(order_.data() + first, order.data(), order.size());
       std::int64_t at = first;
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         copy(firsts_.data() + nodes[i], &at, 1);
@@ -297,6 +303,7 @@ class RowStore {
   DeviceBuffer<std::uint64_t> words_;
   DeviceBuffer<std::int32_t> targets_;
   DeviceBuffer<std::uint8_t> back_sectors_;
+  DeviceBuffer<std::uint64_t> order_;
   DeviceBuffer<unsigned long long> taken_;
 };
 

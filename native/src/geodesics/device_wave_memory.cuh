@@ -9,6 +9,7 @@
 
 #include "geodesics/arc_twin.h"
 #include "geodesics/device_lane.cuh"
+#include "geodesics/device_sighting_order.cuh"
 
 namespace saddleback {
 namespace {
@@ -64,31 +65,79 @@ struct RootEdge {
 
 /// A vertex seen, until it is known whether an arc to it stays: the directions are computed only then.
 struct alignas(16) Sighting {
-  double2 place;      ///< of the vertex
-  double2 from;       ///< start of the half-edge that the window came through
-  std::int32_t edge;  ///< of the window; of a source's link, whether it is the other side of its face
-  std::int32_t root;  ///< RootEdge; of a link, its complement
-  std::int32_t slot;
+  double2 place;        ///< of the vertex
+  double2 from;         ///< start of the half-edge that the window came through
+  std::int32_t edge;    ///< of the window; of a source's link, whether it is the other side of its face
+  std::uint32_t turns;  ///< of the window, see device_sighting_order.cuh
+  std::uint32_t ids;    ///< RootEdge; above it the slot
   std::int32_t label;
-};
 
-/// What belongs to a window, by its indices.
-struct alignas(16) WindowLinks {
-  std::int32_t edge;   ///< its record
-  std::uint32_t ends;  ///< slots of the half-edge's ends, see EndSlots
-  std::uint32_t root;  ///< RootEdge; above it the slot of the apex, once it is sighted
-  float most;          ///< radius beyond which the window serves nothing; where disks end by count, the disk's
-};
-
-/// Two slots in one word, left below right.
-struct EndSlots {
-  SADDLEBACK_STEP static std::uint32_t pack(int left, int right) {
-    return static_cast<std::uint32_t>(left) | static_cast<std::uint32_t>(right) << 16;
+  static constexpr std::int32_t k_new_generation = 1 << 31;  ///< in the label of a generation's first
+  SADDLEBACK_STEP static std::uint32_t pack(int root, int slot) {
+    return static_cast<std::uint32_t>(root) | static_cast<std::uint32_t>(slot) << RootEdge::k_bits;
   }
-  SADDLEBACK_STEP static int slot(std::uint32_t ends, int side) { return static_cast<int>(ends >> 16 * side & 0xffff); }
-  /// With another one on a side.
-  SADDLEBACK_STEP static std::uint32_t replaced(std::uint32_t ends, int side, int slot) {
-    return (ends & 0xffff0000u >> 16 * side) | static_cast<std::uint32_t>(slot) << 16 * side;
+  SADDLEBACK_STEP int root() const { return static_cast<int>(ids & ((1u << RootEdge::k_bits) - 1)); }
+  SADDLEBACK_STEP int slot() const { return static_cast<int>(ids >> RootEdge::k_bits); }
+};
+
+/// What belongs to a window, by its indices: its half-edge's record, the slots of the half-edge's ends and, once it is
+/// sighted, of the apex, the RootEdge and the turns.
+struct alignas(16) WindowLinks {
+  static constexpr int k_most_turns = 32, k_most_edges = RootEdge::k_most_edges;
+  std::int32_t edge;
+  std::uint32_t ends;      ///< slots: left, above it right
+  std::uint32_t root_ids;  ///< root, above it the apex
+  std::uint32_t turned;
+
+  SADDLEBACK_STEP static WindowLinks first(std::int32_t edge, int left, int right, int root) {
+    return {edge, static_cast<std::uint32_t>(left) | static_cast<std::uint32_t>(right) << 16,
+            static_cast<std::uint32_t>(root), 0};
+  }
+  SADDLEBACK_STEP int end(int side) const { return static_cast<int>(ends >> 16 * side & 0xffff); }
+  SADDLEBACK_STEP int apex() const { return static_cast<int>(root_ids >> 16); }
+  SADDLEBACK_STEP int root() const { return static_cast<int>(root_ids & 0xffff); }
+  SADDLEBACK_STEP std::uint32_t turns() const { return turned; }
+  /// Into the window that it is a copy of.
+  SADDLEBACK_STEP void note_apex(WindowLinks& there, int slot) const {
+    there.root_ids = root_ids | static_cast<std::uint32_t>(slot) << 16;
+  }
+  SADDLEBACK_STEP void set_turns(std::uint32_t number) { turned = number; }
+  /// Of the window behind a side, whose turns have `bits` before that.
+  SADDLEBACK_STEP WindowLinks child(std::int32_t behind, int side, int bits) const {
+    return {behind, (ends & 0xffffu << 16 * side) | (root_ids >> 16) << 16 * (1 - side), root_ids & 0xffff,
+            turned | static_cast<std::uint32_t>(side) << bits};
+  }
+};
+
+/// The same in less, with the radius beyond which the window serves nothing.
+struct alignas(16) DenseLinks {
+  static constexpr int k_slot_bits = 10, k_edge_bits = 12, k_root_bits = k_edge_bits + 1;
+  static constexpr std::uint32_t k_slot = (1u << k_slot_bits) - 1, k_most_edges = 1 << k_edge_bits;
+  static constexpr int k_most_turns = 32 - k_root_bits;
+  std::int32_t edge;
+  std::uint32_t slots;   ///< left, right, apex, from the lowest bits on
+  std::uint32_t origin;  ///< half-edge of the source, seat, turns
+  float most;
+
+  SADDLEBACK_STEP static DenseLinks first(std::int32_t edge, int left, int right, int root) {
+    return {edge, static_cast<std::uint32_t>(left) | static_cast<std::uint32_t>(right) << k_slot_bits,
+            static_cast<std::uint32_t>(RootEdge::seat(root) << k_edge_bits | RootEdge::edge(root)), 0};
+  }
+  SADDLEBACK_STEP int end(int side) const { return static_cast<int>(slots >> k_slot_bits * side & k_slot); }
+  SADDLEBACK_STEP int apex() const { return static_cast<int>(slots >> 2 * k_slot_bits); }
+  SADDLEBACK_STEP int root() const {
+    return RootEdge::pack(static_cast<int>(origin >> k_edge_bits & 1), static_cast<int>(origin & (k_most_edges - 1)));
+  }
+  SADDLEBACK_STEP std::uint32_t turns() const { return origin >> k_root_bits; }
+  SADDLEBACK_STEP void note_apex(DenseLinks& there, int slot) const {
+    there.slots = slots | static_cast<std::uint32_t>(slot) << 2 * k_slot_bits;
+  }
+  SADDLEBACK_STEP void set_turns(std::uint32_t number) {
+    origin = (origin & ((1u << k_root_bits) - 1)) | number << k_root_bits;
+  }
+  SADDLEBACK_STEP DenseLinks child(std::int32_t behind, int side, int bits) const {
+    return {behind, (slots & k_slot << k_slot_bits * side) | (slots >> 2 * k_slot_bits) << k_slot_bits * (1 - side),
+            origin | static_cast<std::uint32_t>(side) << (k_root_bits + bits), most};
   }
 };
 
@@ -104,28 +153,29 @@ struct alignas(16) WindowRay<false> {
   float x, y, reach, way;
 };
 
-/// A side of a window's face that light falls on: the window's place, whether it is the right side, and whether the
-/// window has no more.
+/// A side of a window's face that light falls on: the window's number in its generation, and whether it is the right
+/// side.
 struct Light {
-  static constexpr int k_right = 1 << 14, k_last = 1 << 15, k_place = k_right - 1;
+  static constexpr int k_right = 1 << 15, k_number = k_right - 1;
 };
 
-/// A warp's windows. Each has a place. *Left* is 0 and *right* is 1 of what there is two of. Less for each leaves room
-/// for more warps: what of a window is soon computed again is not kept.
-template <bool All_, int Windows_>
+/// A warp's windows: a ring, in which those of a generation lie one behind the other, so that lanes with neighbours ask
+/// for different banks. *Left* is 0 and *right* is 1 of what there is two of. Less for each leaves room for more warps:
+/// what of a window is soon computed again is not kept.
+template <bool All_, int Windows_, int Slots>
 struct alignas(16) WindowPool {
-  static constexpr bool All = All_;
+  static constexpr bool All = All_, is_dense = !All && Slots <= 1 << DenseLinks::k_slot_bits;
   static constexpr int Windows = Windows_;
+  using Links = std::conditional_t<is_dense, DenseLinks, WindowLinks>;
   static constexpr int Lights = All ? Windows + Windows / 4 : Windows + 3 * Windows / 8;
-  static_assert(Windows <= Light::k_place && Windows % 8 == 0);
-  using Place = std::conditional_t<(Windows <= 256), std::uint8_t, std::uint16_t>;
-  double2 ends[2][Windows];  ///< of the half-edge: start, which is on the left, and end
-  WindowLinks links[Windows];
+  static_assert(Windows <= Light::k_number && Windows % 8 == 0);
+  double2 ends[2][Windows];           ///< of the half-edge: start, which is on the left, and end
+  double2 apexes[All ? 1 : Windows];  ///< once they are sighted
+  Links links[Windows];
   WindowRay<All> rays[2][Windows];
-  float ways[All ? 1 : Windows];  ///< to the apexes, once they are sighted
+  float ways[All ? 1 : Windows];              ///< to the apexes
+  float most[All || is_dense ? 1 : Windows];  ///< radius beyond which a window serves nothing, see DenseLinks
   std::uint16_t lights[Lights];
-  Place order[Windows];  ///< of a generation: windows behind left sides, and from the end on those behind right ones
-  Place free[Windows];   ///< places without windows
 };
 
 /// The vertices that the sources reached.

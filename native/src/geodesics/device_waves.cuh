@@ -3,8 +3,8 @@
 //
 // As there, generations have no order but their own: all windows of one look at their apexes, the labels are lowered,
 // then all are split. Most windows see no corner and light one side only, so that sides are what lanes are filled with
-// when windows are split. Windows lie anywhere in their pool; what keeps the processor's order is lists of their
-// places.
+// when windows are split. In what order a generation is taken matters to nothing but which of two sightings is the
+// first: see device_sighting_order.cuh.
 
 #include <cstdint>
 
@@ -21,40 +21,61 @@ struct WarpSources {
   int count;
 };
 
+/// Gives windows their numbers in the processor's order, of `count` from the one at `begin` on, in place of their
+/// turns. Not in line: few sources have so many generations. \return how many bits the numbers have
+template <class Pool>
+__device__ __noinline__ int renumber(Pool* pool, int begin, int count) {
+  const auto links_of = [&](int number) -> typename Pool::Links& {
+    const int place = begin + number;
+    return pool->links[place < Pool::Windows ? place : place - Pool::Windows];
+  };
+  const auto order_of = [&](const typename Pool::Links& links) {
+    return order_in_generation(links.turns(), RootEdge::edge(links.root()));
+  };
+  const int lane = static_cast<int>(threadIdx.x & 31);
+  __syncwarp();
+  for (int i = lane; i < count; i += 32) {
+    const std::uint64_t own = order_of(links_of(i));
+    int before = 0;
+    for (int j = 0; j < count; ++j) before += order_of(links_of(j)) < own ? 1 : 0;
+    pool->lights[i] = static_cast<std::uint16_t>(before);
+  }
+  __syncwarp();
+  for (int i = lane; i < count; i += 32) links_of(i).set_turns(pool->lights[i]);
+  __syncwarp();
+  return 32 - __clz(max(count - 1, 0));
+}
+
 /// Sources from their first windows to the vertices that they see. `Seats` sources at most.
 template <class Table, class Pool, int Seats>
 class WarpWaves {
   static constexpr bool All = Pool::All;
   static constexpr int k_windows = Pool::Windows, k_lanes_per_seat = 32 / Seats;
+  static constexpr int k_draft_room = Table::Draft;
 
  public:
   using Edges = EdgeDistances<Table::Slots>;
-  /// `draft` has room for the sightings that make arcs.
-  SADDLEBACK_STEP WarpWaves(const DeviceMesh& mesh, Table& table, Pool& pool, Edges* edges, Sighting* draft,
-                            int draft_room)
+  SADDLEBACK_STEP WarpWaves(const DeviceMesh& mesh, Table& table, Pool& pool, Edges* edges, Sighting* draft)
       : mesh_(mesh),
         table_(table),
         pool_(pool),
         edges_(edges),
         disk_(mesh, table),
         draft_(draft),
-        draft_room_(draft_room),
         lane_(threadIdx.x & 31),
         below_((1u << lane_) - 1) {}
 
   SADDLEBACK_STEP void begin(const WarpSources& sources) {
     sources_ = sources;
-    arcs_ = generation_ = windows_ = 0;
-    count_[0] = count_[1] = 0;
+    arcs_ = generation_ = turns_ = windows_ = 0;
+    begin_ = count_ = 0;
     overflow_ = false;
-    for (int i = lane_; i < k_windows; i += 32) pool_.free[i] = static_cast<Place>(i);
-    free_count_ = k_windows;
     disk_.clear();
     const int seat = lane_ / k_lanes_per_seat, first = lane_ % k_lanes_per_seat;
     const bool has_source = seat < sources.count;
     const std::int32_t node = sources.node + (has_source ? seat : 0);
     const std::int32_t e = mesh_.first[node], count = has_source ? mesh_.first[node + 1] - e : 0;
-    if (count > RootEdge::k_most_edges) overflow_ = true;
+    if (count > static_cast<int>(Pool::Links::k_most_edges)) overflow_ = true;
     const bool at_centre = has_source && first == 0;
     const int centre = disk_.insert(at_centre, Key::pack(node, seat, mesh_.saddles[node] != 0));
     if (at_centre) disk_.lower(centre, label_of(0, false), false);
@@ -66,24 +87,22 @@ class WarpWaves {
   /// To the last generation. False when the memory did not do.
   SADDLEBACK_STEP bool run() {
     while (!overflowed()) {
-      const int lefts = uniform(count_[0]), all = uniform(count_[0] + count_[1]);
-      if (all == 0) break;
+      const int all = uniform(count_);
+      if (all == 0 && !All) break;
       windows_ += all;
       if (windows_ > k_most_windows / k_batch) overflow_ = true;  // the processor may stop there
+      arcs_before_ = arcs_;
       lights_ = 0;
-      for (int base = 0; base < all; base += 32) sight(base, lefts, all);
+      for (int base = 0; base < all; base += 32) sight(base, all);
       __syncwarp();
       if (overflowed()) break;
-      bend();
-      count_[0] = count_[1] = 0;
+      const bool smaller = bend(all == 0);
+      if (all == 0 && !smaller) break;
+      count_ = 0;
       const int lights = uniform(lights_);
-      for (int base = 0; base < lights; base += 32) pass_on(base, lights);
-    }
-    if constexpr (All) {
-      for (bool smaller = true; smaller && !overflowed();) {
-        smaller = disk_.bound();
-        disk_.relax_bends();
-      }
+      for (int base = 0; base < lights; base += 32) pass_on(base, lights, all);
+      begin_ = place_of(all);
+      if (++turns_ == Pool::Links::k_most_turns) turns_ = renumber(&pool_, begin_, min(count_, k_windows));
     }
     return !overflowed();
   }
@@ -95,14 +114,19 @@ class WarpWaves {
   SADDLEBACK_STEP int links() const { return links_; }
 
  private:
-  using Place = typename Pool::Place;
+  using Links = typename Pool::Links;
   using Ray = WindowRay<All>;
   using Key = DiskKey<Seats>;
 
   SADDLEBACK_STEP bool overflowed() { return __any_sync(k_warp, overflow_ || disk_.overflowed()); }
   SADDLEBACK_STEP int rank(unsigned lanes) const { return __popc(lanes & below_); }
+  /// Of the generation's windows, and behind them of their children.
+  SADDLEBACK_STEP int place_of(int number) const {
+    const auto place = static_cast<unsigned>(begin_ + number);
+    return static_cast<int>(min(place, place - k_windows));
+  }
 
-  SADDLEBACK_STEP void put_arc(int number, const Sighting& seen) { draft_[min(number, draft_room_ - 1)] = seen; }
+  SADDLEBACK_STEP void put_arc(int number, const Sighting& seen) { draft_[min(number, k_draft_room - 1)] = seen; }
 
   /// Links and first windows of the sources' edges, one a lane.
   SADDLEBACK_STEP void add_edges(int seat, int edge, std::int32_t e, bool active) {
@@ -119,31 +143,30 @@ class WarpWaves {
     if (active) {
       const std::int32_t label = label_of(static_cast<float>(length), true);
       disk_.lower(to, label, true);
-      put_arc(number, {{length, 0}, {0, 0}, 0, ~root, to, label});
+      put_arc(number, {{length, 0}, {0, 0}, 0, 0, Sighting::pack(root, to), label});
       if (boundary) {
         const std::int32_t far = label_of(static_cast<float>(other), true);
         disk_.lower(apex, far, true);
-        put_arc(number + 1, {{other, 0}, {0, 0}, 1, ~root, apex, far});
+        put_arc(number + 1, {{other, 0}, {0, 0}, 1, 0, Sighting::pack(root, apex), far});
       }
     }
     const bool opens = active && record.right >= 0;
     const unsigned opening = __ballot_sync(k_warp, opens);
     const int opened = __popc(opening);
-    if (opened > free_count_) {
+    if (count_ + opened > k_windows) {
       overflow_ = true;
     } else if (opens) {
-      const int place = pool_.free[free_count_ - 1 - rank(opening)];
-      pool_.order[count_[0] + rank(opening)] = static_cast<Place>(place);
+      const int place = count_ + rank(opening);
       pool_.ends[0][place] = corner;
       pool_.ends[1][place] = {length, 0};
       pool_.rays[0][place] =
           ray_of(static_cast<float>(corner.x / other), static_cast<float>(corner.y / other), static_cast<float>(other));
       pool_.rays[1][place] = ray_of(1, 0, static_cast<float>(length));
-      pool_.links[place] = {record.right, EndSlots::pack(apex, to), static_cast<std::uint32_t>(root),
-                            distance_of(k_unreached_label)};
+      Links links = Links::first(record.right, apex, to, root);
+      set_most(links, place, distance_of(k_unreached_label));
+      pool_.links[place] = links;
     }
-    free_count_ -= opened;
-    count_[0] += opened;
+    count_ += opened;
     count_arcs(__popc(actives) + __popc(boundaries));
     __syncwarp();
   }
@@ -163,20 +186,20 @@ class WarpWaves {
 
   SADDLEBACK_STEP void count_arcs(int more) {
     arcs_ += more;
-    if (arcs_ > draft_room_) overflow_ = true;
+    if (arcs_ > k_draft_room) overflow_ = true;
   }
 
   /// 32 windows of the generation look at their apexes, lower the labels, and list their sides that are lit. Lanes
   /// without a window do what the first does, and write nothing.
-  SADDLEBACK_STEP void sight(int base, int lefts, int all) {
+  SADDLEBACK_STEP void sight(int base, int all) {
     const bool active = base + lane_ < all;
-    const int p = active ? base + lane_ : base;
-    const int place = pool_.order[p < lefts ? p : k_windows - 1 - (p - lefts)];
-    const WindowLinks links = pool_.links[place];
+    const int number = active ? base + lane_ : base;
+    const int place = place_of(number);
+    const Links links = pool_.links[place];
     const EdgeRecord record = mesh_.records[links.edge];
     const double2 from = pool_.ends[0][place], to = pool_.ends[1][place];
     const Ray left = pool_.rays[0][place], right = pool_.rays[1][place];
-    const auto root = static_cast<int>(links.root);
+    const int root = links.root();
     const auto claim = disk_.claim(active, apex_key(record, RootEdge::seat(root)));
     const double2 apex = apex_of(record, from, to);
     Rays rays{right.x, right.y, left.x, left.y, 0, 0};
@@ -196,16 +219,23 @@ class WarpWaves {
     const std::int32_t label = label_of(view.reach, direct);
     __syncwarp();  // nobody looks at the first window any more
     if (active) {
-      if constexpr (!All) pool_.ways[place] = way;
-      pool_.links[place].root = links.root | static_cast<std::uint32_t>(slot) << RootEdge::k_bits;
+      links.note_apex(pool_.links[place], slot);
+      if constexpr (!All) {
+        pool_.apexes[place] = apex;
+        pool_.ways[place] = way;
+      }
       if (view.in_sight) disk_.lower(slot, label, !direct || (record.clearances & k_saddle_bit) != 0);
     }
     const bool makes = active & direct;
     const unsigned making = __ballot_sync(k_warp, makes);
-    if (makes) put_arc(arcs_ + rank(making), {apex, from, links.edge, root, slot, label});
+    if (makes) {
+      const int number = arcs_ + rank(making);
+      const std::int32_t mark = number == arcs_before_ ? Sighting::k_new_generation : 0;
+      put_arc(number, {apex, from, links.edge, links.turns(), Sighting::pack(root, slot), label | mark});
+    }
     count_arcs(__popc(making));
     const float tolerance = k_on_ray * view.reach;
-    list_lights(active, place, active & (record.left >= 0) & (tolerance < view.to_left),
+    list_lights(number, active & (record.left >= 0) & (tolerance < view.to_left),
                 active & (record.right >= 0) & (tolerance < view.from_right));
   }
 
@@ -214,28 +244,43 @@ class WarpWaves {
     return {from.x + (record.a * along_x - record.b * along_y), from.y + (record.a * along_y + record.b * along_x)};
   }
 
-  SADDLEBACK_STEP void list_lights(bool active, int place, bool left, bool right) {
+  SADDLEBACK_STEP float most_of(const Links& links, int place) const {
+    if constexpr (Pool::is_dense) {
+      return links.most;
+    } else {
+      return pool_.most[place];
+    }
+  }
+  SADDLEBACK_STEP void set_most(Links& links, int place, float most) {
+    if constexpr (Pool::is_dense) {
+      links.most = most;
+    } else if constexpr (!All) {
+      pool_.most[place] = most;
+    }
+  }
+
+  SADDLEBACK_STEP void list_lights(int number, bool left, bool right) {
     const unsigned lefts = __ballot_sync(k_warp, left), rights = __ballot_sync(k_warp, right);
-    const unsigned actives = __ballot_sync(k_warp, active), ended = actives & ~(lefts | rights);
     const int at = lights_ + rank(lefts) + rank(rights);
     lights_ += __popc(lefts) + __popc(rights);
     if (lights_ > Pool::Lights) {
       overflow_ = true;
       return;
     }
-    if (left) pool_.lights[at] = static_cast<std::uint16_t>(place | (right ? 0 : Light::k_last));
-    if (right) pool_.lights[at + (left ? 1 : 0)] = static_cast<std::uint16_t>(place | Light::k_right | Light::k_last);
-    if ((ended >> lane_ & 1) != 0) pool_.free[free_count_ + rank(ended)] = static_cast<Place>(place);
-    free_count_ += __popc(ended);
+    if (left) pool_.lights[at] = static_cast<std::uint16_t>(number);
+    if (right) pool_.lights[at + (left ? 1 : 0)] = static_cast<std::uint16_t>(number | Light::k_right);
   }
 
-  SADDLEBACK_STEP void bend() {
+  /// Every few generations, and when no window is left until the disk becomes no smaller. \return whether it did
+  SADDLEBACK_STEP bool bend(bool is_last) {
+    bool smaller = false;
     if constexpr (All) {
-      if (++generation_ % k_generations_per_bound != 0) return;
-      disk_.bound();
-      if (generation_ >= k_blind_generations && !disk_.is_bounded()) bound_by_edges();
+      if (!is_last && ++generation_ % k_generations_per_bound != 0) return false;
+      smaller = disk_.bound();
+      if (!is_last && generation_ >= k_blind_generations && !disk_.is_bounded()) bound_by_edges();
       disk_.relax_bends();
     }
+    return smaller;
   }
 
   /// In creases fewer than k vertices are in sight: no radius would ever end the windows there.
@@ -247,20 +292,24 @@ class WarpWaves {
 
   /// The light on 32 sides becomes windows of the next generation. Lanes without one do what the first does, and write
   /// nothing.
-  SADDLEBACK_STEP void pass_on(int base, int lights) {
+  SADDLEBACK_STEP void pass_on(int base, int lights, int all) {
     const bool active = base + lane_ < lights;
     const int light = pool_.lights[active ? base + lane_ : base];
-    const int place = light & Light::k_place, s = light / Light::k_right & 1;
-    const WindowLinks links = pool_.links[place];
-    const auto apex_slot = static_cast<int>(links.root >> RootEdge::k_bits);
+    const int number = light & Light::k_number, place = place_of(number), s = light / Light::k_right & 1;
+    const Links links = pool_.links[place];
     const EdgeRecord record = mesh_.records[links.edge];
     const double2 from = pool_.ends[0][place], to = pool_.ends[1][place], near = pool_.ends[s][place];
     const Ray near_ray = pool_.rays[s][place], far_ray = pool_.rays[1 - s][place];
     const float way = All ? 0 : pool_.ways[All ? 0 : place];
-    const float near_label = distance_of(disk_.label(EndSlots::slot(links.ends, s)));
-    const float far_label = distance_of(disk_.label(EndSlots::slot(links.ends, 1 - s)));
-    const float apex_label = distance_of(disk_.label(apex_slot));
-    const double2 apex = apex_of(record, from, to);
+    const float near_label = distance_of(disk_.label(links.end(s)));
+    const float far_label = distance_of(disk_.label(links.end(1 - s)));
+    const float apex_label = distance_of(disk_.label(links.apex()));
+    double2 apex;
+    if constexpr (All) {
+      apex = apex_of(record, from, to);  // of which to keep it takes longer
+    } else {
+      apex = pool_.apexes[place];
+    }
     // Right sides are seen in a mirror.
     const float flip = s == 0 ? 1 : -1;
     const float apex_x = static_cast<float>(apex.x), apex_y = flip * static_cast<float>(apex.y);
@@ -286,14 +335,14 @@ class WarpWaves {
                     near_label,
                     far_label,
                     apex_label};
-    const Child child = look_at(side);
+    const Child light_there = look_at(side);
     const ApexRay ray = ray_to({apex_x, apex_y, reach, 0, 0, false, false});
     Ray last_ray = far_ray;  // where the light ends
     last_ray.x = cut ? ray.x : far_ray.x;
     last_ray.y = cut ? flip * ray.y : far_ray.y;
     float most = disk_.radius();
     if constexpr (!All) {
-      most = links.most;
+      most = most_of(links, place);
       if (__any_sync(k_warp, cut)) {
         const float bound = bound_child(side, ray, {reach, way}, {near_ray.reach, near_ray.way}, mesh_.excess, most);
         most = cut ? bound : most;
@@ -303,43 +352,26 @@ class WarpWaves {
     }
     const std::uint32_t clearance =
         s == 0 ? record.clearances & k_upper_half : (record.clearances & ~k_saddle_bit) << 16;
-    const bool keep = child.useful & is_within(child, most, __int_as_float(static_cast<std::int32_t>(clearance)));
+    const bool keep =
+        light_there.useful & is_within(light_there, most, __int_as_float(static_cast<std::int32_t>(clearance)));
 
-    const int heir = settle(active, keep, (light & Light::k_last) != 0, place);
-    const int number = count_children(keep, s);
+    const unsigned keeping = __ballot_sync(k_warp, keep);
+    // Those before the last that was looked at are not needed any more.
+    const int child = all + count_ + rank(keeping), first_needed = __shfl_sync(k_warp, number, 31);
+    count_ += __popc(keeping);
+    if (all + count_ - k_windows > (base + 32 < lights ? first_needed : all)) overflow_ = true;
+    __syncwarp();  // nobody looks at the windows any more
     if (keep & !overflow_) {
-      pool_.order[number] = static_cast<Place>(heir);
+      const int heir = place_of(child < k_windows ? child : child - k_windows);
       pool_.ends[s][heir] = near;
       pool_.ends[1 - s][heir] = apex;
       pool_.rays[s][heir] = near_ray;
       pool_.rays[1 - s][heir] = last_ray;
-      pool_.links[heir] = {s == 0 ? record.left : record.right, EndSlots::replaced(links.ends, 1 - s, apex_slot),
-                           links.root & ((1u << RootEdge::k_bits) - 1), most};
+      Links child_links = links.child(s == 0 ? record.left : record.right, s, turns_);
+      set_most(child_links, heir, most);
+      pool_.links[heir] = child_links;
     }
     __syncwarp();
-  }
-
-  /// Where a child goes: into its parent's place, if nobody looks there any more, or into a free one.
-  SADDLEBACK_STEP int settle(bool active, bool keep, bool last, int place) {
-    const unsigned taking = __ballot_sync(k_warp, keep & !last), giving = __ballot_sync(k_warp, active & last & !keep);
-    const int free = pool_.free[max(0, free_count_ - 1 - rank(taking))];
-    __syncwarp();  // nobody looks at the windows, nor takes of what is free, any more
-    free_count_ -= __popc(taking);
-    if (free_count_ < 0) overflow_ = true;
-    free_count_ = max(0, free_count_);
-    if ((giving >> lane_ & 1) != 0) pool_.free[free_count_ + rank(giving)] = static_cast<Place>(place);
-    free_count_ += __popc(giving);
-    return last ? place : free;
-  }
-
-  /// Where a child is listed.
-  SADDLEBACK_STEP int count_children(bool keep, int side) {
-    const unsigned all = __ballot_sync(k_warp, keep), rights = __ballot_sync(k_warp, keep & (side == 1));
-    const unsigned lefts = all & ~rights;
-    const int number = side == 0 ? count_[0] + rank(lefts) : k_windows - 1 - (count_[1] + rank(rights));
-    count_[0] += __popc(lefts);
-    count_[1] += __popc(rights);
-    return number;
   }
 
   const DeviceMesh& mesh_;
@@ -348,12 +380,15 @@ class WarpWaves {
   Edges* edges_;  ///< where disks end by count
   WarpDisk<Table, Seats> disk_;
   Sighting* draft_;
-  int draft_room_, lane_;
+  int lane_;
   unsigned below_;  ///< lanes before this one
   WarpSources sources_{0, 0};
-  int count_[2] = {0, 0};  ///< windows of the generation that is being made, behind left and right sides
-  int free_count_ = 0, lights_ = 0;
+  int begin_ = 0;  ///< place of the generation's first window
+  int count_ = 0;  ///< windows of the generation that is being made
+  int lights_ = 0;
+  int turns_ = 0;  ///< bits of the windows' turns
   int arcs_ = 0, links_ = 0, generation_ = 0, windows_ = 0;
+  int arcs_before_ = 0;  ///< this generation
   bool overflow_ = false;
 };
 
