@@ -170,13 +170,14 @@ class WarpDisk {
     if (!is_bounded()) return;
     while (const int count = list_changed()) {
       const int tellers = list_tellers(count);
-      for (int i = 0; i < tellers; i += 32 / Neighbour::k_block) tell_neighbours(i, tellers, Bend{table_});
+      for (int i = 0; i < tellers; i += 32 / Neighbour::k_block) tell_neighbours(i, tellers, Bend{table_, limit_});
       if (overflowed_anywhere()) return;
     }
   }
 
   /// Of the list, from the `first` on, as many as there are blocks' worth of lanes: rule.offer(disk, slot of a
-  /// neighbour, rule.from(slot), length of the edge). By all lanes of the warp.
+  /// neighbour, label), if rule.serves(label), with label = rule.label(rule.from(slot), length of the edge). By all
+  /// lanes of the warp.
   template <class Rule>
   SADDLEBACK_STEP void tell_neighbours(int first, int count, const Rule& rule) {
     const int number = first + lane_ / Neighbour::k_block, last = lane_ | (Neighbour::k_block - 1);
@@ -187,8 +188,10 @@ class WarpDisk {
       Neighbour there{Neighbour::k_none, 0};
       if (block >= 0) there = mesh_.neighbours[block * Neighbour::k_block + (lane_ & (Neighbour::k_block - 1))];
       const bool is_node = (there.key & Neighbour::k_link) == 0;
-      const int other = insert(is_node, there.key);
-      if (is_node) rule.offer(*this, other, from, there.length);
+      const std::int32_t label = rule.label(from, there.length);
+      const bool is_told = is_node && rule.serves(label);
+      const int other = insert(is_told, there.key);
+      if (is_told) rule.offer(*this, other, label);
       const bool goes_on = !is_node && there.key != Neighbour::k_none;
       block = __shfl_sync(k_warp, goes_on ? static_cast<std::int32_t>(there.key & ~Neighbour::k_link) : -1, last);
       __syncwarp();
@@ -199,10 +202,13 @@ class WarpDisk {
   /// Told where shortest ways bend: longer by more than rounding, so that what is collinear stays an arc.
   struct Bend {
     const Table& table;
+    float limit;
     SADDLEBACK_STEP float from(int slot) const { return distance_of(table.labels[slot]); }
-    SADDLEBACK_STEP void offer(WarpDisk& disk, int slot, float from, float length) const {
-      disk.lower(slot, label_of((from + length) * k_bend_longer, false), true);
+    SADDLEBACK_STEP static std::int32_t label(float from, float length) {
+      return label_of((from + length) * k_bend_longer, false);
     }
+    SADDLEBACK_STEP bool serves(std::int32_t label) const { return distance_of(label) < limit; }
+    SADDLEBACK_STEP static void offer(WarpDisk& disk, int slot, std::int32_t label) { disk.lower(slot, label, true); }
   };
 
   /// In one bucket of four, which are filled from the first entry on: what is in none of a bucket that has room is

@@ -48,8 +48,10 @@ class EdgeFront {
   struct Tell {
     EdgeDistances<k_slots>& distances;
     SADDLEBACK_STEP float from(int slot) const { return distance_of(distances.told[slot]); }
-    SADDLEBACK_STEP void offer(WarpDisk<Table, 1>&, int slot, float from, float length) const {
-      atomicMin(&distances.known[slot], __float_as_int(from + length));
+    SADDLEBACK_STEP static std::int32_t label(float from, float length) { return __float_as_int(from + length); }
+    SADDLEBACK_STEP static bool serves(std::int32_t) { return true; }
+    SADDLEBACK_STEP void offer(WarpDisk<Table, 1>&, int slot, std::int32_t label) const {
+      atomicMin(&distances.known[slot], label);
     }
   };
 

@@ -57,7 +57,7 @@ class RowWriter {
 
  private:
   static_assert(Seats <= 2);
-  static constexpr int k_at_once = 2;
+  static constexpr int k_at_once = 1;
   static constexpr int k_first_kept = 1 << 15;  ///< in the list of what is kept: of its generation
 
   SADDLEBACK_STEP void find_best() {

@@ -275,7 +275,7 @@ class WarpWaves {
   SADDLEBACK_STEP bool bend(bool is_last) {
     bool smaller = false;
     if constexpr (All) {
-      if (!is_last && ++generation_ % k_generations_per_bound != 0) return false;
+      if (!is_last && ++generation_ % k_generations_per_bound != k_first_bound) return false;
       smaller = disk_.bound();
       if (!is_last && generation_ >= k_blind_generations && !disk_.is_bounded()) bound_by_edges();
       disk_.relax_bends();

@@ -319,7 +319,7 @@ void DiskFinder::finish_disks() {
 }
 
 void DiskFinder::bound_disks() {
-  if (++generation_ % k_generations_per_bound != 0) return;
+  if (++generation_ % k_generations_per_bound != k_first_bound) return;
   for (int lane = 0; lane < k_batch; ++lane) bound_disk(lane);
   if (generation_ >= k_blind_generations) bound_blind_disks();
   relax_bends();
@@ -391,7 +391,7 @@ void DiskFinder::relax_from(std::int32_t slot) {
     const std::int32_t there = target * k_batch + lane;
     // Longer by more than rounding: what is collinear stays an arc.
     const std::int32_t bent = label_of((distance_of(label) + static_cast<float>(length)) * k_longer, false);
-    if (bent >= labels_[there]) return;
+    if (bent >= labels_[there] || distance_of(bent) >= limits_[lane]) return;
     if (labels_[there] == k_unreached) touched_[lane].push_back(there);
     labels_[there] = bent;
     changed_.push_back(there);
