@@ -48,7 +48,7 @@ struct Room {
 template <bool All>
 using SmallRoom = Room<All, All ? 80 : 88, All ? 256 : 384, All ? 1 : 2, true, true>;
 template <bool All>
-using MiddleRoom = Room<All, All ? 136 : 128, All ? 256 : 512, 1, true, true>;
+using MiddleRoom = Room<All, All ? 140 : 128, All ? 256 : 512, 1, true, true>;
 template <bool All>
 using WideRoom = Room<All, All ? 256 : 192, 768, 1, true, true>;
 template <bool All>

@@ -31,7 +31,7 @@ __global__ void select_arcs(DeviceRows rows, IndexRange nodes, IndexRange ends, 
     const unsigned taken = chosen_of(base);
     const std::int64_t mine = first + base + lane;
     if (taken >> lane & 1)
-      chosen.put(at + __popc(taken & ((1u << lane) - 1)), rows.words[mine], rows.back_sectors[mine]);
+      chosen.put(at + __popc(taken & ((1u << lane) - 1)), rows.words[mine], rows.back_sectors[mine], rows.order[mine]);
     at += __popc(taken);
   }
 }

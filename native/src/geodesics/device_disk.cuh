@@ -32,9 +32,16 @@ class LookedThrough {
     each([&](std::int32_t label) { count += label <= most; });
     return warp_sum(count);
   }
-  SADDLEBACK_STEP std::int32_t last_up_to(std::int32_t most) const {
+  /// The largest of them, and their number.
+  SADDLEBACK_STEP std::int32_t last_up_to(std::int32_t most, int* through) const {
     std::int32_t last = 0;
-    each([&](std::int32_t label) { last = max(last, label <= most ? label : 0); });
+    int count = 0;
+    each([&](std::int32_t label) {
+      const bool counts = label <= most;
+      last = max(last, counts ? label : 0);
+      count += counts;
+    });
+    *through = warp_sum(count);
     return warp_max(last);
   }
 
@@ -66,10 +73,12 @@ SADDLEBACK_STEP std::int32_t guess_label(std::int32_t low, std::int32_t high, in
 template <int Slots>
 SADDLEBACK_STEP std::int32_t nth_label(const std::int32_t* those, int n, std::int32_t most) {
   const LookedThrough<Slots> labels(those);
-  std::int32_t low = -1, high = labels.last_up_to(min(most, k_unreached_label - 1));
-  int below = 0, through = labels.count_up_to(high);  // labels up to low, and up to high
+  int below = 0, through = 0;  // labels up to low, and up to high
+  std::int32_t low = -1, high = labels.last_up_to(min(most, k_unreached_label - 1), &through);
   if (through < n) return k_unreached_label;
-  for (bool guesses = true; through != n && high - low > 1; guesses = !guesses) {
+  // A guess from what the last one has told is a good one; that it ends, others see to.
+  for (int tries = 0; through != n && high - low > 1; ++tries) {
+    const bool guesses = tries < 2 || tries % 2 == 0;
     const std::int32_t middle = guesses ? guess_label(low, high, below, through, n) : low + (high - low) / 2;
     const int there = labels.count_up_to(middle);
     if (there >= n) {
@@ -80,7 +89,7 @@ SADDLEBACK_STEP std::int32_t nth_label(const std::int32_t* those, int n, std::in
       below = there;
     }
   }
-  return labels.last_up_to(high);
+  return labels.last_up_to(high, &through);
 }
 
 /// The twin of DiskFinder's labels. `Seats` sources share the table.

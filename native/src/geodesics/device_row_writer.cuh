@@ -48,16 +48,13 @@ class RowWriter {
       if (lane_ == 0 && seat < waves_.sources().count) rows.note(waves_.sources().node + seat, first, counts[seat]);
       first += counts[seat];
     }
-    if (place.fits) {
-      for (int base = 0; base < total; base += 32 * k_at_once) put(rows, place.first, base, total, counts[0]);
-    }
+    for (int i = lane_; place.fits && i < total; i += 32) put(rows, place.first + i, chosen(i, counts[0]));
     __syncwarp();
     return true;
   }
 
  private:
   static_assert(Seats <= 2);
-  static constexpr int k_at_once = 1;
   static constexpr int k_first_kept = 1 << 15;  ///< in the list of what is kept: of its generation
 
   SADDLEBACK_STEP void find_best() {
@@ -154,65 +151,51 @@ class RowWriter {
     return fits;
   }
 
-  /// What of the mesh an arc's directions go by.
-  struct Aim {
+  /// A sighting that becomes an arc, and what of the mesh its directions go by.
+  struct Chosen {
+    Sighting seen;
     bool is_window;
     std::uint64_t order;
     std::int32_t target;
     float leaving, back, per_radian, per_radian_back;
   };
-  SADDLEBACK_STEP Aim aim_of(int kept, const Sighting& seen) const {
+
+  /// The `i`-th of what is kept, of which the first source has `count`.
+  SADDLEBACK_STEP Chosen chosen(int i, int count) const {
+    const int seat = Seats > 1 && i >= count ? 1 : 0;
+    const int kept = best_.kept[seat][seat == 0 ? i : i - count], number = kept & (k_first_kept - 1);
+    const Sighting seen = waves_.draft()[number];
     const std::int32_t node = waves_.sources().node + RootEdge::seat(seen.root());
     const std::int32_t root = mesh_.first[node] + RootEdge::edge(seen.root());
-    const bool is_window = (kept & k_first_kept - 1) >= waves_.links();
     const std::uint64_t order = order_of(seen) | ((kept & k_first_kept) != 0 ? k_new_generation : 0);
-    Aim aim{is_window, order, waves_.disk().node(seen.slot()), 256, 0, 0, 0};
-    if (is_window) {
-      aim.leaving = mesh_.sectors[root];
-      aim.back = mesh_.apex_sectors[seen.edge];
-      aim.per_radian = mesh_.per_radian[node];
-      aim.per_radian_back = mesh_.per_radian[aim.target];
+    Chosen arc{seen, number >= waves_.links(), order, waves_.disk().node(seen.slot()), 256, 0, 0, 0};
+    if (arc.is_window) {
+      arc.leaving = mesh_.sectors[root];
+      arc.back = mesh_.apex_sectors[seen.edge];
+      arc.per_radian = mesh_.per_radian[node];
+      arc.per_radian_back = mesh_.per_radian[arc.target];
     } else if (seen.edge == 0) {
-      aim.leaving = mesh_.sectors[root];
-      aim.back = mesh_.reverse_sectors[root];
+      arc.leaving = mesh_.sectors[root];
+      arc.back = mesh_.reverse_sectors[root];
     } else {  // at the boundary
-      aim.back = mesh_.apex_sectors[root];
+      arc.back = mesh_.apex_sectors[root];
     }
-    return aim;
+    return arc;
   }
 
-  /// Arcs from the `base`-th on, of which the first source has `count`. What several need of memory is on its way at
-  /// once.
-  SADDLEBACK_STEP void put(const DeviceRows& rows, std::int64_t first, int base, int total, int count) const {
-    int kept[k_at_once];
-    Sighting seen[k_at_once];
-    Aim aims[k_at_once];
-#pragma unroll
-    for (int n = 0; n < k_at_once; ++n) {
-      const int i = min(base + 32 * n + lane_, total - 1), seat = Seats > 1 && i >= count ? 1 : 0;
-      kept[n] = best_.kept[seat][seat == 0 ? i : i - count];
-      seen[n] = waves_.draft()[kept[n] & k_first_kept - 1];
-    }
-#pragma unroll
-    for (int n = 0; n < k_at_once; ++n) aims[n] = aim_of(kept[n], seen[n]);
-#pragma unroll
-    for (int n = 0; n < k_at_once; ++n)
-      if (base + 32 * n + lane_ < total) put(rows, first + base + 32 * n + lane_, seen[n], aims[n]);
-  }
-
-  SADDLEBACK_STEP void put(const DeviceRows& rows, std::int64_t at, const Sighting& seen, const Aim& aim) const {
-    float leaving = aim.leaving, back = aim.back;
-    if (aim.is_window) {
+  SADDLEBACK_STEP void put(const DeviceRows& rows, std::int64_t at, const Chosen& arc) const {
+    const Sighting& seen = arc.seen;
+    float leaving = arc.leaving, back = arc.back;
+    if (arc.is_window) {
       const float x = static_cast<float>(seen.place.x), y = static_cast<float>(seen.place.y);
       const float side_x = static_cast<float>(seen.from.x - seen.place.x);
       const float side_y = static_cast<float>(seen.from.y - seen.place.y);
-      leaving += angle_of(x, y) * aim.per_radian;
-      back += angle_back(x, y, side_x, side_y) * aim.per_radian_back;
+      leaving += angle_of(x, y) * arc.per_radian;
+      back += angle_back(x, y, side_x, side_y) * arc.per_radian_back;
     }
     const double length = norm_of(seen.place.x, seen.place.y);
-    rows.put(at, mesh_.packing.pack(aim.target, to_sector(leaving), length * mesh_.unit),
-             static_cast<std::uint8_t>(to_sector(back)));
-    rows.order[at] = aim.order;
+    rows.put(at, mesh_.packing.pack(arc.target, to_sector(leaving), length * mesh_.unit),
+             static_cast<std::uint8_t>(to_sector(back)), arc.order);
   }
 
   const DeviceMesh& mesh_;

@@ -45,10 +45,11 @@ struct DeviceRows {
     firsts[node] = first;
     counts[node] = count;
   }
-  __device__ void put(std::int64_t at, std::uint64_t word, std::uint8_t back_sector) const {
+  __device__ void put(std::int64_t at, std::uint64_t word, std::uint8_t back_sector, std::uint64_t place) const {
     words[at] = word;
     targets[at] = static_cast<std::int32_t>(word & target_mask);
     back_sectors[at] = back_sector;
+    order[at] = place;
   }
 };
 
@@ -197,7 +198,16 @@ __global__ void write_rows(DeviceRows rows, IndexRange range, const std::uint64_
   if (row >= range.count()) return;
   const std::int64_t first = rows.firsts[range.begin + row], to = offsets[row];
   const int count = rows.counts[range.begin + row];
-  for (int i = lane; i < count; i += 32) words[to + place_in_order(rows.order + first, count, i)] = own[first + i];
+  constexpr int k_at_hand = 128;
+  __shared__ std::uint64_t orders[k_rows_per_block][k_at_hand];
+  const std::uint64_t* order = rows.order + first;
+  if (count <= k_at_hand) {  // it is looked through again and again
+    std::uint64_t* const near = orders[threadIdx.x / 32];
+    for (int i = lane; i < count; i += 32) near[i] = order[i];
+    order = near;
+    __syncwarp();
+  }
+  for (int i = lane; i < count; i += 32) words[to + place_in_order(order, count, i)] = own[first + i];
   const std::uint64_t* const others = added + added_first[row];
   const int other_count = static_cast<int>(added_first[row + 1] - added_first[row]);
   for (int i = lane; i < other_count; i += 32) {

@@ -168,7 +168,7 @@ struct alignas(16) WindowPool {
   static constexpr int Windows = Windows_;
   using Links = std::conditional_t<is_dense, DenseLinks, WindowLinks>;
   static constexpr int Lights = All ? Windows + Windows / 4 : Windows + 3 * Windows / 8;
-  static_assert(Windows <= Light::k_number && Windows % 8 == 0);
+  static_assert(Windows <= Light::k_number && Windows % 4 == 0);
   double2 ends[2][Windows];           ///< of the half-edge: start, which is on the left, and end
   double2 apexes[All ? 1 : Windows];  ///< once they are sighted
   Links links[Windows];
