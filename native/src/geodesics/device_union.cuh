@@ -71,21 +71,38 @@ struct AddedArcs {
   std::int64_t room;
 
   /// Of a node's arcs from `first` on: the lane's own is the `i`-th of each 32 where bit i of `lacking` is set. By all
-  /// lanes of a warp, of which one counts for all: single additions to one place would wait for one another.
+  /// threads of a block, of which one counts for all: additions to one place wait for one another.
   __device__ void add(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node, std::int64_t first,
                       unsigned lacking) const {
-    const int lane = threadIdx.x & 31, mine = __popc(lacking), through = warp_sum_through(mine);
-    const int all = __shfl_sync(0xffffffffu, through, 31);
-    if (all == 0) return;
-    unsigned long long before = 0;
-    if (lane == 0) before = atomicAdd(count, static_cast<unsigned long long>(all));
-    auto at = static_cast<std::int64_t>(__shfl_sync(0xffffffffu, before, 0)) + through - mine;
+    const int lane = threadIdx.x & 31, mine = __popc(lacking);
+    std::int64_t at = place_for(mine);
     for (; lacking != 0; lacking &= lacking - 1, ++at) {
       const std::int64_t arc = first + 32 * (__ffs(static_cast<int>(lacking)) - 1) + lane;
       const std::int32_t row = rows.targets[arc] - range.begin, number = atomicAdd(&counts[row], 1);
       if (at < room) arcs[at] = {row, number, packing.reversed(node, rows.back_sectors[arc], rows.words[arc])};
     }
-    __syncwarp();
+  }
+
+ private:
+  /// The first of as many places as a thread wants. By all threads of a block.
+  __device__ std::int64_t place_for(int wanted) const {
+    __shared__ unsigned long long firsts[32];  // of the warps
+    const int lane = threadIdx.x & 31, warp = static_cast<int>(threadIdx.x) / 32;
+    const int warps = static_cast<int>(blockDim.x) / 32, through = warp_sum_through(wanted);
+    if (lane == 31) firsts[warp] = static_cast<unsigned long long>(through);
+    __syncthreads();
+    if (warp == 0) {
+      const int own = lane < warps ? static_cast<int>(firsts[lane]) : 0, with_own = warp_sum_through(own);
+      unsigned long long before = 0;
+      if (lane == 31 && with_own > 0) before = atomicAdd(count, static_cast<unsigned long long>(with_own));
+      before = __shfl_sync(0xffffffffu, before, 31);
+      __syncwarp();
+      firsts[lane] = before + static_cast<unsigned long long>(with_own - own);
+    }
+    __syncthreads();
+    const auto place = static_cast<std::int64_t>(firsts[warp]) + through - wanted;
+    __syncthreads();  // nobody looks there any more
+    return place;
   }
 };
 
@@ -113,10 +130,10 @@ __device__ inline std::int64_t find_target(const std::int32_t* targets, std::int
 // in the processor's cache.
 constexpr int k_pair_threads = 512, k_nodes_per_block = 16;
 
-/// Puts into `own`, of each arc to a larger node and of its reverse, the shorter one; lists the reverses that there are
-/// not. Of nodes out of the range it is enough to have the arcs that end within.
-__device__ void pair_arcs_of(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node, std::int64_t first,
-                             int count, std::uint64_t* own, const AddedArcs& added) {
+/// Puts into `own`, of each arc to a larger node and of its reverse, the shorter one. Of nodes out of the range it is
+/// enough to have the arcs that end within. \return those whose reverses are to be added, see AddedArcs
+__device__ unsigned pair_arcs_of(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node,
+                                 std::int64_t first, int count, std::uint64_t* own, const AddedArcs& added) {
   unsigned lacking = 0;
   for (int i = threadIdx.x & 31; i < count; i += 32) {
     const std::int64_t arc = first + i;
@@ -135,18 +152,25 @@ __device__ void pair_arcs_of(const DeviceRows& rows, const ArcPacking& packing, 
     }
     own[arc] = kept;
   }
-  __syncwarp();
-  added.add(rows, packing, node, first, lacking);
+  return lacking;
 }
+
+/// Whether a thread is on its way through the rows of its block, a warp each, begins at `begin` of a row; the others
+/// wait for those whose rows are long.
+__device__ inline bool any_has_more(int begin, int count) { return __syncthreads_or(begin < count ? 1 : 0) != 0; }
 
 __global__ void __launch_bounds__(k_pair_threads)
     pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t nodes, std::uint64_t* own, AddedArcs added) {
-  const std::int32_t first = static_cast<std::int32_t>(blockIdx.x) * k_nodes_per_block;
-  const std::int32_t end = min(nodes, first + k_nodes_per_block);
-  for (std::int32_t node = first + static_cast<int>(threadIdx.x) / 32; node < end; node += k_pair_threads / 32)
-    for (int begin = 0; begin < rows.counts[node]; begin += k_arcs_at_once)
-      pair_arcs_of(rows, packing, node, rows.firsts[node] + begin, min(k_arcs_at_once, rows.counts[node] - begin), own,
-                   added);
+  static_assert(k_nodes_per_block == k_pair_threads / 32);
+  const std::int32_t node =
+      static_cast<std::int32_t>(blockIdx.x) * k_nodes_per_block + static_cast<int>(threadIdx.x) / 32;
+  const int count = node < nodes ? rows.counts[node] : 0;
+  const std::int64_t row = count > 0 ? rows.firsts[node] : 0;
+  for (int begin = 0; any_has_more(begin, count); begin += k_arcs_at_once) {
+    const unsigned lacking =
+        pair_arcs_of(rows, packing, node, row + begin, min(k_arcs_at_once, count - begin), own, added);
+    added.add(rows, packing, node, row + begin, lacking);
+  }
 }
 
 /// What has not been paired so far has no reverse.
@@ -155,17 +179,16 @@ __global__ void find_unpaired(DeviceRows rows, ArcPacking packing, std::int32_t 
   const int lane = threadIdx.x & 31;
   const std::int32_t node =
       static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
-  if (node >= nodes) return;
-  for (int begin = 0; begin < rows.counts[node]; begin += k_arcs_at_once) {
-    const std::int64_t first = rows.firsts[node] + begin;
-    const int count = min(k_arcs_at_once, rows.counts[node] - begin);
+  const int count = node < nodes ? rows.counts[node] : 0;
+  const std::int64_t row = count > 0 ? rows.firsts[node] : 0;
+  for (int begin = 0; any_has_more(begin, count); begin += k_arcs_at_once) {
+    const std::int64_t first = row + begin;
     unsigned lacking = 0;
-    for (int i = lane; i < count; i += 32) {
+    for (int i = lane; i < min(k_arcs_at_once, count - begin); i += 32) {
       if (own[first + i] != k_unpaired) continue;
       own[first + i] = rows.words[first + i];
       if (added.range.holds(rows.targets[first + i])) lacking |= 1u << i / 32;
     }
-    __syncwarp();
     added.add(rows, packing, node, first, lacking);
   }
 }
