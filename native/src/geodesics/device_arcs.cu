@@ -343,6 +343,7 @@ class Builder {
       : request_(request),
         team_({request.devices, static_cast<std::size_t>(std::min(request.device_count, request.node_count))}),
         caller_(caller, team_),
+        streams_(members()),
         across_(members()),
         counts_(members()),
         times_(members()) {}
@@ -368,7 +369,7 @@ class Builder {
     keep_freed_memory(mine.device);
     const auto at = static_cast<std::size_t>(mine.member);
     DeviceTimes& times = times_[at];
-    const Stream stream;
+    const Stream& stream = streams_[at].emplace();
     Stopwatch watch(stream);
     ArcFinder finder(request_, mine, caller_, stream, [&] { return packing(mine.member); });
     times.upload = watch.lap();
@@ -425,6 +426,7 @@ class Builder {
   const ArcTwinRequest& request_;
   DeviceTeam team_;
   TeamCaller<ArcTwinCaller> caller_;
+  std::vector<std::optional<Stream>> streams_;  ///< by member; rows in across_ are freed in them when a member fails
   std::vector<std::vector<std::optional<RowStore>>> across_;  ///< by member and by whom they are chosen for
   std::vector<std::int64_t> counts_;                          ///< words, by member
   std::vector<DeviceTimes> times_;
