@@ -76,7 +76,8 @@ SADDLEBACK_STEP std::int32_t nth_label(const std::int32_t* those, int n, std::in
   int below = 0, through = 0;  // labels up to low, and up to high
   std::int32_t low = -1, high = labels.last_up_to(min(most, k_unreached_label - 1), &through);
   if (through < n) return k_unreached_label;
-  // A guess from what the last one has told is a good one; that it ends, others see to.
+  // The second guess knows what the first has told, and is a good one. From then on every other try halves what is
+  // left, so that it ends.
   for (int tries = 0; through != n && high - low > 1; ++tries) {
     const bool guesses = tries < 2 || tries % 2 == 0;
     const std::int32_t middle = guesses ? guess_label(low, high, below, through, n) : low + (high - low) / 2;

@@ -12,13 +12,12 @@ namespace {
 /// Takes the place of the windows when there are none any more.
 template <class Table, int Seats>
 struct BestSightings {
-  static constexpr int Slots = Table::Slots, Kept = 2 * Slots / Seats;
+  static constexpr int Slots = Table::Slots, Kept = 2 * Slots / Seats, Words = Table::Draft / 32 + 1;
   std::int32_t labels[Slots];         ///< of the shortest arcs
   std::int32_t numbers[Slots];        ///< in the draft, of the first of them
   std::uint16_t slots[Table::Draft];  ///< of the sightings
   std::uint16_t kept[Seats][Kept];
-  static constexpr int k_words = Table::Draft / 32 + 1;
-  std::uint32_t begins[k_words];  ///< bits: the sighting is its generation's first
+  std::uint32_t begins[Words];  ///< bits: the sighting is its generation's first
 };
 
 SADDLEBACK_STEP int to_sector(float sector) {
@@ -62,16 +61,16 @@ class RowWriter {
       best_.labels[i] = k_unreached_label;
       best_.numbers[i] = k_unreached_label;
     }
-    for (int i = lane_; i < Best::k_words; i += 32) best_.begins[i] = 0;
+    for (int i = lane_; i < Best::Words; i += 32) best_.begins[i] = 0;
     __syncwarp();
     const Sighting* const draft = waves_.draft();
 #pragma unroll 4
     for (int i = lane_; i < waves_.arcs(); i += 32) {
-      const uint2 seen{draft[i].ids, static_cast<unsigned>(draft[i].label)};
+      const uint2 seen{draft[i].ids, static_cast<unsigned>(draft[i].label)};  // in one load
       const int slot = static_cast<int>(seen.x >> RootEdge::k_bits);
       const auto label = static_cast<std::int32_t>(seen.y);
       best_.slots[i] = static_cast<std::uint16_t>(slot);
-      atomicMin(&best_.labels[slot], label & ~Sighting::k_new_generation);
+      atomicMin(&best_.labels[slot], label & ~Sighting::k_begins);
       if (label < 0) atomicOr(&best_.begins[i / 32], 1u << i % 32);
     }
     __syncwarp();
@@ -85,9 +84,7 @@ class RowWriter {
     __syncwarp();
   }
 
-  SADDLEBACK_STEP static std::int32_t label_of(const Sighting& seen) {
-    return seen.label & ~Sighting::k_new_generation;
-  }
+  SADDLEBACK_STEP static std::int32_t label_of(const Sighting& seen) { return seen.label & ~Sighting::k_begins; }
   SADDLEBACK_STEP static std::uint64_t order_of(const Sighting& seen) {
     return order_in_generation(seen.turns, RootEdge::edge(seen.root()));
   }

@@ -155,8 +155,8 @@ __device__ unsigned pair_arcs_of(const DeviceRows& rows, const ArcPacking& packi
   return lacking;
 }
 
-/// Whether a thread is on its way through the rows of its block, a warp each, begins at `begin` of a row; the others
-/// wait for those whose rows are long.
+/// Whether any of a block's rows, one a warp, has arcs from `begin` on. By all threads of the block, which go through
+/// their rows together: those with short ones wait for the others.
 __device__ inline bool any_has_more(int begin, int count) { return __syncthreads_or(begin < count ? 1 : 0) != 0; }
 
 __global__ void __launch_bounds__(k_pair_threads)

@@ -72,7 +72,7 @@ struct alignas(16) Sighting {
   std::uint32_t ids;    ///< RootEdge; above it the slot
   std::int32_t label;
 
-  static constexpr std::int32_t k_new_generation = 1 << 31;  ///< in the label of a generation's first
+  static constexpr std::int32_t k_begins = 1 << 31;  ///< in the label, of the first of a generation
   SADDLEBACK_STEP static std::uint32_t pack(int root, int slot) {
     return static_cast<std::uint32_t>(root) | static_cast<std::uint32_t>(slot) << RootEdge::k_bits;
   }
@@ -161,7 +161,7 @@ struct Light {
 
 /// A warp's windows: a ring, in which those of a generation lie one behind the other, so that lanes with neighbours ask
 /// for different banks. *Left* is 0 and *right* is 1 of what there is two of. Less for each leaves room for more warps:
-/// what of a window is soon computed again is not kept.
+/// where disks end by count, apexes are computed again.
 template <bool All_, int Windows_, int Slots>
 struct alignas(16) WindowPool {
   static constexpr bool All = All_, is_dense = !All && Slots <= 1 << DenseLinks::k_slot_bits;

@@ -230,7 +230,7 @@ class WarpWaves {
     const unsigned making = __ballot_sync(k_warp, makes);
     if (makes) {
       const int number = arcs_ + rank(making);
-      const std::int32_t mark = number == arcs_before_ ? Sighting::k_new_generation : 0;
+      const std::int32_t mark = number == arcs_before_ ? Sighting::k_begins : 0;
       put_arc(number, {apex, from, links.edge, links.turns(), Sighting::pack(root, slot), label | mark});
     }
     count_arcs(__popc(making));
@@ -335,7 +335,7 @@ class WarpWaves {
                     near_label,
                     far_label,
                     apex_label};
-    const Child light_there = look_at(side);
+    const Child child = look_at(side);
     const ApexRay ray = ray_to({apex_x, apex_y, reach, 0, 0, false, false});
     Ray last_ray = far_ray;  // where the light ends
     last_ray.x = cut ? ray.x : far_ray.x;
@@ -352,17 +352,16 @@ class WarpWaves {
     }
     const std::uint32_t clearance =
         s == 0 ? record.clearances & k_upper_half : (record.clearances & ~k_saddle_bit) << 16;
-    const bool keep =
-        light_there.useful & is_within(light_there, most, __int_as_float(static_cast<std::int32_t>(clearance)));
+    const bool keep = child.useful & is_within(child, most, __int_as_float(static_cast<std::int32_t>(clearance)));
 
     const unsigned keeping = __ballot_sync(k_warp, keep);
-    // Those before the last that was looked at are not needed any more.
-    const int child = all + count_ + rank(keeping), first_needed = __shfl_sync(k_warp, number, 31);
+    // Children lie behind the generation. Of it those before the last that was looked at are not needed any more.
+    const int behind = all + count_ + rank(keeping), first_needed = __shfl_sync(k_warp, number, 31);
     count_ += __popc(keeping);
     if (all + count_ - k_windows > (base + 32 < lights ? first_needed : all)) overflow_ = true;
     __syncwarp();  // nobody looks at the windows any more
     if (keep & !overflow_) {
-      const int heir = place_of(child < k_windows ? child : child - k_windows);
+      const int heir = place_of(behind < k_windows ? behind : behind - k_windows);
       pool_.ends[s][heir] = near;
       pool_.ends[1 - s][heir] = apex;
       pool_.rays[s][heir] = near_ray;

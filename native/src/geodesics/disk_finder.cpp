@@ -389,7 +389,7 @@ void DiskFinder::relax_from(std::int32_t slot) {
   if (distance_of(label) >= limits_[lane] || !bends(slot, label)) return;
   const auto offer = [&](Index target, double length) {
     const std::int32_t there = target * k_batch + lane;
-    // Longer by more than rounding: what is collinear stays an arc.
+    // Longer by more than rounding: what is collinear stays an arc. Beyond the disk nothing is wanted.
     const std::int32_t bent = label_of((distance_of(label) + static_cast<float>(length)) * k_longer, false);
     if (bent >= labels_[there] || distance_of(bent) >= limits_[lane]) return;
     if (labels_[there] == k_unreached) touched_[lane].push_back(there);

@@ -11,8 +11,8 @@ namespace saddleback {
 /// Sources that share their generations, to fill the lanes. A *slot* is a node and one of them: node * k_batch + lane.
 inline constexpr int k_batch = 8;
 inline constexpr int k_batch_bits = 3;
-/// Disks that end by count learn their radius every so many generations, since finding the k-th nearest takes as long
-/// as one, from the first that is this one on. Measured with k from 20 to 100.
+/// Disks that end by count learn their radius in the first generation, the fourth, and so on, since finding the k-th
+/// nearest takes as long as a generation. Which are best was measured with k from 20 to 100.
 inline constexpr int k_generations_per_bound = 3, k_first_bound = 1;
 /// A disk whose radius is not known by then is bounded by mesh edges. Half as many do for nearly all.
 inline constexpr int k_blind_generations = 24;
