@@ -23,8 +23,8 @@
 namespace saddleback {
 namespace {
 
-// Sources between two looks at whether to go on: a few milliseconds.
-constexpr std::int32_t k_sources_per_launch = 1 << 18;
+// Sources of a launch at most: systems that draw with a device let nothing run on it for more than seconds.
+constexpr std::int32_t k_sources_per_launch = 1 << 20;
 
 /// Most memory that the warps of a block share, of any device: what fewer have room for is told when it runs.
 constexpr std::size_t k_shared_bytes = 227 << 10;
@@ -46,7 +46,7 @@ struct Room {
 };
 /// By the arcs that are asked for. Fewer windows at once leave room for more sources at once.
 template <bool All>
-using SmallRoom = Room<All, All ? 80 : 88, All ? 256 : 384, All ? 1 : 2, true, true>;
+using SmallRoom = Room<All, All ? 80 : 88, All ? 256 : 512, All ? 1 : 2, true, true>;
 template <bool All>
 using MiddleRoom = Room<All, All ? 140 : 128, All ? 256 : 512, 1, true, true>;
 template <bool All>
@@ -157,7 +157,7 @@ class ArcFinder {
         tables_(request, stream, choose_packing),
         failed_{DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream),
                 DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream)},
-        next_(1, stream),
+        next_(k_passes, stream),
         failures_(k_passes, stream),
         fails_(1, stream),
         rows_(request.node_count, first_guess(request, part.nodes), packing().target_mask, stream) {
@@ -188,6 +188,7 @@ class ArcFinder {
 
   template <bool All>
   void find_all(DeviceTimes& times) {
+    next_.fill_bytes(0);
     failures_.fill_bytes(0);
     const std::int32_t all = part_.nodes.count();
     std::size_t passes = 0;
@@ -198,7 +199,6 @@ class ArcFinder {
     }
     find_in<WideRoom<All>>(passes++, all);  // the second does not wait to know how many are left
     times.second_pass = failures(0);
-    report(done_ = 0.99);
     times.by_processor = 0;
     std::int32_t left = failures(passes - 1);
     if (left > 0) {
@@ -236,15 +236,18 @@ class ArcFinder {
   bool is_middle() const { return request_.k <= 110; }
 
   /// Of all nodes or, from the second pass on, those that failed in the one before: `most` at most, so that no more
-  /// warps get memory than find work.
+  /// warps get memory than find work, and few are spread over all processors.
   template <class Room>
   void find_in(std::size_t pass, std::int32_t most) {
     const auto kernel = find_arcs<Room>;
     const void* const code = reinterpret_cast<const void*>(kernel);
-    const int warps = warps_of_block(Room::warp_bytes, Room::Warps);
-    const std::size_t shared = warps * Room::warp_bytes;
-    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)),
+    const int most_warps = warps_of_block(Room::warp_bytes, Room::Warps);
+    // The attribute is the kernel's: what a member of the team sets holds for others who share its device.
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                    static_cast<int>(most_warps * Room::warp_bytes)),
                "asking for shared memory");
+    const int warps = std::min(most_warps, most / Room::Seats / processors() + 1);
+    const std::size_t shared = warps * Room::warp_bytes;
     // Pools that are not in shared memory had better be in the cache beside it.
     constexpr int k_carveout = Room::pool_is_shared ? 100 : 75;
     check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, k_carveout),
@@ -257,15 +260,18 @@ class ArcFinder {
     DeviceBuffer<typename Room::Table> tables(Room::table_is_shared ? 0 : places, stream_);
     DeviceBuffer<typename Room::Pool> pools(Room::pool_is_shared ? 0 : places, stream_);
     DeviceBuffer<EdgeDistances<Room::Table::Slots>> edges(Room::Table::All ? places : 0, stream_);
-    for (std::int32_t begin = 0; begin < all; begin += k_sources_per_launch) {
-      if (pass == 0) report(done_ = static_cast<double>(begin) / all);
-      next_.fill_bytes(0);
+    const std::int32_t launches = (all - 1) / k_sources_per_launch + 1;
+    const std::int32_t at_once = (all / launches / Room::Seats + 1) * Room::Seats;
+    pass_ = pass;
+    for (std::int32_t begin = 0; begin < all; begin += at_once) {
+      if (begin > 0) next_.fill_bytes(0);
+      begun_before_ = begin;
       Work work{fails_.data(),
                 nullptr,
                 nullptr,
                 part_.nodes.begin + begin,
-                std::min(k_sources_per_launch, all - begin),
-                next_.data(),
+                std::min(at_once, all - begin),
+                next_.data() + pass,
                 failed_[pass % 2].data(),
                 failures_.data() + pass};
       if (pass > 0) {
@@ -276,15 +282,31 @@ class ArcFinder {
           tables_.mesh(), work, {tables.data(), pools.data(), edges.data(), drafts.data()}, rows_.view());
       check_cuda(cudaGetLastError(), "finding arcs");
       if (pass > 0) break;
-      if (all > k_sources_per_launch) wait();
+      if (launches > 1) wait();
     }
   }
 
   /// For what was started; whoever asks to stop is not kept waiting by sources that take long.
   void wait() {
     wait_polling(
-        stream_, [&](cudaStream_t) { report(done_); },
+        stream_, [&](cudaStream_t aside) { report(done_ = std::max(done_, share_begun(aside))); },
         [&](cudaStream_t aside) { (void)cudaMemsetAsync(fails_.data(), 1, sizeof(int), aside); });
+  }
+
+  /// Of all sources. Those that fail in a pass count for a tenth of what was left before it.
+  double share_begun(cudaStream_t aside) const {
+    std::int32_t begun[k_passes], failed[k_passes];
+    next_.read(begun, aside);
+    failures_.read(failed, aside);
+    begun[0] += begun_before_;
+    double left = 1;
+    for (std::size_t pass = 0; pass <= pass_; ++pass) {
+      const std::int32_t all = pass == 0 ? part_.nodes.count() : failed[pass - 1];
+      const double share = begun[pass] < all ? static_cast<double>(begun[pass]) / all : 1;
+      left -= 0.9 * left * share;
+      if (share < 1) break;
+    }
+    return 1 - left;
   }
 
   /// Warps for which a block has the memory.
@@ -298,13 +320,17 @@ class ArcFinder {
     return warps;
   }
 
+  int processors() const {
+    int count = 0;
+    check_cuda(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, part_.device),
+               "asking for the number of processors");
+    return count;
+  }
   int blocks_of(const void* kernel, int threads, std::size_t shared) const {
-    int per_processor = 0, processors = 0;
+    int per_processor = 0;
     check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, kernel, threads, shared),
                "asking for occupancy");
-    check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, part_.device),
-               "asking for the number of processors");
-    return std::max(1, per_processor) * processors;
+    return std::max(1, per_processor) * processors();
   }
 
   /// Of a pass. Waits for the stream.
@@ -322,11 +348,13 @@ class ArcFinder {
   TeamCaller<ArcTwinCaller>& caller_;
   cudaStream_t stream_;
   MeshTables tables_;
-  DeviceBuffer<std::int32_t> failed_[2];  ///< nodes that failed in passes of even and of odd number
-  DeviceBuffer<std::int32_t> next_, failures_;
+  DeviceBuffer<std::int32_t> failed_[2];        ///< nodes that failed in passes of even and of odd number
+  DeviceBuffer<std::int32_t> next_, failures_;  ///< by pass: sources taken, and those that failed
   DeviceBuffer<int> fails_;  ///< whether all sources do: there are extremes, or the caller asked to stop
   RowStore rows_;
-  double done_ = 0;  ///< share of the sources, as far as is known
+  std::size_t pass_ = 0;           ///< the last that was started
+  std::int32_t begun_before_ = 0;  ///< sources, by launches of the first pass before the last
+  double done_ = 0;                ///< share of the sources, as far as is known
 };
 
 /// What a build takes at most of a device that has these nodes, in bytes; rows once more for the union.
@@ -405,7 +433,7 @@ class Builder {
   /// Gets from the others what pairing needs of their rows.
   void exchange(const Part& mine, RowStore& rows, cudaStream_t stream) {
     if (team_.members() == 1) return;
-    std::vector<std::optional<RowStore>>& chosen = across_[static_cast<std::size_t>(mine.member)];
+    std::vector<std::optional<ChosenRows>>& chosen = across_[static_cast<std::size_t>(mine.member)];
     chosen.resize(members());
     for (int other = 0; other < team_.members(); ++other)
       if (other != mine.member)
@@ -427,8 +455,8 @@ class Builder {
   DeviceTeam team_;
   TeamCaller<ArcTwinCaller> caller_;
   std::vector<std::optional<Stream>> streams_;  ///< by member; rows in across_ are freed in them when a member fails
-  std::vector<std::vector<std::optional<RowStore>>> across_;  ///< by member and by whom they are chosen for
-  std::vector<std::int64_t> counts_;                          ///< words, by member
+  std::vector<std::vector<std::optional<ChosenRows>>> across_;  ///< by member and by whom they are chosen for
+  std::vector<std::int64_t> counts_;                            ///< words, by member
   std::vector<DeviceTimes> times_;
   ArcPacking packing_;
   std::int64_t* offsets_ = nullptr;

@@ -2,6 +2,7 @@
 // Rows of arcs that several devices found, each those of its own range of nodes. To pair its arcs with their reverses a
 // device needs of the others' rows only the arcs that end in its range: few, since nodes are numbered by place.
 
+#include <utility>
 #include <vector>
 
 #include "geodesics/device_union.cuh"
@@ -41,33 +42,38 @@ __global__ void shift_firsts(std::int64_t* firsts, IndexRange nodes, std::int64_
   if (node < nodes.end) firsts[node] += by;
 }
 
+/// Arcs that one device holds and another needs.
+struct ChosenRows {
+  RowStore rows;
+  std::int64_t words;
+};
+
 /// Of the rows of `nodes`, what another device needs whose range is `ends`. Complete on return.
-inline RowStore rows_across(RowStore& rows, IndexRange nodes, IndexRange ends, cudaStream_t stream) {
+inline ChosenRows rows_across(RowStore& rows, IndexRange nodes, IndexRange ends, cudaStream_t stream) {
+  constexpr std::int64_t k_first_guess = 16;  // of as many one: ranges are compact
   const auto blocks = static_cast<unsigned>((nodes.count() + k_rows_per_block - 1) / k_rows_per_block);
-  const auto choose = [&](std::int64_t room) {
+  for (std::int64_t room = rows.room() / k_first_guess + 1;;) {
     RowStore chosen(rows.nodes(), room, rows.target_mask(), stream);
     chosen.clear();
     if (blocks > 0) select_arcs<<<blocks, k_block_threads, 0, stream>>>(rows.view(), nodes, ends, chosen.view());
     check_cuda(cudaGetLastError(), "choosing arcs");
-    return chosen;
-  };
-  RowStore counted = choose(0);
-  RowStore chosen = choose(counted.words_wanted());
-  check_cuda(cudaStreamSynchronize(stream), "choosing arcs");
-  return chosen;
+    const std::int64_t wanted = chosen.words_wanted();
+    if (wanted <= room) return {std::move(chosen), wanted};
+    room = wanted;
+  }
 }
 
 /// What `there`, on another device, holds of the rows of `nodes`.
 struct RowsThere {
   int device;
   IndexRange nodes;
-  RowStore* rows;
+  ChosenRows* chosen;
 };
 
 /// Adds to `rows`, of `device`, what others have chosen for it. Complete on return.
 inline void add_rows(RowStore& rows, int device, const std::vector<RowsThere>& others, cudaStream_t stream) {
   std::int64_t taken = rows.words_wanted(), more = 0;
-  for (const RowsThere& other : others) more += other.rows->room();
+  for (const RowsThere& other : others) more += other.chosen->words;
   rows.make_room(taken, taken + more);
   const DeviceRows to = rows.view();
   const auto copy = [&]<class Number>(Number* into, const Number* from, std::int64_t count, int from_device) {
@@ -79,16 +85,17 @@ inline void add_rows(RowStore& rows, int device, const std::vector<RowsThere>& o
   for (const RowsThere& other : others) {
     const IndexRange nodes = other.nodes;
     if (nodes.count() == 0) continue;
-    const DeviceRows from = other.rows->view();
-    copy(to.words + taken, from.words, other.rows->room(), other.device);
-    copy(to.targets + taken, from.targets, other.rows->room(), other.device);
-    copy(to.back_sectors + taken, from.back_sectors, other.rows->room(), other.device);
+    const std::int64_t words = other.chosen->words;
+    const DeviceRows from = other.chosen->rows.view();
+    copy(to.words + taken, from.words, words, other.device);
+    copy(to.targets + taken, from.targets, words, other.device);
+    copy(to.back_sectors + taken, from.back_sectors, words, other.device);
     copy(to.counts + nodes.begin, from.counts + nodes.begin, nodes.count(), other.device);
     copy(to.firsts + nodes.begin, from.firsts + nodes.begin, nodes.count(), other.device);
     const auto blocks = static_cast<unsigned>((nodes.count() + k_block_threads - 1) / k_block_threads);
     shift_firsts<<<blocks, k_block_threads, 0, stream>>>(to.firsts, nodes, taken);
     check_cuda(cudaGetLastError(), "placing rows");
-    taken += other.rows->room();
+    taken += words;
   }
   rows.set_taken(taken);
   check_cuda(cudaStreamSynchronize(stream), "copying between devices");

@@ -39,11 +39,13 @@ class DeviceBuffer {
     if (count_ > 0) check_cuda(cudaMemsetAsync(data_, value, count_ * sizeof(Number), stream_), "clearing memory");
   }
   /// Waits for the stream.
-  void read(std::span<Number> to) const {
+  void read(std::span<Number> to) const { read(to, stream_); }
+  /// Waits for another stream, and reads what there is by then.
+  void read(std::span<Number> to, cudaStream_t stream) const {
     if (!to.empty())
-      check_cuda(cudaMemcpyAsync(to.data(), data_, to.size_bytes(), cudaMemcpyDeviceToHost, stream_),
+      check_cuda(cudaMemcpyAsync(to.data(), data_, to.size_bytes(), cudaMemcpyDeviceToHost, stream),
                  "copying from the device");
-    check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
+    check_cuda(cudaStreamSynchronize(stream), "waiting for the device");
   }
 
   /// One of them; waits for the stream.
