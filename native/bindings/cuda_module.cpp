@@ -1,16 +1,40 @@
 // The optional module `_saddleback_cuda`: everything that needs CUDA, and nothing that works without.
 
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <stdexcept>
 
 #include "saddleback/cuda_devices.h"
 #include "saddleback/cuda_twins.h"
 
 #include "geodesics/device_arcs.h"
 #include "geodesics/device_search.h"
+#include "voronoi2d/device_signs.h"
 #include "voronoi2d/device_voronoi.h"
 
 namespace py = pybind11;
+
+namespace {
+
+using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+py::array_t<std::int8_t> plane_signs(const Points& points, int device) {
+  if (points.ndim() != 3 || points.shape(1) != 4 || points.shape(2) != 2)
+    throw py::value_error("points: wanted an (n, 4, 2) array");
+  using saddleback::PlaneSigns;
+  const auto fours = static_cast<std::size_t>(points.shape(0));
+  py::array_t<std::int8_t> signs({points.shape(0), py::ssize_t{PlaneSigns::k_count}});
+  static_assert(sizeof(PlaneSigns) == PlaneSigns::k_count);
+  saddleback::TwinReason reason;
+  if (saddleback::plane_signs_on_device(device, points.data(), fours,
+                                        reinterpret_cast<PlaneSigns*>(signs.mutable_data()),
+                                        reason) != saddleback::TwinStatus::done)
+    throw std::runtime_error(reason.text);
+  return signs;
+}
+
+}  // namespace
 
 PYBIND11_MODULE(_saddleback_cuda, module) {
   using saddleback::CudaDevice;
@@ -35,4 +59,25 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
                                            .search = &saddleback::search_on_device};
   module.attr("twins") = py::capsule(&twins);
   module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
+  module.def("plane_signs", &plane_signs, py::arg("points"), py::arg("device") = 0,
+             R"(What a device decides of each four points; for tests.
+
+Parameters
+----------
+points : (n, 4, 2) float array
+    Corners of a triangle a, b, c and another point d. Any unit.
+device : int
+    The driver's number of it.
+
+Returns
+-------
+(n, 6) int8 array of -1, 0 and 1: `orient_2d(a, b, c)`, `in_circle(a, b, c, d)`, whether a is nearer to b than to c
+(-1), and the same three as diagrams ask for them, of which the circle's may be unknown, 2.
+
+Raises
+------
+ValueError
+    `points` has another shape.
+RuntimeError
+    The device cannot be used.)");
 }

@@ -100,9 +100,7 @@ class FarWinder {
               [&](std::int32_t site) {
                 take_better(
                     site,
-                    [&](const Point2& p, std::int32_t) {
-                      return best < 0 || compare_distances(site_, p, best_at) == predicates::Sign::negative;
-                    },
+                    [&](const Point2& p, std::int32_t) { return best < 0 || distance_order(site_, p, best_at) < 0; },
                     [&](const Point2& p) {
                       const double dx = p.x - site_.x, dy = p.y - site_.y;
                       return __float_as_uint(static_cast<float>(dx * dx + dy * dy));
@@ -124,9 +122,7 @@ class FarWinder {
     std::int32_t best = -1;
     Point2 best_at{};
     double centre_x = 0, centre_y = 0, radius2 = INFINITY;  // of the circle, from the site; large enough
-    const auto is_left = [&](const Point2& from, const Point2& p) {
-      return turn_ * static_cast<int>(orient_2d(site_, from, p)) > 0;
-    };
+    const auto is_left = [&](const Point2& from, const Point2& p) { return turn_ * turn_sign(site_, from, p) > 0; };
     const auto is_in_reach = [&](const Point2& p) {
       const double dx = p.x - site_.x - centre_x, dy = p.y - site_.y - centre_y;
       return radius2 == INFINITY || dx * dx + dy * dy <= radius2;

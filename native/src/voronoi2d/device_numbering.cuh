@@ -129,8 +129,8 @@ __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
     before = now;
   }
   if (!is_open) return crossings == 2;
-  return crossings <= 1 && orient_2d(cells.point(cells.neighbour(last)), cells.point(cell),
-                                     cells.point(cells.neighbour(first))) != predicates::Sign::negative;
+  return crossings <= 1 &&
+         turn_sign(cells.point(cells.neighbour(last)), cells.point(cell), cells.point(cells.neighbour(first))) >= 0;
 }
 
 /// Which cells are joined: all, or at first those that lie among others of the same part, then the rest.

@@ -103,9 +103,9 @@ __global__ void sort_squares(const double2* sites, std::int32_t count, const std
   }
 }
 
-/// Sites in their order, and which of them differ from the one before.
+/// Sites in their order, which of them differ from the one before, and whether any does not.
 __global__ void gather_sites(const double2* sites, std::int32_t count, const std::int32_t* order, double2* sorted,
-                             std::int32_t* is_first) {
+                             std::int32_t* is_first, int* has_equals) {
   const std::int32_t i = thread_number();
   if (i >= count) return;
   const double2 p = sites[order[i]];
@@ -116,6 +116,7 @@ __global__ void gather_sites(const double2* sites, std::int32_t count, const std
   }
   sorted[i] = p;
   is_first[i] = differs;
+  if (!differs) *has_equals = 1;
 }
 
 /// What the processor keeps of the sites, by rank.
@@ -177,8 +178,9 @@ class DeviceOrder {
 
     DeviceBuffer<std::uint32_t> places(size(), stream_);
     DeviceBuffer<std::int32_t> order(size(), stream_);
-    DeviceBuffer<int> has_full_squares(1, stream_);
+    DeviceBuffer<int> has_full_squares(1, stream_), has_equals(1, stream_);
     has_full_squares.fill_bytes(0);
+    has_equals.fill_bytes(0);
     {
       DeviceBuffer<std::uint32_t> unsorted_places(size(), stream_);
       DeviceBuffer<std::int32_t> unsorted(size(), stream_);
@@ -204,12 +206,16 @@ class DeviceOrder {
       order = DeviceBuffer<std::int32_t>(sorted, stream_);
       check_cuda(cudaStreamSynchronize(stream_), "copying to the device");
     }
-    gather_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, order.data(), at_.data(), firsts.data());
+    gather_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, order.data(), at_.data(), firsts.data(),
+                                                                has_equals.data());
     check_cuda(cudaGetLastError(), "finding equal sites");
-    with_scratch(stream_, "counting sites", [&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceScan::InclusiveSum(scratch, bytes, firsts.data(), firsts.data(), count_, stream_);
-    });
-    cell_count_ = firsts.value_at(size() - 1);
+    cell_count_ = count_;
+    if (has_equals.value_at(0)) {
+      with_scratch(stream_, "counting sites", [&](void* scratch, std::size_t& bytes) {
+        return cub::DeviceScan::InclusiveSum(scratch, bytes, firsts.data(), firsts.data(), count_, stream_);
+      });
+      cell_count_ = firsts.value_at(size() - 1);
+    }
     rank(std::move(places), std::move(order), firsts, share);
     return Found::order;
   }

@@ -1,6 +1,7 @@
 #pragma once
 // How three sites turn, and on which side of a circle a fourth lies: first in doubles. What these do not tell is rare,
-// and found by functions of their own that cost those who do not call them no registers.
+// and found by functions of their own that cost those who do not call them no registers. They take values: what is
+// referred to would have to be in memory.
 
 #include "predicates/plane_predicates.h"
 
@@ -15,8 +16,11 @@ using predicates::Point2;
 #define SADDLEBACK_RARE inline
 #endif
 
-SADDLEBACK_RARE int exact_turn_sign(const Point2& a, const Point2& b, const Point2& c) {
+SADDLEBACK_RARE int exact_turn_sign(Point2 a, Point2 b, Point2 c) {
   return static_cast<int>(predicates::detail::orient_2d_exact(a, b, c));
+}
+SADDLEBACK_RARE int exact_distance_order(Point2 p, Point2 a, Point2 b) {
+  return static_cast<int>(predicates::compare_distances(p, a, b));
 }
 
 SADDLEBACK_HOST_DEVICE inline int quick_turn_sign(const Point2& a, const Point2& b, const Point2& c, bool& is_known) {
@@ -30,6 +34,14 @@ SADDLEBACK_HOST_DEVICE inline int turn_sign(const Point2& a, const Point2& b, co
   bool is_known;
   const int sign = quick_turn_sign(a, b, c, is_known);
   return is_known ? sign : exact_turn_sign(a, b, c);
+}
+
+/// As predicates::compare_distances.
+SADDLEBACK_HOST_DEVICE inline int distance_order(const Point2& p, const Point2& a, const Point2& b) {
+  const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
+  const double to_a = ax * ax + ay * ay, to_b = bx * bx + by * by, det = to_a - to_b;
+  const bool is_known = fabs(det) > 6 * predicates::detail::k_epsilon * (to_a + to_b);
+  return is_known ? (det > 0) - (det < 0) : exact_distance_order(p, a, b);
 }
 
 /// The sign of the circle test for d, a, b, c, counted from d; `is_exact` when the terms have no rounding errors.
@@ -71,8 +83,8 @@ struct TwiceAsLong {
 };
 
 /// With twice as many digits.
-SADDLEBACK_RARE int careful_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
-                                        bool& is_known) {
+SADDLEBACK_HOST_DEVICE inline int careful_circle_sign(const Point2& a, const Point2& b, const Point2& c,
+                                                      const Point2& d, bool& is_known) {
   using Long = TwiceAsLong;
   const Long ax = Long::difference(a.x, d.x), ay = Long::difference(a.y, d.y), bx = Long::difference(b.x, d.x),
              by = Long::difference(b.y, d.y), cx = Long::difference(c.x, d.x), cy = Long::difference(c.y, d.y);
@@ -94,17 +106,15 @@ SADDLEBACK_RARE int careful_circle_sign(const Point2& a, const Point2& b, const 
 
 /// The sign of the circle test for d, a, b, c, exactly. Unknown where a difference from d has more digits than a
 /// double.
-SADDLEBACK_RARE int exact_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
-                                      bool& is_known) {
+SADDLEBACK_HOST_DEVICE inline int exact_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
+                                                    bool& is_known) {
   using namespace predicates;
   is_known = true;
   const auto away = [&](double value, double from) {
     double sum, rest;
     two_sum(value, -from, sum, rest);
     is_known = is_known && rest == 0;
-    Expansion<1> result;
-    result.push(sum);
-    return result;
+    return Expansion<1>{{sum}, sum != 0 ? 1 : 0};
   };
   const Expansion<1> ax = away(a.x, d.x), ay = away(a.y, d.y), bx = away(b.x, d.x), by = away(b.y, d.y),
                      cx = away(c.x, d.x), cy = away(c.y, d.y);
@@ -116,11 +126,19 @@ SADDLEBACK_RARE int exact_circle_sign(const Point2& a, const Point2& b, const Po
   return sum(sum(part(ax, ay, bx, by, cx, cy), part(bx, by, cx, cy, ax, ay)), part(cx, cy, ax, ay, bx, by)).sign();
 }
 
+constexpr int k_unknown_sign = 2;
+SADDLEBACK_RARE int rare_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) {
+  bool is_known;
+  int sign = careful_circle_sign(a, b, c, d, is_known);
+  if (!is_known) sign = exact_circle_sign(a, b, c, d, is_known);
+  return is_known ? sign : k_unknown_sign;
+}
 /// Where doubles do not tell.
 SADDLEBACK_HOST_DEVICE inline int rare_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
                                                    bool& is_known) {
-  const int sign = careful_circle_sign(a, b, c, d, is_known);
-  return is_known ? sign : exact_circle_sign(a, b, c, d, is_known);
+  const int sign = rare_circle_sign(a, b, c, d);
+  is_known = sign != k_unknown_sign;
+  return is_known ? sign : 0;
 }
 
 SADDLEBACK_HOST_DEVICE inline int quick_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
