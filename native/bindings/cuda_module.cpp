@@ -71,8 +71,8 @@ device : int
 
 Returns
 -------
-(n, 6) int8 array of -1, 0 and 1: `orient_2d(a, b, c)`, `in_circle(a, b, c, d)`, whether a is nearer to b than to c
-(-1), and the same three as diagrams ask for them, of which the circle's may be unknown, 2.
+(n, 5) int8 array of -1, 0 and 1: `orient_2d(a, b, c)` and whether a is nearer to b than to c (-1); as diagrams ask for
+them the first, `in_circle(a, b, c, d)`, which may be unknown, 2, and the second.
 
 Raises
 ------

@@ -53,6 +53,16 @@ def test_the_device_itself_finds_large_ones(kind: str) -> None:
     assert times is not None and times["find"] > 0 and times["by_processor"] == 0
 
 
+def test_a_cell_of_hundreds_of_neighbours() -> None:
+    rng = np.random.default_rng(11)
+    angles = np.arange(700) * (2 * np.pi / 700)
+    ring = np.stack((np.cos(angles), np.sin(angles)), axis=1) * (1 + 1e-7 * rng.random((700, 1)))
+    twin = expect_twins(np.concatenate((np.zeros((1, 2)), ring)))
+    assert twin.device == "cuda"
+    offsets, _ = twin.cells
+    assert np.diff(offsets).max() == 700
+
+
 WEIGHTS = {
     "small": lambda mean, rng, n: 0.2 * mean * rng.random(n),
     "large": lambda mean, rng, n: mean * rng.random(n),

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cub/device/device_scan.cuh>
+#include <thrust/iterator/transform_iterator.h>
+#include <type_traits>
 
 #include "support/device_buffer.h"
 
@@ -19,13 +21,28 @@ void with_scratch(cudaStream_t stream, const char* doing, Function&& function) {
   check_cuda(function(static_cast<void*>(scratch.data()), bytes), doing);
 }
 
+template <class Sum>
+struct Widened {
+  template <class Number>
+  __host__ __device__ Sum operator()(Number number) const {
+    return number;
+  }
+};
+
 /// Of each number the sum of those before it.
-template <class Number>
-void add_up(const DeviceBuffer<Number>& counts, DeviceBuffer<Number>& sums, cudaStream_t stream) {
+template <class Number, class Sum>
+void add_up(const DeviceBuffer<Number>& counts, DeviceBuffer<Sum>& sums, cudaStream_t stream) {
   const auto count = static_cast<int>(counts.size());
-  with_scratch(stream, "adding up", [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts.data(), sums.data(), count, stream);
-  });
+  const auto add = [&](auto numbers) {
+    with_scratch(stream, "adding up", [&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceScan::ExclusiveSum(scratch, bytes, numbers, sums.data(), count, stream);
+    });
+  };
+  if constexpr (std::is_same_v<Number, Sum>) {
+    add(counts.data());
+  } else {  // as sums, or they would be added up as what they are
+    add(thrust::transform_iterator<Widened<Sum>, const Number*>(counts.data(), {}));
+  }
 }
 
 }  // namespace

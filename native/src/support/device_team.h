@@ -1,6 +1,7 @@
 #pragma once
 // One job on several CUDA devices: a thread for each, and moments at which all wait for all.
 
+#include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -125,9 +126,20 @@ class TeamCaller {
 /// Arrays of which every member of a team fills a part, and then has the whole.
 class TeamArrays {
  public:
-  explicit TeamArrays(DeviceTeam& team) : team_(team), arrays_(static_cast<std::size_t>(team.members())) {}
+  explicit TeamArrays(DeviceTeam& team)
+      : team_(team),
+        arrays_(static_cast<std::size_t>(team.members())),
+        holds_(static_cast<std::size_t>(team.members())) {}
 
   void meet() { team_.meet(); }
+  /// By all members: whether it `holds` for all of them.
+  bool holds_for_all(int member, bool holds) {
+    holds_[static_cast<std::size_t>(member)] = holds;
+    team_.meet();
+    const bool all = std::ranges::all_of(holds_, [](char each) { return each != 0; });
+    team_.meet();  // before anyone asks anew
+    return all;
+  }
   /// By all members: `mine` is the member's own copy of the array, `begins` tell where the parts begin and where the
   /// last ends. Complete on return.
   template <class Number>
@@ -165,6 +177,7 @@ class TeamArrays {
  private:
   DeviceTeam& team_;
   std::vector<const void*> arrays_;  ///< by member
+  std::vector<char> holds_;          ///< by member
 };
 
 }  // namespace saddleback

@@ -32,6 +32,16 @@ SADDLEBACK_HOST_DEVICE inline double careful_difference(double a, double b, doub
   return plus(plus(plus(rest_1, rest_2), rest_3), total);
 }
 
+/// Of b - a and c - a, exact but for the last digit.
+SADDLEBACK_EXPANSION double summed_cross(predicates::Point2 a, predicates::Point2 b, predicates::Point2 c) {
+  using predicates::difference;
+  const auto exact =
+      predicates::detail::cross(difference(b.x, a.x), difference(b.y, a.y), difference(c.x, a.x), difference(c.y, a.y));
+  double sum = 0;
+  for (int i = 0; i < exact.size; ++i) sum += exact.terms[i];
+  return sum;
+}
+
 /// The point equally far from three sites, counter-clockwise, not on a line. Differences count from `a`; the
 /// determinant is exact where it would lose digits, so that the relative error stays at a few roundings however flat
 /// the triangle is. Overflows only where the point itself does.
@@ -52,10 +62,7 @@ SADDLEBACK_HOST_DEVICE inline predicates::Point2 circumcentre_point(const predic
     if (rests[0] == 0 && rests[1] == 0 && rests[2] == 0 && rests[3] == 0) {  // as of most that lie so close together
       det = careful_difference(ux, vy, uy, vx);
     } else {
-      const auto exact =
-          detail::cross(difference(b.x, a.x), difference(b.y, a.y), difference(c.x, a.x), difference(c.y, a.y));
-      det = 0;
-      for (int i = 0; i < exact.size; ++i) det += exact.terms[i];
+      det = summed_cross(a, b, c);
     }
   }
   const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;

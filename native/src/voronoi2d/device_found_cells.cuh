@@ -28,10 +28,7 @@ inline int blocks_of(const void* kernel, int threads, std::size_t shared, int de
 class FoundCells {
  public:
   /// How many neighbours all members' cells have, where there are several.
-  void share(const PlanePart& part) {
-    part.arrays.share(part.member, counts_.data(), part.begins, stream_);
-    add_sides();
-  }
+  void share(const PlanePart& part) { part.add_up_all(counts_, offsets_, stream_); }  // the last count is 0
 
   const DeviceBuffer<std::int32_t>& offsets() const { return offsets_; }
   DeviceBuffer<std::int32_t> take_offsets() { return std::move(offsets_); }
@@ -64,7 +61,7 @@ class FoundCells {
     counts_.fill_bytes(0);
     counters_.fill_bytes(0);
   }
-  void add_sides() { add_up(counts_, offsets_, stream_); }  // the last count is 0
+  void add_sides() { add_up(counts_, offsets_, stream_); }
 
   struct Count {
     int far, failed;

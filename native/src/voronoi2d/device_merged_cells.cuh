@@ -88,7 +88,7 @@ __global__ void __launch_bounds__(k_merge_threads, 512 / k_merge_threads) merge_
 }
 
 /// The rest: a lane of a warp for each, since no two do the same.
-__global__ void __launch_bounds__(k_threads) merge_far_sites(MergeTree tree) {
+__global__ void __launch_bounds__(k_threads, 2) merge_far_sites(MergeTree tree) {
   if (threadIdx.x % 32 != 0) return;
   const int count = *tree.waiting_count;
   for (int i = atomicAdd(tree.taken, 1); i < count; i = atomicAdd(tree.taken, 1)) {

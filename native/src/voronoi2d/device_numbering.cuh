@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 #include <vector>
 
 #include "support/device_stream.h"
-#include "support/device_team.h"
 #include "support/index_range.cuh"
 #include "voronoi2d/circumcentre_point.h"
 #include "voronoi2d/device_cells.cuh"
 #include "voronoi2d/device_kept.cuh"
+#include "voronoi2d/device_plane_part.cuh"
 #include "voronoi2d/plane_twin.h"
 #include "voronoi2d/weighted_wave.h"
 
@@ -112,6 +111,7 @@ __global__ void expect_sum(const std::int32_t* sum, std::int32_t wanted, int* mi
   if (*sum != wanted) *misfits = 1;
 }
 
+/// Whether the neighbours of a cell do, or of an open one no further; see check_open_cells.
 __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
   const std::int32_t first = cells.offsets[cell], last = cells.offsets[cell + 1] - 1;
   if (last <= first) return false;
@@ -128,9 +128,16 @@ __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
     crossings += now != before;
     before = now;
   }
-  if (!is_open) return crossings == 2;
-  return crossings <= 1 &&
-         turn_sign(cells.point(cells.neighbour(last)), cells.point(cell), cells.point(cells.neighbour(first))) >= 0;
+  return is_open ? crossings <= 1 : crossings == 2;
+}
+
+/// What is left to tell of open cells, so that it costs the others nothing.
+__global__ void check_open_cells(DeviceCells cells, const std::uint8_t* is_open, int* misfits) {
+  const std::int32_t cell = cells.of_thread();
+  if (cell >= cells.mine.end || !is_open[cell]) return;
+  const std::int32_t first = cells.offsets[cell], last = cells.offsets[cell + 1] - 1;
+  const auto at = [&](std::int32_t side) { return cells.point(cells.neighbour(side)); };
+  if (last > first && turn_sign(at(last), cells.point(cell), at(first)) < 0) *misfits = 1;
 }
 
 /// Which cells are joined: all, or at first those that lie among others of the same part, then the rest.
@@ -232,7 +239,8 @@ __device__ inline Point2 weighted_vertex(const DeviceCells& cells, const std::in
   return crossing_point(here, crossing.x, crossing.y, crossing.height);
 }
 
-__global__ void add_vertices(DeviceCells cells, const std::int32_t* vertices_before, DeviceNumbers numbers) {
+__global__ void __launch_bounds__(k_threads, 4)
+    add_vertices(DeviceCells cells, const std::int32_t* vertices_before, DeviceNumbers numbers) {
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
   std::int32_t vertex = vertices_before[cell];
@@ -329,26 +337,6 @@ __global__ void add_triangles(DeviceCells cells, const std::int32_t* triangles_b
   });
 }
 
-/// A member of a team that finds one diagram: it has the cells from begins[member] to begins[member + 1].
-struct PlanePart {
-  TeamArrays& arrays;
-  int member;
-  std::vector<std::int32_t> begins;  ///< of all members' cells, and the end of the last
-
-  bool is_all() const { return begins.size() == 2; }
-  IndexRange cells() const { return range(begins); }
-  IndexRange range(std::span<const std::int32_t> bounds) const {
-    return {bounds[static_cast<std::size_t>(member)], bounds[static_cast<std::size_t>(member) + 1]};
-  }
-  /// Where the members' parts of rows begin. Waits for the stream where there are several.
-  std::vector<std::int32_t> rows(const DeviceBuffer<std::int32_t>& offsets, std::int32_t total) const {
-    if (is_all()) return {0, total};
-    std::vector<std::int32_t> bounds;
-    for (const std::int32_t cell : begins) bounds.push_back(offsets.value_at(static_cast<std::size_t>(cell)));
-    return bounds;
-  }
-};
-
 /// Rows, then numbers, of a part of the cells. With one part nothing waits for the device; whether all fits is known at
 /// the end.
 class DeviceDiagram {
@@ -402,6 +390,10 @@ class DeviceDiagram {
       join_sides<Joined::outer><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
     }
     check_cuda(cudaGetLastError(), "joining cells");
+    if (!cells.weights) {
+      check_open_cells<<<blocks, k_threads, 0, stream_>>>(cells, lists.is_open, numbers().misfits_here);
+      check_cuda(cudaGetLastError(), "joining cells");
+    }
     expect_sum<<<1, 1, 0, stream_>>>(misfits_.data() + 1, 0, misfits_.data());
     check_cuda(cudaGetLastError(), "joining cells");
     agree();
@@ -476,8 +468,7 @@ class DeviceDiagram {
   }
   /// Sums of what all members have counted; the last is the total.
   void add_up_all(std::int32_t total) {
-    part_.arrays.share(part_.member, counts_.data(), part_.begins, stream_);
-    add_up(counts_, before_, stream_);
+    part_.add_up_all(counts_, before_, stream_);
     expect_sum<<<1, 1, 0, stream_>>>(before_.data() + count_, total, misfits_.data());
     check_cuda(cudaGetLastError(), "counting");
   }

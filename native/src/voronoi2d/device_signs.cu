@@ -23,7 +23,6 @@ __global__ void decide(const Four* fours, std::int32_t count, PlaneSigns* signs)
   bool is_known;
   const int circle = voronoi2d::known_circle_sign(four.a, four.b, four.c, four.d, is_known);
   signs[i] = {narrow(predicates::orient_2d(four.a, four.b, four.c)),
-              narrow(predicates::in_circle(four.a, four.b, four.c, four.d)),
               narrow(predicates::compare_distances(four.a, four.b, four.c)),
               narrow(voronoi2d::turn_sign(four.a, four.b, four.c)),
               narrow(is_known ? circle : voronoi2d::k_unknown_sign),

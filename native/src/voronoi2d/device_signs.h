@@ -10,9 +10,9 @@ namespace saddleback {
 
 /// Of four points, 2: unknown.
 struct PlaneSigns {
-  std::int8_t orient_2d, in_circle, compare_distances;       ///< as the predicates say
+  std::int8_t orient_2d, compare_distances;                  ///< as the predicates say
   std::int8_t turn_sign, known_circle_sign, distance_order;  ///< as diagrams ask for them
-  static constexpr int k_count = 6;
+  static constexpr int k_count = 5;
 };
 
 /// Decides on each four points: 8 numbers, the corners of a triangle and another one. Never throws; `reason` says why

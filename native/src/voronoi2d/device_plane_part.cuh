@@ -1,0 +1,65 @@
+#pragma once
+// What one of several devices finds of a diagram, and what it learns of the others'.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "support/device_buffer.h"
+#include "support/device_launch.cuh"
+#include "support/device_scratch.cuh"
+#include "support/device_team.h"
+#include "support/index_range.cuh"
+
+namespace saddleback::voronoi2d {
+namespace {
+
+__global__ void count_in_bytes(const std::int32_t* counts, IndexRange those, std::uint8_t* bytes, int* are_more) {
+  const std::int32_t i = those.begin + thread_number();
+  if (i >= those.end) return;
+  if (counts[i] > 255) *are_more = 1;
+  bytes[i] = static_cast<std::uint8_t>(counts[i]);
+}
+
+/// A member of a team that finds one diagram: it has the cells from begins[member] to begins[member + 1].
+struct PlanePart {
+  TeamArrays& arrays;
+  int member;
+  std::vector<std::int32_t> begins;  ///< of all members' cells, and the end of the last
+
+  bool is_all() const { return begins.size() == 2; }
+  IndexRange cells() const { return range(begins); }
+  IndexRange range(std::span<const std::int32_t> bounds) const {
+    return {bounds[static_cast<std::size_t>(member)], bounds[static_cast<std::size_t>(member) + 1]};
+  }
+  /// Where the members' parts of rows begin. Waits for the stream where there are several.
+  std::vector<std::int32_t> rows(const DeviceBuffer<std::int32_t>& offsets, std::int32_t total) const {
+    if (is_all()) return {0, total};
+    std::vector<std::int32_t> bounds;
+    for (const std::int32_t cell : begins) bounds.push_back(offsets.value_at(static_cast<std::size_t>(cell)));
+    return bounds;
+  }
+
+  /// Of what all members have counted for their own cells: for each cell the sum of those before it. The last count is
+  /// 0. Counts of less than 256, which nearly all are, go from device to device as bytes.
+  void add_up_all(DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::int32_t>& sums, cudaStream_t stream) const {
+    if (is_all()) return add_up(counts, sums, stream);
+    DeviceBuffer<std::uint8_t> bytes(counts.size(), stream);
+    DeviceBuffer<int> are_more(1, stream);
+    bytes.fill_bytes(0);
+    are_more.fill_bytes(0);
+    count_in_bytes<<<blocks_for(cells().count()), k_threads, 0, stream>>>(counts.data(), cells(), bytes.data(),
+                                                                          are_more.data());
+    check_cuda(cudaGetLastError(), "counting");
+    if (arrays.holds_for_all(member, are_more.value_at(0) == 0)) {
+      arrays.share(member, bytes.data(), begins, stream);
+      add_up(bytes, sums, stream);
+    } else {
+      arrays.share(member, counts.data(), begins, stream);
+      add_up(counts, sums, stream);
+    }
+  }
+};
+
+}  // namespace
+}  // namespace saddleback::voronoi2d
