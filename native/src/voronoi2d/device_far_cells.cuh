@@ -225,7 +225,9 @@ struct FarCells {
   }
 };
 
-__global__ void __launch_bounds__(k_far_threads, 3) find_far_cells(DeviceTree tree, FarCells far, DeviceLists lists) {
+// Every diagram runs it, and its stack is the largest of all kernels: the driver would get memory for a larger one in
+// the midst of the work, which nothing can stop.
+__global__ void __launch_bounds__(k_far_threads, 4) find_far_cells(DeviceTree tree, FarCells far, DeviceLists lists) {
   __shared__ FarMemory memory[k_far_threads / 32];
   FarWinder winder(tree, memory[threadIdx.x / 32]);
   for (std::int32_t rank = far.take(); rank >= 0; rank = far.take()) {

@@ -180,7 +180,7 @@ class CellLister {
   Point2 at_;
 };
 
-__global__ void __launch_bounds__(k_threads, 3)
+__global__ void __launch_bounds__(k_threads, 2)
     list_merged_cells(MergeTree tree, IndexRange ranks, int most_neighbours, DeviceLists lists) {
   const std::int32_t rank = ranks.begin + thread_number();
   if (rank >= ranks.end || *tree.failed) return;

@@ -82,9 +82,10 @@ struct TwiceAsLong {
   }
 };
 
+constexpr int k_unknown_sign = 2;
+
 /// With twice as many digits.
-SADDLEBACK_HOST_DEVICE inline int careful_circle_sign(const Point2& a, const Point2& b, const Point2& c,
-                                                      const Point2& d, bool& is_known) {
+SADDLEBACK_RARE int careful_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) {
   using Long = TwiceAsLong;
   const Long ax = Long::difference(a.x, d.x), ay = Long::difference(a.y, d.y), bx = Long::difference(b.x, d.x),
              by = Long::difference(b.y, d.y), cx = Long::difference(c.x, d.x), cy = Long::difference(c.y, d.y);
@@ -100,43 +101,39 @@ SADDLEBACK_HOST_DEVICE inline int careful_circle_sign(const Point2& a, const Poi
   add(cx, cy, ax, ay, bx, by);
   // Some thirty roundings of 2^-104 each; below the least magnitude products lose their last digits.
   constexpr double k_bound = 0x1p-98, k_least = 0x1p-900;
-  is_known = fabs(det.high) > k_bound * magnitude && magnitude > k_least;
-  return (det.high > 0) - (det.high < 0);
+  const bool is_known = fabs(det.high) > k_bound * magnitude && magnitude > k_least;
+  return is_known ? (det.high > 0) - (det.high < 0) : k_unknown_sign;
+}
+
+/// One of three: a point's square distance times how two others turn, all counted from the fourth.
+SADDLEBACK_EXPANSION predicates::Expansion<32> circle_term(Point2 p, Point2 q, Point2 r) {
+  const auto exact = [](double value) { return predicates::Expansion<1>{{value}, value != 0 ? 1 : 0}; };
+  const predicates::Expansion<1> px = exact(p.x), py = exact(p.y), qx = exact(q.x), qy = exact(q.y), rx = exact(r.x),
+                                 ry = exact(r.y);
+  return product(sum(product(px, px), product(py, py)), sum(product(qx, ry), product(qy, rx), -1));
 }
 
 /// The sign of the circle test for d, a, b, c, exactly. Unknown where a difference from d has more digits than a
 /// double.
-SADDLEBACK_HOST_DEVICE inline int exact_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
-                                                    bool& is_known) {
-  using namespace predicates;
-  is_known = true;
+SADDLEBACK_RARE int exact_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) {
+  bool is_known = true;
   const auto away = [&](double value, double from) {
     double sum, rest;
-    two_sum(value, -from, sum, rest);
+    predicates::two_sum(value, -from, sum, rest);
     is_known = is_known && rest == 0;
-    return Expansion<1>{{sum}, sum != 0 ? 1 : 0};
+    return sum;
   };
-  const Expansion<1> ax = away(a.x, d.x), ay = away(a.y, d.y), bx = away(b.x, d.x), by = away(b.y, d.y),
-                     cx = away(c.x, d.x), cy = away(c.y, d.y);
-  if (!is_known) return 0;
-  const auto part = [](const Expansion<1>& px, const Expansion<1>& py, const Expansion<1>& qx, const Expansion<1>& qy,
-                       const Expansion<1>& rx, const Expansion<1>& ry) {
-    return product(sum(product(px, px), product(py, py)), sum(product(qx, ry), product(qy, rx), -1));
-  };
-  return sum(sum(part(ax, ay, bx, by, cx, cy), part(bx, by, cx, cy, ax, ay)), part(cx, cy, ax, ay, bx, by)).sign();
+  const auto from_d = [&](const Point2& p) { return Point2{away(p.x, d.x), away(p.y, d.y)}; };
+  const Point2 p = from_d(a), q = from_d(b), r = from_d(c);
+  if (!is_known) return k_unknown_sign;
+  return sum(sum(circle_term(p, q, r), circle_term(q, r, p)), circle_term(r, p, q)).sign();
 }
 
-constexpr int k_unknown_sign = 2;
-SADDLEBACK_RARE int rare_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) {
-  bool is_known;
-  int sign = careful_circle_sign(a, b, c, d, is_known);
-  if (!is_known) sign = exact_circle_sign(a, b, c, d, is_known);
-  return is_known ? sign : k_unknown_sign;
-}
 /// Where doubles do not tell.
 SADDLEBACK_HOST_DEVICE inline int rare_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
                                                    bool& is_known) {
-  const int sign = rare_circle_sign(a, b, c, d);
+  int sign = careful_circle_sign(a, b, c, d);
+  if (sign == k_unknown_sign) sign = exact_circle_sign(a, b, c, d);
   is_known = sign != k_unknown_sign;
   return is_known ? sign : 0;
 }
