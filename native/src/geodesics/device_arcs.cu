@@ -357,11 +357,13 @@ class ArcFinder {
   double done_ = 0;                ///< share of the sources, as far as is known
 };
 
-/// What a build takes at most of a device that has these nodes, in bytes; rows once more for the union.
+/// What a build takes at most of a device that has these nodes, in bytes.
 std::uint64_t bytes_needed(const ArcTwinRequest& r, IndexRange range) {
   const auto words = static_cast<std::uint64_t>(first_guess(r, range));
-  constexpr std::uint64_t k_drafts = std::uint64_t{160} << 20;
-  return MeshTables::bytes_needed(r) + static_cast<std::uint64_t>(r.node_count) * 48 + words * (21 + 10) + k_drafts;
+  constexpr std::uint64_t k_row_word = 8 + 4 + 1 + 8;  // see DeviceRows
+  constexpr std::uint64_t k_union_word = 8 + sizeof(AddedArc) + 8, k_drafts = std::uint64_t{160} << 20;
+  return MeshTables::bytes_needed(r) + static_cast<std::uint64_t>(r.node_count) * 48 +
+         words * (k_row_word + k_union_word) + k_drafts;
 }
 
 /// A graph found by one or several devices, each the rows of a range of nodes.
