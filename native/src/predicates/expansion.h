@@ -41,9 +41,9 @@ SADDLEBACK_HOST_DEVICE inline void two_product(double a, double b, double& produ
 // Functions of their own on a device: in line, nvcc 13.0 leaves out stores to small arrays whose places are counted,
 // and decisions come out wrong (tests/parity/test_signs_twin.py).
 #ifdef __CUDACC__
-#define SADDLEBACK_EXPANSION __noinline__ __host__ __device__ inline
+#define SADDLEBACK_EXPANSION __noinline__ __host__ __device__
 #else
-#define SADDLEBACK_EXPANSION inline
+#define SADDLEBACK_EXPANSION
 #endif
 
 template <int N>
@@ -59,7 +59,7 @@ struct Expansion {
 };
 
 /// a - b.
-SADDLEBACK_EXPANSION Expansion<2> difference(double a, double b) {
+SADDLEBACK_EXPANSION inline Expansion<2> difference(double a, double b) {
   double sum, rest;
   two_sum(a, -b, sum, rest);
   const bool has_rest = rest != 0;

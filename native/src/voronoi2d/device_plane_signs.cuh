@@ -106,7 +106,7 @@ SADDLEBACK_RARE int careful_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) 
 }
 
 /// One of three: a point's square distance times how two others turn, all counted from the fourth.
-SADDLEBACK_EXPANSION predicates::Expansion<32> circle_term(Point2 p, Point2 q, Point2 r) {
+SADDLEBACK_EXPANSION inline predicates::Expansion<32> circle_term(Point2 p, Point2 q, Point2 r) {
   const auto exact = [](double value) { return predicates::Expansion<1>{{value}, value != 0 ? 1 : 0}; };
   const predicates::Expansion<1> px = exact(p.x), py = exact(p.y), qx = exact(q.x), qy = exact(q.y), rx = exact(r.x),
                                  ry = exact(r.y);
