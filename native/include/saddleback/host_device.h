@@ -3,6 +3,8 @@
 
 #ifdef __CUDACC__
 #define SADDLEBACK_HOST_DEVICE __host__ __device__
+#define SADDLEBACK_RARE __noinline__ __host__ __device__  // a function of its own on a device
 #else
 #define SADDLEBACK_HOST_DEVICE
+#define SADDLEBACK_RARE
 #endif

@@ -265,7 +265,7 @@ class ArcFinder {
     pass_ = pass;
     for (std::int32_t begin = 0; begin < all; begin += at_once) {
       if (begin > 0) next_.fill_bytes(0);
-      begun_before_ = begin;
+      if (pass == 0) begun_before_ = begin;
       Work work{fails_.data(),
                 nullptr,
                 nullptr,

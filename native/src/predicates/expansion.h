@@ -38,13 +38,8 @@ SADDLEBACK_HOST_DEVICE inline void two_product(double a, double b, double& produ
   rest = fma(a, b, -product);
 }
 
-// Functions of their own on a device: in line, nvcc 13.0 leaves out stores to small arrays whose places are counted,
-// and decisions come out wrong (tests/parity/test_signs_twin.py).
-#ifdef __CUDACC__
-#define SADDLEBACK_EXPANSION __noinline__ __host__ __device__
-#else
-#define SADDLEBACK_EXPANSION
-#endif
+// SADDLEBACK_RARE: in line, nvcc 13.0 leaves out stores to small arrays whose places are counted, and decisions come
+// out wrong (tests/parity/test_signs_twin.py).
 
 template <int N>
 struct Expansion {
@@ -59,7 +54,7 @@ struct Expansion {
 };
 
 /// a - b.
-SADDLEBACK_EXPANSION inline Expansion<2> difference(double a, double b) {
+SADDLEBACK_RARE inline Expansion<2> difference(double a, double b) {
   double sum, rest;
   two_sum(a, -b, sum, rest);
   const bool has_rest = rest != 0;
@@ -69,7 +64,7 @@ SADDLEBACK_EXPANSION inline Expansion<2> difference(double a, double b) {
 /// a + factor * b for a factor of 1 or -1: terms of both in the order of size, summed up (Shewchuk's fast expansion
 /// sum).
 template <int A, int B>
-SADDLEBACK_EXPANSION Expansion<A + B> sum(const Expansion<A>& a, const Expansion<B>& b, double factor = 1) {
+SADDLEBACK_RARE Expansion<A + B> sum(const Expansion<A>& a, const Expansion<B>& b, double factor = 1) {
   Expansion<A + B> result;
   double total = 0;
   int i = 0, j = 0;
@@ -86,7 +81,7 @@ SADDLEBACK_EXPANSION Expansion<A + B> sum(const Expansion<A>& a, const Expansion
 
 /// a * factor.
 template <int A>
-SADDLEBACK_EXPANSION Expansion<2 * A> scaled(const Expansion<A>& a, double factor) {
+SADDLEBACK_RARE Expansion<2 * A> scaled(const Expansion<A>& a, double factor) {
   Expansion<2 * A> result;
   double total = 0;
   for (int i = 0; i < a.size; ++i) {
@@ -102,7 +97,7 @@ SADDLEBACK_EXPANSION Expansion<2 * A> scaled(const Expansion<A>& a, double facto
 }
 
 template <int A, int B>
-SADDLEBACK_EXPANSION Expansion<2 * A * B> product(const Expansion<A>& a, const Expansion<B>& b) {
+SADDLEBACK_RARE Expansion<2 * A * B> product(const Expansion<A>& a, const Expansion<B>& b) {
   Expansion<2 * A * B> result;
   for (int j = 0; j < b.size; ++j) {
     const auto longer = sum(result, scaled(a, b.terms[j]));

@@ -33,7 +33,7 @@ SADDLEBACK_HOST_DEVICE inline double careful_difference(double a, double b, doub
 }
 
 /// Of b - a and c - a, exact but for the last digit.
-SADDLEBACK_EXPANSION inline double summed_cross(predicates::Point2 a, predicates::Point2 b, predicates::Point2 c) {
+SADDLEBACK_RARE inline double summed_cross(predicates::Point2 a, predicates::Point2 b, predicates::Point2 c) {
   using predicates::difference;
   const auto exact =
       predicates::detail::cross(difference(b.x, a.x), difference(b.y, a.y), difference(c.x, a.x), difference(c.y, a.y));

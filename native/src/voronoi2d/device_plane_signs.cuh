@@ -10,16 +10,10 @@ namespace {
 
 using predicates::Point2;
 
-#ifdef __CUDACC__
-#define SADDLEBACK_RARE __noinline__ __host__ __device__
-#else
-#define SADDLEBACK_RARE inline
-#endif
-
-SADDLEBACK_RARE int exact_turn_sign(Point2 a, Point2 b, Point2 c) {
+SADDLEBACK_RARE inline int exact_turn_sign(Point2 a, Point2 b, Point2 c) {
   return static_cast<int>(predicates::detail::orient_2d_exact(a, b, c));
 }
-SADDLEBACK_RARE int exact_distance_order(Point2 p, Point2 a, Point2 b) {
+SADDLEBACK_RARE inline int exact_distance_order(Point2 p, Point2 a, Point2 b) {
   return static_cast<int>(predicates::compare_distances(p, a, b));
 }
 
@@ -85,7 +79,7 @@ struct TwiceAsLong {
 constexpr int k_unknown_sign = 2;
 
 /// With twice as many digits.
-SADDLEBACK_RARE int careful_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) {
+SADDLEBACK_RARE inline int careful_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) {
   using Long = TwiceAsLong;
   const Long ax = Long::difference(a.x, d.x), ay = Long::difference(a.y, d.y), bx = Long::difference(b.x, d.x),
              by = Long::difference(b.y, d.y), cx = Long::difference(c.x, d.x), cy = Long::difference(c.y, d.y);
@@ -106,7 +100,7 @@ SADDLEBACK_RARE int careful_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) 
 }
 
 /// One of three: a point's square distance times how two others turn, all counted from the fourth.
-SADDLEBACK_EXPANSION inline predicates::Expansion<32> circle_term(Point2 p, Point2 q, Point2 r) {
+SADDLEBACK_RARE inline predicates::Expansion<32> circle_term(Point2 p, Point2 q, Point2 r) {
   const auto exact = [](double value) { return predicates::Expansion<1>{{value}, value != 0 ? 1 : 0}; };
   const predicates::Expansion<1> px = exact(p.x), py = exact(p.y), qx = exact(q.x), qy = exact(q.y), rx = exact(r.x),
                                  ry = exact(r.y);
@@ -115,7 +109,7 @@ SADDLEBACK_EXPANSION inline predicates::Expansion<32> circle_term(Point2 p, Poin
 
 /// The sign of the circle test for d, a, b, c, exactly. Unknown where a difference from d has more digits than a
 /// double.
-SADDLEBACK_RARE int exact_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) {
+SADDLEBACK_RARE inline int exact_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) {
   bool is_known = true;
   const auto away = [&](double value, double from) {
     double sum, rest;

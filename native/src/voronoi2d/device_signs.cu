@@ -1,7 +1,5 @@
 // Decisions in the plane on a CUDA device, one by one.
 
-#include <vector>
-
 #include "support/device_buffer.h"
 #include "support/device_launch.cuh"
 #include "support/device_stream.h"
