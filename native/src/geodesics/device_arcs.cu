@@ -157,8 +157,7 @@ class ArcFinder {
         tables_(request, stream, choose_packing),
         failed_{DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream),
                 DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream)},
-        next_(k_passes, stream),
-        failures_(k_passes, stream),
+        tally_(1, stream),
         fails_(1, stream),
         rows_(request.node_count, first_guess(request, part.nodes), packing().target_mask, stream) {
     fails_.fill_bytes(0);
@@ -166,17 +165,21 @@ class ArcFinder {
     check_cuda(cudaGetLastError(), "looking at edges");
   }
 
-  void find(DeviceTimes& times) {
+  /// Lets the device begin; it need not have finished what it was told before.
+  void start() {
+    rows_.clear();
+    tally_.fill_bytes(0);
+    passes_ = 0;
+    request_.k > 0 ? start_passes<true>() : start_passes<false>();
+  }
+  /// Waits for the stream.
+  void finish(DeviceTimes& times) {
     while (true) {
-      rows_.clear();
-      if (request_.k > 0) {
-        find_all<true>(times);
-      } else {
-        find_all<false>(times);
-      }
+      request_.k > 0 ? finish_passes<true>(times) : finish_passes<false>(times);
       const std::int64_t wanted = rows_.words_wanted();
       if (wanted <= rows_.room()) return;
       rows_ = RowStore(request_.node_count, wanted + wanted / 16, packing().target_mask, stream_);
+      start();
     }
   }
   RowStore& rows() { return rows_; }
@@ -185,31 +188,40 @@ class ArcFinder {
  private:
   /// Rooms that a source may go through.
   static constexpr std::size_t k_passes = 4;
+  /// What kernels count.
+  struct Tally {
+    unsigned long long words;  ///< of all rows
+    /// By pass: sources taken, and those that failed.
+    std::int32_t begun[k_passes], failed[k_passes];
+  };
 
+  /// The second does not wait to know how many are left.
   template <bool All>
-  void find_all(DeviceTimes& times) {
-    next_.fill_bytes(0);
-    failures_.fill_bytes(0);
+  void start_passes() {
     const std::int32_t all = part_.nodes.count();
-    std::size_t passes = 0;
     if (is_small()) {
-      find_in<SmallRoom<All>>(passes++, all);
+      find_in<SmallRoom<All>>(all);
     } else if (is_middle()) {
-      find_in<MiddleRoom<All>>(passes++, all);
+      find_in<MiddleRoom<All>>(all);
     }
-    find_in<WideRoom<All>>(passes++, all);  // the second does not wait to know how many are left
-    times.second_pass = failures(0);
+    find_in<WideRoom<All>>(all);
+  }
+  template <bool All>
+  void finish_passes(DeviceTimes& times) {
+    Tally tally = finished();
+    const auto left = [&] { return tally.failed[passes_ - 1]; };
+    times.second_pass = tally.failed[0];
     times.by_processor = 0;
-    std::int32_t left = failures(passes - 1);
-    if (left > 0) {
-      find_in<HugeRoom<All>>(passes++, left);
-      left = failures(passes - 1);
+    if (left() > 0) {
+      find_in<HugeRoom<All>>(left());
+      tally = finished();
     }
-    if (left > 0) {
-      find_in<LastRoom<All>>(passes++, left);
-      left = failures(passes - 1);
+    if (left() > 0) {
+      find_in<LastRoom<All>>(left());
+      tally = finished();
     }
-    if (left > 0) find_rest(left, failed_[(passes - 1) % 2], times);
+    rows_.note_wanted(static_cast<std::int64_t>(tally.words));
+    if (left() > 0) find_rest(left(), failed_[(passes_ - 1) % 2], times);
   }
 
   /// By the processor. What ends the windows of one node there may be those of others of its batch: all have to be
@@ -235,10 +247,11 @@ class ArcFinder {
   bool is_small() const { return request_.k > 0 ? request_.k <= 50 : request_.excess >= 3e-3; }
   bool is_middle() const { return request_.k <= 110; }
 
-  /// Of all nodes or, from the second pass on, those that failed in the one before: `most` at most, so that no more
+  /// A pass. Of all nodes or, from the second on, those that failed in the one before: `most` at most, so that no more
   /// warps get memory than find work, and few are spread over all processors.
   template <class Room>
-  void find_in(std::size_t pass, std::int32_t most) {
+  void find_in(std::int32_t most) {
+    const std::size_t pass = passes_++;
     const auto kernel = find_arcs<Room>;
     const void* const code = reinterpret_cast<const void*>(kernel);
     const int most_warps = warps_of_block(Room::warp_bytes, Room::Warps);
@@ -262,24 +275,27 @@ class ArcFinder {
     DeviceBuffer<EdgeDistances<Room::Table::Slots>> edges(Room::Table::All ? places : 0, stream_);
     const std::int32_t launches = (all - 1) / k_sources_per_launch + 1;
     const std::int32_t at_once = (all / launches / Room::Seats + 1) * Room::Seats;
-    pass_ = pass;
+    Tally* const tally = tally_.data();
+    DeviceRows rows = rows_.view();
+    rows.taken = &tally->words;
     for (std::int32_t begin = 0; begin < all; begin += at_once) {
-      if (begin > 0) next_.fill_bytes(0);
+      if (begin > 0)
+        check_cuda(cudaMemsetAsync(tally->begun, 0, sizeof tally->begun, stream_), "starting at the first source");
       if (pass == 0) begun_before_ = begin;
       Work work{fails_.data(),
                 nullptr,
                 nullptr,
                 part_.nodes.begin + begin,
                 std::min(at_once, all - begin),
-                next_.data() + pass,
+                tally->begun + pass,
                 failed_[pass % 2].data(),
-                failures_.data() + pass};
+                tally->failed + pass};
       if (pass > 0) {
         work.nodes = failed_[1 - pass % 2].data();
-        work.listed = failures_.data() + pass - 1;
+        work.listed = tally->failed + pass - 1;
       }
-      kernel<<<blocks, 32 * warps, shared, stream_>>>(
-          tables_.mesh(), work, {tables.data(), pools.data(), edges.data(), drafts.data()}, rows_.view());
+      kernel<<<blocks, 32 * warps, shared, stream_>>>(tables_.mesh(), work,
+                                                      {tables.data(), pools.data(), edges.data(), drafts.data()}, rows);
       check_cuda(cudaGetLastError(), "finding arcs");
       if (pass > 0) break;
       if (launches > 1) wait();
@@ -295,14 +311,13 @@ class ArcFinder {
 
   /// Of all sources. Those that fail in a pass count for a tenth of what was left before it.
   double share_begun(cudaStream_t aside) const {
-    std::int32_t begun[k_passes], failed[k_passes];
-    next_.read(begun, aside);
-    failures_.read(failed, aside);
-    begun[0] += begun_before_;
+    Tally tally{};
+    tally_.read({&tally, 1}, aside);
+    tally.begun[0] += begun_before_;
     double left = 1;
-    for (std::size_t pass = 0; pass <= pass_; ++pass) {
-      const std::int32_t all = pass == 0 ? part_.nodes.count() : failed[pass - 1];
-      const double share = begun[pass] < all ? static_cast<double>(begun[pass]) / all : 1;
+    for (std::size_t pass = 0; pass < passes_; ++pass) {
+      const std::int32_t all = pass == 0 ? part_.nodes.count() : tally.failed[pass - 1];
+      const double share = tally.begun[pass] < all ? static_cast<double>(tally.begun[pass]) / all : 1;
       left -= 0.9 * left * share;
       if (share < 1) break;
     }
@@ -333,10 +348,10 @@ class ArcFinder {
     return std::max(1, per_processor) * processors();
   }
 
-  /// Of a pass. Waits for the stream.
-  std::int32_t failures(std::size_t pass) {
+  /// What was counted once all that was started is done.
+  Tally finished() {
     wait();
-    return failures_.value_at(pass);
+    return tally_.value_at(0);
   }
 
   void report(double fraction) const {
@@ -348,11 +363,11 @@ class ArcFinder {
   TeamCaller<ArcTwinCaller>& caller_;
   cudaStream_t stream_;
   MeshTables tables_;
-  DeviceBuffer<std::int32_t> failed_[2];        ///< nodes that failed in passes of even and of odd number
-  DeviceBuffer<std::int32_t> next_, failures_;  ///< by pass: sources taken, and those that failed
+  DeviceBuffer<std::int32_t> failed_[2];  ///< nodes that failed in passes of even and of odd number
+  DeviceBuffer<Tally> tally_;
   DeviceBuffer<int> fails_;  ///< whether all sources do: there are extremes, or the caller asked to stop
   RowStore rows_;
-  std::size_t pass_ = 0;           ///< the last that was started
+  std::size_t passes_ = 0;         ///< that were started
   std::int32_t begun_before_ = 0;  ///< sources, by launches of the first pass before the last
   double done_ = 0;                ///< share of the sources, as far as is known
 };
@@ -361,7 +376,7 @@ class ArcFinder {
 std::uint64_t bytes_needed(const ArcTwinRequest& r, IndexRange range) {
   const auto words = static_cast<std::uint64_t>(first_guess(r, range));
   constexpr std::uint64_t k_row_word = 8 + 4 + 1 + 8;  // see DeviceRows
-  constexpr std::uint64_t k_union_word = 8 + sizeof(AddedArc) + 8, k_drafts = std::uint64_t{160} << 20;
+  constexpr std::uint64_t k_union_word = sizeof(AddedArc) + 1 + 8, k_drafts = std::uint64_t{160} << 20;
   return MeshTables::bytes_needed(r) + static_cast<std::uint64_t>(r.node_count) * 48 +
          words * (k_row_word + k_union_word) + k_drafts;
 }
@@ -402,8 +417,10 @@ class Builder {
     const Stream& stream = streams_[at].emplace();
     Stopwatch watch(stream);
     ArcFinder finder(request_, mine, caller_, stream, [&] { return packing(mine.member); });
-    times.upload = watch.lap();
-    finder.find(times);
+    watch.end();
+    finder.start();  // behind what the device is still at
+    times.upload = watch.read();
+    finder.finish(times);
     times.find = watch.lap();
     exchange(mine, finder.rows(), stream);
     DeviceUnion arcs(finder.packing(), finder.rows(), mine.nodes, stream);

@@ -97,7 +97,7 @@ inline void add_rows(RowStore& rows, int device, const std::vector<RowsThere>& o
     check_cuda(cudaGetLastError(), "placing rows");
     taken += words;
   }
-  rows.set_taken(taken);
+  rows.note_wanted(taken);
   check_cuda(cudaStreamSynchronize(stream), "copying between devices");
 }
 

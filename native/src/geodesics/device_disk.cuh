@@ -115,51 +115,62 @@ class WarpDisk {
     if constexpr (All)
       for (int i = lane_; i < k_slots / 32; i += 32) table_.changed[i] = 0;
     limit_ = distance_of(k_unreached_label);
-    overflow_ = false;
+    overflow_ = 0;
     __syncwarp();
   }
 
   SADDLEBACK_STEP float radius() const { return limit_; }
   SADDLEBACK_STEP bool is_bounded() const { return limit_ < distance_of(k_unreached_label); }
-  SADDLEBACK_STEP bool overflowed() const { return overflow_; }
+  SADDLEBACK_STEP bool overflowed() const { return overflow_ != 0; }
   SADDLEBACK_STEP bool overflowed_anywhere() const { return __any_sync(k_warp, overflow_); }
   SADDLEBACK_STEP std::int32_t label(int slot) const { return table_.labels[slot]; }
   SADDLEBACK_STEP std::int32_t node(int slot) const { return DiskKey<Seats>::node(table_.keys[slot]); }
+  SADDLEBACK_STEP int seat(int slot) const { return DiskKey<Seats>::seat(table_.keys[slot]); }
 
   /// A node whose slot is looked for.
   struct Claim {
+    static constexpr int k_others_were_first = -1, k_is_full = -2;
     bool active;
     std::uint32_t key;
     int bucket;
-    int slot;  ///< negative: not there yet
+    int slot;  ///< negative: not there yet, and why
   };
   /// The slots of the lanes' nodes, made if need be, are found in two steps with room for other work between them,
   /// since memory takes its time. By all lanes of the warp; of no meaning for those that are not active.
   SADDLEBACK_STEP Claim claim(bool active, std::uint32_t key) {
-    Claim claim{active, key, static_cast<int>(__umulhi(key * 2654435769u, k_slots / 4)), -1};
+    Claim claim{active, key, static_cast<int>(__umulhi(key * 2654435769u, k_slots / 4)), 0};
     look_up(claim);
     return claim;
   }
   SADDLEBACK_STEP int settle(Claim claim) {
-    int tries = 0;
-    while (__any_sync(k_warp, claim.active && claim.slot < 0)) {
-      if (++tries > k_slots / 2) {
-        overflow_ = true;
+    claim.active = claim.active && claim.slot < 0;
+    for (int tries = 0; __any_sync(k_warp, claim.active); ++tries) {
+      if (tries > k_slots / 2) {
+        overflow_ = 1;
         break;
       }
       __syncwarp();
-      if (claim.active && claim.slot < 0) look_up(claim);
-      __syncwarp();
+      Claim again = claim;
+      if (claim.slot == Claim::k_is_full) again.bucket = claim.bucket + 1 < k_slots / 4 ? claim.bucket + 1 : 0;
+      look_up(again);
+      claim.bucket = again.bucket;
+      claim.slot = claim.active ? again.slot : claim.slot;
+      claim.active = claim.active && again.slot < 0;
     }
     return max(claim.slot, 0);
   }
   SADDLEBACK_STEP int insert(bool active, std::uint32_t key) { return settle(claim(active, key)); }
 
-  /// `bends` unless only straight ways are known to go on from there: neighbours then have to be told of the label.
-  SADDLEBACK_STEP void lower(int slot, std::int32_t label, bool bends) {
-    const std::int32_t before = atomicMin(&table_.labels[slot], label);
-    if constexpr (All)
-      if (bends && label < before) atomicOr(&table_.changed[slot / 32], 1u << (slot % 32));
+  /// Where `seen`. `bends` unless only straight ways are known to go on from there: neighbours then have to be told of
+  /// the label. Lanes that have seen nothing change nothing, each somewhere else: to branch takes longer.
+  SADDLEBACK_STEP void lower(bool seen, int slot, std::int32_t label, bool bends) {
+    const std::int32_t before = atomicMin(&table_.labels[seen ? slot : lane_], seen ? label : k_unreached_label);
+    if constexpr (All) {
+      const bool changes = seen & bends & (label < before);
+      auto* const place =
+          changes ? &table_.changed[slot / 32] : reinterpret_cast<std::uint32_t*>(&table_.labels[lane_]);
+      atomicOr(place, changes ? 1u << (slot % 32) : 0u);
+    }
   }
 
   /// Lowers the radius of the disk to that of the k-th nearest vertex, as far as is known.
@@ -180,32 +191,32 @@ class WarpDisk {
     if (!is_bounded()) return;
     while (const int count = list_changed()) {
       const int tellers = list_tellers(count);
-      for (int i = 0; i < tellers; i += 32 / Neighbour::k_block) tell_neighbours(i, tellers, Bend{table_, limit_});
+      tell_neighbours(tellers, Bend{table_, limit_});
       if (overflowed_anywhere()) return;
     }
   }
 
-  /// Of the list, from the `first` on, as many as there are blocks' worth of lanes: rule.offer(disk, slot of a
-  /// neighbour, label), if rule.serves(label), with label = rule.label(rule.from(slot), length of the edge). By all
-  /// lanes of the warp.
+  /// Of all on the list: rule.offer(disk, whether rule.serves(label), slot of a neighbour, label), with label =
+  /// rule.label(rule.from(slot), length of the edge). By all lanes of the warp, a block each eight; blocks are asked
+  /// for ahead.
   template <class Rule>
-  SADDLEBACK_STEP void tell_neighbours(int first, int count, const Rule& rule) {
-    const int number = first + lane_ / Neighbour::k_block, last = lane_ | (Neighbour::k_block - 1);
-    const int slot = table_.todo[min(number, count - 1)];
-    const float from = rule.from(slot);
-    std::int32_t block = number < count ? node(slot) : -1;
-    do {
-      Neighbour there{Neighbour::k_none, 0};
-      if (block >= 0) there = mesh_.neighbours[block * Neighbour::k_block + (lane_ & (Neighbour::k_block - 1))];
-      const bool is_node = (there.key & Neighbour::k_link) == 0;
-      const std::int32_t label = rule.label(from, there.length);
-      const bool is_told = is_node && rule.serves(label);
-      const int other = insert(is_told, there.key);
-      if (is_told) rule.offer(*this, other, label);
-      const bool goes_on = !is_node && there.key != Neighbour::k_none;
-      block = __shfl_sync(k_warp, goes_on ? static_cast<std::int32_t>(there.key & ~Neighbour::k_link) : -1, last);
-      __syncwarp();
-    } while (__any_sync(k_warp, block >= 0));
+  SADDLEBACK_STEP void tell_neighbours(int count, const Rule& rule) {
+    const int own = lane_ / Neighbour::k_block;
+    const auto teller = [&](int first) { return static_cast<int>(table_.todo[min(first + own, count - 1)]); };
+    Neighbour ahead = neighbour_in(node(teller(0)));
+    for (int first = 0; first < count; first += 32 / Neighbour::k_block) {
+      Neighbour there = ahead;
+      if (first + 32 / Neighbour::k_block < count) ahead = neighbour_in(node(teller(first + 32 / Neighbour::k_block)));
+      if (first + own >= count) there.key = Neighbour::k_none;
+      const float from = rule.from(teller(first));
+      tell(there, from, rule);
+      while (__any_sync(k_warp, there.goes_on())) {
+        const std::int32_t block = there.goes_on() ? static_cast<std::int32_t>(there.key & ~Neighbour::k_link) : -1;
+        const std::int32_t next = __shfl_sync(k_warp, block, lane_ | (Neighbour::k_block - 1));
+        there = next >= 0 ? neighbour_in(next) : Neighbour{Neighbour::k_none, 0};
+        tell(there, from, rule);
+      }
+    }
   }
 
  private:
@@ -218,8 +229,22 @@ class WarpDisk {
       return label_of((from + length) * k_bend_longer, false);
     }
     SADDLEBACK_STEP bool serves(std::int32_t label) const { return distance_of(label) < limit; }
-    SADDLEBACK_STEP static void offer(WarpDisk& disk, int slot, std::int32_t label) { disk.lower(slot, label, true); }
+    SADDLEBACK_STEP static void offer(WarpDisk& disk, bool serves, int slot, std::int32_t label) {
+      disk.lower(serves, slot, label, true);
+    }
   };
+
+  SADDLEBACK_STEP Neighbour neighbour_in(std::int32_t block) const {
+    return mesh_.neighbours[block * Neighbour::k_block + (lane_ & (Neighbour::k_block - 1))];
+  }
+  template <class Rule>
+  SADDLEBACK_STEP void tell(const Neighbour& there, float from, const Rule& rule) {
+    const std::int32_t label = rule.label(from, there.length);
+    const bool is_told = there.is_node() & rule.serves(label);
+    const int other = insert(is_told, there.key);
+    rule.offer(*this, is_told, other, label);
+    __syncwarp();
+  }
 
   /// In one bucket of four, which are filled from the first entry on: what is in none of a bucket that has room is
   /// nowhere.
@@ -230,15 +255,15 @@ class WarpDisk {
     at = there.y == claim.key ? 1 : at;
     at = there.z == claim.key ? 2 : at;
     at = there.w == claim.key ? 3 : at;
-    if (claim.active && at < 0 && has_room) {
-      int vacant = there.z == k_no_key ? 2 : 3;
-      vacant = there.y == k_no_key ? 1 : vacant;
-      vacant = there.x == k_no_key ? 0 : vacant;
-      const std::uint32_t before = atomicCAS(&table_.keys[4 * claim.bucket + vacant], k_no_key, claim.key);
-      at = before == k_no_key || before == claim.key ? vacant : -1;
-    }
-    if (at >= 0) claim.slot = 4 * claim.bucket + at;
-    if (at < 0 && !has_room) claim.bucket = claim.bucket + 1 < k_slots / 4 ? claim.bucket + 1 : 0;
+    const bool makes = claim.active & (at < 0) & has_room;
+    int vacant = there.z == k_no_key ? 2 : 3;
+    vacant = there.y == k_no_key ? 1 : vacant;
+    vacant = there.x == k_no_key ? 0 : vacant;
+    // Others change nothing, each somewhere else: to branch takes longer.
+    const std::uint32_t before =
+        atomicCAS(&table_.keys[makes ? 4 * claim.bucket + vacant : lane_], makes ? k_no_key : k_never_a_key, claim.key);
+    at = makes & ((before == k_no_key) | (before == claim.key)) ? vacant : at;
+    claim.slot = at >= 0 ? 4 * claim.bucket + at : has_room ? Claim::k_others_were_first : Claim::k_is_full;
   }
 
   /// Takes slots that are marked as changed into the list of those to do. \return how many
@@ -285,7 +310,7 @@ class WarpDisk {
   Table& table_;
   int lane_;
   float limit_ = 0;
-  bool overflow_ = false;
+  int overflow_ = 0;  ///< whether the table is full
 };
 
 }  // namespace

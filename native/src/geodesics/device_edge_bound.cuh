@@ -37,7 +37,7 @@ class EdgeFront {
       limit_ = nth_label<k_slots>(distances_.known, wanted_, limit_);
       const int count = list_nearest();
       if (count == 0) break;
-      for (int i = 0; i < count; i += 32 / Neighbour::k_block) disk_.tell_neighbours(i, count, Tell{distances_});
+      disk_.tell_neighbours(count, Tell{distances_});
       if (disk_.overflowed_anywhere()) return -1;
     }
     constexpr float k_no_end = 3.40282347e38f;  // there are not so many vertices
@@ -50,8 +50,8 @@ class EdgeFront {
     SADDLEBACK_STEP float from(int slot) const { return distance_of(distances.told[slot]); }
     SADDLEBACK_STEP static std::int32_t label(float from, float length) { return __float_as_int(from + length); }
     SADDLEBACK_STEP static bool serves(std::int32_t) { return true; }
-    SADDLEBACK_STEP void offer(WarpDisk<Table, 1>&, int slot, std::int32_t label) const {
-      atomicMin(&distances.known[slot], label);
+    SADDLEBACK_STEP void offer(WarpDisk<Table, 1>&, bool is_told, int slot, std::int32_t label) const {
+      if (is_told) atomicMin(&distances.known[slot], label);
     }
   };
 

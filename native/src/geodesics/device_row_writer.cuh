@@ -47,7 +47,9 @@ class RowWriter {
       if (lane_ == 0 && seat < waves_.sources().count) rows.note(waves_.sources().node + seat, first, counts[seat]);
       first += counts[seat];
     }
-    for (int i = lane_; place.fits && i < total; i += 32) put(rows, place.first + i, chosen(i, counts[0]));
+    const std::int32_t node = waves_.sources().node, last = node + waves_.sources().count - 1;
+    const Source sources[] = {{mesh_.first[node], mesh_.per_radian[node]}, {mesh_.first[last], mesh_.per_radian[last]}};
+    for (int i = lane_; place.fits && i < total; i += 32) put(rows, place.first + i, chosen(i, counts[0], sources));
     __syncwarp();
     return true;
   }
@@ -128,7 +130,7 @@ class RowWriter {
     for (int base = 0; base < waves_.arcs() && fits; base += 32) {
       const int number = base + lane_;
       const bool kept = number < waves_.arcs() && is_kept(number);
-      const int seat = Seats > 1 && kept ? RootEdge::seat(waves_.draft()[number].root()) : 0;
+      const int seat = Seats > 1 && kept ? waves_.disk().seat(best_.slots[number]) : 0;
       const std::uint32_t begins = best_.begins[base / 32];
       const int generation = generations + __popc(begins & (2u << lane_) - 1);
       generations += __popc(begins);
@@ -157,19 +159,23 @@ class RowWriter {
     float leaving, back, per_radian, per_radian_back;
   };
 
+  struct Source {
+    std::int32_t first;  ///< half-edge
+    float per_radian;
+  };
+
   /// The `i`-th of what is kept, of which the first source has `count`.
-  SADDLEBACK_STEP Chosen chosen(int i, int count) const {
+  SADDLEBACK_STEP Chosen chosen(int i, int count, const Source (&sources)[2]) const {
     const int seat = Seats > 1 && i >= count ? 1 : 0;
     const int kept = best_.kept[seat][seat == 0 ? i : i - count], number = kept & (k_first_kept - 1);
     const Sighting seen = waves_.draft()[number];
-    const std::int32_t node = waves_.sources().node + RootEdge::seat(seen.root());
-    const std::int32_t root = mesh_.first[node] + RootEdge::edge(seen.root());
+    const std::int32_t root = (seat == 0 ? sources[0].first : sources[1].first) + RootEdge::edge(seen.root());
     const std::uint64_t order = order_of(seen) | ((kept & k_first_kept) != 0 ? k_new_generation : 0);
     Chosen arc{seen, number >= waves_.links(), order, waves_.disk().node(seen.slot()), 256, 0, 0, 0};
     if (arc.is_window) {
       arc.leaving = mesh_.sectors[root];
       arc.back = mesh_.apex_sectors[seen.edge];
-      arc.per_radian = mesh_.per_radian[node];
+      arc.per_radian = seat == 0 ? sources[0].per_radian : sources[1].per_radian;
       arc.per_radian_back = mesh_.per_radian[arc.target];
     } else if (seen.edge == 0) {
       arc.leaving = mesh_.sectors[root];

@@ -1,6 +1,10 @@
 #pragma once
 // Rows of arcs on the device as they are found, and their union with their reverses: the twin of arc_symmetry.
 
+#include <cstdint>
+#include <cub/device/device_scan.cuh>
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
 #include <vector>
 
 #include "geodesics/arc_twin.h"
@@ -59,9 +63,6 @@ struct AddedArc {
   std::uint64_t word;
 };
 
-/// No arc's word: none is as long as the longest that there is a number for.
-constexpr std::uint64_t k_unpaired = ~std::uint64_t{0};
-
 /// Reverses that rows of `range` lack, in any order.
 struct AddedArcs {
   IndexRange range;
@@ -69,17 +70,28 @@ struct AddedArcs {
   AddedArc* arcs;
   unsigned long long* count;
   std::int64_t room;
+  std::uint8_t* seen;  ///< per arc of the rows, whether it needs no more looking at
 
-  /// Of a node's arcs from `first` on: the lane's own is the `i`-th of each 32 where bit i of `lacking` is set. By all
-  /// threads of a block, of which one counts for all: additions to one place wait for one another.
-  __device__ void add(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node, std::int64_t first,
+  /// Without loads that come later having to wait: nobody reads it before all is paired.
+  __device__ void note_seen(std::int64_t arc) const {
+    asm volatile("st.global.u8 [%0], %1;" ::"l"(seen + arc), "r"(1));
+  }
+
+  /// Of the arcs of `Rows` nodes, from the `begin`-th of each on, `32 / Rows` times 32 at most: bit i of `lacking` is
+  /// set where the lane's own of the i-th 32 is to be added. By all threads of a block, of which one counts for all:
+  /// additions to one place wait for one another.
+  template <int Rows>
+  __device__ void add(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node, int begin,
                       unsigned lacking) const {
+    constexpr int k_bits = 32 / Rows;
     const int lane = threadIdx.x & 31, mine = __popc(lacking);
     std::int64_t at = place_for(mine);
     for (; lacking != 0; lacking &= lacking - 1, ++at) {
-      const std::int64_t arc = first + 32 * (__ffs(static_cast<int>(lacking)) - 1) + lane;
+      const int bit = __ffs(static_cast<int>(lacking)) - 1;
+      const std::int32_t from = node + bit / k_bits;
+      const std::int64_t arc = rows.firsts[from] + begin + 32 * (bit % k_bits) + lane;
       const std::int32_t row = rows.targets[arc] - range.begin, number = atomicAdd(&counts[row], 1);
-      if (at < room) arcs[at] = {row, number, packing.reversed(node, rows.back_sectors[arc], rows.words[arc])};
+      if (at < room) arcs[at] = {row, number, packing.reversed(from, rows.back_sectors[arc], rows.words[arc])};
     }
   }
 
@@ -113,14 +125,18 @@ constexpr int k_arcs_at_once = 32 * 32;
 /// the last can be read.
 __device__ inline std::int64_t find_target(const std::int32_t* targets, std::int64_t first, int count,
                                            std::int32_t node) {
-  const int4* const fours = reinterpret_cast<const int4*>(targets) + first / 4;
-  const int before = static_cast<int>(first % 4), end = before + count;
-  for (int at = 0; at < end; at += 4) {
-    const int4 four = fours[at / 4];
-    unsigned here =
-        (four.x == node ? 1 : 0) | (four.y == node ? 2 : 0) | (four.z == node ? 4 : 0) | (four.w == node ? 8 : 0);
+  constexpr int k_at_once = 8;  // what memory gives in one piece
+  const int4* const fours = reinterpret_cast<const int4*>(targets + first / k_at_once * k_at_once);
+  const int before = static_cast<int>(first % k_at_once), end = before + count;
+  const auto is = [&](const int4& four) {
+    return (four.x == node ? 1u : 0) | (four.y == node ? 2u : 0) | (four.z == node ? 4u : 0) |
+           (four.w == node ? 8u : 0);
+  };
+  for (int at = 0; at < end; at += k_at_once) {
+    const int4 four = fours[at / 4], next = fours[at / 4 + 1];
+    unsigned here = is(four) | is(next) << 4;
     if (at == 0) here &= ~0u << before;  // others' rows
-    if (at + 4 > end) here &= (1u << (end - at)) - 1;
+    if (at + k_at_once > end) here &= (1u << (end - at)) - 1;
     if (here != 0) return first - before + at + __ffs(static_cast<int>(here)) - 1;
   }
   return -1;
@@ -130,27 +146,28 @@ __device__ inline std::int64_t find_target(const std::int32_t* targets, std::int
 // in the processor's cache.
 constexpr int k_pair_threads = 512, k_nodes_per_block = 16;
 
-/// Puts into `own`, of each arc to a larger node and of its reverse, the shorter one. Of nodes out of the range it is
-/// enough to have the arcs that end within. \return those whose reverses are to be added, see AddedArcs
-__device__ unsigned pair_arcs_of(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node,
-                                 std::int64_t first, int count, std::uint64_t* own, const AddedArcs& added) {
+/// Makes of each arc to a larger node and its reverse the shorter one: nobody else looks at these two words. Of nodes
+/// out of the range it is enough to have the arcs that end within. \return those whose reverses are to be added, see
+/// AddedArcs
+__device__ unsigned pair_arcs_of(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node, std::int64_t row,
+                                 int begin, int end, const AddedArcs& added) {
   unsigned lacking = 0;
-  for (int i = threadIdx.x & 31; i < count; i += 32) {
-    const std::int64_t arc = first + i;
+  for (int i = begin + static_cast<int>(threadIdx.x & 31); i < end; i += 32) {
+    const std::int64_t arc = row + i;
     const std::int32_t target = rows.targets[arc];
     if (target <= node) continue;
-    const std::int64_t reverse = find_target(rows.targets, rows.firsts[target], rows.counts[target], node);
     const std::uint64_t word = rows.words[arc];
-    std::uint64_t kept = word;
+    const std::int64_t reverse = find_target(rows.targets, rows.firsts[target], rows.counts[target], node);
     if (reverse >= 0) {
       const std::uint64_t back = rows.words[reverse];
       const std::uint64_t length_there = back & packing.length_mask, length_here = word & packing.length_mask;
-      if (length_there < length_here) kept = packing.reversed(target, rows.back_sectors[reverse], back);
-      own[reverse] = length_here < length_there ? packing.reversed(node, rows.back_sectors[arc], word) : back;
+      if (length_there < length_here) rows.words[arc] = packing.reversed(target, rows.back_sectors[reverse], back);
+      if (length_here < length_there) rows.words[reverse] = packing.reversed(node, rows.back_sectors[arc], word);
+      added.note_seen(reverse);
     } else if (added.range.holds(target)) {
-      lacking |= 1u << i / 32;
+      lacking |= 1u << (i - begin) / 32;
     }
-    own[arc] = kept;
+    added.note_seen(arc);
   }
   return lacking;
 }
@@ -160,51 +177,67 @@ __device__ unsigned pair_arcs_of(const DeviceRows& rows, const ArcPacking& packi
 __device__ inline bool any_has_more(int begin, int count) { return __syncthreads_or(begin < count ? 1 : 0) != 0; }
 
 __global__ void __launch_bounds__(k_pair_threads)
-    pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t nodes, std::uint64_t* own, AddedArcs added) {
+    pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t nodes, AddedArcs added) {
   static_assert(k_nodes_per_block == k_pair_threads / 32);
   const std::int32_t node =
       static_cast<std::int32_t>(blockIdx.x) * k_nodes_per_block + static_cast<int>(threadIdx.x) / 32;
   const int count = node < nodes ? rows.counts[node] : 0;
   const std::int64_t row = count > 0 ? rows.firsts[node] : 0;
   for (int begin = 0; any_has_more(begin, count); begin += k_arcs_at_once) {
-    const unsigned lacking =
-        pair_arcs_of(rows, packing, node, row + begin, min(k_arcs_at_once, count - begin), own, added);
-    added.add(rows, packing, node, row + begin, lacking);
+    const unsigned lacking = pair_arcs_of(rows, packing, node, row, begin, min(begin + k_arcs_at_once, count), added);
+    added.add<1>(rows, packing, node, begin, lacking);
   }
 }
+
+constexpr int k_unpaired_rows_per_warp = 4;
 
 /// What has not been paired so far has no reverse.
-__global__ void find_unpaired(DeviceRows rows, ArcPacking packing, std::int32_t nodes, std::uint64_t* own,
-                              AddedArcs added) {
+__global__ void find_unpaired(DeviceRows rows, ArcPacking packing, std::int32_t nodes, AddedArcs added) {
+  constexpr int k_rows = k_unpaired_rows_per_warp, k_bits = 32 / k_rows;
   const int lane = threadIdx.x & 31;
-  const std::int32_t node =
+  const std::int32_t warp =
       static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
-  const int count = node < nodes ? rows.counts[node] : 0;
-  const std::int64_t row = count > 0 ? rows.firsts[node] : 0;
-  for (int begin = 0; any_has_more(begin, count); begin += k_arcs_at_once) {
-    const std::int64_t first = row + begin;
+  int counts[k_rows], most = 0;
+  for (int r = 0; r < k_rows; ++r) {
+    counts[r] = k_rows * warp + r < nodes ? rows.counts[k_rows * warp + r] : 0;
+    most = max(most, counts[r]);
+  }
+  for (int begin = 0; any_has_more(begin, most); begin += 32 * k_bits) {
     unsigned lacking = 0;
-    for (int i = lane; i < min(k_arcs_at_once, count - begin); i += 32) {
-      if (own[first + i] != k_unpaired) continue;
-      own[first + i] = rows.words[first + i];
-      if (added.range.holds(rows.targets[first + i])) lacking |= 1u << i / 32;
+    for (int r = 0; r < k_rows; ++r) {
+      const std::int64_t row = counts[r] > 0 ? rows.firsts[k_rows * warp + r] : 0;
+      for (int b = 0; b < k_bits && begin + 32 * b < counts[r]; ++b) {
+        const int i = begin + 32 * b + lane;
+        if (i < counts[r] && added.seen[row + i] == 0 && added.range.holds(rows.targets[row + i]))
+          lacking |= 1u << (k_bits * r + b);
+      }
     }
-    added.add(rows, packing, node, first, lacking);
+    added.add<k_rows>(rows, packing, k_rows * warp, begin, lacking);
   }
 }
 
-__global__ void add_counts(const std::int32_t* counts, const std::int32_t* added, IndexRange range,
-                           std::int64_t* totals, std::int64_t* added_totals) {
-  const auto row = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (row > range.count()) return;
-  totals[row] = row < range.count() ? counts[range.begin + row] + added[row] : 0;  // the scan's last becomes the sum
-  added_totals[row] = row < range.count() ? added[row] : 0;
-}
+/// Words of a row, or of all before it, and those of them that were added.
+struct RowSizes {
+  std::int64_t all, added;
+};
+struct AddSizes {
+  __host__ __device__ RowSizes operator()(const RowSizes& a, const RowSizes& b) const {
+    return {a.all + b.all, a.added + b.added};
+  }
+};
+/// Of the rows of a range, by number.
+struct SizesOfRows {
+  const std::int32_t *counts, *added;
+  IndexRange range;
+  __host__ __device__ RowSizes operator()(std::int32_t row) const {
+    if (row >= range.count()) return {0, 0};  // the sum's place
+    return {std::int64_t{counts[range.begin + row]} + added[row], added[row]};
+  }
+};
 
-__global__ void gather_added(const AddedArc* added, std::int64_t count, const std::int64_t* first,
-                             std::uint64_t* words) {
+__global__ void gather_added(const AddedArc* added, std::int64_t count, const RowSizes* before, std::uint64_t* words) {
   const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-  if (i < count) words[first[added[i].row] + added[i].number] = added[i].word;
+  if (i < count) words[before[added[i].row].added + added[i].number] = added[i].word;
 }
 
 __global__ void shift_offsets(std::int64_t* offsets, std::size_t count, std::int64_t by) {
@@ -212,15 +245,19 @@ __global__ void shift_offsets(std::int64_t* offsets, std::size_t count, std::int
   if (i < count) offsets[i] += by;
 }
 
-/// A row's own arcs in the processor's order, then those that were added, sorted.
-__global__ void write_rows(DeviceRows rows, IndexRange range, const std::uint64_t* own, const std::uint64_t* added,
-                           const std::int64_t* added_first, const std::int64_t* offsets, std::uint64_t* words) {
+/// A row's own arcs in the processor's order, then those that were added, sorted; and where each row begins, and the
+/// last ends.
+__global__ void write_rows(DeviceRows rows, IndexRange range, const std::uint64_t* added, const RowSizes* before,
+                           std::int64_t* offsets, std::uint64_t* words) {
   const int lane = threadIdx.x & 31;
   const std::int32_t row =
       static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
   if (row >= range.count()) return;
-  const std::int64_t first = rows.firsts[range.begin + row], to = offsets[row];
+  const RowSizes here = before[row], next = before[row + 1];
+  const std::int64_t first = rows.firsts[range.begin + row], to = here.all;
   const int count = rows.counts[range.begin + row];
+  if (lane == 0) offsets[row] = to;
+  if (lane == 1 && row + 1 == range.count()) offsets[row + 1] = next.all;
   constexpr int k_at_hand = 128;
   __shared__ std::uint64_t orders[k_rows_per_block][k_at_hand];
   const std::uint64_t* order = rows.order + first;
@@ -230,9 +267,9 @@ __global__ void write_rows(DeviceRows rows, IndexRange range, const std::uint64_
     order = near;
     __syncwarp();
   }
-  for (int i = lane; i < count; i += 32) words[to + place_in_order(order, count, i)] = own[first + i];
-  const std::uint64_t* const others = added + added_first[row];
-  const int other_count = static_cast<int>(added_first[row + 1] - added_first[row]);
+  for (int i = lane; i < count; i += 32) words[to + place_in_order(order, count, i)] = rows.words[first + i];
+  const std::uint64_t* const others = added + here.added;
+  const int other_count = static_cast<int>(next.added - here.added);
   for (int i = lane; i < other_count; i += 32) {
     int rank = 0;
     for (int j = 0; j < other_count; ++j) rank += others[j] < others[i];
@@ -259,6 +296,7 @@ class RowStore {
   void clear() {
     taken_.fill_bytes(0);
     counts_.fill_bytes(0);
+    wanted_ = k_unknown;
   }
   DeviceRows view() {
     return {firsts_.data(), counts_.data(), words_.data(), targets_.data(), back_sectors_.data(),
@@ -267,18 +305,11 @@ class RowStore {
   std::int32_t nodes() const { return nodes_; }
   std::int64_t room() const { return room_; }
   std::uint64_t target_mask() const { return target_mask_; }
-  /// Waits for the stream.
+  /// Of all rows. Waits for the stream, unless it is known.
   std::int64_t words_wanted() const {
-    unsigned long long taken = 0;
-    taken_.read({&taken, 1});
-    return static_cast<std::int64_t>(taken);
+    return wanted_ != k_unknown ? wanted_ : static_cast<std::int64_t>(taken_.value_at(0));
   }
-
-  void set_taken(std::int64_t words) {
-    const auto taken = static_cast<unsigned long long>(words);
-    copy(taken_.data(), &taken, 1);
-    check_cuda(cudaStreamSynchronize(stream_), "copying rows");
-  }
+  void note_wanted(std::int64_t words) { wanted_ = words; }
   /// For `room` words, of which `taken` are there.
   void make_room(std::int64_t taken, std::int64_t room) {
     if (room <= room_) return;
@@ -297,9 +328,8 @@ class RowStore {
   /// Adds rows that were found elsewhere.
   void append(const std::vector<std::int32_t>& nodes, const FoundRows& found) {
     const std::int64_t first = words_wanted();
-    const auto taken = static_cast<unsigned long long>(first) + found.word_count;
-    copy(taken_.data(), &taken, 1);
-    if (static_cast<std::int64_t>(taken) <= room_) {
+    wanted_ = first + static_cast<std::int64_t>(found.word_count);
+    if (wanted_ <= room_) {
       std::vector<std::int32_t> targets(found.word_count);
       for (std::size_t i = 0; i < targets.size(); ++i)
         targets[i] = static_cast<std::int32_t>(found.words[i] & target_mask_);
@@ -320,7 +350,8 @@ class RowStore {
   }
 
  private:
-  static constexpr std::int64_t k_read_beyond = 4;  ///< see find_target
+  static constexpr std::int64_t k_read_beyond = 8;  ///< see find_target
+  static constexpr std::int64_t k_unknown = -1;
 
   template <class Number>
   void copy(Number* to, const Number* from, std::size_t count) {
@@ -338,50 +369,44 @@ class RowStore {
   DeviceBuffer<std::uint8_t> back_sectors_;
   DeviceBuffer<std::uint64_t> order_;
   DeviceBuffer<unsigned long long> taken_;
+  std::int64_t wanted_ = k_unknown;
 };
 
-/// The arcs of a range of a graph's nodes in compressed rows, on the device.
+/// The arcs of a range of a graph's nodes in compressed rows, on the device. The rows are not what they were then.
 class DeviceUnion {
  public:
   DeviceUnion(const ArcPacking& packing, RowStore& rows, IndexRange range, cudaStream_t stream)
       : stream_(stream), range_(range), offsets_(static_cast<std::size_t>(range.count()) + 1, stream) {
+    if (range.count() == 0) {
+      offsets_.fill_bytes(0);
+      return;
+    }
     const std::int64_t found = rows.words_wanted();
-    const auto places = static_cast<std::size_t>(range.count()) + 1;
-    DeviceBuffer<std::uint64_t> own(static_cast<std::size_t>(found), stream);
-    DeviceBuffer<std::int32_t> added_counts(places, stream);
+    DeviceBuffer<std::int32_t> added_counts(static_cast<std::size_t>(range.count()), stream);
     DeviceBuffer<AddedArc> added(static_cast<std::size_t>(found), stream);
     DeviceBuffer<unsigned long long> added_count(1, stream);
-    DeviceBuffer<std::int64_t> totals(places, stream), added_totals(places, stream), added_first(places, stream);
-    own.fill_bytes(0xff);  // k_unpaired
+    DeviceBuffer<std::uint8_t> seen(static_cast<std::size_t>(found), stream);
     added_counts.fill_bytes(0);
     added_count.fill_bytes(0);
-    const AddedArcs adding{range, added_counts.data(), added.data(), added_count.data(), found};
+    seen.fill_bytes(0);
+    const AddedArcs adding{range, added_counts.data(), added.data(), added_count.data(), found, seen.data()};
     const auto pair_blocks = static_cast<unsigned>(rows.nodes() / k_nodes_per_block + 1);
-    pair_arcs<<<pair_blocks, k_pair_threads, 0, stream>>>(rows.view(), packing, rows.nodes(), own.data(), adding);
-    find_unpaired<<<row_blocks(rows.nodes()), k_block_threads, 0, stream>>>(rows.view(), packing, rows.nodes(),
-                                                                            own.data(), adding);
+    pair_arcs<<<pair_blocks, k_pair_threads, 0, stream>>>(rows.view(), packing, rows.nodes(), adding);
+    const unsigned unpaired_blocks = row_blocks(rows.nodes() / k_unpaired_rows_per_warp + 1);
+    find_unpaired<<<unpaired_blocks, k_block_threads, 0, stream>>>(rows.view(), packing, rows.nodes(), adding);
     check_cuda(cudaGetLastError(), "pairing arcs");
-    const auto place_blocks = static_cast<unsigned>(range.count() / k_block_threads + 1);
-    add_counts<<<place_blocks, k_block_threads, 0, stream>>>(rows.view().counts, added_counts.data(), range,
-                                                             totals.data(), added_totals.data());
-    check_cuda(cudaGetLastError(), "counting arcs");
-    add_up(totals, offsets_, stream);
-    add_up(added_totals, added_first, stream);
-    unsigned long long missing = 0;
-    check_cuda(cudaMemcpyAsync(&count_, offsets_.data() + range.count(), sizeof count_, cudaMemcpyDeviceToHost, stream),
-               "counting arcs");
-    added_count.read({&missing, 1});
+    const DeviceBuffer<RowSizes> before = sizes_before({rows.view().counts, added_counts.data(), range});
+    const RowSizes all = before.value_at(static_cast<std::size_t>(range.count()));
+    count_ = all.all;
     words_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(count_), stream);
-    DeviceBuffer<std::uint64_t> others(static_cast<std::size_t>(missing), stream);
-    if (missing > 0) {
-      const auto blocks = static_cast<unsigned>((missing + k_block_threads - 1) / k_block_threads);
-      gather_added<<<blocks, k_block_threads, 0, stream>>>(added.data(), static_cast<std::int64_t>(missing),
-                                                           added_first.data(), others.data());
+    DeviceBuffer<std::uint64_t> others(static_cast<std::size_t>(all.added), stream);
+    if (all.added > 0) {
+      const auto blocks = static_cast<unsigned>((all.added + k_block_threads - 1) / k_block_threads);
+      gather_added<<<blocks, k_block_threads, 0, stream>>>(added.data(), all.added, before.data(), others.data());
       check_cuda(cudaGetLastError(), "gathering reverses");
     }
-    if (range.count() == 0) return;
     write_rows<<<row_blocks(range.count()), k_block_threads, 0, stream>>>(
-        rows.view(), range, own.data(), others.data(), added_first.data(), offsets_.data(), words_.data());
+        rows.view(), range, others.data(), before.data(), offsets_.data(), words_.data());
     check_cuda(cudaGetLastError(), "writing rows");
   }
 
@@ -401,6 +426,17 @@ class DeviceUnion {
  private:
   static unsigned row_blocks(std::int32_t rows) {
     return static_cast<unsigned>((rows + k_rows_per_block - 1) / k_rows_per_block);
+  }
+
+  /// Of all rows before each, and before the end.
+  DeviceBuffer<RowSizes> sizes_before(const SizesOfRows& sizes) const {
+    DeviceBuffer<RowSizes> before(static_cast<std::size_t>(sizes.range.count()) + 1, stream_);
+    const auto all = thrust::make_transform_iterator(thrust::counting_iterator<std::int32_t>(0), sizes);
+    with_scratch(stream_, "adding up arcs", [&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceScan::ExclusiveScan(scratch, bytes, all, before.data(), AddSizes{}, RowSizes{0, 0},
+                                            static_cast<int>(before.size()), stream_);
+    });
+    return before;
   }
 
   cudaStream_t stream_;

@@ -14,7 +14,7 @@
 namespace saddleback {
 namespace {
 
-constexpr std::uint32_t k_no_key = 0xffffffffu;
+constexpr std::uint32_t k_no_key = 0xffffffffu, k_never_a_key = 0x80000000u;
 constexpr std::int32_t k_unreached_label = 0x7f800000;
 
 /// What is known of a node by its entry of the table: whose it is among the sources, and whether it is a saddle.
@@ -27,6 +27,7 @@ struct DiskKey {
   SADDLEBACK_STEP static std::int32_t node(std::uint32_t key) {
     return static_cast<std::int32_t>((key & k_node) / Seats);
   }
+  SADDLEBACK_STEP static int seat(std::uint32_t key) { return static_cast<int>((key & k_node) % Seats); }
   SADDLEBACK_STEP static bool is_saddle(std::uint32_t key) { return (key & k_saddle) != 0; }
 };
 
@@ -37,6 +38,9 @@ struct alignas(8) Neighbour {
   static constexpr std::uint32_t k_none = 0xffffffffu, k_link = 1u << 31;
   std::uint32_t key;  ///< DiskKey, k_none, or k_link and a block
   float length;
+
+  SADDLEBACK_STEP bool is_node() const { return (key & k_link) == 0; }
+  SADDLEBACK_STEP bool goes_on() const { return !is_node() & (key != k_none); }
 };
 
 /// The mesh in device memory.

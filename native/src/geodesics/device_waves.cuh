@@ -61,24 +61,26 @@ class WarpWaves {
         pool_(pool),
         edges_(edges),
         disk_(mesh, table),
-        draft_(draft),
+        draft_(reinterpret_cast<char*>(draft)),
         lane_(threadIdx.x & 31),
-        below_((1u << lane_) - 1) {}
+        below_((1u << lane_) - 1) {
+    asm("" : "+l"(draft_));  // lest it be computed again for each arc
+  }
 
   SADDLEBACK_STEP void begin(const WarpSources& sources) {
     sources_ = sources;
     arcs_ = generation_ = turns_ = windows_ = 0;
     begin_ = count_ = 0;
-    overflow_ = false;
+    overflow_ = 0;
     disk_.clear();
     const int seat = lane_ / k_lanes_per_seat, first = lane_ % k_lanes_per_seat;
     const bool has_source = seat < sources.count;
     const std::int32_t node = sources.node + (has_source ? seat : 0);
     const std::int32_t e = mesh_.first[node], count = has_source ? mesh_.first[node + 1] - e : 0;
-    if (count > static_cast<int>(Pool::Links::k_most_edges)) overflow_ = true;
+    if (count > static_cast<int>(Pool::Links::k_most_edges)) overflow_ = 1;
     const bool at_centre = has_source && first == 0;
     const int centre = disk_.insert(at_centre, Key::pack(node, seat, mesh_.saddles[node] != 0));
-    if (at_centre) disk_.lower(centre, label_of(0, false), false);
+    disk_.lower(at_centre, centre, label_of(0, false), false);
     for (int edge = first; __any_sync(k_warp, edge < count) && !overflowed(); edge += k_lanes_per_seat)
       add_edges(seat, edge, e + edge, edge < count);
     links_ = arcs_;
@@ -90,18 +92,21 @@ class WarpWaves {
       const int all = uniform(count_);
       if (all == 0 && !All) break;
       windows_ += all;
-      if (windows_ > k_most_windows / k_batch) overflow_ = true;  // the processor may stop there
+      if (windows_ > k_most_windows / k_batch) overflow_ = 1;  // the processor may stop there
       arcs_before_ = arcs_;
       lights_ = 0;
       for (int base = 0; base < all; base += 32) sight(base, all);
+      if (lights_ > Pool::Lights) overflow_ = 1;
       __syncwarp();
       if (overflowed()) break;
       const bool smaller = bend(all == 0);
       if (all == 0 && !smaller) break;
       count_ = 0;
       const int lights = uniform(lights_);
+      heirs_ = place_of(all);
       for (int base = 0; base < lights; base += 32) pass_on(base, lights, all);
-      begin_ = place_of(all);
+      __syncwarp();
+      begin_ = heirs_;
       if (++turns_ == Pool::Links::k_most_turns) turns_ = renumber(&pool_, begin_, min(count_, k_windows));
     }
     return !overflowed();
@@ -109,7 +114,7 @@ class WarpWaves {
 
   SADDLEBACK_STEP const WarpSources& sources() const { return sources_; }
   SADDLEBACK_STEP const WarpDisk<Table, Seats>& disk() const { return disk_; }
-  SADDLEBACK_STEP const Sighting* draft() const { return draft_; }
+  SADDLEBACK_STEP const Sighting* draft() const { return reinterpret_cast<const Sighting*>(draft_); }
   SADDLEBACK_STEP int arcs() const { return arcs_; }
   SADDLEBACK_STEP int links() const { return links_; }
 
@@ -118,15 +123,21 @@ class WarpWaves {
   using Ray = WindowRay<All>;
   using Key = DiskKey<Seats>;
 
-  SADDLEBACK_STEP bool overflowed() { return __any_sync(k_warp, overflow_ || disk_.overflowed()); }
+  SADDLEBACK_STEP bool overflowed() {
+    return arcs_ > k_draft_room || __any_sync(k_warp, overflow_ != 0 || disk_.overflowed());
+  }
   SADDLEBACK_STEP int rank(unsigned lanes) const { return __popc(lanes & below_); }
-  /// Of the generation's windows, and behind them of their children.
-  SADDLEBACK_STEP int place_of(int number) const {
-    const auto place = static_cast<unsigned>(begin_ + number);
+  SADDLEBACK_STEP static int in_ring(int number) {
+    const auto place = static_cast<unsigned>(number);
     return static_cast<int>(min(place, place - k_windows));
   }
+  /// Of the generation's windows, and behind them of their children.
+  SADDLEBACK_STEP int place_of(int number) const { return in_ring(begin_ + number); }
 
-  SADDLEBACK_STEP void put_arc(int number, const Sighting& seen) { draft_[min(number, k_draft_room - 1)] = seen; }
+  SADDLEBACK_STEP void put_arc(int number, const Sighting& seen) {
+    const auto at = static_cast<std::uint32_t>(min(number, k_draft_room - 1)) * std::uint64_t{sizeof seen};
+    *reinterpret_cast<Sighting*>(draft_ + at) = seen;
+  }
 
   /// Links and first windows of the sources' edges, one a lane.
   SADDLEBACK_STEP void add_edges(int seat, int edge, std::int32_t e, bool active) {
@@ -140,21 +151,17 @@ class WarpWaves {
     const int number = arcs_ + rank(actives) + rank(boundaries), root = RootEdge::pack(seat, edge);
     const double2 corner{record.a * length, record.b * length};
     const double other = norm_of(corner.x, corner.y);
-    if (active) {
-      const std::int32_t label = label_of(static_cast<float>(length), true);
-      disk_.lower(to, label, true);
-      put_arc(number, {{length, 0}, {0, 0}, 0, 0, Sighting::pack(root, to), label});
-      if (boundary) {
-        const std::int32_t far = label_of(static_cast<float>(other), true);
-        disk_.lower(apex, far, true);
-        put_arc(number + 1, {{other, 0}, {0, 0}, 1, 0, Sighting::pack(root, apex), far});
-      }
-    }
+    const std::int32_t near_label = label_of(static_cast<float>(length), true);
+    const std::int32_t far_label = label_of(static_cast<float>(other), true);
+    disk_.lower(active, to, near_label, true);
+    disk_.lower(boundary, apex, far_label, true);
+    if (active) put_arc(number, {{length, 0}, {0, 0}, 0, 0, Sighting::pack(root, to), near_label});
+    if (boundary) put_arc(number + 1, {{other, 0}, {0, 0}, 1, 0, Sighting::pack(root, apex), far_label});
     const bool opens = active && record.right >= 0;
     const unsigned opening = __ballot_sync(k_warp, opens);
     const int opened = __popc(opening);
     if (count_ + opened > k_windows) {
-      overflow_ = true;
+      overflow_ = 1;
     } else if (opens) {
       const int place = count_ + rank(opening);
       pool_.ends[0][place] = corner;
@@ -167,7 +174,7 @@ class WarpWaves {
       pool_.links[place] = links;
     }
     count_ += opened;
-    count_arcs(__popc(actives) + __popc(boundaries));
+    arcs_ += __popc(actives) + __popc(boundaries);
     __syncwarp();
   }
 
@@ -184,23 +191,18 @@ class WarpWaves {
     }
   }
 
-  SADDLEBACK_STEP void count_arcs(int more) {
-    arcs_ += more;
-    if (arcs_ > k_draft_room) overflow_ = true;
-  }
-
   /// 32 windows of the generation look at their apexes, lower the labels, and list their sides that are lit. Lanes
-  /// without a window do what the first does, and write nothing.
+  /// without a window do what the last does, and write nothing.
   SADDLEBACK_STEP void sight(int base, int all) {
     const bool active = base + lane_ < all;
-    const int number = active ? base + lane_ : base;
+    const int number = min(base + lane_, all - 1);
     const int place = place_of(number);
     const Links links = pool_.links[place];
     const EdgeRecord record = mesh_.records[links.edge];
     const double2 from = pool_.ends[0][place], to = pool_.ends[1][place];
     const Ray left = pool_.rays[0][place], right = pool_.rays[1][place];
     const int root = links.root();
-    const auto claim = disk_.claim(active, apex_key(record, RootEdge::seat(root)));
+    const auto claim = disk_.claim(active, apex_key(record, Seats > 1 ? RootEdge::seat(root) : 0));
     const double2 apex = apex_of(record, from, to);
     Rays rays{right.x, right.y, left.x, left.y, 0, 0};
     if constexpr (!All) {
@@ -217,15 +219,15 @@ class WarpWaves {
     }
     const int slot = disk_.settle(claim);
     const std::int32_t label = label_of(view.reach, direct);
-    __syncwarp();  // nobody looks at the first window any more
+    __syncwarp();  // nobody looks at the last window any more
     if (active) {
       links.note_apex(pool_.links[place], slot);
       if constexpr (!All) {
         pool_.apexes[place] = apex;
         pool_.ways[place] = way;
       }
-      if (view.in_sight) disk_.lower(slot, label, !direct || (record.clearances & k_saddle_bit) != 0);
     }
+    disk_.lower(active & view.in_sight, slot, label, !direct | ((record.clearances & k_saddle_bit) != 0));
     const bool makes = active & direct;
     const unsigned making = __ballot_sync(k_warp, makes);
     if (makes) {
@@ -233,10 +235,10 @@ class WarpWaves {
       const std::int32_t mark = number == arcs_before_ ? Sighting::k_begins : 0;
       put_arc(number, {apex, from, links.edge, links.turns(), Sighting::pack(root, slot), label | mark});
     }
-    count_arcs(__popc(making));
+    arcs_ += __popc(making);
     const float tolerance = k_on_ray * view.reach;
-    list_lights(number, active & (record.left >= 0) & (tolerance < view.to_left),
-                active & (record.right >= 0) & (tolerance < view.from_right));
+    list_lights(number, active && record.left >= 0 && tolerance < view.to_left,
+                active && record.right >= 0 && tolerance < view.from_right);
   }
 
   SADDLEBACK_STEP static double2 apex_of(const EdgeRecord& record, const double2& from, const double2& to) {
@@ -263,12 +265,9 @@ class WarpWaves {
     const unsigned lefts = __ballot_sync(k_warp, left), rights = __ballot_sync(k_warp, right);
     const int at = lights_ + rank(lefts) + rank(rights);
     lights_ += __popc(lefts) + __popc(rights);
-    if (lights_ > Pool::Lights) {
-      overflow_ = true;
-      return;
-    }
-    if (left) pool_.lights[at] = static_cast<std::uint16_t>(number);
-    if (right) pool_.lights[at + (left ? 1 : 0)] = static_cast<std::uint16_t>(number | Light::k_right);
+    const bool fits = lights_ <= Pool::Lights;
+    if (fits && left) pool_.lights[at] = static_cast<std::uint16_t>(number);
+    if (fits && right) pool_.lights[at + (left ? 1 : 0)] = static_cast<std::uint16_t>(number | Light::k_right);
   }
 
   /// Every few generations, and when no window is left until the disk becomes no smaller. \return whether it did
@@ -286,15 +285,15 @@ class WarpWaves {
   /// In creases fewer than k vertices are in sight: no radius would ever end the windows there.
   SADDLEBACK_STEP void bound_by_edges() {
     const float radius = radius_by_edges(mesh_.neighbours, mesh_.k, &table_, edges_);
-    if (radius < 0) overflow_ = true;
+    if (radius < 0) overflow_ = 1;
     disk_.lower_radius(max(radius, 0.0f));
   }
 
-  /// The light on 32 sides becomes windows of the next generation. Lanes without one do what the first does, and write
+  /// The light on 32 sides becomes windows of the next generation. Lanes without one do what the last does, and write
   /// nothing.
   SADDLEBACK_STEP void pass_on(int base, int lights, int all) {
     const bool active = base + lane_ < lights;
-    const int light = pool_.lights[active ? base + lane_ : base];
+    const int light = pool_.lights[min(base + lane_, lights - 1)];
     const int number = light & Light::k_number, place = place_of(number), s = light / Light::k_right & 1;
     const Links links = pool_.links[place];
     const EdgeRecord record = mesh_.records[links.edge];
@@ -311,7 +310,7 @@ class WarpWaves {
       apex = pool_.apexes[place];
     }
     // Right sides are seen in a mirror.
-    const float flip = s == 0 ? 1 : -1;
+    const float flip = s == 0 ? 1.0f : -1.0f;
     const float apex_x = static_cast<float>(apex.x), apex_y = flip * static_cast<float>(apex.y);
     const float from_x = static_cast<float>(from.x), from_y = flip * static_cast<float>(from.y);
     const float to_x = static_cast<float>(to.x), to_y = flip * static_cast<float>(to.y);
@@ -356,12 +355,12 @@ class WarpWaves {
 
     const unsigned keeping = __ballot_sync(k_warp, keep);
     // Children lie behind the generation. Of it those before the last that was looked at are not needed any more.
-    const int behind = all + count_ + rank(keeping), first_needed = __shfl_sync(k_warp, number, 31);
+    const int behind = count_ + rank(keeping), first_needed = __shfl_sync(k_warp, number, 31);
     count_ += __popc(keeping);
-    if (all + count_ - k_windows > (base + 32 < lights ? first_needed : all)) overflow_ = true;
+    if (all + count_ - k_windows > (base + 32 < lights ? first_needed : all)) overflow_ = 1;
     __syncwarp();  // nobody looks at the windows any more
-    if (keep & !overflow_) {
-      const int heir = place_of(behind < k_windows ? behind : behind - k_windows);
+    if (keep && overflow_ == 0) {
+      const int heir = in_ring(heirs_ + behind);
       pool_.ends[s][heir] = near;
       pool_.ends[1 - s][heir] = apex;
       pool_.rays[s][heir] = near_ray;
@@ -370,7 +369,6 @@ class WarpWaves {
       set_most(child_links, heir, most);
       pool_.links[heir] = child_links;
     }
-    __syncwarp();
   }
 
   const DeviceMesh& mesh_;
@@ -378,17 +376,18 @@ class WarpWaves {
   Pool& pool_;
   Edges* edges_;  ///< where disks end by count
   WarpDisk<Table, Seats> disk_;
-  Sighting* draft_;
+  char* draft_;  ///< Sightings
   int lane_;
   unsigned below_;  ///< lanes before this one
   WarpSources sources_{0, 0};
   int begin_ = 0;  ///< place of the generation's first window
+  int heirs_ = 0;  ///< and of the next one's
   int count_ = 0;  ///< windows of the generation that is being made
   int lights_ = 0;
   int turns_ = 0;  ///< bits of the windows' turns
   int arcs_ = 0, links_ = 0, generation_ = 0, windows_ = 0;
   int arcs_before_ = 0;  ///< this generation
-  bool overflow_ = false;
+  int overflow_ = 0;     ///< whether there is too little room
 };
 
 }  // namespace
