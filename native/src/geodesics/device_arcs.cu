@@ -75,13 +75,30 @@ struct Work {
   std::int32_t* failures;  ///< their number
 };
 
-/// Global memory of all warps.
+/// Global memory of all warps, which are at so many places, in one piece.
 template <class Room>
 struct Scratch {
-  typename Room::Table* tables;
-  typename Room::Pool* pools;
-  EdgeDistances<Room::Table::Slots>* edges;  ///< where disks end by count
+  using Table = typename Room::Table;
+  using Pool = typename Room::Pool;
+  using Edges = EdgeDistances<Table::Slots>;
+  Table* tables;
+  Pool* pools;
+  Edges* edges;  ///< where disks end by count
   Sighting* drafts;
+
+  static std::size_t bytes(std::size_t places) { return places * (k_tables + k_pools + k_edges + k_drafts); }
+  Scratch(char* memory, std::size_t places)
+      : tables(reinterpret_cast<Table*>(memory)),
+        pools(reinterpret_cast<Pool*>(memory + places * k_tables)),
+        edges(reinterpret_cast<Edges*>(memory + places * (k_tables + k_pools))),
+        drafts(reinterpret_cast<Sighting*>(memory + places * (k_tables + k_pools + k_edges))) {}
+
+ private:
+  static constexpr std::size_t k_tables = Room::table_is_shared ? 0 : sizeof(Table);
+  static constexpr std::size_t k_pools = Room::pool_is_shared ? 0 : sizeof(Pool);
+  static constexpr std::size_t k_edges = Table::All ? sizeof(Edges) : 0;
+  static constexpr std::size_t k_drafts = sizeof(Sighting) * Table::Draft;
+  static_assert((k_tables | k_pools | k_edges | k_drafts) % 16 == 0);
 };
 
 /// Warps that have nothing in common but the memory that they divide among themselves.
@@ -154,12 +171,14 @@ class ArcFinder {
         part_(part),
         caller_(caller),
         stream_(stream),
-        tables_(request, stream, choose_packing),
         failed_{DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream),
                 DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream)},
         tally_(1, stream),
         fails_(1, stream),
-        rows_(request.node_count, first_guess(request, part.nodes), packing().target_mask, stream) {
+        rows_(request.node_count, first_guess(request, part.nodes), stream),
+        scratch_(first_scratch(), stream),
+        tables_(request, stream, choose_packing) {
+    rows_.set_target_mask(packing().target_mask);
     fails_.fill_bytes(0);
     look_for_extremes<<<256, 256, 0, stream>>>(tables_.mesh().lengths, request.edge_count, fails_.data());
     check_cuda(cudaGetLastError(), "looking at edges");
@@ -172,17 +191,25 @@ class ArcFinder {
     passes_ = 0;
     request_.k > 0 ? start_passes<true>() : start_passes<false>();
   }
-  /// Waits for the stream.
-  void finish(DeviceTimes& times) {
-    while (true) {
-      request_.k > 0 ? finish_passes<true>(times) : finish_passes<false>(times);
+  /// Waits for the stream. \return whether there was more to do than what was started
+  bool finish(DeviceTimes& times) {
+    for (bool more = false;; more = true) {
+      more |= request_.k > 0 ? finish_passes<true>(times) : finish_passes<false>(times);
       const std::int64_t wanted = rows_.words_wanted();
-      if (wanted <= rows_.room()) return;
-      rows_ = RowStore(request_.node_count, wanted + wanted / 16, packing().target_mask, stream_);
+      if (wanted <= rows_.room()) return more;
+      rows_ = RowStore(request_.node_count, wanted + wanted / 16, stream_);
+      rows_.set_target_mask(packing().target_mask);
       start();
     }
   }
   RowStore& rows() { return rows_; }
+  /// While they are being found.
+  DeviceRows rows_in_making() {
+    DeviceRows rows = rows_.view();
+    rows.taken = &tally_.data()->words;
+    rows.left = tally_.data()->failed + (passes_ - 1);
+    return rows;
+  }
   const ArcPacking& packing() const { return tables_.mesh().packing; }
 
  private:
@@ -206,13 +233,15 @@ class ArcFinder {
     }
     find_in<WideRoom<All>>(all);
   }
+  /// \return whether sources were left
   template <bool All>
-  void finish_passes(DeviceTimes& times) {
+  bool finish_passes(DeviceTimes& times) {
     Tally tally = finished();
     const auto left = [&] { return tally.failed[passes_ - 1]; };
     times.second_pass = tally.failed[0];
     times.by_processor = 0;
-    if (left() > 0) {
+    const bool any_left = left() > 0;
+    if (any_left) {
       find_in<HugeRoom<All>>(left());
       tally = finished();
     }
@@ -222,6 +251,7 @@ class ArcFinder {
     }
     rows_.note_wanted(static_cast<std::int64_t>(tally.words));
     if (left() > 0) find_rest(left(), failed_[(passes_ - 1) % 2], times);
+    return any_left;
   }
 
   /// By the processor. What ends the windows of one node there may be those of others of its batch: all have to be
@@ -247,11 +277,14 @@ class ArcFinder {
   bool is_small() const { return request_.k > 0 ? request_.k <= 50 : request_.excess >= 3e-3; }
   bool is_middle() const { return request_.k <= 110; }
 
-  /// A pass. Of all nodes or, from the second on, those that failed in the one before: `most` at most, so that no more
-  /// warps get memory than find work, and few are spread over all processors.
+  /// How the warps of a pass are spread over the device.
+  struct Spread {
+    int blocks, warps;
+    std::size_t shared;  ///< bytes of a block
+    std::size_t places() const { return static_cast<std::size_t>(blocks) * warps; }
+  };
   template <class Room>
-  void find_in(std::int32_t most) {
-    const std::size_t pass = passes_++;
+  Spread spread_of(std::int32_t most) const {
     const auto kernel = find_arcs<Room>;
     const void* const code = reinterpret_cast<const void*>(kernel);
     const int most_warps = warps_of_block(Room::warp_bytes, Room::Warps);
@@ -265,19 +298,36 @@ class ArcFinder {
     constexpr int k_carveout = Room::pool_is_shared ? 100 : 75;
     check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, k_carveout),
                "asking for shared memory");
-    const std::int32_t all = part_.nodes.count();
     int blocks = std::min(blocks_of(code, 32 * warps, shared), (most / Room::Seats + warps) / warps);
     if (!Room::table_is_shared) blocks = std::min(blocks, k_most_in_last / warps);
-    const auto places = static_cast<std::size_t>(blocks) * warps;
-    DeviceBuffer<Sighting> drafts(places * Room::Table::Draft, stream_);
-    DeviceBuffer<typename Room::Table> tables(Room::table_is_shared ? 0 : places, stream_);
-    DeviceBuffer<typename Room::Pool> pools(Room::pool_is_shared ? 0 : places, stream_);
-    DeviceBuffer<EdgeDistances<Room::Table::Slots>> edges(Room::Table::All ? places : 0, stream_);
+    return {blocks, warps, shared};
+  }
+
+  /// Bytes that the passes take which are started at first.
+  std::size_t first_scratch() const { return request_.k > 0 ? first_scratch_of<true>() : first_scratch_of<false>(); }
+  template <bool All>
+  std::size_t first_scratch_of() const {
+    const std::int32_t all = part_.nodes.count();
+    const std::size_t wide = Scratch<WideRoom<All>>::bytes(spread_of<WideRoom<All>>(all).places());
+    if (is_small()) return std::max(wide, Scratch<SmallRoom<All>>::bytes(spread_of<SmallRoom<All>>(all).places()));
+    if (is_middle()) return std::max(wide, Scratch<MiddleRoom<All>>::bytes(spread_of<MiddleRoom<All>>(all).places()));
+    return wide;
+  }
+
+  /// A pass. Of all nodes or, from the second on, those that failed in the one before: `most` at most, so that no more
+  /// warps get memory than find work, and few are spread over all processors.
+  template <class Room>
+  void find_in(std::int32_t most) {
+    const std::size_t pass = passes_++;
+    const Spread spread = spread_of<Room>(most);
+    const std::size_t bytes = Scratch<Room>::bytes(spread.places());
+    if (scratch_.size() < bytes) scratch_ = DeviceBuffer<char>(bytes, stream_);
+    const Scratch<Room> scratch(scratch_.data(), spread.places());
+    const std::int32_t all = part_.nodes.count();
     const std::int32_t launches = (all - 1) / k_sources_per_launch + 1;
     const std::int32_t at_once = (all / launches / Room::Seats + 1) * Room::Seats;
     Tally* const tally = tally_.data();
-    DeviceRows rows = rows_.view();
-    rows.taken = &tally->words;
+    const DeviceRows rows = rows_in_making();
     for (std::int32_t begin = 0; begin < all; begin += at_once) {
       if (begin > 0)
         check_cuda(cudaMemsetAsync(tally->begun, 0, sizeof tally->begun, stream_), "starting at the first source");
@@ -294,8 +344,8 @@ class ArcFinder {
         work.nodes = failed_[1 - pass % 2].data();
         work.listed = tally->failed + pass - 1;
       }
-      kernel<<<blocks, 32 * warps, shared, stream_>>>(tables_.mesh(), work,
-                                                      {tables.data(), pools.data(), edges.data(), drafts.data()}, rows);
+      find_arcs<Room>
+          <<<spread.blocks, 32 * spread.warps, spread.shared, stream_>>>(tables_.mesh(), work, scratch, rows);
       check_cuda(cudaGetLastError(), "finding arcs");
       if (pass > 0) break;
       if (launches > 1) wait();
@@ -362,11 +412,12 @@ class ArcFinder {
   Part part_;
   TeamCaller<ArcTwinCaller>& caller_;
   cudaStream_t stream_;
-  MeshTables tables_;
   DeviceBuffer<std::int32_t> failed_[2];  ///< nodes that failed in passes of even and of odd number
   DeviceBuffer<Tally> tally_;
   DeviceBuffer<int> fails_;  ///< whether all sources do: there are extremes, or the caller asked to stop
   RowStore rows_;
+  DeviceBuffer<char> scratch_;     ///< of the pass that is running
+  MeshTables tables_;              ///< the last to be made: meanwhile nothing waits for memory any more
   std::size_t passes_ = 0;         ///< that were started
   std::int32_t begun_before_ = 0;  ///< sources, by launches of the first pass before the last
   double done_ = 0;                ///< share of the sources, as far as is known
@@ -375,8 +426,8 @@ class ArcFinder {
 /// What a build takes at most of a device that has these nodes, in bytes.
 std::uint64_t bytes_needed(const ArcTwinRequest& r, IndexRange range) {
   const auto words = static_cast<std::uint64_t>(first_guess(r, range));
-  constexpr std::uint64_t k_row_word = 8 + 4 + 1 + 8;  // see DeviceRows
-  constexpr std::uint64_t k_union_word = sizeof(AddedArc) + 1 + 8, k_drafts = std::uint64_t{160} << 20;
+  constexpr std::uint64_t k_row_word = 8 + 4 + 1 + 4;  // see DeviceRows
+  constexpr std::uint64_t k_union_word = (sizeof(AddedArc) + 8) / 4 + 1 + 8, k_drafts = std::uint64_t{160} << 20;
   return MeshTables::bytes_needed(r) + static_cast<std::uint64_t>(r.node_count) * 48 +
          words * (k_row_word + k_union_word) + k_drafts;
 }
@@ -416,15 +467,29 @@ class Builder {
     DeviceTimes& times = times_[at];
     const Stream& stream = streams_[at].emplace();
     Stopwatch watch(stream);
+    DeviceUnion arcs(request_.node_count, mine.nodes, first_guess(request_, mine.nodes), stream);
     ArcFinder finder(request_, mine, caller_, stream, [&] { return packing(mine.member); });
     watch.end();
-    finder.start();  // behind what the device is still at
+    // The device is told of what comes next while it is at what came before.
+    finder.start();
     times.upload = watch.read();
-    finder.finish(times);
-    times.find = watch.lap();
+    watch.end();
+    Stopwatch uniting(stream);
+    const bool is_alone = team_.members() == 1;
+    if (is_alone) arcs.unite(finder.packing(), finder.rows_in_making());
+    uniting.end();
+    const bool found_more = finder.finish(times);
+    if (found_more) watch.end();
+    times.find = watch.read();
+    if (found_more || !is_alone) uniting.start();
     exchange(mine, finder.rows(), stream);
-    DeviceUnion arcs(finder.packing(), finder.rows(), mine.nodes, stream);
-    times.unite = watch.lap();
+    if (found_more || !is_alone) arcs.unite(finder.packing(), finder.rows().view());
+    if (!arcs.fits()) {
+      arcs.make_room();
+      arcs.unite(finder.packing(), finder.rows().view());
+    }
+    uniting.end();
+    times.unite = uniting.read();
     caller_.report(mine.member, Share::unite);
     counts_[at] = arcs.count();
     team_.meet();

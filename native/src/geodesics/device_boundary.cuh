@@ -53,7 +53,8 @@ inline ChosenRows rows_across(RowStore& rows, IndexRange nodes, IndexRange ends,
   constexpr std::int64_t k_first_guess = 16;  // of as many one: ranges are compact
   const auto blocks = static_cast<unsigned>((nodes.count() + k_rows_per_block - 1) / k_rows_per_block);
   for (std::int64_t room = rows.room() / k_first_guess + 1;;) {
-    RowStore chosen(rows.nodes(), room, rows.target_mask(), stream);
+    RowStore chosen(rows.nodes(), room, stream);
+    chosen.set_target_mask(rows.target_mask());
     chosen.clear();
     if (blocks > 0) select_arcs<<<blocks, k_block_threads, 0, stream>>>(rows.view(), nodes, ends, chosen.view());
     check_cuda(cudaGetLastError(), "choosing arcs");

@@ -87,7 +87,7 @@ class RowWriter {
   }
 
   SADDLEBACK_STEP static std::int32_t label_of(const Sighting& seen) { return seen.label & ~Sighting::k_begins; }
-  SADDLEBACK_STEP static std::uint64_t order_of(const Sighting& seen) {
+  SADDLEBACK_STEP static std::uint32_t order_of(const Sighting& seen) {
     return order_in_generation(seen.turns, RootEdge::edge(seen.root()));
   }
 
@@ -154,7 +154,7 @@ class RowWriter {
   struct Chosen {
     Sighting seen;
     bool is_window;
-    std::uint64_t order;
+    std::uint32_t order;
     std::int32_t target;
     float leaving, back, per_radian, per_radian_back;
   };
@@ -170,7 +170,7 @@ class RowWriter {
     const int kept = best_.kept[seat][seat == 0 ? i : i - count], number = kept & (k_first_kept - 1);
     const Sighting seen = waves_.draft()[number];
     const std::int32_t root = (seat == 0 ? sources[0].first : sources[1].first) + RootEdge::edge(seen.root());
-    const std::uint64_t order = order_of(seen) | ((kept & k_first_kept) != 0 ? k_new_generation : 0);
+    const std::uint32_t order = order_of(seen) | ((kept & k_first_kept) != 0 ? k_new_generation : 0);
     Chosen arc{seen, number >= waves_.links(), order, waves_.disk().node(seen.slot()), 256, 0, 0, 0};
     if (arc.is_window) {
       arc.leaving = mesh_.sectors[root];

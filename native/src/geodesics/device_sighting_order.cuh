@@ -14,18 +14,21 @@
 namespace saddleback {
 namespace {
 
+/// A source's half-edges, and generations between one numbering of the windows and the next, have so many at most.
+constexpr int k_root_edge_bits = 12, k_most_turns = 31 - k_root_edge_bits;
+
 /// Which of a generation's sightings, all of one source, comes first: that with the lower number.
-SADDLEBACK_HOST_DEVICE inline std::uint64_t order_in_generation(std::uint32_t turns, int root_edge) {
-  return static_cast<std::uint64_t>(turns) << 15 | static_cast<std::uint64_t>(root_edge);
+SADDLEBACK_HOST_DEVICE inline std::uint32_t order_in_generation(std::uint32_t turns, int root_edge) {
+  return turns << k_root_edge_bits | static_cast<std::uint32_t>(root_edge);
 }
 
 /// Set in the first of a row that are of a generation.
-constexpr std::uint64_t k_new_generation = std::uint64_t{1} << 63;
+constexpr std::uint32_t k_new_generation = std::uint32_t{1} << 31;
 
 /// Where the `i`-th of `count` in a row comes in the processor's order; that of generations is theirs already.
-__device__ inline int place_in_order(const std::uint64_t* order, int count, int i) {
+__device__ inline int place_in_order(const std::uint32_t* order, int count, int i) {
   const auto rank_of = [&](int j) { return order[j] & ~k_new_generation; };
-  const std::uint64_t own = rank_of(i);
+  const std::uint32_t own = rank_of(i);
   int place = i;
   for (int j = i; j > 0 && (order[j] & k_new_generation) == 0; --j) place -= own < rank_of(j - 1) ? 1 : 0;
   for (int j = i + 1; j < count && (order[j] & k_new_generation) == 0; ++j) place += rank_of(j) < own ? 1 : 0;

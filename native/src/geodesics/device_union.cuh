@@ -33,11 +33,14 @@ struct DeviceRows {
   std::uint64_t* words;
   std::int32_t* targets;  ///< of the words, to search in
   std::uint8_t* back_sectors;
-  std::uint64_t* order;  ///< in the generation, of the word's sighting; see k_new_generation
+  std::uint32_t* order;  ///< in the generation, of the word's sighting; see k_new_generation
   unsigned long long* taken;
   std::int64_t room;
   std::uint64_t target_mask;
+  const std::int32_t* left = nullptr;  ///< nodes whose rows are still to be found; null: none
 
+  /// Whether all were found, and there was room for them.
+  __device__ bool are_there() const { return (!left || *left == 0) && static_cast<std::int64_t>(*taken) <= room; }
   /// Place for words, of one row or several. By all lanes of a warp.
   __device__ RowPlace reserve(int count) const {
     unsigned long long first = 0;
@@ -49,7 +52,7 @@ struct DeviceRows {
     firsts[node] = first;
     counts[node] = count;
   }
-  __device__ void put(std::int64_t at, std::uint64_t word, std::uint8_t back_sector, std::uint64_t place) const {
+  __device__ void put(std::int64_t at, std::uint64_t word, std::uint8_t back_sector, std::uint32_t place) const {
     words[at] = word;
     targets[at] = static_cast<std::int32_t>(word & target_mask);
     back_sectors[at] = back_sector;
@@ -179,6 +182,7 @@ __device__ inline bool any_has_more(int begin, int count) { return __syncthreads
 __global__ void __launch_bounds__(k_pair_threads)
     pair_arcs(DeviceRows rows, ArcPacking packing, std::int32_t nodes, AddedArcs added) {
   static_assert(k_nodes_per_block == k_pair_threads / 32);
+  if (!rows.are_there()) return;
   const std::int32_t node =
       static_cast<std::int32_t>(blockIdx.x) * k_nodes_per_block + static_cast<int>(threadIdx.x) / 32;
   const int count = node < nodes ? rows.counts[node] : 0;
@@ -193,6 +197,7 @@ constexpr int k_unpaired_rows_per_warp = 4;
 
 /// What has not been paired so far has no reverse.
 __global__ void find_unpaired(DeviceRows rows, ArcPacking packing, std::int32_t nodes, AddedArcs added) {
+  if (!rows.are_there()) return;
   constexpr int k_rows = k_unpaired_rows_per_warp, k_bits = 32 / k_rows;
   const int lane = threadIdx.x & 31;
   const std::int32_t warp =
@@ -235,10 +240,24 @@ struct SizesOfRows {
   }
 };
 
-__global__ void gather_added(const AddedArc* added, std::int64_t count, const RowSizes* before, std::uint64_t* words) {
+/// Row by row, unless there was too little room.
+__global__ void gather_added(AddedArcs added, const RowSizes* before, std::uint64_t* words) {
   const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-  if (i < count) words[before[added[i].row].added + added[i].number] = added[i].word;
+  const auto count = static_cast<std::int64_t>(*added.count);
+  if (i >= count || count > added.room) return;
+  const AddedArc arc = added.arcs[i];
+  words[before[arc.row].added + arc.number] = arc.word;
 }
+
+/// Where all arcs go.
+struct UnitedRows {
+  const RowSizes* before;
+  const std::uint64_t* others;  ///< that were added, row by row
+  std::int64_t room_for_others;
+  std::int64_t* offsets;
+  std::uint64_t* words;
+  std::int64_t room;
+};
 
 __global__ void shift_offsets(std::int64_t* offsets, std::size_t count, std::int64_t by) {
   const std::size_t i = static_cast<std::size_t>(blockIdx.x) * blockDim.x + threadIdx.x;
@@ -247,28 +266,30 @@ __global__ void shift_offsets(std::int64_t* offsets, std::size_t count, std::int
 
 /// A row's own arcs in the processor's order, then those that were added, sorted; and where each row begins, and the
 /// last ends.
-__global__ void write_rows(DeviceRows rows, IndexRange range, const std::uint64_t* added, const RowSizes* before,
-                           std::int64_t* offsets, std::uint64_t* words) {
+__global__ void write_rows(DeviceRows rows, IndexRange range, UnitedRows united) {
   const int lane = threadIdx.x & 31;
   const std::int32_t row =
       static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
-  if (row >= range.count()) return;
-  const RowSizes here = before[row], next = before[row + 1];
+  const RowSizes all = united.before[range.count()];
+  const bool fits = all.all <= united.room && all.added <= united.room_for_others;
+  if (row >= range.count() || !fits || !rows.are_there()) return;
+  const RowSizes here = united.before[row], next = united.before[row + 1];
   const std::int64_t first = rows.firsts[range.begin + row], to = here.all;
   const int count = rows.counts[range.begin + row];
-  if (lane == 0) offsets[row] = to;
-  if (lane == 1 && row + 1 == range.count()) offsets[row + 1] = next.all;
+  if (lane == 0) united.offsets[row] = to;
+  if (lane == 1 && row + 1 == range.count()) united.offsets[row + 1] = next.all;
+  std::uint64_t* const words = united.words;
   constexpr int k_at_hand = 128;
-  __shared__ std::uint64_t orders[k_rows_per_block][k_at_hand];
-  const std::uint64_t* order = rows.order + first;
+  __shared__ std::uint32_t orders[k_rows_per_block][k_at_hand];
+  const std::uint32_t* order = rows.order + first;
   if (count <= k_at_hand) {  // it is looked through again and again
-    std::uint64_t* const near = orders[threadIdx.x / 32];
+    std::uint32_t* const near = orders[threadIdx.x / 32];
     for (int i = lane; i < count; i += 32) near[i] = order[i];
     order = near;
     __syncwarp();
   }
   for (int i = lane; i < count; i += 32) words[to + place_in_order(order, count, i)] = rows.words[first + i];
-  const std::uint64_t* const others = added + here.added;
+  const std::uint64_t* const others = united.others + here.added;
   const int other_count = static_cast<int>(next.added - here.added);
   for (int i = lane; i < other_count; i += 32) {
     int rank = 0;
@@ -280,11 +301,10 @@ __global__ void write_rows(DeviceRows rows, IndexRange range, const std::uint64_
 /// Owns what DeviceRows shows.
 class RowStore {
  public:
-  RowStore(std::int32_t nodes, std::int64_t room, std::uint64_t target_mask, cudaStream_t stream)
+  RowStore(std::int32_t nodes, std::int64_t room, cudaStream_t stream)
       : stream_(stream),
         nodes_(nodes),
         room_(room),
-        target_mask_(target_mask),
         firsts_(static_cast<std::size_t>(nodes), stream),
         counts_(static_cast<std::size_t>(nodes), stream),
         words_(static_cast<std::size_t>(room), stream),
@@ -305,6 +325,7 @@ class RowStore {
   std::int32_t nodes() const { return nodes_; }
   std::int64_t room() const { return room_; }
   std::uint64_t target_mask() const { return target_mask_; }
+  void set_target_mask(std::uint64_t mask) { target_mask_ = mask; }
   /// Of all rows. Waits for the stream, unless it is known.
   std::int64_t words_wanted() const {
     return wanted_ != k_unknown ? wanted_ : static_cast<std::int64_t>(taken_.value_at(0));
@@ -333,7 +354,7 @@ class RowStore {
       std::vector<std::int32_t> targets(found.word_count);
       for (std::size_t i = 0; i < targets.size(); ++i)
         targets[i] = static_cast<std::int32_t>(found.words[i] & target_mask_);
-      const std::vector<std::uint64_t> order(found.word_count, k_new_generation);  // it is theirs already
+      const std::vector<std::uint32_t> order(found.word_count, k_new_generation);  // it is theirs already
       copy(words_.data() + first, found.words, found.word_count);
       copy(targets_.data() + first, targets.data(), targets.size());
       copy(back_sectors_.data() + first, found.back_sectors, found.word_count);
@@ -361,56 +382,64 @@ class RowStore {
   cudaStream_t stream_;
   std::int32_t nodes_;
   std::int64_t room_;
-  std::uint64_t target_mask_;
+  std::uint64_t target_mask_ = 0;
   DeviceBuffer<std::int64_t> firsts_;
   DeviceBuffer<std::int32_t> counts_;
   DeviceBuffer<std::uint64_t> words_;
   DeviceBuffer<std::int32_t> targets_;
   DeviceBuffer<std::uint8_t> back_sectors_;
-  DeviceBuffer<std::uint64_t> order_;
+  DeviceBuffer<std::uint32_t> order_;
   DeviceBuffer<unsigned long long> taken_;
   std::int64_t wanted_ = k_unknown;
 };
 
-/// The arcs of a range of a graph's nodes in compressed rows, on the device. The rows are not what they were then.
+/// The arcs of a range of a graph's nodes in compressed rows, on the device.
 class DeviceUnion {
  public:
-  DeviceUnion(const ArcPacking& packing, RowStore& rows, IndexRange range, cudaStream_t stream)
-      : stream_(stream), range_(range), offsets_(static_cast<std::size_t>(range.count()) + 1, stream) {
-    if (range.count() == 0) {
-      offsets_.fill_bytes(0);
-      return;
-    }
-    const std::int64_t found = rows.words_wanted();
-    DeviceBuffer<std::int32_t> added_counts(static_cast<std::size_t>(range.count()), stream);
-    DeviceBuffer<AddedArc> added(static_cast<std::size_t>(found), stream);
-    DeviceBuffer<unsigned long long> added_count(1, stream);
-    DeviceBuffer<std::uint8_t> seen(static_cast<std::size_t>(found), stream);
-    added_counts.fill_bytes(0);
-    added_count.fill_bytes(0);
-    seen.fill_bytes(0);
-    const AddedArcs adding{range, added_counts.data(), added.data(), added_count.data(), found, seen.data()};
-    const auto pair_blocks = static_cast<unsigned>(rows.nodes() / k_nodes_per_block + 1);
-    pair_arcs<<<pair_blocks, k_pair_threads, 0, stream>>>(rows.view(), packing, rows.nodes(), adding);
-    const unsigned unpaired_blocks = row_blocks(rows.nodes() / k_unpaired_rows_per_warp + 1);
-    find_unpaired<<<unpaired_blocks, k_block_threads, 0, stream>>>(rows.view(), packing, rows.nodes(), adding);
-    check_cuda(cudaGetLastError(), "pairing arcs");
-    const DeviceBuffer<RowSizes> before = sizes_before({rows.view().counts, added_counts.data(), range});
-    const RowSizes all = before.value_at(static_cast<std::size_t>(range.count()));
-    count_ = all.all;
-    words_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(count_), stream);
-    DeviceBuffer<std::uint64_t> others(static_cast<std::size_t>(all.added), stream);
-    if (all.added > 0) {
-      const auto blocks = static_cast<unsigned>((all.added + k_block_threads - 1) / k_block_threads);
-      gather_added<<<blocks, k_block_threads, 0, stream>>>(added.data(), all.added, before.data(), others.data());
-      check_cuda(cudaGetLastError(), "gathering reverses");
-    }
-    write_rows<<<row_blocks(range.count()), k_block_threads, 0, stream>>>(
-        rows.view(), range, others.data(), before.data(), offsets_.data(), words_.data());
-    check_cuda(cudaGetLastError(), "writing rows");
+  /// Takes memory for so many words of all nodes' rows.
+  DeviceUnion(std::int32_t nodes, IndexRange range, std::int64_t room, cudaStream_t stream)
+      : stream_(stream),
+        nodes_(nodes),
+        range_(range),
+        added_counts_(static_cast<std::size_t>(range.count()), stream),
+        added_count_(1, stream),
+        before_(static_cast<std::size_t>(range.count()) + 1, stream),
+        offsets_(static_cast<std::size_t>(range.count()) + 1, stream) {
+    take_room(room, room / 4);
   }
 
-  std::int64_t count() const { return count_; }
+  /// Gives an arc and its reverse the same length, adds those that have none, and writes all, unless by then rows are
+  /// not all there. What the device still does to them comes first.
+  void unite(const ArcPacking& packing, const DeviceRows& rows) {
+    if (static_cast<std::int64_t>(seen_.size()) < rows.room)
+      seen_ = DeviceBuffer<std::uint8_t>(static_cast<std::size_t>(rows.room), stream_);
+    added_counts_.fill_bytes(0);
+    added_count_.fill_bytes(0);
+    seen_.fill_bytes(0);
+    const AddedArcs adding{range_,           added_counts_.data(), added_.data(), added_count_.data(),
+                           room_for_added(), seen_.data()};
+    const auto pair_blocks = static_cast<unsigned>(nodes_ / k_nodes_per_block + 1);
+    pair_arcs<<<pair_blocks, k_pair_threads, 0, stream_>>>(rows, packing, nodes_, adding);
+    const unsigned unpaired_blocks = row_blocks(nodes_ / k_unpaired_rows_per_warp + 1);
+    find_unpaired<<<unpaired_blocks, k_block_threads, 0, stream_>>>(rows, packing, nodes_, adding);
+    check_cuda(cudaGetLastError(), "pairing arcs");
+    add_up_sizes({rows.counts, added_counts_.data(), range_});
+    gather_added<<<blocks_for(room_for_added()), k_block_threads, 0, stream_>>>(adding, before_.data(), others_.data());
+    const UnitedRows united{before_.data(),  others_.data(), room_for_added(),
+                            offsets_.data(), words_.data(),  static_cast<std::int64_t>(words_.size())};
+    if (range_.count() == 0) return offsets_.fill_bytes(0);
+    write_rows<<<row_blocks(range_.count()), k_block_threads, 0, stream_>>>(rows, range_, united);
+    check_cuda(cudaGetLastError(), "writing rows");
+  }
+  /// Whether there was room for all words. Waits for the stream.
+  bool fits() {
+    sizes_ = before_.value_at(static_cast<std::size_t>(range_.count()));
+    return sizes_.all <= static_cast<std::int64_t>(words_.size()) && sizes_.added <= room_for_added();
+  }
+  /// As much as it was seen to take.
+  void make_room() { take_room(sizes_.all, sizes_.added); }
+
+  std::int64_t count() const { return sizes_.all; }
   /// To a whole graph's arrays, of which `before` words belong to earlier ranges.
   void copy(HostCopies& copies, std::int64_t before, std::int64_t* offsets, std::uint64_t* words) {
     if (before > 0) {
@@ -420,30 +449,43 @@ class DeviceUnion {
     }
     const std::size_t first = range_.begin == 0 ? 0 : 1;  // the first is the last of the range before
     copies.to_host(offsets_.data() + first, offsets_.size() - first, offsets + range_.begin + first);
-    copies.to_host(words_.data(), static_cast<std::size_t>(count_), words + before);
+    copies.to_host(words_.data(), static_cast<std::size_t>(sizes_.all), words + before);
   }
 
  private:
+  std::int64_t room_for_added() const { return static_cast<std::int64_t>(added_.size()); }
+  void take_room(std::int64_t words, std::int64_t added) {
+    words_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(words), stream_);
+    added_ = DeviceBuffer<AddedArc>(static_cast<std::size_t>(added), stream_);
+    others_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(added), stream_);
+  }
+  static unsigned blocks_for(std::int64_t count) {
+    return static_cast<unsigned>((count + k_block_threads - 1) / k_block_threads) + 1;
+  }
   static unsigned row_blocks(std::int32_t rows) {
     return static_cast<unsigned>((rows + k_rows_per_block - 1) / k_rows_per_block);
   }
 
-  /// Of all rows before each, and before the end.
-  DeviceBuffer<RowSizes> sizes_before(const SizesOfRows& sizes) const {
-    DeviceBuffer<RowSizes> before(static_cast<std::size_t>(sizes.range.count()) + 1, stream_);
+  void add_up_sizes(const SizesOfRows& sizes) {
     const auto all = thrust::make_transform_iterator(thrust::counting_iterator<std::int32_t>(0), sizes);
     with_scratch(stream_, "adding up arcs", [&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceScan::ExclusiveScan(scratch, bytes, all, before.data(), AddSizes{}, RowSizes{0, 0},
-                                            static_cast<int>(before.size()), stream_);
+      return cub::DeviceScan::ExclusiveScan(scratch, bytes, all, before_.data(), AddSizes{}, RowSizes{0, 0},
+                                            static_cast<int>(before_.size()), stream_);
     });
-    return before;
   }
 
   cudaStream_t stream_;
+  std::int32_t nodes_;
   IndexRange range_;
+  DeviceBuffer<std::int32_t> added_counts_;  ///< per row of the range
+  DeviceBuffer<AddedArc> added_;
+  DeviceBuffer<unsigned long long> added_count_;
+  DeviceBuffer<std::uint64_t> others_;  ///< words that were added, row by row
+  DeviceBuffer<std::uint8_t> seen_;
+  DeviceBuffer<RowSizes> before_;  ///< of all rows before each, and before the end
   DeviceBuffer<std::int64_t> offsets_;
   DeviceBuffer<std::uint64_t> words_;
-  std::int64_t count_ = 0;
+  RowSizes sizes_{0, 0};
 };
 
 }  // namespace

@@ -60,7 +60,7 @@ struct DeviceMesh {
 
 /// A half-edge of a source, among those of all sources of the warp.
 struct RootEdge {
-  static constexpr int k_most_edges = 1 << 15;  ///< of a source
+  static constexpr int k_most_edges = 1 << k_root_edge_bits;  ///< of a source
   static constexpr int k_bits = 16;
   SADDLEBACK_STEP static int pack(int seat, int edge) { return seat << 15 | edge; }
   SADDLEBACK_STEP static int seat(int root) { return root >> 15 & 1; }
@@ -87,7 +87,6 @@ struct alignas(16) Sighting {
 /// What belongs to a window, by its indices: its half-edge's record, the slots of the half-edge's ends and, once it is
 /// sighted, of the apex, the RootEdge and the turns.
 struct alignas(16) WindowLinks {
-  static constexpr int k_most_turns = 32, k_most_edges = RootEdge::k_most_edges;
   std::int32_t edge;
   std::uint32_t ends;      ///< slots: left, above it right
   std::uint32_t root_ids;  ///< root, above it the apex
@@ -115,9 +114,9 @@ struct alignas(16) WindowLinks {
 
 /// The same in less, with the radius beyond which the window serves nothing.
 struct alignas(16) DenseLinks {
-  static constexpr int k_slot_bits = 10, k_edge_bits = 12, k_root_bits = k_edge_bits + 1;
-  static constexpr std::uint32_t k_slot = (1u << k_slot_bits) - 1, k_most_edges = 1 << k_edge_bits;
-  static constexpr int k_most_turns = 32 - k_root_bits;
+  static constexpr int k_slot_bits = 10, k_root_bits = k_root_edge_bits + 1;
+  static constexpr std::uint32_t k_slot = (1u << k_slot_bits) - 1;
+  static_assert(k_root_bits + k_most_turns <= 32);
   std::int32_t edge;
   std::uint32_t slots;   ///< left, right, apex, from the lowest bits on
   std::uint32_t origin;  ///< half-edge of the source, seat, turns
@@ -125,12 +124,13 @@ struct alignas(16) DenseLinks {
 
   SADDLEBACK_STEP static DenseLinks first(std::int32_t edge, int left, int right, int root) {
     return {edge, static_cast<std::uint32_t>(left) | static_cast<std::uint32_t>(right) << k_slot_bits,
-            static_cast<std::uint32_t>(RootEdge::seat(root) << k_edge_bits | RootEdge::edge(root)), 0};
+            static_cast<std::uint32_t>(RootEdge::seat(root) << k_root_edge_bits | RootEdge::edge(root)), 0};
   }
   SADDLEBACK_STEP int end(int side) const { return static_cast<int>(slots >> k_slot_bits * side & k_slot); }
   SADDLEBACK_STEP int apex() const { return static_cast<int>(slots >> 2 * k_slot_bits); }
   SADDLEBACK_STEP int root() const {
-    return RootEdge::pack(static_cast<int>(origin >> k_edge_bits & 1), static_cast<int>(origin & (k_most_edges - 1)));
+    return RootEdge::pack(static_cast<int>(origin >> k_root_edge_bits & 1),
+                          static_cast<int>(origin & (RootEdge::k_most_edges - 1)));
   }
   SADDLEBACK_STEP std::uint32_t turns() const { return origin >> k_root_bits; }
   SADDLEBACK_STEP void note_apex(DenseLinks& there, int slot) const {

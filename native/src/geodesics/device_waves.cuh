@@ -35,7 +35,7 @@ __device__ __noinline__ int renumber(Pool* pool, int begin, int count) {
   const int lane = static_cast<int>(threadIdx.x & 31);
   __syncwarp();
   for (int i = lane; i < count; i += 32) {
-    const std::uint64_t own = order_of(links_of(i));
+    const std::uint32_t own = order_of(links_of(i));
     int before = 0;
     for (int j = 0; j < count; ++j) before += order_of(links_of(j)) < own ? 1 : 0;
     pool->lights[i] = static_cast<std::uint16_t>(before);
@@ -65,6 +65,7 @@ class WarpWaves {
         lane_(threadIdx.x & 31),
         below_((1u << lane_) - 1) {
     asm("" : "+l"(draft_));  // lest it be computed again for each arc
+    __builtin_assume(__isGlobal(draft_));
   }
 
   SADDLEBACK_STEP void begin(const WarpSources& sources) {
@@ -77,7 +78,7 @@ class WarpWaves {
     const bool has_source = seat < sources.count;
     const std::int32_t node = sources.node + (has_source ? seat : 0);
     const std::int32_t e = mesh_.first[node], count = has_source ? mesh_.first[node + 1] - e : 0;
-    if (count > static_cast<int>(Pool::Links::k_most_edges)) overflow_ = 1;
+    if (count > RootEdge::k_most_edges) overflow_ = 1;
     const bool at_centre = has_source && first == 0;
     const int centre = disk_.insert(at_centre, Key::pack(node, seat, mesh_.saddles[node] != 0));
     disk_.lower(at_centre, centre, label_of(0, false), false);
@@ -107,14 +108,17 @@ class WarpWaves {
       for (int base = 0; base < lights; base += 32) pass_on(base, lights, all);
       __syncwarp();
       begin_ = heirs_;
-      if (++turns_ == Pool::Links::k_most_turns) turns_ = renumber(&pool_, begin_, min(count_, k_windows));
+      if (++turns_ == k_most_turns) turns_ = renumber(&pool_, begin_, min(count_, k_windows));
     }
     return !overflowed();
   }
 
   SADDLEBACK_STEP const WarpSources& sources() const { return sources_; }
   SADDLEBACK_STEP const WarpDisk<Table, Seats>& disk() const { return disk_; }
-  SADDLEBACK_STEP const Sighting* draft() const { return reinterpret_cast<const Sighting*>(draft_); }
+  SADDLEBACK_STEP const Sighting* draft() const {
+    __builtin_assume(__isGlobal(draft_));
+    return reinterpret_cast<const Sighting*>(draft_);
+  }
   SADDLEBACK_STEP int arcs() const { return arcs_; }
   SADDLEBACK_STEP int links() const { return links_; }
 
