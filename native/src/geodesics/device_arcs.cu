@@ -417,7 +417,7 @@ class ArcFinder {
   DeviceBuffer<int> fails_;  ///< whether all sources do: there are extremes, or the caller asked to stop
   RowStore rows_;
   DeviceBuffer<char> scratch_;     ///< of the pass that is running
-  MeshTables tables_;              ///< the last to be made: meanwhile nothing waits for memory any more
+  MeshTables tables_;              ///< the last to be made: once the mesh is there nothing waits for memory any more
   std::size_t passes_ = 0;         ///< that were started
   std::int32_t begun_before_ = 0;  ///< sources, by launches of the first pass before the last
   double done_ = 0;                ///< share of the sources, as far as is known

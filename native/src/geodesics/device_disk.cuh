@@ -201,6 +201,7 @@ class WarpDisk {
   /// for ahead.
   template <class Rule>
   SADDLEBACK_STEP void tell_neighbours(int count, const Rule& rule) {
+    if (count == 0) return;
     const int own = lane_ / Neighbour::k_block;
     const auto teller = [&](int first) { return static_cast<int>(table_.todo[min(first + own, count - 1)]); };
     Neighbour ahead = neighbour_in(node(teller(0)));
