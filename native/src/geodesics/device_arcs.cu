@@ -481,14 +481,17 @@ class Builder {
     const bool found_more = finder.finish(times);
     if (found_more) watch.end();
     times.find = watch.read();
-    if (found_more || !is_alone) uniting.start();
-    exchange(mine, finder.rows(), stream);
-    if (found_more || !is_alone) arcs.unite(finder.packing(), finder.rows().view());
+    if (found_more || !is_alone) {
+      uniting.start();
+      exchange(mine, finder.rows(), stream);
+      arcs.unite(finder.packing(), finder.rows().view());
+      uniting.end();
+    }
     if (!arcs.fits()) {
       arcs.make_room();
       arcs.unite(finder.packing(), finder.rows().view());
+      uniting.end();
     }
-    uniting.end();
     times.unite = uniting.read();
     caller_.report(mine.member, Share::unite);
     counts_[at] = arcs.count();
