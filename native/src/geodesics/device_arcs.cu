@@ -75,7 +75,7 @@ struct Work {
   std::int32_t* failures;  ///< their number
 };
 
-/// Global memory of all warps, which are at so many places, in one piece.
+/// Global memory of all warps, each of which has one of its places; in one piece.
 template <class Room>
 struct Scratch {
   using Table = typename Room::Table;
@@ -283,6 +283,7 @@ class ArcFinder {
     std::size_t shared;  ///< bytes of a block
     std::size_t places() const { return static_cast<std::size_t>(blocks) * warps; }
   };
+  /// Sets the kernel up for it as well.
   template <class Room>
   Spread spread_of(std::int32_t most) const {
     const auto kernel = find_arcs<Room>;
@@ -417,7 +418,7 @@ class ArcFinder {
   DeviceBuffer<int> fails_;  ///< whether all sources do: there are extremes, or the caller asked to stop
   RowStore rows_;
   DeviceBuffer<char> scratch_;     ///< of the pass that is running
-  MeshTables tables_;              ///< the last to be made: once the mesh is there nothing waits for memory any more
+  MeshTables tables_;              ///< made last: the device would have to wait while memory is taken after that
   std::size_t passes_ = 0;         ///< that were started
   std::int32_t begun_before_ = 0;  ///< sources, by launches of the first pass before the last
   double done_ = 0;                ///< share of the sources, as far as is known

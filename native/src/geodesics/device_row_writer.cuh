@@ -159,6 +159,7 @@ class RowWriter {
     float leaving, back, per_radian, per_radian_back;
   };
 
+  /// What all arcs of a source need of the mesh.
   struct Source {
     std::int32_t first;  ///< half-edge
     float per_radian;

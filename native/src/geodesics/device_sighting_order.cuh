@@ -14,7 +14,8 @@
 namespace saddleback {
 namespace {
 
-/// A source's half-edges, and generations between one numbering of the windows and the next, have so many at most.
+/// A place in that order is 31 bits: the number of the source's half-edge, above it the turns. Before there are more
+/// turns, windows get numbers in place of them; sources with more half-edges are left to the processor.
 constexpr int k_root_edge_bits = 12, k_most_turns = 31 - k_root_edge_bits;
 
 /// Which of a generation's sightings, all of one source, comes first: that with the lower number.

@@ -10,6 +10,7 @@
 #include "geodesics/arc_twin.h"
 #include "geodesics/device_sighting_order.cuh"
 #include "support/device_buffer.h"
+#include "support/device_launch.cuh"
 #include "support/device_scratch.cuh"
 #include "support/host_copies.h"
 #include "support/index_range.cuh"
@@ -73,7 +74,7 @@ struct AddedArcs {
   AddedArc* arcs;
   unsigned long long* count;
   std::int64_t room;
-  std::uint8_t* seen;  ///< per arc of the rows, whether it needs no more looking at
+  std::uint8_t* seen;  ///< per arc of the rows: 1 when it was paired, or found to lack its reverse
 
   /// Without loads that come later having to wait: nobody reads it before all is paired.
   __device__ void note_seen(std::int64_t arc) const {
@@ -240,7 +241,7 @@ struct SizesOfRows {
   }
 };
 
-/// Row by row, unless there was too little room.
+/// Puts what was added in any order together row by row, unless there was too little room.
 __global__ void gather_added(AddedArcs added, const RowSizes* before, std::uint64_t* words) {
   const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
   const auto count = static_cast<std::int64_t>(*added.count);
@@ -424,7 +425,7 @@ class DeviceUnion {
     find_unpaired<<<unpaired_blocks, k_block_threads, 0, stream_>>>(rows, packing, nodes_, adding);
     check_cuda(cudaGetLastError(), "pairing arcs");
     add_up_sizes({rows.counts, added_counts_.data(), range_});
-    gather_added<<<blocks_for(room_for_added()), k_block_threads, 0, stream_>>>(adding, before_.data(), others_.data());
+    gather_added<<<blocks_for(room_for_added()), k_threads, 0, stream_>>>(adding, before_.data(), others_.data());
     const UnitedRows united{before_.data(),  others_.data(), room_for_added(),
                             offsets_.data(), words_.data(),  static_cast<std::int64_t>(words_.size())};
     if (range_.count() == 0) return offsets_.fill_bytes(0);
@@ -458,9 +459,6 @@ class DeviceUnion {
     words_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(words), stream_);
     added_ = DeviceBuffer<AddedArc>(static_cast<std::size_t>(added), stream_);
     others_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(added), stream_);
-  }
-  static unsigned blocks_for(std::int64_t count) {
-    return static_cast<unsigned>((count + k_block_threads - 1) / k_block_threads) + 1;
   }
   static unsigned row_blocks(std::int32_t rows) {
     return static_cast<unsigned>((rows + k_rows_per_block - 1) / k_rows_per_block);

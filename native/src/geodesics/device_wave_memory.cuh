@@ -14,7 +14,8 @@
 namespace saddleback {
 namespace {
 
-constexpr std::uint32_t k_no_key = 0xffffffffu, k_never_a_key = 0x80000000u;
+constexpr std::uint32_t k_no_key = 0xffffffffu;       ///< in entries that are free
+constexpr std::uint32_t k_never_a_key = 0x80000000u;  ///< in no entry: to put something in its place changes nothing
 constexpr std::int32_t k_unreached_label = 0x7f800000;
 
 /// What is known of a node by its entry of the table: whose it is among the sources, and whether it is a saddle.
