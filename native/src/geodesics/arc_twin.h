@@ -54,7 +54,8 @@ struct ArcTwinCaller {
   bool (*choose_packing)(void* self, ArcPacking* packing) = nullptr;
   /// Finds the arcs of nodes that are too much for the device; false: stop.
   bool (*find_rows)(void* self, const std::int32_t* nodes, std::int32_t count, FoundRows* rows) = nullptr;
-  /// Makes room for the graph's offsets (node_count + 1) and words; false: stop.
+  /// Makes room for the graph's offsets (node_count + 1) and words, whose number may be a guess the first time; what
+  /// was there is lost; false: stop.
   bool (*make_room)(void* self, std::int64_t words, std::int64_t** offsets_to, std::uint64_t** words_to) = nullptr;
 };
 

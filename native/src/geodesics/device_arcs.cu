@@ -3,6 +3,7 @@
 // The answer is the processor's, to the bit.
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -145,9 +146,12 @@ __global__ void __launch_bounds__(32 * Room::Warps, 1)
   }
 }
 
-/// Words that memory is taken for at first; more are found to be needed when they are.
+/// Words that memory is taken for at first; more are found to be needed when they are. By accuracy a third more than
+/// smooth meshes have at half a per cent; arcs become more as the root of what is allowed becomes less.
 std::int64_t first_guess(const ArcTwinRequest& r, IndexRange nodes) {
-  const std::int64_t per_row = r.k > 0 ? r.k + r.k / 8 + 24 : 96;
+  constexpr double k_usual = 96, k_usual_excess = 5.2e-3, k_most = 512;
+  const double by_accuracy = std::min(k_most, k_usual * std::sqrt(std::max(1.0, k_usual_excess / r.excess)));
+  const std::int64_t per_row = r.k > 0 ? r.k + r.k / 8 + 24 : static_cast<std::int64_t>(by_accuracy);
   return per_row * nodes.count() + 4096;
 }
 
@@ -166,11 +170,12 @@ class ArcFinder {
  public:
   template <class ChoosePacking>
   ArcFinder(const ArcTwinRequest& request, const Part& part, TeamCaller<ArcTwinCaller>& caller, cudaStream_t stream,
-            ChoosePacking&& choose_packing)
+            cudaStream_t aside, ChoosePacking&& choose_packing)
       : request_(request),
         part_(part),
         caller_(caller),
         stream_(stream),
+        aside_(aside),
         failed_{DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream),
                 DeviceBuffer<std::int32_t>(static_cast<std::size_t>(part.nodes.count()), stream)},
         tally_(1, stream),
@@ -191,7 +196,7 @@ class ArcFinder {
     passes_ = 0;
     request_.k > 0 ? start_passes<true>() : start_passes<false>();
   }
-  /// Waits for the stream. \return whether there was more to do than what was started
+  /// Waits until all are found. \return whether there was more to do than what was started
   bool finish(DeviceTimes& times) {
     for (bool more = false;; more = true) {
       more |= request_.k > 0 ? finish_passes<true>(times) : finish_passes<false>(times);
@@ -348,22 +353,26 @@ class ArcFinder {
       find_arcs<Room>
           <<<spread.blocks, 32 * spread.warps, spread.shared, stream_>>>(tables_.mesh(), work, scratch, rows);
       check_cuda(cudaGetLastError(), "finding arcs");
+      pass_ended_.record(stream_);
       if (pass > 0) break;
       if (launches > 1) wait();
     }
   }
 
-  /// For what was started; whoever asks to stop is not kept waiting by sources that take long.
+  /// For the passes that were started; whoever asks to stop is not kept waiting by sources that take long.
   void wait() {
-    wait_polling(
-        stream_, [&](cudaStream_t aside) { report(done_ = std::max(done_, share_begun(aside))); },
-        [&](cudaStream_t aside) { (void)cudaMemsetAsync(fails_.data(), 1, sizeof(int), aside); });
+    try {
+      wait_polling(pass_ended_, [&] { report(done_ = std::max(done_, share_begun())); });
+    } catch (...) {
+      (void)cudaMemsetAsync(fails_.data(), 1, sizeof(int), aside_);
+      (void)cudaStreamSynchronize(stream_);
+      throw;
+    }
   }
 
   /// Of all sources. Those that fail in a pass count for a tenth of what was left before it.
-  double share_begun(cudaStream_t aside) const {
-    Tally tally{};
-    tally_.read({&tally, 1}, aside);
+  double share_begun() const {
+    Tally tally = tally_.value_at(0, aside_);
     tally.begun[0] += begun_before_;
     double left = 1;
     for (std::size_t pass = 0; pass < passes_; ++pass) {
@@ -402,7 +411,7 @@ class ArcFinder {
   /// What was counted once all that was started is done.
   Tally finished() {
     wait();
-    return tally_.value_at(0);
+    return tally_.value_at(0, aside_);
   }
 
   void report(double fraction) const {
@@ -412,7 +421,8 @@ class ArcFinder {
   const ArcTwinRequest& request_;
   Part part_;
   TeamCaller<ArcTwinCaller>& caller_;
-  cudaStream_t stream_;
+  cudaStream_t stream_, aside_;           ///< that of the work, and one in which to look how far it is
+  StreamEvent pass_ended_;                ///< the last that was started
   DeviceBuffer<std::int32_t> failed_[2];  ///< nodes that failed in passes of even and of odd number
   DeviceBuffer<Tally> tally_;
   DeviceBuffer<int> fails_;  ///< whether all sources do: there are extremes, or the caller asked to stop
@@ -467,9 +477,10 @@ class Builder {
     const auto at = static_cast<std::size_t>(mine.member);
     DeviceTimes& times = times_[at];
     const Stream& stream = streams_[at].emplace();
+    const Stream aside;
     Stopwatch watch(stream);
     DeviceUnion arcs(request_.node_count, mine.nodes, first_guess(request_, mine.nodes), stream);
-    ArcFinder finder(request_, mine, caller_, stream, [&] { return packing(mine.member); });
+    ArcFinder finder(request_, mine, caller_, stream, aside, [&] { return packing(mine.member); });
     watch.end();
     // The device is told of what comes next while it is at what came before.
     finder.start();
@@ -479,6 +490,8 @@ class Builder {
     const bool is_alone = team_.members() == 1;
     if (is_alone) arcs.unite(finder.packing(), finder.rows_in_making());
     uniting.end();
+    HostCopies copies(stream);
+    if (mine.member == 0) expect_words(copies);
     const bool found_more = finder.finish(times);
     if (found_more) watch.end();
     times.find = watch.read();
@@ -488,26 +501,32 @@ class Builder {
       arcs.unite(finder.packing(), finder.rows().view());
       uniting.end();
     }
-    if (!arcs.fits()) {
+    if (!arcs.fits(aside)) {
       arcs.make_room();
       arcs.unite(finder.packing(), finder.rows().view());
       uniting.end();
     }
-    times.unite = uniting.read();
     caller_.report(mine.member, Share::unite);
     counts_[at] = arcs.count();
     team_.meet();
-    if (mine.member == 0) {
-      const std::int64_t all = std::accumulate(counts_.begin(), counts_.end(), std::int64_t{0});
-      caller_.ask([&](const ArcTwinCaller& c) { return c.make_room(c.self, all, &offsets_, &words_); });
-    }
+    if (mine.member == 0) make_room(std::accumulate(counts_.begin(), counts_.end(), std::int64_t{0}));
     team_.meet();
-    watch.lap();
-    HostCopies copies(stream);
     arcs.copy(copies, std::accumulate(counts_.begin(), counts_.begin() + mine.member, std::int64_t{0}), offsets_,
               words_);
     copies.finish([&](double share) { caller_.report(mine.member, Share::unite + (1 - Share::unite) * share); });
-    times.download = watch.lap();
+    times.unite = uniting.read();
+    times.download = uniting.lap();  // as far as it took longer
+  }
+
+  void make_room(std::int64_t words) {
+    caller_.ask([&](const ArcTwinCaller& c) { return c.make_room(c.self, words, &offsets_, &words_); });
+  }
+  /// Has room made, and pages laid, while arcs are found: both take milliseconds. Room for what smooth meshes have, and
+  /// pages for what nearly all have: neither is given back.
+  void expect_words(HostCopies& copies) {
+    const std::int64_t most = first_guess(request_, {0, request_.node_count});
+    make_room(most / 5 * 4);
+    copies.expect(words_, static_cast<std::size_t>(most / 5 * 3) * sizeof *words_);
   }
 
   /// The first asks for all.

@@ -1,6 +1,7 @@
 #pragma once
 // Rows of arcs on the device as they are found, and their union with their reverses: the twin of arc_symmetry.
 
+#include <algorithm>
 #include <cstdint>
 #include <cub/device/device_scan.cuh>
 #include <thrust/iterator/counting_iterator.h>
@@ -265,15 +266,15 @@ __global__ void shift_offsets(std::int64_t* offsets, std::size_t count, std::int
   if (i < count) offsets[i] += by;
 }
 
-/// A row's own arcs in the processor's order, then those that were added, sorted; and where each row begins, and the
-/// last ends.
-__global__ void write_rows(DeviceRows rows, IndexRange range, UnitedRows united) {
+/// Of a part of a range, by number. A row's own arcs in the processor's order, then those that were added, sorted; and
+/// where each row begins, and the last ends.
+__global__ void write_rows(DeviceRows rows, IndexRange range, IndexRange part, UnitedRows united) {
   const int lane = threadIdx.x & 31;
   const std::int32_t row =
-      static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
+      part.begin + static_cast<std::int32_t>(blockIdx.x) * k_rows_per_block + static_cast<int>(threadIdx.x) / 32;
   const RowSizes all = united.before[range.count()];
   const bool fits = all.all <= united.room && all.added <= united.room_for_others;
-  if (row >= range.count() || !fits || !rows.are_there()) return;
+  if (row >= part.end || !fits || !rows.are_there()) return;
   const RowSizes here = united.before[row], next = united.before[row + 1];
   const std::int64_t first = rows.firsts[range.begin + row], to = here.all;
   const int count = rows.counts[range.begin + row];
@@ -412,8 +413,7 @@ class DeviceUnion {
   /// Gives an arc and its reverse the same length, adds those that have none, and writes all, unless by then rows are
   /// not all there. What the device still does to them comes first.
   void unite(const ArcPacking& packing, const DeviceRows& rows) {
-    if (static_cast<std::int64_t>(seen_.size()) < rows.room)
-      seen_ = DeviceBuffer<std::uint8_t>(static_cast<std::size_t>(rows.room), stream_);
+    if (static_cast<std::int64_t>(words_.size()) < rows.room) take_room(rows.room, rows.room / 4);
     added_counts_.fill_bytes(0);
     added_count_.fill_bytes(0);
     seen_.fill_bytes(0);
@@ -425,23 +425,35 @@ class DeviceUnion {
     find_unpaired<<<unpaired_blocks, k_block_threads, 0, stream_>>>(rows, packing, nodes_, adding);
     check_cuda(cudaGetLastError(), "pairing arcs");
     add_up_sizes({rows.counts, added_counts_.data(), range_});
+    added_up_.record(stream_);
     gather_added<<<blocks_for(room_for_added()), k_threads, 0, stream_>>>(adding, before_.data(), others_.data());
     const UnitedRows united{before_.data(),  others_.data(), room_for_added(),
                             offsets_.data(), words_.data(),  static_cast<std::int64_t>(words_.size())};
     if (range_.count() == 0) return offsets_.fill_bytes(0);
-    write_rows<<<row_blocks(range_.count()), k_block_threads, 0, stream_>>>(rows, range_, united);
+    for (std::size_t p = 0; p < k_parts; ++p) {
+      const IndexRange rows_of_part = part(p);
+      if (rows_of_part.count() > 0)
+        write_rows<<<row_blocks(rows_of_part.count()), k_block_threads, 0, stream_>>>(rows, range_, rows_of_part,
+                                                                                      united);
+      written_[p].record(stream_);
+    }
     check_cuda(cudaGetLastError(), "writing rows");
   }
-  /// Whether there was room for all words. Waits for the stream.
-  bool fits() {
-    sizes_ = before_.value_at(static_cast<std::size_t>(range_.count()));
-    return sizes_.all <= static_cast<std::int64_t>(words_.size()) && sizes_.added <= room_for_added();
+  /// Whether there was room for all words. Waits until they are counted; they are still being written.
+  bool fits(cudaStream_t aside) {
+    check_cuda(cudaEventSynchronize(added_up_), "waiting for the device");
+    for (std::size_t p = 0; p <= k_parts; ++p)
+      sizes_[p] = before_.value_at(static_cast<std::size_t>(part(p).begin), aside);
+    return all().all <= static_cast<std::int64_t>(words_.size()) && all().added <= room_for_added();
   }
   /// As much as it was seen to take.
-  void make_room() { take_room(sizes_.all, sizes_.added); }
+  void make_room() {
+    take_room(std::max(all().all, static_cast<std::int64_t>(words_.size())), std::max(all().added, room_for_added()));
+  }
 
-  std::int64_t count() const { return sizes_.all; }
-  /// To a whole graph's arrays, of which `before` words belong to earlier ranges.
+  std::int64_t count() const { return all().all; }
+  /// To a whole graph's arrays, of which `before` words belong to earlier ranges. Words are copied while later ones are
+  /// written.
   void copy(HostCopies& copies, std::int64_t before, std::int64_t* offsets, std::uint64_t* words) {
     if (before > 0) {
       const auto blocks = static_cast<unsigned>(range_.count() / k_block_threads + 1);
@@ -449,14 +461,28 @@ class DeviceUnion {
       check_cuda(cudaGetLastError(), "placing rows");
     }
     const std::size_t first = range_.begin == 0 ? 0 : 1;  // the first is the last of the range before
+    for (std::size_t p = 0; p < k_parts; ++p) {
+      const std::int64_t begin = sizes_[p].all, end = sizes_[p + 1].all;
+      copies.to_host(words_.data() + begin, static_cast<std::size_t>(end - begin), words + before + begin, written_[p]);
+    }
     copies.to_host(offsets_.data() + first, offsets_.size() - first, offsets + range_.begin + first);
-    copies.to_host(words_.data(), static_cast<std::size_t>(sizes_.all), words + before);
   }
 
  private:
+  /// Of the range's rows, which are written one part after the other.
+  static constexpr std::size_t k_parts = 4;
+  /// Rows by number; the one after the last is empty.
+  IndexRange part(std::size_t number) const {
+    const auto begin = [&](std::size_t p) {
+      return static_cast<std::int32_t>(static_cast<std::int64_t>(std::min(p, k_parts)) * range_.count() / k_parts);
+    };
+    return {begin(number), begin(number + 1)};
+  }
+  const RowSizes& all() const { return sizes_[k_parts]; }
   std::int64_t room_for_added() const { return static_cast<std::int64_t>(added_.size()); }
   void take_room(std::int64_t words, std::int64_t added) {
     words_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(words), stream_);
+    seen_ = DeviceBuffer<std::uint8_t>(static_cast<std::size_t>(words), stream_);
     added_ = DeviceBuffer<AddedArc>(static_cast<std::size_t>(added), stream_);
     others_ = DeviceBuffer<std::uint64_t>(static_cast<std::size_t>(added), stream_);
   }
@@ -479,11 +505,12 @@ class DeviceUnion {
   DeviceBuffer<AddedArc> added_;
   DeviceBuffer<unsigned long long> added_count_;
   DeviceBuffer<std::uint64_t> others_;  ///< words that were added, row by row
-  DeviceBuffer<std::uint8_t> seen_;
-  DeviceBuffer<RowSizes> before_;  ///< of all rows before each, and before the end
+  DeviceBuffer<std::uint8_t> seen_;     ///< per word of the rows
+  DeviceBuffer<RowSizes> before_;       ///< of all rows before each, and before the end
   DeviceBuffer<std::int64_t> offsets_;
   DeviceBuffer<std::uint64_t> words_;
-  RowSizes sizes_{0, 0};
+  StreamEvent added_up_, written_[k_parts];
+  RowSizes sizes_[k_parts + 1] = {};  ///< before each part, and of all
 };
 
 }  // namespace

@@ -38,7 +38,7 @@ class Caller {
               auto& caller = *static_cast<Caller*>(self);
               return caller.guard_.run([&] {
                 caller.offsets_.resize(caller.search_.vertices.size() + 1);
-                caller.words_.resize(static_cast<std::size_t>(words));
+                caller.make_room(static_cast<std::size_t>(words));
                 *offsets_to = caller.offsets_.data();
                 *words_to = caller.words_.data();
               });
@@ -48,6 +48,11 @@ class Caller {
   ArcRows take() { return {*codec_, std::move(offsets_), std::move(words_)}; }
 
  private:
+  void make_room(std::size_t words) {
+    if (words > words_.capacity()) words_ = {};  // nothing is to be copied
+    words_.resize(words);
+  }
+
   /// In the batches in which disk_arcs finds them: what ends the windows of one is the same then.
   FoundRows find_rows(std::span<const Index> nodes) {
     if (!tables_)

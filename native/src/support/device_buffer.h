@@ -49,11 +49,13 @@ class DeviceBuffer {
   }
 
   /// One of them; waits for the stream.
-  Number value_at(std::size_t place) const {
+  Number value_at(std::size_t place) const { return value_at(place, stream_); }
+  /// Waits for another stream, and reads what there is by then.
+  Number value_at(std::size_t place, cudaStream_t stream) const {
     Number value{};
-    check_cuda(cudaMemcpyAsync(&value, data_ + place, sizeof value, cudaMemcpyDeviceToHost, stream_),
+    check_cuda(cudaMemcpyAsync(&value, data_ + place, sizeof value, cudaMemcpyDeviceToHost, stream),
                "copying from the device");
-    check_cuda(cudaStreamSynchronize(stream_), "waiting for the device");
+    check_cuda(cudaStreamSynchronize(stream), "waiting for the device");
     return value;
   }
 

@@ -103,13 +103,32 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
-/// Waits for a stream; calls poll() now and then, which may throw.
-template <class Poll>
-void wait_polling(cudaStream_t stream, Poll&& poll) {
+/// A moment of a stream.
+class StreamEvent {
+ public:
+  StreamEvent() { check_cuda(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "making an event"); }
+  ~StreamEvent() {
+    if (event_) (void)cudaEventDestroy(event_);
+  }
+  StreamEvent(StreamEvent&& other) noexcept : event_(std::exchange(other.event_, nullptr)) {}
+  StreamEvent& operator=(StreamEvent&&) = delete;
+  operator cudaEvent_t() const { return event_; }
+  void record(cudaStream_t stream) const { check_cuda(cudaEventRecord(event_, stream), "recording an event"); }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+inline cudaError_t state_of(cudaStream_t stream) { return cudaStreamQuery(stream); }
+inline cudaError_t state_of(cudaEvent_t event) { return cudaEventQuery(event); }
+
+/// Waits for a stream or an event; calls poll() now and then, which may throw.
+template <class Awaited, class Poll>
+void wait_polling(const Awaited& awaited, Poll&& poll) {
   using Clock = std::chrono::steady_clock;
   using namespace std::chrono_literals;
   for (auto asked = Clock::now();;) {
-    const cudaError_t state = cudaStreamQuery(stream);
+    const cudaError_t state = state_of(awaited);
     if (state == cudaSuccess) return;
     if (state != cudaErrorNotReady) check_cuda(state, "waiting for the device");
     if (Clock::now() - asked < 20ms) continue;

@@ -14,6 +14,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "support/cuda_check.h"
 #include "support/device_stream.h"
 #include "support/scratch_pool.h"
+#include "support/streamed_copy.h"
 
 namespace saddleback {
 
@@ -41,22 +43,6 @@ class PinnedPieces {
 
  private:
   void* memory_ = nullptr;
-};
-
-/// A moment of a stream.
-class StreamEvent {
- public:
-  StreamEvent() { check_cuda(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "making an event"); }
-  ~StreamEvent() {
-    if (event_) (void)cudaEventDestroy(event_);
-  }
-  StreamEvent(StreamEvent&& other) noexcept : event_(std::exchange(other.event_, nullptr)) {}
-  StreamEvent& operator=(StreamEvent&&) = delete;
-  operator cudaEvent_t() const { return event_; }
-  void record(cudaStream_t stream) const { check_cuda(cudaEventRecord(event_, stream), "recording an event"); }
-
- private:
-  cudaEvent_t event_ = nullptr;
 };
 
 /// Copies beside the work of a stream. For one thread.
@@ -80,12 +66,26 @@ class HostCopies {
   HostCopies(const HostCopies&) = delete;
   HostCopies& operator=(const HostCopies&) = delete;
 
+  /// Before the first copy: so many bytes will be copied there. Threads begin now, beside the work of the stream, with
+  /// the pages under what is fresh; what is there is lost.
+  void expect(void* to, std::size_t size) {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t begin = 0; begin < size; begin += PinnedPieces::k_size)
+      fresh_.push_back({static_cast<volatile char*>(to) + begin, std::min(PinnedPieces::k_size, size - begin)});
+    start_threads(fresh_.size());
+  }
   /// To the host, of what the stream has written so far and does not change any more; none to nowhere.
   template <class Number>
   void to_host(const Number* from, std::size_t count, void* to) {
     if (count == 0 || !to) return;
     events_.emplace_back().record(stream_);
-    add({from, to, count * sizeof(Number), cudaMemcpyDeviceToHost, events_.back()}, to);
+    to_host(from, count, to, events_.back());
+  }
+  /// The same, of what was written before an event.
+  template <class Number>
+  void to_host(const Number* from, std::size_t count, void* to, cudaEvent_t written) {
+    if (count == 0 || !to) return;
+    add({from, to, count * sizeof(Number), cudaMemcpyDeviceToHost, written}, to);
   }
   /// To the device: complete when finish() returns.
   template <class Number>
@@ -142,6 +142,7 @@ class HostCopies {
   }
 
   void add(const Copy& copy, const void* host) {
+    end_laying();
     if (is_pinned(host)) return start(copy);
     if (copy.size < k_small) return small_.push_back(copy);  // the driver would make the caller wait
     const std::lock_guard lock(mutex_);
@@ -151,9 +152,13 @@ class HostCopies {
       ++open_;
       ++added_;
     }
-    const std::size_t most = std::min<std::size_t>(k_most_threads, std::max(1u, std::thread::hardware_concurrency()));
-    while (open_ > k_few && threads_.size() < std::min(most, open_)) threads_.emplace_back([this] { work(); });
+    start_threads(open_);
     changed_.notify_all();
+  }
+
+  void start_threads(std::size_t pieces) {
+    const std::size_t most = std::min<std::size_t>(k_most_threads, std::max(1u, std::thread::hardware_concurrency()));
+    while (pieces > k_few && threads_.size() < std::min(most, pieces)) threads_.emplace_back([this] { work(); });
   }
 
   template <class Poll>
@@ -165,7 +170,7 @@ class HostCopies {
       if (is_up) std::memcpy(memory, piece->from, piece->size);
       start({is_up ? memory : piece->from, is_up ? piece->to : memory, piece->size, piece->kind, piece->after});
       wait_polling(aside_, [&] { poll(copied_share()); });
-      if (!is_up) std::memcpy(piece->to, memory, piece->size);
+      if (!is_up) copy_past_caches(piece->to, memory, piece->size);
       --open_;
     }
   }
@@ -177,6 +182,7 @@ class HostCopies {
     {
       const std::lock_guard lock(mutex_);
       is_closing_ = true;
+      fresh_.clear();
       pieces_.clear();
     }
     changed_.notify_all();
@@ -195,8 +201,28 @@ class HostCopies {
     return piece;
   }
 
+  /// Pages that nobody has come to so far are laid as they are written.
+  void end_laying() {
+    std::unique_lock lock(mutex_);
+    fresh_.clear();
+    changed_.wait(lock, [&] { return laying_ == 0; });
+  }
+  void lay_pages() {
+    constexpr std::size_t k_page = std::size_t{1} << 12;
+    for (std::unique_lock lock(mutex_); !fresh_.empty();) {
+      const std::span<volatile char> memory = fresh_.front();
+      fresh_.pop_front();
+      ++laying_;
+      lock.unlock();
+      for (std::size_t at = 0; at < memory.size(); at += k_page) memory[at] = 0;
+      lock.lock();
+      if (--laying_ == 0) changed_.notify_all();
+    }
+  }
+
   void work() {
     try {
+      lay_pages();
       check_cuda(cudaSetDevice(device_), "choosing the device");
       copy_pieces();
     } catch (...) {
@@ -208,7 +234,6 @@ class HostCopies {
 
   void copy_pieces() {
     const auto pinned = PinnedPieces::pool().lease();
-    const Stream stream;
     const StreamEvent copied[2];
     std::optional<Copy> last;
     for (int slot = 0;; slot ^= 1) {
@@ -218,15 +243,12 @@ class HostCopies {
         char* const memory = pinned->piece(slot);
         const bool is_up = piece->kind == cudaMemcpyHostToDevice;
         if (is_up) std::memcpy(memory, piece->from, piece->size);
-        check_cuda(cudaStreamWaitEvent(stream, piece->after), "waiting for the device");
-        check_cuda(
-            cudaMemcpyAsync(is_up ? piece->to : memory, is_up ? memory : piece->from, piece->size, piece->kind, stream),
-            "copying between host and device");
-        copied[slot].record(stream);
+        start({is_up ? memory : piece->from, is_up ? piece->to : memory, piece->size, piece->kind, piece->after});
+        copied[slot].record(aside_);
       }
       if (last) {
         check_cuda(cudaEventSynchronize(copied[slot ^ 1]), "copying between host and device");
-        if (last->kind == cudaMemcpyDeviceToHost) std::memcpy(last->to, pinned->piece(slot ^ 1), last->size);
+        if (last->kind == cudaMemcpyDeviceToHost) copy_past_caches(last->to, pinned->piece(slot ^ 1), last->size);
         const std::lock_guard lock(mutex_);
         if (--open_ == 0) changed_.notify_all();
       }
@@ -243,6 +265,8 @@ class HostCopies {
   std::optional<ScratchPool<PinnedPieces>::Lease> own_;
   std::mutex mutex_;
   std::condition_variable changed_;
+  std::deque<std::span<volatile char>> fresh_;  ///< memory whose pages are still to be laid
+  int laying_ = 0;                              ///< threads that are at it
   std::deque<Copy> pieces_;
   std::size_t added_ = 0, open_ = 0;  ///< pieces, and those of them not copied yet
   std::exception_ptr failure_;
