@@ -526,7 +526,8 @@ class Builder {
   void expect_words(HostCopies& copies) {
     const std::int64_t most = first_guess(request_, {0, request_.node_count});
     make_room(most / 5 * 4);
-    copies.expect(words_, static_cast<std::size_t>(most / 5 * 3) * sizeof *words_);
+    const std::int64_t usual = request_.k > 0 ? std::int64_t{request_.k} * request_.node_count : most / 8 * 5;
+    copies.expect(words_, static_cast<std::size_t>(std::min(usual, most / 5 * 4)) * sizeof *words_);
   }
 
   /// The first asks for all.

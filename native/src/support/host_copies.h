@@ -12,6 +12,7 @@
 #include <cstring>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -70,6 +71,7 @@ class HostCopies {
   /// the pages under what is fresh; what is there is lost.
   void expect(void* to, std::size_t size) {
     const std::lock_guard lock(mutex_);
+    laid_ = {static_cast<volatile char*>(to), size};
     for (std::size_t begin = 0; begin < size; begin += PinnedPieces::k_size)
       fresh_.push_back({static_cast<volatile char*>(to) + begin, std::min(PinnedPieces::k_size, size - begin)});
     start_threads(fresh_.size());
@@ -170,7 +172,7 @@ class HostCopies {
       if (is_up) std::memcpy(memory, piece->from, piece->size);
       start({is_up ? memory : piece->from, is_up ? piece->to : memory, piece->size, piece->kind, piece->after});
       wait_polling(aside_, [&] { poll(copied_share()); });
-      if (!is_up) copy_past_caches(piece->to, memory, piece->size);
+      if (!is_up) copy_out(piece->to, memory, piece->size);
       --open_;
     }
   }
@@ -204,6 +206,7 @@ class HostCopies {
   /// Pages that nobody has come to so far are laid as they are written.
   void end_laying() {
     std::unique_lock lock(mutex_);
+    if (!fresh_.empty()) laid_ = laid_.first(static_cast<std::size_t>(fresh_.front().data() - laid_.data()));
     fresh_.clear();
     changed_.wait(lock, [&] { return laying_ == 0; });
   }
@@ -218,6 +221,13 @@ class HostCopies {
       lock.lock();
       if (--laying_ == 0) changed_.notify_all();
     }
+  }
+
+  /// Pages that the system clears on the way are in the caches by then: only what was laid before is not.
+  void copy_out(void* to, const void* from, std::size_t size) const {
+    const std::less<const volatile void*> before;
+    if (!before(to, laid_.data()) && before(to, laid_.data() + laid_.size())) return copy_past_caches(to, from, size);
+    std::memcpy(to, from, size);
   }
 
   void work() {
@@ -248,7 +258,7 @@ class HostCopies {
       }
       if (last) {
         check_cuda(cudaEventSynchronize(copied[slot ^ 1]), "copying between host and device");
-        if (last->kind == cudaMemcpyDeviceToHost) copy_past_caches(last->to, pinned->piece(slot ^ 1), last->size);
+        if (last->kind == cudaMemcpyDeviceToHost) copy_out(last->to, pinned->piece(slot ^ 1), last->size);
         const std::lock_guard lock(mutex_);
         if (--open_ == 0) changed_.notify_all();
       }
@@ -267,6 +277,7 @@ class HostCopies {
   std::condition_variable changed_;
   std::deque<std::span<volatile char>> fresh_;  ///< memory whose pages are still to be laid
   int laying_ = 0;                              ///< threads that are at it
+  std::span<volatile char> laid_;
   std::deque<Copy> pieces_;
   std::size_t added_ = 0, open_ = 0;  ///< pieces, and those of them not copied yet
   std::exception_ptr failure_;
