@@ -71,6 +71,7 @@ class HostCopies {
   /// the pages under what is fresh; what is there is lost.
   void expect(void* to, std::size_t size) {
     const std::lock_guard lock(mutex_);
+    is_expected_ = true;
     laid_ = {static_cast<volatile char*>(to), size};
     for (std::size_t begin = 0; begin < size; begin += PinnedPieces::k_size)
       fresh_.push_back({static_cast<volatile char*>(to) + begin, std::min(PinnedPieces::k_size, size - begin)});
@@ -138,9 +139,10 @@ class HostCopies {
     return attributes.type == cudaMemoryTypeHost;
   }
 
-  void start(const Copy& copy) {
-    check_cuda(cudaStreamWaitEvent(aside_, copy.after), "waiting for the device");
-    check_cuda(cudaMemcpyAsync(copy.to, copy.from, copy.size, copy.kind, aside_), "copying between host and device");
+  void start(const Copy& copy) { start(copy, aside_); }
+  static void start(const Copy& copy, cudaStream_t stream) {
+    check_cuda(cudaStreamWaitEvent(stream, copy.after), "waiting for the device");
+    check_cuda(cudaMemcpyAsync(copy.to, copy.from, copy.size, copy.kind, stream), "copying between host and device");
   }
 
   void add(const Copy& copy, const void* host) {
@@ -244,6 +246,11 @@ class HostCopies {
 
   void copy_pieces() {
     const auto pinned = PinnedPieces::pool().lease();
+    // In one stream the device comes to the next piece sooner, which is in the way of others' smaller copies as long as
+    // there is work beside these.
+    std::optional<Stream> own;
+    if (!is_expected_) own.emplace();
+    const cudaStream_t stream = own ? static_cast<cudaStream_t>(*own) : aside_;
     const StreamEvent copied[2];
     std::optional<Copy> last;
     for (int slot = 0;; slot ^= 1) {
@@ -253,8 +260,9 @@ class HostCopies {
         char* const memory = pinned->piece(slot);
         const bool is_up = piece->kind == cudaMemcpyHostToDevice;
         if (is_up) std::memcpy(memory, piece->from, piece->size);
-        start({is_up ? memory : piece->from, is_up ? piece->to : memory, piece->size, piece->kind, piece->after});
-        copied[slot].record(aside_);
+        start({is_up ? memory : piece->from, is_up ? piece->to : memory, piece->size, piece->kind, piece->after},
+              stream);
+        copied[slot].record(stream);
       }
       if (last) {
         check_cuda(cudaEventSynchronize(copied[slot ^ 1]), "copying between host and device");
@@ -278,6 +286,7 @@ class HostCopies {
   std::deque<std::span<volatile char>> fresh_;  ///< memory whose pages are still to be laid
   int laying_ = 0;                              ///< threads that are at it
   std::span<volatile char> laid_;
+  bool is_expected_ = false;  ///< whether anybody said what is to come
   std::deque<Copy> pieces_;
   std::size_t added_ = 0, open_ = 0;  ///< pieces, and those of them not copied yet
   std::exception_ptr failure_;
