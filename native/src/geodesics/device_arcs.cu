@@ -509,7 +509,10 @@ class Builder {
     caller_.report(mine.member, Share::unite);
     counts_[at] = arcs.count();
     team_.meet();
-    if (mine.member == 0) make_room(std::accumulate(counts_.begin(), counts_.end(), std::int64_t{0}));
+    if (mine.member == 0) {
+      copies.end_laying();
+      make_room(std::accumulate(counts_.begin(), counts_.end(), std::int64_t{0}));
+    }
     team_.meet();
     arcs.copy(copies, std::accumulate(counts_.begin(), counts_.begin() + mine.member, std::int64_t{0}), offsets_,
               words_);

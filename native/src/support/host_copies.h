@@ -68,7 +68,7 @@ class HostCopies {
   HostCopies& operator=(const HostCopies&) = delete;
 
   /// Before the first copy: so many bytes will be copied there. Threads begin now, beside the work of the stream, with
-  /// the pages under what is fresh; what is there is lost.
+  /// the pages under what is fresh; what is there is lost, until end_laying() or the first copy.
   void expect(void* to, std::size_t size) {
     const std::lock_guard lock(mutex_);
     is_expected_ = true;
@@ -76,6 +76,14 @@ class HostCopies {
     for (std::size_t begin = 0; begin < size; begin += PinnedPieces::k_size)
       fresh_.push_back({static_cast<volatile char*>(to) + begin, std::min(PinnedPieces::k_size, size - begin)});
     start_threads(fresh_.size());
+  }
+  /// Nobody touches what was expected any more: it may be written or freed by others. Pages that nobody has come to so
+  /// far are laid as they are written.
+  void end_laying() {
+    std::unique_lock lock(mutex_);
+    if (!fresh_.empty()) laid_ = laid_.first(static_cast<std::size_t>(fresh_.front().data() - laid_.data()));
+    fresh_.clear();
+    changed_.wait(lock, [&] { return laying_ == 0; });
   }
   /// To the host, of what the stream has written so far and does not change any more; none to nowhere.
   template <class Number>
@@ -205,13 +213,6 @@ class HostCopies {
     return piece;
   }
 
-  /// Pages that nobody has come to so far are laid as they are written.
-  void end_laying() {
-    std::unique_lock lock(mutex_);
-    if (!fresh_.empty()) laid_ = laid_.first(static_cast<std::size_t>(fresh_.front().data() - laid_.data()));
-    fresh_.clear();
-    changed_.wait(lock, [&] { return laying_ == 0; });
-  }
   void lay_pages() {
     constexpr std::size_t k_page = std::size_t{1} << 12;
     for (std::unique_lock lock(mutex_); !fresh_.empty();) {
