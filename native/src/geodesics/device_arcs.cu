@@ -147,7 +147,8 @@ __global__ void __launch_bounds__(32 * Room::Warps, 1)
 }
 
 /// Words that memory is taken for at first; more are found to be needed when they are. By accuracy a third more than
-/// smooth meshes have at half a per cent; arcs become more as the root of what is allowed becomes less.
+/// smooth meshes have at half a per cent; arcs become more as the root of what is allowed becomes less. A bound keeps
+/// what is next to exact from being refused for memory that it may not need.
 std::int64_t first_guess(const ArcTwinRequest& r, IndexRange nodes) {
   constexpr double k_usual = 96, k_usual_excess = 5.2e-3, k_most = 512;
   const double by_accuracy = std::min(k_most, k_usual * std::sqrt(std::max(1.0, k_usual_excess / r.excess)));
@@ -527,10 +528,11 @@ class Builder {
   /// Has room made, and pages laid, while arcs are found: both take milliseconds. Room for what smooth meshes have, and
   /// pages for what nearly all have: neither is given back.
   void expect_words(HostCopies& copies) {
-    const std::int64_t most = first_guess(request_, {0, request_.node_count});
-    make_room(most / 5 * 4);
-    const std::int64_t usual = request_.k > 0 ? std::int64_t{request_.k} * request_.node_count : most / 8 * 5;
-    copies.expect(words_, static_cast<std::size_t>(std::min(usual, most / 5 * 4)) * sizeof *words_);
+    const std::int64_t guess = first_guess(request_, {0, request_.node_count});
+    const bool by_count = request_.k > 0;  // then it is known better
+    make_room(by_count ? guess : guess / 5 * 4);
+    const std::int64_t usual = by_count ? std::int64_t{request_.k} * request_.node_count : guess / 8 * 5;
+    copies.expect(words_, static_cast<std::size_t>(usual) * sizeof *words_);
   }
 
   /// The first asks for all.

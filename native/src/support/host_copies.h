@@ -287,7 +287,7 @@ class HostCopies {
   std::deque<std::span<volatile char>> fresh_;  ///< memory whose pages are still to be laid
   int laying_ = 0;                              ///< threads that are at it
   std::span<volatile char> laid_;
-  bool is_expected_ = false;  ///< whether anybody said what is to come
+  bool is_expected_ = false;  ///< whether anybody said what is to come; threads do not look at laid_ before they copy
   std::deque<Copy> pieces_;
   std::size_t added_ = 0, open_ = 0;  ///< pieces, and those of them not copied yet
   std::exception_ptr failure_;
