@@ -20,7 +20,7 @@ struct ArcTwinRequest {
 
   // The rule, as DiskRule and WaveScene have it.
   std::int32_t k = 0;
-  float detour = 1, excess = 0;
+  float detour = 1, per_detour = 1, excess = 0;
   double slack = 1;
 
   // The mesh, as Mesh and Unfolding hold it.

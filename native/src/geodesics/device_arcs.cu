@@ -47,7 +47,7 @@ struct Room {
 };
 /// By the arcs that are asked for. Fewer windows at once leave room for more sources at once.
 template <bool All>
-using SmallRoom = Room<All, All ? 80 : 88, All ? 256 : 512, All ? 1 : 2, true, true>;
+using SmallRoom = Room<All, All ? 80 : 72, All ? 256 : 512, All ? 1 : 2, true, true>;
 template <bool All>
 using MiddleRoom = Room<All, All ? 140 : 128, All ? 256 : 512, 1, true, true>;
 template <bool All>

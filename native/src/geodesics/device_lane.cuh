@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "support/warp.cuh"
+
 #define SADDLEBACK_STEP __device__ __forceinline__
 
 namespace saddleback {
@@ -21,6 +23,7 @@ struct Simd {
   SADDLEBACK_STEP static float pick(bool mask, float yes, float no) { return mask ? yes : no; }
   /// Without a branch.
   SADDLEBACK_STEP static bool pick(bool mask, bool yes, bool no) { return (mask & yes) | (!mask & no); }
+  SADDLEBACK_STEP static bool any(bool mask) { return __any_sync(k_warp, mask); }
   SADDLEBACK_STEP static float min(float a, float b) { return a < b ? a : b; }
   SADDLEBACK_STEP static float max(float a, float b) { return a > b ? a : b; }
   // Quotients and roots as IEEE's, by the steps that compilers take for numbers that are neither huge nor tiny, but

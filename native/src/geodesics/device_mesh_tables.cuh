@@ -216,6 +216,7 @@ class MeshTables {
               {},
               r.k,
               r.detour,
+              r.per_detour,
               r.excess,
               r.slack,
               neighbours_.data()} {

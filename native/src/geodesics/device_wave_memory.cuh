@@ -54,7 +54,7 @@ struct DeviceMesh {
   double unit;
   ArcPacking packing;
   std::int32_t k;
-  float detour, excess;
+  float detour, per_detour, excess;  ///< as of a WaveScene
   double slack;
   const Neighbour* neighbours;  ///< blocks, those of the nodes first; where disks end by count
 };
@@ -178,6 +178,7 @@ struct alignas(16) WindowPool {
   double2 apexes[All ? 1 : Windows];  ///< once they are sighted
   Links links[Windows];
   WindowRay<All> rays[2][Windows];
+  float served[2][All ? 1 : Windows];         ///< tangents, as of WindowRows
   float ways[All ? 1 : Windows];              ///< to the apexes
   float most[All || is_dense ? 1 : Windows];  ///< radius beyond which a window serves nothing, see DenseLinks
   std::uint16_t lights[Lights];

@@ -173,6 +173,7 @@ class WarpWaves {
       pool_.rays[0][place] =
           ray_of(static_cast<float>(corner.x / other), static_cast<float>(corner.y / other), static_cast<float>(other));
       pool_.rays[1][place] = ray_of(1, 0, static_cast<float>(length));
+      if constexpr (!All) pool_.served[0][place] = pool_.served[1][place] = 0;
       Links links = Links::first(record.right, apex, to, root);
       set_most(links, place, distance_of(k_unreached_label));
       pool_.links[place] = links;
@@ -240,9 +241,15 @@ class WarpWaves {
       put_arc(number, {apex, from, links.edge, links.turns(), Sighting::pack(root, slot), label | mark});
     }
     arcs_ += __popc(making);
+    float from_right = view.from_right, to_left = view.to_left;
+    if constexpr (!All) {
+      const Rays light = turn_inwards(rays, pool_.served[1][place], pool_.served[0][place]);
+      from_right = cross(light.right_x, light.right_y, view.x, view.y);
+      to_left = cross(view.x, view.y, light.left_x, light.left_y);
+    }
     const float tolerance = k_on_ray * view.reach;
-    list_lights(number, active && record.left >= 0 && tolerance < view.to_left,
-                active && record.right >= 0 && tolerance < view.from_right);
+    list_lights(number, active && record.left >= 0 && tolerance < to_left,
+                active && record.right >= 0 && tolerance < from_right);
   }
 
   SADDLEBACK_STEP static double2 apex_of(const EdgeRecord& record, const double2& from, const double2& to) {
@@ -253,6 +260,8 @@ class WarpWaves {
   SADDLEBACK_STEP float most_of(const Links& links, int place) const {
     if constexpr (Pool::is_dense) {
       return links.most;
+    } else if constexpr (All) {
+      return 0;
     } else {
       return pool_.most[place];
     }
@@ -318,44 +327,41 @@ class WarpWaves {
     const float apex_x = static_cast<float>(apex.x), apex_y = flip * static_cast<float>(apex.y);
     const float from_x = static_cast<float>(from.x), from_y = flip * static_cast<float>(from.y);
     const float to_x = static_cast<float>(to.x), to_y = flip * static_cast<float>(to.y);
-    const ApexView view = view_apex(apex_x, apex_y, {far_ray.x, flip * far_ray.y, near_ray.x, flip * near_ray.y, 0, 0});
-    const float reach = view.reach;
-    const bool cut = k_on_ray * reach < view.from_right;
+    const Rays rays{far_ray.x, flip * far_ray.y, near_ray.x, flip * near_ray.y, 0, 0};
+    Rays lit = rays;
+    if constexpr (!All) lit = turn_inwards(rays, pool_.served[1 - s][place], pool_.served[s][place]);
+    const ApexView view = view_apex(apex_x, apex_y, rays);
+    const float tolerance = k_on_ray * view.reach, from_right = cross(lit.right_x, lit.right_y, apex_x, apex_y);
+    const bool cut = tolerance < view.from_right;
     const Side side{active,
-                    cut,
+                    tolerance < from_right,
                     s == 0 ? from_x : to_x,
                     s == 0 ? from_y : to_y,
                     s == 0 ? to_x : from_x,
                     s == 0 ? to_y : from_y,
                     apex_x,
                     apex_y,
-                    near_ray.x,
-                    flip * near_ray.y,
-                    far_ray.x,
-                    flip * far_ray.y,
-                    view.to_left,
-                    view.from_right,
+                    lit.left_x,
+                    lit.left_y,
+                    lit.right_x,
+                    lit.right_y,
+                    cross(apex_x, apex_y, lit.left_x, lit.left_y),
+                    from_right,
                     near_label,
                     far_label,
                     apex_label};
     const Child child = look_at(side);
-    const ApexRay ray = ray_to({apex_x, apex_y, reach, 0, 0, false, false});
+    const float clearance = __int_as_float(static_cast<std::int32_t>(
+        s == 0 ? record.clearances & k_upper_half : (record.clearances & ~k_saddle_bit) << 16));
+    const Heir heir = look_behind(child, cut, view, near_ray, far_ray, flip, way, clearance, most_of(links, place));
     Ray last_ray = far_ray;  // where the light ends
-    last_ray.x = cut ? ray.x : far_ray.x;
-    last_ray.y = cut ? flip * ray.y : far_ray.y;
-    float most = disk_.radius();
+    last_ray.x = heir.far.x;
+    last_ray.y = flip * heir.far.y;
     if constexpr (!All) {
-      most = most_of(links, place);
-      if (__any_sync(k_warp, cut)) {
-        const float bound = bound_child(side, ray, {reach, way}, {near_ray.reach, near_ray.way}, mesh_.excess, most);
-        most = cut ? bound : most;
-      }
-      last_ray.reach = cut ? reach : far_ray.reach;
-      last_ray.way = cut ? way : far_ray.way;
+      last_ray.reach = heir.far.reach;
+      last_ray.way = heir.far.way;
     }
-    const std::uint32_t clearance =
-        s == 0 ? record.clearances & k_upper_half : (record.clearances & ~k_saddle_bit) << 16;
-    const bool keep = child.useful & is_within(child, most, __int_as_float(static_cast<std::int32_t>(clearance)));
+    const bool keep = heir.useful;
 
     const unsigned keeping = __ballot_sync(k_warp, keep);
     // Children lie behind the generation. Of it those before the last that was looked at are not needed any more.
@@ -364,14 +370,31 @@ class WarpWaves {
     if (all + count_ - k_windows > (base + 32 < lights ? first_needed : all)) overflow_ = 1;
     __syncwarp();  // nobody looks at the windows any more
     if (keep && overflow_ == 0) {
-      const int heir = in_ring(heirs_ + behind);
-      pool_.ends[s][heir] = near;
-      pool_.ends[1 - s][heir] = apex;
-      pool_.rays[s][heir] = near_ray;
-      pool_.rays[1 - s][heir] = last_ray;
+      const int there = in_ring(heirs_ + behind);
+      pool_.ends[s][there] = near;
+      pool_.ends[1 - s][there] = apex;
+      pool_.rays[s][there] = near_ray;
+      pool_.rays[1 - s][there] = last_ray;
+      if constexpr (!All) {
+        pool_.served[s][there] = heir.near_served;
+        pool_.served[1 - s][there] = heir.far_served;
+      }
       Links child_links = links.child(s == 0 ? record.left : record.right, s, turns_);
-      set_most(child_links, heir, most);
-      pool_.links[heir] = child_links;
+      set_most(child_links, there, heir.most);
+      pool_.links[there] = child_links;
+    }
+  }
+
+  /// What becomes of the light on a side, in its words.
+  SADDLEBACK_STEP Heir look_behind(const Child& child, bool cut, const ApexView& apex, const Ray& near, const Ray& far,
+                                   float flip, float way, float clearance, float most) const {
+    const Flank flank = flank_at(apex, way);
+    if constexpr (All) {
+      return heir_in_disk(child, cut, {far.x, flip * far.y, 0, 0}, flank, clearance, disk_.radius());
+    } else {
+      return heir_behind(child, cut, {near.x, flip * near.y, near.reach, near.way},
+                         {far.x, flip * far.y, far.reach, far.way}, flank, clearance, most, mesh_.excess,
+                         mesh_.per_detour);
     }
   }
 

@@ -45,7 +45,11 @@ bool makes_arc(std::int32_t label) { return (label & 1) == 0; }
 }  // namespace
 
 WaveScene wave_scene(const EdgeRecord* records, const DiskRule& rule) {
-  return {records, nullptr, nullptr, static_cast<float>(1 + detour_of(rule)),
+  return {records,
+          nullptr,
+          nullptr,
+          static_cast<float>(1 + detour_of(rule)),
+          static_cast<float>(1 / (1 + detour_of(rule))),
           static_cast<float>(radius_tolerance(rule.lattice) * rule.tolerance)};
 }
 
@@ -131,6 +135,7 @@ void DiskFinder::add_window(int lane, const FirstWindow& window) {
   rows.left_y[i] = static_cast<float>(window.left.y() / left_reach);
   rows.right_reach[i] = rows.right_way[i] = static_cast<float>(right_reach);
   rows.left_reach[i] = rows.left_way[i] = static_cast<float>(left_reach);
+  rows.right_served[i] = rows.left_served[i] = 0;
   rows.most[i] = limits_[lane];
   rows.edge[i] = window.entered * k_batch + lane;
   rows.from[i] = window.left_node * k_batch + lane;
@@ -156,6 +161,8 @@ void DiskFinder::advance() {
   WaveScene scene = wave_scene(mesh_.records(), rule_);
   scene.labels = labels_.data();
   scene.limits = limits_.data();
+  constexpr float k_nothing_served = 1e10f;
+  if (sources_ == Sources::points) scene.per_detour = k_nothing_served;
   const int before = sighting_count_;
   sightings_.reserve(sighting_count_ + now_->size() + k_row_padding);
   apexes_.reserve(now_->size() + 2 * k_row_padding);

@@ -122,6 +122,7 @@ ArcRows twin_arcs(const ArcSearch& search, const std::function<ArcCodec()>& choo
   request.most_bytes = cuda_memory_limit();
   request.k = rule.k;
   request.detour = scene.detour;
+  request.per_detour = scene.per_detour;
   request.excess = scene.excess;
   request.slack = arc_slack(rule);
   request.node_count = mesh.vertex_count();

@@ -36,7 +36,7 @@ class WaveColumns {
   std::array<std::vector<std::int32_t>, Ints> ints_;
 };
 
-class WindowColumns : public WaveColumns<4, 9, 4> {
+class WindowColumns : public WaveColumns<4, 11, 4> {
  public:
   WindowRows rows() {
     return {.from_x = real(0),
@@ -51,7 +51,9 @@ class WindowColumns : public WaveColumns<4, 9, 4> {
             .left_reach = single(5),
             .right_way = single(6),
             .left_way = single(7),
-            .most = single(8),
+            .right_served = single(8),
+            .left_served = single(9),
+            .most = single(10),
             .edge = integer(0),
             .from = integer(1),
             .to = integer(2),

@@ -43,10 +43,11 @@ struct WindowRows {
   float *right_x, *right_y, *left_x, *left_y;  ///< unit vectors along the rays; left is counter-clockwise of right
   float *right_reach, *left_reach;             ///< distances of the flanks
   float *right_way, *left_way;  ///< bounds of the graph's distances to them; unused where every sighting is an arc
-  float* most;                  ///< radius beyond which the window serves nothing
-  std::int32_t* edge;           ///< record * k_batch + lane
-  std::int32_t *from, *to;      ///< slots of the half-edge's ends
-  std::int32_t* root;           ///< record of the source's half-edge whose face the window left
+  float *right_served, *left_served;  ///< tangents of the angles off the rays within which the flanks serve all ahead
+  float* most;                        ///< radius beyond which the window serves nothing
+  std::int32_t* edge;                 ///< record * k_batch + lane
+  std::int32_t *from, *to;            ///< slots of the half-edge's ends
+  std::int32_t* root;                 ///< record of the source's half-edge whose face the window left
 };
 
 /// What a window sees of its face's far corner; a row a window.
@@ -75,6 +76,7 @@ struct WaveScene {
   const std::int32_t* labels;  ///< upper bounds of the distances of all slots
   const float* limits;         ///< k_batch radii that bound the disks, infinite as long as they are unknown
   float detour;                ///< what a way may be longer by than a straight geodesic: a factor
+  float per_detour;            ///< its inverse; huge where what flanks serve is wanted as well
   float excess;                ///< the same for what lies beyond a window's end, less 1
 };
 

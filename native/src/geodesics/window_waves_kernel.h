@@ -67,105 +67,108 @@ int sight(const WaveScene& scene, const WindowRows& w, int count, const ApexRows
   return sightings;
 }
 
+/// The corners of a window's face, and what is known of them.
+struct SplitFace {
+  Doubles from_x, from_y, to_x, to_y, apex_x, apex_y;
+  Ints from, to, apex;  ///< slots
+};
+
+/// Appends the heirs of use behind left sides or, with `is_right`, right ones; their flanks as they are, not mirrored.
+template <bool All, bool is_right>
+int append_heirs(const WindowRows& to, int count, const SplitFace& face, const Flank& near, const Heir& heir, Ints edge,
+                 Ints root) {
+  if (!Simd::any(heir.useful)) return count;
+  const auto packing = Simd::packing(heir.useful);
+  const Flank &right = is_right ? near : heir.far, &left = is_right ? heir.far : near;
+  packing.store(to.from_x + count, is_right ? face.apex_x : face.from_x);
+  packing.store(to.from_y + count, is_right ? face.apex_y : face.from_y);
+  packing.store(to.to_x + count, is_right ? face.to_x : face.apex_x);
+  packing.store(to.to_y + count, is_right ? face.to_y : face.apex_y);
+  packing.store(to.right_x + count, right.x);
+  packing.store(to.right_y + count, right.y);
+  packing.store(to.left_x + count, left.x);
+  packing.store(to.left_y + count, left.y);
+  if constexpr (!All) {
+    packing.store(to.right_reach + count, right.reach);
+    packing.store(to.left_reach + count, left.reach);
+    packing.store(to.right_way + count, right.way);
+    packing.store(to.left_way + count, left.way);
+    packing.store(to.right_served + count, is_right ? heir.near_served : heir.far_served);
+    packing.store(to.left_served + count, is_right ? heir.far_served : heir.near_served);
+  }
+  packing.store(to.most + count, heir.most);
+  packing.store(to.edge + count, edge);
+  packing.store(to.from + count, is_right ? face.apex : face.from);
+  packing.store(to.to + count, is_right ? face.to : face.apex);
+  packing.store(to.root + count, root);
+  return count + packing.count();
+}
+
 template <bool All>
 void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRows& apexes, const WindowRows& lefts,
            int* left_count, const WindowRows& rights, int* right_count) {
-  int l = *left_count, r = *right_count;
   for (int i = 0; i < count; i += Simd::width) {
     const Ints left_edge = Simd::load(apexes.left + i), right_edge = Simd::load(apexes.right + i);
     const Mask active = Simd::first(count - i);
-    const Doubles from_dx = Simd::load(w.from_x + i), from_dy = Simd::load(w.from_y + i);
-    const Doubles to_dx = Simd::load(w.to_x + i), to_dy = Simd::load(w.to_y + i);
-    const Doubles apex_dx = Simd::load(apexes.x + i), apex_dy = Simd::load(apexes.y + i);
+    const SplitFace corners{Simd::load(w.from_x + i), Simd::load(w.from_y + i), Simd::load(w.to_x + i),
+                            Simd::load(w.to_y + i),   Simd::load(apexes.x + i), Simd::load(apexes.y + i),
+                            Simd::load(w.from + i),   Simd::load(w.to + i),     Simd::load(apexes.slot + i)};
     const Rays rays = load_rays(w, i);
-    const FacePlaces face{Simd::narrow(from_dx),
-                          Simd::narrow(from_dy),
-                          Simd::narrow(to_dx),
-                          Simd::narrow(to_dy),
+    const FacePlaces face{Simd::narrow(corners.from_x),
+                          Simd::narrow(corners.from_y),
+                          Simd::narrow(corners.to_x),
+                          Simd::narrow(corners.to_y),
                           Simd::look_up(scene.labels, w.from + i),
                           Simd::look_up(scene.labels, w.to + i),
                           Simd::look_up(scene.labels, apexes.slot + i)};
-    const ApexView apex{Simd::narrow(apex_dx),
-                        Simd::narrow(apex_dy),
+    const ApexView apex{Simd::narrow(corners.apex_x),
+                        Simd::narrow(corners.apex_y),
                         Simd::load(apexes.reach + i),
                         Simd::load(apexes.from_right + i),
                         Simd::load(apexes.to_left + i),
                         {},
                         {}};
-    const Side to_left = left_side(face, apex, rays, active & (!Simd::negative(left_edge)));
-    const Side to_right =
-        left_side(mirrored(face), mirrored(apex), mirrored(rays), active & (!Simd::negative(right_edge)));
-    const Child left = look_at(to_left), right = look_at(to_right);
-    const Mask inside_right = to_left.cut, inside_left = to_right.cut;
-    const Floats reach = apex.reach;
-    const ApexRay ray = ray_to(apex);
-    Floats most = Simd::load(w.most + i), left_most = most, right_most = most;
-    if constexpr (All) {
-      left_most = right_most = Simd::look_up_lane(scene.limits, Simd::load(w.edge + i));
-    } else if (const Mask covered = inside_right & inside_left & (left.useful | right.useful); Simd::any(covered)) {
-      const Flank flank{reach, Simd::load(apexes.way + i)};
-      const Floats left_bound =
-          bound_child(to_left, ray, flank, {rays.left_reach, Simd::load(w.left_way + i)}, scene.excess, most);
-      const Floats right_bound = bound_child(to_right, {ray.x, Simd::fill(0) - ray.y}, flank,
-                                             {rays.right_reach, Simd::load(w.right_way + i)}, scene.excess, most);
-      left_most = Simd::pick(covered, left_bound, most);
-      right_most = Simd::pick(covered, right_bound, most);
+    Rays light = rays;  // without what the flanks serve
+    ApexView lit = apex;
+    if constexpr (!All) {
+      light = turn_inwards(rays, Simd::load(w.right_served + i), Simd::load(w.left_served + i));
+      lit.from_right = cross(light.right_x, light.right_y, apex.x, apex.y);
+      lit.to_left = cross(apex.x, apex.y, light.left_x, light.left_y);
     }
-
-    const Ints root = Simd::load(w.root + i), clearances = Simd::load(apexes.clearances + i);
+    const Side to_left = left_side(face, lit, light, active & (!Simd::negative(left_edge)));
+    const Side to_right =
+        left_side(mirrored(face), mirrored(lit), mirrored(light), active & (!Simd::negative(right_edge)));
+    const Child left = look_at(to_left), right = look_at(to_right);
+    const Floats tolerance = Simd::fill(k_on_ray) * apex.reach;
+    const Mask inside_right = tolerance < apex.from_right, inside_left = tolerance < apex.to_left;
+    const Ints clearances = Simd::load(apexes.clearances + i);
     const Floats left_clearance = Simd::floats_of(clearances & Simd::fill_int(k_upper_half));
     const Floats right_clearance = Simd::floats_of(clearances << 16);
-    if (const Mask keep = left.useful & is_within(left, left_most, left_clearance); Simd::any(keep)) {
-      const auto packing = Simd::packing(keep);
-      packing.store(lefts.from_x + l, from_dx);
-      packing.store(lefts.from_y + l, from_dy);
-      packing.store(lefts.to_x + l, apex_dx);
-      packing.store(lefts.to_y + l, apex_dy);
-      packing.store(lefts.right_x + l, Simd::pick(inside_right, ray.x, rays.right_x));
-      packing.store(lefts.right_y + l, Simd::pick(inside_right, ray.y, rays.right_y));
-      packing.store(lefts.right_reach + l, Simd::pick(inside_right, reach, rays.right_reach));
-      if constexpr (!All) {
-        packing.store(lefts.right_way + l,
-                      Simd::pick(inside_right, Simd::load(apexes.way + i), Simd::load(w.right_way + i)));
-        packing.store(lefts.left_way + l, Simd::load(w.left_way + i));
-      }
-      packing.store(lefts.left_x + l, rays.left_x);
-      packing.store(lefts.left_y + l, rays.left_y);
-      packing.store(lefts.left_reach + l, rays.left_reach);
-      packing.store(lefts.most + l, left_most);
-      packing.store(lefts.edge + l, left_edge);
-      packing.store(lefts.from + l, Simd::load(w.from + i));
-      packing.store(lefts.to + l, Simd::load(apexes.slot + i));
-      packing.store(lefts.root + l, root);
-      l += packing.count();
+
+    const Floats none = Simd::fill(0);
+    Flank right_flank{rays.right_x, rays.right_y, rays.right_reach, none};
+    Flank left_flank{rays.left_x, rays.left_y, rays.left_reach, none};
+    Heir left_heir{}, right_heir{};
+    if constexpr (All) {
+      const Flank flank = flank_at(apex, none);
+      const Floats most = Simd::look_up_lane(scene.limits, Simd::load(w.edge + i));
+      left_heir = heir_in_disk(left, inside_right, right_flank, flank, left_clearance, most);
+      right_heir = heir_in_disk(right, inside_left, left_flank, flank, right_clearance, most);
+    } else {
+      const Flank flank = flank_at(apex, Simd::load(apexes.way + i));
+      const Floats most = Simd::load(w.most + i);
+      right_flank.way = Simd::load(w.right_way + i);
+      left_flank.way = Simd::load(w.left_way + i);
+      left_heir = heir_behind(left, inside_right, left_flank, right_flank, flank, left_clearance, most, scene.excess,
+                              scene.per_detour);
+      right_heir = heir_behind(right, inside_left, mirrored(right_flank), mirrored(left_flank), mirrored(flank),
+                               right_clearance, most, scene.excess, scene.per_detour);
+      right_heir.far = mirrored(right_heir.far);
     }
-    if (const Mask keep = right.useful & is_within(right, right_most, right_clearance); Simd::any(keep)) {
-      const auto packing = Simd::packing(keep);
-      packing.store(rights.from_x + r, apex_dx);
-      packing.store(rights.from_y + r, apex_dy);
-      packing.store(rights.to_x + r, to_dx);
-      packing.store(rights.to_y + r, to_dy);
-      packing.store(rights.right_x + r, rays.right_x);
-      packing.store(rights.right_y + r, rays.right_y);
-      packing.store(rights.right_reach + r, rays.right_reach);
-      packing.store(rights.left_x + r, Simd::pick(inside_left, ray.x, rays.left_x));
-      packing.store(rights.left_y + r, Simd::pick(inside_left, ray.y, rays.left_y));
-      packing.store(rights.left_reach + r, Simd::pick(inside_left, reach, rays.left_reach));
-      if constexpr (!All) {
-        packing.store(rights.left_way + r,
-                      Simd::pick(inside_left, Simd::load(apexes.way + i), Simd::load(w.left_way + i)));
-        packing.store(rights.right_way + r, Simd::load(w.right_way + i));
-      }
-      packing.store(rights.most + r, right_most);
-      packing.store(rights.edge + r, right_edge);
-      packing.store(rights.from + r, Simd::load(apexes.slot + i));
-      packing.store(rights.to + r, Simd::load(w.to + i));
-      packing.store(rights.root + r, root);
-      r += packing.count();
-    }
+    const Ints root = Simd::load(w.root + i);
+    *left_count = append_heirs<All, false>(lefts, *left_count, corners, left_flank, left_heir, left_edge, root);
+    *right_count = append_heirs<All, true>(rights, *right_count, corners, right_flank, right_heir, right_edge, root);
   }
-  *left_count = l;
-  *right_count = r;
 }
 
 void aim(const SightingRows& seen, const std::int32_t* chosen, int count, double* lengths, float* leaving,

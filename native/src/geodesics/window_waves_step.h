@@ -10,6 +10,10 @@
 // counts the graph's distance to the flank, and the rest with the whole tolerance on top: way + (1 + e) rest <= (1 + e)
 // straight. By induction over lengths no distance in the graph is then longer than 1 + e times the geodesic, as far as
 // windows have run; their end is a bound on one detour alone, with a factor found by measuring.
+//
+// By the same inequality, at the distances that are still ahead of it, the light of a window is narrowed to what its
+// flanks do not serve: a quarter fewer windows and the same arcs but for a few, since those were for vertices in
+// between.
 
 namespace saddleback {
 namespace {
@@ -68,6 +72,7 @@ SADDLEBACK_STEP Floats way_by_flank(const ApexView& apex, const Rays& rays, Floa
 
 /// A vertex that a window's ray runs through.
 struct Flank {
+  Floats x, y;   ///< unit vector to it
   Floats reach;  ///< distance from the source
   Floats way;    ///< bound of the graph's distance
 };
@@ -87,11 +92,9 @@ SADDLEBACK_STEP Floats serving_distance(const Flank& flank, Floats angle, float 
   return Simd::quotient(b + Simd::sqrt(Simd::max(b * b + c, Simd::fill(0))), surplus);
 }
 
-/// The radius beyond which the way by one of two flanks does for all vertices between them. `cosine` and `sine` are of
-/// the angle between the flanks.
-SADDLEBACK_STEP Floats serving_radius(Floats cosine, Floats sine, const Flank& p, const Flank& q, float allowed,
-                                      Floats most) {
-  const Floats zero = Simd::fill(0);
+/// The radius beyond which the way by one of two flanks does for all vertices between them; q is to the left.
+SADDLEBACK_STEP Floats serving_radius(const Flank& p, const Flank& q, float allowed, Floats most) {
+  const Floats zero = Simd::fill(0), cosine = p.x * q.x + p.y * q.y, sine = cross(p.x, p.y, q.x, q.y);
   // An upper bound of the angle (Huygens), closer than rounding for all that are small enough to count.
   const Floats angle = (sine + sine + Simd::quotient(sine, cosine)) * Simd::fill(1.0f / 3);
   // Far away the detours are r (1 - cos): divide the angle so that they are the same.
@@ -101,6 +104,28 @@ SADDLEBACK_STEP Floats serving_radius(Floats cosine, Floats sine, const Flank& p
   return Simd::pick((zero < cosine) & (bound < most), bound, most);
 }
 
+/// How far off a flank's direction it serves all vertices that are at least so far away: the tangent of an angle. With
+/// r, w and k as above, w + k |flank to vertex| <= k D holds where r cos >= w / k + (r^2 - (w / k)^2) / (2 D), and so
+/// for tangents up to the root of twice what that leaves of 1 - cos. Nothing where w exceeds k r. `per_detour` is 1 /
+/// k.
+SADDLEBACK_STEP Floats serving_tangent(const Flank& flank, Floats distance, float per_detour) {
+  const Floats zero = Simd::fill(0), half = Simd::fill(0.5f);
+  const Floats way = Simd::fill(per_detour) * flank.way, middle = half * (flank.reach + way);
+  const Floats spared = Simd::max(flank.reach - way, zero), far = Simd::max(distance, middle);
+  return Simd::sqrt(Simd::quotient((spared + spared) * (far - middle), far * flank.reach));
+}
+
+/// The rays of a window turned inwards, by serving_tangent of each flank. They become a little longer than unit
+/// vectors.
+SADDLEBACK_STEP Rays turn_inwards(const Rays& rays, Floats right_tangent, Floats left_tangent) {
+  return {rays.right_x - right_tangent * rays.right_y,
+          rays.right_y + right_tangent * rays.right_x,
+          rays.left_x + left_tangent * rays.left_y,
+          rays.left_y - left_tangent * rays.left_x,
+          rays.right_reach,
+          rays.left_reach};
+}
+
 /// One side of a window's face, in the words of its left side: from the start of the half-edge, the *near* end, to the
 /// apex. The right side is the left one of the mirror image, y upside down, to the bit.
 struct Side {
@@ -108,7 +133,7 @@ struct Side {
   Mask cut;                             ///< the light ends at the apex
   Floats near_x, near_y, far_x, far_y;  ///< ends of the half-edge
   Floats apex_x, apex_y;
-  Floats near_ray_x, near_ray_y, far_ray_x, far_ray_y;  ///< the window's rays
+  Floats near_ray_x, near_ray_y, far_ray_x, far_ray_y;  ///< where the light ends
   Floats apex_off, apex_in;                             ///< offsets of the apex from the two, positive inside
   Floats near_label, far_label, apex_label;
 };
@@ -154,6 +179,15 @@ SADDLEBACK_STEP Mask is_within(const Child& child, Floats most, Floats clearance
                                child.foot_squared < most_2 * child.length_squared));
 }
 
+/// How far the nearest vertex is at least that the light may reach: as far as its nearest point on the side, an end or
+/// the source's foot, and from there as far as the next vertex beyond the side is at least.
+SADDLEBACK_STEP Floats nearest_beyond(const Child& child, Floats clearance) {
+  const Floats zero = Simd::fill(0), foot_2 = Simd::quotient(child.foot_squared, child.length_squared);
+  const Floats least_2 = Simd::pick(zero < child.begin_ahead, child.begin_squared,
+                                    Simd::pick(child.end_ahead < zero, child.end_squared, foot_2));
+  return Simd::sqrt(least_2) + clearance;
+}
+
 /// Ends of the window's half-edge and their labels, and the apex's.
 struct FacePlaces {
   Floats from_x, from_y, to_x, to_y;
@@ -184,20 +218,46 @@ SADDLEBACK_STEP Rays mirrored(const Rays& rays) {
 }
 
 /// The flank that the apex becomes for the children whose light ends there.
-struct ApexRay {
-  Floats x, y;
-};
-SADDLEBACK_STEP ApexRay ray_to(const ApexView& apex) {
+SADDLEBACK_STEP Flank flank_at(const ApexView& apex, Floats way) {
   const Floats per_reach = Simd::quotient(Simd::fill(1), apex.reach);
-  return {apex.x * per_reach, apex.y * per_reach};
+  return {apex.x * per_reach, apex.y * per_reach, apex.reach, way};
+}
+SADDLEBACK_STEP Flank mirrored(const Flank& flank) {
+  return {flank.x, Simd::fill(0) - flank.y, flank.reach, flank.way};
 }
 
-/// The radius beyond which the child behind a side serves nothing, where the apex divides the window's light. `ray` is
-/// mirrored as the side is; `near_flank` is the one on the near ray.
-SADDLEBACK_STEP Floats bound_child(const Side& side, const ApexRay& ray, const Flank& apex, const Flank& near_flank,
-                                   float allowed, Floats most) {
-  return serving_radius(ray.x * side.near_ray_x + ray.y * side.near_ray_y,
-                        cross(ray.x, ray.y, side.near_ray_x, side.near_ray_y), apex, near_flank, allowed, most);
+/// The window behind a side.
+struct Heir {
+  Mask useful;
+  Flank far;                       ///< the other flank is the window's near one
+  Floats near_served, far_served;  ///< serving_tangent of its flanks, for all that is ahead
+  Floats most;                     ///< radius beyond which it serves nothing
+};
+
+/// In the words of the left side: flanks are mirrored as the side is. `cut` where the apex divides the window; `most`
+/// is the window's. `allowed` and `per_detour` as for serving_distance and serving_tangent.
+SADDLEBACK_STEP Heir heir_behind(const Child& child, Mask cut, const Flank& near, const Flank& far, const Flank& apex,
+                                 Floats clearance, Floats most, float allowed, float per_detour) {
+  Floats own_most = most;
+  if (Simd::any(cut & child.useful)) own_most = Simd::pick(cut, serving_radius(apex, near, allowed, most), most);
+  const Flank last{Simd::pick(cut, apex.x, far.x), Simd::pick(cut, apex.y, far.y),
+                   Simd::pick(cut, apex.reach, far.reach), Simd::pick(cut, apex.way, far.way)};
+  const Floats distance = nearest_beyond(child, clearance);
+  const Floats near_served = serving_tangent(near, distance, per_detour);
+  const Floats last_served = serving_tangent(last, distance, per_detour);
+  const Rays light = turn_inwards({last.x, last.y, near.x, near.y, last.reach, near.reach}, last_served, near_served);
+  const Mask is_open = Simd::fill(0) < cross(light.right_x, light.right_y, light.left_x, light.left_y);
+  const Mask useful = child.useful & (distance < own_most) & is_open;
+  return {useful, last, near_served, last_served, own_most};
+}
+
+/// The same where all that is seen counts, nearer than `most`.
+SADDLEBACK_STEP Heir heir_in_disk(const Child& child, Mask cut, const Flank& far, const Flank& apex, Floats clearance,
+                                  Floats most) {
+  const Floats zero = Simd::fill(0);
+  const Flank last{Simd::pick(cut, apex.x, far.x), Simd::pick(cut, apex.y, far.y), zero, zero};
+  const Mask useful = child.useful & is_within(child, most, clearance);
+  return {useful, last, zero, zero, most};
 }
 
 /// Of a vector in the upper half-plane.
