@@ -13,9 +13,9 @@ namespace {
 template <class Table, int Seats>
 struct BestSightings {
   static constexpr int Slots = Table::Slots, Kept = 2 * Slots / Seats, Words = Table::Draft / 32 + 1;
-  std::int32_t labels[Slots];         ///< of the shortest arcs
-  std::int32_t numbers[Slots];        ///< in the draft, of the first of them
-  std::uint16_t slots[Table::Draft];  ///< of the sightings
+  std::int32_t labels[Slots];          ///< of the shortest arcs
+  std::int32_t numbers[Slots];         ///< in the draft, of the first of them
+  std::uint16_t places[Table::Draft];  ///< SightedAt
   std::uint16_t kept[Seats][Kept];
   std::uint32_t begins[Words];  ///< bits: the sighting is its generation's first
 };
@@ -29,6 +29,7 @@ SADDLEBACK_STEP int to_sector(float sector) {
 template <class Waves, class Table, int Seats>
 class RowWriter {
   using Best = BestSightings<Table, Seats>;
+  using Sighted = typename Table::Sighted;
 
  public:
   SADDLEBACK_STEP RowWriter(const DeviceMesh& mesh, const Waves& waves, Best& best)
@@ -69,9 +70,9 @@ class RowWriter {
 #pragma unroll 4
     for (int i = lane_; i < waves_.arcs(); i += 32) {
       const uint2 seen{draft[i].ids, static_cast<unsigned>(draft[i].label)};  // in one load
-      const int slot = static_cast<int>(seen.x >> RootEdge::k_bits);
+      const int place = static_cast<int>(seen.x >> RootEdge::k_bits), slot = Sighted::slot(place);
       const auto label = static_cast<std::int32_t>(seen.y);
-      best_.slots[i] = static_cast<std::uint16_t>(slot);
+      best_.places[i] = static_cast<std::uint16_t>(place);
       atomicMin(&best_.labels[slot], label & ~Sighting::k_begins);
       if (label < 0) atomicOr(&best_.begins[i / 32], 1u << i % 32);
     }
@@ -79,13 +80,14 @@ class RowWriter {
     bool tied = false;
 #pragma unroll 4
     for (int i = lane_; i < waves_.arcs(); i += 32) {
-      const int slot = best_.slots[i];
+      const int slot = slot_of(i);
       if (best_.labels[slot] == label_of(draft[i])) tied |= atomicMin(&best_.numbers[slot], i) != k_unreached_label;
     }
     if (__any_sync(k_warp, tied)) break_ties();
     __syncwarp();
   }
 
+  SADDLEBACK_STEP int slot_of(int number) const { return Sighted::slot(best_.places[number]); }
   SADDLEBACK_STEP static std::int32_t label_of(const Sighting& seen) { return seen.label & ~Sighting::k_begins; }
   SADDLEBACK_STEP static std::uint32_t order_of(const Sighting& seen) {
     return order_in_generation(seen.turns, RootEdge::edge(seen.root()));
@@ -96,7 +98,7 @@ class RowWriter {
     __syncwarp();
     const Sighting* const draft = waves_.draft();
     for (int i = lane_; i < waves_.arcs(); i += 32) {
-      const int slot = best_.slots[i];
+      const int slot = slot_of(i);
       if (best_.labels[slot] != label_of(draft[i])) continue;
       for (int first = best_.numbers[slot]; comes_before(i, first);) {
         const int before = first;
@@ -106,7 +108,7 @@ class RowWriter {
     }
   }
   SADDLEBACK_STEP bool comes_before(int a, int b) const {
-    bool same_generation = min(a, b) >= waves_.links();
+    bool same_generation = min(a, b) >= waves_.links() && best_.places[a] == best_.places[b];
     for (int i = min(a, b) + 1; i <= max(a, b) && same_generation; ++i)
       same_generation = (best_.begins[i / 32] >> i % 32 & 1) == 0;
     return same_generation ? order_of(waves_.draft()[a]) < order_of(waves_.draft()[b]) : a < b;
@@ -115,7 +117,7 @@ class RowWriter {
   /// An arc that is not the shortest way stays as long as others may rely on it; edges stay even where something
   /// shorter, but no arc, was found.
   SADDLEBACK_STEP bool is_kept(int number) const {
-    const int slot = best_.slots[number];
+    const int slot = slot_of(number);
     const float reach = distance_of(best_.labels[slot]);
     const bool stays = reach <= mesh_.slack * static_cast<double>(distance_of(waves_.disk().label(slot))) &&
                        reach <= waves_.disk().radius();
@@ -130,9 +132,10 @@ class RowWriter {
     for (int base = 0; base < waves_.arcs() && fits; base += 32) {
       const int number = base + lane_;
       const bool kept = number < waves_.arcs() && is_kept(number);
-      const int seat = Seats > 1 && kept ? waves_.disk().seat(best_.slots[number]) : 0;
+      const int place = best_.places[min(number, waves_.arcs() - 1)];
+      const int seat = Seats > 1 && kept ? waves_.disk().seat(Sighted::slot(place)) : 0;
       const std::uint32_t begins = best_.begins[base / 32];
-      const int generation = generations + __popc(begins & (2u << lane_) - 1);
+      const int generation = 32 * (generations + __popc(begins & (2u << lane_) - 1)) + Sighted::generation(place);
       generations += __popc(begins);
 #pragma unroll
       for (int s = 0; s < Seats; ++s) {
@@ -172,7 +175,7 @@ class RowWriter {
     const Sighting seen = waves_.draft()[number];
     const std::int32_t root = (seat == 0 ? sources[0].first : sources[1].first) + RootEdge::edge(seen.root());
     const std::uint32_t order = order_of(seen) | ((kept & k_first_kept) != 0 ? k_new_generation : 0);
-    Chosen arc{seen, number >= waves_.links(), order, waves_.disk().node(seen.slot()), 256, 0, 0, 0};
+    Chosen arc{seen, number >= waves_.links(), order, waves_.disk().node(Sighted::slot(seen.seen_at())), 256, 0, 0, 0};
     if (arc.is_window) {
       arc.leaving = mesh_.sectors[root];
       arc.back = mesh_.apex_sectors[seen.edge];

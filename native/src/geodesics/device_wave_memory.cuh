@@ -74,20 +74,31 @@ struct alignas(16) Sighting {
   double2 from;         ///< start of the half-edge that the window came through
   std::int32_t edge;    ///< of the window; of a source's link, whether it is the other side of its face
   std::uint32_t turns;  ///< of the window, see device_sighting_order.cuh
-  std::uint32_t ids;    ///< RootEdge; above it the slot
+  std::uint32_t ids;    ///< RootEdge; above it the SightedAt
   std::int32_t label;
 
   static constexpr std::int32_t k_begins = 1 << 31;  ///< in the label, of the first of a generation
-  SADDLEBACK_STEP static std::uint32_t pack(int root, int slot) {
-    return static_cast<std::uint32_t>(root) | static_cast<std::uint32_t>(slot) << RootEdge::k_bits;
+  SADDLEBACK_STEP static std::uint32_t pack(int root, int place) {
+    return static_cast<std::uint32_t>(root) | static_cast<std::uint32_t>(place) << RootEdge::k_bits;
   }
   SADDLEBACK_STEP int root() const { return static_cast<int>(ids & ((1u << RootEdge::k_bits) - 1)); }
-  SADDLEBACK_STEP int slot() const { return static_cast<int>(ids >> RootEdge::k_bits); }
+  SADDLEBACK_STEP int seen_at() const { return static_cast<int>(ids >> RootEdge::k_bits); }
+};
+
+/// The slot of what is seen; in tables of few slots, above it, in which generation it is seen, from 1 on, as far as
+/// generations are not marked by k_begins.
+template <bool CountsGenerations>
+struct SightedAt {
+  static constexpr int k_bits = 16, k_slot_bits = CountsGenerations ? 10 : k_bits;
+  SADDLEBACK_STEP static int pack(int slot, int generation) { return slot | generation << k_slot_bits; }
+  SADDLEBACK_STEP static int slot(int place) { return place & ((1 << k_slot_bits) - 1); }
+  SADDLEBACK_STEP static int generation(int place) { return place >> k_slot_bits; }
 };
 
 /// What belongs to a window, by its indices: its half-edge's record, the slots of the half-edge's ends and, once it is
 /// sighted, of the apex, the RootEdge and the turns.
 struct alignas(16) WindowLinks {
+  static constexpr int k_most_edges = RootEdge::k_most_edges;  ///< of a source
   std::int32_t edge;
   std::uint32_t ends;      ///< slots: left, above it right
   std::uint32_t root_ids;  ///< root, above it the apex
@@ -105,7 +116,7 @@ struct alignas(16) WindowLinks {
   SADDLEBACK_STEP void note_apex(WindowLinks& there, int slot) const {
     there.root_ids = root_ids | static_cast<std::uint32_t>(slot) << 16;
   }
-  SADDLEBACK_STEP void set_turns(std::uint32_t number) { turned = number; }
+  SADDLEBACK_STEP void set_turns(std::uint32_t number, int) { turned = number; }
   /// Of the window behind a side, whose turns have `bits` before that.
   SADDLEBACK_STEP WindowLinks child(std::int32_t behind, int side, int bits) const {
     return {behind, (ends & 0xffffu << 16 * side) | (root_ids >> 16) << 16 * (1 - side), root_ids & 0xffff,
@@ -113,36 +124,43 @@ struct alignas(16) WindowLinks {
   }
 };
 
-/// The same in less, with the radius beyond which the window serves nothing.
+/// The same in less, with the radius beyond which the window serves nothing. Turns have as many bits as there were
+/// generations.
 struct alignas(16) DenseLinks {
-  static constexpr int k_slot_bits = 10, k_root_bits = k_root_edge_bits + 1;
+  static constexpr int k_slot_bits = 10, k_edge_bits = 7, k_generation_bits = 5;
+  static constexpr int k_seat = k_edge_bits, k_generation = k_seat + 1, k_turns = k_generation + k_generation_bits;
+  static constexpr int k_most_edges = 1 << k_edge_bits;  ///< of a source
   static constexpr std::uint32_t k_slot = (1u << k_slot_bits) - 1;
-  static_assert(k_root_bits + k_most_turns <= 32);
+  static_assert(k_turns + k_most_turns <= 32 && k_most_turns < 1 << k_generation_bits);
   std::int32_t edge;
   std::uint32_t slots;   ///< left, right, apex, from the lowest bits on
-  std::uint32_t origin;  ///< half-edge of the source, seat, turns
+  std::uint32_t origin;  ///< half-edge of the source, seat, generation, turns
   float most;
 
   SADDLEBACK_STEP static DenseLinks first(std::int32_t edge, int left, int right, int root) {
     return {edge, static_cast<std::uint32_t>(left) | static_cast<std::uint32_t>(right) << k_slot_bits,
-            static_cast<std::uint32_t>(RootEdge::seat(root) << k_root_edge_bits | RootEdge::edge(root)), 0};
+            static_cast<std::uint32_t>(RootEdge::seat(root) << k_seat | RootEdge::edge(root)), 0};
   }
   SADDLEBACK_STEP int end(int side) const { return static_cast<int>(slots >> k_slot_bits * side & k_slot); }
   SADDLEBACK_STEP int apex() const { return static_cast<int>(slots >> 2 * k_slot_bits); }
   SADDLEBACK_STEP int root() const {
-    return RootEdge::pack(static_cast<int>(origin >> k_root_edge_bits & 1),
-                          static_cast<int>(origin & (RootEdge::k_most_edges - 1)));
+    return RootEdge::pack(static_cast<int>(origin >> k_seat & 1), static_cast<int>(origin & (k_most_edges - 1)));
   }
-  SADDLEBACK_STEP std::uint32_t turns() const { return origin >> k_root_bits; }
+  SADDLEBACK_STEP int generation() const {
+    return static_cast<int>(origin >> k_generation & ((1u << k_generation_bits) - 1));
+  }
+  SADDLEBACK_STEP std::uint32_t turns() const { return origin >> k_turns; }
   SADDLEBACK_STEP void note_apex(DenseLinks& there, int slot) const {
     there.slots = slots | static_cast<std::uint32_t>(slot) << 2 * k_slot_bits;
   }
-  SADDLEBACK_STEP void set_turns(std::uint32_t number) {
-    origin = (origin & ((1u << k_root_bits) - 1)) | number << k_root_bits;
+  /// In place of as many generations as the numbers have bits.
+  SADDLEBACK_STEP void set_turns(std::uint32_t number, int bits) {
+    origin =
+        (origin & ((1u << k_generation) - 1)) | static_cast<std::uint32_t>(bits) << k_generation | number << k_turns;
   }
-  SADDLEBACK_STEP DenseLinks child(std::int32_t behind, int side, int bits) const {
+  SADDLEBACK_STEP DenseLinks child(std::int32_t behind, int side, int) const {
     return {behind, (slots & k_slot << k_slot_bits * side) | (slots >> 2 * k_slot_bits) << k_slot_bits * (1 - side),
-            origin | static_cast<std::uint32_t>(side) << (k_root_bits + bits), most};
+            (origin | static_cast<std::uint32_t>(side) << (k_turns + generation())) + (1u << k_generation), most};
   }
 };
 
@@ -172,7 +190,9 @@ struct alignas(16) WindowPool {
   static constexpr bool All = All_, is_dense = !All && Slots <= 1 << DenseLinks::k_slot_bits;
   static constexpr int Windows = Windows_;
   using Links = std::conditional_t<is_dense, DenseLinks, WindowLinks>;
-  static constexpr int Lights = All ? Windows + Windows / 4 : Windows + 3 * Windows / 8;
+  /// In the dense one a ring.
+  static constexpr int Lights =
+      is_dense ? (Windows <= 80 ? 128 : 256) : Windows + (All ? Windows / 4 : 3 * Windows / 8);
   static_assert(Windows <= Light::k_number && Windows % 4 == 0);
   double2 ends[2][Windows];           ///< of the half-edge: start, which is on the left, and end
   double2 apexes[All ? 1 : Windows];  ///< once they are sighted
@@ -189,6 +209,7 @@ template <bool All_, int Slots_>
 struct alignas(16) WaveTable {
   static constexpr bool All = All_;
   static constexpr int Slots = Slots_, Todo = 96, Draft = Slots + Slots / 2;  ///< sightings that make arcs
+  using Sighted = SightedAt<!All && Slots <= 1 << DenseLinks::k_slot_bits>;
   static_assert(Slots % 128 == 0);
   std::int32_t labels[Slots];
   std::uint32_t keys[Slots];                    ///< nodes, and whose they are

@@ -41,9 +41,10 @@ __device__ __noinline__ int renumber(Pool* pool, int begin, int count) {
     pool->lights[i] = static_cast<std::uint16_t>(before);
   }
   __syncwarp();
-  for (int i = lane; i < count; i += 32) links_of(i).set_turns(pool->lights[i]);
+  const int bits = 32 - __clz(max(count - 1, 0));
+  for (int i = lane; i < count; i += 32) links_of(i).set_turns(pool->lights[i], bits);
   __syncwarp();
-  return 32 - __clz(max(count - 1, 0));
+  return bits;
 }
 
 /// Sources from their first windows to the vertices that they see. `Seats` sources at most.
@@ -71,44 +72,51 @@ class WarpWaves {
   SADDLEBACK_STEP void begin(const WarpSources& sources) {
     sources_ = sources;
     arcs_ = generation_ = turns_ = windows_ = 0;
-    begin_ = count_ = 0;
+    end_ = count_ = first_light_ = lights_ = 0;
     overflow_ = 0;
     disk_.clear();
     const int seat = lane_ / k_lanes_per_seat, first = lane_ % k_lanes_per_seat;
     const bool has_source = seat < sources.count;
     const std::int32_t node = sources.node + (has_source ? seat : 0);
     const std::int32_t e = mesh_.first[node], count = has_source ? mesh_.first[node + 1] - e : 0;
-    if (count > RootEdge::k_most_edges) overflow_ = 1;
+    if (count > Links::k_most_edges) overflow_ = 1;
     const bool at_centre = has_source && first == 0;
     const int centre = disk_.insert(at_centre, Key::pack(node, seat, mesh_.saddles[node] != 0));
     disk_.lower(at_centre, centre, label_of(0, false), false);
     for (int edge = first; __any_sync(k_warp, edge < count) && !overflowed(); edge += k_lanes_per_seat)
       add_edges(seat, edge, e + edge, edge < count);
-    links_ = arcs_;
+    links_ = arcs_before_ = arcs_;
+    is_free_ = Pool::is_dense;
+    is_filtered_ = All;
+    stop_ = min(k_most_turns, k_free_generations);
+    if (!All) count_windows(is_free_ ? k_free_generations * k_windows : count_);  // or fewer
   }
 
   /// To the last generation. False when the memory did not do.
   SADDLEBACK_STEP bool run() {
-    while (!overflowed()) {
-      const int all = uniform(count_);
-      if (all == 0 && !All) break;
-      windows_ += all;
-      if (windows_ > k_most_windows / k_batch) overflow_ = 1;  // the processor may stop there
-      arcs_before_ = arcs_;
-      lights_ = 0;
-      for (int base = 0; base < all; base += 32) sight(base, all);
-      if (lights_ > Pool::Lights) overflow_ = 1;
+    if constexpr (All) return run_to_radius();
+    int next = 0,
+        waiting = count_;  // windows that are not sighted yet, of a generation or, as long as they are free, two
+    count_ = 0;
+    while (true) {
+      if (is_free_ ? lights_ < 32 && (waiting >= 32 || lights_ < waiting) : waiting > 0) {
+        const int taken = min(32, waiting);
+        sight(next, taken);
+        next = in_ring(next + taken);
+        waiting -= taken;
+      } else if (lights_ > 0) {
+        if (lights_ > Pool::Lights) overflow_ = 1;
+        if (overflowed()) break;
+        const int taken = min(32, lights_);
+        waiting += pass_on(taken, taken < lights_ ? window_of_light(first_light_ + taken) : next);
+        first_light_ += taken;
+        lights_ -= taken;
+      } else {
+        waiting = begin_generation(next);
+        if (overflowed()) break;
+        if (waiting == 0) break;
+      }
       __syncwarp();
-      if (overflowed()) break;
-      const bool smaller = bend(all == 0);
-      if (all == 0 && !smaller) break;
-      count_ = 0;
-      const int lights = uniform(lights_);
-      heirs_ = place_of(all);
-      for (int base = 0; base < lights; base += 32) pass_on(base, lights, all);
-      __syncwarp();
-      begin_ = heirs_;
-      if (++turns_ == k_most_turns) turns_ = renumber(&pool_, begin_, min(count_, k_windows));
     }
     return !overflowed();
   }
@@ -128,15 +136,62 @@ class WarpWaves {
   using Key = DiskKey<Seats>;
 
   SADDLEBACK_STEP bool overflowed() {
-    return arcs_ > k_draft_room || __any_sync(k_warp, overflow_ != 0 || disk_.overflowed());
+    return __any_sync(k_warp, (arcs_ > k_draft_room) | (overflow_ != 0) | disk_.overflowed()) != 0;
   }
   SADDLEBACK_STEP int rank(unsigned lanes) const { return __popc(lanes & below_); }
   SADDLEBACK_STEP static int in_ring(int number) {
     const auto place = static_cast<unsigned>(number);
     return static_cast<int>(min(place, place - k_windows));
   }
-  /// Of the generation's windows, and behind them of their children.
-  SADDLEBACK_STEP int place_of(int number) const { return in_ring(begin_ + number); }
+  SADDLEBACK_STEP static int light_place(int number) { return Pool::is_dense ? number & (Pool::Lights - 1) : number; }
+  SADDLEBACK_STEP int window_of_light(int number) const { return pool_.lights[light_place(number)] & Light::k_number; }
+
+  /// When no window waits any more and no light: those that count_ counts, from a place on, come next. \return how many
+  SADDLEBACK_STEP int begin_generation(int place) {
+    const int all = count_;
+    if (!is_free_) count_windows(all);
+    count_ = first_light_ = 0;
+    arcs_before_ = arcs_;
+    generation_ += is_free_ ? stop_ - turns_ : 1;
+    turns_ = is_free_ ? stop_ : turns_ + 1;
+    if (turns_ == k_most_turns) turns_ = renumber(&pool_, place, all);
+    if constexpr (Pool::is_dense) {
+      is_free_ = generation_ < k_free_generations;
+      stop_ = min(k_most_turns, turns_ + k_free_generations - generation_);
+    }
+    is_filtered_ = generation_ >= k_free_generations;
+    return all;
+  }
+
+  SADDLEBACK_STEP void count_windows(int more) {
+    windows_ += more;
+    if (windows_ > k_most_windows / k_batch) overflow_ = 1;  // the processor may stop there
+  }
+
+  /// Until the disk becomes no smaller.
+  SADDLEBACK_STEP bool run_to_radius() {
+    for (int begin = 0; !overflowed();) {
+      const int all = uniform(count_), behind = in_ring(begin + all);
+      count_windows(all);
+      arcs_before_ = arcs_;
+      first_light_ = lights_ = 0;
+      for (int base = 0; base < all; base += 32) sight(in_ring(begin + base), min(32, all - base));
+      if (lights_ > Pool::Lights) overflow_ = 1;
+      __syncwarp();
+      if (overflowed()) break;
+      const bool smaller = bend(all == 0);
+      if (all == 0 && !smaller) break;
+      const int lights = uniform(lights_);
+      for (; first_light_ < lights; first_light_ += 32)
+        pass_on(min(32, lights - first_light_),
+                first_light_ + 32 < lights ? window_of_light(first_light_ + 32) : behind);
+      __syncwarp();
+      begin = behind;
+      count_ = in_ring(end_ - begin + k_windows);
+      if (++turns_ == k_most_turns) turns_ = renumber(&pool_, begin, count_);
+    }
+    return !overflowed();
+  }
 
   SADDLEBACK_STEP void put_arc(int number, const Sighting& seen) {
     const auto at = static_cast<std::uint32_t>(min(number, k_draft_room - 1)) * std::uint64_t{sizeof seen};
@@ -164,7 +219,7 @@ class WarpWaves {
     const bool opens = active && record.right >= 0;
     const unsigned opening = __ballot_sync(k_warp, opens);
     const int opened = __popc(opening);
-    if (count_ + opened > k_windows) {
+    if (count_ + opened >= k_windows) {
       overflow_ = 1;
     } else if (opens) {
       const int place = count_ + rank(opening);
@@ -178,7 +233,7 @@ class WarpWaves {
       set_most(links, place, distance_of(k_unreached_label));
       pool_.links[place] = links;
     }
-    count_ += opened;
+    end_ = count_ += opened;
     arcs_ += __popc(actives) + __popc(boundaries);
     __syncwarp();
   }
@@ -196,12 +251,11 @@ class WarpWaves {
     }
   }
 
-  /// 32 windows of the generation look at their apexes, lower the labels, and list their sides that are lit. Lanes
-  /// without a window do what the last does, and write nothing.
-  SADDLEBACK_STEP void sight(int base, int all) {
-    const bool active = base + lane_ < all;
-    const int number = min(base + lane_, all - 1);
-    const int place = place_of(number);
+  /// The `taken` windows from a place on look at their apexes, lower the labels, and list their sides that are lit.
+  /// Lanes without a window do what the last does, and write nothing.
+  SADDLEBACK_STEP void sight(int first, int taken) {
+    const bool active = lane_ < taken;
+    const int place = in_ring(first + min(lane_, taken - 1));
     const Links links = pool_.links[place];
     const EdgeRecord record = mesh_.records[links.edge];
     const double2 from = pool_.ends[0][place], to = pool_.ends[1][place];
@@ -237,8 +291,12 @@ class WarpWaves {
     const unsigned making = __ballot_sync(k_warp, makes);
     if (makes) {
       const int number = arcs_ + rank(making);
+      int at = slot;
       const std::int32_t mark = number == arcs_before_ ? Sighting::k_begins : 0;
-      put_arc(number, {apex, from, links.edge, links.turns(), Sighting::pack(root, slot), label | mark});
+      if constexpr (Pool::is_dense) {
+        at = Table::Sighted::pack(slot, links.generation() + 1);
+      }
+      put_arc(number, {apex, from, links.edge, links.turns(), Sighting::pack(root, at), label | mark});
     }
     arcs_ += __popc(making);
     float from_right = view.from_right, to_left = view.to_left;
@@ -248,7 +306,7 @@ class WarpWaves {
       to_left = cross(view.x, view.y, light.left_x, light.left_y);
     }
     const float tolerance = k_on_ray * view.reach;
-    list_lights(number, active && record.left >= 0 && tolerance < to_left,
+    list_lights(place, active && record.left >= 0 && tolerance < to_left,
                 active && record.right >= 0 && tolerance < from_right);
   }
 
@@ -274,13 +332,14 @@ class WarpWaves {
     }
   }
 
-  SADDLEBACK_STEP void list_lights(int number, bool left, bool right) {
+  SADDLEBACK_STEP void list_lights(int place, bool left, bool right) {
     const unsigned lefts = __ballot_sync(k_warp, left), rights = __ballot_sync(k_warp, right);
-    const int at = lights_ + rank(lefts) + rank(rights);
+    const int at = first_light_ + lights_ + rank(lefts) + rank(rights);
     lights_ += __popc(lefts) + __popc(rights);
-    const bool fits = lights_ <= Pool::Lights;
-    if (fits && left) pool_.lights[at] = static_cast<std::uint16_t>(number);
-    if (fits && right) pool_.lights[at + (left ? 1 : 0)] = static_cast<std::uint16_t>(number | Light::k_right);
+    const bool fits = Pool::is_dense || lights_ <= Pool::Lights;
+    if (fits && left) pool_.lights[light_place(at)] = static_cast<std::uint16_t>(place);
+    if (fits && right)
+      pool_.lights[light_place(at + (left ? 1 : 0))] = static_cast<std::uint16_t>(place | Light::k_right);
   }
 
   /// Every few generations, and when no window is left until the disk becomes no smaller. \return whether it did
@@ -302,20 +361,17 @@ class WarpWaves {
     disk_.lower_radius(max(radius, 0.0f));
   }
 
-  /// The light on 32 sides becomes windows of the next generation. Lanes without one do what the last does, and write
-  /// nothing.
-  SADDLEBACK_STEP void pass_on(int base, int lights, int all) {
-    const bool active = base + lane_ < lights;
-    const int light = pool_.lights[min(base + lane_, lights - 1)];
-    const int number = light & Light::k_number, place = place_of(number), s = light / Light::k_right & 1;
+  /// The light on `taken` sides becomes windows of the next generation. Lanes without one do what the last does, and
+  /// write nothing. Windows from the `oldest` on are still needed. \return how many may be sighted; others are counted
+  SADDLEBACK_STEP int pass_on(int taken, int oldest) {
+    const bool active = lane_ < taken;
+    const int light = pool_.lights[light_place(first_light_ + min(lane_, taken - 1))];
+    const int place = light & Light::k_number, s = light / Light::k_right & 1;
     const Links links = pool_.links[place];
     const EdgeRecord record = mesh_.records[links.edge];
     const double2 from = pool_.ends[0][place], to = pool_.ends[1][place], near = pool_.ends[s][place];
     const Ray near_ray = pool_.rays[s][place], far_ray = pool_.rays[1 - s][place];
     const float way = All ? 0 : pool_.ways[All ? 0 : place];
-    const float near_label = distance_of(disk_.label(links.end(s)));
-    const float far_label = distance_of(disk_.label(links.end(1 - s)));
-    const float apex_label = distance_of(disk_.label(links.apex()));
     double2 apex;
     if constexpr (All) {
       apex = apex_of(record, from, to);  // of which to keep it takes longer
@@ -346,11 +402,13 @@ class WarpWaves {
                     lit.right_x,
                     lit.right_y,
                     cross(apex_x, apex_y, lit.left_x, lit.left_y),
-                    from_right,
-                    near_label,
-                    far_label,
-                    apex_label};
-    const Child child = look_at(side);
+                    from_right};
+    Child child = look_at(side);
+    if (is_filtered_) {
+      const CornerLabels labels{distance_of(disk_.label(links.end(s))), distance_of(disk_.label(links.end(1 - s))),
+                                distance_of(disk_.label(links.apex()))};
+      child.useful = child.useful & !is_served_by_corner(side, child, labels);
+    }
     const float clearance = __int_as_float(static_cast<std::int32_t>(
         s == 0 ? record.clearances & k_upper_half : (record.clearances & ~k_saddle_bit) << 16));
     const Heir heir = look_behind(child, cut, view, near_ray, far_ray, flip, way, clearance, most_of(links, place));
@@ -364,13 +422,11 @@ class WarpWaves {
     const bool keep = heir.useful;
 
     const unsigned keeping = __ballot_sync(k_warp, keep);
-    // Children lie behind the generation. Of it those before the last that was looked at are not needed any more.
-    const int behind = count_ + rank(keeping), first_needed = __shfl_sync(k_warp, number, 31);
-    count_ += __popc(keeping);
-    if (all + count_ - k_windows > (base + 32 < lights ? first_needed : all)) overflow_ = 1;
+    const int kept = __popc(keeping);
+    if (in_ring(end_ - oldest + k_windows) + kept >= k_windows) overflow_ = 1;
     __syncwarp();  // nobody looks at the windows any more
     if (keep && overflow_ == 0) {
-      const int there = in_ring(heirs_ + behind);
+      const int there = in_ring(end_ + rank(keeping));
       pool_.ends[s][there] = near;
       pool_.ends[1 - s][there] = apex;
       pool_.rays[s][there] = near_ray;
@@ -379,9 +435,20 @@ class WarpWaves {
         pool_.served[s][there] = heir.near_served;
         pool_.served[1 - s][there] = heir.far_served;
       }
-      Links child_links = links.child(s == 0 ? record.left : record.right, s, turns_);
+      const std::int32_t behind = s == 0 ? record.left : record.right;
+      Links child_links = links.child(behind, s, turns_);
       set_most(child_links, there, heir.most);
       pool_.links[there] = child_links;
+    }
+    end_ = in_ring(end_ + kept);
+    if constexpr (Pool::is_dense) {
+      const bool is_last = links.generation() >= stop_ - 1;
+      const int others = __popc(__ballot_sync(k_warp, keep & (is_last | !is_free_)));
+      count_ += others;
+      return kept - others;
+    } else {
+      if (!All) count_ += kept;
+      return 0;
     }
   }
 
@@ -407,11 +474,13 @@ class WarpWaves {
   int lane_;
   unsigned below_;  ///< lanes before this one
   WarpSources sources_{0, 0};
-  int begin_ = 0;  ///< place of the generation's first window
-  int heirs_ = 0;  ///< and of the next one's
-  int count_ = 0;  ///< windows of the generation that is being made
-  int lights_ = 0;
-  int turns_ = 0;  ///< bits of the windows' turns
+  int end_ = 0;    ///< place behind all windows
+  int count_ = 0;  ///< windows of a generation that others have to be done before
+  int first_light_ = 0, lights_ = 0;
+  bool is_free_ = false;      ///< windows may be taken in any order
+  int stop_ = 0;              ///< but for those of so many turns
+  bool is_filtered_ = false;  ///< labels count
+  int turns_ = 0;             ///< bits of the windows' turns
   int arcs_ = 0, links_ = 0, generation_ = 0, windows_ = 0;
   int arcs_before_ = 0;  ///< this generation
   int overflow_ = 0;     ///< whether there is too little room

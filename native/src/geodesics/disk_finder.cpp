@@ -158,6 +158,7 @@ bool DiskFinder::run(const JobStage& stage) {
 
 /// Sights all windows of this generation, then splits them into the next.
 void DiskFinder::advance() {
+  ++generation_;
   WaveScene scene = wave_scene(mesh_.records(), rule_);
   scene.labels = labels_.data();
   scene.limits = limits_.data();
@@ -177,7 +178,8 @@ void DiskFinder::advance() {
   next_->left_count = next_->right_count = 0;
   next_->lefts.reserve(now_->size() + k_row_padding);
   next_->rights.reserve(now_->size() + k_row_padding);
-  const auto split = by_count() ? kernel_.split_all : kernel_.split;
+  const bool free = sources_ == Sources::nodes && generation_ <= k_free_generations;
+  const auto split = by_count() ? kernel_.split_all : free ? kernel_.split_free : kernel_.split;
   const WindowRows lefts = next_->lefts.rows(), rights = next_->rights.rows();
   split(scene, now_->lefts.rows(), now_->left_count, apexes, lefts, &next_->left_count, rights, &next_->right_count);
   split(scene, now_->rights.rows(), now_->right_count, right_apexes, lefts, &next_->left_count, rights,
@@ -326,7 +328,7 @@ void DiskFinder::finish_disks() {
 }
 
 void DiskFinder::bound_disks() {
-  if (++generation_ % k_generations_per_bound != k_first_bound) return;
+  if (generation_ % k_generations_per_bound != k_first_bound) return;
   for (int lane = 0; lane < k_batch; ++lane) bound_disk(lane);
   if (generation_ >= k_blind_generations) bound_blind_disks();
   relax_bends();

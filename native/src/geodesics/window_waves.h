@@ -16,6 +16,10 @@ inline constexpr int k_batch_bits = 3;
 inline constexpr int k_generations_per_bound = 3, k_first_bound = 1;
 /// A disk whose radius is not known by then is bounded by mesh edges. Half as many do for nearly all.
 inline constexpr int k_blind_generations = 24;
+/// Generations of a node's windows by accuracy that are split whatever is known of the vertices so far, so that it
+/// makes no difference in what order windows are taken: filters remove one in thirty on bumpy scans, and mostly none.
+/// About needles windows are many generations on their way, and filters end those that go round and round.
+inline constexpr int k_free_generations = 32;
 /// Windows of a batch after which no more are followed. There are 200 to 1,000 a source on any sane mesh; needles by
 /// the thousand round one vertex may exceed that without end, and stopping only costs arcs, never correctness.
 inline constexpr int k_most_windows = 1 << 20;
@@ -87,7 +91,11 @@ struct WaveKernel {
   int (*sight)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const SightingRows&, int sightings);
   /// The same where every sighting makes an arc.
   int (*sight_all)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const SightingRows&, int sightings);
-  /// Appends the windows' children that may still serve: those behind the left sides, and those behind the right ones.
+  /// Appends the windows' children that may still serve, whatever the labels are: those behind the left sides, and
+  /// those behind the right ones.
+  void (*split_free)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const WindowRows& lefts,
+                     int* left_count, const WindowRows& rights, int* right_count);
+  /// The same without those that labels tell to be of no use.
   void (*split)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const WindowRows& lefts,
                 int* left_count, const WindowRows& rights, int* right_count);
   /// The same with no bound but the disks' limits.

@@ -104,7 +104,7 @@ int append_heirs(const WindowRows& to, int count, const SplitFace& face, const F
   return count + packing.count();
 }
 
-template <bool All>
+template <bool All, bool Filtered>
 void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRows& apexes, const WindowRows& lefts,
            int* left_count, const WindowRows& rights, int* right_count) {
   for (int i = 0; i < count; i += Simd::width) {
@@ -114,13 +114,8 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
                             Simd::load(w.to_y + i),   Simd::load(apexes.x + i), Simd::load(apexes.y + i),
                             Simd::load(w.from + i),   Simd::load(w.to + i),     Simd::load(apexes.slot + i)};
     const Rays rays = load_rays(w, i);
-    const FacePlaces face{Simd::narrow(corners.from_x),
-                          Simd::narrow(corners.from_y),
-                          Simd::narrow(corners.to_x),
-                          Simd::narrow(corners.to_y),
-                          Simd::look_up(scene.labels, w.from + i),
-                          Simd::look_up(scene.labels, w.to + i),
-                          Simd::look_up(scene.labels, apexes.slot + i)};
+    const FacePlaces face{Simd::narrow(corners.from_x), Simd::narrow(corners.from_y), Simd::narrow(corners.to_x),
+                          Simd::narrow(corners.to_y)};
     const ApexView apex{Simd::narrow(corners.apex_x),
                         Simd::narrow(corners.apex_y),
                         Simd::load(apexes.reach + i),
@@ -138,7 +133,14 @@ void split(const WaveScene& scene, const WindowRows& w, int count, const ApexRow
     const Side to_left = left_side(face, lit, light, active & (!Simd::negative(left_edge)));
     const Side to_right =
         left_side(mirrored(face), mirrored(lit), mirrored(light), active & (!Simd::negative(right_edge)));
-    const Child left = look_at(to_left), right = look_at(to_right);
+    Child left = look_at(to_left), right = look_at(to_right);
+    if constexpr (Filtered) {
+      const Floats from_label = Simd::look_up(scene.labels, w.from + i),
+                   to_label = Simd::look_up(scene.labels, w.to + i);
+      const Floats apex_label = Simd::look_up(scene.labels, apexes.slot + i);
+      left.useful = left.useful & !is_served_by_corner(to_left, left, {from_label, to_label, apex_label});
+      right.useful = right.useful & !is_served_by_corner(to_right, right, {to_label, from_label, apex_label});
+    }
     const Floats tolerance = Simd::fill(k_on_ray) * apex.reach;
     const Mask inside_right = tolerance < apex.from_right, inside_left = tolerance < apex.to_left;
     const Ints clearances = Simd::load(apexes.clearances + i);
@@ -197,7 +199,7 @@ int find_target(const std::uint64_t* words, int count, std::uint64_t mask, std::
 }  // namespace
 
 extern const WaveKernel SADDLEBACK_WAVE_KERNEL;
-const WaveKernel SADDLEBACK_WAVE_KERNEL{Simd::name,  sight<false>, sight<true>, split<false>,
-                                        split<true>, aim,          find_target};
+const WaveKernel SADDLEBACK_WAVE_KERNEL{Simd::name,         sight<false>,      sight<true>, split<false, false>,
+                                        split<false, true>, split<true, true>, aim,         find_target};
 
 }  // namespace saddleback

@@ -135,39 +135,56 @@ struct Side {
   Floats apex_x, apex_y;
   Floats near_ray_x, near_ray_y, far_ray_x, far_ray_y;  ///< where the light ends
   Floats apex_off, apex_in;                             ///< offsets of the apex from the two, positive inside
-  Floats near_label, far_label, apex_label;
 };
 
 /// What the light on a side has to tell.
 struct Child {
-  Mask useful;                          ///< no filter removes it
+  Mask useful;
+  Floats begin, end;                    ///< of the light, from the near end on, as parts of the side
+  Floats begin_x, begin_y;              ///< where it begins
   Floats begin_squared, end_squared;    ///< distances of the light's ends from the source
   Floats begin_ahead, end_ahead;        ///< how far the source's foot is behind them, times the side's length
   Floats foot_squared, length_squared;  ///< distance of the foot times the side's length; both squared
 };
 
 SADDLEBACK_STEP Child look_at(const Side& side) {
-  const Floats zero = Simd::fill(0), one = Simd::fill(1), shorter = Simd::fill(k_shorter);
+  const Floats zero = Simd::fill(0), one = Simd::fill(1);
   const Floats along_x = side.apex_x - side.near_x, along_y = side.apex_y - side.near_y;
-  const Floats length_2 = length_squared(along_x, along_y), length = Simd::sqrt(length_2);
   const Floats near_off = Simd::max(cross(side.near_ray_x, side.near_ray_y, side.near_x, side.near_y), zero);
   const Floats near_in = Simd::max(cross(side.far_ray_x, side.far_ray_y, side.near_x, side.near_y), zero);
   // The apex of a side with light on it is off the ray by more than nothing.
   const Floats begin = Simd::share(near_off, side.apex_off);
   const Floats end = Simd::pick(side.cut, one, Simd::min(Simd::quotient(near_in, near_in - side.apex_in), one));
-  Mask useful = side.lit & (Simd::fill(k_narrow) < end - begin);
+  const Mask useful = side.lit & (Simd::fill(k_narrow) < end - begin);
   const Floats begin_x = side.near_x + begin * along_x, begin_y = side.near_y + begin * along_y;
   const Floats end_x = side.near_x + end * along_x, end_y = side.near_y + end * along_y;
-  const Floats begin_2 = length_squared(begin_x, begin_y), end_2 = length_squared(end_x, end_y);
-  // A corner of the face offers every point of the light a shorter way: three filters.
-  const Floats by_near = side.near_label + end * length, by_apex = side.apex_label + (one - begin) * length;
-  useful = useful & (!(square(by_near) < end_2 * shorter)) & (!(square(by_apex) < begin_2 * shorter));
-  const Floats left_over = Simd::sqrt(begin_2 * shorter) - side.far_label;
-  const Floats across_2 = length_squared(begin_x - side.far_x, begin_y - side.far_y);
-  useful = useful & (!((zero < left_over) & (across_2 < square(left_over))));
   const Floats begin_ahead = begin_x * along_x + begin_y * along_y, end_ahead = end_x * along_x + end_y * along_y;
-  const Floats foot_2 = square(cross(side.near_x, side.near_y, along_x, along_y));
-  return {useful, begin_2, end_2, begin_ahead, end_ahead, foot_2, length_2};
+  return {useful,
+          begin,
+          end,
+          begin_x,
+          begin_y,
+          length_squared(begin_x, begin_y),
+          length_squared(end_x, end_y),
+          begin_ahead,
+          end_ahead,
+          square(cross(side.near_x, side.near_y, along_x, along_y)),
+          length_squared(along_x, along_y)};
+}
+
+/// Upper bounds of the distances of a face's corners, in the words of a side.
+struct CornerLabels {
+  Floats near, far, apex;
+};
+/// Whether a corner of the face offers every point of the light a shorter way: three filters.
+SADDLEBACK_STEP Mask is_served_by_corner(const Side& side, const Child& child, const CornerLabels& labels) {
+  const Floats zero = Simd::fill(0), one = Simd::fill(1), shorter = Simd::fill(k_shorter);
+  const Floats length = Simd::sqrt(child.length_squared);
+  const Floats by_near = labels.near + child.end * length, by_apex = labels.apex + (one - child.begin) * length;
+  const Floats left_over = Simd::sqrt(child.begin_squared * shorter) - labels.far;
+  const Floats across_2 = length_squared(child.begin_x - side.far_x, child.begin_y - side.far_y);
+  return (square(by_near) < child.end_squared * shorter) | (square(by_apex) < child.begin_squared * shorter) |
+         ((zero < left_over) & (across_2 < square(left_over)));
 }
 
 /// Whether the light may reach a vertex nearer than `most`: its nearest point on the side, an end or the source's foot,
@@ -188,26 +205,23 @@ SADDLEBACK_STEP Floats nearest_beyond(const Child& child, Floats clearance) {
   return Simd::sqrt(least_2) + clearance;
 }
 
-/// Ends of the window's half-edge and their labels, and the apex's.
+/// Ends of the window's half-edge.
 struct FacePlaces {
   Floats from_x, from_y, to_x, to_y;
-  Floats from_label, to_label, apex_label;
 };
 
 /// `is_open` where there is a face behind the side.
 SADDLEBACK_STEP Side left_side(const FacePlaces& face, const ApexView& apex, const Rays& rays, Mask is_open) {
   const Floats tolerance = Simd::fill(k_on_ray) * apex.reach;
   const Mask inside_right = tolerance < apex.from_right, lit = is_open & (tolerance < apex.to_left);
-  return {lit,          inside_right,    face.from_x,     face.from_y,   face.to_x,      face.to_y,
-          apex.x,       apex.y,          rays.left_x,     rays.left_y,   rays.right_x,   rays.right_y,
-          apex.to_left, apex.from_right, face.from_label, face.to_label, face.apex_label};
+  return {lit,    inside_right, face.from_x, face.from_y,  face.to_x,    face.to_y,    apex.x,
+          apex.y, rays.left_x,  rays.left_y, rays.right_x, rays.right_y, apex.to_left, apex.from_right};
 }
 
 /// Upside down, with right and left exchanged.
 SADDLEBACK_STEP FacePlaces mirrored(const FacePlaces& face) {
   const Floats zero = Simd::fill(0);
-  return {face.to_x,     zero - face.to_y, face.from_x,    zero - face.from_y,
-          face.to_label, face.from_label,  face.apex_label};
+  return {face.to_x, zero - face.to_y, face.from_x, zero - face.from_y};
 }
 SADDLEBACK_STEP ApexView mirrored(const ApexView& apex) {
   return {apex.x, Simd::fill(0) - apex.y, apex.reach, apex.to_left, apex.from_right, apex.in_sight, apex.inside};
