@@ -86,36 +86,35 @@ class WarpWaves {
     for (int edge = first; __any_sync(k_warp, edge < count) && !overflowed(); edge += k_lanes_per_seat)
       add_edges(seat, edge, e + edge, edge < count);
     links_ = arcs_before_ = arcs_;
-    is_free_ = Pool::is_dense;
     is_filtered_ = All;
-    stop_ = min(k_most_turns, k_free_generations);
-    if (!All) count_windows(is_free_ ? k_free_generations * k_windows : count_);  // or fewer
+    set_free(Pool::is_dense);
+    if (!All) count_windows(Pool::is_dense ? k_free_generations * k_windows : count_);  // or fewer
   }
 
   /// To the last generation. False when the memory did not do.
   SADDLEBACK_STEP bool run() {
     if constexpr (All) return run_to_radius();
-    int next = 0,
-        waiting = count_;  // windows that are not sighted yet, of a generation or, as long as they are free, two
+    int next = 0, waiting = count_;  // windows to be sighted, of a generation or, as long as they are free, of two
     count_ = 0;
     while (true) {
-      if (is_free_ ? lights_ < 32 && (waiting >= 32 || lights_ < waiting) : waiting > 0) {
+      // Free, what fills the lanes comes first.
+      while (waiting > 0 && lights_ <= most_lights_ && (waiting >= 32 || lights_ - patience_ < waiting)) {
         const int taken = min(32, waiting);
         sight(next, taken);
         next = in_ring(next + taken);
         waiting -= taken;
-      } else if (lights_ > 0) {
-        if (lights_ > Pool::Lights) overflow_ = 1;
-        if (overflowed()) break;
-        const int taken = min(32, lights_);
-        waiting += pass_on(taken, taken < lights_ ? window_of_light(first_light_ + taken) : next);
-        first_light_ += taken;
-        lights_ -= taken;
-      } else {
-        waiting = begin_generation(next);
-        if (overflowed()) break;
-        if (waiting == 0) break;
+        __syncwarp();
       }
+      if (lights_ == 0) {
+        waiting = begin_generation(next);
+        if (waiting == 0 || overflowed()) break;
+        continue;
+      }
+      if (has_no_room()) break;
+      const int taken = min(32, lights_);
+      waiting += pass_on(taken, taken < lights_ ? window_of_light(first_light_ + taken) : next);
+      first_light_ += taken;
+      lights_ -= taken;
       __syncwarp();
     }
     return !overflowed();
@@ -135,9 +134,10 @@ class WarpWaves {
   using Ray = WindowRay<All>;
   using Key = DiskKey<Seats>;
 
-  SADDLEBACK_STEP bool overflowed() {
-    return __any_sync(k_warp, (arcs_ > k_draft_room) | (overflow_ != 0) | disk_.overflowed()) != 0;
+  SADDLEBACK_STEP bool has_no_room() {
+    return __any_sync(k_warp, (lights_ > Pool::Lights) | (overflow_ != 0) | disk_.overflowed()) != 0;
   }
+  SADDLEBACK_STEP bool overflowed() { return has_no_room() || arcs_ > k_draft_room; }
   SADDLEBACK_STEP int rank(unsigned lanes) const { return __popc(lanes & below_); }
   SADDLEBACK_STEP static int in_ring(int number) {
     const auto place = static_cast<unsigned>(number);
@@ -149,18 +149,24 @@ class WarpWaves {
   /// When no window waits any more and no light: those that count_ counts, from a place on, come next. \return how many
   SADDLEBACK_STEP int begin_generation(int place) {
     const int all = count_;
-    if (!is_free_) count_windows(all);
+    const bool was_free = stop_ > 0;
+    if (!was_free) count_windows(all);
     count_ = first_light_ = 0;
     arcs_before_ = arcs_;
-    generation_ += is_free_ ? stop_ - turns_ : 1;
-    turns_ = is_free_ ? stop_ : turns_ + 1;
+    generation_ += was_free ? stop_ - turns_ : 1;
+    turns_ = was_free ? stop_ : turns_ + 1;
     if (turns_ == k_most_turns) turns_ = renumber(&pool_, place, all);
-    if constexpr (Pool::is_dense) {
-      is_free_ = generation_ < k_free_generations;
-      stop_ = min(k_most_turns, turns_ + k_free_generations - generation_);
-    }
     is_filtered_ = generation_ >= k_free_generations;
+    set_free(Pool::is_dense && !is_filtered_);
     return all;
+  }
+
+  /// Whether windows may be taken in any order.
+  SADDLEBACK_STEP void set_free(bool free) {
+    constexpr int k_all = 1 << 20;
+    stop_ = free ? min(k_most_turns, turns_ + k_free_generations - generation_) : 0;
+    most_lights_ = free ? 31 : k_all;
+    patience_ = free ? 0 : k_all;
   }
 
   SADDLEBACK_STEP void count_windows(int more) {
@@ -176,7 +182,6 @@ class WarpWaves {
       arcs_before_ = arcs_;
       first_light_ = lights_ = 0;
       for (int base = 0; base < all; base += 32) sight(in_ring(begin + base), min(32, all - base));
-      if (lights_ > Pool::Lights) overflow_ = 1;
       __syncwarp();
       if (overflowed()) break;
       const bool smaller = bend(all == 0);
@@ -369,20 +374,18 @@ class WarpWaves {
     const int place = light & Light::k_number, s = light / Light::k_right & 1;
     const Links links = pool_.links[place];
     const EdgeRecord record = mesh_.records[links.edge];
-    const double2 from = pool_.ends[0][place], to = pool_.ends[1][place], near = pool_.ends[s][place];
+    const double2 near = pool_.ends[s][place], far = pool_.ends[1 - s][place];
     const Ray near_ray = pool_.rays[s][place], far_ray = pool_.rays[1 - s][place];
     const float way = All ? 0 : pool_.ways[All ? 0 : place];
     double2 apex;
     if constexpr (All) {
-      apex = apex_of(record, from, to);  // of which to keep it takes longer
+      apex = apex_of(record, s == 0 ? near : far, s == 0 ? far : near);  // to keep it takes longer
     } else {
       apex = pool_.apexes[place];
     }
     // Right sides are seen in a mirror.
     const float flip = s == 0 ? 1.0f : -1.0f;
     const float apex_x = static_cast<float>(apex.x), apex_y = flip * static_cast<float>(apex.y);
-    const float from_x = static_cast<float>(from.x), from_y = flip * static_cast<float>(from.y);
-    const float to_x = static_cast<float>(to.x), to_y = flip * static_cast<float>(to.y);
     const Rays rays{far_ray.x, flip * far_ray.y, near_ray.x, flip * near_ray.y, 0, 0};
     Rays lit = rays;
     if constexpr (!All) lit = turn_inwards(rays, pool_.served[1 - s][place], pool_.served[s][place]);
@@ -391,10 +394,10 @@ class WarpWaves {
     const bool cut = tolerance < view.from_right;
     const Side side{active,
                     tolerance < from_right,
-                    s == 0 ? from_x : to_x,
-                    s == 0 ? from_y : to_y,
-                    s == 0 ? to_x : from_x,
-                    s == 0 ? to_y : from_y,
+                    static_cast<float>(near.x),
+                    flip * static_cast<float>(near.y),
+                    static_cast<float>(far.x),
+                    flip * static_cast<float>(far.y),
                     apex_x,
                     apex_y,
                     lit.left_x,
@@ -443,7 +446,7 @@ class WarpWaves {
     end_ = in_ring(end_ + kept);
     if constexpr (Pool::is_dense) {
       const bool is_last = links.generation() >= stop_ - 1;
-      const int others = __popc(__ballot_sync(k_warp, keep & (is_last | !is_free_)));
+      const int others = __popc(__ballot_sync(k_warp, keep & is_last));
       count_ += others;
       return kept - others;
     } else {
@@ -477,10 +480,10 @@ class WarpWaves {
   int end_ = 0;    ///< place behind all windows
   int count_ = 0;  ///< windows of a generation that others have to be done before
   int first_light_ = 0, lights_ = 0;
-  bool is_free_ = false;      ///< windows may be taken in any order
-  int stop_ = 0;              ///< but for those of so many turns
-  bool is_filtered_ = false;  ///< labels count
-  int turns_ = 0;             ///< bits of the windows' turns
+  int stop_ = 0;  ///< windows may be taken in any order, but for those of so many turns; 0: they may not
+  int most_lights_ = 0, patience_ = 0;  ///< lights that windows to be sighted wait for
+  bool is_filtered_ = false;            ///< labels count
+  int turns_ = 0;                       ///< bits of the windows' turns
   int arcs_ = 0, links_ = 0, generation_ = 0, windows_ = 0;
   int arcs_before_ = 0;  ///< this generation
   int overflow_ = 0;     ///< whether there is too little room
