@@ -85,8 +85,8 @@ struct alignas(16) Sighting {
   SADDLEBACK_STEP int seen_at() const { return static_cast<int>(ids >> RootEdge::k_bits); }
 };
 
-/// The slot of what is seen; in tables of few slots, above it, in which generation it is seen, from 1 on, as far as
-/// generations are not marked by k_begins.
+/// The slot of what is seen; in tables of few slots, above it, how many turns its window has come through, and one:
+/// what tells generations apart that are not marked by k_begins.
 template <bool CountsGenerations>
 struct SightedAt {
   static constexpr int k_bits = 16, k_slot_bits = CountsGenerations ? 10 : k_bits;
@@ -190,7 +190,7 @@ struct alignas(16) WindowPool {
   static constexpr bool All = All_, is_dense = !All && Slots <= 1 << DenseLinks::k_slot_bits;
   static constexpr int Windows = Windows_;
   using Links = std::conditional_t<is_dense, DenseLinks, WindowLinks>;
-  /// In the dense one a ring.
+  /// In the dense one a ring, a power of two.
   static constexpr int Lights =
       is_dense ? (Windows <= 80 ? 128 : 256) : Windows + (All ? Windows / 4 : 3 * Windows / 8);
   static_assert(Windows <= Light::k_number && Windows % 4 == 0);

@@ -2,9 +2,10 @@
 // Windows of a few sources, kept and advanced by the 32 lanes of a warp: the twin of DiskFinder, to the bit.
 //
 // As there, generations have no order but their own: all windows of one look at their apexes, the labels are lowered,
-// then all are split. Most windows see no corner and light one side only, so that sides are what lanes are filled with
-// when windows are split. In what order a generation is taken matters to nothing but which of two sightings is the
-// first: see device_sighting_order.cuh.
+// then all are split. Where labels do not count yet (k_free_generations) not even that matters: 32 windows are sighted
+// and 32 lights split, whichever wait. Most windows see no corner and light one side only, so that sides are what lanes
+// are filled with when windows are split. In what order a generation is taken matters to nothing but which of two
+// sightings is the first: see device_sighting_order.cuh.
 
 #include <cstdint>
 
@@ -94,6 +95,7 @@ class WarpWaves {
   /// To the last generation. False when the memory did not do.
   SADDLEBACK_STEP bool run() {
     if constexpr (All) return run_to_radius();
+    if (overflowed()) return false;
     int next = 0, waiting = count_;  // windows to be sighted, of a generation or, as long as they are free, of two
     count_ = 0;
     while (true) {
@@ -146,7 +148,8 @@ class WarpWaves {
   SADDLEBACK_STEP static int light_place(int number) { return Pool::is_dense ? number & (Pool::Lights - 1) : number; }
   SADDLEBACK_STEP int window_of_light(int number) const { return pool_.lights[light_place(number)] & Light::k_number; }
 
-  /// When no window waits any more and no light: those that count_ counts, from a place on, come next. \return how many
+  /// When no window waits any more and no light: those that count_ counts, from a place on, come next, all of one
+  /// generation. \return how many
   SADDLEBACK_STEP int begin_generation(int place) {
     const int all = count_;
     const bool was_free = stop_ > 0;
@@ -298,9 +301,7 @@ class WarpWaves {
       const int number = arcs_ + rank(making);
       int at = slot;
       const std::int32_t mark = number == arcs_before_ ? Sighting::k_begins : 0;
-      if constexpr (Pool::is_dense) {
-        at = Table::Sighted::pack(slot, links.generation() + 1);
-      }
+      if constexpr (Pool::is_dense) at = Table::Sighted::pack(slot, links.generation() + 1);
       put_arc(number, {apex, from, links.edge, links.turns(), Sighting::pack(root, at), label | mark});
     }
     arcs_ += __popc(making);
@@ -425,10 +426,11 @@ class WarpWaves {
     const bool keep = heir.useful;
 
     const unsigned keeping = __ballot_sync(k_warp, keep);
-    const int kept = __popc(keeping);
-    if (in_ring(end_ - oldest + k_windows) + kept >= k_windows) overflow_ = 1;
+    const bool fits = in_ring(end_ - oldest + k_windows) + __popc(keeping) < k_windows;
+    const int kept = fits ? __popc(keeping) : 0;  // lest what was never written be sighted
+    if (!fits) overflow_ = 1;
     __syncwarp();  // nobody looks at the windows any more
-    if (keep && overflow_ == 0) {
+    if (keep && fits) {
       const int there = in_ring(end_ + rank(keeping));
       pool_.ends[s][there] = near;
       pool_.ends[1 - s][there] = apex;
@@ -446,7 +448,7 @@ class WarpWaves {
     end_ = in_ring(end_ + kept);
     if constexpr (Pool::is_dense) {
       const bool is_last = links.generation() >= stop_ - 1;
-      const int others = __popc(__ballot_sync(k_warp, keep & is_last));
+      const int others = __popc(__ballot_sync(k_warp, keep & fits & is_last));
       count_ += others;
       return kept - others;
     } else {
@@ -478,12 +480,13 @@ class WarpWaves {
   unsigned below_;  ///< lanes before this one
   WarpSources sources_{0, 0};
   int end_ = 0;    ///< place behind all windows
-  int count_ = 0;  ///< windows of a generation that others have to be done before
+  int count_ = 0;  ///< windows that have to wait until all others are done
   int first_light_ = 0, lights_ = 0;
-  int stop_ = 0;  ///< windows may be taken in any order, but for those of so many turns; 0: they may not
-  int most_lights_ = 0, patience_ = 0;  ///< lights that windows to be sighted wait for
-  bool is_filtered_ = false;            ///< labels count
-  int turns_ = 0;                       ///< bits of the windows' turns
+  int stop_ = 0;              ///< windows of so many turns wait, others are free; 0: none is
+  int most_lights_ = 0;       ///< that wait while windows are sighted
+  int patience_ = 0;          ///< by how many they may be more than the windows that wait
+  bool is_filtered_ = false;  ///< whether labels count
+  int turns_ = 0;             ///< bits of the windows' turns
   int arcs_ = 0, links_ = 0, generation_ = 0, windows_ = 0;
   int arcs_before_ = 0;  ///< this generation
   int overflow_ = 0;     ///< whether there is too little room

@@ -12,8 +12,8 @@
 // windows have run; their end is a bound on one detour alone, with a factor found by measuring.
 //
 // By the same inequality, at the distances that are still ahead of it, the light of a window is narrowed to what its
-// flanks do not serve: a quarter fewer windows and the same arcs but for a few, since those were for vertices in
-// between.
+// flanks do not serve: a quarter fewer windows, among needles a tenth of them, and the same arcs but for one in two
+// hundred. A flank is taken to see all of what it serves, so that this, too, is a window's end, and measured.
 
 namespace saddleback {
 namespace {
@@ -106,8 +106,8 @@ SADDLEBACK_STEP Floats serving_radius(const Flank& p, const Flank& q, float allo
 
 /// How far off a flank's direction it serves all vertices that are at least so far away: the tangent of an angle. With
 /// r, w and k as above, w + k |flank to vertex| <= k D holds where r cos >= w / k + (r^2 - (w / k)^2) / (2 D), and so
-/// for tangents up to the root of twice what that leaves of 1 - cos. Nothing where w exceeds k r. `per_detour` is 1 /
-/// k.
+/// for tangents up to the root of twice what that leaves of 1 - cos. Nothing where w exceeds k r.
+/// `per_detour` is 1 / k.
 SADDLEBACK_STEP Floats serving_tangent(const Flank& flank, Floats distance, float per_detour) {
   const Floats zero = Simd::fill(0), half = Simd::fill(0.5f);
   const Floats way = Simd::fill(per_detour) * flank.way, middle = half * (flank.reach + way);
