@@ -32,22 +32,19 @@ double unevenness(const Mesh& mesh, double growth) {
   return std::exp(growth * std::max(0.0, std::sqrt(std::max(0.0, variance)) - k_even));
 }
 
-double among_needles(const Mesh& mesh) {
-  constexpr double k_longer = 16;
-  return has_needles(mesh) ? k_longer : 1;
-}
+double among_needles(const Mesh& mesh, double longer) { return has_needles(mesh) ? longer : 1; }
 
 }  // namespace
 
 double BuildProgress::by_accuracy(const Mesh& mesh, double accuracy) {
-  constexpr double k_growth = 2.5, k_usual = 6, k_power = 0.75;  // for the accuracies in use
-  return among_needles(mesh) * k_usual * std::pow(SaddleVertexGraphOptions::k_default_accuracy / accuracy, k_power) *
-         unevenness(mesh, k_growth);
+  constexpr double k_growth = 0.25, k_longer = 4, k_usual = 5.2, k_power = 0.75;  // for the accuracies in use
+  return among_needles(mesh, k_longer) * k_usual *
+         std::pow(SaddleVertexGraphOptions::k_default_accuracy / accuracy, k_power) * unevenness(mesh, k_growth);
 }
 
 double BuildProgress::by_count(const Mesh& mesh, Index k) {
-  constexpr double k_growth = 0.75, k_each = 0.14;  // disks end by themselves
-  return among_needles(mesh) * k_each * k * unevenness(mesh, k_growth);
+  constexpr double k_growth = 0.75, k_longer = 16, k_each = 0.14;  // disks end by themselves
+  return among_needles(mesh, k_longer) * k_each * k * unevenness(mesh, k_growth);
 }
 
 double BuildProgress::by_all(const Mesh& mesh) { return mesh.vertex_count(); }

@@ -73,17 +73,17 @@ struct SplitFace {
   Ints from, to, apex;  ///< slots
 };
 
-/// Appends the heirs of use behind left sides or, with `is_right`, right ones; their flanks as they are, not mirrored.
-template <bool All, bool is_right>
+/// Appends the heirs of use behind left sides or, with `IsRight`, right ones; their flanks as they are, not mirrored.
+template <bool All, bool IsRight>
 int append_heirs(const WindowRows& to, int count, const SplitFace& face, const Flank& near, const Heir& heir, Ints edge,
                  Ints root) {
   if (!Simd::any(heir.useful)) return count;
   const auto packing = Simd::packing(heir.useful);
-  const Flank &right = is_right ? near : heir.far, &left = is_right ? heir.far : near;
-  packing.store(to.from_x + count, is_right ? face.apex_x : face.from_x);
-  packing.store(to.from_y + count, is_right ? face.apex_y : face.from_y);
-  packing.store(to.to_x + count, is_right ? face.to_x : face.apex_x);
-  packing.store(to.to_y + count, is_right ? face.to_y : face.apex_y);
+  const Flank &right = IsRight ? near : heir.far, &left = IsRight ? heir.far : near;
+  packing.store(to.from_x + count, IsRight ? face.apex_x : face.from_x);
+  packing.store(to.from_y + count, IsRight ? face.apex_y : face.from_y);
+  packing.store(to.to_x + count, IsRight ? face.to_x : face.apex_x);
+  packing.store(to.to_y + count, IsRight ? face.to_y : face.apex_y);
   packing.store(to.right_x + count, right.x);
   packing.store(to.right_y + count, right.y);
   packing.store(to.left_x + count, left.x);
@@ -93,13 +93,13 @@ int append_heirs(const WindowRows& to, int count, const SplitFace& face, const F
     packing.store(to.left_reach + count, left.reach);
     packing.store(to.right_way + count, right.way);
     packing.store(to.left_way + count, left.way);
-    packing.store(to.right_served + count, is_right ? heir.near_served : heir.far_served);
-    packing.store(to.left_served + count, is_right ? heir.far_served : heir.near_served);
+    packing.store(to.right_served + count, IsRight ? heir.near_served : heir.far_served);
+    packing.store(to.left_served + count, IsRight ? heir.far_served : heir.near_served);
   }
   packing.store(to.most + count, heir.most);
   packing.store(to.edge + count, edge);
-  packing.store(to.from + count, is_right ? face.apex : face.from);
-  packing.store(to.to + count, is_right ? face.to : face.apex);
+  packing.store(to.from + count, IsRight ? face.apex : face.from);
+  packing.store(to.to + count, IsRight ? face.to : face.apex);
   packing.store(to.root + count, root);
   return count + packing.count();
 }
