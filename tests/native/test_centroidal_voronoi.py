@@ -209,26 +209,43 @@ def rough_torus() -> meshes.Arrays:
     return vertices * (1 + 0.5 * np.sin(11 * x) * np.cos(13 * y + 1) * np.cos(12 * z))[:, None], triangles
 
 
-@pytest.mark.parametrize("method", ["lbfgs", "lloyd"])
-def test_scale_and_place_change_nothing_else(method: str) -> None:
-    """To the bit, until the relaxation ends: without the copy of unit size some site would be elsewhere by a cell."""
+def relaxed_rough_torus(method: str, factor: float, shift: float, seed: int) -> sb.CentroidalVoronoi:
     vertices, triangles = rough_torus()
+    graph = sb.SaddleVertexGraph(sb.Mesh(vertices * factor + shift * np.array([3, -2, 7]), triangles))
+    return sb.centroidal_voronoi(graph, count=100, max_iterations=60, seed=seed, method=method)
 
-    def relaxed(factor: float, shift: float, seed: int) -> tuple[sb.CentroidalVoronoi, bytes]:
-        graph = sb.SaddleVertexGraph(sb.Mesh(vertices * factor + shift * np.array([3, -2, 7]), triangles))
-        result = sb.centroidal_voronoi(graph, count=100, max_iterations=60, seed=seed, method=method)
-        return result, result.sites.faces.tobytes() + result.sites.barycentric.tobytes()
 
-    for seed in (0, 1):
-        result, sites = relaxed(1, 0, seed)
-        for factor, shift in ((2.0**-10, 0), (1e-3, 0), (1e3, 0), (2.54, 0), (1, 1), (0.3, -2)):
-            other, other_sites = relaxed(factor, shift, seed)
-            assert other_sites == sites
-            np.testing.assert_allclose(other.energy / factor**4, result.energy, rtol=1e-13)
-            # Cells are found on the mesh as it is: at a place where three of them meet, rounding may decide.
-            off = np.abs(other.cells.areas / factor**2 / result.cells.areas - 1)
-            assert (off > 1e-8).sum() <= 3
-            assert off.max() <= 1e-3
+SCALES_AND_PLACES = ((2.0**-10, 0), (1e-3, 0), (1e3, 0), (2.54, 0), (1, 1), (0.3, -2))
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("method", ["lbfgs", "lloyd"])
+def test_scale_and_place_change_nothing_else(method: str, seed: int) -> None:
+    """To the bit, until the relaxation ends: without the copy of unit size some site would be elsewhere by a cell."""
+    result = relaxed_rough_torus(method, 1, 0, seed)
+    for factor, shift in SCALES_AND_PLACES:
+        other = relaxed_rough_torus(method, factor, shift, seed)
+        assert other.sites.faces.tobytes() == result.sites.faces.tobytes()
+        assert other.sites.barycentric.tobytes() == result.sites.barycentric.tobytes()
+        np.testing.assert_allclose(other.energy / factor**4, result.energy, rtol=1e-13)
+
+
+ROUNDING_MOVES_A_BRANCH = pytest.mark.xfail(
+    reason="at a scale of 1e-3 the point where cells 21, 80 and 87 meet is elsewhere by a hundredth of a face, though "
+    "the distances are the same to 2e-10"
+)
+
+
+@pytest.mark.parametrize(
+    ("method", "seed"),
+    [("lbfgs", 0), ("lbfgs", 1), pytest.param("lloyd", 0, marks=ROUNDING_MOVES_A_BRANCH), ("lloyd", 1)],
+)
+def test_scale_and_place_change_no_cell(method: str, seed: int) -> None:
+    """Cells are found on the mesh as it is."""
+    result = relaxed_rough_torus(method, 1, 0, seed)
+    for factor, shift in SCALES_AND_PLACES:
+        other = relaxed_rough_torus(method, factor, shift, seed)
+        np.testing.assert_allclose(other.cells.areas / factor**2, result.cells.areas, rtol=1e-8)
 
 
 def test_scale_changes_nothing_else_on_curves() -> None:

@@ -17,7 +17,7 @@ struct BestSightings {
   std::int32_t numbers[Slots];         ///< in the draft, of the first of them
   std::uint16_t places[Table::Draft];  ///< SightedAt
   std::uint16_t kept[Seats][Kept];
-  std::uint32_t begins[Words];  ///< bits: the sighting is its generation's first
+  std::uint32_t begins[Words];  ///< bits, see Sighting::k_begins
 };
 
 SADDLEBACK_STEP int to_sector(float sector) {

@@ -77,7 +77,7 @@ struct alignas(16) Sighting {
   std::uint32_t ids;    ///< RootEdge; above it the SightedAt
   std::int32_t label;
 
-  static constexpr std::int32_t k_begins = 1 << 31;  ///< in the label, of the first of a generation
+  static constexpr std::int32_t k_begins = 1 << 31;  ///< in the label, of the first of a generation or of several
   SADDLEBACK_STEP static std::uint32_t pack(int root, int place) {
     return static_cast<std::uint32_t>(root) | static_cast<std::uint32_t>(place) << RootEdge::k_bits;
   }

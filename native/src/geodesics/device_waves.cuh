@@ -488,7 +488,7 @@ class WarpWaves {
   bool is_filtered_ = false;  ///< whether labels count
   int turns_ = 0;             ///< bits of the windows' turns
   int arcs_ = 0, links_ = 0, generation_ = 0, windows_ = 0;
-  int arcs_before_ = 0;  ///< this generation
+  int arcs_before_ = 0;  ///< this generation, or these
   int overflow_ = 0;     ///< whether there is too little room
 };
 

@@ -12,8 +12,8 @@
 // windows have run; their end is a bound on one detour alone, with a factor found by measuring.
 //
 // By the same inequality, at the distances that are still ahead of it, the light of a window is narrowed to what its
-// flanks do not serve: a quarter fewer windows, among needles a tenth of them, and the same arcs but for one in two
-// hundred. A flank is taken to see all of what it serves, so that this, too, is a window's end, and measured.
+// flanks do not serve: a quarter fewer windows, among needles a third, and the same arcs but for one in two hundred.
+// A flank is taken to see all of what it serves, so that this, too, is a window's end, and measured.
 
 namespace saddleback {
 namespace {
