@@ -11,10 +11,10 @@ namespace {
 std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, const py::object& k,
                                               const py::object& accuracy, bool exact, const py::object& threads,
                                               const std::string& device, const std::string& instructions,
-                                              const py::object& job) {
+                                              const py::object& job, bool pinned) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   SaddleVertexGraphOptions options{
-      .exact = exact, .threads = as_integer(threads, "threads"), .instructions = instructions};
+      .exact = exact, .threads = as_integer(threads, "threads"), .is_pinned = pinned, .instructions = instructions};
   // Zero is the library's word for "not given".
   if (!k.is_none()) {
     options.k = as_integer(k, "k");
@@ -76,6 +76,9 @@ instructions : str
     "auto", or one of "avx512", "avx2", "plain" and "neon" that the machine has. The result does not depend on it.
 job : Job, optional
     Progress and cancellation.
+pinned : bool
+    Whether arcs come into memory that a CUDA device writes by itself, for one graph after the other: the first takes
+    longer, the others gain a millisecond or more. See `release_pinned_memory`.
 
 Raises
 ------
@@ -148,7 +151,7 @@ void bind_graph(py::module_& m) {
   type.def(py::init(&make_graph), py::arg("mesh"), py::arg("k") = py::none(), py::kw_only(),
            py::arg("accuracy") = py::none(), py::arg("exact") = false, py::arg("threads") = 0,
            py::arg("device") = "auto", py::arg("instructions") = "auto", py::arg("job") = py::none(),
-           py::keep_alive<1, 2>())
+           py::arg("pinned") = false, py::keep_alive<1, 2>())
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("job") = py::none(), k_save_doc)
       .def_static("load", &load, py::arg("path"), py::arg("mesh"), py::kw_only(), py::arg("job") = py::none(),
                   py::keep_alive<0, 2>(), k_load_doc)

@@ -14,28 +14,37 @@ struct Diagram {
   py::object clipped;
 };
 
+Voronoi2d find(const ArrayIn<double>& sites, const std::vector<double>& radii, const Voronoi2dOptions& options,
+               Job* job) {
+  static_assert(sizeof(Vec2) == 2 * sizeof(double));
+  const std::span all(reinterpret_cast<const Vec2*>(sites.values.data()), static_cast<std::size_t>(sites.count));
+  const bool has_weights = !radii.empty();
+  // The devices do with sites that somebody changes meanwhile, and a copy here would take longer than theirs.
+  if (!options.cuda_devices.empty() && !has_weights) return without_gil([&] { return voronoi_2d(all, options, job); });
+  LargeArray<Vec2> own(all.size());
+  copy_large(own.data(), all.data(), all.size_bytes(), options.threads);
+  return without_gil(
+      [&] { return has_weights ? voronoi_2d(own, radii, options, job) : voronoi_2d(std::move(own), options, job); });
+}
+
 Diagram find_diagram(const py::object& sites, const py::object& weights, const py::object& domain,
                      const py::object& circles, const py::object& threads, const std::string& device,
-                     const py::object& job) {
-  Voronoi2dOptions options{.circles = as_integer(circles, "circles"), .threads = as_integer(threads, "threads")};
-  LargeArray<Vec2> points = as_large_points_2d(sites, "sites", options.threads);
-  const std::vector<double> radii = as_weights(weights, points.size());
+                     const py::object& job, bool pinned) {
+  Voronoi2dOptions options{
+      .circles = as_integer(circles, "circles"), .threads = as_integer(threads, "threads"), .is_pinned = pinned};
+  const ArrayIn<double> points = as_points2(sites, "sites");
+  const std::vector<double> radii = as_weights(weights, static_cast<std::size_t>(points.count));
   std::optional<PlanarDomain> within;
   if (!domain.is_none()) within = as_domain(domain, "domain");
   Job* const token = as_job(job);
-  ClippedCells clipped;
-  constexpr std::size_t k_worth_a_device = 50'000;
-  const bool has_weights = !radii.empty();
-  Voronoi2d diagram = run_on(device, points.size() >= k_worth_a_device, [&](const std::vector<int>& devices) {
+  constexpr Index k_worth_a_device = 50'000;
+  Voronoi2d diagram = run_on(device, points.count >= k_worth_a_device, [&](const std::vector<int>& devices) {
     options.cuda_devices = devices;
-    return without_gil([&] {
-      Voronoi2d result =
-          has_weights ? voronoi_2d(points, radii, options, token) : voronoi_2d(std::move(points), options, token);
-      if (within) clipped = result.clip(*within, options.threads, token);
-      return result;
-    });
+    return find(points, radii, options, token);
   });
-  return {std::move(diagram), within ? py::cast(std::move(clipped)) : py::none()};
+  if (!within) return {std::move(diagram), py::none()};
+  ClippedCells clipped = without_gil([&] { return diagram.clip(*within, options.threads, token); });
+  return {std::move(diagram), py::cast(std::move(clipped))};
 }
 
 template <auto Member, class Scalar>
@@ -91,6 +100,10 @@ device : str
     share the work. The result does not depend on it; what a device is not made for (few or scattered sites,
     weighted ones that share a place) runs on the processor.
 job : Job, optional
+pinned : bool
+    Whether results come into memory that a CUDA device writes by itself, for one diagram after the other: the first
+    takes longer, the others a half of the time. See `release_pinned_memory`. Sites in such memory (CuPy's, PyTorch's)
+    are always read by the device itself.
 
 Returns
 -------
@@ -301,7 +314,8 @@ void bind_voronoi_2d(py::module_& m) {
         return message("<saddleback.Voronoi2d of ", d.cell_sites.size(), " cells, ", d.vertices.size(), " vertices>");
       });
   m.def("voronoi_2d", &find_diagram, py::arg("sites"), py::arg("weights") = py::none(), py::arg("domain") = py::none(),
-        py::arg("circles") = 0, py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(), k_doc);
+        py::arg("circles") = 0, py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(),
+        py::kw_only(), py::arg("pinned") = false, k_doc);
 }
 
 }  // namespace saddleback::bindings

@@ -10,6 +10,7 @@
 
 #include "geodesics/device_arcs.h"
 #include "geodesics/device_search.h"
+#include "support/host_pinning.h"
 #include "voronoi2d/device_signs.h"
 #include "voronoi2d/device_voronoi.h"
 
@@ -54,6 +55,8 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
                                            .find_voronoi = &saddleback::find_voronoi_on_device,
                                            .drop_voronoi = &saddleback::drop_voronoi_on_device,
                                            .copy_back = &saddleback::copy_back_from_device,
+                                           .pin = &saddleback::pin_host_memory,
+                                           .unpin = &saddleback::unpin_host_memory,
                                            .put_graph = &saddleback::put_graph_on_device,
                                            .drop_graph = &saddleback::drop_graph_on_device,
                                            .search = &saddleback::search_on_device};

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "saddleback/cuda_twins.h"
+#include "saddleback/pinned_memory.h"
 
 #include "convert.h"
 
@@ -82,6 +83,8 @@ InputError
 Notes
 -----
 What needs more raises DeviceError with the figure before anything runs; with device="auto" it runs on the processor.)");
+  m.def("release_pinned_memory", &release_pinned_memory, py::call_guard<py::gil_scoped_release>(),
+        R"(Give back to the system what `pinned=True` keeps for results to come: up to 2 GiB of what was freed.)");
 }
 
 }  // namespace saddleback::bindings

@@ -9,14 +9,6 @@ std::vector<Vec2> as_points_2d(const py::object& value, const char* name) {
   return points;
 }
 
-LargeArray<Vec2> as_large_points_2d(const py::object& value, const char* name, int threads) {
-  static_assert(sizeof(Vec2) == 2 * sizeof(double));
-  const ArrayIn<double> in = as_points2(value, name);
-  LargeArray<Vec2> points(in.count);
-  copy_large(points.data(), in.values.data(), points.size() * sizeof(Vec2), threads);
-  return points;
-}
-
 std::vector<double> as_weights(const py::object& value, std::size_t site_count) {
   if (value.is_none()) return {};
   const ArrayIn<double> in = as_reals(value, "weights", static_cast<Index>(site_count));

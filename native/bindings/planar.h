@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "saddleback/large_array.h"
 #include "saddleback/planar_domain.h"
 #include "saddleback/voronoi_2d.h"
 
@@ -13,7 +12,6 @@ namespace saddleback::bindings {
 
 /// An (n, 2) array.
 std::vector<Vec2> as_points_2d(const py::object& value, const char* name);
-LargeArray<Vec2> as_large_points_2d(const py::object& value, const char* name, int threads);
 
 /// An (n,) array, or None for none.
 std::vector<double> as_weights(const py::object& value, std::size_t site_count);

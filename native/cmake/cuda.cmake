@@ -18,6 +18,7 @@ add_library(saddleback_cuda STATIC
   src/geodesics/device_arcs.cu
   src/geodesics/device_search.cu
   src/support/cuda_devices.cu
+  src/support/host_pinning.cu
   src/voronoi2d/device_signs.cu
   src/voronoi2d/device_voronoi.cu
 )

@@ -43,7 +43,7 @@ struct TwinReason {
 
 /// Functions that never throw and keep nothing of what they are given, but for graphs until they are dropped.
 struct CudaTwins {
-  static constexpr int k_version = 8;  ///< of this table and of all that it passes
+  static constexpr int k_version = 9;  ///< of this table and of all that it passes
   int version = k_version;
   /// See geodesics/arc_twin.h.
   TwinStatus (*find_arcs)(const ArcTwinRequest&, const ArcTwinCaller&, DeviceTimes&, TwinReason&) = nullptr;
@@ -52,6 +52,9 @@ struct CudaTwins {
   void (*drop_voronoi)(KeptPlane*) = nullptr;
   /// Copies bytes from a device's memory to the host's.
   TwinStatus (*copy_back)(int device, const void* from, void* to, std::uint64_t bytes, TwinReason&) = nullptr;
+  /// Host memory that all devices copy to by themselves; null when there is none.
+  void* (*pin)(std::uint64_t bytes) = nullptr;
+  void (*unpin)(void*) = nullptr;
   /// See geodesics/search_twin.h.
   TwinStatus (*put_graph)(const GraphTwinRequest&, GraphTwin**, double* seconds, TwinReason&) = nullptr;
   void (*drop_graph)(GraphTwin*) = nullptr;

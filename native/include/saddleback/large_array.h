@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <new>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,16 +18,38 @@ std::size_t most_kept_large();
 /// Copies `size` bytes by `threads` threads (0: all cores) where one takes long, above all to lay fresh pages.
 void copy_large(void* to, const void* from, std::size_t size, int threads);
 
-/// New elements have no value until they are given one, as those of a plain array.
+/// Memory of another kind for large arrays. Outlives all that it gives.
+class LargeMemory {
+ public:
+  /// \throw std::bad_alloc
+  virtual void* allocate(std::size_t size) = 0;
+  virtual void free(void* memory, std::size_t size) noexcept = 0;
+
+ protected:
+  ~LargeMemory() = default;
+};
+
+/// New elements have no value until they are given one, as those of a plain array. What is moved stays in its memory,
+/// whatever its kind; copies are made in the usual one.
 template <class T>
 struct LargeAllocator {
-  using value_type = T;  // NOLINT(readability-identifier-naming): the standard's name
+  using value_type = T;  // NOLINT(readability-identifier-naming): the standard's names
+  using propagate_on_container_move_assignment = std::true_type;  // NOLINT(readability-identifier-naming)
+  using propagate_on_container_swap = std::true_type;             // NOLINT(readability-identifier-naming)
   LargeAllocator() = default;
+  explicit(false) LargeAllocator(LargeMemory* memory) : source(memory) {}
   template <class U>
-  explicit(false) LargeAllocator(const LargeAllocator<U>&) {}
+  explicit(false) LargeAllocator(const LargeAllocator<U>& other) : source(other.source) {}
 
-  T* allocate(std::size_t count) { return static_cast<T*>(allocate_large(count * sizeof(T))); }
-  void deallocate(T* memory, std::size_t count) noexcept { free_large(memory, count * sizeof(T)); }
+  T* allocate(std::size_t count) {
+    const std::size_t size = count * sizeof(T);
+    return static_cast<T*>(source ? source->allocate(size) : allocate_large(size));
+  }
+  void deallocate(T* memory, std::size_t count) noexcept {
+    const std::size_t size = count * sizeof(T);
+    source ? source->free(memory, size) : free_large(memory, size);
+  }
+  LargeAllocator select_on_container_copy_construction() const { return {}; }
   template <class U>
   void construct(U* place) {
     ::new (static_cast<void*>(place)) U;
@@ -35,7 +58,9 @@ struct LargeAllocator {
   void construct(U* place, Arguments&&... arguments) {
     ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
   }
-  bool operator==(const LargeAllocator&) const { return true; }
+  bool operator==(const LargeAllocator& other) const { return source == other.source; }
+
+  LargeMemory* source = nullptr;  ///< null: the usual one
 };
 
 template <class T>

@@ -29,6 +29,7 @@ struct SaddleVertexGraphOptions {
   bool exact = false;                  ///< all straight geodesics: exact between vertices, and much larger
   int threads = 0;                     ///< 0: all cores; the result does not depend on it
   std::vector<int> cuda_devices = {};  ///< numbers of those that find the arcs, a part each; none: the processor does
+  bool is_pinned = false;              ///< whether arcs that those find come into pinned memory: `pinned_memory.h`
   std::string instructions = "auto";   ///< "avx512", "avx2", "plain", "neon": the result does not depend on it
   static constexpr double k_default_accuracy = 5e-3;
 };

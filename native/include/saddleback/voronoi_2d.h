@@ -21,6 +21,8 @@ struct Voronoi2dOptions {
   /// Numbers of CUDA devices that share the work, whose twin must be known (`cuda_twins.h`); none: the processor. The
   /// result does not depend on it.
   std::vector<int> cuda_devices = {};
+  /// Whether what CUDA devices find comes into pinned memory (`pinned_memory.h`): for one diagram after the other.
+  bool is_pinned = false;
 };
 
 /// All cells in the order of their sites.

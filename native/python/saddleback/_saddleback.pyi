@@ -16,6 +16,7 @@ _Device: TypeAlias = str  # "auto", "cpu", "cuda", "cuda:1", "cuda:0,1", "cuda:a
 __version__: str
 
 def limit_device_memory(bytes: SupportsIndex) -> None: ...
+def release_pinned_memory() -> None: ...
 def set_cuda_twins(twins: object) -> None: ...
 
 class Error(Exception): ...
@@ -213,6 +214,7 @@ class SaddleVertexGraph:
         device: _Device = "auto",
         instructions: str = "auto",
         job: Job | None = None,
+        pinned: bool = False,
     ) -> None: ...
     def distances(
         self,
@@ -652,6 +654,8 @@ def voronoi_2d(
     threads: SupportsIndex = 0,
     device: _Device = "auto",
     job: Job | None = None,
+    *,
+    pinned: bool = False,
 ) -> Voronoi2d: ...
 
 @final

@@ -6,8 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "saddleback/error.h"
+#include "saddleback/pinned_memory.h"
 
 #include "geodesics/arc_symmetry.h"
 #include "geodesics/arc_unfolding.h"
@@ -85,7 +87,9 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const ArcSearch search{*unfolding_, nodes_, vertices_, *kernel_, options.threads};
   if (on_device) {
     progress.laid();
-    arcs_ = twin_arcs(search, choose_codec, rule, options.cuda_devices, device_times_, progress.joining());
+    ArcWords room(options.is_pinned ? &pinned_memory() : nullptr);
+    arcs_ =
+        twin_arcs(search, choose_codec, rule, options.cuda_devices, std::move(room), device_times_, progress.joining());
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;

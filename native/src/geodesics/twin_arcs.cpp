@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "geodesics/arc_twin.h"
 #include "geodesics/disk_rows.h"
@@ -16,9 +17,9 @@ namespace {
 /// Answers the twin's calls.
 class Caller {
  public:
-  Caller(const ArcSearch& search, const std::function<ArcCodec()>& choose_codec, const DiskRule& rule,
+  Caller(const ArcSearch& search, const std::function<ArcCodec()>& choose_codec, const DiskRule& rule, ArcWords room,
          const JobStage& stage)
-      : search_(search), choose_codec_(choose_codec), rule_(rule), stage_(stage) {}
+      : search_(search), choose_codec_(choose_codec), rule_(rule), stage_(stage), words_(std::move(room)) {}
 
   ArcTwinCaller calls() {
     return {this,
@@ -49,7 +50,7 @@ class Caller {
 
  private:
   void make_room(std::size_t words) {
-    if (words > words_.capacity()) words_ = {};  // nothing is to be copied
+    if (words > words_.capacity()) words_ = ArcWords(words_.get_allocator());  // nothing is to be copied
     words_.resize(words);
   }
 
@@ -112,7 +113,7 @@ class Caller {
 }  // namespace
 
 ArcRows twin_arcs(const ArcSearch& search, const std::function<ArcCodec()>& choose_codec, const DiskRule& rule,
-                  std::span<const int> devices, DeviceTimes& times, const JobStage& stage) {
+                  std::span<const int> devices, ArcWords room, DeviceTimes& times, const JobStage& stage) {
   const CudaTwins& twins = loaded_twins();
   const Mesh& mesh = search.unfolding.mesh();
   const WaveScene scene = wave_scene(nullptr, rule);
@@ -140,7 +141,7 @@ ArcRows twin_arcs(const ArcSearch& search, const std::function<ArcCodec()>& choo
   request.unit = mesh.mean_edge_length();
   request.sector_count = ArcCodec::k_sectors;
 
-  Caller caller(search, choose_codec, rule, stage);
+  Caller caller(search, choose_codec, rule, std::move(room), stage);
   TwinReason reason;
   caller.guard().check(twins.find_arcs(request, caller.calls(), times, reason), reason);
   return caller.take();

@@ -70,6 +70,7 @@ class HostCopies {
   /// Before the first copy: so many bytes will be copied there. Threads begin now, beside the work of the stream, with
   /// the pages under what is fresh; what is there is lost, until end_laying() or the first copy.
   void expect(void* to, std::size_t size) {
+    if (is_pinned(to)) return;
     const std::lock_guard lock(mutex_);
     is_expected_ = true;
     laid_ = {static_cast<volatile char*>(to), size};
@@ -119,7 +120,7 @@ class HostCopies {
       lock.lock();
     }
     if (failure_) std::rethrow_exception(failure_);
-    check_cuda(cudaStreamSynchronize(aside_), "copying between host and device");
+    finish_direct(poll);
     events_.clear();
   }
   void finish() {
@@ -137,6 +138,8 @@ class HostCopies {
   static constexpr std::size_t k_small = std::size_t{1} << 19;  ///< not worth a thread
   static constexpr std::size_t k_few = 2;                       ///< pieces not worth a thread
   static constexpr std::size_t k_most_threads = 8;
+  /// A few milliseconds of the slowest links, and some ten.
+  static constexpr std::size_t k_direct = std::size_t{1} << 26, k_most_at_once = std::size_t{1} << 29;
 
   static bool is_pinned(const void* host) {
     cudaPointerAttributes attributes{};
@@ -155,7 +158,7 @@ class HostCopies {
 
   void add(const Copy& copy, const void* host) {
     end_laying();
-    if (is_pinned(host)) return start(copy);
+    if (is_pinned(host)) return add_direct(copy);
     if (copy.size < k_small) return small_.push_back(copy);  // the driver would make the caller wait
     const std::lock_guard lock(mutex_);
     for (std::size_t begin = 0; begin < copy.size; begin += PinnedPieces::k_size) {
@@ -171,6 +174,31 @@ class HostCopies {
   void start_threads(std::size_t pieces) {
     const std::size_t most = std::min<std::size_t>(k_most_threads, std::max(1u, std::thread::hardware_concurrency()));
     while (pieces > k_few && threads_.size() < std::min(most, pieces)) threads_.emplace_back([this] { work(); });
+  }
+
+  /// Of pinned memory nothing is in the way, but what the device has been told to copy it copies: who cancels should
+  /// not wait for much of it.
+  void add_direct(const Copy& copy) {
+    for (std::size_t begin = 0; begin < copy.size; begin += k_direct) {
+      const Copy piece{static_cast<const char*>(copy.from) + begin, static_cast<char*>(copy.to) + begin,
+                       std::min(k_direct, copy.size - begin), copy.kind, copy.after};
+      direct_size_ += piece.size;
+      if (direct_.empty() && direct_size_ <= k_most_at_once)
+        start(piece);
+      else
+        direct_.push_back(piece);
+    }
+  }
+  template <class Poll>
+  void finish_direct(Poll&& poll) {
+    const auto count = static_cast<double>(direct_.size());
+    for (StreamEvent copied; !direct_.empty(); direct_.pop_front()) {
+      copied.record(aside_);
+      start(direct_.front());
+      wait_polling(copied, [&] { poll(1 - static_cast<double>(direct_.size()) / count); });
+    }
+    wait_polling(aside_, [&] { poll(count > 0 ? 1. : 0.); });
+    direct_size_ = 0;
   }
 
   template <class Poll>
@@ -280,6 +308,8 @@ class HostCopies {
   int device_ = 0;
   std::vector<StreamEvent> events_;
   std::vector<Copy> small_;
+  std::deque<Copy> direct_;  ///< of pinned memory, not begun yet
+  std::size_t direct_size_ = 0;
   std::vector<std::thread> threads_;
   std::optional<ScratchPool<PinnedPieces>::Lease> own_;
   std::mutex mutex_;

@@ -31,21 +31,21 @@ struct Extent {
     largest = fmax(largest, other.largest);
     is_finite &= other.is_finite;
   }
+  __host__ __device__ double half_width() const {
+    return fmax(0.5 * high[0] - 0.5 * low[0], 0.5 * high[1] - 0.5 * low[1]);
+  }
 };
 constexpr Extent k_nothing{{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY, 0, 1};
 
-__global__ void __launch_bounds__(k_threads) measure(const double2* sites, std::int32_t count, Extent* parts) {
+/// What the host is told of the sites at once.
+struct SitesSeen {
+  Extent extent;
+  int has_full_squares, has_equals;
+};
+
+/// To thread 0: the extent of what all threads of the block have.
+__device__ inline Extent extent_of_block(Extent mine) {
   __shared__ Extent shared[k_threads / 32];
-  Extent mine = k_nothing;
-  for (std::int64_t i = thread_number(); i < count; i += static_cast<std::int64_t>(gridDim.x) * blockDim.x) {
-    const double2 p = sites[i];
-    const double x = fabs(p.x), y = fabs(p.y), none = INFINITY;
-    mine.add({{p.x, p.y},
-              {p.x, p.y},
-              fmin(x == 0 ? none : x, y == 0 ? none : y),
-              fmax(x, y),
-              isfinite(p.x) && isfinite(p.y)});
-  }
   const auto gather = [&](int lanes) {
     for (int step = lanes / 2; step > 0; step /= 2) {
       Extent other;
@@ -65,29 +65,55 @@ __global__ void __launch_bounds__(k_threads) measure(const double2* sites, std::
   if (threadIdx.x < 32) {
     mine = threadIdx.x < k_threads / 32 ? shared[threadIdx.x] : k_nothing;
     gather(32);
-    if (threadIdx.x == 0) parts[blockIdx.x] = mine;
   }
+  return mine;
 }
 
-__global__ void place_sites(const double2* sites, std::int32_t count, double low_x, double low_y, double half_width,
-                            std::uint32_t* places, std::int32_t* order) {
+__global__ void __launch_bounds__(k_threads) measure(const double2* sites, std::int32_t count, Extent* parts) {
+  Extent mine = k_nothing;
+  for (std::int64_t i = thread_number(); i < count; i += static_cast<std::int64_t>(gridDim.x) * blockDim.x) {
+    const double2 p = sites[i];
+    const double x = fabs(p.x), y = fabs(p.y), none = INFINITY;
+    mine.add({{p.x, p.y},
+              {p.x, p.y},
+              fmin(x == 0 ? none : x, y == 0 ? none : y),
+              fmax(x, y),
+              isfinite(p.x) && isfinite(p.y)});
+  }
+  mine = extent_of_block(mine);
+  if (threadIdx.x == 0) parts[blockIdx.x] = mine;
+}
+
+/// One block.
+__global__ void __launch_bounds__(k_threads) see_all(const Extent* parts, std::int32_t count, SitesSeen* seen) {
+  Extent all = k_nothing;
+  for (std::int32_t i = thread_number(); i < count; i += k_threads) all.add(parts[i]);
+  all = extent_of_block(all);
+  if (threadIdx.x == 0) *seen = {all, 0, 0};
+}
+
+/// Anywhere where they are not finite or all the same.
+__global__ void place_sites(const double2* sites, std::int32_t count, const SitesSeen* seen, std::uint32_t* places,
+                            std::int32_t* order) {
   const std::int32_t i = thread_number();
   if (i >= count) return;
   const double2 p = sites[i];
-  places[i] = place_by_bits(square_of(p.x, low_x, half_width), square_of(p.y, low_y, half_width));
+  const Extent& extent = seen->extent;
+  const double half_width = extent.half_width();
+  places[i] = place_by_bits(square_of(p.x, extent.low[0], half_width), square_of(p.y, extent.low[1], half_width));
   order[i] = i;
 }
 
 /// Sites that share a square, by x, y and index. Of more than a few the processor makes a finer curve.
 constexpr int k_few = 48;
 __global__ void sort_squares(const double2* sites, std::int32_t count, const std::uint32_t* places, std::int32_t* order,
-                             int* has_full_squares) {
+                             SitesSeen* seen) {
   const std::int32_t begin = thread_number();
   if (begin >= count || (begin > 0 && places[begin - 1] == places[begin])) return;
   std::int32_t end = begin + 1;
   while (end < count && end - begin <= k_few && places[end] == places[begin]) ++end;
   if (end - begin > k_few) {
-    *has_full_squares = 1;
+    seen->has_full_squares = 1;
     return;
   }
   const auto less = [&](std::int32_t a, std::int32_t b) {
@@ -105,7 +131,7 @@ __global__ void sort_squares(const double2* sites, std::int32_t count, const std
 
 /// Sites in their order, which of them differ from the one before, and whether any does not.
 __global__ void gather_sites(const double2* sites, std::int32_t count, const std::int32_t* order, double2* sorted,
-                             std::int32_t* is_first, int* has_equals) {
+                             std::int32_t* is_first, SitesSeen* seen) {
   const std::int32_t i = thread_number();
   if (i >= count) return;
   const double2 p = sites[order[i]];
@@ -116,7 +142,7 @@ __global__ void gather_sites(const double2* sites, std::int32_t count, const std
   }
   sorted[i] = p;
   is_first[i] = differs;
-  if (!differs) *has_equals = 1;
+  if (!differs) seen->has_equals = 1;
 }
 
 /// What the processor keeps of the sites, by rank.
@@ -168,24 +194,15 @@ class DeviceOrder {
   /// PlaneTwinCaller; it may throw.
   template <class Sort>
   Found find(const double2* sites, IndexRange share, Sort&& sort) {
-    const Extent extent = measure_all(sites);
-    // Beyond that the processor scales the sites, or says what is wrong with them.
-    constexpr double k_largest = 0x1p250, k_smallest = 0x1p-216;
-    const double half_width =
-        fmax(0.5 * extent.high[0] - 0.5 * extent.low[0], 0.5 * extent.high[1] - 0.5 * extent.low[1]);
-    if (!extent.is_finite || extent.largest >= k_largest || extent.smallest < k_smallest || !(half_width > 0))
-      return Found::not_for_the_device;
-
+    DeviceBuffer<SitesSeen> seen(1, stream_);
+    see(sites, seen.data());
     DeviceBuffer<std::uint32_t> places(size(), stream_);
-    DeviceBuffer<std::int32_t> order(size(), stream_);
-    DeviceBuffer<int> has_full_squares(1, stream_), has_equals(1, stream_);
-    has_full_squares.fill_bytes(0);
-    has_equals.fill_bytes(0);
+    DeviceBuffer<std::int32_t> order(size(), stream_), firsts(size(), stream_);
     {
       DeviceBuffer<std::uint32_t> unsorted_places(size(), stream_);
       DeviceBuffer<std::int32_t> unsorted(size(), stream_);
-      place_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, extent.low[0], extent.low[1],
-                                                                 half_width, unsorted_places.data(), unsorted.data());
+      place_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, seen.data(), unsorted_places.data(),
+                                                                 unsorted.data());
       check_cuda(cudaGetLastError(), "placing sites");
       with_scratch(stream_, "sorting sites", [&](void* scratch, std::size_t& bytes) {
         return cub::DeviceRadixSort::SortPairs(scratch, bytes, unsorted_places.data(), places.data(), unsorted.data(),
@@ -193,24 +210,25 @@ class DeviceOrder {
       });
     }
     sort_squares<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, places.data(), order.data(),
-                                                                has_full_squares.data());
+                                                                seen.data());
     check_cuda(cudaGetLastError(), "sorting sites");
-    DeviceBuffer<std::int32_t> firsts(size(), stream_);
-    int is_full = 0;
-    has_full_squares.read({&is_full, 1});
-    if (is_full) {
+    // Few sites are such that this was in vain: what was seen so far is not waited for.
+    SitesSeen found = gather(sites, order, firsts, seen);
+    const Extent& extent = found.extent;
+    // Beyond that the processor scales the sites, or says what is wrong with them.
+    constexpr double k_largest = 0x1p250, k_smallest = 0x1p-216;
+    if (!extent.is_finite || extent.largest >= k_largest || extent.smallest < k_smallest || !(extent.half_width() > 0))
+      return Found::not_for_the_device;
+    if (found.has_full_squares) {
       std::vector<std::uint32_t> sorted_places(size());
       std::vector<std::int32_t> sorted(size());
       sort(sorted_places.data(), sorted.data());
       places = DeviceBuffer<std::uint32_t>(sorted_places, stream_);
       order = DeviceBuffer<std::int32_t>(sorted, stream_);
-      check_cuda(cudaStreamSynchronize(stream_), "copying to the device");
+      found = gather(sites, order, firsts, seen);
     }
-    gather_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, order.data(), at_.data(), firsts.data(),
-                                                                has_equals.data());
-    check_cuda(cudaGetLastError(), "finding equal sites");
     cell_count_ = count_;
-    if (has_equals.value_at(0)) {
+    if (found.has_equals) {
       with_scratch(stream_, "counting sites", [&](void* scratch, std::size_t& bytes) {
         return cub::DeviceScan::InclusiveSum(scratch, bytes, firsts.data(), firsts.data(), count_, stream_);
       });
@@ -264,16 +282,21 @@ class DeviceOrder {
     check_cuda(cudaGetLastError(), "ranking sites");
   }
 
-  Extent measure_all(const double2* sites) {
+  void see(const double2* sites, SitesSeen* seen) const {
     const unsigned blocks = std::min(blocks_for(count_), 1024u);
     DeviceBuffer<Extent> parts(blocks, stream_);
     measure<<<blocks, k_threads, 0, stream_>>>(sites, count_, parts.data());
+    see_all<<<1, k_threads, 0, stream_>>>(parts.data(), static_cast<std::int32_t>(blocks), seen);
     check_cuda(cudaGetLastError(), "measuring the sites");
-    std::vector<Extent> found(blocks);
-    parts.read(found);
-    Extent all = k_nothing;
-    for (const Extent& part : found) all.add(part);
-    return all;
+  }
+
+  /// \return what was seen, equal sites too. Waits for the stream.
+  SitesSeen gather(const double2* sites, const DeviceBuffer<std::int32_t>& order, DeviceBuffer<std::int32_t>& firsts,
+                   DeviceBuffer<SitesSeen>& seen) {
+    gather_sites<<<blocks_for(count_), k_threads, 0, stream_>>>(sites, count_, order.data(), at_.data(), firsts.data(),
+                                                                seen.data());
+    check_cuda(cudaGetLastError(), "finding equal sites");
+    return seen.value_at(0);
   }
 
   cudaStream_t stream_;

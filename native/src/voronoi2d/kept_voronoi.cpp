@@ -10,6 +10,7 @@
 #include "voronoi2d/check_options.h"
 #include "voronoi2d/curve_order.h"
 #include "voronoi2d/plane_twin.h"
+#include "voronoi2d/site_order.h"
 
 namespace saddleback {
 namespace {
@@ -31,7 +32,9 @@ struct Caller {
             [](void* self, std::uint32_t* places, std::int32_t* order) {
               auto& caller = *static_cast<Caller*>(self);
               return caller.guard.run([&] {
-                for (const Placed& item : curve_order(caller.sites, 0, caller.stage.part(0.1, 0.2))) {
+                // Somebody may change the sites meanwhile.
+                const LargeArray<Vec2> own = copy_of(caller.sites, 0, caller.stage.part(0.1, 0.1));
+                for (const Placed& item : curve_order(own, 0, caller.stage.part(0.1, 0.2))) {
                   *places++ = item.place;
                   *order++ = item.index;
                 }

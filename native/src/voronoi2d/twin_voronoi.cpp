@@ -1,8 +1,13 @@
 #include "voronoi2d/twin_voronoi.h"
 
+#include <type_traits>
+
+#include "saddleback/pinned_memory.h"
+
 #include "support/twin_caller.h"
 #include "voronoi2d/curve_order.h"
 #include "voronoi2d/plane_twin.h"
+#include "voronoi2d/site_order.h"
 #include "voronoi2d/weighted_vertex.h"
 
 namespace saddleback::voronoi2d {
@@ -11,8 +16,11 @@ namespace {
 /// Answers the twin's calls.
 class Caller {
  public:
-  Caller(std::span<const Vec2> sites, std::span<const double> weights, int threads, const JobStage& stage)
-      : sites_(sites), weights_(weights), threads_(threads), stage_(stage) {}
+  Caller(std::span<const Vec2> sites, std::span<const double> weights, const Voronoi2dOptions& options,
+         const JobStage& stage)
+      : sites_(sites), weights_(weights), threads_(options.threads), stage_(stage) {
+    if (options.is_pinned) take_pinned_memory();
+  }
 
   PlaneTwinCaller calls() {
     return {this,
@@ -41,8 +49,20 @@ class Caller {
   Voronoi2d take() { return std::move(result_); }
 
  private:
-  void sort(std::uint32_t* places, std::int32_t* order) const {
-    const LargeArray<Placed> items = curve_order(sites_, threads_, stage_.part(0.1, 0.2));
+  void take_pinned_memory() {
+    const auto take = [](auto&... arrays) { ((arrays = std::decay_t<decltype(arrays)>(&pinned_memory())), ...); };
+    take(result_.site_of, result_.cell_places, result_.cell_sites, result_.cell_offsets, result_.corner_vertices,
+         result_.side_edges, result_.edges, result_.edge_sites, result_.vertices);
+  }
+
+  /// The caller's sites may be somebody's who changes them meanwhile: what reads them twice reads a copy.
+  void copy_sites() {
+    if (result_.sites.empty()) result_.sites = copy_of(sites_, threads_, stage_.part(0, 0));
+  }
+
+  void sort(std::uint32_t* places, std::int32_t* order) {
+    copy_sites();
+    const LargeArray<Placed> items = curve_order(result_.sites, threads_, stage_.part(0.1, 0.2));
     for (std::size_t i = 0; i < items.size(); ++i) {
       places[i] = items[i].place;
       order[i] = items[i].index;
@@ -50,6 +70,7 @@ class Caller {
   }
 
   PlaneTwinArrays make_room(const PlaneTwinSizes& most) {
+    copy_sites();
     resize(most);
     return {result_.site_of.data(),       result_.cell_places.data(),        result_.cell_sites.data(),
             result_.cell_offsets.data(),  result_.corner_vertices.data(),    result_.side_edges.data(),
@@ -57,7 +78,9 @@ class Caller {
   }
 
   void place(std::span<const RoughVertex> vertices) {
-    const auto site = [&](Index i) { return predicates::WeightedPoint2{sites_[i].x(), sites_[i].y(), weights_[i]}; };
+    const auto site = [&](Index i) {
+      return predicates::WeightedPoint2{result_.sites[i].x(), result_.sites[i].y(), weights_[i]};
+    };
     for (const RoughVertex& rough : vertices) {
       const predicates::WeightedPoint2 before = site(rough.sites[1]), after = site(rough.sites[2]);
       result_.vertices[rough.vertex] = rough_vertex(site(rough.sites[0]), &before, &after);
@@ -66,15 +89,21 @@ class Caller {
 
   void resize(const PlaneTwinSizes& sizes) {
     const auto edges = static_cast<std::size_t>(sizes.edges), cells = static_cast<std::size_t>(sizes.cells);
-    result_.site_of.resize(sites_.size());
-    result_.cell_places.resize(sites_.size());
-    result_.cell_sites.resize(cells);
-    result_.cell_offsets.resize(cells + 1);
-    result_.corner_vertices.resize(2 * edges);
-    result_.side_edges.resize(2 * edges);
-    result_.edges.resize(edges);
-    result_.edge_sites.resize(edges);
-    result_.vertices.resize(static_cast<std::size_t>(sizes.vertices));
+    resize(result_.site_of, sites_.size());
+    resize(result_.cell_places, sites_.size());
+    resize(result_.cell_sites, cells);
+    resize(result_.cell_offsets, cells + 1);
+    resize(result_.corner_vertices, 2 * edges);
+    resize(result_.side_edges, 2 * edges);
+    resize(result_.edges, edges);
+    resize(result_.edge_sites, edges);
+    resize(result_.vertices, static_cast<std::size_t>(sizes.vertices));
+  }
+
+  template <class T>
+  void resize(LargeArray<T>& array, std::size_t size) {
+    stage_.check();  // to pin a gigabyte takes a while
+    array.resize(size);
   }
 
   std::span<const Vec2> sites_;
@@ -87,23 +116,18 @@ class Caller {
 
 }  // namespace
 
-std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const int> devices, int threads,
-                                      const JobStage& stage) {
-  return twin_voronoi(sites, {}, devices, threads, stage);
-}
-
 std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const double> weights,
-                                      std::span<const int> devices, int threads, const JobStage& stage) {
+                                      const Voronoi2dOptions& options, const JobStage& stage) {
   const CudaTwins& twins = loaded_twins();
   PlaneTwinRequest request;
-  request.devices = devices.data();
-  request.device_count = static_cast<int>(devices.size());
+  request.devices = options.cuda_devices.data();
+  request.device_count = static_cast<int>(options.cuda_devices.size());
   request.most_bytes = cuda_memory_limit();
   request.sites = sites.empty() ? nullptr : sites.front().data();
   request.weights = weights.empty() ? nullptr : weights.data();
   request.count = static_cast<std::int32_t>(sites.size());
 
-  Caller caller(sites, weights, threads, stage);
+  Caller caller(sites, weights, options, stage);
   DeviceTimes times;
   TwinReason reason;
   const TwinStatus status = twins.find_voronoi(request, caller.calls(), times, reason);

@@ -8,14 +8,12 @@
 
 namespace saddleback::voronoi2d {
 
-/// As voronoi_2d, to the bit, but for the sites, which the caller has; none where it takes the processor: few or
-/// scattered sites, all on one line or one circle, numbers that are too large. \throw DeviceError when the device
-/// cannot do it; Cancelled.
-std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const int> devices, int threads,
-                                      const JobStage& stage);
-/// The same with a weight for each site; also none where sites share a place or doubles do not tell what exact numbers
-/// would.
+/// As voronoi_2d, to the bit, by the options' CUDA devices; without weights where there are none. None where it takes
+/// the processor: few or scattered sites, all on one line or one circle, numbers that are too large; of weighted ones
+/// also where they share a place or doubles do not tell what exact numbers would. What lacks is `hidden` and the
+/// weights. The sites may change meanwhile: then the diagram is of no use, but nothing breaks. \throw DeviceError when
+/// the device cannot do it; Cancelled.
 std::optional<Voronoi2d> twin_voronoi(std::span<const Vec2> sites, std::span<const double> weights,
-                                      std::span<const int> devices, int threads, const JobStage& stage);
+                                      const Voronoi2dOptions& options, const JobStage& stage);
 
 }  // namespace saddleback::voronoi2d

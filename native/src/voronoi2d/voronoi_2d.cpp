@@ -26,14 +26,8 @@ Index tile_size(Index count, const Voronoi2dOptions& options) {
   return options.circles > 0 ? std::max<Index>(1, count / options.circles) : k_good;
 }
 
-/// All but the sites themselves.
+/// All but the sites themselves, by the processor.
 Voronoi2d find_diagram(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage) {
-  check_options(options, sites.size());
-  constexpr std::size_t k_fewest = 3;
-  if (!options.cuda_devices.empty() && sites.size() >= k_fewest) {
-    std::optional<Voronoi2d> found = twin_voronoi(sites, options.cuda_devices, options.threads, stage);
-    if (found) return std::move(*found);
-  }
   OrderedSites ordered = order_sites(sites, options.threads, stage.part(0, 0.1));
   Triangulation triangulation =
       triangulate(ordered, tile_size(ordered.count(), options), options.threads, stage.part(0.1, 0.7));
@@ -58,6 +52,8 @@ Voronoi2d find_diagram(std::span<const Vec2> sites, const Voronoi2dOptions& opti
 }  // namespace
 
 Voronoi2d voronoi_2d(LargeArray<Vec2>&& sites, const Voronoi2dOptions& options, Job* job) {
+  if (!options.cuda_devices.empty()) return voronoi_2d(std::span<const Vec2>(sites), options, job);
+  check_options(options, sites.size());
   const JobStage stage(job, "Voronoi diagram");
   Voronoi2d result = find_diagram(sites, options, stage);
   result.sites = std::move(sites);
@@ -70,8 +66,17 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
 }
 
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage) {
-  Voronoi2d result = find_diagram(sites, options, stage.part(0, 0.99));
-  result.sites = copy_of(sites, options.threads, stage.part(0.99, 1));
+  check_options(options, sites.size());
+  constexpr std::size_t k_fewest = 3;
+  std::optional<Voronoi2d> found;
+  if (!options.cuda_devices.empty() && sites.size() >= k_fewest) found = twin_voronoi(sites, {}, options, stage);
+  if (found) {
+    stage.update(1);
+    return std::move(*found);
+  }
+  LargeArray<Vec2> own = copy_of(sites, options.threads, stage.part(0, 0.01));
+  Voronoi2d result = find_diagram(own, options, stage.part(0.01, 1));
+  result.sites = std::move(own);
   return result;
 }
 

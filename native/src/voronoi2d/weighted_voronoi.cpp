@@ -111,9 +111,8 @@ std::optional<Voronoi2d> found_on_device(std::span<const Vec2> sites, std::span<
   if (options.cuda_devices.empty() || sites.size() < k_fewest || weights.size() != sites.size() ||
       !std::all_of(weights.begin(), weights.end(), [](double weight) { return std::fabs(weight) < k_largest; }))
     return std::nullopt;
-  std::optional<Voronoi2d> result = twin_voronoi(sites, weights, options.cuda_devices, options.threads, stage);
+  std::optional<Voronoi2d> result = twin_voronoi(sites, weights, options, stage);
   if (!result) return std::nullopt;
-  result->sites = copy_of(sites, options.threads, stage.part(0.99, 1));
   result->weights.assign(weights.begin(), weights.end());
   for (std::size_t i = 0; i < sites.size(); ++i)
     if (result->cell_places[i] == k_none) result->hidden.push_back(static_cast<Index>(i));

@@ -1,0 +1,12 @@
+#pragma once
+// Host memory that CUDA devices copy to and from by themselves. Belongs to the CUDA part of the library.
+
+#include <cstdint>
+
+namespace saddleback {
+
+/// For all devices; null when there is none.
+void* pin_host_memory(std::uint64_t bytes);
+void unpin_host_memory(void* memory);
+
+}  // namespace saddleback
