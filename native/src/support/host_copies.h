@@ -106,6 +106,15 @@ class HostCopies {
     events_.emplace_back().record(stream_);  // the memory is the stream's from here on
     add({from, to, count * sizeof(Number), cudaMemcpyHostToDevice, events_.back()}, from);
   }
+  /// Whether the device copies from and to there by itself.
+  static bool is_pinned(const void* host) {
+    cudaPointerAttributes attributes{};
+    if (cudaPointerGetAttributes(&attributes, host) != cudaSuccess) {
+      (void)cudaGetLastError();
+      return false;
+    }
+    return attributes.type == cudaMemoryTypeHost;
+  }
   /// Waits until all is copied; calls poll(share of it that is) now and then, which may throw.
   template <class Poll>
   void finish(Poll&& poll) {
@@ -140,15 +149,6 @@ class HostCopies {
   static constexpr std::size_t k_most_threads = 8;
   /// A few milliseconds of the slowest links, and some ten.
   static constexpr std::size_t k_direct = std::size_t{1} << 26, k_most_at_once = std::size_t{1} << 29;
-
-  static bool is_pinned(const void* host) {
-    cudaPointerAttributes attributes{};
-    if (cudaPointerGetAttributes(&attributes, host) != cudaSuccess) {
-      (void)cudaGetLastError();
-      return false;
-    }
-    return attributes.type == cudaMemoryTypeHost;
-  }
 
   void start(const Copy& copy) { start(copy, aside_); }
   static void start(const Copy& copy, cudaStream_t stream) {

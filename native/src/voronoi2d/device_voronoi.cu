@@ -30,6 +30,8 @@ struct CellSites {
   const double2* at;
   const double* weights;  ///< or null
   const std::int32_t *original, *cell_places;
+  const double2* given;  ///< all sites, by index
+  cudaEvent_t are_there;
 };
 
 /// A diagram found by one or several devices. All have all sites, each finds and numbers the cells of some tiles.
@@ -62,7 +64,7 @@ class Builder {
     DeviceTimes& times = times_[static_cast<std::size_t>(member)];
     auto own_stream = std::make_unique<Stream>();
     const cudaStream_t stream = *own_stream;
-    Stopwatch watch(stream);
+    Stopwatch uploading(stream);
     DeviceBuffer<double2> uploaded;
     DeviceBuffer<double> weights;
     if (request_.sites_are_there) {
@@ -72,22 +74,28 @@ class Builder {
       uploaded = upload(sites, stream, [&](double share) { report(Share::upload * share); });
     }
     if (request_.weights) weights = upload(request_.weights, stream, [&](double) { report(Share::upload); });
-    times.upload = watch.lap();
+    uploading.end();
     report(Share::upload);
-    DeviceOrder order = ordered(
-        member, request_.sites_are_there ? reinterpret_cast<const double2*>(request_.sites) : uploaded.data(), stream);
+    Stopwatch watch(stream);
+    const double2* const given =
+        request_.sites_are_there ? reinterpret_cast<const double2*>(request_.sites) : uploaded.data();
+    DeviceOrder order = ordered(member, given, stream);
     std::optional<VisibleSites> visible;
     if (request_.weights) visible.emplace(seen(order, weights.data(), stream));
+    const StreamEvent is_ordered;
+    is_ordered.record(stream);
     times.order = watch.lap();
+    times.upload = uploading.read();
     report(Share::order);
     if (visible) {
       WeightedCellFinder cells(*visible, member, team_.members(), stream);
-      const CellSites sites{visible->count(), visible->at(), visible->weights(), visible->original(),
-                            visible->cell_places()};
+      const CellSites sites{visible->count(),       visible->at(), visible->weights(), visible->original(),
+                            visible->cell_places(), given,         is_ordered};
       find(member, cells, sites, order, watch, own_stream);
     } else {
       CellFinder cells(order, member, team_.members(), stream);
-      find(member, cells, {order.cell_count(), order.at(), nullptr, order.original(), order.cell_places()}, order,
+      find(member, cells,
+           {order.cell_count(), order.at(), nullptr, order.original(), order.cell_places(), given, is_ordered}, order,
            watch, own_stream);
     }
   }
@@ -174,10 +182,11 @@ class Builder {
     check_cuda(cudaDeviceSynchronize(), "waiting for the sites");
   }
 
-  /// A number for each site.
+  /// A number for each site; there when the stream has run.
   template <class Number, class Report>
   DeviceBuffer<Number> upload(const Number* numbers, cudaStream_t stream, Report&& report) const {
     const auto count = static_cast<std::size_t>(request_.count);
+    if (HostCopies::is_pinned(numbers)) return {std::span<const Number>(numbers, count), stream};
     DeviceBuffer<Number> result(count, stream);
     HostCopies copies(stream);
     copies.to_device(numbers, count, result.data());
@@ -229,12 +238,14 @@ class Builder {
     return {begin(member), begin(member + 1)};
   }
 
-  /// Each member copies its share.
+  /// Each member copies its share, while cells are found.
   void copy_sites(const DeviceOrder& order, const CellSites& sites, const PlanePart& part, HostCopies& copies) const {
-    const auto copy = [&](const std::int32_t* from, std::int32_t count, std::int32_t* to) {
+    const auto copy = [&](const auto* from, std::int32_t count, auto* to) {
       const IndexRange share = share_of(part.member, count);
-      copies.to_host(from + share.begin, static_cast<std::size_t>(share.count()), to ? to + share.begin : to);
+      copies.to_host(from + share.begin, static_cast<std::size_t>(share.count()), to ? to + share.begin : to,
+                     sites.are_there);
     };
+    copy(sites.given, request_.count, reinterpret_cast<double2*>(to_.sites));
     copy(order.site_of(), request_.count, to_.site_of);
     copy(sites.cell_places, request_.count, to_.cell_places);
     copy(sites.original, sites.count, to_.cell_sites);

@@ -41,6 +41,7 @@ struct PlaneTwinSizes {
 
 /// Where the diagram goes, as Voronoi2d has it.
 struct PlaneTwinArrays {
+  double* sites;                               ///< two each; null: the caller has them
   std::int32_t *site_of, *cell_places;         ///< by site
   std::int32_t *cell_sites, *cell_offsets;     ///< by cell; offsets have one more
   std::int32_t *corner_vertices, *side_edges;  ///< twice the edges

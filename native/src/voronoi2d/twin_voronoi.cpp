@@ -19,7 +19,10 @@ class Caller {
   Caller(std::span<const Vec2> sites, std::span<const double> weights, const Voronoi2dOptions& options,
          const JobStage& stage)
       : sites_(sites), weights_(weights), threads_(options.threads), stage_(stage) {
-    if (options.is_pinned) take_pinned_memory();
+    if (!options.is_pinned) return;
+    const auto take = [](auto&... arrays) { ((arrays = std::decay_t<decltype(arrays)>(&pinned_memory())), ...); };
+    take(result_.sites, result_.site_of, result_.cell_places, result_.cell_sites, result_.cell_offsets,
+         result_.corner_vertices, result_.side_edges, result_.edges, result_.edge_sites, result_.vertices);
   }
 
   PlaneTwinCaller calls() {
@@ -49,15 +52,19 @@ class Caller {
   Voronoi2d take() { return std::move(result_); }
 
  private:
-  void take_pinned_memory() {
-    const auto take = [](auto&... arrays) { ((arrays = std::decay_t<decltype(arrays)>(&pinned_memory())), ...); };
-    take(result_.site_of, result_.cell_places, result_.cell_sites, result_.cell_offsets, result_.corner_vertices,
-         result_.side_edges, result_.edges, result_.edge_sites, result_.vertices);
-  }
-
   /// The caller's sites may be somebody's who changes them meanwhile: what reads them twice reads a copy.
   void copy_sites() {
     if (result_.sites.empty()) result_.sites = copy_of(sites_, threads_, stage_.part(0, 0));
+  }
+  /// Where the device copies the sites. It copies to what is pinned alone and faster than cores do, after whose reading
+  /// it would need longer for the caller's.
+  double* place_for_sites() {
+    if (result_.sites.get_allocator() != LargeAllocator<Vec2>(&pinned_memory())) {
+      copy_sites();
+      return nullptr;
+    }
+    resize(result_.sites, sites_.size());
+    return result_.sites.data()->data();
   }
 
   void sort(std::uint32_t* places, std::int32_t* order) {
@@ -70,11 +77,18 @@ class Caller {
   }
 
   PlaneTwinArrays make_room(const PlaneTwinSizes& most) {
-    copy_sites();
+    double* const sites = place_for_sites();
     resize(most);
-    return {result_.site_of.data(),       result_.cell_places.data(),        result_.cell_sites.data(),
-            result_.cell_offsets.data(),  result_.corner_vertices.data(),    result_.side_edges.data(),
-            result_.edges.data()->data(), result_.edge_sites.data()->data(), result_.vertices.data()->data()};
+    return {sites,
+            result_.site_of.data(),
+            result_.cell_places.data(),
+            result_.cell_sites.data(),
+            result_.cell_offsets.data(),
+            result_.corner_vertices.data(),
+            result_.side_edges.data(),
+            result_.edges.data()->data(),
+            result_.edge_sites.data()->data(),
+            result_.vertices.data()->data()};
   }
 
   void place(std::span<const RoughVertex> vertices) {
