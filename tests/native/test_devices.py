@@ -144,3 +144,29 @@ def test_any_other_word_is_refused(mesh: sb.Mesh, word: str) -> None:
 def test_the_memory_limit_is_a_number_of_bytes(wrong: Any) -> None:
     with pytest.raises(sb.InputError, match="bytes"):
         sb.limit_device_memory(wrong)
+
+
+def test_without_a_device_nothing_is_pinned_and_nothing_else_changes(
+    mesh: sb.Mesh, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    use_module(monkeypatch, None)
+    sites = np.random.default_rng(1).random((500, 2))
+    for weights in (None, 0.01 * np.random.default_rng(2).random(500)):
+        own, pinned = sb.voronoi_2d(sites, weights), sb.voronoi_2d(sites, weights, pinned=True)
+        assert pinned.device == "cpu"
+        for name in ("sites", "vertices", "edges", "edge_sites", "site_of"):
+            assert getattr(pinned, name).tobytes() == getattr(own, name).tobytes()
+    graph = sb.SaddleVertexGraph(mesh, pinned=True)
+    np.testing.assert_array_equal(graph.distances([0]), sb.SaddleVertexGraph(mesh).distances([0]))
+    sb.release_pinned_memory()
+    with pytest.raises(sb.DeviceError):
+        sb.voronoi_2d(sites, device="cuda", pinned=True)
+
+
+def test_sites_are_copied() -> None:
+    sites = np.random.default_rng(1).random((500, 2))
+    for weights in (None, np.arange(500.0)):
+        diagram = sb.voronoi_2d(sites, weights)
+        given = sites.copy()
+        sites += 1
+        np.testing.assert_array_equal(diagram.sites, given)
