@@ -52,9 +52,9 @@ struct CudaTwins {
   void (*drop_voronoi)(KeptPlane*) = nullptr;
   /// Copies bytes from a device's memory to the host's.
   TwinStatus (*copy_back)(int device, const void* from, void* to, std::uint64_t bytes, TwinReason&) = nullptr;
-  /// Host memory that all devices copy to by themselves; null when there is none.
-  void* (*pin)(std::uint64_t bytes) = nullptr;
-  void (*unpin)(void*) = nullptr;
+  /// Lets all devices copy to and from host memory by themselves, if they can.
+  bool (*pin)(void* memory, std::uint64_t bytes) = nullptr;
+  void (*unpin)(void* memory) = nullptr;
   /// See geodesics/search_twin.h.
   TwinStatus (*put_graph)(const GraphTwinRequest&, GraphTwin**, double* seconds, TwinReason&) = nullptr;
   void (*drop_graph)(GraphTwin*) = nullptr;

@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "saddleback/pinned_memory.h"
+
 #include "geodesics/arc_twin.h"
 #include "geodesics/disk_rows.h"
 #include "support/parallel.h"
@@ -50,7 +52,11 @@ class Caller {
 
  private:
   void make_room(std::size_t words) {
-    if (words > words_.capacity()) words_ = ArcWords(words_.get_allocator());  // nothing is to be copied
+    if (words > words_.capacity()) {
+      words_ = ArcWords(words_.get_allocator());  // nothing is to be copied
+      if (words_.get_allocator().source == &pinned_memory())
+        make_pinned_room(words * sizeof words_[0], search_.threads, stage_.part(0, 0));
+    }
     words_.resize(words);
   }
 

@@ -4,15 +4,14 @@
 
 namespace saddleback {
 
-void* pin_host_memory(std::uint64_t bytes) {
-  void* memory = nullptr;
-  if (cudaHostAlloc(&memory, bytes, cudaHostAllocPortable) == cudaSuccess) return memory;
+bool pin_host_memory(void* memory, std::uint64_t bytes) {
+  if (cudaHostRegister(memory, bytes, cudaHostRegisterPortable) == cudaSuccess) return true;
   (void)cudaGetLastError();  // the caller has another way: whoever asks next must not see it
-  return nullptr;
+  return false;
 }
 
 void unpin_host_memory(void* memory) {
-  if (cudaFreeHost(memory) != cudaSuccess) (void)cudaGetLastError();  // at the latest the process's end frees it
+  if (cudaHostUnregister(memory) != cudaSuccess) (void)cudaGetLastError();  // the device is lost, and the pin with it
 }
 
 }  // namespace saddleback

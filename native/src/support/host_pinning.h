@@ -5,8 +5,8 @@
 
 namespace saddleback {
 
-/// For all devices; null when there is none.
-void* pin_host_memory(std::uint64_t bytes);
+/// Whether it is, for all devices, from here on.
+bool pin_host_memory(void* memory, std::uint64_t bytes);
 void unpin_host_memory(void* memory);
 
 }  // namespace saddleback

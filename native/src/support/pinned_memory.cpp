@@ -1,47 +1,69 @@
 #include "saddleback/pinned_memory.h"
 
 #include <algorithm>
+#include <memory>
 #include <mutex>
 #include <vector>
 
 #include "saddleback/cuda_twins.h"
 
+#include "support/parallel.h"
+
 namespace saddleback {
 namespace {
+
+/// Touches all pages: to pin those that are not there yet takes longer, and nobody could stop it.
+void lay_pages(std::byte* memory, std::size_t size, int threads, const JobStage& stage) {
+  constexpr std::size_t k_piece = std::size_t{1} << 21, k_page = std::size_t{1} << 12;
+  const auto pieces = static_cast<Index>((size + k_piece - 1) / k_piece);
+  parallel_for(pieces, threads, 4, [&](Index piece, int) {
+    stage.check();
+    const std::size_t begin = static_cast<std::size_t>(piece) * k_piece, end = std::min(size, begin + k_piece);
+    for (std::size_t at = begin; at < end; at += k_page) static_cast<volatile std::byte*>(memory)[at] = std::byte{};
+  });
+}
 
 class PinnedMemory final : public LargeMemory {
  public:
   void* allocate(std::size_t size) override {
     const std::lock_guard lock(mutex_);
-    if (void* const kept = take(size)) return kept;
-    blocks_.reserve(blocks_.size() + 1);  // nothing may fail once there is memory
-    const std::size_t wanted = (size + k_step - 1) / k_step * k_step;
-    void* memory = pin(wanted);
-    if (!memory && free_ > 0) {
-      drop_free_blocks();
-      memory = pin(wanted);
-    }
-    if (!memory) return allocate_large(size);
-    blocks_.push_back({memory, wanted, false});
-    return memory;
+    const auto block = find_free(size);
+    if (block == blocks_.end()) return allocate_large(size);
+    block->is_free = false;
+    free_ -= block->size;
+    return block->memory;
   }
 
   void free(void* memory, std::size_t size) noexcept override {
     const std::lock_guard lock(mutex_);
-    const auto found = std::ranges::find(blocks_, memory, &Block::memory);
-    if (found == blocks_.end()) return free_large(memory, size);
-    if (free_ + found->size <= k_most_free) {
-      found->is_free = true;
-      free_ += found->size;
-    } else {
-      unpin(found->memory);
-      blocks_.erase(found);
+    const auto block = std::ranges::find(blocks_, memory, &Block::memory);
+    if (block == blocks_.end()) return free_large(memory, size);
+    block->is_free = true;
+    free_ += block->size;
+    std::rotate(block, block + 1, blocks_.end());
+    drop_free_blocks(k_most_free);
+  }
+
+  void make_room(std::size_t size, int threads, const JobStage& stage) {
+    if (!cuda_twins() || size > k_largest || has_room(size)) return;
+    const std::size_t wanted = (size + k_step - 1) / k_step * k_step;
+    const auto give_back = [&](std::byte* memory) { free_large(memory, wanted); };
+    std::unique_ptr<std::byte, decltype(give_back)> memory(static_cast<std::byte*>(allocate_large(wanted)), give_back);
+    lay_pages(memory.get(), wanted, threads, stage);
+    const std::lock_guard lock(mutex_);
+    blocks_.reserve(blocks_.size() + 1);  // nothing may fail once it is pinned
+    const auto pin = [&] { return cuda_twins()->pin(memory.get(), wanted); };
+    if (!pin()) {  // there is a limit to what can be
+      drop_free_blocks(0);
+      if (!pin()) return;
     }
+    blocks_.push_back({memory.release(), wanted, true});
+    free_ += wanted;
   }
 
   void release() {
     const std::lock_guard lock(mutex_);
-    drop_free_blocks();
+    drop_free_blocks(0);
   }
 
  private:
@@ -50,37 +72,38 @@ class PinnedMemory final : public LargeMemory {
     std::size_t size;
     bool is_free;
   };
-  static constexpr std::size_t k_step = std::size_t{1} << 16, k_most_free = std::size_t{1} << 31;
+  static constexpr std::size_t k_step = std::size_t{1} << 16, k_largest = std::size_t{1} << 30,
+                               k_most_free = std::size_t{1} << 31;
 
-  static void* pin(std::size_t size) {
-    const CudaTwins* const twins = cuda_twins();
-    return twins ? twins->pin(size) : nullptr;
+  bool has_room(std::size_t size) {
+    const std::lock_guard lock(mutex_);
+    return find_free(size) != blocks_.end();
   }
-  static void unpin(void* memory) noexcept { cuda_twins()->unpin(memory); }  // who pinned it is there to the end
 
-  void* take(std::size_t size) {
-    const auto wastes_little = [&](const Block& block) {
-      return block.is_free && block.size >= size && block.size - size <= std::max(k_step, block.size / 5);
+  std::vector<Block>::iterator find_free(std::size_t size) {
+    const auto serves = [&](const Block& block) {
+      return block.is_free && block.size >= size && block.size - size <= std::max(k_step, size / 4);
     };
-    Block* best = nullptr;
-    for (Block& block : blocks_)
-      if (wastes_little(block) && (!best || block.size < best->size)) best = &block;
-    if (!best) return nullptr;
-    best->is_free = false;
-    free_ -= best->size;
-    return best->memory;
+    auto best = blocks_.end();
+    for (auto block = blocks_.begin(); block != blocks_.end(); ++block)
+      if (serves(*block) && (best == blocks_.end() || block->size < best->size)) best = block;
+    return best;
   }
 
-  void drop_free_blocks() {
-    for (const Block& block : blocks_)
-      if (block.is_free) unpin(block.memory);
-    std::erase_if(blocks_, [](const Block& block) { return block.is_free; });
-    free_ = 0;
+  /// Those that have been free the longest, until no more than `most` bytes are.
+  void drop_free_blocks(std::size_t most) noexcept {
+    std::erase_if(blocks_, [&](const Block& block) {
+      if (!block.is_free || free_ <= most) return false;
+      free_ -= block.size;
+      cuda_twins()->unpin(block.memory);  // who pinned it is there to the end
+      free_large(block.memory, block.size);
+      return true;
+    });
   }
 
   std::mutex mutex_;
-  std::vector<Block> blocks_;
-  std::size_t free_ = 0;  ///< bytes of the free ones
+  std::vector<Block> blocks_;  ///< the free ones in the order in which they became so
+  std::size_t free_ = 0;       ///< bytes of those
 };
 
 // Never destroyed: arrays may outlive everything else.
@@ -92,6 +115,7 @@ PinnedMemory& all() {
 }  // namespace
 
 LargeMemory& pinned_memory() { return all(); }
+void make_pinned_room(std::size_t size, int threads, const JobStage& stage) { all().make_room(size, threads, stage); }
 void release_pinned_memory() { all().release(); }
 
 }  // namespace saddleback

@@ -59,7 +59,7 @@ class Caller {
   /// Where the device copies the sites. It copies to what is pinned alone and faster than cores do, after whose reading
   /// it would need longer for the caller's.
   double* place_for_sites() {
-    if (result_.sites.get_allocator() != LargeAllocator<Vec2>(&pinned_memory())) {
+    if (result_.sites.get_allocator().source != &pinned_memory()) {
       copy_sites();
       return nullptr;
     }
@@ -116,7 +116,10 @@ class Caller {
 
   template <class T>
   void resize(LargeArray<T>& array, std::size_t size) {
-    stage_.check();  // to pin a gigabyte takes a while
+    const JobStage now = stage_.part(0, 0);
+    now.check();
+    if (array.capacity() < size && array.get_allocator().source == &pinned_memory())
+      make_pinned_room(size * sizeof(T), threads_, now);
     array.resize(size);
   }
 
