@@ -78,7 +78,7 @@ job : Job, optional
     Progress and cancellation.
 pinned : bool
     Whether arcs come into memory that a CUDA device writes by itself, for one graph after the other: the first takes
-    longer, the others gain a millisecond or more. See `release_pinned_memory`.
+    longer, the others gain a third of a millisecond and more. See `release_pinned_memory`.
 
 Raises
 ------

@@ -102,7 +102,7 @@ device : str
 job : Job, optional
 pinned : bool
     Whether results come into memory that a CUDA device writes by itself, for one diagram after the other: the first
-    takes longer, the others a half of the time. See `release_pinned_memory`. Sites in such memory (CuPy's, PyTorch's)
+    takes longer, the others up to a quarter less. See `release_pinned_memory`. Sites in such memory (CuPy's, PyTorch's)
     are always read by the device itself.
 
 Returns

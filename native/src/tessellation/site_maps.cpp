@@ -21,11 +21,18 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // Straight lines are shorter than paths in a graph by its error; more than this is no straight line on the surface.
 constexpr double k_least_slack = 1e-2;
 
-// Of arcs, see ArcCodec.
+// Of arcs, see ArcCodec. Ways that differ by less are equally long: which of them is shorter changes with the mesh's
+// scale and place, so that it is their order or kind that decides.
 constexpr double k_arc_rounding = 2e-9;
 
 // An edge's end that a ray passes by less than this share of the edge's length it may as well hit.
 constexpr double k_least_miss = 1e-3;
+
+// By less than this share it does hit the end, but for rounding.
+constexpr double k_hit = 1e-9;
+
+// Radians: a path that turns less goes straight on, but for rounding.
+constexpr double k_least_turn = 1e-9;
 
 // How many nodes ahead what lies around a node is fetched from memory: by distance they follow in no order of memory.
 // The first of a cell are fetched while the cell before is placed.
@@ -192,18 +199,20 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
   ++scratch.round;
   scratch.answers.clear();
   const Fan& fan = fans_[site];
-  // Straight ones first: each may serve as the end of an edge that others are seen across.
+  // Straight ones first: each may serve as the end of an edge that others are seen across. A line that grazes a vertex
+  // is as long as the path over it, and is the better: what is seen behind changes where that vertex is an anchor.
   for (std::size_t i = 0; i < fan.nodes.size(); ++i) {
     const Index node = fan.nodes[i];
     scratch.table[node] = {scratch.round, static_cast<Index>(i)};
-    if (label_[node] == site && fan.rounded[i] <= distance_[node]) places_[node] = place_straight(fan.places[i]);
+    const double most = distance_[node] * (1 + k_arc_rounding);
+    if (label_[node] == site && fan.rounded[i] <= most) places_[node] = place_straight(fan.places[i]);
   }
   if (fan.centre != k_none && label_[fan.centre] == site) places_[fan.centre] = {.found_by = k_centre};
   for (auto node = first; node != last; ++node) {
     if (last - node > k_ahead) rings_.fetch(node[k_ahead]);
     if (places_[*node].found_by != k_unplaced) continue;
     Place place;
-    if (!place_own(*node, site, place)) place = place_after(*node, node_before(*node), scratch);
+    if (!place_own(*node, site, place)) place = place_after(*node, node_before(*node, site, distance_[*node]), scratch);
     places_[*node] = place;
   }
 }
@@ -215,20 +224,24 @@ Index SiteMaps::find_in_fan(Index site, Index node) const {
   return found != nodes.end() ? static_cast<Index>(found - nodes.begin()) : k_none;
 }
 
-/// Whether a path may bend where it comes from `back` and goes on towards `out`, so much that it counts.
+/// Whether a path may bend where it comes from `back` and goes on towards `out`, so much that it counts. One that goes
+/// on straight may, too.
 bool SiteMaps::is_anchor(Index vertex, double back, double out) const {
-  return VertexRings::bends_much(mesh_, vertex) && turn_at(mesh_, vertex, back, out) == 0;
+  return VertexRings::bends_much(mesh_, vertex) && std::abs(turn_at(mesh_, vertex, back, out)) <= k_least_turn;
 }
 
-/// On a shortest path in the graph, by the sums of arcs, which are exact; of several the one with the longest arc.
-Index SiteMaps::node_before(Index node) const {
+/// The last of a site's nodes on a path to the node that is as short as the shortest, but for the roundings of arcs; of
+/// several the one with the longest arc, of those the first.
+Index SiteMaps::node_before(Index node, Index site, double shortest) const {
   const ArcRows& arcs = graph_.arcs();
+  const double most = shortest * (1 + k_arc_rounding);
   Index before = k_none;
   double longest = 0;
   for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
     const Index other = arcs.target(arc);
+    if (label_[other] != site || distance_[other] >= shortest) continue;
     const double length = arcs.length(arc);
-    if (distance_[other] + length != distance_[node] || label_[other] != label_[node] || length <= longest) continue;
+    if (distance_[other] + length > most || length <= longest * (1 + k_arc_rounding)) continue;
     longest = length;
     before = other;
   }
@@ -261,7 +274,7 @@ double SiteMaps::direction_back(Index node, Scratch& scratch) const {
     return saddleback::direction_back(graph_, {node, edge, true, place.distance, fan.places[i], from});
   }
   if (place.found_by == k_after_another) {
-    const Index previous = node_before(node);
+    const Index previous = node_before(node, label_[node], distance_[node]);
     scratch.unfolder.unfold(graph_.hint(previous, graph_.arcs().find(previous, node)), scratch.unfolded);
     const double back = scratch.unfolded.end_angle;
     return place.anchor == previous ? back : back + angle_between(place.at - places_[previous].at, place.at);
@@ -288,7 +301,8 @@ bool SiteMaps::see(const Wedge& wedge, const Place& from, const Place& to, Sight
   sight.anchor = Vec2(x, -std::sqrt(y));
   sight.ray = wedge.apex - sight.anchor;
   const double at_edge = x - sight.ray.x() * sight.anchor.y() / sight.ray.y();
-  sight.beyond = at_edge < 0 ? at_edge / length : std::max(0.0, at_edge / length - 1);
+  const double miss = at_edge < 0 ? at_edge / length : std::max(0.0, at_edge / length - 1);
+  sight.beyond = std::abs(miss) > k_hit ? miss : 0;
   sight.distance = sight.ray.norm();
   return sight.beyond == 0 || !(sight.beyond < 0 ? wedge.from_bends : wedge.to_bends);
 }
@@ -315,7 +329,7 @@ bool SiteMaps::place_own(Index node, Index site, Place& place) const {
     Sight sight;
     if (!see(wedge, from, to, sight) || std::abs(sight.beyond) > k_least_miss) continue;
     const double distance = anchor_distance(from) + sight.distance;
-    if (distance < least || distance >= shortest) continue;
+    if (distance < least || distance >= shortest * (1 - k_arc_rounding)) continue;
     place = place_by(sight, wedge, from, to);
     if (distance <= most) return true;
     shortest = distance;
@@ -349,7 +363,7 @@ bool SiteMaps::beside_own(Index node, Index site, Scratch& scratch, Place& place
 }
 
 /// Places a node beyond the edge across which the site is seen best: between the edge's ends if there is one, else
-/// least beside them; among equals the shortest way.
+/// least beside them; among equals the shortest way, of several the first.
 bool SiteMaps::place_beside(Index node, Index site, Scratch* deep, Place& place) const {
   Sight best;
   const Wedge* best_wedge = nullptr;
@@ -362,9 +376,9 @@ bool SiteMaps::place_beside(Index node, Index site, Scratch* deep, Place& place)
     const Place* const to = from ? end_of_edge(wedge.to, site, deep, to_memory) : nullptr;
     Sight found;
     if (!to || !see(wedge, *from, *to, found)) continue;
-    const double beyond = std::abs(found.beyond), best_beyond = std::abs(best.beyond);
+    const double nearer = std::abs(best.beyond) - std::abs(found.beyond);
     const bool better =
-        !best_wedge || beyond < best_beyond || (beyond == best_beyond && found.distance < best.distance);
+        !best_wedge || nearer > k_hit || (nearer >= -k_hit && found.distance < best.distance * (1 - k_arc_rounding));
     if (better) best = found, best_wedge = &wedge, best_from = *from, best_to = *to;
   }
   if (!best_wedge) return false;
@@ -448,15 +462,13 @@ PackedVec2 SiteMaps::laid_beside(Index halfedge, const PackedVec2& from, const P
 
 /// By the nearest way over a graph neighbour that the site owns.
 bool SiteMaps::place_through_neighbour(Index node, Index site, Scratch& scratch, Place& place) const {
-  double best = k_infinity;
-  Index through = k_none;
+  double shortest = k_infinity;
   const ArcRows& arcs = graph_.arcs();
   for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
     const Index neighbour = arcs.target(arc);
-    if (label_[neighbour] != site || distance_[neighbour] + arcs.length(arc) >= best) continue;
-    best = distance_[neighbour] + arcs.length(arc);
-    through = neighbour;
+    if (label_[neighbour] == site) shortest = std::min(shortest, distance_[neighbour] + arcs.length(arc));
   }
+  const Index through = node_before(node, site, shortest);
   if (through == k_none || through == fans_[site].centre) return false;
   place = place_after(node, through, scratch);
   return true;

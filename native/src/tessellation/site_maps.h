@@ -178,7 +178,7 @@ class SiteMaps {
   void order_sites();
   Index find_in_fan(Index site, Index node) const;
   static Place place_straight(const Vec2& place) { return {place, place.norm(), k_none, k_straight}; }
-  Index node_before(Index node) const;
+  Index node_before(Index node, Index site, double shortest) const;
   Place place_after(Index node, Index previous, Scratch& scratch) const;
   bool place_own(Index node, Index site, Place& place) const;
   bool place_beside(Index node, Index site, Scratch* deep, Place& place) const;
