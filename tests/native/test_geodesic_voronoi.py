@@ -257,6 +257,23 @@ def test_edges_seen_end_on_do_not_make_the_scale_matter(scale: float) -> None:
         np.testing.assert_allclose(found, areas, atol=1e-6 * mesh.area / 40)
 
 
+@pytest.mark.parametrize("scale", [1, 0.77, 1e-3, 1e3])
+@pytest.mark.parametrize(("columns", "rows"), [(12, 12), (20, 16)])
+def test_ties_on_a_regular_grid_do_not_harm_areas(columns: int, rows: int, scale: float) -> None:
+    """Bisectors run through vertices and along edges, and four of them meet in points: roundings decide everywhere."""
+    vertices, triangles = meshes.grid(columns, rows)
+    mesh = sb.Mesh(scale * vertices, triangles)
+    graph = sb.SaddleVertexGraph(mesh, k=len(vertices))
+    square = [(0, 0), (scale, 0), (scale, scale), (0, scale)]
+    for count in (12, 30):
+        for seed in range(12):
+            sites = np.random.default_rng(seed).choice(len(vertices), count, replace=False)
+            cells = sb.geodesic_voronoi(graph, sites)
+            check(mesh, cells)
+            expected = sb.voronoi_2d(mesh.vertices[sites, :2]).clip(square).areas
+            np.testing.assert_allclose(cells.areas, expected, atol=1e-6 * mesh.area / count)
+
+
 def test_rays_through_many_vertices_are_followed_once() -> None:
     # On the spokes of a wheel each vertex parts what is seen along them in two, and so does the next one.
     mesh = sb.Mesh(*meshes.graded_disk())

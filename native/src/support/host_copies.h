@@ -3,7 +3,7 @@
 // pinned. The driver copies such memory with one thread; pinning it for one copy takes longer than the copy. Here a few
 // threads do it, piece by piece, through pinned memory of their own: they also lay the pages under what is fresh. One
 // or two pieces are copied by the caller, who would wait longer for threads to begin and to end, most of all where
-// those of the work before still look for more.
+// those of the work before still look for more. To and from what is pinned the device copies by itself.
 
 #include <algorithm>
 #include <chrono>

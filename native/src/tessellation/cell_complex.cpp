@@ -70,8 +70,7 @@ void CellComplex::divide(Index shared, FacePartition& partition) const {
     planes.push_back({claim.site, claim.squared_distance});
   }
   const Index face = claims_.face(shared);
-  partition.build(planes);
-  if (agrees_with_edges(face, partition)) return;
+  if (partition.build(planes) && agrees_with_edges(face, partition)) return;
   partition.build_star({side_of(face, 0), side_of(face, 1), side_of(face, 2)});
 }
 
@@ -93,7 +92,8 @@ FacePartition::Side CellComplex::side_of(Index face, int side) const {
 bool CellComplex::agrees_with_edges(Index face, const FacePartition& partition) const {
   std::vector<Index> sites, breaks;
   for (int side = 0; side < 3; ++side) {
-    if (!partition.read_side(side, sites, breaks) || sites != side_of(face, side).sites) return false;
+    partition.read_side(side, sites, breaks);
+    if (sites != side_of(face, side).sites) return false;
   }
   return true;
 }

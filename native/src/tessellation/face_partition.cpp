@@ -1,16 +1,14 @@
 #include "tessellation/face_partition.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "predicates/orient_3d.h"
+#include "predicates/plane_predicates.h"
 #include "tessellation/edge_envelope.h"
 
 namespace saddleback {
 namespace {
-
-double at(const FacePlane& plane, const Vec3& barycentric) {
-  return plane.at_corner[0] * barycentric[0] + plane.at_corner[1] * barycentric[1] +
-         plane.at_corner[2] * barycentric[2];
-}
 
 /// The side that both vertices lie on, k_inside when there is none.
 int common_side(const FacePartition::Vertex& a, const FacePartition::Vertex& b) {
@@ -21,97 +19,144 @@ int common_side(const FacePartition::Vertex& a, const FacePartition::Vertex& b) 
   return FacePartition::k_inside;
 }
 
+Vec3 corners_of(const FacePlane& plane) { return Vec3(plane.at_corner.data()); }
+
+/// To about 1, by a power of 2: so that products of three are numbers. Signs stay as they are.
+void scale(std::vector<FacePlane>& planes) {
+  double most = 0;
+  for (const FacePlane& plane : planes) most = std::max(most, *std::ranges::max_element(plane.at_corner));
+  int exponent = 0;
+  std::frexp(most, &exponent);
+  const double factor = std::ldexp(1, -exponent);
+  for (FacePlane& plane : planes)
+    for (double& value : plane.at_corner) value *= factor;
+}
+
 }  // namespace
 
-void FacePartition::build(const std::vector<FacePlane>& planes) {
+bool FacePartition::build(const std::vector<FacePlane>& planes) {
+  planes_ = planes;
+  scale(planes_);
   vertices_.clear();
   pieces_.clear();
-  for (int corner = 0; corner < 3; ++corner) {
-    vertices_.push_back({Vec3::Unit(corner), planes.front().at_corner[corner], k_corner});
-  }
+  for (int corner = 0; corner < 3; ++corner) vertices_.push_back({Vec3::Unit(corner), k_corner, {0, k_none, k_none}});
   pieces_.push_back({planes.front().site, {0, 1, 2}});
-  for (std::size_t i = 1; i < planes.size(); ++i) insert(planes[i]);
+  for (Index plane = 1; plane < static_cast<Index>(planes.size()); ++plane) {
+    if (!insert(plane)) return false;
+  }
+  return true;
 }
 
-void FacePartition::insert(const FacePlane& plane) {
-  height_.resize(vertices_.size());
-  bool below = false;
-  for (std::size_t v = 0; v < vertices_.size(); ++v) {
-    height_[v] = at(plane, vertices_[v].barycentric) - vertices_[v].value;
-    below = below || height_[v] < 0;  // a tie stays with the smaller site
-  }
-  if (!below) return;
+bool FacePartition::insert(Index plane) {
+  const auto count = static_cast<Index>(vertices_.size());
+  below_.resize(count);
+  for (Index v = 0; v < count; ++v) below_[v] = is_below(planes_[plane], v);
+  if (std::ranges::find(below_, 1) == below_.end()) return true;
   cuts_.clear();
   std::vector<Piece> kept, taken;
-  for (const Piece& piece : pieces_) cut(piece, plane, kept, taken);
-  for (const Piece& piece : taken) {
-    for (const Index v : piece.loop)
-      vertices_[v].value = std::min(vertices_[v].value, at(plane, vertices_[v].barycentric));
+  kept.reserve(pieces_.size() + 1);
+  for (const Piece& piece : pieces_) {
+    if (!cut(piece, plane, kept, taken)) return false;
   }
-  merge(taken);
+  if (!merge(taken)) return false;
+  for (int corner = 0; corner < 3; ++corner)
+    if (below_[corner]) vertices_[corner].planes[0] = plane;
   pieces_ = std::move(kept);
-  for (Piece& piece : taken) pieces_.push_back(std::move(piece));
-  drop_idle_side_vertices();
+  pieces_.push_back(std::move(taken.front()));
+  drop_idle_vertices();
+  return true;
 }
 
-/// Divides a piece into what stays with its site and what the plane's site takes.
-void FacePartition::cut(const Piece& piece, const FacePlane& plane, std::vector<Piece>& kept,
-                        std::vector<Piece>& taken) {
-  const auto size = piece.loop.size();
-  std::size_t changes = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    changes += (height_[piece.loop[i]] < 0) != (height_[piece.loop[(i + 1) % size]] < 0);
-  }
-  if (changes == 0) {
-    if (height_[piece.loop[0]] < 0) {
-      taken.push_back({plane.site, piece.loop});
-    } else {
-      kept.push_back(piece);
-    }
-    return;
-  }
-  if (changes > 2) {  // not convex by rounding: triangles have at most two changes
-    for (std::size_t i = 1; i + 1 < size; ++i) {
-      cut({piece.site, {piece.loop[0], piece.loop[i], piece.loop[i + 1]}}, plane, kept, taken);
-    }
-    return;
-  }
-  Piece stays{piece.site, {}}, goes{plane.site, {}};
-  for (std::size_t i = 0; i < size; ++i) {
-    const Index a = piece.loop[i], b = piece.loop[(i + 1) % size];
-    const bool a_below = height_[a] < 0, b_below = height_[b] < 0;
-    (a_below ? goes : stays).loop.push_back(a);
-    if (a_below != b_below) {
-      const Index middle = crossing(a, b);
-      stays.loop.push_back(middle);
-      goes.loop.push_back(middle);
-    }
-  }
-  kept.push_back(std::move(stays));
-  taken.push_back(std::move(goes));
+/// Whether a plane that comes after the envelope's is below it at a vertex. A tie is none: it stays with the smaller
+/// site.
+bool FacePartition::is_below(const FacePlane& plane, Index vertex) const {
+  const Vertex& at = vertices_[vertex];
+  if (at.planes[0] == k_none) return false;
+  const auto corners = [&](int i) { return corners_of(planes_[at.planes[i]]); };
+  if (at.side == k_corner) return plane.at_corner[vertex] < planes_[at.planes[0]].at_corner[vertex];
+  if (at.side == k_inside) return predicates::orient_3d(corners(0), corners(1), corners(2), corners_of(plane)) > 0;
+  const auto ends = [&](const FacePlane& of) {
+    return predicates::Point2{of.at_corner[at.side], of.at_corner[(at.side + 1) % 3]};
+  };
+  return predicates::orient_2d(ends(planes_[at.planes[0]]), ends(planes_[at.planes[1]]), ends(plane)) ==
+         predicates::Sign::negative;
 }
 
-/// The vertex where the plane crosses the envelope between two vertices; the same one for both pieces beside.
-Index FacePartition::crossing(Index a, Index b) {
-  if (a > b) std::swap(a, b);
+/// Divides a piece into what stays with its site and what the plane's site takes. Pieces are convex: if their vertices'
+/// signs change more than twice, they are wrong.
+bool FacePartition::cut(const Piece& piece, Index plane, std::vector<Piece>& kept, std::vector<Piece>& taken) {
+  Piece stays{piece.site, {}}, goes{planes_[plane].site, {}};
+  stays.loop.reserve(piece.loop.size() + 1);
+  goes.loop.reserve(piece.loop.size() + 1);
+  int changes = 0;
+  for (std::size_t i = 0; i < piece.loop.size(); ++i) {
+    const Index a = piece.loop[i], b = piece.loop[(i + 1) % piece.loop.size()];
+    (below_[a] ? goes : stays).loop.push_back(a);
+    if (below_[a] == below_[b]) continue;
+    ++changes;
+    const Index middle = crossing(a, b, piece.site, plane);
+    stays.loop.push_back(middle);
+    goes.loop.push_back(middle);
+  }
+  if (!stays.loop.empty()) kept.push_back(std::move(stays));
+  if (!goes.loop.empty()) taken.push_back(std::move(goes));
+  return changes <= 2;
+}
+
+/// The vertex where the plane crosses the envelope between two vertices, along the loop of a site's piece; the same one
+/// for both pieces beside.
+Index FacePartition::crossing(Index a, Index b, Index site, Index plane) {
   for (const Cut& known : cuts_) {
-    if (known.a == a && known.b == b) return known.vertex;
+    if (known.a == b && known.b == a) return known.vertex;
   }
-  const double t = std::clamp(height_[a] / (height_[a] - height_[b]), k_least_gap, 1 - k_least_gap);
   Vertex vertex;
   vertex.side = common_side(vertices_[a], vertices_[b]);
-  vertex.barycentric = (1 - t) * vertices_[a].barycentric + t * vertices_[b].barycentric;
-  vertex.value = (1 - t) * vertices_[a].value + t * vertices_[b].value;
+  vertex.planes = planes_at_crossing(a, b, site, plane);
+  const Vec3 &from = vertices_[a].barycentric, &to = vertices_[b].barycentric;
+  const double t = (meeting_place(vertex) - from).dot(to - from) / (to - from).squaredNorm();
+  const double share = std::max(k_least_gap, std::min(t, 1 - k_least_gap));  // the least also of what is no number
+  vertex.barycentric = (1 - share) * from + share * to;
   const auto index = static_cast<Index>(vertices_.size());
   vertices_.push_back(vertex);
-  height_.push_back(0);
   cuts_.push_back({a, b, index});
   return index;
 }
 
-/// Joins the taken pieces into one by dropping the edges between them, when that leaves one simple loop.
-void FacePartition::merge(std::vector<Piece>& taken) {
-  if (taken.size() < 2) return;
+/// Those that are least at both vertices, the piece's and, inside, the one on the right of its loop; and the new one.
+std::array<Index, 3> FacePartition::planes_at_crossing(Index a, Index b, Index site, Index plane) const {
+  Index left = k_none, right = k_none;
+  const auto& of_b = vertices_[b].planes;
+  for (const Index common : vertices_[a].planes) {
+    if (common == k_none || std::ranges::find(of_b, common) == of_b.end()) continue;
+    (planes_[common].site == site ? left : right) = common;
+  }
+  if (right == k_none) return below_[a] ? std::array{plane, left, k_none} : std::array{left, plane, k_none};
+  return below_[a] ? std::array{right, left, plane} : std::array{left, right, plane};
+}
+
+/// Where a vertex's planes meet. Inside, two of their differences tell it; the smaller ones have lost least to
+/// rounding.
+Vec3 FacePartition::meeting_place(const Vertex& vertex) const {
+  const auto difference = [&](int i, int j) -> Vec3 {
+    return corners_of(planes_[vertex.planes[j]]) - corners_of(planes_[vertex.planes[i]]);
+  };
+  const Vec3 u = difference(0, 1);
+  Vec3 weight = Vec3::Zero();
+  if (vertex.side == k_inside) {
+    const Vec3 v = difference(1, 2), w = difference(2, 0);
+    const double of_u = u.squaredNorm(), of_v = v.squaredNorm(), of_w = w.squaredNorm();
+    weight = of_u >= std::max(of_v, of_w) ? v.cross(w) : of_v >= of_w ? w.cross(u) : u.cross(v);
+  } else {
+    const int end = (vertex.side + 1) % 3;
+    weight[vertex.side] = -u[end];
+    weight[end] = u[vertex.side];
+  }
+  return weight / weight.sum();
+}
+
+/// Joins the taken pieces into one by dropping the edges between them, if that leaves one simple loop.
+bool FacePartition::merge(std::vector<Piece>& taken) {
+  if (taken.size() < 2) return true;
   std::vector<std::pair<Index, Index>> edges, outer;
   for (const Piece& piece : taken) {
     for (std::size_t i = 0; i < piece.loop.size(); ++i)
@@ -125,27 +170,32 @@ void FacePartition::merge(std::vector<Piece>& taken) {
   for (std::size_t steps = 0; steps < outer.size(); ++steps) {
     loop.push_back(vertex);
     const auto leaves = [&](const auto& edge) { return edge.first == vertex; };
-    if (std::count_if(outer.begin(), outer.end(), leaves) != 1) return;
+    if (std::count_if(outer.begin(), outer.end(), leaves) != 1) return false;
     vertex = std::find_if(outer.begin(), outer.end(), leaves)->second;
     if (vertex == outer.front().first) break;
   }
-  if (loop.size() != outer.size()) return;
+  if (loop.size() != outer.size()) return false;
   const Index site = taken.front().site;
   taken.assign(1, {site, std::move(loop)});
+  return true;
 }
 
-/// Removes vertices on sides that no longer separate two pieces.
-void FacePartition::drop_idle_side_vertices() {
-  std::vector<int> uses(vertices_.size(), 0);
+/// Removes vertices on sides that no longer separate two pieces. No plane is least where no piece has a corner any
+/// more.
+void FacePartition::drop_idle_vertices() {
+  uses_.assign(vertices_.size(), 0);
   for (const Piece& piece : pieces_) {
-    for (const Index v : piece.loop) ++uses[v];
+    for (const Index v : piece.loop) ++uses_[v];
+  }
+  for (std::size_t v = 3; v < vertices_.size(); ++v) {
+    if (uses_[v] < 2) vertices_[v].planes[0] = k_none;
   }
   for (Piece& piece : pieces_) {
-    std::erase_if(piece.loop, [&](Index v) { return vertices_[v].side >= 0 && uses[v] == 1; });
+    std::erase_if(piece.loop, [&](Index v) { return vertices_[v].planes[0] == k_none; });
   }
 }
 
-bool FacePartition::read_side(int side, std::vector<Index>& sites, std::vector<Index>& breaks) const {
+void FacePartition::read_side(int side, std::vector<Index>& sites, std::vector<Index>& breaks) const {
   sites.clear();
   breaks.clear();
   Index vertex = side;
@@ -156,19 +206,14 @@ bool FacePartition::read_side(int side, std::vector<Index>& sites, std::vector<I
     for (const Piece& piece : pieces_) {
       for (std::size_t i = 0; i < piece.loop.size() && next == k_none; ++i) {
         const Index other = piece.loop[(i + 1) % piece.loop.size()];
-        if (piece.loop[i] != vertex || (vertices_[other].side != side && other != end)) continue;
-        if (common_side(vertices_[vertex], vertices_[other]) != side) continue;
-        if (vertices_[other].barycentric[end] <= vertices_[vertex].barycentric[end]) continue;
-        if (!sites.empty() && sites.back() == piece.site) return false;
+        if (piece.loop[i] != vertex || common_side(vertices_[vertex], vertices_[other]) != side) continue;
         sites.push_back(piece.site);
         next = other;
       }
     }
-    if (next == k_none) return false;
     if (next != end) breaks.push_back(next);
     vertex = next;
   }
-  return true;
 }
 
 /// The mean of the inner vertices, else of those on sides, else the centroid.
@@ -191,7 +236,7 @@ void FacePartition::build_star(const std::array<Side, 3>& sides) {
   const Vec3 centre_place = middle();
   vertices_.clear();
   pieces_.clear();
-  for (int corner = 0; corner < 3; ++corner) vertices_.push_back({Vec3::Unit(corner), 0, k_corner});
+  for (int corner = 0; corner < 3; ++corner) vertices_.push_back({Vec3::Unit(corner), k_corner});
   // Once round: the vertices in order, each with the site that follows it.
   std::vector<std::pair<Index, Index>> ring;
   for (int side = 0; side < 3; ++side) {
@@ -199,7 +244,7 @@ void FacePartition::build_star(const std::array<Side, 3>& sides) {
     for (std::size_t i = 0; i < sides[side].breaks.size(); ++i) {
       const double t = sides[side].breaks[i];
       ring.emplace_back(static_cast<Index>(vertices_.size()), sides[side].sites[i + 1]);
-      vertices_.push_back({(1 - t) * Vec3::Unit(side) + t * Vec3::Unit((side + 1) % 3), 0, side});
+      vertices_.push_back({(1 - t) * Vec3::Unit(side) + t * Vec3::Unit((side + 1) % 3), side});
     }
   }
   const auto changes_at = [&](std::size_t i) {
@@ -213,7 +258,7 @@ void FacePartition::build_star(const std::array<Side, 3>& sides) {
     return;
   }
   const auto centre = static_cast<Index>(vertices_.size());
-  vertices_.push_back({centre_place, 0, k_inside});
+  vertices_.push_back({centre_place, k_inside});
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const std::size_t at_ring = (first + i) % ring.size();
     if (changes_at(at_ring)) {

@@ -92,9 +92,8 @@ class Caller {
   }
 
   void place(std::span<const RoughVertex> vertices) {
-    const auto site = [&](Index i) {
-      return predicates::WeightedPoint2{result_.sites[i].x(), result_.sites[i].y(), weights_[i]};
-    };
+    // The caller's: other devices may still be copying theirs.
+    const auto site = [&](Index i) { return predicates::WeightedPoint2{sites_[i].x(), sites_[i].y(), weights_[i]}; };
     for (const RoughVertex& rough : vertices) {
       const predicates::WeightedPoint2 before = site(rough.sites[1]), after = site(rough.sites[2]);
       result_.vertices[rough.vertex] = rough_vertex(site(rough.sites[0]), &before, &after);
