@@ -17,12 +17,13 @@ from tests.parity.cancelling import expect_to_stop_within_a_moment
 from tests.parity.test_graph_twin import saved
 from tests.parity.test_voronoi_twin import ARRAYS, DEVICES, weights_of
 
-cupy = pytest.importorskip("cupy")
 PINNED = 1  # cudaMemoryTypeHost
 WRITTEN = ("vertices", "edges", "edge_sites", "site_of")  # the rest is made of these
 
 
 def is_pinned_at(address: int) -> bool:
+    import cupy  # nobody has it without a device
+
     return bool(cupy.cuda.runtime.pointerGetAttributes(address).type == PINNED)
 
 
@@ -31,6 +32,8 @@ def is_pinned(array: np.ndarray) -> bool:
 
 
 def in_pinned_memory(array: np.ndarray) -> np.ndarray:
+    import cupy
+
     memory = cupy.cuda.alloc_pinned_memory(array.nbytes)
     copy = np.frombuffer(memory, array.dtype, array.size).reshape(array.shape)
     copy[...] = array
