@@ -436,12 +436,14 @@ class ArcFinder {
 };
 
 /// What a build takes at most of a device that has these nodes, in bytes.
-std::uint64_t bytes_needed(const ArcTwinRequest& r, IndexRange range) {
+std::uint64_t bytes_needed(const ArcTwinRequest& r, IndexRange range, std::size_t others) {
   const auto words = static_cast<std::uint64_t>(first_guess(r, range));
   constexpr std::uint64_t k_row_word = 8 + 4 + 1 + 4;  // see DeviceRows
   constexpr std::uint64_t k_union_word = (sizeof(AddedArc) + 8) / 4 + 1 + 8, k_drafts = std::uint64_t{160} << 20;
+  const std::uint64_t across = others * (static_cast<std::uint64_t>(range.count()) * sizeof(RowAcross) +
+                                         words / ArcsForOthers::k_of_as_many * sizeof(ArcAcross));
   return MeshTables::bytes_needed(r) + static_cast<std::uint64_t>(r.node_count) * 48 +
-         words * (k_row_word + k_union_word) + k_drafts;
+         words * (k_row_word + k_union_word) + 2 * across + k_drafts;  // its own, and theirs
 }
 
 /// A graph found by one or several devices, each the rows of a range of nodes.
@@ -473,7 +475,7 @@ class Builder {
 
   void build_part(const Part& mine) {
     check_cuda(cudaSetDevice(mine.device), "choosing the device");
-    check_device_room("the graph", bytes_needed(request_, mine.nodes), request_.most_bytes);
+    check_device_room("the graph", bytes_needed(request_, mine.nodes, members() - 1), request_.most_bytes);
     keep_freed_memory(mine.device);
     const auto at = static_cast<std::size_t>(mine.member);
     DeviceTimes& times = times_[at];
@@ -489,6 +491,8 @@ class Builder {
     watch.end();
     Stopwatch uniting(stream);
     const bool is_alone = team_.members() == 1;
+    ArcsForOthers& across =
+        across_[at].emplace(mine.nodes, ranges_of_others(mine.member), finder.rows().room(), stream);
     if (is_alone) arcs.unite(finder.packing(), finder.rows_in_making());
     uniting.end();
     HostCopies copies(stream);
@@ -497,8 +501,11 @@ class Builder {
     if (found_more) watch.end();
     times.find = watch.read();
     if (found_more || !is_alone) {
+      team_.meet();  // or who is done first would take the others' time for its own
       uniting.start();
-      exchange(mine, finder.rows(), stream);
+      across.choose(finder.rows().view());
+      team_.meet();
+      add_rows(finder.rows(), mine.device, arcs_there(mine.member), stream);
       arcs.unite(finder.packing(), finder.rows().view());
       uniting.end();
     }
@@ -520,6 +527,7 @@ class Builder {
     copies.finish([&](double share) { caller_.report(mine.member, Share::unite + (1 - Share::unite) * share); });
     times.unite = uniting.read();
     times.download = uniting.lap();  // as far as it took longer
+    across_[at].reset();             // all have united
   }
 
   void make_room(std::int64_t words) {
@@ -543,33 +551,30 @@ class Builder {
     return packing_;
   }
 
-  /// Gets from the others what pairing needs of their rows.
-  void exchange(const Part& mine, RowStore& rows, cudaStream_t stream) {
-    if (team_.members() == 1) return;
-    std::vector<std::optional<ChosenRows>>& chosen = across_[static_cast<std::size_t>(mine.member)];
-    chosen.resize(members());
+  std::vector<IndexRange> ranges_of_others(int member) const {
+    std::vector<IndexRange> ranges;
     for (int other = 0; other < team_.members(); ++other)
-      if (other != mine.member)
-        chosen[static_cast<std::size_t>(other)] = rows_across(rows, mine.nodes, part(other).nodes, stream);
-    team_.meet();
-    std::vector<RowsThere> there;
+      if (other != member) ranges.push_back(part(other).nodes);
+    return ranges;
+  }
+  /// What the others have chosen for a member.
+  std::vector<ArcsThere> arcs_there(int member) const {
+    std::vector<ArcsThere> there;
     for (int other = 0; other < team_.members(); ++other) {
-      if (other == mine.member) continue;
-      const Part theirs = part(other);
-      there.push_back({theirs.device, theirs.nodes,
-                       &*across_[static_cast<std::size_t>(other)][static_cast<std::size_t>(mine.member)]});
+      if (other == member) continue;
+      const ArcsForOthers& across = *across_[static_cast<std::size_t>(other)];
+      const auto number = static_cast<std::size_t>(member < other ? member : member - 1);  // it is none of its others
+      there.push_back({team_.device(other), across.nodes(), across.rows(number), across.arcs(number)});
     }
-    add_rows(rows, mine.device, there, stream);
-    team_.meet();
-    chosen.clear();
+    return there;
   }
 
   const ArcTwinRequest& request_;
   DeviceTeam team_;
   TeamCaller<ArcTwinCaller> caller_;
-  std::vector<std::optional<Stream>> streams_;  ///< by member; rows in across_ are freed in them when a member fails
-  std::vector<std::vector<std::optional<ChosenRows>>> across_;  ///< by member and by whom they are chosen for
-  std::vector<std::int64_t> counts_;                            ///< words, by member
+  std::vector<std::optional<Stream>> streams_;        ///< by member; across_ is freed in them when a member fails
+  std::vector<std::optional<ArcsForOthers>> across_;  ///< by member
+  std::vector<std::int64_t> counts_;                  ///< words, by member
   std::vector<DeviceTimes> times_;
   ArcPacking packing_;
   std::int64_t* offsets_ = nullptr;

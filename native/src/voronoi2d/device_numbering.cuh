@@ -369,13 +369,13 @@ class DeviceDiagram {
   void join(const DeviceCells& cells, const DeviceBuffer<std::int32_t>& offsets, const DeviceLists& lists) {
     misfits_.fill_bytes(0);
     counts_.fill_bytes(0);
-    side_parts_ = part_.rows(offsets, sides_);
+    side_parts_ = part_.rows(offsets, sides_, stream_);
     const unsigned blocks = blocks_for(cells.mine.count());
     gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, cell_sides_.data(),
                                                    counts_.data());
     check_cuda(cudaGetLastError(), "gathering cells");
     add_up_all(edges_);
-    edge_parts_ = part_.rows(before_, edges_);
+    edge_parts_ = part_.rows(before_, edges_, stream_);
     if (part_.is_all()) {
       join_sides<Joined::all><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
     } else {
@@ -406,7 +406,7 @@ class DeviceDiagram {
     count_vertices<<<blocks, k_threads, 0, stream_>>>(cells, numbers(), counts_.data());
     check_cuda(cudaGetLastError(), "counting vertices");
     add_up_all(vertices_);
-    const std::vector<std::int32_t> vertices = part_.rows(before_, vertices_);
+    const std::vector<std::int32_t> vertices = part_.rows(before_, vertices_, stream_);
     agree();
     add_vertices<<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
     check_cuda(cudaGetLastError(), "placing vertices");

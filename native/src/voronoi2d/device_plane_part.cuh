@@ -21,6 +21,11 @@ __global__ void count_in_bytes(const std::int32_t* counts, IndexRange those, std
   bytes[i] = static_cast<std::uint8_t>(counts[i]);
 }
 
+__global__ void pick(const std::int32_t* numbers, std::int32_t* places, std::int32_t count) {
+  const std::int32_t i = thread_number();
+  if (i < count) places[i] = numbers[places[i]];
+}
+
 /// A member of a team that finds one diagram: it has the cells from begins[member] to begins[member + 1].
 struct PlanePart {
   TeamArrays& arrays;
@@ -33,10 +38,15 @@ struct PlanePart {
     return {bounds[static_cast<std::size_t>(member)], bounds[static_cast<std::size_t>(member) + 1]};
   }
   /// Where the members' parts of rows begin. Waits for the stream where there are several.
-  std::vector<std::int32_t> rows(const DeviceBuffer<std::int32_t>& offsets, std::int32_t total) const {
+  std::vector<std::int32_t> rows(const DeviceBuffer<std::int32_t>& offsets, std::int32_t total,
+                                 cudaStream_t stream) const {
     if (is_all()) return {0, total};
-    std::vector<std::int32_t> bounds;
-    for (const std::int32_t cell : begins) bounds.push_back(offsets.value_at(static_cast<std::size_t>(cell)));
+    std::vector<std::int32_t> bounds = begins;
+    DeviceBuffer<std::int32_t> picked(bounds, stream);
+    const auto count = static_cast<std::int32_t>(bounds.size());
+    pick<<<blocks_for(count), k_threads, 0, stream>>>(offsets.data(), picked.data(), count);
+    check_cuda(cudaGetLastError(), "looking for parts");
+    picked.read(bounds);
     return bounds;
   }
 

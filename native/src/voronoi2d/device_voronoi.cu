@@ -76,6 +76,7 @@ class Builder {
     if (request_.weights) weights = upload(request_.weights, stream, [&](double) { report(Share::upload); });
     uploading.end();
     report(Share::upload);
+    team_.meet();  // or who is done first would take the others' copies for the time that cells take
     Stopwatch watch(stream);
     const double2* const given =
         request_.sites_are_there ? reinterpret_cast<const double2*>(request_.sites) : uploaded.data();
