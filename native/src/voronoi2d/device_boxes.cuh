@@ -32,40 +32,102 @@ struct DeviceTree {
   int levels;
 };
 
-/// By a warp: calls visit(rank of the lane's site, or -1) for every 32 sites in a row, as long as all boxes about them
-/// have a number from measure(level, box) that is not negative; of each 32 those with the least come first. Ends when
-/// visit() is false.
-template <class Measure, class Visit>
-__device__ void visit_leaves(const DeviceTree& tree, Measure&& measure, Visit&& visit) {
+/// Where a box comes among others; nowhere, when it is not to be visited.
+constexpr unsigned k_nowhere = ~0u;
+/// The least comes first. What is no number comes somewhere.
+__device__ inline unsigned place_by(double number) {
+  const unsigned bits = __float_as_uint(static_cast<float>(number));
+  return min(bits & 0x80000000u ? ~bits : bits | 0x80000000u, k_nowhere - 1);
+}
+
+/// What a visit makes of boxes' places: they are as before, or are to be asked for again, or no more are to be visited.
+enum class Seen { as_before, anew, enough };
+
+/// By a warp: calls visit(rank of the lane's site, or -1, load(rank)) for every 32 sites in a row, as long as
+/// place(level, box) is somewhere for all boxes about them; of each 32 the first comes first. Where visits change
+/// nothing, places are not asked for again, and the sites of several boxes are loaded at a time: else each would wait
+/// for memory.
+template <int AtOnce, class Place, class Load, class Visit>
+__device__ void visit_leaves(const DeviceTree& tree, Place&& place, Load&& load, Visit&& visit) {
   const int lane = threadIdx.x % 32;
   int level = tree.levels - 1;
   unsigned open[DeviceTree::k_most_levels];  // children not visited yet; the same in all lanes
   std::int32_t node[DeviceTree::k_most_levels];
   open[level] = k_warp;
   node[level] = 0;
+  unsigned placed_levels = 0;  // bits: those whose open children are all to be visited, as far as is known
+  const auto take_open = [&] {
+    const int first = __ffs(static_cast<int>(open[level])) - 1;
+    open[level] &= open[level] - 1;
+    return node[level] * 32 + first;
+  };
   while (level < tree.levels) {
-    const std::int32_t child = node[level] * 32 + lane;
-    double measured = -1;
-    if ((open[level] >> lane & 1) && child < tree.counts[level]) measured = measure(level, child);
-    const unsigned those = __ballot_sync(k_warp, measured >= 0);
-    if (those == 0) {
-      ++level;
-      continue;
+    const bool are_placed = (placed_levels >> level & 1) != 0;
+    std::int32_t next;
+    if (are_placed) {
+      if (open[level] == 0) {
+        ++level;
+        continue;
+      }
+      next = take_open();
+    } else {
+      const std::int32_t child = node[level] * 32 + lane;
+      unsigned mine = k_nowhere;
+      if ((open[level] >> lane & 1) && child < tree.counts[level]) mine = place(level, child);
+      const unsigned those = __ballot_sync(k_warp, mine != k_nowhere);
+      if (those == 0) {
+        ++level;
+        continue;
+      }
+      const unsigned least = warp_min(mine);
+      const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, mine == least))) - 1;
+      open[level] = those & ~(1u << chosen);
+      placed_levels |= 1u << level;
+      next = node[level] * 32 + chosen;
     }
-    const unsigned key = measured >= 0 ? __float_as_uint(static_cast<float>(measured)) : ~0u;
-    const unsigned least = warp_min(key);
-    const int chosen = __ffs(static_cast<int>(__ballot_sync(k_warp, measured >= 0 && key == least))) - 1;
-    open[level] = those & ~(1u << chosen);
-    const std::int32_t next = node[level] * 32 + chosen;
     if (level > 0) {
       --level;
       open[level] = k_warp;
       node[level] = next;
+      placed_levels &= ~(1u << level);
       continue;
     }
-    const std::int32_t site = next * 32 + lane;
-    if (!visit(site < tree.site_count ? site : -1)) return;
+    std::int32_t sites[AtOnce];
+    decltype(load(0)) loaded[AtOnce];
+    int count = 0;
+#pragma unroll
+    for (int k = 0; k < AtOnce; ++k) {
+      const bool is_one = k == 0 || (are_placed && open[0] != 0);
+      if (k > 0 && is_one) next = take_open();
+      sites[k] = is_one && next * 32 + lane < tree.site_count ? next * 32 + lane : -1;
+      loaded[k] = load(sites[k]);
+      count += is_one;
+    }
+#pragma unroll 1
+    for (; count > 0; --count) {
+      const Seen seen = visit(sites[0], loaded[0]);
+      if (seen == Seen::enough) return;
+      if (seen == Seen::anew) placed_levels = 0;
+#pragma unroll
+      for (int k = 0; k + 1 < AtOnce; ++k) {  // so that there is one visit in the code
+        sites[k] = sites[k + 1];
+        loaded[k] = loaded[k + 1];
+      }
+    }
   }
+}
+
+/// The same as long as measure(level, box) is not negative, the least first. Every visit may make it so; ends when
+/// visit(rank) is false.
+template <class Measure, class Visit>
+__device__ void visit_leaves(const DeviceTree& tree, Measure&& measure, Visit&& visit) {
+  const auto place = [&](int level, std::int32_t child) {
+    const double measured = measure(level, child);
+    return measured >= 0 ? place_by(measured) : k_nowhere;
+  };
+  visit_leaves<1>(
+      tree, place, [](std::int32_t) { return 0; },
+      [&](std::int32_t site, int) { return visit(site) ? Seen::anew : Seen::enough; });
 }
 
 __device__ inline DeviceBox joined(DeviceBox box) {

@@ -57,29 +57,33 @@ class FarWinder {
     return {p.x, p.y};
   }
 
-  /// Visits the boxes that `may_hold` does not rule out, the nearest to the site first, and calls visit(rank of the
-  /// lane's site, or -1) for the sites in them.
-  template <class MayHold, class Visit>
-  __device__ void for_boxes(MayHold&& may_hold, Visit&& visit) {
-    const auto measure = [&](int level, std::int32_t child) {
+  /// Visits the boxes that `may_hold` does not rule out, those with the least order(box, square of its distance) first,
+  /// and calls visit(rank of the lane's site, or -1, where it is) for the sites in them; it returns whether `may_hold`
+  /// holds for fewer now, or the order matters.
+  template <class MayHold, class Order, class Visit>
+  __device__ void for_boxes(MayHold&& may_hold, Order&& order, Visit&& visit) {
+    const auto place = [&](int level, std::int32_t child) {
       const DeviceBox& box = tree_.boxes[level][child];
       const double distance = box.square_distance(site_.x, site_.y);
-      return may_hold(box, distance) ? distance : -1;
+      return may_hold(box, distance) ? place_by(order(box, distance)) : k_nowhere;
     };
     int visits = 0;
-    visit_leaves(tree_, measure, [&](std::int32_t site) {
-      if (++visits > k_most_visits) fails_ = true;
-      visit(site == rank_ ? -1 : site);
-      return !fails_;
-    });
+    constexpr int k_at_once = 4;
+    visit_leaves<k_at_once>(
+        tree_, place, [&](std::int32_t site) { return site >= 0 ? point(site) : site_; },
+        [&](std::int32_t site, const Point2& at) {
+          if (++visits > k_most_visits) fails_ = true;
+          const bool is_anew = visit(site == rank_ ? -1 : site, at);
+          return fails_ ? Seen::enough : is_anew ? Seen::anew : Seen::as_before;
+        });
   }
 
-  /// Moves `best` to a lane's site as long as one is better.
+  /// Moves `best` to a lane's site as long as one is better. \return whether one was
   template <class IsBetter, class Key, class Take>
-  __device__ void take_better(std::int32_t site, IsBetter&& is_better, Key&& key, Take&& take) {
-    const Point2 p = site >= 0 ? point(site) : site_;
+  __device__ bool take_better(std::int32_t site, const Point2& p, IsBetter&& is_better, Key&& key, Take&& take) {
     bool mine = site >= 0 && is_better(p, site);
-    for (int taken = 0; taken <= 32; ++taken) {  // each is better than the one before
+    int taken = 0;
+    for (; taken <= 32; ++taken) {  // each is better than the one before
       const unsigned those = __ballot_sync(k_warp, mine);
       if (those == 0 || __any_sync(k_warp, fails_)) break;
       if (taken == 32) fails_ = true;
@@ -90,6 +94,7 @@ class FarWinder {
       mine = mine && is_better(p, site);
     }
     fails_ = __any_sync(k_warp, fails_);
+    return taken > 0;
   }
 
   __device__ std::int32_t nearest() {
@@ -97,9 +102,10 @@ class FarWinder {
     Point2 best_at{};
     double best_distance = INFINITY;
     for_boxes([&](const DeviceBox&, double distance) { return distance <= best_distance * (1 + 1e-9); },
-              [&](std::int32_t site) {
-                take_better(
-                    site,
+              [](const DeviceBox&, double distance) { return distance; },
+              [&](std::int32_t site, const Point2& at) {
+                return take_better(
+                    site, at,
                     [&](const Point2& p, std::int32_t) { return best < 0 || distance_order(site_, p, best_at) < 0; },
                     [&](const Point2& p) {
                       const double dx = p.x - site_.x, dy = p.y - site_.y;
@@ -166,7 +172,18 @@ class FarWinder {
                    dy = fmax(fmax(low_y - centre_y, centre_y - high_y), 0.0);
       return dx * dx + dy * dy <= radius2;
     };
-    for_boxes(may_hold, [&](std::int32_t site) { take_better(site, is_better, key, take); });
+    // No more than how far on the circle has to grow to touch a site in the box: from its centre less and more.
+    const auto order = [&](const DeviceBox& box, double) {
+      const double half_x = 0.5 * (box.high[0] - box.low[0]), half_y = 0.5 * (box.high[1] - box.low[1]),
+                   x = box.low[0] + half_x - site_.x, y = box.low[1] + half_y - site_.y,
+                   from_x = fmax(fabs(x - 0.5 * n_x) - half_x, 0.0), from_y = fmax(fabs(y - 0.5 * n_y) - half_y, 0.0),
+                   along = from_x * from_x + from_y * from_y - 0.25 * (n_x * n_x + n_y * n_y),
+                   cross = turn_ * (n_x * y - n_y * x), more = fabs(n_x) * half_y + fabs(n_y) * half_x;
+      return along / (along > 0 ? cross + more : fmax(cross - more, 1e-3 * more));
+    };
+    for_boxes(may_hold, order, [&](std::int32_t site, const Point2& at) {
+      return take_better(site, at, is_better, key, take) || best < 0;
+    });
     return best;
   }
 
