@@ -29,20 +29,23 @@ struct Widened {
   }
 };
 
-/// Of each number the sum of those before it.
+/// Of each of so many numbers the sum of those before it.
 template <class Number, class Sum>
-void add_up(const DeviceBuffer<Number>& counts, DeviceBuffer<Sum>& sums, cudaStream_t stream) {
-  const auto count = static_cast<int>(counts.size());
+void add_up(const Number* counts, Sum* sums, std::int32_t count, cudaStream_t stream) {
   const auto add = [&](auto numbers) {
     with_scratch(stream, "adding up", [&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceScan::ExclusiveSum(scratch, bytes, numbers, sums.data(), count, stream);
+      return cub::DeviceScan::ExclusiveSum(scratch, bytes, numbers, sums, count, stream);
     });
   };
   if constexpr (std::is_same_v<Number, Sum>) {
-    add(counts.data());
+    add(counts);
   } else {  // as sums, or they would be added up as what they are
-    add(thrust::transform_iterator<Widened<Sum>, const Number*>(counts.data(), {}));
+    add(thrust::transform_iterator<Widened<Sum>, const Number*>(counts, {}));
   }
+}
+template <class Number, class Sum>
+void add_up(const DeviceBuffer<Number>& counts, DeviceBuffer<Sum>& sums, cudaStream_t stream) {
+  add_up(counts.data(), sums.data(), static_cast<std::int32_t>(counts.size()), stream);
 }
 
 }  // namespace

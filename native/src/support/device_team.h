@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <numeric>
@@ -141,22 +142,53 @@ class TeamCaller {
   std::vector<double> done_;  ///< by member
 };
 
+/// What all members of a team say at a meeting.
+template <class Word>
+class TeamWords {
+ public:
+  explicit TeamWords(DeviceTeam& team) : team_(team), said_(static_cast<std::size_t>(team.members())) {}
+  /// By all members. \return by member
+  std::vector<Word> say(int member, const Word& word) {
+    Said& mine = said_[static_cast<std::size_t>(member)];
+    const std::size_t turn = mine.times++ % 2;  // others may still look at what was said before
+    mine.words[turn] = word;
+    team_.meet();
+    std::vector<Word> words;
+    for (const Said& each : said_) words.push_back(each.words[turn]);
+    return words;
+  }
+
+ private:
+  struct Said {
+    std::size_t times = 0;
+    std::array<Word, 2> words{};
+  };
+  DeviceTeam& team_;
+  std::vector<Said> said_;  ///< by member
+};
+
+/// A member's list, on its device.
+template <class Item>
+struct TeamList {
+  int device = 0;
+  std::span<const Item> items;
+};
+
 /// Arrays of which every member of a team fills a part, and then has the whole.
 class TeamArrays {
  public:
   explicit TeamArrays(DeviceTeam& team)
-      : team_(team),
-        arrays_(static_cast<std::size_t>(team.members())),
-        holds_(static_cast<std::size_t>(team.members())) {}
+      : team_(team), arrays_(static_cast<std::size_t>(team.members())), numbers_(team), lists_(team) {}
 
-  void meet() { team_.meet(); }
-  /// By all members: whether it `holds` for all of them.
-  bool holds_for_all(int member, bool holds) {
-    Holds& mine = holds_[static_cast<std::size_t>(member)];
-    const std::size_t turn = mine.asked++ % 2;  // others may still look at the answers before these
-    mine.answers[turn] = holds;
-    team_.meet();
-    return std::ranges::all_of(holds_, [&](const Holds& each) { return each.answers[turn]; });
+  /// By all members: the numbers of all.
+  std::vector<std::int64_t> numbers_of_all(int member, std::int64_t number) { return numbers_.say(member, number); }
+  /// By all members: the lists of all. Theirs are to stay as they are until the copies of others have been waited for.
+  template <class Item>
+  std::vector<TeamList<Item>> lists_of_all(int member, std::span<const Item> mine) {
+    std::vector<TeamList<Item>> lists;
+    for (const ListThere& there : lists_.say(member, {team_.device(member), mine.data(), mine.size()}))
+      lists.push_back({there.device, {static_cast<const Item*>(there.items), there.count}});
+    return lists;
   }
   /// By all members: `mine` is the member's own copy of the array, `begins` tell where the parts begin and where the
   /// last ends. Complete on return.
@@ -193,13 +225,15 @@ class TeamArrays {
   }
 
  private:
+  struct ListThere {
+    int device = 0;
+    const void* items = nullptr;
+    std::size_t count = 0;
+  };
   DeviceTeam& team_;
   std::vector<const void*> arrays_;  ///< by member
-  struct Holds {
-    std::size_t asked = 0;
-    std::array<bool, 2> answers{};
-  };
-  std::vector<Holds> holds_;  ///< by member
+  TeamWords<std::int64_t> numbers_;
+  TeamWords<ListThere> lists_;
 };
 
 }  // namespace saddleback

@@ -10,6 +10,7 @@
 #include "voronoi2d/circumcentre_point.h"
 #include "voronoi2d/device_cells.cuh"
 #include "voronoi2d/device_kept.cuh"
+#include "voronoi2d/device_numbers_elsewhere.cuh"
 #include "voronoi2d/device_plane_part.cuh"
 #include "voronoi2d/plane_twin.h"
 #include "voronoi2d/weighted_wave.h"
@@ -85,6 +86,8 @@ struct DeviceNumbers {
   RoughVertices rough;
   const int* misfits;  ///< found before
   int* misfits_here;
+  std::int32_t first_edge, first_vertex;                 ///< of those that are numbered here
+  DeviceNumberList edges_elsewhere, vertices_elsewhere;  ///< of sides that are numbered elsewhere
 
   __device__ bool failed_before() const { return *misfits != 0; }
 };
@@ -143,7 +146,7 @@ __global__ void check_open_cells(DeviceCells cells, const std::uint8_t* is_open,
 /// Which cells are joined: all, or at first those that lie among others of the same part, then the rest.
 enum class Joined { all, inner, outer };
 
-/// Edges belong to the lower of their cells.
+/// Edges belong to the lower of their cells. `edges_before`: those numbered here.
 template <Joined Which>
 __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, DeviceNumbers numbers) {
   const std::int32_t cell = cells.of_thread();
@@ -155,7 +158,7 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
     if (is_inner != (Which == Joined::inner)) return;
   }
   bool fits = cells.weights || winds_once(cells, cell);  // with weights they are known to
-  std::int32_t edge = edges_before[cell];
+  std::int32_t edge = numbers.first_edge + edges_before[cell];
   for (std::int32_t side = first; side < end; ++side) {
     const std::int32_t other = cells.neighbour(side);
     if (other < cell && cells.mine.holds(other)) continue;
@@ -165,16 +168,16 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
       break;
     }
     numbers.next_corners[side] = cells.corner_before(other, twin);
-    if (other < cell) {  // numbered elsewhere
-      std::int32_t theirs = edges_before[other];
-      for (std::int32_t k = cells.offsets[other]; k < twin; ++k) theirs += cells.neighbour(k) > other;
-      numbers.side_edges[side] = theirs;
-      continue;
-    }
+    if (other < cell) continue;  // the edge is numbered elsewhere
     const std::int32_t before = cells.corner_before(cell, side);
-    numbers.next_corners[twin] = before;
     numbers.edges[edge] = {before, side};
-    numbers.side_edges[side] = numbers.side_edges[twin] = edge;
+    numbers.side_edges[side] = edge;
+    if (Which == Joined::outer && !cells.mine.holds(other)) {
+      numbers.edges_elsewhere.add(twin, edge);
+    } else {
+      numbers.next_corners[twin] = before;
+      numbers.side_edges[twin] = edge;
+    }
     numbers.edge_sites[edge] = {cells.original[cell], cells.original[other]};
     ++edge;
   }
@@ -239,17 +242,23 @@ __device__ inline Point2 weighted_vertex(const DeviceCells& cells, const std::in
   return crossing_point(here, crossing.x, crossing.y, crossing.height);
 }
 
+/// `vertices_before`: those numbered here, which may be corners of cells that are not.
+template <bool HasOthers>
 __global__ void __launch_bounds__(k_threads, 4)
     add_vertices(DeviceCells cells, const std::int32_t* vertices_before, DeviceNumbers numbers) {
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
-  std::int32_t vertex = vertices_before[cell];
+  std::int32_t vertex = numbers.first_vertex + vertices_before[cell];
   for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t corner) {
     CornerWalk walk{cells, numbers.next_corners, cell, corner};
     std::int32_t about[3];
     int size = 0;
     do {
-      numbers.corner_vertices[walk.corner] = vertex;
+      if (HasOthers && !cells.mine.holds(walk.cell)) {
+        numbers.vertices_elsewhere.add(walk.corner, vertex);
+      } else {
+        numbers.corner_vertices[walk.corner] = vertex;
+      }
       if (size < 3) about[size] = walk.cell;
       ++size;
       walk.step();
@@ -265,25 +274,6 @@ __global__ void __launch_bounds__(k_threads, 4)
                              : circumcentre_point(cells.point(about[0]), cells.point(about[1]), cells.point(about[2]));
     numbers.vertices[vertex++] = {place.x, place.y};
   });
-}
-
-constexpr int k_unknown_byte = 0xfe;
-constexpr std::int32_t k_unknown = static_cast<std::int32_t>(0xfefefefeu);  ///< vertices that belong elsewhere
-
-/// The numbers of those, from the counts of all cells.
-__global__ void add_vertices_from_elsewhere(DeviceCells cells, const std::int32_t* vertices_before,
-                                            DeviceNumbers numbers) {
-  const std::int32_t cell = cells.of_thread();
-  if (cell >= cells.mine.end || numbers.failed_before()) return;
-  for (std::int32_t corner = cells.offsets[cell]; corner < cells.offsets[cell + 1]; ++corner) {
-    if (numbers.corner_vertices[corner] != k_unknown) continue;
-    const CornerWalk owner = owner_of(cells, numbers.next_corners, cell, corner);
-    std::int32_t vertex = vertices_before[owner.cell];
-    for_own_vertices(cells, numbers.next_corners, owner.cell, [&](std::int32_t theirs) {
-      if (theirs == owner.corner) numbers.corner_vertices[corner] = vertex;
-      ++vertex;
-    });
-  }
 }
 
 __global__ void add_ends(IndexRange edges, DeviceNumbers numbers) {
@@ -358,7 +348,9 @@ class DeviceDiagram {
         counts_(size(cells) + 1, stream),
         before_(size(cells) + 1, stream),
         rough_(has_weights ? k_most_rough : 0, stream),
-        misfits_(3, stream) {}
+        misfits_(3, stream),
+        edges_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream),
+        vertices_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream) {}
 
   /// By Euler's formula.
   bool can_be() const { return sides_ % 2 == 0 && vertices_ >= 0 && edges_ <= 3 * static_cast<std::int64_t>(count_); }
@@ -374,20 +366,18 @@ class DeviceDiagram {
     gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, cell_sides_.data(),
                                                    counts_.data());
     check_cuda(cudaGetLastError(), "gathering cells");
-    add_up_all(edges_);
-    edge_parts_ = part_.rows(before_, edges_, stream_);
+    edge_parts_ = numbered(edges_);
     if (part_.is_all()) {
       join_sides<Joined::all><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
     } else {
       const Stream aside;
       part_.arrays.start_sharing(part_.member, cell_sides_.data(), side_parts_, stream_, aside);
-      const IndexRange own = part_.range(side_parts_);
-      check_cuda(cudaMemsetAsync(corner_vertices_.data() + own.begin, k_unknown_byte,
-                                 size(own.count()) * sizeof(std::int32_t), stream_),
-                 "clearing memory");
       join_sides<Joined::inner><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
       part_.arrays.finish_sharing(aside);
-      join_sides<Joined::outer><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+      edges_elsewhere_.fill([&] {
+        join_sides<Joined::outer><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+        check_cuda(cudaGetLastError(), "joining cells");
+      });
     }
     check_cuda(cudaGetLastError(), "joining cells");
     if (!cells.weights) {
@@ -396,7 +386,10 @@ class DeviceDiagram {
     }
     expect_sum<<<1, 1, 0, stream_>>>(misfits_.data() + 1, 0, misfits_.data());
     check_cuda(cudaGetLastError(), "joining cells");
-    agree();
+    if (part_.is_all()) return;
+    // Several go on only where all fits with all: a walk about a vertex would not end otherwise.
+    if (!fits()) throw LeftOver();
+    edges_elsewhere_.exchange(part_.arrays, part_.member, part_.range(side_parts_), side_edges_.data());
   }
 
   /// Copies what is done as soon as it is. \throw LeftOver
@@ -405,16 +398,19 @@ class DeviceDiagram {
     copy<1>(copies, side_edges_, part_.range(side_parts_), to.side_edges);
     count_vertices<<<blocks, k_threads, 0, stream_>>>(cells, numbers(), counts_.data());
     check_cuda(cudaGetLastError(), "counting vertices");
-    add_up_all(vertices_);
-    const std::vector<std::int32_t> vertices = part_.rows(before_, vertices_, stream_);
-    agree();
-    add_vertices<<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
-    check_cuda(cudaGetLastError(), "placing vertices");
-    copy<2>(copies, vertex_places_, part_.range(vertices), to.vertices);
-    if (!part_.is_all()) {
-      add_vertices_from_elsewhere<<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
-      check_cuda(cudaGetLastError(), "numbering vertices");
+    vertex_parts_ = numbered(vertices_);
+    if (part_.is_all()) {
+      add_vertices<false><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+      check_cuda(cudaGetLastError(), "placing vertices");
+    } else {
+      vertices_elsewhere_.fill([&] {
+        check_cuda(cudaMemsetAsync(rough_vertices().count, 0, sizeof(int), stream_), "clearing a counter");
+        add_vertices<true><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+        check_cuda(cudaGetLastError(), "placing vertices");
+      });
+      vertices_elsewhere_.exchange(part_.arrays, part_.member, part_.range(side_parts_), corner_vertices_.data());
     }
+    copy<2>(copies, vertex_places_, part_.range(vertex_parts_), to.vertices);
     copy<1>(copies, corner_vertices_, part_.range(side_parts_), to.corner_vertices);
     const IndexRange own = part_.range(edge_parts_);
     add_ends<<<blocks_for(own.count()), k_threads, 0, stream_>>>(own, numbers());
@@ -462,21 +458,26 @@ class DeviceDiagram {
   static std::size_t size(std::int32_t count) { return static_cast<std::size_t>(count); }
 
   DeviceNumbers numbers() {
-    return {next_corners_.data(),  corner_vertices_.data(), side_edges_.data(),
-            edge_vertices_.data(), edge_sites_.data(),      vertex_places_.data(),
-            rough_vertices(),      misfits_.data(),         misfits_.data() + 1};
+    const auto first = [&](const std::vector<std::int32_t>& parts) {
+      return parts.empty() ? 0 : part_.range(parts).begin;
+    };
+    return {next_corners_.data(),      corner_vertices_.data(), side_edges_.data(),   edge_vertices_.data(),
+            edge_sites_.data(),        vertex_places_.data(),   rough_vertices(),     misfits_.data(),
+            misfits_.data() + 1,       first(edge_parts_),      first(vertex_parts_), edges_elsewhere_.list(),
+            vertices_elsewhere_.list()};
   }
-  /// Sums of what all members have counted; the last is the total.
-  void add_up_all(std::int32_t total) {
-    part_.add_up_all(counts_, before_, stream_);
-    expect_sum<<<1, 1, 0, stream_>>>(before_.data() + count_, total, misfits_.data());
-    check_cuda(cudaGetLastError(), "counting");
-  }
-  /// Several go on only where all fits with all: a walk about a vertex would not end otherwise.
-  void agree() const {
-    if (part_.is_all()) return;
-    if (!fits()) throw LeftOver();
-    part_.arrays.meet();
+  /// Adds up what has been counted of each cell, which is to be `total` of all. \return where the members' numbers
+  /// begin, and where the last's end. \throw LeftOver
+  std::vector<std::int32_t> numbered(std::int32_t total) {
+    if (part_.is_all()) {
+      add_up(counts_, before_, stream_);
+      expect_sum<<<1, 1, 0, stream_>>>(before_.data() + count_, total, misfits_.data());
+      check_cuda(cudaGetLastError(), "counting");
+      return {0, total};
+    }
+    std::vector<std::int32_t> parts = part_.add_up_own(counts_, before_, stream_);
+    if (parts.back() != total) throw LeftOver();
+    return parts;
   }
   template <int Width, class Number, class To>
   static void copy(HostCopies& copies, const DeviceBuffer<Number>& from, IndexRange part, To* to) {
@@ -492,8 +493,9 @@ class DeviceDiagram {
   DeviceBuffer<double2> vertex_places_;
   DeviceBuffer<std::int32_t> next_corners_, counts_, before_;
   DeviceBuffer<int4> rough_;
-  DeviceBuffer<int> misfits_;                          ///< before and here, and how many vertices are rough
-  std::vector<std::int32_t> side_parts_, edge_parts_;  ///< where the members' sides and edges begin
+  DeviceBuffer<int> misfits_;  ///< before and here, and how many vertices are rough
+  NumbersElsewhere edges_elsewhere_, vertices_elsewhere_;
+  std::vector<std::int32_t> side_parts_, edge_parts_, vertex_parts_;  ///< where the members' begin
 };
 
 }  // namespace

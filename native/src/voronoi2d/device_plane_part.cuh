@@ -1,6 +1,7 @@
 #pragma once
 // What one of several devices finds of a diagram, and what it learns of the others'.
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,6 +34,7 @@ struct PlanePart {
   std::vector<std::int32_t> begins;  ///< of all members' cells, and the end of the last
 
   bool is_all() const { return begins.size() == 2; }
+  int members() const { return static_cast<int>(begins.size()) - 1; }
   IndexRange cells() const { return range(begins); }
   IndexRange range(std::span<const std::int32_t> bounds) const {
     return {bounds[static_cast<std::size_t>(member)], bounds[static_cast<std::size_t>(member) + 1]};
@@ -61,13 +63,26 @@ struct PlanePart {
     count_in_bytes<<<blocks_for(cells().count()), k_threads, 0, stream>>>(counts.data(), cells(), bytes.data(),
                                                                           are_more.data());
     check_cuda(cudaGetLastError(), "counting");
-    if (arrays.holds_for_all(member, are_more.value_at(0) == 0)) {
+    const std::vector<std::int64_t> more = arrays.numbers_of_all(member, are_more.value_at(0));
+    if (std::ranges::all_of(more, [](std::int64_t each) { return each == 0; })) {
       arrays.share(member, bytes.data(), begins, stream);
       add_up(bytes, sums, stream);
     } else {
       arrays.share(member, counts.data(), begins, stream);
       add_up(counts, sums, stream);
     }
+  }
+
+  /// Of what a member has counted for its own cells: for each of them the sum of those before it, of its own. The count
+  /// after the last is there, and so is the sum. \return where the members' sums begin, and what all are together
+  std::vector<std::int32_t> add_up_own(const DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::int32_t>& sums,
+                                       cudaStream_t stream) const {
+    const IndexRange own = cells();
+    add_up(counts.data() + own.begin, sums.data() + own.begin, own.count() + 1, stream);
+    std::vector<std::int32_t> bounds{0};
+    for (const std::int64_t sum : arrays.numbers_of_all(member, sums.value_at(static_cast<std::size_t>(own.end))))
+      bounds.push_back(bounds.back() + static_cast<std::int32_t>(sum));
+    return bounds;
   }
 };
 
