@@ -136,14 +136,23 @@ class CellFinder : public FoundCells {
   /// Where the members' cells begin, and the last one's end.
   const std::vector<std::int32_t>& begins() const { return tiles_.bounds(); }
 
-  /// Does not wait for the last cells, unless others wait for these; calls report(share done) in between where there
-  /// are many.
+  /// Does not wait for the last cells; calls report(share done) in between where there are many.
   template <class Report>
   void start(int device, Report&& report) {
     device_ = device;
     constexpr int k_many = 32;  // of as many one
     find(mine().count() / k_many, report);
-    if (begins().size() > 2) find_left(count(of_last(report)), report);
+  }
+  /// The same where others wait for these cells: waits for all of them. Calls meanwhile() before, and undo() when what
+  /// that did needs memory that is wanted.
+  template <class Report, class Meanwhile, class Undo>
+  void start(int device, Report&& report, Meanwhile&& meanwhile, Undo&& undo) {
+    start(device, report);
+    meanwhile();
+    const Count found = count(of_last(report));
+    if (!found.are_left) return;
+    undo();
+    find_left(found, report);
   }
 
   /// Waits for the cells. \return how many neighbours all have together.
@@ -268,6 +277,12 @@ class WeightedCellFinder : public FoundCells {
     find_others([&](const FarCells& far, const DeviceLists& to) {
       find_far_weighted_cells<<<far_blocks, k_far_threads, 0, stream_>>>(boxes_.tree(), far, to);
     });
+  }
+  /// See CellFinder.
+  template <class Report, class Meanwhile, class Undo>
+  void start(int device, Report&& report, Meanwhile&& meanwhile, Undo&&) {
+    start(device, report);
+    meanwhile();
   }
 
  private:

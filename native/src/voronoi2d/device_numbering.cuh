@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "support/device_stream.h"
@@ -331,19 +332,17 @@ __global__ void add_triangles(DeviceCells cells, const std::int32_t* triangles_b
 /// the end.
 class DeviceDiagram {
  public:
+  /// Takes the memory for so many sides.
   DeviceDiagram(const PlanePart& part, std::int32_t cells, std::int32_t sides, bool has_weights, cudaStream_t stream)
       : part_(part),
         stream_(stream),
         count_(cells),
-        sides_(sides),
-        edges_(sides / 2),
-        vertices_(edges_ - cells + 1),
         cell_sides_(size(sides), stream),
         corner_vertices_(size(sides), stream),
         side_edges_(size(sides), stream),
-        edge_vertices_(size(edges_), stream),
-        edge_sites_(size(edges_), stream),
-        vertex_places_(size(std::max(vertices_, 0)), stream),
+        edge_vertices_(size(sides / 2), stream),
+        edge_sites_(size(sides / 2), stream),
+        vertex_places_(size(std::max(0, sides / 2 - cells + 1)), stream),
         next_corners_(size(sides), stream),
         counts_(size(cells) + 1, stream),
         before_(size(cells) + 1, stream),
@@ -352,8 +351,18 @@ class DeviceDiagram {
         edges_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream),
         vertices_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream) {}
 
-  /// By Euler's formula.
-  bool can_be() const { return sides_ % 2 == 0 && vertices_ >= 0 && edges_ <= 3 * static_cast<std::int64_t>(count_); }
+  /// What no diagram has more of, by Euler's formula.
+  static std::int32_t most_sides(std::int32_t cells) {
+    return static_cast<std::int32_t>(
+        std::min<std::int64_t>(6 * std::int64_t{cells}, std::numeric_limits<std::int32_t>::max()));
+  }
+  /// How many there are; not more than there is memory for. \return whether that can be, by Euler's formula
+  bool has(std::int32_t sides) {
+    sides_ = sides;
+    edges_ = sides / 2;
+    vertices_ = edges_ - count_ + 1;
+    return sides_ % 2 == 0 && vertices_ >= 0 && sides_ <= most_sides(count_);
+  }
   const std::int32_t* cell_sides() const { return cell_sides_.data(); }
   PlaneTwinSizes sizes() const { return {count_, edges_, vertices_}; }
 
@@ -361,28 +370,21 @@ class DeviceDiagram {
   void join(const DeviceCells& cells, const DeviceBuffer<std::int32_t>& offsets, const DeviceLists& lists) {
     misfits_.fill_bytes(0);
     counts_.fill_bytes(0);
-    side_parts_ = part_.rows(offsets, sides_, stream_);
     const unsigned blocks = blocks_for(cells.mine.count());
     gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, cell_sides_.data(),
                                                    counts_.data());
     check_cuda(cudaGetLastError(), "gathering cells");
-    edge_parts_ = numbered(edges_);
-    if (part_.is_all()) {
-      join_sides<Joined::all><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
-    } else {
-      const Stream aside;
-      part_.arrays.start_sharing(part_.member, cell_sides_.data(), side_parts_, stream_, aside);
-      join_sides<Joined::inner><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
-      part_.arrays.finish_sharing(aside);
-      edges_elsewhere_.fill([&] {
-        join_sides<Joined::outer><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
-        check_cuda(cudaGetLastError(), "joining cells");
-      });
-    }
-    check_cuda(cudaGetLastError(), "joining cells");
+    side_parts_ = part_.rows(offsets, sides_, stream_);
     if (!cells.weights) {
       check_open_cells<<<blocks, k_threads, 0, stream_>>>(cells, lists.is_open, numbers().misfits_here);
       check_cuda(cudaGetLastError(), "joining cells");
+    }
+    if (part_.is_all()) {
+      edge_parts_ = numbered(edges_);
+      join_sides<Joined::all><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+      check_cuda(cudaGetLastError(), "joining cells");
+    } else {
+      join_with_others(cells);
     }
     expect_sum<<<1, 1, 0, stream_>>>(misfits_.data() + 1, 0, misfits_.data());
     check_cuda(cudaGetLastError(), "joining cells");
@@ -457,6 +459,21 @@ class DeviceDiagram {
   RoughVertices rough_vertices() { return {rough_.data(), misfits_.data() + 2, static_cast<int>(rough_.size())}; }
   static std::size_t size(std::int32_t count) { return static_cast<std::size_t>(count); }
 
+  /// Those that lie among the member's own while it gets the neighbours of all others' cells.
+  void join_with_others(const DeviceCells& cells) {
+    const unsigned blocks = blocks_for(cells.mine.count());
+    const auto join = [&]<Joined Which>() {
+      join_sides<Which><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+      check_cuda(cudaGetLastError(), "joining cells");
+    };
+    const Stream aside;
+    part_.arrays.start_sharing(part_.member, cell_sides_.data(), side_parts_, stream_, aside);
+    edge_parts_ = numbered(edges_);
+    join.template operator()<Joined::inner>();
+    part_.arrays.finish_sharing(aside);
+    edges_elsewhere_.fill([&] { join.template operator()<Joined::outer>(); });
+  }
+
   DeviceNumbers numbers() {
     const auto first = [&](const std::vector<std::int32_t>& parts) {
       return parts.empty() ? 0 : part_.range(parts).begin;
@@ -487,7 +504,7 @@ class DeviceDiagram {
 
   const PlanePart& part_;
   cudaStream_t stream_;
-  std::int32_t count_, sides_, edges_, vertices_;
+  std::int32_t count_, sides_ = 0, edges_ = 0, vertices_ = 0;
   DeviceBuffer<std::int32_t> cell_sides_, corner_vertices_, side_edges_;
   DeviceBuffer<int2> edge_vertices_, edge_sites_;
   DeviceBuffer<double2> vertex_places_;

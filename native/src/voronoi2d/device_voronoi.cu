@@ -110,7 +110,17 @@ class Builder {
     const cudaStream_t stream = *own_stream;
     const PlanePart part{arrays_, member, cells.begins()};
     const auto report_cells = [&](double done) { report(Share::order + (Share::find - Share::order) * done); };
-    cells.start(device, report_cells);
+    std::optional<DeviceDiagram> diagram;
+    const auto take_memory = [&](std::int32_t sides) {
+      diagram.emplace(part, sites.count, sides, sites.weights != nullptr, stream);
+    };
+    if (part.is_all()) {
+      cells.start(device, report_cells);
+    } else {
+      // While the device finds them: it takes a millisecond.
+      cells.start(
+          device, report_cells, [&] { take_memory(DeviceDiagram::most_sides(sites.count)); }, [&] { diagram.reset(); });
+    }
     cells.share(part);
     watch.end();
     if (member == 0 && !request_.kept) make_room(sites.count);
@@ -121,39 +131,39 @@ class Builder {
     times.find = watch.read();
     report(Share::find);
     watch.start();
-    DeviceDiagram diagram(part, sites.count, sides, sites.weights != nullptr, stream);
-    if (!diagram.can_be()) throw LeftOver();
+    if (!diagram) take_memory(sides);
+    if (!diagram->has(sides)) throw LeftOver();
     const HostCopies::End end(copies);
     if (member == 0)
       copies.to_host(cells.offsets().data(), static_cast<std::size_t>(sites.count) + 1, to_.cell_offsets);
-    const DeviceCells rows{sites.count,         part.cells(),   sites.at,
-                           sites.weights,       sites.original, cells.offsets().data(),
-                           diagram.cell_sides()};
-    diagram.join(rows, cells.offsets(), cells.lists());
+    const DeviceCells rows{sites.count,          part.cells(),   sites.at,
+                           sites.weights,        sites.original, cells.offsets().data(),
+                           diagram->cell_sides()};
+    diagram->join(rows, cells.offsets(), cells.lists());
     DeviceBuffer<std::int32_t> triangles;
     if (request_.kept && request_.only_triangles) {
-      triangles = diagram.triangles(rows);
+      triangles = diagram->triangles(rows);
     } else {
-      diagram.number(rows, copies, to_);
+      diagram->number(rows, copies, to_);
     }
     times.unite = watch.lap();
     copies.finish([&](double share) { report(Share::unite + (1 - Share::unite) * share); });
-    if (!diagram.fits()) throw LeftOver();
+    if (!diagram->fits()) throw LeftOver();
     times.download = watch.lap();
     if (request_.kept) {
       auto kept = std::make_unique<KeptPlane>(std::move(own_stream), device);
       kept->triangles = std::move(triangles);
       if (!request_.only_triangles) {
-        diagram.hand_over(*kept);
+        diagram->hand_over(*kept);
         order.hand_over(*kept);
         kept->cell_offsets = cells.take_offsets();
       }
-      return tell_kept(std::move(kept), diagram.sizes());
+      return tell_kept(std::move(kept), diagram->sizes());
     }
-    place_rough(diagram.rough());
+    place_rough(diagram->rough());
     team_.meet();
     if (member == 0)
-      caller_.ask([&](const PlaneTwinCaller& caller) { return caller.cut(caller.self, diagram.sizes()); });
+      caller_.ask([&](const PlaneTwinCaller& caller) { return caller.cut(caller.self, diagram->sizes()); });
   }
 
   /// The vertices that the processor places.
