@@ -177,8 +177,7 @@ struct TeamList {
 /// Arrays of which every member of a team fills a part, and then has the whole.
 class TeamArrays {
  public:
-  explicit TeamArrays(DeviceTeam& team)
-      : team_(team), arrays_(static_cast<std::size_t>(team.members())), numbers_(team), lists_(team) {}
+  explicit TeamArrays(DeviceTeam& team) : team_(team), numbers_(team), lists_(team) {}
 
   /// By all members: the numbers of all.
   std::vector<std::int64_t> numbers_of_all(int member, std::int64_t number) { return numbers_.say(member, number); }
@@ -194,33 +193,20 @@ class TeamArrays {
   /// last ends. Complete on return.
   template <class Number>
   void share(int member, Number* mine, std::span<const std::int32_t> begins, cudaStream_t stream) {
-    start_sharing(member, mine, begins, stream, stream);
-    finish_sharing(stream);
-  }
-  /// The same beside other work: what `stream` has written so far is copied by another stream, and there when
-  /// finish_sharing(that stream) returns. No member may share anything else in between.
-  template <class Number>
-  void start_sharing(int member, Number* mine, std::span<const std::int32_t> begins, cudaStream_t stream,
-                     cudaStream_t aside) {
     const int members = team_.members();
     if (members == 1) return;
-    arrays_[static_cast<std::size_t>(member)] = mine;
     check_cuda(cudaStreamSynchronize(stream), "waiting for the device");
-    team_.meet();
+    const std::vector<TeamList<Number>> arrays =
+        lists_of_all(member, std::span<const Number>(mine, static_cast<std::size_t>(begins.back())));
     for (int step = 1; step < members; ++step) {  // each reads from another
-      const int other = (member + step) % members;
-      const auto at = static_cast<std::size_t>(other);
-      const auto begin = static_cast<std::size_t>(begins[at]), end = static_cast<std::size_t>(begins[at + 1]);
+      const auto other = static_cast<std::size_t>((member + step) % members);
+      const auto begin = static_cast<std::size_t>(begins[other]), end = static_cast<std::size_t>(begins[other + 1]);
       if (begin == end) continue;
-      check_cuda(
-          cudaMemcpyPeerAsync(mine + begin, team_.device(member), static_cast<const Number*>(arrays_[at]) + begin,
-                              team_.device(other), (end - begin) * sizeof(Number), aside),
-          "copying between devices");
+      check_cuda(cudaMemcpyPeerAsync(mine + begin, team_.device(member), arrays[other].items.data() + begin,
+                                     arrays[other].device, (end - begin) * sizeof(Number), stream),
+                 "copying between devices");
     }
-  }
-  void finish_sharing(cudaStream_t aside) {
-    if (team_.members() == 1) return;
-    check_cuda(cudaStreamSynchronize(aside), "copying between devices");
+    check_cuda(cudaStreamSynchronize(stream), "copying between devices");
     team_.meet();
   }
 
@@ -231,7 +217,6 @@ class TeamArrays {
     std::size_t count = 0;
   };
   DeviceTeam& team_;
-  std::vector<const void*> arrays_;  ///< by member
   TeamWords<std::int64_t> numbers_;
   TeamWords<ListThere> lists_;
 };

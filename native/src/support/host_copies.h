@@ -67,6 +67,12 @@ class HostCopies {
   HostCopies(const HostCopies&) = delete;
   HostCopies& operator=(const HostCopies&) = delete;
 
+  /// Before the first copy: many are to come. Threads begin now, since that is in the way of other work with the
+  /// device.
+  void get_ready() {
+    const std::lock_guard lock(mutex_);
+    start_threads(k_most_threads);
+  }
   /// Before the first copy: so many bytes will be copied there. Threads begin now, beside the work of the stream, with
   /// the pages under what is fresh; what is there is lost, until end_laying() or the first copy.
   void expect(void* to, std::size_t size) {

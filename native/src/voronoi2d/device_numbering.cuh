@@ -19,11 +19,13 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-/// A side is told by the neighbour; negative where the corner behind it is at infinity.
+/// A side is told by the neighbour; negative where the corner behind it is at infinity. No side: nobody's neighbour.
+constexpr std::int32_t k_no_side = std::numeric_limits<std::int32_t>::min();
 __device__ constexpr std::int32_t open_side(std::int32_t neighbour) { return ~neighbour; }
 __device__ constexpr std::int32_t neighbour_of(std::int32_t side) { return side < 0 ? ~side : side; }
 
-/// Rows of sides, counter-clockwise. All of them, of which some are numbered here and the others elsewhere.
+/// Rows of sides, counter-clockwise. Of all cells or, where some are numbered elsewhere, of those numbered here and
+/// their neighbours at least.
 struct DeviceCells {
   std::int32_t count;
   IndexRange mine;
@@ -89,25 +91,35 @@ struct DeviceNumbers {
   int* misfits_here;
   std::int32_t first_edge, first_vertex;                 ///< of those that are numbered here
   DeviceNumberList edges_elsewhere, vertices_elsewhere;  ///< of sides that are numbered elsewhere
+  int* asks_for_all;                                     ///< whether rows of more than neighbours are needed
 
   __device__ bool failed_before() const { return *misfits != 0; }
 };
 
-/// Sides row after row; also counts the edges of a cell, which are those to higher ranks.
+/// Sides row after row; also counts the edges of a cell, which are those to higher ranks. Rows next to cells that are
+/// gathered elsewhere are told to others, and theirs are not known yet.
+template <bool HasOthers>
 __global__ void gather_rows(DeviceLists lists, IndexRange cells, const std::int32_t* offsets, std::int32_t* sides,
-                            std::int32_t* edge_counts) {
+                            std::int32_t* edge_counts, DeviceNumberList told) {
   const std::int32_t cell = cells.begin + thread_number();
   if (cell >= cells.end) return;
   const std::int32_t begin = offsets[cell], size = offsets[cell + 1] - begin;
   const std::int32_t* from = lists.slots + static_cast<std::int64_t>(cell) * k_slots;
   if (size > k_slots) from = lists.pool + *from;
   int edges = 0;
+  bool is_told = false;
   for (std::int32_t k = 0; k < size; ++k) {
+    const std::int32_t other = neighbour_of(from[k]);
     const bool opens = k + 1 == size && lists.is_open[cell];  // else the list says where
     sides[begin + k] = opens ? open_side(from[k]) : from[k];
-    edges += neighbour_of(from[k]) > cell;
+    edges += other > cell;
+    if (HasOthers && !cells.holds(other)) {
+      is_told = true;
+      for (std::int32_t side = offsets[other]; side < offsets[other + 1]; ++side) sides[side] = k_no_side;
+    }
   }
   edge_counts[cell] = edges;
+  for (std::int32_t side = begin; is_told && side < begin + size; ++side) told.add(side, sides[side]);
 }
 
 /// Notes a misfit when a sum is not what it has to be; nothing is done from then on.
@@ -144,20 +156,12 @@ __global__ void check_open_cells(DeviceCells cells, const std::uint8_t* is_open,
   if (last > first && turn_sign(at(last), cells.point(cell), at(first)) < 0) *misfits = 1;
 }
 
-/// Which cells are joined: all, or at first those that lie among others of the same part, then the rest.
-enum class Joined { all, inner, outer };
-
 /// Edges belong to the lower of their cells. `edges_before`: those numbered here.
-template <Joined Which>
+template <bool HasOthers>
 __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, DeviceNumbers numbers) {
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
   const std::int32_t first = cells.offsets[cell], end = cells.offsets[cell + 1];
-  if (Which != Joined::all) {
-    bool is_inner = true;
-    for (std::int32_t side = first; side < end; ++side) is_inner &= cells.mine.holds(cells.neighbour(side));
-    if (is_inner != (Which == Joined::inner)) return;
-  }
   bool fits = cells.weights || winds_once(cells, cell);  // with weights they are known to
   std::int32_t edge = numbers.first_edge + edges_before[cell];
   for (std::int32_t side = first; side < end; ++side) {
@@ -169,11 +173,14 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
       break;
     }
     numbers.next_corners[side] = cells.corner_before(other, twin);
+    const bool is_elsewhere = HasOthers && !cells.mine.holds(other);
+    // More than three about a vertex are not all neighbours of a cell.
+    if (is_elsewhere && !cells.are_twins(cell, side, other, twin)) *numbers.asks_for_all = 1;
     if (other < cell) continue;  // the edge is numbered elsewhere
     const std::int32_t before = cells.corner_before(cell, side);
     numbers.edges[edge] = {before, side};
     numbers.side_edges[side] = edge;
-    if (Which == Joined::outer && !cells.mine.holds(other)) {
+    if (is_elsewhere) {
       numbers.edges_elsewhere.add(twin, edge);
     } else {
       numbers.next_corners[twin] = before;
@@ -254,16 +261,20 @@ __global__ void __launch_bounds__(k_threads, 4)
     CornerWalk walk{cells, numbers.next_corners, cell, corner};
     std::int32_t about[3];
     int size = 0;
+    bool is_told = false;
     do {
-      if (HasOthers && !cells.mine.holds(walk.cell)) {
-        numbers.vertices_elsewhere.add(walk.corner, vertex);
-      } else {
-        numbers.corner_vertices[walk.corner] = vertex;
-      }
+      numbers.corner_vertices[walk.corner] = vertex;
+      if (HasOthers && !cells.mine.holds(walk.cell)) is_told = true;
       if (size < 3) about[size] = walk.cell;
       ++size;
       walk.step();
     } while (walk.corner != corner);
+    if (is_told) {
+      do {
+        if (!cells.mine.holds(walk.cell)) numbers.vertices_elsewhere.add(walk.corner, vertex);
+        walk.step();
+      } while (walk.corner != corner);
+    }
     for (int k = 0; size > 3 && k < size; ++k) {  // three of many, evenly about it
       walk.step();
       if (k == size - 1) about[0] = walk.cell;
@@ -347,7 +358,8 @@ class DeviceDiagram {
         counts_(size(cells) + 1, stream),
         before_(size(cells) + 1, stream),
         rough_(has_weights ? k_most_rough : 0, stream),
-        misfits_(3, stream),
+        misfits_(k_misfits, stream),
+        rows_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream),
         edges_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream),
         vertices_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream) {}
 
@@ -371,22 +383,25 @@ class DeviceDiagram {
     misfits_.fill_bytes(0);
     counts_.fill_bytes(0);
     const unsigned blocks = blocks_for(cells.mine.count());
-    gather_rows<<<blocks, k_threads, 0, stream_>>>(lists, cells.mine, cells.offsets, cell_sides_.data(),
-                                                   counts_.data());
-    check_cuda(cudaGetLastError(), "gathering cells");
     side_parts_ = part_.rows(offsets, sides_, stream_);
+    if (part_.is_all()) {
+      gather<false>(cells, lists);
+    } else {
+      rows_elsewhere_.fill([&] { gather<true>(cells, lists); });
+      rows_elsewhere_.exchange(part_.arrays, part_.member, {0, sides_}, cell_sides_.data());
+    }
     if (!cells.weights) {
       check_open_cells<<<blocks, k_threads, 0, stream_>>>(cells, lists.is_open, numbers().misfits_here);
       check_cuda(cudaGetLastError(), "joining cells");
     }
+    edge_parts_ = numbered(edges_);
     if (part_.is_all()) {
-      edge_parts_ = numbered(edges_);
-      join_sides<Joined::all><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+      join_sides<false><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
       check_cuda(cudaGetLastError(), "joining cells");
     } else {
       join_with_others(cells);
     }
-    expect_sum<<<1, 1, 0, stream_>>>(misfits_.data() + 1, 0, misfits_.data());
+    expect_sum<<<1, 1, 0, stream_>>>(misfits_.data() + k_here, 0, misfits_.data());
     check_cuda(cudaGetLastError(), "joining cells");
     if (part_.is_all()) return;
     // Several go on only where all fits with all: a walk about a vertex would not end otherwise.
@@ -444,7 +459,7 @@ class DeviceDiagram {
 
   /// Vertices of this part that the processor places. Waits for the stream. \throw LeftOver for too many
   std::vector<int4> rough() const {
-    const int count = rough_.size() == 0 ? 0 : misfits_.value_at(2);
+    const int count = rough_.size() == 0 ? 0 : misfits_.value_at(k_rough);
     if (count > k_most_rough) throw LeftOver();
     std::vector<int4> result(static_cast<std::size_t>(count));
     if (count > 0) rough_.read(result);
@@ -452,36 +467,47 @@ class DeviceDiagram {
   }
 
   /// Waits for the stream.
-  bool fits() const { return misfits_.value_at(0) == 0; }
+  bool fits() const { return misfits_.value_at(k_before) == 0; }
 
  private:
   static constexpr int k_most_rough = 1 << 16;
-  RoughVertices rough_vertices() { return {rough_.data(), misfits_.data() + 2, static_cast<int>(rough_.size())}; }
+  enum { k_before, k_here, k_rough, k_asks_for_all, k_misfits };
+  RoughVertices rough_vertices() { return {rough_.data(), misfits_.data() + k_rough, static_cast<int>(rough_.size())}; }
   static std::size_t size(std::int32_t count) { return static_cast<std::size_t>(count); }
 
-  /// Those that lie among the member's own while it gets the neighbours of all others' cells.
+  template <bool HasOthers>
+  void gather(const DeviceCells& cells, const DeviceLists& lists) {
+    gather_rows<HasOthers><<<blocks_for(cells.mine.count()), k_threads, 0, stream_>>>(
+        lists, cells.mine, cells.offsets, cell_sides_.data(), counts_.data(), rows_elsewhere_.list());
+    check_cuda(cudaGetLastError(), "gathering cells");
+  }
+
+  /// Gets all rows of others where those of neighbours do not do.
   void join_with_others(const DeviceCells& cells) {
-    const unsigned blocks = blocks_for(cells.mine.count());
-    const auto join = [&]<Joined Which>() {
-      join_sides<Which><<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers());
-      check_cuda(cudaGetLastError(), "joining cells");
+    const auto join = [&] {
+      edges_elsewhere_.fill([&] {
+        join_sides<true><<<blocks_for(cells.mine.count()), k_threads, 0, stream_>>>(cells, before_.data(), numbers());
+        check_cuda(cudaGetLastError(), "joining cells");
+      });
     };
-    const Stream aside;
-    part_.arrays.start_sharing(part_.member, cell_sides_.data(), side_parts_, stream_, aside);
-    edge_parts_ = numbered(edges_);
-    join.template operator()<Joined::inner>();
-    part_.arrays.finish_sharing(aside);
-    edges_elsewhere_.fill([&] { join.template operator()<Joined::outer>(); });
+    join();
+    const auto asked = part_.arrays.numbers_of_all(part_.member, misfits_.value_at(k_asks_for_all));
+    if (std::ranges::all_of(asked, [](std::int64_t each) { return each == 0; })) return;
+    part_.arrays.share(part_.member, cell_sides_.data(), side_parts_, stream_);
+    join();
   }
 
   DeviceNumbers numbers() {
     const auto first = [&](const std::vector<std::int32_t>& parts) {
       return parts.empty() ? 0 : part_.range(parts).begin;
     };
-    return {next_corners_.data(),      corner_vertices_.data(), side_edges_.data(),   edge_vertices_.data(),
-            edge_sites_.data(),        vertex_places_.data(),   rough_vertices(),     misfits_.data(),
-            misfits_.data() + 1,       first(edge_parts_),      first(vertex_parts_), edges_elsewhere_.list(),
-            vertices_elsewhere_.list()};
+    return {next_corners_.data(),       corner_vertices_.data(),
+            side_edges_.data(),         edge_vertices_.data(),
+            edge_sites_.data(),         vertex_places_.data(),
+            rough_vertices(),           misfits_.data(),
+            misfits_.data() + k_here,   first(edge_parts_),
+            first(vertex_parts_),       edges_elsewhere_.list(),
+            vertices_elsewhere_.list(), misfits_.data() + k_asks_for_all};
   }
   /// Adds up what has been counted of each cell, which is to be `total` of all. \return where the members' numbers
   /// begin, and where the last's end. \throw LeftOver
@@ -510,8 +536,8 @@ class DeviceDiagram {
   DeviceBuffer<double2> vertex_places_;
   DeviceBuffer<std::int32_t> next_corners_, counts_, before_;
   DeviceBuffer<int4> rough_;
-  DeviceBuffer<int> misfits_;  ///< before and here, and how many vertices are rough
-  NumbersElsewhere edges_elsewhere_, vertices_elsewhere_;
+  DeviceBuffer<int> misfits_;  ///< before and here, how many vertices are rough, and whether rows are missing
+  NumbersElsewhere rows_elsewhere_, edges_elsewhere_, vertices_elsewhere_;
   std::vector<std::int32_t> side_parts_, edge_parts_, vertex_parts_;  ///< where the members' begin
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers of edges and vertices that one of several devices gives, and that belong to sides of others' cells.
+// What one of several devices tells the others of sides: neighbours, and numbers of edges and vertices.
 
 #include <algorithm>
 #include <cstdint>
@@ -35,7 +35,7 @@ __global__ void place_numbers(const NumberOfSide* items, std::int64_t count, Ind
   if (i < count && sides.holds(items[i].side)) numbers[items[i].side] = items[i].number;
 }
 
-/// What a member of a team tells the others of theirs: little, where parts are compact.
+/// What a member of a team tells the others: little, where parts are compact.
 class NumbersElsewhere {
  public:
   NumbersElsewhere(std::int32_t own_sides, cudaStream_t stream)
@@ -57,8 +57,8 @@ class NumbersElsewhere {
       items_ = DeviceBuffer<NumberOfSide>(found_, stream_);
     }
   }
-  /// By all members: `numbers` of the member's own `sides` that the others give. They wait for their streams before
-  /// this goes away.
+  /// By all members: to `numbers`, what the others tell of these `sides`. They wait for their streams before this goes
+  /// away.
   void exchange(TeamArrays& arrays, int member, IndexRange sides, std::int32_t* numbers) {
     const auto lists = arrays.lists_of_all(member, std::span<const NumberOfSide>(items_.data(), found_));
     std::size_t most = 0;

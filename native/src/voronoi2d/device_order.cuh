@@ -11,6 +11,7 @@
 #include "support/device_launch.cuh"
 #include "support/device_scratch.cuh"
 #include "support/index_range.cuh"
+#include "support/warp.cuh"
 #include "voronoi2d/curve_place.h"
 #include "voronoi2d/device_kept.cuh"
 
@@ -100,7 +101,7 @@ __global__ void place_sites(const double2* sites, std::int32_t count, const Site
   const double2 p = sites[i];
   const Extent& extent = seen->extent;
   const double half_width = extent.half_width();
-  places[i] = place_by_bits(square_of(p.x, extent.low[0], half_width), square_of(p.y, extent.low[1], half_width));
+  places[i] = place_of_square(square_of(p.x, extent.low[0], half_width), square_of(p.y, extent.low[1], half_width));
   order[i] = i;
 }
 
@@ -133,13 +134,12 @@ __global__ void sort_squares(const double2* sites, std::int32_t count, const std
 __global__ void gather_sites(const double2* sites, std::int32_t count, const std::int32_t* order, double2* sorted,
                              std::int32_t* is_first, SitesSeen* seen) {
   const std::int32_t i = thread_number();
+  const int lane = threadIdx.x % 32;
+  const double2 p = sites[order[min(i, count - 1)]];
+  double2 before{__shfl_up_sync(k_warp, p.x, 1), __shfl_up_sync(k_warp, p.y, 1)};
   if (i >= count) return;
-  const double2 p = sites[order[i]];
-  bool differs = i == 0;
-  if (i > 0) {
-    const double2 q = sites[order[i - 1]];
-    differs = p.x != q.x || p.y != q.y;
-  }
+  if (lane == 0 && i > 0) before = sites[order[i - 1]];
+  const bool differs = i == 0 || p.x != before.x || p.y != before.y;
   sorted[i] = p;
   is_first[i] = differs;
   if (!differs) seen->has_equals = 1;
