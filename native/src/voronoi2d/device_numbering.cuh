@@ -178,14 +178,10 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
     if (is_elsewhere && !cells.are_twins(cell, side, other, twin)) *numbers.asks_for_all = 1;
     if (other < cell) continue;  // the edge is numbered elsewhere
     const std::int32_t before = cells.corner_before(cell, side);
+    numbers.next_corners[twin] = before;
     numbers.edges[edge] = {before, side};
-    numbers.side_edges[side] = edge;
-    if (is_elsewhere) {
-      numbers.edges_elsewhere.add(twin, edge);
-    } else {
-      numbers.next_corners[twin] = before;
-      numbers.side_edges[twin] = edge;
-    }
+    numbers.side_edges[side] = numbers.side_edges[twin] = edge;
+    if (is_elsewhere) numbers.edges_elsewhere.add(twin, edge);
     numbers.edge_sites[edge] = {cells.original[cell], cells.original[other]};
     ++edge;
   }
