@@ -40,7 +40,7 @@ class NumbersElsewhere {
  public:
   NumbersElsewhere(std::int32_t own_sides, cudaStream_t stream)
       : stream_(stream),
-        items_(own_sides == 0 ? 0 : static_cast<std::size_t>(own_sides) / 64 + (1 << 14), stream),
+        items_(own_sides == 0 ? 0 : static_cast<std::size_t>(own_sides) / k_of_as_many + k_few, stream),
         count_(1, stream) {}
 
   DeviceNumberList list() { return {items_.data(), count_.data(), static_cast<unsigned>(items_.size())}; }
@@ -78,6 +78,8 @@ class NumbersElsewhere {
   }
 
  private:
+  /// As a guess, one of so many sides is told. Few are told once more: they take no time.
+  static constexpr std::size_t k_of_as_many = 64, k_few = 64;
   cudaStream_t stream_;
   DeviceBuffer<NumberOfSide> items_;
   DeviceBuffer<unsigned> count_;
