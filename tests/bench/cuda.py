@@ -1,5 +1,7 @@
 """A CUDA device: `python -m tests.bench cuda MESH...` for graphs of meshes and diagrams of the plane.
 
+Where there are several devices, also what they gain together: all parts but the transfers, against one of them.
+
 The device's own clock for its parts, the wall clock for all from a `Mesh` or sites to the result, and the processor's
 time for the same; each the best of five. Both results are compared as well.
 """
@@ -61,6 +63,8 @@ def main(arguments: list[str]) -> int:
         mesh = sb.read_mesh(name)
         for rule in RULES:
             measure(Path(name).stem, mesh, rule)
+    if sum(device.kind == "cuda" for device in sb.devices()) > 1:
+        measure_several_devices(arguments)
     print(f"{'mesh':<28} {'query':<15}{HEAD}")
     for name in arguments:
         measure_queries(Path(name).stem, sb.SaddleVertexGraph(sb.read_mesh(name), **RULES[-1]))
@@ -100,6 +104,39 @@ def measure_pinned(count: int) -> None:
         del diagram
     parts = [min(one[part] for one in times[1:]) for part in PARTS]
     print(f"{'uniform, pinned':<28} {count:<15,}{''.join(f'{1e3 * part:10.2f}' for part in parts)} {1e3 * wall:6.1f}")
+
+
+def measure_several_devices(meshes: list[str]) -> None:
+    print(f"{'several devices':<28} {'which':<15}{HEAD.split(' ms')[0].replace('CPU', 'gain')}")
+    for count in (10**7, 10**8):
+        sites = np.random.default_rng(1).random((count, 2))
+        compare_devices(f"uniform, {count:,}", lambda device, s=sites: sb.voronoi_2d(s, device=device))  # type: ignore[misc]
+    for name in meshes:
+        mesh = sb.read_mesh(name)
+        for rule in RULES:
+            how = ", ".join(f"{key}={value}" for key, value in rule.items())
+            compare_devices(
+                f"{Path(name).stem}, {how}",
+                lambda device, m=mesh, r=rule: sb.SaddleVertexGraph(m, device=device, **r),  # type: ignore[misc]
+            )
+
+
+def compare_devices(what: str, build: Callable[[str], sb.SaddleVertexGraph | sb.Voronoi2d]) -> None:
+    """Results are dropped at once: those of a hundred million sites take gigabytes."""
+    cards = sum(device.kind == "cuda" for device in sb.devices())
+    alone = float("nan")
+    for count in sorted({1, 2, cards}):
+        device = "cuda:" + ",".join(map(str, range(count)))
+        runs, wall = [], float("inf")
+        for _ in range(TIMES + 1):
+            start = time.perf_counter()
+            runs.append(build(device).device_times or dict.fromkeys(PARTS, float("nan")))
+            wall = min(wall, time.perf_counter() - start)
+        run = min(runs[1:], key=lambda times: times["order"] + times["find"] + times["unite"])
+        together = run["order"] + run["find"] + run["unite"]
+        alone = together if count == 1 else alone
+        parts = "".join(f"{1e3 * run[part]:10.2f}" for part in PARTS)
+        print(f"{what:<28} {device:<15}{parts} {1e3 * wall:6.1f} {alone / together:6.2f}", flush=True)
 
 
 def measure_queries(name: str, graph: sb.SaddleVertexGraph) -> None:

@@ -96,7 +96,7 @@ class DeviceTeam {
     changed_.notify_all();
   }
 
-  /// Who sleeps is woken later than most come: a tenth of a millisecond, of which a job with four devices had three.
+  /// For a while: who sleeps is woken some tenth of a millisecond late, and most of those waited for come sooner.
   template <class IsOver>
   static void look_for_others(IsOver&& is_over) {
     using Clock = std::chrono::steady_clock;

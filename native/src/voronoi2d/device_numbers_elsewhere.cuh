@@ -14,6 +14,8 @@
 namespace saddleback::voronoi2d {
 namespace {
 
+/// A side of all cells' rows, and what it is given: the neighbour, or the number of its edge or of the vertex behind
+/// it.
 struct NumberOfSide {
   std::int32_t side, number;
 };

@@ -22,6 +22,7 @@ __global__ void count_in_bytes(const std::int32_t* counts, IndexRange those, std
   bytes[i] = static_cast<std::uint8_t>(counts[i]);
 }
 
+/// Puts in the place of each place the number there.
 __global__ void pick(const std::int32_t* numbers, std::int32_t* places, std::int32_t count) {
   const std::int32_t i = thread_number();
   if (i < count) places[i] = numbers[places[i]];
