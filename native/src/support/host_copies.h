@@ -53,26 +53,9 @@ class HostCopies {
     check_cuda(cudaGetDevice(&device_), "asking for the device");
   }
   ~HostCopies() { close(); }
-  /// Ends all copies before what was declared earlier, and is copied, goes away.
-  class End {
-   public:
-    explicit End(HostCopies& copies) : copies_(copies) {}
-    ~End() { copies_.close(); }
-    End(const End&) = delete;
-    End& operator=(const End&) = delete;
-
-   private:
-    HostCopies& copies_;
-  };
   HostCopies(const HostCopies&) = delete;
   HostCopies& operator=(const HostCopies&) = delete;
 
-  /// Before the first copy: many are to come. Threads begin now, since that is in the way of other work with the
-  /// device.
-  void get_ready() {
-    const std::lock_guard lock(mutex_);
-    start_threads(k_most_threads);
-  }
   /// Before the first copy: so many bytes will be copied there. Threads begin now, beside the work of the stream, with
   /// the pages under what is fresh; what is there is lost, until end_laying() or the first copy.
   void expect(void* to, std::size_t size) {

@@ -110,7 +110,6 @@ class Builder {
     const cudaStream_t stream = *own_stream;
     const PlanePart part{arrays_, member, cells.begins()};
     const auto report_cells = [&](double done) { report(Share::order + (Share::find - Share::order) * done); };
-    std::optional<HostCopies> copies;
     std::optional<DeviceDiagram> diagram;
     const auto take_memory = [&](std::int32_t sides) {
       diagram.emplace(part, sites.count, sides, sites.weights != nullptr, stream);
@@ -119,27 +118,23 @@ class Builder {
       cells.start(device, report_cells);
     } else {
       // While the device finds them, which takes longer.
-      const auto meanwhile = [&] {
-        take_memory(DeviceDiagram::most_sides(sites.count));
-        copies.emplace(stream).get_ready();
-      };
+      const auto meanwhile = [&] { take_memory(DeviceDiagram::most_sides(sites.count)); };
       cells.start(device, report_cells, meanwhile, [&] { diagram.reset(); });
     }
     cells.share(part);
     watch.end();
     if (member == 0 && !request_.kept) make_room(sites.count);
     team_.meet();
-    if (!copies) copies.emplace(stream);
-    copy_sites(order, sites, part, *copies);
+    HostCopies copies(stream);
+    copy_sites(order, sites, part, copies);
     const std::int32_t sides = cells.finish(times, watch, report_cells);
     times.find = watch.read();
     report(Share::find);
     watch.start();
     if (!diagram) take_memory(sides);
     if (!diagram->has(sides)) throw LeftOver();
-    const HostCopies::End end(*copies);
     if (member == 0)
-      copies->to_host(cells.offsets().data(), static_cast<std::size_t>(sites.count) + 1, to_.cell_offsets);
+      copies.to_host(cells.offsets().data(), static_cast<std::size_t>(sites.count) + 1, to_.cell_offsets);
     const DeviceCells rows{sites.count,          part.cells(),   sites.at,
                            sites.weights,        sites.original, cells.offsets().data(),
                            diagram->cell_sides()};
@@ -148,10 +143,10 @@ class Builder {
     if (request_.kept && request_.only_triangles) {
       triangles = diagram->triangles(rows);
     } else {
-      diagram->number(rows, *copies, to_);
+      diagram->number(rows, copies, to_);
     }
     times.unite = watch.lap();
-    copies->finish([&](double share) { report(Share::unite + (1 - Share::unite) * share); });
+    copies.finish([&](double share) { report(Share::unite + (1 - Share::unite) * share); });
     if (!diagram->fits()) throw LeftOver();
     times.download = watch.lap();
     if (request_.kept) {
