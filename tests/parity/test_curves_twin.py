@@ -93,6 +93,22 @@ def test_the_same_large_diagram(kind: str, n: int) -> None:
             assert twin.device_times is not None and twin.device_times["find"] > 0
 
 
+@pytest.mark.parametrize("kind", ["parabola", "two rings"])
+def test_long_merges_are_left_to_the_processor(kind: str) -> None:
+    sites = CURVES[kind](10**6, np.random.default_rng(1))
+    own = sb.voronoi_2d(sites, device="cpu")
+    for device in DEVICES[:2]:
+        twin = sb.voronoi_2d(sites, device=device)
+        assert twin.device == "cpu"
+        for name in ARRAYS:
+            assert getattr(twin, name).tobytes() == getattr(own, name).tobytes(), (device, name)
+
+
+def test_long_merges_go_on_where_nobody_else_can_do_them() -> None:
+    sites = CURVES["parabola"](300_000, np.random.default_rng(1))
+    expect_kept(sb.voronoi_2d_on_device(sites), sb.voronoi_2d(sites, device="cpu"))
+
+
 @pytest.mark.parametrize("kind", ALONE)
 def test_what_stays_on_the_device_is_the_same(kind: str) -> None:
     sites = CURVES[kind](20_000, np.random.default_rng(1))

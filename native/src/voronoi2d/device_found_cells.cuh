@@ -127,11 +127,13 @@ class FoundCells {
 /// The cells of sites without weights.
 class CellFinder : public FoundCells {
  public:
-  CellFinder(const DeviceOrder& order, int member, int members, cudaStream_t stream)
+  /// `may_be_left`: whether the processor can do what would take longer here.
+  CellFinder(const DeviceOrder& order, int member, int members, bool may_be_left, cudaStream_t stream)
       : FoundCells(order.cell_count(), stream),
         order_(order),
         tiles_(order.places(), count_, member, members, stream),
-        member_(static_cast<std::size_t>(member)) {}
+        member_(static_cast<std::size_t>(member)),
+        may_be_left_(may_be_left) {}
 
   /// Where the members' cells begin, and the last one's end.
   const std::vector<std::int32_t>& begins() const { return tiles_.bounds(); }
@@ -217,17 +219,21 @@ class CellFinder : public FoundCells {
   template <class Report>
   bool find_left(const Count& found, Report& report) {
     if (!found.are_left) return false;
-    if (merge([&] { report(k_tiles); })) return true;
-    find(std::numeric_limits<int>::max(), report);
+    const Merged merged = merge([&] { report(k_tiles); });
+    if (merged == Merged::too_slow) throw LeftOver();
+    if (merged == Merged::not_told) find(std::numeric_limits<int>::max(), report);
     return true;
   }
 
   template <class Poll>
-  bool merge(Poll&& poll) {
-    if (count_ > std::numeric_limits<std::int32_t>::max() / (2 * MergedMesh::k_edges)) return false;
+  Merged merge(Poll&& poll) {
+    if (count_ > std::numeric_limits<std::int32_t>::max() / (2 * MergedMesh::k_edges)) return Merged::not_told;
     begin();
     make_pool(6 * static_cast<std::size_t>(count_));  // as many neighbours as all have together
-    MergedSites sites(order_.at(), order_.places(), count_, stream_);
+    // A merge is one lane's, which the processor outruns where it is long, as between two rings. Cell by cell takes
+    // longer still.
+    const int most_steps = may_be_left_ ? 1 << 17 : std::numeric_limits<int>::max() / 2;
+    MergedSites sites(order_.at(), order_.places(), count_, most_steps, stream_);
     sites.merge(blocks_of(reinterpret_cast<const void*>(merge_far_sites), k_threads, 0, device_));
     // Several members number what lies between their cells in steps by the square of a cell's neighbours.
     constexpr int k_any = std::numeric_limits<int>::max(), k_most_shared = 1024;
@@ -237,6 +243,7 @@ class CellFinder : public FoundCells {
   const DeviceOrder& order_;
   const Tiles tiles_;
   std::size_t member_ = 0;
+  bool may_be_left_;
   int device_ = 0;
 };
 

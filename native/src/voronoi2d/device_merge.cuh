@@ -21,7 +21,8 @@ struct MergedMesh {
   const double2* sites;
   HalfEdge* halves;
   std::int32_t* leaving;  ///< from a corner of a triangulation, counter-clockwise along its border; -1: there is none
-  const int* failed;      ///< whether what is merged is of no use any more
+  const int* failed;      ///< not 0: what is merged is of no use any more
+  int most_steps;         ///< of one merge
 
   static constexpr int k_edges = 3;  ///< room, for each site
   static SADDLEBACK_HOST_DEVICE std::int32_t twin(std::int32_t half) { return half ^ 1; }
@@ -77,14 +78,14 @@ class Merger {
     both.last_free = last_free_;
     return !fails_;
   }
+  /// Of the last merge, where it failed.
+  SADDLEBACK_HOST_DEVICE bool took_too_long() const { return steps_ > mesh_.most_steps; }
 
  private:
-  /// A tenth of a second. A million sites along one curve take less than a hundred, evenly in a square some thousands.
-  static constexpr int k_most_steps = 1 << 17;
   static constexpr int k_steps_between_looks = 1 << 12;
 
   SADDLEBACK_HOST_DEVICE void count_step() {
-    if (++steps_ > k_most_steps) fails_ = true;
+    if (++steps_ > mesh_.most_steps) fails_ = true;
     if (steps_ % k_steps_between_looks == 0 && *static_cast<const volatile int*>(mesh_.failed) != 0) fails_ = true;
   }
 

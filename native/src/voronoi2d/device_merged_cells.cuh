@@ -14,6 +14,9 @@
 namespace saddleback::voronoi2d {
 namespace {
 
+/// What came of merging all.
+enum class Merged : int { fully, too_slow, not_told };
+
 /// Ranks in a row, as one part.
 struct MergedRun {
   MergedPart part;
@@ -29,7 +32,8 @@ struct MergeTree {
   MergedPart* parts;      ///< two for each border, which has the number of the rank before it
   std::int32_t* arrived;  ///< by border: the other end of the run that came first; -1: none
   MergedRun* waiting;     ///< runs that end where their block does
-  int *waiting_count, *taken, *failed;
+  int *waiting_count, *taken;
+  int* failed;  ///< a `Merged`, the first
 
   /// Over a border; no two that matter are equal.
   __device__ std::uint64_t step(std::int32_t border) const {
@@ -50,13 +54,16 @@ struct MergeTree {
       const std::int32_t end = arrive(border, goes_on ? run.first : run.last);
       if (end < 0) break;
       (goes_on ? run.last : run.first) = end;
-      if (!Merger(mesh).merge(both[0], both[1], run.part)) {
-        *failed = 1;
+      Merger merger(mesh);
+      if (!merger.merge(both[0], both[1], run.part)) {
+        fail(merger.took_too_long() ? Merged::too_slow : Merged::not_told);
         break;
       }
     }
     return true;
   }
+  /// Who stops because others failed says nothing new.
+  __device__ void fail(Merged why) const { atomicCAS(failed, 0, static_cast<int>(why)); }
 };
 
 constexpr int k_merge_threads = 64, k_merge_each = 2, k_merge_sites = k_merge_threads * k_merge_each;
@@ -184,13 +191,16 @@ __global__ void __launch_bounds__(k_threads, 2)
     list_merged_cells(MergeTree tree, IndexRange ranks, int most_neighbours, DeviceLists lists) {
   const std::int32_t rank = ranks.begin + thread_number();
   if (rank >= ranks.end || *tree.failed) return;
-  if (!CellLister(tree.mesh, rank).list(most_neighbours, lists)) *tree.failed = 1;
+  if (!CellLister(tree.mesh, rank).list(most_neighbours, lists)) tree.fail(Merged::not_told);
 }
 
 /// The Delaunay triangulation of all sites.
 class MergedSites {
  public:
-  MergedSites(const double2* sites, const std::uint32_t* places, std::int32_t count, cudaStream_t stream)
+  /// `most_steps`: of one merge. A million sites along one curve need less than a hundred, evenly in a square some
+  /// thousands; a hundred thousand are a tenth of a second.
+  MergedSites(const double2* sites, const std::uint32_t* places, std::int32_t count, int most_steps,
+              cudaStream_t stream)
       : stream_(stream),
         halves_(2 * MergedMesh::k_edges * static_cast<std::size_t>(count), stream),
         leaving_(static_cast<std::size_t>(count), stream),
@@ -198,7 +208,7 @@ class MergedSites {
         parts_(2 * static_cast<std::size_t>(count), stream),
         waiting_(2 * static_cast<std::size_t>(block_count(count)), stream),
         counters_(3, stream),
-        tree_{{sites, halves_.data(), leaving_.data(), counters_.data() + 2},
+        tree_{{sites, halves_.data(), leaving_.data(), counters_.data() + 2, most_steps},
               places,
               count,
               parts_.data(),
@@ -217,10 +227,10 @@ class MergedSites {
     check_cuda(cudaGetLastError(), "merging sites");
   }
 
-  /// Fills the lists of some cells. Waits for the device; poll() may throw meanwhile. \return false when something
-  /// cannot be told, takes too long, or a cell has too many neighbours.
+  /// Fills the lists of some cells. Waits for the device; poll() may throw meanwhile. Not told are also the neighbours
+  /// of a cell that has too many.
   template <class Poll>
-  bool list(IndexRange ranks, int most_neighbours, const DeviceLists& lists, Poll&& poll) {
+  Merged list(IndexRange ranks, int most_neighbours, const DeviceLists& lists, Poll&& poll) {
     const std::int32_t edges = MergedMesh::k_edges * tree_.count;
     find_leaving<<<blocks_for(edges), k_threads, 0, stream_>>>(tree_.mesh, edges);
     check_cuda(cudaGetLastError(), "listing cells");
@@ -230,7 +240,7 @@ class MergedSites {
     wait_polling(
         stream_, [&](cudaStream_t) { poll(); },
         [&](cudaStream_t aside) { (void)cudaMemsetAsync(failed, 1, sizeof *failed, aside); });
-    return counters_.value_at(2) == 0;
+    return static_cast<Merged>(counters_.value_at(2));
   }
 
  private:

@@ -94,7 +94,7 @@ class Builder {
                             visible->cell_places(), given,         is_ordered};
       find(member, cells, sites, order, watch, own_stream);
     } else {
-      CellFinder cells(order, member, team_.members(), stream);
+      CellFinder cells(order, member, team_.members(), !request_.kept, stream);
       find(member, cells,
            {order.cell_count(), order.at(), nullptr, order.original(), order.cell_places(), given, is_ordered}, order,
            watch, own_stream);
