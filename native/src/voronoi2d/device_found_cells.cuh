@@ -219,15 +219,15 @@ class CellFinder : public FoundCells {
   template <class Report>
   bool find_left(const Count& found, Report& report) {
     if (!found.are_left) return false;
-    const Merged merged = merge([&] { report(k_tiles); });
-    if (merged == Merged::too_slow) throw LeftOver();
-    if (merged == Merged::not_told) find(std::numeric_limits<int>::max(), report);
+    const MergeOutcome merged = merge([&] { report(k_tiles); });
+    if (merged == MergeOutcome::too_slow) throw LeftOver();
+    if (merged == MergeOutcome::not_told) find(std::numeric_limits<int>::max(), report);
     return true;
   }
 
   template <class Poll>
-  Merged merge(Poll&& poll) {
-    if (count_ > std::numeric_limits<std::int32_t>::max() / (2 * MergedMesh::k_edges)) return Merged::not_told;
+  MergeOutcome merge(Poll&& poll) {
+    if (count_ > std::numeric_limits<std::int32_t>::max() / (2 * MergedMesh::k_edges)) return MergeOutcome::not_told;
     begin();
     make_pool(6 * static_cast<std::size_t>(count_));  // as many neighbours as all have together
     // A merge is one lane's, which the processor outruns where it is long, as between two rings. Cell by cell takes

@@ -15,7 +15,7 @@ namespace saddleback::voronoi2d {
 namespace {
 
 /// What came of merging all.
-enum class Merged : int { fully, too_slow, not_told };
+enum class MergeOutcome : int { fully, too_slow, not_told };
 
 /// Ranks in a row, as one part.
 struct MergedRun {
@@ -33,7 +33,7 @@ struct MergeTree {
   std::int32_t* arrived;  ///< by border: the other end of the run that came first; -1: none
   MergedRun* waiting;     ///< runs that end where their block does
   int *waiting_count, *taken;
-  int* failed;  ///< a `Merged`, the first
+  int* failed;  ///< a `MergeOutcome`, the first
 
   /// Over a border; no two that matter are equal.
   __device__ std::uint64_t step(std::int32_t border) const {
@@ -56,14 +56,14 @@ struct MergeTree {
       (goes_on ? run.last : run.first) = end;
       Merger merger(mesh);
       if (!merger.merge(both[0], both[1], run.part)) {
-        fail(merger.took_too_long() ? Merged::too_slow : Merged::not_told);
+        fail(merger.took_too_long() ? MergeOutcome::too_slow : MergeOutcome::not_told);
         break;
       }
     }
     return true;
   }
   /// Who stops because others failed says nothing new.
-  __device__ void fail(Merged why) const { atomicCAS(failed, 0, static_cast<int>(why)); }
+  __device__ void fail(MergeOutcome why) const { atomicCAS(failed, 0, static_cast<int>(why)); }
 };
 
 constexpr int k_merge_threads = 64, k_merge_each = 2, k_merge_sites = k_merge_threads * k_merge_each;
@@ -191,7 +191,7 @@ __global__ void __launch_bounds__(k_threads, 2)
     list_merged_cells(MergeTree tree, IndexRange ranks, int most_neighbours, DeviceLists lists) {
   const std::int32_t rank = ranks.begin + thread_number();
   if (rank >= ranks.end || *tree.failed) return;
-  if (!CellLister(tree.mesh, rank).list(most_neighbours, lists)) tree.fail(Merged::not_told);
+  if (!CellLister(tree.mesh, rank).list(most_neighbours, lists)) tree.fail(MergeOutcome::not_told);
 }
 
 /// The Delaunay triangulation of all sites.
@@ -230,7 +230,7 @@ class MergedSites {
   /// Fills the lists of some cells. Waits for the device; poll() may throw meanwhile. Not told are also the neighbours
   /// of a cell that has too many.
   template <class Poll>
-  Merged list(IndexRange ranks, int most_neighbours, const DeviceLists& lists, Poll&& poll) {
+  MergeOutcome list(IndexRange ranks, int most_neighbours, const DeviceLists& lists, Poll&& poll) {
     const std::int32_t edges = MergedMesh::k_edges * tree_.count;
     find_leaving<<<blocks_for(edges), k_threads, 0, stream_>>>(tree_.mesh, edges);
     check_cuda(cudaGetLastError(), "listing cells");
@@ -240,7 +240,7 @@ class MergedSites {
     wait_polling(
         stream_, [&](cudaStream_t) { poll(); },
         [&](cudaStream_t aside) { (void)cudaMemsetAsync(failed, 1, sizeof *failed, aside); });
-    return static_cast<Merged>(counters_.value_at(2));
+    return static_cast<MergeOutcome>(counters_.value_at(2));
   }
 
  private:
