@@ -132,6 +132,7 @@ class Builder {
     report(Share::find);
     watch.start();
     if (!diagram) take_memory(sides);
+    report(Share::find);  // the driver may have taken a while
     if (!diagram->has(sides)) throw LeftOver();
     if (member == 0)
       copies.to_host(cells.offsets().data(), static_cast<std::size_t>(sites.count) + 1, to_.cell_offsets);
@@ -145,7 +146,9 @@ class Builder {
     } else {
       diagram->number(rows, copies, to_);
     }
-    times.unite = watch.lap();
+    watch.end();
+    wait_polling(stream, [&] { report(Share::find); });
+    times.unite = watch.read();
     copies.finish([&](double share) { report(Share::unite + (1 - Share::unite) * share); });
     if (!diagram->fits()) throw LeftOver();
     times.download = watch.lap();
