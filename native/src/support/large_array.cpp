@@ -10,8 +10,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <memory>
 #include <mutex>
+#include <thread>
 
 #include "support/parallel.h"
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
@@ -21,6 +23,11 @@
 #endif
 
 namespace saddleback {
+
+namespace {
+/// Goes back to the system within a few milliseconds.
+constexpr std::size_t k_returned_piece = std::size_t{1} << 24;
+}  // namespace
 
 #ifdef SADDLEBACK_OWN_PAGES
 
@@ -143,13 +150,27 @@ void* allocate_large(std::size_t size) {
   return memory;
 }
 
-void free_large(void* memory, std::size_t size) noexcept {
+namespace {
+
+/// Piece by piece, so that others who ask for memory meanwhile wait for one of them at most.
+void give_back_pages(char* memory, std::size_t size) noexcept {
+  while (size > 0) {
+    const std::size_t piece = std::min(size, k_returned_piece);
+    const std::size_t kept_size = kept_pages().keep(memory, piece);
+    if (kept_size < piece) munmap(memory + kept_size, piece - kept_size);
+    memory += piece;
+    size -= piece;
+  }
+}
+
+void free_now(void* memory, std::size_t size) noexcept {
   const std::size_t had = rounded(size);
   if (size >= k_smallest_kept && kept().keep(memory, had)) return;
   if (had < k_smallest) return std::free(memory);  // as it was had: what is kept is had by any size that it does for
-  const std::size_t kept_size = had >= k_huge ? kept_pages().keep(memory, had) : 0;
-  if (kept_size < had) munmap(static_cast<char*>(memory) + kept_size, had - kept_size);
+  give_back_pages(static_cast<char*>(memory), had);
 }
+
+}  // namespace
 
 std::size_t most_kept_large() { return kept_pages().most(); }
 
@@ -163,9 +184,19 @@ void* allocate_large(std::size_t size) {
   return memory;
 }
 
-void free_large(void* memory, std::size_t) noexcept { std::free(memory); }
+static void free_now(void* memory, std::size_t) noexcept { std::free(memory); }
 
 #endif
+
+void free_large(void* memory, std::size_t size) noexcept {
+  if (size < k_returned_piece || std::uncaught_exceptions() == 0) return free_now(memory, size);
+  // Gigabytes, in small pages where there are no huge ones, go back in longer than whoever cancelled should wait.
+  try {
+    std::thread([=] { free_now(memory, size); }).detach();
+  } catch (...) {
+    free_now(memory, size);  // no thread is to be had
+  }
+}
 
 void copy_large(void* to, const void* from, std::size_t size, int threads) {
   constexpr std::size_t k_piece = std::size_t{1} << 21;
