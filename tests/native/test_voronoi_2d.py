@@ -14,7 +14,7 @@ from scipy.spatial import Delaunay
 
 import saddleback as sb
 from tests.native import plane_sites
-from tests.native.cancelling import check_progress_and_cancel
+from tests.native.cancelling import check_it_stops_when_silent, check_progress_and_cancel
 
 
 @pytest.mark.parametrize("kind", plane_sites.KINDS)
@@ -283,6 +283,21 @@ def test_a_million_sites_in_one_square_stop_within_a_moment():
 def test_millions_of_sites_on_one_line_stop_within_a_moment():
     sites = plane_sites.collinear(4 * 10**6, np.random.default_rng(3))
     check_progress_and_cancel(lambda job: sb.voronoi_2d(sites, threads=1, job=job), 0.7)
+
+
+def circle_and_centre(n: int) -> plane_sites.Points:
+    return np.vstack([plane_sites.circle(n - 1, np.random.default_rng(n)), [[0, 0]]])
+
+
+@pytest.mark.parametrize(
+    ("curve", "fraction"),
+    [(parabola, 0.6), (circle_and_centre, 0.6), (circle_and_centre, 0.75)],
+    ids=["parabola, joining halves", "circle and centre, joining halves", "circle and centre, the widest cell"],
+)
+def test_millions_of_sites_along_curves_stop_at_once(curve, fraction):
+    """One join takes them half a second, and so does one cell."""
+    sites = curve(4 * 10**6)
+    check_it_stops_when_silent(lambda job: sb.voronoi_2d(sites, threads=1, job=job), fraction)
 
 
 def test_diagrams_of_sizes_nearly_alike_come_and_go() -> None:

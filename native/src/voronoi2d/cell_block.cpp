@@ -10,10 +10,11 @@
 namespace saddleback::voronoi2d {
 
 CellBlock::CellBlock() : few_half_(k_few * (k_most + 2)), few_neighbour_(k_few * (k_most + 2)) {
-  make_room(k_few * (k_most + 2));
+  make_room(k_few * (k_most + 2), {});
 }
 
-void CellBlock::gather(const Triangulation& mesh, const Index* leaving, Index begin, Index count) {
+void CellBlock::gather(const Triangulation& mesh, const Index* leaving, Index begin, Index count,
+                       const JobStage& stage) {
   cell_count = count;
   size = 0;
   open.clear();
@@ -29,19 +30,21 @@ void CellBlock::gather(const Triangulation& mesh, const Index* leaving, Index be
       continue;
     }
     lowest[cell] = k_none;
-    const bool is_open = gather_any(mesh, leaving[cell]);
+    const bool is_open = gather_any(mesh, leaving[cell], stage);
     if (is_open) open.push_back(cell);
-    make_room(static_cast<Index>(any_half_.size()) + k_few * (count - cell + 1));
-    append_any(begin + cell, is_open);
+    make_room(static_cast<Index>(any_half_.size()) + k_few * (count - cell + 1), stage);
+    append_any(begin + cell, is_open, stage);
   }
   starts[count] = size;
 }
 
-void CellBlock::make_room(Index more) {
+void CellBlock::make_room(Index more, const JobStage& stage) {
   const std::size_t wanted = size + more;
   if (wanted <= halves.size()) return;
-  for (std::vector<Index>* values : {&halves, &sites, &neighbours, &next_neighbours, &befores})
+  for (std::vector<Index>* values : {&halves, &sites, &neighbours, &next_neighbours, &befores}) {
+    stage.check();
     values->resize(2 * wanted);
+  }
 }
 
 namespace {
@@ -124,7 +127,7 @@ void CellBlock::gather_few_flat(const Triangulation& mesh, Index first, Index ce
 }
 
 /// Whether the cell is open.
-bool CellBlock::gather_any(const Triangulation& mesh, Index first) {
+bool CellBlock::gather_any(const Triangulation& mesh, Index first, const JobStage& stage) {
   any_half_.clear();
   any_neighbour_.clear();
   any_lowest_ = 0;
@@ -134,6 +137,7 @@ bool CellBlock::gather_any(const Triangulation& mesh, Index first) {
   };
   Index half = first;
   do {
+    stage.check();
     const Index last = previous_half(half), neighbour = mesh.corners[next_half(half)];
     if ((mesh.twins[half | 3] >> (half & 3) & 1) == 0) {
       add(half, neighbour);
@@ -177,16 +181,17 @@ void CellBlock::append_few(Index cell, Index cell_site) {
   size = start + count;
 }
 
-void CellBlock::append_any(Index cell_site, bool is_open) {
+void CellBlock::append_any(Index cell_site, bool is_open, const JobStage& stage) {
   const Index count = static_cast<Index>(any_half_.size()), start = size;
-  for (Index i = 0, from = any_lowest_; i < count; ++i) {
+  Index from = any_lowest_;
+  for_sides(0, count, stage, [&](Index i) {
     halves[start + i] = any_half_[from];
     neighbours[start + i] = any_neighbour_[from];
     from = from + 1 == count ? 0 : from + 1;
     next_neighbours[start + i] = any_neighbour_[from];
     sites[start + i] = cell_site;
     befores[start + i] = start + i - 1;
-  }
+  });
   if (is_open) next_neighbours[start + count - 1] = k_none;
   befores[start] = start + count - 1;
   size = start + count;

@@ -2,9 +2,11 @@
 // The cells of some sites in a row, side by side: what is done to each of their corners and sides is then one long loop
 // instead of a short one for each cell, whose ends no processor predicts.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 #include "voronoi2d/triangulation.h"
@@ -19,8 +21,17 @@ class CellBlock {
 
   CellBlock();
   /// Cells of the `count` sites from `begin` on. `leaving`: for each a half-edge from there, at the border the one
-  /// along it, counter-clockwise.
-  void gather(const Triangulation& mesh, const Index* leaving, Index begin, Index count);
+  /// along it, counter-clockwise. \throw Cancelled
+  void gather(const Triangulation& mesh, const Index* leaving, Index begin, Index count, const JobStage& stage);
+  /// Calls work(i) for i in [begin, end): numbers of sides, of which one cell may have most. \throw Cancelled
+  template <class Work>
+  static void for_sides(Index begin, Index end, const JobStage& stage, Work&& work) {
+    constexpr Index k_at_once = 1 << 14;
+    while (begin < end) {
+      stage.check();
+      for (const Index stop = begin + std::min(k_at_once, end - begin); begin < stop; ++begin) work(begin);
+    }
+  }
 
   Index cell_count = 0, size = 0;          ///< `size`: sides of all cells
   std::array<Index, k_most + 1> starts{};  ///< by cell: its first side
@@ -38,10 +49,10 @@ class CellBlock {
   template <Index Together>
   bool gather_few(const Triangulation& mesh, const Index* leaving, Index cell);
   void gather_few_flat(const Triangulation& mesh, Index first, Index cell);
-  bool gather_any(const Triangulation& mesh, Index first);
+  bool gather_any(const Triangulation& mesh, Index first, const JobStage& stage);
   void append_few(Index cell, Index cell_site);
-  void append_any(Index cell_site, bool is_open);
-  void make_room(Index more);
+  void append_any(Index cell_site, bool is_open, const JobStage& stage);
+  void make_room(Index more, const JobStage& stage);
 
   // Sides of cells with few, `k_few` places for each, before they are turned to begin with the lowest neighbour.
   std::vector<Index> few_half_, few_neighbour_;

@@ -52,8 +52,9 @@ struct Piece {
 
 class Numberer {
  public:
-  Numberer(Triangulation& mesh, const OrderedSites& sites, int threads, Numbering& result)
-      : mesh_(mesh),
+  Numberer(Triangulation& mesh, const OrderedSites& sites, int threads, Numbering& result, const JobStage& stage)
+      : stage_(stage),
+        mesh_(mesh),
         sites_(sites),
         threads_(thread_count(threads)),
         result_(result),
@@ -66,7 +67,7 @@ class Numberer {
       pieces_.push_back({begin, std::min(count, begin + piece_size_)});
   }
 
-  void run(const JobStage& stage) {
+  void run() {
     const std::size_t count = sites_.count();
     result_.offsets = std::move(mesh_.leaving);  // until it is a cell's turn, a half-edge from its site
     result_.offsets.resize(count + 1);
@@ -77,20 +78,20 @@ class Numberer {
     Counts all;
     if (threads_ == 1) {  // numbers follow without being counted before, and those of lower cells are known
       for (Piece& piece : pieces_) {
-        stage.update(0.8 * piece.begin / static_cast<double>(count));
+        stage_.update(0.8 * piece.begin / static_cast<double>(count));
         start_after(piece, all);
         add_to(all, number_piece(piece, 0, scratch_[0]));
       }
     } else {
       std::vector<Counts> counts(pieces_.size());
-      for_pieces(stage.part(0, 0.1), [&](Index i, int thread) { count_about(i, counts, scratch_[thread]); });
+      for_pieces(stage_.part(0, 0.1), [&](Index i, int thread) { count_about(i, counts, scratch_[thread]); });
       for (std::size_t i = 0; i < pieces_.size(); ++i) {
         start_after(pieces_[i], all);
         add_to(all, counts[i]);
       }
-      for_pieces(stage.part(0.1, 0.7),
+      for_pieces(stage_.part(0.1, 0.7),
                  [&](Index i, int thread) { number_piece(pieces_[i], pieces_[i].begin, scratch_[thread]); });
-      for_pieces(stage.part(0.7, 0.8), [&](Index i, int) { resolve(pieces_[i]); });
+      for_pieces(stage_.part(0.7, 0.8), [&](Index i, int) { resolve(pieces_[i]); });
     }
     result_.offsets.back() = all.corners;
     result_.corner_vertices.resize(all.corners);
@@ -100,7 +101,7 @@ class Numberer {
     LargeArray<Index>().swap(mesh_.twins);
     make_room_for_edges(all.edges);
     if (edges_at_once_) return;
-    for_pieces(stage.part(0.8, 1), [&](Index i, int) {
+    for_pieces(stage_.part(0.8, 1), [&](Index i, int) {
       const bool is_last = static_cast<std::size_t>(i) + 1 == pieces_.size();
       list_edges(pieces_[i], is_last ? all.edges : pieces_[i + 1].edges);
     });
@@ -202,7 +203,7 @@ class Numberer {
     for (Index begin = piece.begin; begin < piece.end; begin += CellBlock::k_most) {
       const Index count = std::min(CellBlock::k_most, piece.end - begin);
       ask_for_triangles(begin + k_ahead);
-      scratch.cells.gather(mesh_, result_.offsets.data() + begin, begin, count);
+      scratch.cells.gather(mesh_, result_.offsets.data() + begin, begin, count, stage_);
       select_own(scratch);
       work(begin);
     }
@@ -272,7 +273,7 @@ class Numberer {
     const CellBlock& cells = scratch.cells;
     const Index first = vertex;
     bool has_large = false;
-    for (Index k = 0; k < scratch.own_corner_count; ++k) {
+    CellBlock::for_sides(0, scratch.own_corner_count, stage_, [&](Index k) {
       const Index i = scratch.own_corners[k], half = cells.halves[i];
       has_large |= is_large(half);
       if (!is_large(half)) {
@@ -282,13 +283,13 @@ class Numberer {
         const std::size_t size = scratch.around.size();  // three evenly about it: their circle is well determined
         place(vertex++, cells.sites[i], scratch.around[size / 3], scratch.around[2 * size / 3]);
       }
-    }
+    });
     if (!has_large) return place_row(first, scratch);
-    for (Index k = 0; k < scratch.own_corner_count; ++k) {
+    CellBlock::for_sides(0, scratch.own_corner_count, stage_, [&](Index k) {
       const Index i = scratch.own_corners[k], half = cells.halves[i];
       if (!is_large(half))
         place(mesh_.corners[half | 3], cells.sites[i], cells.neighbours[i], cells.next_neighbours[i]);
-    }
+    });
   }
 
   /// Vertices in a row, one for each corner that the block's cells give a number to.
@@ -297,8 +298,8 @@ class Numberer {
     const Index *const own = scratch.own_corners.data(), count = scratch.own_corner_count;
     const SiteColumns columns{sites_.x.data(), sites_.y.data()};
     Vec2* const to = result_.vertices.data() + first;
-    for (Index k = 0; k < count; k += 2) {
-      const Index i = own[k], j = own[std::min(k + 1, count - 1)];
+    CellBlock::for_sides(0, (count + 1) / 2, stage_, [&](Index pair) {
+      const Index k = 2 * pair, i = own[k], j = own[std::min(k + 1, count - 1)];
       const Index a[3] = {cells.sites[i], cells.neighbours[i], cells.next_neighbours[i]},
                   b[3] = {cells.sites[j], cells.neighbours[j], cells.next_neighbours[j]};
       const TwoCentres centres(columns, a, b);
@@ -309,7 +310,7 @@ class Numberer {
         place(first + k, a[0], a[1], a[2]);
         if (k + 1 < count) place(first + k + 1, b[0], b[1], b[2]);
       }
-    }
+    });
   }
 
   /// Calls work(begin, end, whether some numbers may be given in other pieces) for sides of cells in a row.
@@ -328,15 +329,12 @@ class Numberer {
     const Index *const half = cells.halves.data(), *const numbers = mesh_.corners.data();
     Index* const to = result_.corner_vertices.data() + corner;
     for_runs(cells, known, [&](Index begin, Index end, bool may_be_late) {
-      if (!may_be_late) {
-        for (Index i = begin; i < end; ++i) to[i] = numbers[half[i] | 3];
-        return;
-      }
-      for (Index i = begin; i < end; ++i) {
+      if (!may_be_late) return CellBlock::for_sides(begin, end, stage_, [&](Index i) { to[i] = numbers[half[i] | 3]; });
+      CellBlock::for_sides(begin, end, stage_, [&](Index i) {
         const bool is_late = lowest_about(i, scratch) < known;
         to[i] = is_late ? late(half[i] | 3) : numbers[half[i] | 3];
         if (is_late) piece.late_corners.push_back(corner + i);
-      }
+      });
     });
     for (const Index cell : cells.open) to[cells.starts[cell + 1] - 1] = k_none;
   }
@@ -355,20 +353,17 @@ class Numberer {
     const CellBlock& cells = scratch.cells;
     const Index *const half = cells.halves.data(), *const neighbour = cells.neighbours.data();
     Index *const sides = result_.side_edges.data() + at.corners, *const twins = mesh_.twins.data();
-    for (Index k = 0; k < scratch.own_side_count; ++k) {
+    CellBlock::for_sides(0, scratch.own_side_count, stage_, [&](Index k) {
       const Index side = half[scratch.own_sides[k]], twin = twins[side];
       twins[twin < 0 ? side : twin] = ~(at.edges + k);
-    }
+    });
     for_runs(cells, known, [&](Index begin, Index end, bool may_be_late) {
-      if (!may_be_late) {
-        for (Index i = begin; i < end; ++i) sides[i] = ~twins[half[i]];
-        return;
-      }
-      for (Index i = begin; i < end; ++i) {
+      if (!may_be_late) return CellBlock::for_sides(begin, end, stage_, [&](Index i) { sides[i] = ~twins[half[i]]; });
+      CellBlock::for_sides(begin, end, stage_, [&](Index i) {
         const bool is_late = neighbour[i] < known;
         sides[i] = is_late ? half[i] : ~twins[half[i]];
         if (is_late) piece.late_sides.push_back(at.corners + i);
-      }
+      });
     });
     for (Index k = 0; k < scratch.own_side_count; ++k) sides[scratch.own_sides[k]] = at.edges + k;
     if (edges_at_once_) write_edges(at, scratch);
@@ -450,6 +445,7 @@ class Numberer {
     }
   }
 
+  JobStage stage_;
   Triangulation& mesh_;
   const OrderedSites& sites_;
   int threads_;
@@ -467,7 +463,7 @@ Numbering number(Triangulation&& triangulation, const OrderedSites& sites, int t
   if (triangulation.is_line) return strips_of(sites, stage);
   Triangulation mesh = std::move(triangulation);
   Numbering result;
-  Numberer(mesh, sites, threads, result).run(stage);
+  Numberer(mesh, sites, threads, result, stage).run();
   return result;
 }
 

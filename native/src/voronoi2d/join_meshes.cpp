@@ -91,8 +91,9 @@ void MeshJoiner::close_gap(MeshPart& result, const Sides& sides) {
   const Index lowest_left = gap.left;
   Index first = k_none;
   while (true) {
-    while (remove_behind(result, gap, true)) {}
-    while (remove_behind(result, gap, false)) {}
+    stage_.check();
+    while (remove_behind(result, gap, true)) stage_.check();
+    while (remove_behind(result, gap, false)) stage_.check();
     const bool sees_left = sees(gap, left_rim_), sees_right = sees(gap, right_rim_);
     if (!sees_left && !sees_right) break;
     const bool is_left = sees_left && (!sees_right || place_in_circle(gap, left_rim_.back().site,
@@ -100,11 +101,15 @@ void MeshJoiner::close_gap(MeshPart& result, const Sides& sides) {
     const Index half = close_further(result, gap, is_left);
     if (first == k_none) first = half;
   }
-  for (const Index half : loose_)
+  for (const Index half : loose_) {
+    stage_.check();
     if (half >= 0 && mesh_.twins[half] < 0) leaving_[mesh_.triangles[half]] = half;
+  }
   for (const auto* rim : {&left_rim_, &right_rim_})
-    for (const RimEdge& edge : *rim)
+    for (const RimEdge& edge : *rim) {
+      stage_.check();
       if (edge.half >= 0) mesh_.twins[edge.half] = k_none;
+    }
   leaving_[lowest_left] = first;
   leaving_[gap.right] = gap.base;
 }
@@ -151,13 +156,20 @@ void MeshJoiner::list_rims(const Gap& gap) {
   loose_.clear();
   left_rim_.clear();
   right_rim_.clear();
-  for (Index site = gap.right; right_rim_.empty() || site != gap.right; site = target(leaving_[site]))
+  for (Index site = gap.right; right_rim_.empty() || site != gap.right; site = target(leaving_[site])) {
+    stage_.check();
     right_rim_.push_back({site, leaving_[site]});
-  for (Index site = gap.left; left_rim_.empty() || site != gap.left; site = target(leaving_[site]))
+  }
+  for (Index site = gap.left; left_rim_.empty() || site != gap.left; site = target(leaving_[site])) {
+    stage_.check();
     left_rim_.push_back({target(leaving_[site]), leaving_[site]});
+  }
   std::reverse(left_rim_.begin(), left_rim_.end());
   for (const auto* rim : {&left_rim_, &right_rim_})
-    for (std::size_t place = 0; place < rim->size(); ++place) note_place(*rim, place);
+    for (std::size_t place = 0; place < rim->size(); ++place) {
+      stage_.check();
+      note_place(*rim, place);
+    }
 }
 
 bool MeshJoiner::sees(const Gap& gap, const std::vector<RimEdge>& rim) const {
@@ -242,12 +254,16 @@ void MeshJoiner::join_sites(MeshPart& result, const MeshPart& sites, Index neare
   order_.resize(sites.end - sites.begin);
   std::iota(order_.begin(), order_.end(), sites.begin);
   std::sort(order_.begin(), order_.end(), [&](Index a, Index b) {
+    stage_.check();
     if (!is_ascending) std::swap(a, b);
     const std::pair<double, double> at_a(mesh_.x[a], mesh_.y[a]), at_b(mesh_.x[b], mesh_.y[b]);
     if (is_upright) return at_a < at_b;
     return std::pair(at_a.second, at_a.first) < std::pair(at_b.second, at_b.first);
   });
-  for (const Index site : order_) nearest = join_site(result, site, nearest);
+  for (const Index site : order_) {
+    stage_.check();
+    nearest = join_site(result, site, nearest);
+  }
 }
 
 /// Joins a site to all edges of the hull that it sees; one of these is at the site `nearest`. Returns the site.
@@ -292,6 +308,7 @@ void MeshJoiner::restore(std::vector<Index>& doubtful) {
     flags = is_flat ? flags | 1 << (half & 3) : flags & ~(1 << (half & 3));
   };
   while (!doubtful.empty()) {
+    stage_.check();
     const Index half = doubtful.back(), twin = mesh_.twins[half];
     doubtful.pop_back();
     if (twin < 0) continue;

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "saddleback/job.h"
+
 #include "voronoi2d/planar_mesh.h"
 
 namespace saddleback::voronoi2d {
@@ -27,13 +29,14 @@ class MeshJoiner {
  public:
   /// Of the mesh only the arrays matter; bit k of `twins[4 t + 3]` is set where edge k and the one beyond have one
   /// circle. `leaving`: by site a half-edge from there, along the border for those on it.
-  MeshJoiner(const PlanarMesh& mesh, Index* leaving) : mesh_(mesh), leaving_(leaving) {}
+  MeshJoiner(const PlanarMesh& mesh, Index* leaving, const JobStage& stage)
+      : mesh_(mesh), leaving_(leaving), stage_(stage) {}
 
   /// True when `result` is Delaunay's triangulation of both; false when nothing was done, because neither has triangles
-  /// or no line parts them. O(changes) and as much as the borders.
+  /// or no line parts them. O(changes) and as much as the borders. \throw Cancelled
   bool join(MeshPart& first, MeshPart& second, MeshPart& result);
   /// Makes a triangulation Delaunay's (C. L. Lawson, 1977). `doubtful`: half-edges among whose edges are all that do
-  /// not pass the circle test or whose triangles share a circle; used up.
+  /// not pass the circle test or whose triangles share a circle; used up. \throw Cancelled
   void restore(std::vector<Index>& doubtful);
 
  private:
@@ -81,6 +84,7 @@ class MeshJoiner {
 
   PlanarMesh mesh_;
   Index* leaving_;
+  JobStage stage_;
   std::vector<Index> doubtful_, order_;
   std::vector<RimEdge> left_rim_, right_rim_;  ///< the next one last
   std::vector<Index> loose_;                   ///< edges without triangles: the half-edge of that which one gets first

@@ -82,7 +82,7 @@ class TileSweeper {
     find_box(part);
     const Index first = 2 * part.begin;
     part.free = {{first, 2 * part.end}};
-    if (is_line(part)) return;
+    if (is_line(part, stage)) return;
     const Vec2 centre(0.5 * sites_.x[part.leftmost] + 0.5 * sites_.x[part.rightmost],
                       0.5 * sites_.y[part.lowest] + 0.5 * sites_.y[part.highest]);
     Index *const corners = result_.corners.data(), *const twins = result_.twins.data();
@@ -119,11 +119,13 @@ class TileSweeper {
     std::tie(part.lowest, part.highest) = ends_of(sites_.y, part.begin, part.end);
   }
 
-  bool is_line(const MeshPart& part) const {
-    for (Index site = part.begin + 2; site < part.end; ++site)
+  bool is_line(const MeshPart& part, const JobStage& stage) const {
+    for (Index site = part.begin + 2; site < part.end; ++site) {
+      stage.check();
       if (predicates::orient_2d_by_steps(point(part.begin), point(part.begin + 1), point(site)) !=
           predicates::Sign::zero)
         return false;
+    }
     return true;
   }
 
@@ -210,26 +212,28 @@ class TileSweeper {
 /// All tiles and pairs. Pairs are joined right after their parts, while these are in a core's cache.
 class TileWork {
  public:
-  TileWork(const OrderedSites& sites, std::vector<Square>& squares, Triangulation& result, int threads)
+  TileWork(const OrderedSites& sites, std::vector<Square>& squares, Triangulation& result, int threads,
+           const JobStage& stage)
       : squares_(squares),
+        stage_(stage),
         threads_(std::min(thread_count(threads), static_cast<int>(squares.size()))),
         count_(sites.count()) {
     const PlanarMesh mesh{sites.x.data(), sites.y.data(), count_, result.corners.data(), result.twins.data(), 0};
     joiners_.reserve(threads_);
     for (int i = 0; i < threads_; ++i) {
-      joiners_.emplace_back(mesh, result.leaving.data());
+      joiners_.emplace_back(mesh, result.leaving.data(), stage_);
       sweepers_.emplace_back(sites, result, joiners_.back());
     }
     share_out();
   }
 
-  void run(const JobStage& stage) {
+  void run() {
     for (const std::vector<Run>& level : levels_) {
       parallel_for(static_cast<Index>(level.size()), threads_, 1, [&](Index i, int thread) {
-        for (Index square = level[i].begin; square < level[i].end; ++square) work(squares_[square], thread, stage);
+        for (Index square = level[i].begin; square < level[i].end; ++square) work(squares_[square], thread);
       });
     }
-    stage.update(1);
+    stage_.update(1);
   }
 
  private:
@@ -260,25 +264,26 @@ class TileWork {
     if (level[size - 1] == 0) add(size - 1);
   }
 
-  void work(Square& square, int thread, const JobStage& stage) {
-    stage.check();
+  void work(Square& square, int thread) {
+    stage_.check();
     const auto tell = [&](double sites, Index pairs) {
-      stage.update(0.9 * sites / count_ + 0.1 * pairs / static_cast<double>(squares_.size()));
+      stage_.update(0.9 * sites / count_ + 0.1 * pairs / static_cast<double>(squares_.size()));
     };
     if (square.first != k_none) {
       MeshPart &part = square.part, &first = squares_[square.first].part, &second = squares_[square.second].part;
-      if (!joiners_[thread].join(first, second, part)) sweepers_[thread].triangulate(part, stage);
+      if (!joiners_[thread].join(first, second, part)) sweepers_[thread].triangulate(part, stage_);
       const Index joined = ++joined_;
       tell(swept_, joined);
       return;
     }
     const Index size = square.part.end - square.part.begin;
-    sweepers_[thread].triangulate(square.part, size > k_long ? stage.part(0, 0.9) : JobStage());
+    sweepers_[thread].triangulate(square.part, size > k_long ? stage_.part(0, 0.9) : JobStage());
     const Index swept = swept_ += size;
     tell(swept, joined_);
   }
 
   std::vector<Square>& squares_;
+  JobStage stage_;
   int threads_;
   Index count_;
   std::vector<TileSweeper> sweepers_;
@@ -302,7 +307,7 @@ Triangulation triangulate(const OrderedSites& sites, Index tile_size, int thread
   result.leaving.resize(count);
   const JobStage parting = stage.part(0, 0.05);
   SquareTree tree(sites, tile_size, parting);
-  TileWork(sites, tree.squares(), result, threads).run(stage.part(0.05, 1));
+  TileWork(sites, tree.squares(), result, threads, stage.part(0.05, 1)).run();
   const MeshPart& all = tree.squares().back().part;
   result.is_line = !all.has_triangles;
   for (const auto& [begin, end] : all.free)
