@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import saddleback as sb
 from tests.native import plane_sites, weighted_sites
-from tests.native.cancelling import check_progress_and_cancel
+from tests.native.cancelling import check_it_stops_when_silent, check_progress_and_cancel
 from tests.native.weighted_sites import KINDS, weighted_distances
 
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
@@ -329,3 +329,11 @@ def test_progress_and_cancel():
 def test_many_disks_stop_within_a_moment():
     sites, weights = KINDS["random_disks"](10**5, np.random.default_rng(9))
     check_progress_and_cancel(lambda job: sb.voronoi_2d(sites, weights, job=job), 0.4)
+
+
+def test_a_disk_with_thousands_of_sides_stops_at_once():
+    """Its cell alone takes seconds."""
+    sites = np.vstack([plane_sites.circle(19_999, np.random.default_rng(1)), [[0, 0]]])
+    weights = np.zeros(20_000)
+    weights[-1] = 0.5
+    check_it_stops_when_silent(lambda job: sb.voronoi_2d(sites, weights=weights, threads=1, job=job), 0.7)

@@ -94,13 +94,23 @@ struct DeviceNumbers {
   int* asks_for_all;                                     ///< whether rows of more than neighbours are needed
 
   __device__ bool failed_before() const { return *misfits != 0; }
+  /// Calls work(side) for sides in a row, until others have failed: those of a cell that has a million of them take its
+  /// thread a second.
+  template <class Work>
+  __device__ void for_sides(std::int32_t side, std::int32_t end, Work&& work) const {
+    constexpr std::int32_t k_at_once = 1 << 10;
+    while (true) {
+      for (const std::int32_t stop = end - side > k_at_once ? side + k_at_once : end; side < stop; ++side) work(side);
+      if (side >= end || *static_cast<const volatile int*>(misfits) != 0) return;
+    }
+  }
 };
 
 /// Sides row after row; also counts the edges of a cell, which are those to higher ranks. Rows next to cells that are
 /// gathered elsewhere are told to others, and theirs are not known yet.
 template <bool HasOthers>
 __global__ void gather_rows(DeviceLists lists, IndexRange cells, const std::int32_t* offsets, std::int32_t* sides,
-                            std::int32_t* edge_counts, DeviceNumberList told) {
+                            std::int32_t* edge_counts, DeviceNumbers numbers, DeviceNumberList told) {
   const std::int32_t cell = cells.begin + thread_number();
   if (cell >= cells.end) return;
   const std::int32_t begin = offsets[cell], size = offsets[cell + 1] - begin;
@@ -108,7 +118,7 @@ __global__ void gather_rows(DeviceLists lists, IndexRange cells, const std::int3
   if (size > k_slots) from = lists.pool + *from;
   int edges = 0;
   bool is_told = false;
-  for (std::int32_t k = 0; k < size; ++k) {
+  numbers.for_sides(0, size, [&](std::int32_t k) {
     const std::int32_t other = neighbour_of(from[k]);
     const bool opens = k + 1 == size && lists.is_open[cell];  // else the list says where
     sides[begin + k] = opens ? open_side(from[k]) : from[k];
@@ -117,7 +127,7 @@ __global__ void gather_rows(DeviceLists lists, IndexRange cells, const std::int3
       is_told = true;
       for (std::int32_t side = offsets[other]; side < offsets[other + 1]; ++side) sides[side] = k_no_side;
     }
-  }
+  });
   edge_counts[cell] = edges;
   for (std::int32_t side = begin; is_told && side < begin + size; ++side) told.add(side, sides[side]);
 }
@@ -128,7 +138,7 @@ __global__ void expect_sum(const std::int32_t* sum, std::int32_t wanted, int* mi
 }
 
 /// Whether the neighbours of a cell do, or of an open one no further; see check_open_cells.
-__device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
+__device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell, const DeviceNumbers& numbers) {
   const std::int32_t first = cells.offsets[cell], last = cells.offsets[cell + 1] - 1;
   if (last <= first) return false;
   const double2 p = cells.at[cell];
@@ -139,11 +149,11 @@ __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell) {
   const bool is_open = cells.is_open(last);
   bool before = is_above(cells.neighbour(is_open ? first : last));
   int crossings = 0;
-  for (std::int32_t side = first; side <= last; ++side) {
+  numbers.for_sides(first, last + 1, [&](std::int32_t side) {
     const bool now = is_above(cells.neighbour(side));
     crossings += now != before;
     before = now;
-  }
+  });
   return is_open ? crossings <= 1 : crossings == 2;
 }
 
@@ -162,21 +172,21 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
   const std::int32_t first = cells.offsets[cell], end = cells.offsets[cell + 1];
-  bool fits = cells.weights || winds_once(cells, cell);  // with weights they are known to
+  bool fits = cells.weights || winds_once(cells, cell, numbers);  // with weights they are known to
   std::int32_t edge = numbers.first_edge + edges_before[cell];
-  for (std::int32_t side = first; side < end; ++side) {
+  numbers.for_sides(first, end, [&](std::int32_t side) {
     const std::int32_t other = cells.neighbour(side);
-    if (other < cell && cells.mine.holds(other)) continue;
+    if (other < cell && cells.mine.holds(other)) return;
     const std::int32_t twin = cells.twin_side(cell, side);
     if (twin == cells.offsets[other + 1]) {
       fits = false;
-      break;
+      return;
     }
     numbers.next_corners[side] = cells.corner_before(other, twin);
     const bool is_elsewhere = HasOthers && !cells.mine.holds(other);
     // More than three about a vertex are not all neighbours of a cell.
     if (is_elsewhere && !cells.are_twins(cell, side, other, twin)) *numbers.asks_for_all = 1;
-    if (other < cell) continue;  // the edge is numbered elsewhere
+    if (other < cell) return;  // the edge is numbered elsewhere
     const std::int32_t before = cells.corner_before(cell, side);
     numbers.next_corners[twin] = before;
     numbers.edges[edge] = {before, side};
@@ -184,9 +194,10 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
     if (is_elsewhere) numbers.edges_elsewhere.add(twin, edge);
     numbers.edge_sites[edge] = {cells.original[cell], cells.original[other]};
     ++edge;
-  }
-  for (std::int32_t side = first; side < end; ++side)
+  });
+  numbers.for_sides(first, end, [&](std::int32_t side) {
     if (cells.is_open(side)) numbers.corner_vertices[side] = -1;
+  });
   if (!fits) *numbers.misfits_here = 1;
 }
 
@@ -215,21 +226,21 @@ __device__ inline CornerWalk owner_of(const DeviceCells& cells, const std::int32
 
 /// Calls found(corner) for the corners of the vertices that belong to a cell: no lower rank is about them.
 template <class Found>
-__device__ void for_own_vertices(const DeviceCells& cells, const std::int32_t* next_corners, std::int32_t cell,
+__device__ void for_own_vertices(const DeviceCells& cells, const DeviceNumbers& numbers, std::int32_t cell,
                                  Found&& found) {
   const std::int32_t first = cells.offsets[cell], last = cells.offsets[cell + 1] - 1;
-  for (std::int32_t corner = first; corner <= last; ++corner) {
+  numbers.for_sides(first, last + 1, [&](std::int32_t corner) {
     const std::int32_t other = cells.neighbour(corner), third = cells.neighbour(corner == last ? first : corner + 1);
-    if (min(other, third) < cell || cells.is_open(corner)) continue;
-    if (owner_of(cells, next_corners, cell, corner).cell == cell) found(corner);
-  }
+    if (min(other, third) < cell || cells.is_open(corner)) return;
+    if (owner_of(cells, numbers.next_corners, cell, corner).cell == cell) found(corner);
+  });
 }
 
 __global__ void count_vertices(DeviceCells cells, DeviceNumbers numbers, std::int32_t* counts) {
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
   std::int32_t mine = 0;
-  for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t) { ++mine; });
+  for_own_vertices(cells, numbers, cell, [&](std::int32_t) { ++mine; });
   counts[cell] = mine;
 }
 
@@ -253,7 +264,7 @@ __global__ void __launch_bounds__(k_threads, 4)
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
   std::int32_t vertex = numbers.first_vertex + vertices_before[cell];
-  for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t corner) {
+  for_own_vertices(cells, numbers, cell, [&](std::int32_t corner) {
     CornerWalk walk{cells, numbers.next_corners, cell, corner};
     std::int32_t about[3];
     int size = 0;
@@ -303,7 +314,7 @@ __global__ void count_triangles(DeviceCells cells, DeviceNumbers numbers, std::i
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
   std::int32_t mine = 0;
-  for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t corner) {
+  for_own_vertices(cells, numbers, cell, [&](std::int32_t corner) {
     CornerWalk walk{cells, numbers.next_corners, cell, corner};
     for (walk.step(); walk.corner != corner; walk.step()) ++mine;
     --mine;
@@ -317,7 +328,7 @@ __global__ void add_triangles(DeviceCells cells, const std::int32_t* triangles_b
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || numbers.failed_before()) return;
   std::int64_t at = 3 * static_cast<std::int64_t>(triangles_before[cell]);
-  for_own_vertices(cells, numbers.next_corners, cell, [&](std::int32_t corner) {
+  for_own_vertices(cells, numbers, cell, [&](std::int32_t corner) {
     CornerWalk walk{cells, numbers.next_corners, cell, corner};
     CornerWalk first = walk;
     for (walk.step(); walk.corner != corner; walk.step())
@@ -373,6 +384,9 @@ class DeviceDiagram {
   }
   const std::int32_t* cell_sides() const { return cell_sides_.data(); }
   PlaneTwinSizes sizes() const { return {count_, edges_, vertices_}; }
+
+  /// Nothing is joined or numbered any more, so that the stream soon comes to its end.
+  void stop(cudaStream_t aside) { (void)cudaMemsetAsync(misfits_.data() + k_before, 1, sizeof(int), aside); }
 
   /// Joins the cells. \throw LeftOver
   void join(const DeviceCells& cells, const DeviceBuffer<std::int32_t>& offsets, const DeviceLists& lists) {
@@ -474,7 +488,7 @@ class DeviceDiagram {
   template <bool HasOthers>
   void gather(const DeviceCells& cells, const DeviceLists& lists) {
     gather_rows<HasOthers><<<blocks_for(cells.mine.count()), k_threads, 0, stream_>>>(
-        lists, cells.mine, cells.offsets, cell_sides_.data(), counts_.data(), rows_elsewhere_.list());
+        lists, cells.mine, cells.offsets, cell_sides_.data(), counts_.data(), numbers(), rows_elsewhere_.list());
     check_cuda(cudaGetLastError(), "gathering cells");
   }
 

@@ -147,7 +147,8 @@ class Builder {
       diagram->number(rows, copies, to_);
     }
     watch.end();
-    wait_polling(stream, [&] { report(Share::find); });
+    wait_polling(
+        stream, [&](cudaStream_t) { report(Share::find); }, [&](cudaStream_t aside) { diagram->stop(aside); });
     times.unite = watch.read();
     copies.finish([&](double share) { report(Share::unite + (1 - Share::unite) * share); });
     if (!diagram->fits()) throw LeftOver();

@@ -135,6 +135,7 @@ WeightedCell::Rival WeightedCell::rival_of(Index other) const {
 }
 
 bool WeightedCell::has_met(Index other) const {
+  stage_.check();
   return std::any_of(rivals_.begin(), rivals_.end(), [&](const Rival& rival) { return rival.site == other; });
 }
 
@@ -189,6 +190,7 @@ void WeightedCell::compare(const Wave& rival) const {
 }
 
 bool WeightedCell::may_meet(double x, double y, double radius) const {
+  stage_.check();
   const WeightedPoint2& here = points_[site_];
   const double doubt = 4 * k_epsilon * (std::fabs(radius) + std::fabs(here.weight));
   const Wave rival = wave_at(here, x, y, radius - here.weight, doubt);
@@ -325,6 +327,7 @@ bool WeightedCell::cut_corners(const Rival& rival) {
 }
 
 void WeightedCell::meet(Index other) {
+  stage_.check();
   const Rival rival = rival_of(other);
   if (is_below(rival)) return;
   compare(rival);
@@ -379,6 +382,7 @@ void WeightedCell::number_repeated(std::span<Side> sides) const {
   std::vector<Index>& first = first_;
   first.assign(rivals_.size(), k_none);
   for (std::size_t k = 0; k < sides.size(); ++k) {
+    stage_.check();
     const Index rival = begins_[arcs[k]].rival;
     if (first[rival] == k_none) {
       first[rival] = static_cast<Index>(k);
@@ -406,6 +410,7 @@ void WeightedCell::read(std::vector<Side>& sides) const {
   sides.clear();
   ends_.clear();
   for (Index arc = 0; arc < count(); ++arc) {
+    stage_.check();
     const Rival& rival = rivals_[begins_[arc].rival];
     const bool goes_on = begins_[after(arc)].rival == begins_[arc].rival;
     if (rival.site == k_none || goes_on) continue;

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/types.h"
 
 #include "predicates/weighted_2d.h"
@@ -21,6 +22,9 @@ namespace saddleback::voronoi2d {
 
 class WeightedCell {
  public:
+  /// All that takes a while with many arcs throws Cancelled when the stage says so.
+  explicit WeightedCell(const JobStage& stage) : stage_(stage) {}
+
   /// The cell of a site of `points`, none of which may hide another, as far as a ring of sites about it says,
   /// counter-clockwise: a guess, any will do. Some of these may still have to be met. O(ring), or its square at worst.
   void open(std::span<const predicates::WeightedPoint2> points, Index site, std::span<const Index> ring);
@@ -94,6 +98,7 @@ class WeightedCell {
   Index after(Index arc) const { return arc + 1 == count() ? 0 : arc + 1; }
   Index before(Index arc) const { return arc == 0 ? count() - 1 : arc - 1; }
 
+  JobStage stage_;
   std::span<const predicates::WeightedPoint2> points_;
   Index site_ = k_none;
   bool has_fixed_ = false;  ///< arcs end at the fixed directions, if not sooner

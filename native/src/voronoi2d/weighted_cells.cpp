@@ -121,10 +121,10 @@ WeightedCells::WeightedCells(const WeightedSites& sites, Index tile_size, int th
     const double next = 0.5 * (done + 1);
     find_exactly(wanted, stage.part(done, next));
     if (!mesh_) break;
-    wanted = misfits(wanted);
+    wanted = misfits(wanted, stage);
     done = next;
   }
-  place_exact_cells();
+  place_exact_cells(stage);
   stage.update(1);
 }
 
@@ -134,10 +134,10 @@ void WeightedCells::find_exactly(const std::vector<Index>& wanted, const JobStag
   for (std::size_t i = 0; i < wanted.size(); ++i) exact_of_[wanted[i]] = first + static_cast<Index>(i);
   struct Worker {
     CellFinder finder;
-    WeightedCell cell{};
+    WeightedCell cell;
     std::vector<Index> guess{};
   };
-  std::vector<Worker> workers(thread_count(threads_), Worker{CellFinder(sites_, tree_)});
+  std::vector<Worker> workers(thread_count(threads_), Worker{CellFinder(sites_, tree_), WeightedCell(stage)});
   const Index count = static_cast<Index>(wanted.size()), blocks = (count + k_few - 1) / k_few;
   std::atomic<Index> done{0};
   parallel_for(blocks, threads_, 1, [&](Index block, int thread) {
@@ -150,6 +150,7 @@ void WeightedCells::find_exactly(const std::vector<Index>& wanted, const JobStag
       std::vector<Index>& guess = worker.guess;
       guess.clear();
       visit_guess(wanted[i], [&](Index neighbour) {
+        stage.check();
         if (std::find(guess.begin(), guess.end(), neighbour) == guess.end()) guess.push_back(neighbour);
       });
       worker.finder.find(wanted[i], worker.guess, worker.cell);
@@ -192,9 +193,10 @@ bool fits(Index neighbour, const std::vector<Index>& in_mesh, const std::vector<
 }  // namespace
 
 /// Sites whose cells in the mesh do not fit to cells that have just been found.
-std::vector<Index> WeightedCells::misfits(const std::vector<Index>& found) {
+std::vector<Index> WeightedCells::misfits(const std::vector<Index>& found, const JobStage& stage) {
   std::vector<Index> result, in_mesh, in_cell;
   const auto check = [&](Index site) {
+    stage.check();
     if (site == far_away() || is_exact(site) || fits(site, in_mesh, in_cell)) return;
     exact_of_[site] = k_wanted;
     result.push_back(site);
@@ -215,7 +217,7 @@ std::vector<Index> WeightedCells::misfits(const std::vector<Index>& found) {
 }
 
 /// Where cells of the mesh are next to them, edges and vertices have the mesh's places.
-void WeightedCells::place_exact_cells() {
+void WeightedCells::place_exact_cells(const JobStage& stage) {
   if (mesh_) {
     vertex_place_count_ = mesh_->triangle_count();
     edge_place_count_ = 4 * vertex_place_count_;
@@ -226,10 +228,11 @@ void WeightedCells::place_exact_cells() {
   for (const Index site : sites) {
     Exact& cell = exact_[exact_of_[site]];
     for (const WeightedCell::Side& side : cell.sides) cell.placed.push_back({side.neighbour, k_none, k_none});
-    if (mesh_) place_by_mesh(site, cell);
+    if (mesh_) place_by_mesh(site, cell, stage);
   }
   for (const Index site : sites) {
     for (Index side = 0; side < static_cast<Index>(exact_[exact_of_[site]].sides.size()); ++side) {
+      stage.check();
       place_edge(site, side);
       place_vertex(site, side);
     }
@@ -240,8 +243,9 @@ Index WeightedCells::before(const Exact& cell, Index side) {
   return side == 0 ? static_cast<Index>(cell.sides.size()) - 1 : side - 1;
 }
 
-void WeightedCells::place_by_mesh(Index site, Exact& cell) const {
+void WeightedCells::place_by_mesh(Index site, Exact& cell, const JobStage& stage) const {
   mesh_->visit_ring(site, [&](Index neighbour, Index half) {
+    stage.check();
     if (neighbour == far_away() || is_exact(neighbour)) return;
     const auto found = std::find_if(cell.sides.begin(), cell.sides.end(),
                                     [&](const WeightedCell::Side& side) { return side.neighbour == neighbour; });

@@ -47,9 +47,9 @@ class WeightedCells {
   void find_exactly(const std::vector<Index>& wanted, const JobStage& stage);
   template <class Visit>
   void visit_guess(Index site, Visit&& visit) const;
-  std::vector<Index> misfits(const std::vector<Index>& found);
-  void place_exact_cells();
-  void place_by_mesh(Index site, Exact& cell) const;
+  std::vector<Index> misfits(const std::vector<Index>& found, const JobStage& stage);
+  void place_exact_cells(const JobStage& stage);
+  void place_by_mesh(Index site, Exact& cell, const JobStage& stage) const;
   void place_edge(Index site, Index side);
   void place_vertex(Index site, Index side);
   Index twin_of(Index site, const WeightedCell::Side& side) const;

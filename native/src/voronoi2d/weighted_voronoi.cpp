@@ -21,14 +21,15 @@ using namespace voronoi2d;
 /// Numbers edges by the lower rank beside them, vertices by the lowest about them, then counter-clockwise.
 class Numberer {
  public:
-  Numberer(const WeightedCells& cells, const WeightedSites& sites, Voronoi2d& result)
-      : cells_(cells),
+  Numberer(const WeightedCells& cells, const WeightedSites& sites, Voronoi2d& result, const JobStage& stage)
+      : stage_(stage),
+        cells_(cells),
         sites_(sites),
         result_(result),
         edge_at_(cells.edge_place_count(), k_none),
         vertex_at_(cells.vertex_place_count(), k_none) {}
 
-  void run(const JobStage& stage) {
+  void run() {
     const Index count = sites_.count();
     const std::size_t most = 3 * static_cast<std::size_t>(count);  // edges, by Euler's formula
     result_.cell_offsets.reserve(count + 1);
@@ -40,23 +41,24 @@ class Numberer {
     result_.cell_offsets.push_back(0);
     std::vector<Side> sides;
     for (Index cell = 0; cell < count; ++cell) {
-      if (cell % k_block == 0) stage.update(cell / static_cast<double>(count));
+      if (cell % k_block == 0) stage_.update(cell / static_cast<double>(count));
       cells_.read(cell, sides);
       add_corners(cell, sides);
       add_sides(cell, sides);
       result_.cell_offsets.push_back(static_cast<Index>(result_.side_edges.size()));
     }
-    stage.update(1);
+    stage_.update(1);
   }
 
  private:
   using Side = WeightedCells::Side;
-  static constexpr Index k_block = 65536;
+  static constexpr Index k_block = 4096;
 
   [[noreturn]] static void fail() { throw Error("voronoi_2d: the cells of weighted sites do not fit together"); }
 
   void add_corners(Index cell, const std::vector<Side>& sides) {
     for (std::size_t k = 0; k < sides.size(); ++k) {
+      stage_.check();  // some vertices take microseconds
       if (sides[k].vertex == k_none) {
         result_.corner_vertices.push_back(k_none);
         continue;
@@ -97,6 +99,7 @@ class Numberer {
     result_.edge_sites.push_back({left, right});
   }
 
+  JobStage stage_;
   const WeightedCells& cells_;
   const WeightedSites& sites_;
   Voronoi2d& result_;
@@ -139,7 +142,7 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, std::span<const double> weight
   Voronoi2d result;
   {
     const WeightedCells cells(ordered, tile_size, options.threads, stage.part(0.2, 0.9));
-    Numberer(cells, ordered, result).run(stage.part(0.9, 1));
+    Numberer(cells, ordered, result, stage.part(0.9, 1)).run();
   }
   result.sites = copy_of(sites, options.threads, stage.part(0.99, 1));
   result.weights.assign(weights.begin(), weights.end());
