@@ -11,12 +11,17 @@ import pytest
 import saddleback as sb
 
 
-def expect_to_stop_within_a_moment(work: Callable[[sb.Job], object], after: float) -> None:
-    """Does the work again and again until it is asked to stop, `after` some seconds; then it ends in 0.15."""
+def expect_to_stop_within_a_moment(work: Callable[[sb.Job], object], after: float, beyond: float = 0) -> None:
+    """Does the work again and again until it is asked to stop, `after` some seconds; then it ends in 0.15.
+
+    `beyond`: the share that has to be done before the seconds begin.
+    """
     job = sb.Job()
     asked = [0.0]
 
     def stop() -> None:
+        while job.fraction < beyond:
+            time.sleep(0.0005)
         time.sleep(after)
         asked[0] = time.perf_counter()
         job.cancel()

@@ -9,6 +9,7 @@ import pytest
 
 import saddleback as sb
 from tests.native import plane_sites
+from tests.parity.cancelling import expect_to_stop_within_a_moment
 from tests.parity.test_voronoi_twin import DEVICES, expect_kept, expect_twins
 
 Points = plane_sites.Points
@@ -107,6 +108,13 @@ def test_long_merges_are_left_to_the_processor(kind: str) -> None:
 def test_long_merges_go_on_where_nobody_else_can_do_them() -> None:
     sites = CURVES["parabola"](300_000, np.random.default_rng(1))
     expect_kept(sb.voronoi_2d_on_device(sites), sb.voronoi_2d(sites, device="cpu"))
+
+
+@pytest.mark.parametrize("after", [0, 0.04])
+def test_cells_with_many_sides_are_left_within_a_moment(after: float) -> None:
+    """To unite the widest takes a lane a fifth of a second."""
+    sites = CURVES["lines"](300_000, np.random.default_rng(1))
+    expect_to_stop_within_a_moment(lambda job: sb.voronoi_2d(sites, device="cuda", job=job), after, beyond=0.5)
 
 
 @pytest.mark.parametrize("kind", ALONE)

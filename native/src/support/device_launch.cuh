@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "support/cuda_check.h"
+
 namespace saddleback {
 namespace {
 
@@ -11,6 +13,14 @@ constexpr int k_threads = 256;
 /// At least one, which finds nothing to do where there is nothing.
 inline unsigned blocks_for(std::int64_t count) {
   return static_cast<unsigned>(std::max<std::int64_t>(1, (count + k_threads - 1) / k_threads));
+}
+
+/// Brings kernels to the device. When one is first called while others run, the caller may have to wait for their end,
+/// and nobody can stop it meanwhile.
+template <class... Kernels>
+void load_kernels(Kernels*... kernels) {
+  cudaFuncAttributes attributes{};
+  (check_cuda(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernels)), "loading kernels"), ...);
 }
 
 __device__ inline std::int32_t thread_number() {

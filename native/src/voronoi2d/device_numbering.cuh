@@ -370,6 +370,12 @@ class DeviceDiagram {
         edges_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream),
         vertices_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream) {}
 
+  /// Before there is other work for the device.
+  static void load() {
+    load_kernels(gather_rows<false>, gather_rows<true>, check_open_cells, expect_sum, join_sides<false>,
+                 join_sides<true>, count_vertices, add_vertices<false>, add_vertices<true>, add_ends);
+  }
+
   /// What no diagram has more of, by Euler's formula.
   static std::int32_t most_sides(std::int32_t cells) {
     return static_cast<std::int32_t>(

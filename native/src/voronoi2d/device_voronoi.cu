@@ -60,6 +60,7 @@ class Builder {
     check_cuda(cudaSetDevice(device), "choosing the device");
     check_device_room("the diagram", bytes_needed(request_), request_.most_bytes);
     keep_freed_memory(device);
+    DeviceDiagram::load();
     const auto report = [&](double fraction) { caller_.report(member, fraction); };
     DeviceTimes& times = times_[static_cast<std::size_t>(member)];
     auto own_stream = std::make_unique<Stream>();
