@@ -32,34 +32,45 @@ def check_progress_and_cancel(call: Callable[[sb.Job], object], fraction: float)
     assert ended[0] - asked < 0.1 * 5  # five times the promise: other work may hold the core
 
 
+def seconds_to_stop(call: Callable[[sb.Job], object], is_time: Callable[[sb.Job], bool]) -> float:
+    """From the moment when a call is cancelled, as soon as `is_time` says so, to its end; 0 when that comes before."""
+    job, asked, is_over = sb.Job(), [], threading.Event()
+
+    def stop() -> None:
+        while not is_time(job):
+            if is_over.wait(0.0005):
+                return
+        asked.append(time.perf_counter())
+        job.cancel()
+
+    watcher = threading.Thread(target=stop)
+    watcher.start()
+    try:
+        call(job)
+    except sb.Cancelled:
+        return time.perf_counter() - asked[0]
+    finally:
+        is_over.set()
+        watcher.join()
+    return 0.0
+
+
 def check_it_stops_when_silent(call: Callable[[sb.Job], object], fraction: float) -> None:
     """Cancelled beyond `fraction`, once it has told nothing new for a tenth of a second, a call ends within another.
 
     Tried again where other work may have held the core. A machine that is never silent for so long passes.
     """
+    late = 0.0
     for _ in range(3):
-        job, asked, is_over = sb.Job(), [], threading.Event()
+        told, since = 0.0, time.perf_counter()
 
-        def stop(job: sb.Job = job, asked: list[float] = asked, is_over: threading.Event = is_over) -> None:
-            told, since = 0.0, time.perf_counter()
-            while told < fraction or time.perf_counter() - since < 0.1:
-                if is_over.wait(0.001):
-                    return
-                if job.fraction != told:
-                    told, since = job.fraction, time.perf_counter()
-            asked.append(time.perf_counter())
-            job.cancel()
+        def is_silent(job: sb.Job) -> bool:
+            nonlocal told, since
+            if job.fraction != told:
+                told, since = job.fraction, time.perf_counter()
+            return told >= fraction and time.perf_counter() - since > 0.1
 
-        watcher = threading.Thread(target=stop)
-        watcher.start()
-        try:
-            call(job)
-        except sb.Cancelled:
-            late = time.perf_counter() - asked[0]
-        else:
-            late = 0.0
-        is_over.set()
-        watcher.join()
+        late = seconds_to_stop(call, is_silent)
         if late < 0.1:
             return
     raise AssertionError(f"ended {late:.2f} s after it was cancelled")

@@ -10,9 +10,10 @@ import pytest
 
 # Where there are no huge pages a gigabyte goes back in tens of milliseconds.
 CANCELLED_AT_THE_END = """
-import ctypes, threading, time
+import ctypes, time
 import numpy as np
 import saddleback as sb
+from tests.native.cancelling import seconds_to_stop
 
 PR_SET_THP_DISABLE = 41
 assert ctypes.CDLL(None).prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0) == 0
@@ -23,21 +24,7 @@ del diagram
 print(time.perf_counter() - start)
 
 for _ in range(5):
-    job, asked = sb.Job(), []
-
-    def stop():
-        while job.fraction < 0.9:
-            time.sleep(0.0005)
-        asked.append(time.perf_counter())
-        job.cancel()
-
-    watcher = threading.Thread(target=stop)
-    watcher.start()
-    try:
-        sb.voronoi_2d(sites, job=job)
-    except sb.Cancelled:
-        print(time.perf_counter() - asked[0])
-    watcher.join()
+    print(seconds_to_stop(lambda job: sb.voronoi_2d(sites, job=job), lambda job: job.fraction >= 0.9))
 """
 
 
@@ -48,5 +35,5 @@ for _ in range(5):
 def test_who_cancels_does_not_wait_for_memory_to_be_freed() -> None:
     done = subprocess.run([sys.executable, "-c", CANCELLED_AT_THE_END], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    freed, *cancelled = map(float, done.stdout.split())
-    assert min(cancelled) < freed / 4
+    freed, *late = map(float, done.stdout.split())
+    assert min(seconds for seconds in late if seconds > 0) < freed / 4

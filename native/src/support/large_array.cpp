@@ -13,9 +13,9 @@
 #include <exception>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "support/parallel.h"
+#include "support/returned_memory.h"
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #define SADDLEBACK_OWN_PAGES
 #include <sys/mman.h>
@@ -190,12 +190,8 @@ static void free_now(void* memory, std::size_t) noexcept { std::free(memory); }
 
 void free_large(void* memory, std::size_t size) noexcept {
   if (size < k_returned_piece || std::uncaught_exceptions() == 0) return free_now(memory, size);
-  // Gigabytes, in small pages where there are no huge ones, go back in longer than whoever cancelled should wait.
-  try {
-    std::thread([=] { free_now(memory, size); }).detach();
-  } catch (...) {
-    free_now(memory, size);  // no thread is to be had
-  }
+  auto free = [size](void* abandoned) { free_now(abandoned, size); };
+  free_in_background(std::unique_ptr<void, decltype(free)>(memory, free));
 }
 
 void copy_large(void* to, const void* from, std::size_t size, int threads) {

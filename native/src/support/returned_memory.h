@@ -3,9 +3,9 @@
 // what follows. An ordinary heap keeps what lies between other things.
 
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <span>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -47,12 +47,12 @@ class ReturnedPieces {
 };
 
 /// Frees what a cancelled call leaves behind: a gigabyte of pages goes back in longer than whoever cancelled should
-/// have to wait.
+/// have to wait, most of all of small pages.
 template <class T>
-void free_in_background(T abandoned) {
+void free_in_background(T abandoned) noexcept {
   try {
     std::thread([kept = std::move(abandoned)] {}).detach();
-  } catch (const std::system_error&) {
+  } catch (const std::exception&) {
     return;  // no thread is to be had: freed by now
   }
 }
