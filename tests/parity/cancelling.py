@@ -11,8 +11,10 @@ import pytest
 import saddleback as sb
 
 
-def expect_to_stop_within_a_moment(work: Callable[[sb.Job], object], after: float, beyond: float = 0) -> None:
-    """Does the work again and again until it is asked to stop, `after` some seconds; then it ends in 0.15.
+def expect_to_stop_within_a_moment(
+    work: Callable[[sb.Job], object], after: float, beyond: float = 0, within: float = 0.15
+) -> None:
+    """Does the work again and again until it is asked to stop, `after` some seconds; then it ends `within` others.
 
     `beyond`: the share that has to be done before the seconds begin.
     """
@@ -31,5 +33,5 @@ def expect_to_stop_within_a_moment(work: Callable[[sb.Job], object], after: floa
     with pytest.raises(sb.Cancelled):
         while True:
             work(job)
-    assert time.perf_counter() - asked[0] < 0.15
+    assert time.perf_counter() - asked[0] < within
     thread.join()

@@ -117,6 +117,17 @@ def test_cells_with_many_sides_are_left_within_a_moment(after: float) -> None:
     expect_to_stop_within_a_moment(lambda job: sb.voronoi_2d(sites, device="cuda", job=job), after, beyond=0.5)
 
 
+def test_triangles_of_cells_with_many_sides_are_left_within_a_moment() -> None:
+    """To count those of the widest cell takes a lane a tenth of a second."""
+    sites = CURVES["lines"](1_000_000, np.random.default_rng(1))
+
+    def work(job: sb.Job | None = None) -> sb.DeviceVoronoi2d:
+        return sb.voronoi_2d_on_device(sites, only_triangles=True, job=job)
+
+    work()  # or the driver would be about its memory when asked
+    expect_to_stop_within_a_moment(work, after=0, beyond=0.5, within=0.06)
+
+
 @pytest.mark.parametrize("kind", ALONE)
 def test_what_stays_on_the_device_is_the_same(kind: str) -> None:
     sites = CURVES[kind](20_000, np.random.default_rng(1))

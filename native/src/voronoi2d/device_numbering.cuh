@@ -370,10 +370,19 @@ class DeviceDiagram {
         edges_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream),
         vertices_elsewhere_(part.is_all() ? 0 : sides / part.members(), stream) {}
 
-  /// Before there is other work for the device.
-  static void load() {
-    load_kernels(gather_rows<false>, gather_rows<true>, check_open_cells, expect_sum, join_sides<false>,
-                 join_sides<true>, count_vertices, add_vertices<false>, add_vertices<true>, add_ends);
+  /// Brings to the device what a member of a team calls, before there is other work for it.
+  static void load(int members, bool only_triangles) {
+    load_kernels(check_open_cells, expect_sum);
+    if (members == 1) {
+      load_kernels(gather_rows<false>, join_sides<false>);
+    } else {
+      load_kernels(gather_rows<true>, join_sides<true>);
+    }
+    if (only_triangles) {
+      load_kernels(count_triangles, add_triangles);
+    } else {
+      load_kernels(count_vertices, members == 1 ? add_vertices<false> : add_vertices<true>, add_ends);
+    }
   }
 
   /// What no diagram has more of, by Euler's formula.
@@ -452,12 +461,14 @@ class DeviceDiagram {
     copy<2>(copies, edge_sites_, own, to.edge_sites);
   }
 
-  /// The Delaunay triangles of joined cells. Waits for the device. \throw LeftOver
-  DeviceBuffer<std::int32_t> triangles(const DeviceCells& cells) {
+  /// The Delaunay triangles of joined cells; calls wait() for how many there are. \throw LeftOver
+  template <class Wait>
+  DeviceBuffer<std::int32_t> triangles(const DeviceCells& cells, Wait&& wait) {
     const unsigned blocks = blocks_for(cells.mine.count());
     count_triangles<<<blocks, k_threads, 0, stream_>>>(cells, numbers(), counts_.data());
     check_cuda(cudaGetLastError(), "counting triangles");
     add_up(counts_, before_, stream_);
+    wait();
     if (!fits()) throw LeftOver();
     DeviceBuffer<std::int32_t> found(3 * size(before_.value_at(size(count_))), stream_);
     add_triangles<<<blocks, k_threads, 0, stream_>>>(cells, before_.data(), numbers(), found.data());

@@ -55,12 +55,14 @@ class Builder {
     static constexpr double upload = 0.11, order = 0.15, find = 0.5, unite = 0.55;
   };
 
+  bool wants_triangles() const { return request_.kept && request_.only_triangles; }  ///< and nothing else
+
   void build_part(int member) {
     const int device = team_.device(member);
     check_cuda(cudaSetDevice(device), "choosing the device");
     check_device_room("the diagram", bytes_needed(request_), request_.most_bytes);
     keep_freed_memory(device);
-    DeviceDiagram::load();
+    DeviceDiagram::load(team_.members(), wants_triangles());
     const auto report = [&](double fraction) { caller_.report(member, fraction); };
     DeviceTimes& times = times_[static_cast<std::size_t>(member)];
     auto own_stream = std::make_unique<Stream>();
@@ -140,16 +142,19 @@ class Builder {
     const DeviceCells rows{sites.count,          part.cells(),   sites.at,
                            sites.weights,        sites.original, cells.offsets().data(),
                            diagram->cell_sides()};
+    const auto wait = [&] {
+      wait_polling(
+          stream, [&](cudaStream_t) { report(Share::find); }, [&](cudaStream_t aside) { diagram->stop(aside); });
+    };
     diagram->join(rows, cells.offsets(), cells.lists());
     DeviceBuffer<std::int32_t> triangles;
-    if (request_.kept && request_.only_triangles) {
-      triangles = diagram->triangles(rows);
+    if (wants_triangles()) {
+      triangles = diagram->triangles(rows, wait);
     } else {
       diagram->number(rows, copies, to_);
     }
     watch.end();
-    wait_polling(
-        stream, [&](cudaStream_t) { report(Share::find); }, [&](cudaStream_t aside) { diagram->stop(aside); });
+    wait();
     times.unite = watch.read();
     copies.finish([&](double share) { report(Share::unite + (1 - Share::unite) * share); });
     if (!diagram->fits()) throw LeftOver();
@@ -157,7 +162,7 @@ class Builder {
     if (request_.kept) {
       auto kept = std::make_unique<KeptPlane>(std::move(own_stream), device);
       kept->triangles = std::move(triangles);
-      if (!request_.only_triangles) {
+      if (!wants_triangles()) {
         diagram->hand_over(*kept);
         order.hand_over(*kept);
         kept->cell_offsets = cells.take_offsets();
@@ -233,8 +238,7 @@ class Builder {
 
   DeviceOrder ordered(int member, const double2* sites, cudaStream_t stream) {
     DeviceOrder order(request_.count, stream);
-    const bool asks_for_places = !(request_.kept && request_.only_triangles);
-    const IndexRange share = asks_for_places ? share_of(member, request_.count) : IndexRange{0, 0};
+    const IndexRange share = wants_triangles() ? IndexRange{0, 0} : share_of(member, request_.count);
     const DeviceOrder::Found found = order.find(sites, share, [&](std::uint32_t* places, std::int32_t* sorted) {
       if (request_.sites_are_there) throw LeftOver();
       caller_.ask([&](const PlaneTwinCaller& caller) { return caller.sort(caller.self, places, sorted); });
