@@ -109,7 +109,7 @@ std::vector<Vec3> edge_positions(const LiftedVoronoi& lifted) {
 py::tuple locate(const Chart& chart, const py::object& places, const py::object& threads, const py::object& job) {
   const std::vector<Vec2> where = as_points_2d(places, "places");
   const int count = as_integer(threads, "threads");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   const SurfacePoints points = without_gil([&] { return chart.locate(where, count, token); });
   SurfacePoints found;
   py::array_t<bool> inside(static_cast<py::ssize_t>(points.size()));
@@ -174,7 +174,7 @@ void bind_chart(py::module_& m) {
       .def(py::init([](const py::object& mesh, const py::object& uv, const py::object& job) {
              const Mesh& surface = as_mesh(mesh, "mesh");
              const std::vector<Vec2> places = as_points_2d(uv, "uv");
-             Job* const token = as_job(job);
+             const JobIn token(job);
              return without_gil([&] { return std::make_unique<Chart>(surface, places, token); });
            }),
            py::arg("mesh"), py::arg("uv"), py::kw_only(), py::arg("job") = py::none(), py::keep_alive<1, 2>())
@@ -198,7 +198,7 @@ void bind_chart(py::module_& m) {
             const Chart& chart = py::cast<const Chart&>(self);
             const Voronoi2d& cells = as_voronoi_2d(diagram, "diagram");
             const int count = as_integer(threads, "threads");
-            Job* const token = as_job(job);
+            const JobIn token(job);
             return Lifted{without_gil([&] { return lift(chart, cells, count, token); }), self};
           },
           py::arg("diagram"), py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(), k_lift_doc)
@@ -215,7 +215,7 @@ void bind_charts(py::module_& m) {
       "harmonic_map",
       [](const py::object& mesh, const py::object& job) {
         const Mesh& surface = as_mesh(mesh, "mesh");
-        Job* const token = as_job(job);
+        const JobIn token(job);
         return to_rows<double>(without_gil([&] { return harmonic_map(surface, token); }));
       },
       py::arg("mesh"), py::kw_only(), py::arg("job") = py::none(), k_harmonic_doc);

@@ -77,7 +77,8 @@ Checked check_result(const py::object& mesh, const py::object& result, const py:
   options.samples = as_integer(samples, "samples");
   options.seed = as_seed(seed, "seed");
   options.threads = as_integer(threads, "threads");
-  options.job = as_job(job);
+  const JobIn token(job);
+  options.job = token;
   if (py::isinstance<MappedShapes>(result)) return check_mapped(mesh, py::cast<const MappedShapes&>(result), options);
   if (!py::hasattr(result, "placements") || !py::hasattr(result, "shapes"))
     throw InputError(message("result: wanted a MappedShapes or a distribution, got a ",

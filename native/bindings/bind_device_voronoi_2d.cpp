@@ -50,7 +50,7 @@ DeviceVoronoi2d find_on_device(const py::object& sites, const std::string& devic
     throw InputError(message("device: wanted 'cuda' or 'cuda:' and a number, got '", device, "'"));
   const std::vector<int> devices = cuda_devices_of(device, true);
   const DeviceVoronoi2dOptions options{devices.front(), only_triangles, in.are_there};
-  Job* const token = as_job(job);
+  const JobIn token(job);
   std::optional<DeviceVoronoi2d> found =
       without_gil([&] { return voronoi_2d_on_device(in.data, in.count, options, token); });
   if (!found) {

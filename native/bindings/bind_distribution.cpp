@@ -148,7 +148,7 @@ std::unique_ptr<Distribution> lay(const py::object& graph, const py::object& sha
   made->field = bend ? field : py::none();
   options.tolerance = as_real(tolerance, "tolerance");
   options.threads = as_integer(threads, "threads");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   made->result = without_gil([&] { return distribute(mesh, made->shapes, options, token); });
   return made;
 }

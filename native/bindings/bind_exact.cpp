@@ -101,7 +101,7 @@ py::array distances(const py::object& mesh_object, const py::object& sources, co
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const SurfacePoints points = as_surface_points(sources, mesh, "sources");
   const double reach = as_real(limit, "limit");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return to_array(without_gil([&] { return exact_distances(mesh, points, reach, token); }));
 }
 
@@ -110,7 +110,7 @@ py::tuple nearest(const py::object& mesh_object, const py::object& sources, cons
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const SurfacePoints points = as_surface_points(sources, mesh, "sources");
   const double reach = as_real(limit, "limit");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   NearestField field = without_gil([&] { return exact_nearest(mesh, points, reach, token); });
   return py::make_tuple(to_array(std::move(field.distance)), to_array(std::move(field.source)));
 }
@@ -119,13 +119,13 @@ std::unique_ptr<ExactField> make_field(const py::object& mesh_object, const py::
                                        const py::object& job) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const SurfacePoints points = as_surface_points(sources, mesh, "sources");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] { return std::make_unique<ExactField>(mesh, points, token); });
 }
 
 py::array distance_to(const ExactField& field, const py::object& points, const py::object& job) {
   const SurfacePoints targets = as_surface_points(points, field.mesh(), "points");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return to_array(without_gil([&] { return field.distance_to(targets, token); }));
 }
 
@@ -136,7 +136,7 @@ GeodesicPath path(const ExactField& field, const py::object& target) {
 
 py::list paths(const ExactField& field, const py::object& targets, const py::object& job) {
   const SurfacePoints points = as_surface_points(targets, field.mesh(), "targets");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   std::vector<GeodesicPath> found = without_gil([&] { return field.paths(points, token); });
   py::list result;
   for (GeodesicPath& one : found) result.append(std::move(one));

@@ -238,7 +238,7 @@ py::object edit(Editor& self, const py::object& singularities, const py::object&
                 const py::object& loop_indices, const py::object& align_weight, const py::object& job) {
   const DirectionFieldOptions options =
       as_options(as_mesh(self.mesh, "mesh"), self.symmetry, singularities, strokes, align, loop_indices, align_weight);
-  Job* const token = as_job(job);
+  const JobIn token(job);
   py::object result = py::cast(without_gil([&] {
     const std::lock_guard lock(self.mutex);
     return self.editor.field(options, token);
@@ -405,7 +405,8 @@ StreamlinePath follow(const py::object& mesh_object, const py::object& field_obj
   options.both = both;
   if (!heading.is_none()) options.heading = as_vec3(heading, "heading");
   options.max_curvature = as_real(max_curvature, "max_curvature");
-  options.job = as_job(job);
+  const JobIn token(job);
+  options.job = token;
   return without_gil([&] {
     Streamline line = streamline(field, point, options);
     return StreamlinePath{std::move(line.path), line.start, line.begin_reason, line.end_reason};
@@ -437,7 +438,8 @@ py::array spread(const py::object& mesh_object, const py::object& places, const 
   if (name != "harmonic" && name != "biharmonic")
     throw InputError(
         message("method: wanted \"biharmonic\" or \"harmonic\", got ", py::cast<std::string>(py::repr(method))));
-  const SpreadOptions options{name == "harmonic" ? SpreadMethod::harmonic : SpreadMethod::biharmonic, as_job(job)};
+  const JobIn token(job);
+  const SpreadOptions options{name == "harmonic" ? SpreadMethod::harmonic : SpreadMethod::biharmonic, token};
   return to_array(without_gil([&] { return spread_values(mesh, points, known.values, options); }));
 }
 

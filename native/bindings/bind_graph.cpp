@@ -28,7 +28,7 @@ std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, con
           "distances");
     }
   }
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return run_on(device, !exact && mesh.vertex_count() >= k_vertices_worth_a_device,
                 [&](const std::vector<int>& devices) {
                   options.cuda_devices = devices;
@@ -38,14 +38,14 @@ std::unique_ptr<SaddleVertexGraph> make_graph(const py::object& mesh_object, con
 
 void save(const SaddleVertexGraph& graph, const py::object& path, const py::object& job) {
   const std::string file = as_path(path, "path");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   without_gil([&] { graph.save(file, token); });
 }
 
 std::unique_ptr<SaddleVertexGraph> load(const py::object& path, const py::object& mesh_object, const py::object& job) {
   const std::string file = as_path(path, "path");
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] { return std::make_unique<SaddleVertexGraph>(SaddleVertexGraph::load(file, mesh, token)); });
 }
 

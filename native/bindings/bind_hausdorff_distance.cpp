@@ -17,7 +17,7 @@ Hausdorff measure(const py::object& first, const py::object& second, const py::o
   const Mesh &a = as_mesh(first, "first"), &b = as_mesh(second, "second");
   const HausdorffOptions options{.tolerance = as_real(tolerance, "tolerance"),
                                  .threads = as_integer(threads, "threads")};
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] {
     const JobStage stage(token, "Measuring the distance of two surfaces");
     Hausdorff result;

@@ -8,7 +8,7 @@ void bind_job(py::module_& m) {
 
 Pass it as ``job=`` and read ``fraction`` and ``text`` from any other thread meanwhile. A job may be used again; its
 fraction then starts from 0. Once cancelled it stays cancelled.)")
-      .def(py::init<>())
+      .def(py::init([] { return std::make_unique<Job>(); }))
       .def_property_readonly("fraction", &Job::fraction,
                              "Share of the work done, 0 to 1, never falling during one call.")
       .def_property_readonly("text", &Job::text, "What is being done, for a person to read.")

@@ -8,7 +8,7 @@ namespace {
 std::shared_ptr<Mesh> make_mesh(const py::object& vertices, const py::object& triangles, const py::object& job) {
   const ArrayIn<double> xyz = as_points3(vertices, "vertices");
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
-  Job* const watched = as_job(job);
+  const JobIn watched(job);
   return without_gil([&] { return std::make_shared<Mesh>(xyz.values, indices.values, watched); });
 }
 

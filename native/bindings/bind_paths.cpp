@@ -145,7 +145,7 @@ void add_method(py::module_& m, const char* type, const char* name, Function&& f
 GeodesicPath path_between(const SaddleVertexGraph& graph, const py::object& a, const py::object& b, bool shorten,
                           const py::object& job) {
   const SurfacePoint from = as_surface_point(a, graph.mesh(), "a"), to = as_surface_point(b, graph.mesh(), "b");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] { return shortest_path(graph, from, to, {.shorten = shorten}, token); });
 }
 
@@ -154,7 +154,7 @@ GeodesicPaths paths_between(const SaddleVertexGraph& graph, const py::object& so
   const SurfacePoints from = as_surface_points(sources, graph.mesh(), "sources");
   const SurfacePoints to = as_surface_points(targets, graph.mesh(), "targets");
   const PathOptions options{.shorten = shorten, .threads = as_integer(threads, "threads")};
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] { return shortest_paths(graph, from, to, options, token); });
 }
 
@@ -210,7 +210,7 @@ LogMap log_map_of(const SaddleVertexGraph& graph, const py::object& centre, cons
                   const py::object& job) {
   const SurfacePoint point = as_surface_point(centre, graph.mesh(), "centre");
   const double wanted = as_real(radius, "radius");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] { return log_map(graph, point, wanted, token); });
 }
 
@@ -220,7 +220,7 @@ SurfacePoints exp_map_of(const py::object& mesh_object, const py::object& centre
   const SurfacePoint point = as_surface_point(centre, mesh, "centre");
   const ArrayIn<double> vectors = as_points2(uv, "uv");
   const int wanted_threads = as_integer(threads, "threads");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   std::vector<Vec2> rows(vectors.count);
   for (Index i = 0; i < vectors.count; ++i) rows[i] = {vectors.values[2 * i], vectors.values[2 * i + 1]};
   return without_gil([&] { return exp_map(mesh, point, rows, wanted_threads, token); });
@@ -231,7 +231,7 @@ PolarCoordinates polar_of(const py::object& graph_object, const py::object& curv
   if (!py::isinstance<SaddleVertexGraph>(graph_object)) throw InputError("graph: wanted a SaddleVertexGraph");
   const auto& graph = py::cast<const SaddleVertexGraph&>(graph_object);
   const double wanted = as_real(radius, "radius");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   if (py::isinstance<SurfaceCurve>(curve)) {
     const auto& given = py::cast<const SurfaceCurve&>(curve);
     return without_gil([&] { return polar_coordinates(graph, given, wanted, token); });

@@ -78,7 +78,7 @@ auto search_on(const std::string& device, const SaddleVertexGraph& graph, QueryO
 py::array distances(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
                     const std::string& method, const std::string& device, const py::object& job) {
   const SourcesIn from = as_sources(sources, graph.mesh(), "sources");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return to_array(search_on(device, graph, query_options(limit, method), 1, [&](const QueryOptions& options) {
     return graph.distances(from.sources, options, token);
   }));
@@ -87,7 +87,7 @@ py::array distances(const SaddleVertexGraph& graph, const py::object& sources, c
 py::tuple nearest(const SaddleVertexGraph& graph, const py::object& sources, const py::object& limit,
                   const std::string& method, const std::string& device, const py::object& job) {
   const SourcesIn from = as_sources(sources, graph.mesh(), "sources");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   NearestField field = search_on(device, graph, query_options(limit, method), 1, [&](const QueryOptions& options) {
     return graph.nearest(from.sources, options, token);
   });
@@ -98,7 +98,7 @@ py::array fields(const SaddleVertexGraph& graph, const py::object& sources, cons
                  const py::object& threads, const std::string& device, const py::object& job) {
   const SourcesIn from = as_sources(sources, graph.mesh(), "sources");
   const Index thread_count = as_integer(threads, "threads");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   DistanceFields result =
       search_on(device, graph, query_options(limit, "label_correcting"), from.sources.size(),
                 [&](const QueryOptions& options) { return graph.fields(from.sources, options, thread_count, token); });
@@ -110,7 +110,7 @@ py::array fields(const SaddleVertexGraph& graph, const py::object& sources, cons
 
 PointDistance measure(const SaddleVertexGraph& graph, const py::object& a, const py::object& b, const py::object& job) {
   const SurfacePoint from = as_surface_point(a, graph.mesh(), "a"), to = as_surface_point(b, graph.mesh(), "b");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] { return graph.distance(from, to, token); });
 }
 
@@ -127,7 +127,7 @@ py::array distances_to(const SaddleVertexGraph& graph, const py::object& sources
                        const py::object& job) {
   const SourcesIn from = as_sources(sources, graph.mesh(), "sources");
   const SurfacePoints to = as_surface_points(targets, graph.mesh(), "targets");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return to_array(without_gil([&] { return graph.distances_to(from.sources, to, token); }));
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 py::tuple arrays_of(const py::object& path, const py::object& job) {
   const std::string file = as_path(path, "path");
-  Job* const watched = as_job(job);
+  const JobIn watched(job);
   MeshArrays arrays = without_gil([&] { return read_arrays(file, watched); });
   return py::make_tuple(to_array(std::move(arrays.xyz)).attr("reshape")(-1, 3),
                         to_array(std::move(arrays.triangles)).attr("reshape")(-1, 3));
@@ -15,7 +15,7 @@ py::tuple arrays_of(const py::object& path, const py::object& job) {
 
 std::shared_ptr<Mesh> mesh_of(const py::object& path, const py::object& job) {
   const std::string file = as_path(path, "path");
-  Job* const watched = as_job(job);
+  const JobIn watched(job);
   return without_gil([&] { return std::make_shared<Mesh>(read_mesh(file, watched)); });
 }
 

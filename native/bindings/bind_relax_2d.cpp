@@ -97,7 +97,7 @@ Relaxation2d relax(const py::object& sites, const py::object& domain, const py::
                                     .max_iterations = as_integer(max_iterations, "max_iterations"),
                                     .tolerance = as_real(tolerance, "tolerance"),
                                     .threads = as_integer(threads, "threads")};
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] { return relax_2d(points, within, options, token); });
 }
 

@@ -100,7 +100,7 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
                                    .watch = as_watch(watch),
                                    .threads = as_integer(threads, "threads")};
   const std::uint64_t number = as_seed(seed, "seed");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   const RelaxationStart source = as_start(start);
   SurfacePoints given;
   if (!sites.is_none()) given = as_surface_points(sites, g.mesh(), "sites");

@@ -10,7 +10,7 @@ py::tuple repair_arrays(const py::object& vertices, const py::object& triangles,
   const ArrayIn<double> xyz = as_points3(vertices, "vertices");
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const double distance = as_real(weld_distance, "weld_distance");
-  Job* const watched = as_job(job);
+  const JobIn watched(job);
   RepairResult result = without_gil([&] { return repair(xyz.values, indices.values, distance, watched); });
   return py::make_tuple(std::make_shared<Mesh>(std::move(result.mesh)),
                         std::make_shared<RepairReport>(std::move(result.report)));

@@ -85,7 +85,7 @@ void bind_safe_distance(py::module_& m) {
       .def(py::init([](const py::object& a, const py::object& b, const py::object& threads, const py::object& job) {
              const Shape first = as_shape(a, "a"), second = as_shape(b, "b");
              const int team = as_integer(threads, "threads");
-             Job* const token = as_job(job);
+             const JobIn token(job);
              return without_gil([&] { return std::make_unique<SafeDistanceTable>(first, second, team, token); });
            }),
            py::arg("a"), py::arg("b"), py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none())

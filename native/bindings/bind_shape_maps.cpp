@@ -145,7 +145,8 @@ std::unique_ptr<MappedShapes> make_mapped(const py::object& mesh_object, const p
   result->shapes = as_shapes(shapes, "shapes");
   result->placements = as_placements(placements, mesh, result->shapes.size());
   result->limits = as_limits(limits);
-  const MapShapesOptions options{result->limits, result->field(), as_integer(threads, "threads"), as_job(job)};
+  const JobIn token(job);
+  const MapShapesOptions options{result->limits, result->field(), as_integer(threads, "threads"), token};
   without_gil([&] {
     result->mapped = map_shapes(mesh, result->shapes, result->placements, options);
     result->normals = vertex_normals(mesh);
@@ -272,7 +273,8 @@ BentMeshes bend_all(const MappedShapes& self, const py::object& solids, const py
                     const py::object& threads, const py::object& job) {
   const Mesh& mesh = self.mesh();
   const std::vector<Solid> given = as_solids(solids, self.shapes.size());
-  const BendOptions options{{self.limits, self.field(), as_integer(threads, "threads"), as_job(job)},
+  const JobIn token(job);
+  const BendOptions options{{self.limits, self.field(), as_integer(threads, "threads"), token},
                             as_real(tolerance, "tolerance")};
   return without_gil([&] {
     BentMeshes result{bent_copies(mesh, self.shapes, self.placements, given, options), {}};
@@ -296,7 +298,7 @@ CutSurface with_positions(const Mesh& mesh, CutMesh cut) {
 
 CutSurface cut_surface(const MappedShapes& self, CutPart part, const py::object& job) {
   const Mesh& mesh = self.mesh();
-  Job* const watched = as_job(job);
+  const JobIn watched(job);
   return without_gil([&] { return with_positions(mesh, cut_shapes(mesh, self.mapped, part, watched)); });
 }
 
@@ -314,7 +316,8 @@ ShapeAttributes attributes_of(const MappedShapes& self, const py::object& reach,
                               const py::object& job) {
   const double distance = as_real(reach, "reach");
   const Mesh& mesh = self.mesh();
-  const MapShapesOptions options{self.limits, self.field(), as_integer(threads, "threads"), as_job(job)};
+  const JobIn token(job);
+  const MapShapesOptions options{self.limits, self.field(), as_integer(threads, "threads"), token};
   return without_gil([&] { return shape_attributes(mesh, self.shapes, self.placements, distance, options); });
 }
 

@@ -116,7 +116,7 @@ Shape from_mask(const py::object& image, const py::object& max_corners, bool cen
   std::vector<double> copy(values.data(), values.data() + values.size());
   if (is_bytes)
     for (double& value : copy) value /= 255;
-  Job* const token = as_job(job);
+  const JobIn token(job);
   const MaskImage mask{copy, static_cast<Index>(values.shape(0)), static_cast<Index>(values.shape(1))};
   const Index most = as_integer(max_corners, "max_corners");
   return without_gil([&] { return shape_from_mask(mask, most, centred, token); });

@@ -140,7 +140,7 @@ TracedPath trace_from(const py::object& mesh_object, const py::object& point, co
   const SurfacePoint start = as_surface_point(point, mesh, "point");
   const double angle = as_direction(direction, mesh, start);
   const double wanted = as_real(length, "length");
-  Job* const job = as_job(job_object);
+  const JobIn job(job_object);
   return without_gil([&] {
     TraceResult result = trace(mesh, start, angle, wanted, job);
     const Index last_face = result.path.surface.back().face;
@@ -153,7 +153,8 @@ SurfacePoints project_onto(const py::object& mesh_object, const py::object& xyz,
                            const py::object& job) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const ArrayIn<double> queries = as_points3(xyz, "xyz");
-  const ProjectOptions options{.threads = as_integer(threads, "threads"), .job = as_job(job)};
+  const JobIn token(job);
+  const ProjectOptions options{.threads = as_integer(threads, "threads"), .job = token};
   return without_gil([&] { return project(mesh, queries.values, options); });
 }
 

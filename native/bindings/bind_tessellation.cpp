@@ -69,7 +69,7 @@ DualMesh dual(const Cells& cells, const std::string& policy, const py::object& t
   const auto& graph = py::cast<const SaddleVertexGraph&>(cells.graph);
   const DualPolicy chosen = as_policy(policy);
   const int count = as_integer(threads, "threads");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] { return dual_mesh(graph, cells.diagram, chosen, count, token); });
 }
 
@@ -125,7 +125,7 @@ py::object find_cells(const py::object& graph, const py::object& sites, bool exa
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   const SurfacePoints points = as_surface_points(sites, g.mesh(), "sites");
   GeodesicVoronoiOptions options{.threads = as_integer(threads, "threads")};
-  Job* const token = as_job(job);
+  const JobIn token(job);
   GeodesicVoronoi cells = run_on(device, !exact && is_search_worth_a_device(g), [&](const std::vector<int>& devices) {
     if (!devices.empty() && exact) throw InputError("exact: runs on the processor only; wanted device='cpu'");
     options.cuda_device = first_device(devices);
@@ -138,7 +138,7 @@ py::object find_cells(const py::object& graph, const py::object& sites, bool exa
 py::list dual_paths(const Cells& cells, const py::object& threads, const py::object& job) {
   const auto& graph = py::cast<const SaddleVertexGraph&>(cells.graph);
   const int count = as_integer(threads, "threads");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   py::list result;
   for (GeodesicPath& path : without_gil([&] { return dual_edge_paths(graph, cells.diagram, count, token); }))
     result.append(std::move(path));
@@ -171,7 +171,7 @@ SurfacePoints centres(const Cells& cells, const py::object& density, const py::o
   ArrayIn<double> weights;
   if (!density.is_none()) weights = as_reals(density, "density", cells.mesh().vertex_count());
   const int count = as_integer(threads, "threads");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return without_gil([&] { return cell_centres(cells.mesh(), cells.diagram, weights.values, count, token); });
 }
 
@@ -181,7 +181,7 @@ SurfacePoints centre_of_points(const py::object& graph, const py::object& points
   const SurfacePoints given = as_surface_points(points, g.mesh(), "points");
   ArrayIn<double> shares;
   if (!weights.is_none()) shares = as_reals(weights, "weights", static_cast<Index>(given.size()));
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return {without_gil([&] { return geodesic_centre(g, given, shares.values, token); })};
 }
 

@@ -72,7 +72,7 @@ py::array crossings(const py::object& vertices, const py::object& triangles, con
   const ArrayIn<double> xyz = as_points3(vertices, "vertices");
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
   const Index count = as_integer(threads, "threads");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   return to_rows<Index>(without_gil([&] {
     const JobStage stage(token, "Looking for triangles that pass through each other");
     return self_crossings(points_of(xyz), triangles_of(indices), count, stage);

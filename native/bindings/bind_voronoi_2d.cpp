@@ -36,7 +36,7 @@ Diagram find_diagram(const py::object& sites, const py::object& weights, const p
   const std::vector<double> radii = as_weights(weights, static_cast<std::size_t>(points.count));
   std::optional<PlanarDomain> within;
   if (!domain.is_none()) within = as_domain(domain, "domain");
-  Job* const token = as_job(job);
+  const JobIn token(job);
   constexpr Index k_worth_a_device = 50'000;
   Voronoi2d diagram = run_on(device, points.count >= k_worth_a_device, [&](const std::vector<int>& devices) {
     options.cuda_devices = devices;
@@ -295,7 +295,7 @@ void bind_voronoi_2d(py::module_& m) {
             const ClipOptions options{.gap = as_real(gap, "gap"),
                                       .tolerance = as_real(tolerance, "tolerance"),
                                       .threads = as_integer(threads, "threads")};
-            Job* const token = as_job(job);
+            const JobIn token(job);
             return without_gil([&] { return d.result.clip(domain, options, {token, "Clipping cells"}); });
           },
           py::arg("polygon"), py::kw_only(), py::arg("gap") = 0.0, py::arg("tolerance") = 0.0, py::arg("threads") = 0,
@@ -305,7 +305,7 @@ void bind_voronoi_2d(py::module_& m) {
           [](const Diagram& d, const py::object& points, const py::object& threads, const py::object& job) {
             const std::vector<Vec2> queries = as_points_2d(points, "points");
             const int count = as_integer(threads, "threads");
-            Job* const token = as_job(job);
+            const JobIn token(job);
             return to_array(without_gil([&] { return d.result.locate(queries, count, token); }));
           },
           py::arg("points"), py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(), k_locate_doc)

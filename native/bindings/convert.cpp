@@ -82,6 +82,8 @@ ArrayIn<Index> integers(const py::object& value, const char* name, py::ssize_t c
   ArrayIn<Index> result;
   result.array = py::array_t<Index, py::array::c_style | py::array::forcecast>::ensure(array);
   if (!result.array) throw py::error_already_set();
+  if (result.array.data() == array.data())  // the caller's memory: another thread may write once they are checked
+    result.array = py::array_t<Index, py::array::c_style>(result.array.request());
   result.count = row_count(array, name);
   result.values = std::span(result.array.data(), static_cast<std::size_t>(result.array.size()));
   return result;
@@ -183,7 +185,6 @@ std::string as_path(const py::object& value, const char* name) {
 }
 
 Job* as_job(const py::object& value) {
-  if (value.is_none()) return nullptr;
   if (!py::isinstance<Job>(value)) refuse("job", "a saddleback.Job or None", "a " + type_of(value));
   return py::cast<Job*>(value);
 }

@@ -15,6 +15,8 @@
 #include "saddleback/job.h"
 #include "saddleback/types.h"
 
+#include "interrupt.h"
+
 namespace saddleback::bindings {
 
 namespace py = pybind11;
@@ -45,7 +47,7 @@ Index as_integer(const py::object& value, const char* name);  ///< an int (not a
 std::uint64_t as_seed(const py::object& value, const char* name);
 /// Any str, bytes or os.PathLike, in the bytes that the operating system knows the file by.
 std::string as_path(const py::object& value, const char* name);
-/// A saddleback.Job, or nullptr for None.
+/// A saddleback.Job. Calls take their argument `job` as a JobIn instead.
 Job* as_job(const py::object& value);
 /// True when the array-like's elements are integers, which means vertex indices where points are taken.
 bool holds_integers(const py::object& value);
@@ -100,7 +102,10 @@ inline py::array view_of(std::span<const Triangle> rows, const py::object& owner
 /// Calls `work` without the GIL; it must not touch Python.
 template <class Work>
 auto without_gil(Work&& work) {
-  const py::gil_scoped_release unlocked;
+  struct Unlocked {
+    PyThreadState* state = PyEval_SaveThread();
+    ~Unlocked() { lock_python_again(state); }
+  } const unlocked;
   return work();
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "convert.h"
+#include "interrupt.h"
 
 namespace saddleback::bindings {
 
@@ -60,6 +61,7 @@ void translate(std::exception_ptr error) {
   } catch (const InputError& e) {
     raise(error_types.input, e);
   } catch (const Cancelled& e) {
+    if (PyErr_CheckSignals() != 0) return;  // it was Ctrl-C: KeyboardInterrupt, or what the program's handler raises
     raise(error_types.cancelled, e);
   } catch (const DeviceError& e) {
     raise(error_types.device, e);
@@ -90,6 +92,20 @@ void bind_errors(py::module_& m) {
   py::register_local_exception_translator(&translate);
 }
 
+// Without this the oldest pickle protocols make objects with nothing in them, and end the process.
+void refuse_pickling(const py::module_& m) {
+  for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(m.attr("__dict__"))) {
+    if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
+    const py::object own = value.attr("__dict__");
+    if (own.contains("__reduce__") || own.contains("__getstate__")) continue;
+    const auto refuse = [](const py::object& self, const py::object&) -> py::object {
+      throw py::type_error(
+          message("cannot pickle or copy a saddleback.", py::cast<std::string>(py::type::of(self).attr("__name__"))));
+    };
+    py::setattr(value, "__reduce_ex__", py::cpp_function(refuse, py::is_method(value), py::name("__reduce_ex__")));
+  }
+}
+
 }  // namespace
 }  // namespace saddleback::bindings
 
@@ -97,6 +113,7 @@ PYBIND11_MODULE(_saddleback, m) {
   using namespace saddleback::bindings;
   m.doc() = "Compiled part of saddleback; import saddleback instead.";
   m.attr("__version__") = SADDLEBACK_VERSION;
+  prepare_interrupts();
   bind_errors(m);
   bind_job(m);
   bind_mesh(m);
@@ -125,4 +142,5 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_shape_maps(m);
   bind_check(m);
   bind_distribution(m);
+  refuse_pickling(m);
 }

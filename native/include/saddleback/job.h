@@ -11,6 +11,10 @@ namespace saddleback {
 /// Work that takes a Job* accepts nullptr, meaning nobody watches. Reused Jobs start again from 0.
 class Job {
  public:
+  /// Whether anybody reads the fraction: what costs something to know is left out where nobody does.
+  enum class Watched { no, yes };
+  explicit Job(Watched watched = Watched::yes) : watched_(watched) {}
+
   /// Share of the work done, 0 to 1, never falling during one call.
   double fraction() const { return fraction_.load(std::memory_order_relaxed); }
   /// What is being done, for a person to read.
@@ -21,6 +25,7 @@ class Job {
 
  private:
   friend class JobStage;
+  Watched watched_;
   std::atomic<double> fraction_{0.0};
   std::atomic<bool> cancelled_{false};
   mutable std::mutex text_mutex_;
@@ -44,8 +49,8 @@ class JobStage {
     if (job_ && job_->cancelled()) throw_cancelled();
   }
   bool cancelled() const { return job_ && job_->cancelled(); }
-  /// Whether there is a job: progress that costs something to know is only for those who watch.
-  bool is_watched() const { return job_ != nullptr; }
+  /// Progress that costs something to know is only for those who watch.
+  bool is_watched() const { return job_ && job_->watched_ == Job::Watched::yes; }
 
  private:
   [[noreturn]] static void throw_cancelled();

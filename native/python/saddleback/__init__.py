@@ -1,6 +1,5 @@
 """Geodesic Voronoi cells and even tessellations on triangle meshes."""
 
-from saddleback import _threads  # noqa: F401  (first: it loads the compiled module)
 from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
     BentCopies,

@@ -7,10 +7,9 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from types import FrameType
 from typing import TextIO
 
-from saddleback._saddleback import Cancelled, Job
+from saddleback._saddleback import Job
 
 _WIDTH = 30
 _SECONDS_BETWEEN_LOOKS = 0.1
@@ -39,60 +38,21 @@ def progress_bar(stream: TextIO | None = None) -> Iterator[Job]:
     out = sys.stderr if stream is None else stream
     done = threading.Event()
     painter = threading.Thread(target=_paint, args=(job, out, done), daemon=True)
-    interrupted = False
-
-    def on_interrupt(_signal: int, _frame: FrameType | None) -> None:
-        nonlocal interrupted
-        interrupted = True
-        job.cancel()
-        raise KeyboardInterrupt
-
-    previous, poller = None, None
+    previous = None
     if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is not None:
-        # Python runs signal handlers only between bytecodes, and native work is one long bytecode. A wake-up pipe lets
-        # the other thread see Ctrl-C at once.
-        previous = signal.signal(signal.SIGINT, on_interrupt)
-        poller = _InterruptWatch(job)
+        # With Python's own handler Ctrl-C cancels native work at once.
+        previous = signal.signal(signal.SIGINT, signal.default_int_handler)
     painter.start()
     try:
         yield job
-    except Cancelled:
-        if interrupted or (poller is not None and poller.seen):
-            raise KeyboardInterrupt from None
+    except KeyboardInterrupt:
+        job.cancel()  # threads that still work for it
         raise
     finally:
         done.set()
         painter.join()
-        if poller is not None:
-            poller.close()
+        if previous is not None:
             signal.signal(signal.SIGINT, previous)
-
-
-class _InterruptWatch:
-    """Cancels the job as soon as a SIGINT arrives, from a thread of its own."""
-
-    def __init__(self, job: Job) -> None:
-        import socket
-
-        self.seen = False
-        self._job = job
-        self._reader, self._writer = socket.socketpair()
-        self._writer.setblocking(False)
-        self._previous = signal.set_wakeup_fd(self._writer.fileno(), warn_on_full_buffer=False)
-        self._thread = threading.Thread(target=self._watch, daemon=True)
-        self._thread.start()
-
-    def _watch(self) -> None:
-        while received := self._reader.recv(64):
-            if signal.SIGINT in received:
-                self.seen = True
-                self._job.cancel()
-
-    def close(self) -> None:
-        signal.set_wakeup_fd(self._previous)
-        self._writer.close()  # ends the thread's recv
-        self._thread.join()
-        self._reader.close()
 
 
 def _paint(job: Job, out: TextIO, done: threading.Event) -> None:

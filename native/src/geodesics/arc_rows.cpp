@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/parallel.h"
+
 namespace saddleback {
 namespace {
 
@@ -11,6 +13,8 @@ constexpr int k_double_exponent_bias = 1023, k_double_mantissa_bits = 52;
 constexpr int k_most_mantissa_bits = 32;
 // Lengths from 2^-40 to 2^24 mean edges: shorter arcs count as the shortest, longer ones do not occur.
 constexpr int k_octaves_below_mean = 40;
+constexpr Index k_rows_at_once = 1024;
+constexpr std::size_t k_words_apart = k_apart / sizeof(std::uint64_t);
 
 }  // namespace
 
@@ -29,11 +33,15 @@ ArcCodec::ArcCodec(Index vertex_count, double mean_edge, double longest_path)
 
 ArcRows::ArcRows(const ArcCodec& codec, std::vector<std::int64_t> offsets, ArcWords words)
     : codec_(codec), offsets_(std::move(offsets)), words_(std::move(words)) {
-  std::uint64_t longest = 0;
-  const std::int64_t count = std::ssize(words_);
-#pragma omp parallel for reduction(max : longest)
-  for (std::int64_t i = 0; i < count; ++i) longest = std::max(longest, codec_.length_bits(words_[i]));
-  if (!words_.empty()) longest_ = codec_.length(longest);
+  if (words_.empty()) return;
+  const auto rows = static_cast<Index>(offsets_.size()) - 1;
+  std::vector<std::uint64_t> longest(static_cast<std::size_t>(thread_count(0)) * k_words_apart);
+  parallel_for(rows, 0, k_rows_at_once, [&](Index row, int thread) {
+    std::uint64_t& seen = longest[thread * k_words_apart];
+    for (std::int64_t i = offsets_[row]; i < offsets_[row + 1]; ++i)
+      seen = std::max(seen, codec_.length_bits(words_[i]));
+  });
+  longest_ = codec_.length(*std::max_element(longest.begin(), longest.end()));
 }
 
 std::int64_t ArcRows::find(Index from, Index to) const {
