@@ -203,3 +203,122 @@ def test_any_arrays_are_repaired_or_refused(vertices, triangles, weld_distance):
         assert "no face of the mesh can be used" in str(error)  # and never a fault that repair left in
     else:
         check_maps(mesh, report, vertices, triangles)
+
+
+def turned(arrays):
+    return arrays[0], arrays[1][:, ::-1]
+
+
+def moved(arrays, by):
+    return arrays[0] + np.asarray(by, dtype=np.float64), arrays[1]
+
+
+def test_a_hollow_ball_that_is_inside_out_is_turned_whole():
+    outer, inner = meshes.icosphere(2, radius=2.0), meshes.icosphere(2)
+    mesh, report = sb.repair(*meshes.merge(turned(outer), inner))
+    assert volume(mesh) == pytest.approx(volume(sb.Mesh(*outer)) - volume(sb.Mesh(*inner)), rel=1e-12)
+    assert set(report.changes) == {"faces_flipped"}
+
+
+def test_nested_walls_alternate_when_the_outermost_is_inside_out():
+    shells = [meshes.icosphere(1, radius=radius) for radius in (4.0, 3.0, 2.0, 1.0)]
+    whole = meshes.merge(*(turned(shell) if i % 2 else shell for i, shell in enumerate(shells)))
+    mesh, _ = sb.repair(*turned(whole))
+    assert volume(mesh) == pytest.approx(volume(sb.Mesh(*whole)), rel=1e-12)
+    assert sb.repair(*whole)[1].changes == {}
+
+
+def test_solids_within_a_solid_stay_as_they_are():
+    """A body in its clothes: both face outward, and neither is wrong."""
+    whole = meshes.merge(meshes.icosphere(2, radius=2.0), meshes.icosphere(1))
+    assert sb.repair(*whole)[1].changes == {}
+
+
+def test_a_ball_in_the_hole_of_a_torus_is_not_within_it():
+    ring, ball = meshes.torus(24, 8, 5.0, 0.5), meshes.icosphere(1)
+    mesh, _ = sb.repair(*meshes.merge(ring, turned(moved(ball, (0, 0, 0.1)))))
+    assert volume(mesh) == pytest.approx(volume(sb.Mesh(*ring)) + volume(sb.Mesh(*ball)), rel=1e-12)
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_t_junctions_are_told_and_stitched_on_request(scale):
+    vertices = scale * np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0), (2, 1, 0), (0, -1, 0), (2, -1, 0)])
+    triangles = [(0, 1, 3), (1, 2, 4), (1, 4, 3), (0, 5, 6), (0, 6, 2)]
+    mesh, report = sb.repair(vertices, triangles)
+    assert (mesh.component_count, report.t_junctions) == (2, 1)
+    assert "stitch=True" in str(report)
+    mesh, report = sb.repair(vertices, triangles, stitch=True)
+    assert report.changes == {"edges_stitched": 1}
+    assert (mesh.component_count, len(mesh.boundary_loops), report.t_junctions) == (1, 1, 0)
+    ends = report.vertex_map[[3, 6]]
+    assert sb.exact_distances(mesh, ends[:1])[ends[1]] == pytest.approx(scale * 8**0.5, rel=1e-12)
+
+
+def test_a_face_with_many_vertices_on_all_its_sides_is_divided():
+    """A large triangle framed by strips of small ones."""
+    count = 7
+    corners = np.array([(0.0, 0, 0), (1.0, 0, 0), (0.0, 1.0, 0)])
+    parts = [(corners, np.array([(0, 1, 2)], dtype=np.int32))]
+    share = np.linspace(0, 1, count)[:, None]
+    for i in range(3):
+        a, b = corners[i], corners[(i + 1) % 3]
+        out = np.array([(b - a)[1], -(b - a)[0], 0]) / 5
+        row = a + share * (b - a)
+        row[[0, -1]] = a, b
+        strip = np.vstack([row, row + out])
+        lower = [(k + 1, k, count + k) for k in range(count - 1)]
+        lower += [(k + 1, count + k, count + k + 1) for k in range(count - 1)]
+        parts.append((strip, np.array(lower, dtype=np.int32)))
+    mesh, report = sb.repair(*meshes.merge(*parts), 1e-9, stitch=True)
+    assert report.changes["edges_stitched"] == 3
+    assert mesh.component_count == 1
+    assert mesh.area == pytest.approx(0.5 + (2 + 2) / 5, rel=1e-9)
+
+
+def test_a_soup_off_by_a_rounding_tells_what_joins_it():
+    vertices, triangles = meshes.icosphere(3)
+    corners = vertices[triangles].reshape(-1, 3).astype(np.float32)
+    up = np.random.default_rng(1).random(corners.shape) < 0.05
+    corners = np.where(up, np.nextafter(corners, np.float32(9)), corners)
+    numbers = np.arange(len(corners)).reshape(-1, 3)
+    mesh, report = sb.repair(corners, numbers)
+    assert mesh.component_count > 1
+    assert 0 < report.joining_distance < 1e-6
+    assert f"weld_distance={report.joining_distance:g}" in str(report)
+    mesh, report = sb.repair(corners, numbers, report.joining_distance)
+    assert (mesh.component_count, mesh.is_closed, report.near_border_vertices) == (1, True, 0)
+
+
+def test_copies_at_one_place_are_no_crack():
+    """Where a repair parted sheets, welding would bring back what it mended."""
+    assert sb.repair(*meshes.bow_tie())[1].near_border_vertices == 0
+
+
+def test_holes_up_to_a_size_are_filled():
+    arrays = meshes.holes()
+    mesh, report = sb.repair(*arrays, fill_holes=20)
+    assert report.changes["holes_filled"] == 2
+    assert report.changes["holes_left"] == 1
+    assert len(mesh.boundary_loops) == 1
+    assert mesh.area == pytest.approx(1.0, rel=1e-12)
+    assert (report.face_map >= 0).all()
+    tube, report = sb.repair(*meshes.cylinder(24, 9), fill_holes=24)
+    assert report.changes == {"holes_filled": 2}
+    assert tube.is_closed
+    assert volume(tube) == pytest.approx(12 * np.sin(2 * np.pi / 24) * 2, rel=1e-12)
+
+
+def test_filling_makes_no_edge_that_is_there_already():
+    """Two faces that share an edge, as an open book: the only diagonal of the hole is the back of the book."""
+    vertices = [(0, 0, 0), (0, 0, 1), (1, 0, 0.5), (0, 1, 0.5)]
+    mesh, report = sb.repair(vertices, [(0, 2, 1), (1, 3, 0)], fill_holes=10)
+    assert report.changes == {"holes_filled": 1}
+    assert (mesh.is_closed, mesh.face_count) == (True, 4)
+    lone, report = sb.repair(vertices[:3], [(0, 1, 2)], fill_holes=10)
+    assert (lone.face_count, report.changes) == (1, {})
+
+
+@pytest.mark.parametrize("edges", [-1, 2001, 2**31 - 1])
+def test_holes_too_large_to_fill_are_refused(edges):
+    with pytest.raises(sb.InputError, match="fill_holes: wanted 0 to 2000 edges"):
+        sb.repair(*meshes.grid(3, 3), fill_holes=edges)

@@ -10,6 +10,7 @@
 #include "saddleback/error.h"
 
 #include "mesh/face_shape.h"
+#include "mesh/repair_borders.h"
 #include "mesh/repair_steps.h"
 
 namespace saddleback {
@@ -41,8 +42,9 @@ std::vector<Index> RepairState::live_faces() const {
 namespace {
 
 constexpr int k_patient_rounds = 8;
+constexpr int k_most_looks = 8;
 
-void check_arguments(std::span<const double> xyz, std::span<const Index> triangles, double weld_distance) {
+void check_arguments(std::span<const double> xyz, std::span<const Index> triangles, const RepairOptions& options) {
   constexpr std::size_t k_max = std::numeric_limits<Index>::max() / 8;  // room for copies and parts
   if (xyz.size() % 3) throw InputError(message("vertices: ", xyz.size(), " coordinates are not a multiple of 3"));
   if (triangles.size() % 3)
@@ -50,8 +52,10 @@ void check_arguments(std::span<const double> xyz, std::span<const Index> triangl
   if (xyz.size() / 3 > k_max || triangles.size() / 3 > k_max)
     throw InputError(
         message("triangles: more than ", k_max, " vertices or faces cannot be repaired; decimate the mesh"));
-  if (!(weld_distance >= 0) || !std::isfinite(weld_distance))
-    throw InputError(message("weld_distance: wanted a finite number >= 0, got ", weld_distance));
+  if (!(options.weld_distance >= 0) || !std::isfinite(options.weld_distance))
+    throw InputError(message("weld_distance: wanted a finite number >= 0, got ", options.weld_distance));
+  if (options.fill_holes < 0 || options.fill_holes > k_most_hole_edges)
+    throw InputError(message("fill_holes: wanted 0 to ", k_most_hole_edges, " edges a hole, got ", options.fill_holes));
 }
 
 RepairState begin_state(std::span<const double> xyz, std::span<const Index> triangles) {
@@ -90,20 +94,21 @@ std::vector<std::uint8_t> drop_unusable(RepairState& state) {
   return used;
 }
 
-// The rounds; returns for each vertex of the input the one that stands for it after the first.
-std::vector<Index> mend_all(RepairState& state, std::span<const std::uint8_t> used, const JobStage& stage) {
+void count_welded(RepairState& state, std::span<const Index> homes, std::span<const std::uint8_t> used) {
+  Index welded = 0;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    welded += used[v] && homes[v] != k_none && homes[v] != static_cast<Index>(v);
+  state.count("vertices_welded", welded);
+}
+
+// The rounds; returns for each vertex of before the one that stands for it after the first.
+std::vector<Index> mend_all(RepairState& state, const JobStage& stage) {
   std::vector<Index> homes;
   for (int round = 0;; ++round) {
     const bool patient = round < k_patient_rounds;
     const JobStage part = stage.part(round == 0 ? 0 : 0.8, round == 0 ? 0.8 : 1);
     std::vector<Index> now = separate_fans(state, glue_sheets(state, part.part(0, 0.7)), patient);
-    if (round == 0) {
-      homes = std::move(now);
-      Index welded = 0;
-      for (std::size_t v = 0; v < homes.size(); ++v)
-        welded += used[v] && homes[v] != k_none && homes[v] != static_cast<Index>(v);
-      state.count("vertices_welded", welded);
-    }
+    if (round == 0) homes = std::move(now);
     part.update(0.8);
     if (!mend_areas(state, patient, part)) return homes;
   }
@@ -162,16 +167,19 @@ std::string nothing_left(const RepairReport& report) {
                  "; give it at least one triangle with area");
 }
 
-}  // namespace
-
-RepairResult repair(std::span<const double> xyz, std::span<const Index> triangles, double weld_distance, Job* job) {
-  const JobStage stage(job, "Repairing the mesh");
-  check_arguments(xyz, triangles, weld_distance);
+RepairResult repair_once(std::span<const double> xyz, std::span<const Index> triangles, const RepairOptions& options,
+                         const JobStage& stage) {
   RepairState state = begin_state(xyz, triangles);
   const std::vector<std::uint8_t> used = drop_unusable(state);
   stage.update(0.05);
-  state.cluster = weld_clusters(state.positions, used, weld_distance);
-  const std::vector<Index> homes = mend_all(state, used, stage.part(0.2, 0.8));
+  state.cluster = weld_clusters(state.positions, used, options.weld_distance);
+  if (options.stitch) stitch_borders(state, options.weld_distance, stage);
+  const std::vector<Index> homes = mend_all(state, stage.part(0.2, 0.8));
+  count_welded(state, homes, used);
+  if (options.fill_holes > 0) {
+    fill_holes(state, options.fill_holes, stage);
+    mend_all(state, stage.part(0.8, 0.85));  // the least area of a loop may be none
+  }
 
   const Compact result = compact(state);
   RepairReport report;
@@ -183,8 +191,52 @@ RepairResult repair(std::span<const double> xyz, std::span<const Index> triangle
   // Copies made by an earlier repair are welded and split again on the way: that is no change.
   if (is_unchanged(xyz, triangles, result)) report.changes.clear();
   stage.update(0.85);
-  RepairResult repaired{Mesh(result.xyz, result.triangles, stage.part(0.85, 1)), std::move(report)};
+  return {Mesh(result.xyz, result.triangles, stage.part(0.85, 1)), std::move(report)};
+}
+
+// Cutting, stitching and mending may bring together what a second look takes for something else.
+bool deserves_another_look(const RepairReport& report) {
+  const auto counted = [&](const char* kind) { return report.changes.contains(kind); };
+  return counted("edges_non_manifold") || counted("edges_cut") || counted("edges_divided") ||
+         counted("faces_without_area") || counted("vertices_split");
+}
+
+void follow(std::vector<Index>& map, std::span<const Index> next) {
+  for (Index& to : map)
+    if (to != k_none) to = next[to];
+}
+
+}  // namespace
+
+RepairResult repair(std::span<const double> xyz, std::span<const Index> triangles, const RepairOptions& options) {
+  const JobStage stage(options.job, "Repairing the mesh");
+  check_arguments(xyz, triangles, options);
+  RepairResult repaired = repair_once(xyz, triangles, options, stage.part(0, 0.9));
+  for (int look = 0; look < k_most_looks && deserves_another_look(repaired.report); ++look) {
+    const std::span<const Vec3> positions = repaired.mesh.positions();
+    const std::span<const Triangle> faces = repaired.mesh.triangles();
+    RepairResult next = repair_once({positions.data()->data(), 3 * positions.size()},
+                                    {faces.data()->data(), 3 * faces.size()}, {}, stage.part(0.9, 0.95));
+    if (next.report.changes.empty()) break;
+    follow(repaired.report.vertex_map, next.report.vertex_map);
+    follow(repaired.report.face_map, next.report.face_map);
+    for (const auto& [kind, count] : next.report.changes) repaired.report.changes[kind] += count;
+    repaired.mesh = std::move(next.mesh);
+  }
+  repaired.report.close_borders = tell_close_borders(repaired.mesh.positions(), repaired.mesh.triangles(), stage);
+  stage.update(1);
   return repaired;
+}
+
+std::string CloseBorders::text() const {
+  std::string text;
+  if (near_vertices)
+    text += message("; ", near_vertices, " border ", near_vertices == 1 ? "vertex lies" : "vertices lie",
+                    " close to another border without touching it: weld_distance=", weld_distance, " joins them");
+  if (vertices_amid_edges)
+    text += message("; ", vertices_amid_edges, " border ", vertices_amid_edges == 1 ? "vertex lies" : "vertices lie",
+                    " amid the edge of another border (a T-junction): stitch=True joins them");
+  return text;
 }
 
 std::string RepairReport::text() const {
@@ -207,6 +259,9 @@ std::string RepairReport::text() const {
        "edges cut along the seam of a surface without orientation"},
       {"vertices_split", "vertex copied where sheets met", "vertices copied where sheets met"},
       {"faces_flipped", "face turned over", "faces turned over"},
+      {"edges_stitched", "edge divided where vertices lay on it", "edges divided where vertices lay on them"},
+      {"holes_filled", "hole filled", "holes filled"},
+      {"holes_left", "hole left open", "holes left open"},
   };
   std::string text;
   for (const Kind& kind : k_kinds) {
@@ -214,7 +269,7 @@ std::string RepairReport::text() const {
     if (found == changes.end()) continue;
     text += message(text.empty() ? "" : ", ", found->second, " ", found->second == 1 ? kind.one : kind.many);
   }
-  return text.empty() ? "nothing to mend" : text;
+  return (text.empty() ? "nothing to mend" : text) + close_borders.text();
 }
 
 }  // namespace saddleback

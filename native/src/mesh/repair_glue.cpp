@@ -113,7 +113,7 @@ class Gluer {
       sheets_.turned[i] ^= place.turned;
     }
     turn_minorities(labels, patch_count_);
-    turn_outward(labels);
+    turn_outward(state_, sheets_, labels, patch_count_, stage);
     state_.count("faces_flipped", static_cast<Index>(std::count(sheets_.turned.begin(), sheets_.turned.end(), 1)));
   }
 
@@ -279,47 +279,6 @@ class Gluer {
     for (const Pair& pair : pairs) {
       const Wing &v = wings[pair.i], &w = wings[pair.j];
       if (sheets_.twins[v.halfedge] == k_none && sheets_.twins[w.halfedge] == k_none) try_pair(v, w, patches);
-    }
-  }
-
-  // Closed components with a negative volume are turned inside out, except a consistent one within the box of the
-  // largest: the wall of a cavity.
-  void turn_outward(const std::vector<Index>& labels) {
-    struct Body {
-      Eigen::AlignedBox3d box;
-      Index first = k_none;
-      double volume = 0, area = 0;
-      bool closed = true, touched = false;
-    };
-    std::vector<Body> bodies(patch_count_);
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      Body& body = bodies[labels[i]];
-      const Triangle& t = sheets_.coarse[i];
-      if (body.first == k_none) body.first = t[0];
-      const Vec3 p = place(t[0]) - place(body.first), q = place(t[1]) - place(body.first),
-                 r = place(t[2]) - place(body.first);
-      body.volume += (sheets_.turned[i] ? -1 : 1) * p.dot(q.cross(r));
-      body.area += (q - p).cross(r - p).norm();
-      body.touched = body.touched || sheets_.turned[i];
-      for (int k = 0; k < 3; ++k) {
-        body.box.extend(place(t[k]));
-        body.closed = body.closed && sheets_.twins[3 * static_cast<Index>(i) + k] != k_none;
-      }
-    }
-    const Body* largest = nullptr;
-    for (const Body& body : bodies)
-      if (body.closed && body.first != k_none &&
-          (!largest || body.box.diagonal().norm() > largest->box.diagonal().norm()))
-        largest = &body;
-    const auto is_cavity = [&](const Body& body) {
-      return !body.touched && &body != largest && largest->box.contains(body.box);
-    };
-    // A flat body has no inside: rounding must not decide.
-    constexpr double k_hollow = 1e-9;
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      const Body& body = bodies[labels[i]];
-      if (body.closed && body.volume < -k_hollow * body.area * body.box.diagonal().norm() && !is_cavity(body))
-        sheets_.turned[i] ^= 1;
     }
   }
 

@@ -50,6 +50,11 @@ struct Sheets {
 /// Drops faces that use a place twice and duplicates, then glues at most two half-edges an edge and orients the faces.
 Sheets glue_sheets(RepairState& state, const JobStage& stage);
 
+/// Turns closed bodies so that the outermost face outward, with what lies within them; see repair_orient.cpp. `labels`:
+/// the body of each face of `sheets`.
+void turn_outward(const RepairState& state, Sheets& sheets, const std::vector<Index>& labels, Index label_count,
+                  const JobStage& stage);
+
 /// Gives every fan of glued corners a vertex of its own, writes the faces back, turned as they should be, and divides
 /// edges that two vertices share more than once (`divide` false: drops their faces). Afterwards the state is manifold.
 /// The returned vector says for each vertex of before which vertex stands for it now, k_none if none does.
