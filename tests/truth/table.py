@@ -31,7 +31,9 @@ def entry_points() -> Iterator[str]:
             continue
         yield name
         if isinstance(value, type):
-            yield from (f"{name}.{part}" for part, method in vars(value).items() if is_public(part) and callable(method))
+            yield from (
+                f"{name}.{part}" for part, method in vars(value).items() if is_public(part) and callable(method)
+            )
 
 
 def guards_of(checks: dict[str, Check]) -> dict[str, list[Check]]:
@@ -47,10 +49,11 @@ def page() -> str:
     """The page's text."""
     checks = load_checks()
     rows = [
-        f"| `{name}` | {', '.join(f'`{check.name}`' for check in guards)} |" for name, guards in guards_of(checks).items()
+        f"| `{name}` | {', '.join(f'`{check.name}`' for check in found)} |" for name, found in guards_of(checks).items()
     ]
-    lines = [f"- `{check.name}`: {check.summary}" for check in sorted(checks.values(), key=lambda check: check.name)]
-    return "\n".join([INTRODUCTION + "| entry point | checks |", "|---|---|", *rows, "", "## The checks", "", *lines, ""])
+    lines = [f"- `{check.name}`: {check.summary}" for _, check in sorted(checks.items())]
+    head = [INTRODUCTION + "| entry point | checks |", "|---|---|"]
+    return "\n".join([*head, *rows, "", "## The checks", "", *lines, ""])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,74 @@
+"""A short run of random input past the truths, each time with another seed; and the table of what guards what."""
+
+from __future__ import annotations
+
+import os
+import time
+
+import numpy as np
+import pytest
+
+from tests.truth import families, fuzz, shrinking, table
+from tests.truth.registry import Check, load_checks
+
+SECONDS = 60.0
+
+
+def test_random_input_meets_the_truths():
+    """The seed is new each time: SADDLEBACK_FUZZ_SEED repeats one, and each finding prints a command of its own."""
+    seed = int(os.environ.get("SADDLEBACK_FUZZ_SEED", int(time.time()) % 10**9 * 1000))
+    print(f"seed {seed}")
+    done = fuzz.run(list(load_checks().values()), SECONDS, seed, workers=os.cpu_count() or 1)
+    assert not done.findings, f"seed {seed}:\n" + "\n".join(done.findings)
+    assert done.outcomes["fine"] > 0.5 * sum(done.outcomes.values()), dict(done.outcomes)
+
+
+def test_every_entry_point_has_a_guard():
+    empty = [name for name, guards in table.guards_of(load_checks()).items() if not guards]
+    assert not empty
+
+
+def test_the_page_shows_what_is_so():
+    assert table.PAGE.read_text(encoding="utf-8") == table.page(), "run python -m tests.truth.table"
+
+
+@pytest.mark.parametrize("family", families.FAMILIES)
+def test_families_make_triangles(family):
+    for seed in range(20):
+        vertices, triangles = families.FAMILIES[family](np.random.default_rng(seed))
+        assert vertices.shape[1] == triangles.shape[1] == 3
+        assert 1 <= len(triangles) <= 1000
+        assert np.isfinite(vertices).all()
+        assert 0 <= triangles.min() <= triangles.max() < len(vertices)
+
+
+def test_few_rows_remain_of_what_fails():
+    wanted = {3, 77}
+    rows = shrinking.fewest_rows(100, lambda rows: wanted <= set(rows.tolist()))
+    assert set(rows.tolist()) == wanted
+
+
+def errs(mesh: object, rng: np.random.Generator) -> None:
+    raise AssertionError("as planned")
+
+
+def test_a_crash_and_a_wrong_answer_are_findings():
+    """With checks of this file, which a worker cannot import by registry: here in this process, there by a signal."""
+    check = Check("planned", errs, (), "mesh")
+    case = fuzz.random_case(check, 5)
+    assert fuzz.attempt(check, case).word == "finding"
+    vertices, triangles = case.arrays
+    assert "as planned" in fuzz.told(case, fuzz.with_rows(case, np.array([0])), fuzz.attempt(check, case))
+    assert len(fuzz.with_rows(case, np.array([0])).arrays[1]) == 1
+    assert len(vertices) >= 3
+    assert len(triangles) >= 1
+
+
+def test_a_worker_that_dies_is_a_finding_and_is_replaced():
+    worker = fuzz.Worker()
+    name = next(iter(load_checks()))
+    case = fuzz.random_case(load_checks()[name], 0)
+    worker._process.kill()
+    assert worker.run(case).word == "finding"
+    assert worker.run(case).word in ("fine", "refused")
+    worker.close()
