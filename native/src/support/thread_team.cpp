@@ -108,8 +108,11 @@ class IdleWorkers {
     }
     try {
       while (static_cast<int>(into.size()) < count) into.push_back(begin_worker());
-    } catch (const std::system_error&) {  // no more threads
-    } catch (const std::bad_alloc&) {}
+    } catch (const std::system_error&) {
+      return;  // no more threads: those that there are do the work
+    } catch (const std::bad_alloc&) {
+      return;
+    }
   }
 
   void give_back(const std::vector<Worker*>& workers) {
