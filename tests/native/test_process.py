@@ -283,3 +283,21 @@ def test_signals_between_calls_do_not_linger():
         os.kill(os.getpid(), signal.SIGINT)
         time.sleep(1)
     assert sb.SaddleVertexGraph(mesh).arc_count > 0
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="the size of the process is read as Linux shows it")
+def test_what_a_limit_leaves_is_known_beforehand():
+    """Not only what the machine has: a sentence instead of a try that fails half-way."""
+    done = run("""
+import resource
+graph = sb.SaddleVertexGraph(sb.Mesh(*meshes.icosphere(5)))
+size = int(open("/proc/self/statm").read().split()[0]) * 4096 + (200 << 20)
+resource.setrlimit(resource.RLIMIT_AS, (size, size))
+try:
+    graph.fields(np.arange(8000, dtype=np.int32))
+except sb.InputError as error:
+    print(error)
+""")
+    assert "8000 fields of 10242 vertices take 0.7 GB, more than the memory there is (0.2 GB)" in done.stdout, (
+        done.stderr
+    )

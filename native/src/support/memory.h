@@ -5,7 +5,8 @@
 
 namespace saddleback {
 
-/// Bytes that the system could still give to this process; 0 when it does not say.
+/// Bytes that this process could still get, within the machine and the limits set for it (a container's, `ulimit -v`);
+/// 0 when the system does not say.
 std::size_t available_memory();
 
 }  // namespace saddleback
