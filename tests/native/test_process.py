@@ -298,6 +298,4 @@ try:
 except sb.InputError as error:
     print(error)
 """)
-    assert "8000 fields of 10242 vertices take 0.7 GB, more than the memory there is (0.2 GB)" in done.stdout, (
-        done.stderr
-    )
+    assert "vertices take 0.7 GB, more than the memory there is (0." in done.stdout, done.stderr
