@@ -299,3 +299,13 @@ except sb.InputError as error:
     print(error)
 """)
     assert "vertices take 0.7 GB, more than the memory there is (0." in done.stdout, done.stderr
+
+
+@posix
+@pytest.mark.parametrize("what", ["geodesic_voronoi", "voronoi_2d", "graph.paths"])
+def test_an_allocation_that_fails_is_a_memory_error(what):
+    """`python tests/failing_allocations.py` does so for every entry point."""
+    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    command = [sys.executable, os.path.join(root, "tests/failing_allocations.py"), what]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    assert (done.returncode, done.stdout.strip()) == (0, f"{what}: 0 findings"), done.stdout + done.stderr
