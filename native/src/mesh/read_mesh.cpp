@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
 #include "saddleback/error.h"
@@ -40,6 +41,8 @@ std::string read_file(const std::string& path, const JobStage& stage) {
   if (!file) throw InputError(message("path: ", path, " cannot be opened: ", std::strerror(errno)));
   std::string contents;
   constexpr std::size_t k_block = std::size_t{1} << 20;
+  std::error_code unknown;
+  if (const std::uintmax_t size = std::filesystem::file_size(path, unknown); !unknown) contents.reserve(size + k_block);
   for (;;) {
     stage.check();
     const std::size_t old = contents.size();
@@ -72,36 +75,43 @@ MeshArrays weld(const MeshArrays& soup) {
     result.xyz.insert(result.xyz.end(), positions[v].data(), positions[v].data() + 3);
   }
   for (const Index v : soup.triangles) result.triangles.push_back(number[v]);
+  result.warning = soup.warning;
   return result;
 }
 
-MeshArrays read_arrays_staged(const std::string& path, const JobStage& stage) {
+}  // namespace
+
+MeshArrays parse_arrays(const std::string& path, std::string_view contents, const JobStage& stage) {
   const Reader reader = reader_for(path);
-  const std::string contents = read_file(path, stage);
-  stage.update(0.2);
-  PolygonSoup soup(stage.part(0.2, 0.8));
+  PolygonSoup soup(stage.part(0, 0.75));
+  MeshArrays arrays;
   try {
     reader(contents, soup);
+    stage.update(0.75);
+    arrays = std::move(soup).triangulate();
   } catch (const MeshError& error) {
     throw MeshError(message(path, ", ", error.what()));
   }
-  stage.update(0.8);
-  MeshArrays arrays = std::move(soup).triangulate();
   if (arrays.triangles.empty()) throw MeshError(message(path, " has no faces; give a file with at least one"));
   if (reader == read_stl) arrays = weld(arrays);
   stage.update(1.0);
   return arrays;
 }
 
-}  // namespace
-
 MeshArrays read_arrays(const std::string& path, Job* job) {
-  return read_arrays_staged(path, JobStage(job, "Reading the mesh"));
+  return read_arrays(path, JobStage(job, "Reading the mesh"));
+}
+
+MeshArrays read_arrays(const std::string& path, const JobStage& stage) {
+  reader_for(path);  // what cannot be read is not opened
+  const std::string contents = read_file(path, stage);
+  stage.update(0.2);
+  return parse_arrays(path, contents, stage.part(0.2, 1));
 }
 
 Mesh read_mesh(const std::string& path, Job* job) {
   const JobStage stage(job, "Reading the mesh");
-  const MeshArrays arrays = read_arrays_staged(path, stage.part(0, 0.5));
+  const MeshArrays arrays = read_arrays(path, stage.part(0, 0.5));
   return Mesh(arrays.xyz, arrays.triangles, stage.part(0.5, 1));
 }
 

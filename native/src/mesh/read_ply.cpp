@@ -1,8 +1,12 @@
-// PLY: a text header that declares elements and their properties, then the elements as text or binary. The vertices'
-// x, y, z and the faces' list of vertices are read, whatever their types; all else is passed over.
+// PLY: a text header that declares elements and their properties, then the elements as text (a line each) or binary.
+// The vertices' x, y, z and the lists of vertices of faces and triangle strips are read, whatever their types and
+// whether in small letters or capitals; all else that the header declares is passed over.
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <optional>
 
 #include "saddleback/error.h"
@@ -14,7 +18,10 @@ namespace {
 
 enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-std::optional<Type> type_named(std::string_view name) {
+bool is_whole(Type type) { return type != Type::float32 && type != Type::float64; }
+
+std::optional<Type> type_named(std::string_view word) {
+  const std::string name = lower_case(word);
   static constexpr std::pair<std::string_view, Type> k_names[] = {
       {"char", Type::int8},     {"int8", Type::int8},       {"uchar", Type::uint8},    {"uint8", Type::uint8},
       {"short", Type::int16},   {"int16", Type::int16},     {"ushort", Type::uint16},  {"uint16", Type::uint16},
@@ -26,24 +33,27 @@ std::optional<Type> type_named(std::string_view name) {
   return std::nullopt;
 }
 
+enum class Role { none, x, y, z, corners };
+
 struct Property {
-  std::string_view name;
+  std::string name;  ///< in small letters
   Type type;
-  std::optional<Type> count_type;  // of a list
+  std::optional<Type> count_type;  ///< of a list
+  Role role = Role::none;          ///< what is read
 };
 
 struct Element {
-  std::string_view name;
+  std::string name;  ///< in small letters
   std::int64_t count;
+  Index line;  ///< where the header declares it
   std::vector<Property> properties;
 };
 
 enum class Encoding { text, little, big };
 
 struct Header {
-  Encoding encoding = Encoding::text;
+  std::optional<Encoding> encoding;
   std::vector<Element> elements;
-  std::size_t end = 0;  // where the data begin
 };
 
 Type wanted_type(Scanner& scanner) {
@@ -56,15 +66,17 @@ Type wanted_type(Scanner& scanner) {
 Property read_property(Scanner& scanner) {
   Property property;
   const std::string_view first = scanner.word_in_line();
-  if (first == "list") {
+  if (lower_case(first) == "list") {
     property.count_type = wanted_type(scanner);
+    if (!is_whole(*property.count_type)) scanner.fail("the length of a list is not a whole number");
     property.type = wanted_type(scanner);
   } else if (const std::optional<Type> type = type_named(first)) {
     property.type = *type;
   } else {
     scanner.fail(message(quoted(first), " is no PLY type"));
   }
-  property.name = scanner.word_in_line();
+  property.name = lower_case(scanner.word_in_line());
+  if (property.name.empty()) scanner.fail("a property has no name");
   return property;
 }
 
@@ -76,38 +88,83 @@ Encoding read_encoding(Scanner& scanner) {
   scanner.fail(message("unknown PLY format ", quoted(name)));
 }
 
-Header read_header(std::string_view text) {
-  Scanner scanner(text, 0);
-  if (scanner.word() != "ply") scanner.fail("a PLY file begins with ply");
+Element read_element(Scanner& scanner, const Header& header) {
+  const std::string name = lower_case(scanner.word_in_line());
+  for (const Element& other : header.elements)
+    if (other.name == name) scanner.fail(message("a second element is called ", quoted(name)));
+  return {name, scanner.to_count(scanner.word_in_line(), "an element count"), scanner.line(), {}};
+}
+
+Property* find_property(Element& element, std::string_view name, bool is_list) {
+  Property* found = nullptr;
+  for (Property& property : element.properties) {
+    if (property.name != name) continue;
+    if (found) Scanner::fail_at(element.line, message(element.name, " has two properties ", name));
+    found = &property;
+  }
+  if (found && found->count_type.has_value() != is_list)
+    Scanner::fail_at(element.line, message(element.name, "'s property ", name, is_list ? " is no list" : " is a list"));
+  return found;
+}
+
+// Tells the properties that are read what they are; refuses an element that lacks them.
+void give_roles(Element& element) {
+  if (element.count == 0) return;
+  if (element.name == "vertex") {
+    for (const auto& [name, role] : {std::pair("x", Role::x), std::pair("y", Role::y), std::pair("z", Role::z)}) {
+      Property* const property = find_property(element, name, false);
+      if (!property) Scanner::fail_at(element.line, message("the vertices have no property ", name));
+      property->role = role;
+    }
+  } else if (element.name == "face" || element.name == "tristrips") {
+    Property* property = find_property(element, "vertex_indices", true);
+    if (!property) property = find_property(element, "vertex_index", true);
+    if (!property) Scanner::fail_at(element.line, message(element.name, " has no property vertex_indices"));
+    if (!is_whole(property->type)) Scanner::fail_at(element.line, "vertex_indices are no whole numbers");
+    property->role = Role::corners;
+  }
+}
+
+// Leaves the scanner where the data begin.
+Header read_header(Scanner& scanner) {
+  if (lower_case(scanner.word()) != "ply") scanner.fail("a PLY file begins with ply");
+  scanner.skip_line();
   Header header;
   for (;;) {
-    const std::string_view key = scanner.word();
+    const std::string_view word = scanner.word();
+    const std::string key = lower_case(word);
     if (key.empty()) scanner.fail("the header has no end_header");
     if (key == "format") {
       header.encoding = read_encoding(scanner);
     } else if (key == "element") {
-      const std::string_view name = scanner.word_in_line();
-      const std::int64_t count = scanner.to_integer(scanner.word_in_line(), "an element count");
-      if (count < 0) scanner.fail("an element count is negative");
-      header.elements.push_back({name, count, {}});
+      header.elements.push_back(read_element(scanner, header));
     } else if (key == "property") {
       if (header.elements.empty()) scanner.fail("a property comes before the first element");
       header.elements.back().properties.push_back(read_property(scanner));
+    } else if (key != "comment" && key != "obj_info" && key != "end_header") {
+      scanner.fail(message(quoted(word), " is no keyword of a PLY header"));
     }
     scanner.skip_line();
     if (key == "end_header") break;
   }
-  header.end = scanner.position();
+  if (!header.encoding) scanner.fail("the header does not tell the format");
+  for (Element& element : header.elements) give_roles(element);
   return header;
 }
 
 // Values of the two encodings behind one face.
 class TextValues {
  public:
-  explicit TextValues(std::string_view text) : scanner_(text, 0) {}
+  explicit TextValues(const Scanner& scanner) : scanner_(scanner) {}
   double real(Type) { return scanner_.real("a number"); }
   std::int64_t integer(Type) { return scanner_.integer("a whole number"); }
-  [[noreturn]] void fail(const std::string& problem) const { throw MeshError("in the data, " + problem); }
+  void end_element() {
+    if (!scanner_.word_in_line().empty()) fail("the line holds more than the header declares");
+  }
+  void end_file() {
+    if (!scanner_.word().empty()) fail("the file goes on behind the last element");
+  }
+  [[noreturn]] void fail(const std::string& problem) const { scanner_.fail(problem); }
 
  private:
   Scanner scanner_;
@@ -147,6 +204,13 @@ class BinaryValues {
     }
   }
 
+  void end_element() {}
+  // Some editors and transfers add line ends, or fill up a block.
+  void end_file() {
+    const auto is_filling = [](char c) { return c == '\0' || c == '\n' || c == '\r' || c == ' '; };
+    const std::string_view rest = bytes_.substr(at_);
+    if (!std::all_of(rest.begin(), rest.end(), is_filling)) fail("the file goes on behind the last element");
+  }
   [[noreturn]] void fail(const std::string& problem) const { throw MeshError(message("byte ", at_, ": ", problem)); }
 
  private:
@@ -169,62 +233,96 @@ class BinaryValues {
 template <class Values>
 class ElementReader {
  public:
-  ElementReader(Values values, PolygonSoup& soup) : values_(std::move(values)), soup_(soup) {}
+  ElementReader(Values values, const Header& header, PolygonSoup& soup)
+      : values_(std::move(values)), header_(header), soup_(soup) {}
 
-  void read(const Element& element) {
+  void read() {
+    for (const Element& element : header_.elements)
+      if (element.name == "vertex") vertex_count_ = element.count;
+    for (const Element& element : header_.elements) read_element(element);
+    values_.end_file();
+  }
+
+ private:
+  void read_element(const Element& element) {
     if (element.properties.empty()) return;  // takes no room, however many there are
-    const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
+    const bool is_vertex = element.name == "vertex";
+    is_strip_ = element.name == "tristrips";
     for (std::int64_t i = 0; i < element.count; ++i) {
       soup_.stage().check();
-      std::array<double, 3> xyz{0, 0, 0};
+      std::array<double, 3> xyz{};
       for (const Property& property : element.properties) {
         if (property.count_type) {
-          const bool wanted = is_face && (property.name == "vertex_indices" || property.name == "vertex_index");
-          read_list(property, wanted);
-        } else {
-          const double value = values_.real(property.type);
-          if (is_vertex && property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
-            xyz[property.name[0] - 'x'] = value;
+          read_list(property);
+          continue;
         }
+        const double value = values_.real(property.type);
+        if (property.role != Role::none) xyz[static_cast<int>(property.role) - static_cast<int>(Role::x)] = value;
       }
+      values_.end_element();
       if (is_vertex) soup_.add_vertex(xyz[0], xyz[1], xyz[2]);
     }
   }
 
- private:
-  void read_list(const Property& property, bool wanted) {
+  void read_list(const Property& property) {
     const std::int64_t count = values_.integer(*property.count_type);
     if (count < 0) values_.fail("a list has a negative length");
-    corners_.clear();
-    for (std::int64_t i = 0; i < count; ++i) {
-      if (wanted) {
-        corners_.push_back(to_index(values_.integer(property.type)));
-      } else {
-        values_.real(property.type);
-      }
+    if (property.role == Role::none) {
+      for (std::int64_t i = 0; i < count; ++i) values_.real(property.type);
+      return;
     }
-    if (wanted) soup_.add_polygon(corners_);
+    corners_.clear();
+    for (std::int64_t i = 0; i < count; ++i) corners_.push_back(vertex(values_.integer(property.type)));
+    if (is_strip_) {
+      add_strips();
+    } else {
+      soup_.add_polygon(corners_);
+    }
+  }
+
+  // In strips -1 stands between two.
+  Index vertex(std::int64_t number) const {
+    if (number < (is_strip_ ? -1 : 0) || number >= vertex_count_ || number > std::numeric_limits<Index>::max())
+      values_.fail(no_such_vertex(number, vertex_count_));
+    return static_cast<Index>(number);
+  }
+
+  // Each corner closes a triangle with the two before it, turned over every second time.
+  void add_strips() {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      if (corners_[i] == k_none) begin = i + 1;
+      if (i < begin + 2) continue;
+      const bool turned = (i - begin) % 2 == 1;
+      const Index a = corners_[i - 2], b = corners_[i - 1], c = corners_[i];
+      if (a != b && b != c && c != a) soup_.add_polygon(std::array{turned ? b : a, turned ? a : b, c});
+    }
   }
 
   Values values_;
+  const Header& header_;
   PolygonSoup& soup_;
+  std::int64_t vertex_count_ = 0;
+  bool is_strip_ = false;
   std::vector<Index> corners_;
 };
 
-template <class Values>
-void read_elements(const Header& header, Values values, PolygonSoup& soup) {
-  ElementReader<Values> reader(std::move(values), soup);
-  for (const Element& element : header.elements) reader.read(element);
+// Where each line ends with \r alone, a first byte of \n belongs to the data.
+std::size_t data_begin(std::string_view text, const Scanner& scanner) {
+  const std::size_t at = scanner.position(), first = text.find_first_of("\r\n");
+  const bool lone = first != text.npos && text[first] == '\r' && first + 1 < text.size() && text[first + 1] != '\n';
+  return lone && text.substr(at - 2, 2) == "\r\n" ? at - 1 : at;
 }
 
 }  // namespace
 
 void read_ply(std::string_view text, PolygonSoup& soup) {
-  const Header header = read_header(text);
+  Scanner scanner(text, 0);
+  const Header header = read_header(scanner);
   if (header.encoding == Encoding::text) {
-    read_elements(header, TextValues(text.substr(header.end)), soup);
+    ElementReader(TextValues(scanner), header, soup).read();
   } else {
-    read_elements(header, BinaryValues(text, header.end, header.encoding == Encoding::big), soup);
+    ElementReader(BinaryValues(text, data_begin(text, scanner), header.encoding == Encoding::big), header, soup).read();
   }
 }
 
