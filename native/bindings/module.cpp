@@ -92,17 +92,24 @@ void bind_errors(py::module_& m) {
   py::register_local_exception_translator(&translate);
 }
 
-// Without this the oldest pickle protocols make objects with nothing in them, and end the process.
-void refuse_pickling(const py::module_& m) {
+PyObject* refuse_to_make(PyTypeObject* type, PyObject*, PyObject*) {
+  return PyErr_Format(PyExc_TypeError, "a %s is made by the calls that return one", type->tp_name);
+}
+
+// An object that C++ never made holds whatever was in its memory before. The oldest pickle protocols and Class.__new__
+// would make such objects: they are refused, by classes that nobody constructs altogether.
+void refuse_empty_objects(const py::module_& m) {
   for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(m.attr("__dict__"))) {
     if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
     const py::object own = value.attr("__dict__");
+    const bool is_constructed = own.contains("__init__") && PyInstanceMethod_Check(py::object(own["__init__"]).ptr());
+    if (!is_constructed) reinterpret_cast<PyTypeObject*>(value.ptr())->tp_new = refuse_to_make;
     if (own.contains("__reduce__") || own.contains("__getstate__")) continue;
-    const auto refuse = [](const py::object& self, const py::object&) -> py::object {
+    const auto refuse = [](const py::object& self) -> py::object {
       throw py::type_error(
           message("cannot pickle or copy a saddleback.", py::cast<std::string>(py::type::of(self).attr("__name__"))));
     };
-    py::setattr(value, "__reduce_ex__", py::cpp_function(refuse, py::is_method(value), py::name("__reduce_ex__")));
+    py::setattr(value, "__reduce__", py::cpp_function(refuse, py::is_method(value), py::name("__reduce__")));
   }
 }
 
@@ -142,5 +149,5 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_shape_maps(m);
   bind_check(m);
   bind_distribution(m);
-  refuse_pickling(m);
+  refuse_empty_objects(m);
 }

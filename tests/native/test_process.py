@@ -239,6 +239,31 @@ def test_what_is_not_copied_says_so(how):
         assert is_copied_or_refused(how, value), name
 
 
+def test_no_empty_object_is_made_of_a_class_that_nobody_constructs():
+    """It would hold whatever was in its memory before."""
+    for made in (sb.GeodesicVoronoi, sb.DualMesh, sb.CentroidalVoronoi, sb.Distribution, sb.Quality, sb.RepairReport):
+        with pytest.raises(TypeError):
+            made.__new__(made)
+        with pytest.raises(TypeError, match="is made by the calls that return one"):
+            made()
+
+
+def test_a_sub_interpreter_is_refused():
+    done = run("""
+try:
+    import _interpreters as interpreters
+except ImportError:
+    import _xxsubinterpreters as interpreters
+other = interpreters.create()
+try:
+    failed = interpreters.run_string(other, "import saddleback")
+except Exception as error:
+    failed = error
+print("main interpreter only" in str(failed), work() > 0)
+""")
+    assert done.stdout.strip() == "True True", done.stdout + done.stderr
+
+
 def test_arrays_that_another_thread_writes_meanwhile():
     """What was checked is what is used: the numbers of corners are copied while nobody else runs."""
     vertices, triangles = meshes.icosphere(5)

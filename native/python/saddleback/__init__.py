@@ -1,5 +1,6 @@
 """Geodesic Voronoi cells and even tessellations on triangle meshes."""
 
+from saddleback import _interpreter  # noqa: F401  (first: before the compiled module)
 from saddleback._devices import Device, cuda_status, devices
 from saddleback._saddleback import (
     BentCopies,
