@@ -3,6 +3,8 @@
 #include <string_view>
 #include <utility>
 
+#include "saddleback/version_error.h"
+
 #include "convert.h"
 #include "interrupt.h"
 
@@ -19,6 +21,7 @@ void bind_mesh(py::module_& m);
 void bind_paths(py::module_& m);
 void bind_placements(py::module_& m);
 void bind_predicates(py::module_& m);
+void bind_write_file(py::module_& m);
 void bind_read_mesh(py::module_& m);
 void bind_relax_2d(py::module_& m);
 void bind_hausdorff_distance(py::module_& m);
@@ -40,7 +43,7 @@ namespace {
 
 // The error types, kept for the life of the process: errors may be thrown until its end.
 struct ErrorTypes {
-  PyObject *root, *mesh, *input, *cancelled, *device;
+  PyObject *root, *mesh, *input, *version, *cancelled, *device;
 };
 ErrorTypes error_types;
 
@@ -58,6 +61,8 @@ void translate(std::exception_ptr error) {
     std::rethrow_exception(std::move(error));
   } catch (const MeshError& e) {
     raise(error_types.mesh, e);
+  } catch (const VersionError& e) {
+    raise(error_types.version, e);
   } catch (const InputError& e) {
     raise(error_types.input, e);
   } catch (const Cancelled& e) {
@@ -87,6 +92,8 @@ void bind_errors(py::module_& m) {
   const py::tuple bad_value = py::make_tuple(root, borrowed(PyExc_ValueError));
   error_types.mesh = bind_error(m, "MeshError", bad_value, "The mesh cannot be used as it is; `repair` may help.");
   error_types.input = bind_error(m, "InputError", bad_value, "An argument is wrong; the message names it.");
+  error_types.version = bind_error(m, "VersionError", borrowed(error_types.input),
+                                   "A newer version of this library wrote the file; nothing is wrong with it.");
   error_types.cancelled = bind_error(m, "Cancelled", root, "The job was cancelled.");
   error_types.device = bind_error(m, "DeviceError", root, "The wanted device cannot be used.");
   py::register_local_exception_translator(&translate);
@@ -125,6 +132,7 @@ PYBIND11_MODULE(_saddleback, m) {
   bind_job(m);
   bind_mesh(m);
   bind_predicates(m);
+  bind_write_file(m);
   bind_read_mesh(m);
   bind_repair(m);
   bind_stepped_sweep(m);

@@ -76,6 +76,20 @@ def test_a_damaged_file_is_built_again_with_a_note(disk, damage):
     assert run(disk)[1] == []  # it is good again
 
 
+def test_a_file_of_a_newer_version_stays(disk):
+    right, _, _ = run(disk)
+    (path,) = disk.folder.iterdir()
+    contents = bytearray(path.read_bytes())
+    contents[8] += 1  # the version
+    path.write_bytes(contents)
+    for _ in range(2):
+        values, notes, texts = run(disk)
+        np.testing.assert_array_equal(values, right)
+        assert len(notes) == 1 and "is left to the newer version that wrote it" in notes[0]
+        assert "building the distance graph" in texts
+        assert path.read_bytes() == contents and os.listdir(disk.folder) == [path.name]
+
+
 def test_a_folder_that_cannot_be_written_is_only_a_note(tmp_path):
     (tmp_path / "file").write_text("in the way")
     values, notes, _ = run(DiskCache(tmp_path / "file" / "graphs", 2**30))

@@ -1,7 +1,7 @@
 """Distance graphs kept in a folder, by content: what was built in one session needs no building in the next.
 
-A file that cannot be used (damaged, of another version) is built again; what went wrong becomes a note, never an error,
-for the run itself needs no file.
+A file that cannot be used is built again; what went wrong becomes a note, never an error, for the run itself needs no
+file. One of a newer version stays: it is of use to the Blender that wrote it.
 """
 
 from __future__ import annotations
@@ -43,6 +43,9 @@ class DiskCache:
             return None
         try:
             graph = sb.SaddleVertexGraph.load(path, mesh, job=job)
+        except sb.VersionError as error:
+            note(f"The distance graph kept on disk is left to the newer version that wrote it ({error})")
+            return None
         except sb.InputError as error:
             note(f"The distance graph kept on disk could not be used and is built again ({error})")
             with contextlib.suppress(OSError):

@@ -1,15 +1,18 @@
 """Shapes and where they lie, as a text file that other programs can read."""
 
 import json
+import math
 import os
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from saddleback._saddleback import DirectionField, InputError, Mesh, Placements, Shape, SurfacePoints
+from saddleback._saddleback import DirectionField, InputError, Mesh, Placements, Shape, SurfacePoints, _write_file
 
 _KIND = "saddleback placements"
+_Made = TypeVar("_Made")
 
 
 def write_placements(
@@ -21,6 +24,8 @@ def write_placements(
 ) -> None:
     """Write shapes and their placements as JSON; numbers come back to the bit.
 
+    An older file is replaced when the new one is whole, and keeps its permissions.
+
     Args:
         path: the file.
         mesh: what they lie on; only its size is kept, to tell another mesh.
@@ -30,8 +35,9 @@ def write_placements(
 
     Raises
     ------
-        OSError: the file cannot be written.
+        OSError: the file cannot be written; what was there before has not changed.
     """
+    name = os.fspath(path)
     kinds = [shapes] if isinstance(shapes, Shape) else list(shapes)
     content = {
         "kind": _KIND,
@@ -51,8 +57,10 @@ def write_placements(
             "angles": field.angles.tolist(),
             "turns": field.turns.tolist(),
         }
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(content, file)
+    try:
+        _write_file(name, json.dumps(content).encode())
+    except InputError as error:
+        raise OSError(str(error)) from None
 
 
 def read_placements(path: str | os.PathLike[str], mesh: Mesh) -> tuple[list[Shape], Placements]:
@@ -67,13 +75,14 @@ def read_placements(path: str | os.PathLike[str], mesh: Mesh) -> tuple[list[Shap
         InputError: the file is of another kind or for another mesh, or what it says makes no shapes or placements.
         OSError: the file cannot be read.
     """
-    content = _content(path, mesh)
-    shapes = [Shape(*parts) for parts in content["shapes"]]
-    weights = np.asarray(content["barycentric"], dtype=np.float64).reshape(-1, 3)
-    centre = SurfacePoints(np.asarray(content["face"], dtype=np.int32), weights)
-    index = np.asarray(content["shape"], dtype=np.int32)
-    flags = np.asarray(content["mirrored"], dtype=np.bool_)
-    return shapes, Placements(index, centre, content["angle"], content["scale"], flags)
+    content = _Content(path, mesh)
+    shapes = content.shapes()
+    faces = content.wholes("face", len(mesh.triangles))
+    count = len(faces)
+    centre = SurfacePoints(faces, content.reals("barycentric", count, 3))
+    index = content.wholes("shape", len(shapes), count)
+    angle, scale, mirrored = content.reals("angle", count), content.reals("scale", count), content.flags(count)
+    return shapes, content.make(lambda: Placements(index, centre, angle, scale, mirrored))
 
 
 def read_placement_field(path: str | os.PathLike[str], mesh: Mesh) -> DirectionField | None:
@@ -84,32 +93,119 @@ def read_placement_field(path: str | os.PathLike[str], mesh: Mesh) -> DirectionF
         InputError: the file is of another kind or for another mesh, or what it says makes no field.
         OSError: the file cannot be read.
     """
-    field = _content(path, mesh).get("field")
+    content = _Content(path, mesh)
+    field = content.values.get("field")
     if field is None:
         return None
+    if not isinstance(field, dict):
+        raise content.wrong("field", field, "an object")
     missing = {"symmetry", "angles", "turns"} - set(field)
     if missing:
-        raise InputError(f"{os.fspath(path)}: {min(missing)} of the field is missing")
-    return DirectionField.from_turns(mesh, field["angles"], field["turns"], field["symmetry"])
+        raise InputError(f"{content.name}: {min(missing)} of the field is missing")
+    content.values |= field
+    count, symmetry = len(mesh.triangles), field["symmetry"]
+    if type(symmetry) is not int:
+        raise content.wrong("symmetry", symmetry, "1, 2 or 4")
+    angles, turns = content.reals("angles", count), content.reals("turns", count, 3)
+    return content.make(lambda: DirectionField.from_turns(mesh, angles, turns, symmetry))
 
 
-def _content(path: str | os.PathLike[str], mesh: Mesh) -> dict[str, Any]:
-    name = os.fspath(path)
-    try:
-        with open(path, encoding="utf-8") as file:
-            content = json.load(file)
-    except ValueError as error:
-        raise InputError(f"{name}: not a file of placements ({error})") from None
-    if not isinstance(content, dict) or content.get("kind") != _KIND:
-        raise InputError(f"{name}: not a file of placements")
-    missing = {"vertices", "faces", "shapes", "shape", "face", "barycentric", "angle", "scale", "mirrored"} - set(
-        content
-    )
-    if missing:
-        raise InputError(f"{name}: {min(missing)} is missing")
-    wanted, found = (content["vertices"], content["faces"]), (len(mesh.vertices), len(mesh.triangles))
-    if wanted != found:
-        raise InputError(
-            f"{name}: for a mesh of {wanted[0]} vertices and {wanted[1]} faces, this one has {found[0]} and {found[1]}"
-        )
-    return content
+class _Content:
+    """What a file of placements says. Whatever is not as it must be is told with its place and value."""
+
+    def __init__(self, path: str | os.PathLike[str], mesh: Mesh) -> None:
+        self.name = os.fspath(path)
+        try:
+            with open(path, encoding="utf-8") as file:
+                content = json.load(file)
+        except (ValueError, RecursionError) as error:
+            raise InputError(f"{self.name}: not a file of placements ({error})") from None
+        if not isinstance(content, dict) or content.get("kind") != _KIND:
+            raise InputError(f"{self.name}: not a file of placements")
+        wanted = {"vertices", "faces", "shapes", "shape", "face", "barycentric", "angle", "scale", "mirrored"}
+        if missing := wanted - set(content):
+            raise InputError(f"{self.name}: {min(missing)} is missing")
+        self.values: dict[str, Any] = content
+        sizes = [content["vertices"], content["faces"]]
+        for key in ("vertices", "faces"):
+            if type(content[key]) is not int:
+                raise self.wrong(key, content[key], "a whole number")
+        if sizes != [len(mesh.vertices), len(mesh.triangles)]:
+            raise InputError(
+                f"{self.name}: for a mesh of {sizes[0]} vertices and {sizes[1]} faces, this one has "
+                f"{len(mesh.vertices)} and {len(mesh.triangles)}"
+            )
+
+    def wrong(self, place: str, value: object, wanted: str) -> InputError:
+        """The error for a value that is not as wanted."""
+        shown = json.dumps(value) if not isinstance(value, list | dict) else f"a {type(value).__name__}"
+        return InputError(f"{self.name}: {place} is {shown[:40]}, wanted {wanted}")
+
+    def make(self, make: Callable[[], _Made]) -> _Made:
+        """What the library makes of the values; what it refuses is the file's fault."""
+        try:
+            return make()
+        except InputError as error:
+            raise InputError(f"{self.name}: {error}") from None
+
+    def rows(self, place: str, value: object, count: int | None = None) -> list[Any]:
+        """A list, of that length if one is given."""
+        if not isinstance(value, list):
+            raise self.wrong(place, value, "a list")
+        if count is not None and len(value) != count:
+            raise InputError(f"{self.name}: {place} has length {len(value)}, wanted {count}")
+        return value
+
+    def wholes(self, key: str, below: int, count: int | None = None) -> NDArray[np.int32]:
+        """Whole numbers from 0 on."""
+        values = self.rows(key, self.values[key], count)
+        for i, value in enumerate(values):
+            if type(value) is not int or not 0 <= value < below:
+                raise self.wrong(f"{key}[{i}]", value, f"a whole number from 0 to {below - 1}")
+        return np.array(values, dtype=np.int32)
+
+    def flags(self, count: int) -> NDArray[np.bool_]:
+        """Which placements are mirrored."""
+        values = self.rows("mirrored", self.values["mirrored"], count)
+        for i, value in enumerate(values):
+            if type(value) is not bool:
+                raise self.wrong(f"mirrored[{i}]", value, "true or false")
+        return np.array(values, dtype=np.bool_)
+
+    def reals(self, key: str, count: int, width: int | None = None) -> NDArray[np.float64]:
+        """Numbers, or rows of them."""
+        values = self.rows(key, self.values[key], count)
+        if width is None:
+            return np.array([self.real(f"{key}[{i}]", value) for i, value in enumerate(values)], dtype=np.float64)
+        return self.points(key, values, width)
+
+    def points(self, place: str, values: list[Any], width: int) -> NDArray[np.float64]:
+        """Rows of numbers."""
+        rows = [
+            [self.real(f"{place}[{i}][{k}]", x) for k, x in enumerate(self.rows(f"{place}[{i}]", row, width))]
+            for i, row in enumerate(values)
+        ]
+        return np.array(rows, dtype=np.float64).reshape(-1, width)
+
+    def real(self, place: str, value: object) -> float:
+        """A number that a double holds."""
+        if (type(value) is int and abs(value) < 2**1023) or (type(value) is float and math.isfinite(value)):
+            return float(value)
+        raise self.wrong(place, value, "a number")
+
+    def shapes(self) -> list[Shape]:
+        """Shapes of parts of loops of points."""
+        return [self.shape(f"shapes[{i}]", parts) for i, parts in enumerate(self.rows("shapes", self.values["shapes"]))]
+
+    def shape(self, place: str, value: object) -> Shape:
+        """One shape."""
+        parts = []
+        for p, part in enumerate(self.rows(place, value)):
+            loops = enumerate(self.rows(f"{place}[{p}]", part))
+            parts.append(
+                [self.points(f"{place}[{p}][{k}]", self.rows(f"{place}[{p}][{k}]", loop), 2) for k, loop in loops]
+            )
+        try:
+            return Shape(*parts)
+        except InputError as error:
+            raise InputError(f"{self.name}: {place}: {error}") from None

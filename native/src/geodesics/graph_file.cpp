@@ -14,6 +14,7 @@
 
 #include "saddleback/error.h"
 #include "saddleback/saddle_vertex_graph.h"
+#include "saddleback/version_error.h"
 
 #include "geodesics/graph_arcs.h"
 #include "geodesics/graph_checks.h"
@@ -81,8 +82,8 @@ FileHeader read_header(NumberFileReader& file, const std::string& path) {
   if (file.size() < k_header_bytes) refuse_graph_file(path, message("it is cut off after ", file.size(), " bytes"));
   header.version = file.read<std::uint32_t>();
   if (header.version > k_version) {
-    throw InputError(message("path: ", path, " has version ", header.version, " of the graph format, newer than the ",
-                             k_version, " that this library reads; update it, or build the graph again"));
+    throw VersionError(message("path: ", path, " has version ", header.version, " of the graph format, newer than the ",
+                               k_version, " that this library reads; update it, or build the graph again"));
   }
   each_field(header, [&](auto& field) { field = file.read<std::remove_reference_t<decltype(field)>>(); });
   return header;

@@ -64,6 +64,20 @@ NumberFileWriter::NumberFileWriter(const std::string& path) : path_(path), targe
     partial_.clear();
     fail();
   }
+  if (fs::exists(status)) keep_permissions(status.permissions());
+}
+
+// The new file is as open to others as the old one, and replaces none that must not be written.
+void NumberFileWriter::keep_permissions(fs::perms old) {
+#ifndef _WIN32
+  if (access(target_.c_str(), W_OK) != 0) fail();
+#endif
+  std::error_code error;
+  fs::permissions(partial_, old, error);
+  if (error) {
+    errno = error.value();
+    fail();
+  }
 }
 
 NumberFileWriter::~NumberFileWriter() {
@@ -73,7 +87,8 @@ NumberFileWriter::~NumberFileWriter() {
 
 void NumberFileWriter::fail() const {
   const int reason = errno;
-  const char* const advice = reason == ENOENT ? "make its folder" : "make room";
+  const bool is_forbidden = reason == EACCES || reason == EPERM || reason == EROFS;
+  const char* const advice = reason == ENOENT ? "make its folder" : is_forbidden ? "allow it" : "make room";
   throw InputError(message("path: ", path_, " cannot be written: ", std::strerror(reason), "; ", advice,
                            " or choose another place (what was there before has not changed)"));
 }

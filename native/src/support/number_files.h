@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -22,7 +23,8 @@ struct FileCloser {
 using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
 
 /// A file that takes the place of an old one only when it is whole: it is written beside it under another name, which
-/// `commit` changes. Whatever happens before that (no space, an interruption) leaves the old file as it was.
+/// `commit` changes. Whatever happens before that (no space, an interruption) leaves the old file as it was. It keeps
+/// the old file's permissions.
 class NumberFileWriter {
  public:
   /// \throw InputError when the place is taken by something else than a file, or nothing can be written there.
@@ -44,6 +46,7 @@ class NumberFileWriter {
 
  private:
   [[noreturn]] void fail() const;
+  void keep_permissions(std::filesystem::perms old);
   void write_bytes(std::span<const std::byte> bytes);
 
   std::string path_;     ///< as given, for messages
