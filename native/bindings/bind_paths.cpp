@@ -103,8 +103,8 @@ Args:
     job: progress and cancellation.
 
 Returns:
-    SurfacePoints, n of them. A curve that meets the boundary ends there; through vertices it goes on with half of the
-    total angle on either side, unlike a shortest path that touches a saddle vertex: there alone, and where `log_map`
+    SurfacePoints, n of them. A curve that the boundary stops ends there; it goes on along a straight border and past
+    corners of it that it touches. Through vertices it goes on with half of the total angle on either side, unlike a shortest path that touches a saddle vertex: there alone, and where `log_map`
     says `shadowed`, the maps are not each other's inverse.
 
 Raises:

@@ -42,8 +42,8 @@ struct LogMap {
 LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, double radius, Job* job = nullptr);
 
 /// The exponential map: where straightest geodesics from `centre` end, each of the length and direction of a (scaled,
-/// as above) vector; those that meet the boundary end there. \throw InputError for a point off the mesh, a vector that
-/// is not finite (naming its index), one too long to follow; Cancelled. O(faces crossed).
+/// as above) vector; those that the boundary stops (see `trace`) end there. \throw InputError for a point off the mesh,
+/// a vector that is not finite (naming its index), one too long to follow; Cancelled. O(faces crossed).
 SurfacePoints exp_map(const Mesh& mesh, const SurfacePoint& centre, std::span<const Vec2> uv, int threads = 0,
                       Job* job = nullptr);
 

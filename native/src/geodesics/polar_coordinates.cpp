@@ -29,6 +29,14 @@ SurfacePoint centre_of(const SurfacePoint& given) {
   return centre;
 }
 
+/// An angle of -pi to pi about a vertex as one of 0 to its total angle, scaled. Rounding may put a direction along the
+/// border before it.
+double from_zero(const Mesh& mesh, Index vertex, double angle) {
+  if (vertex == k_none || angle >= 0) return angle;
+  const double turned = angle + 2 * std::numbers::pi;
+  return mesh.is_boundary(vertex) && turned - mesh.total_angle(vertex) > -angle ? angle : turned;
+}
+
 void check_radius(double radius) {
   if (!(radius > 0)) throw InputError(message("radius: wanted a distance above 0, got ", radius));
 }
@@ -93,6 +101,8 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, doubl
       angle -= turns * star.total_angle();
     } else if (star.vertex() == k_none) {
       angle = star.begin() + std::remainder(angle - star.begin(), 2 * std::numbers::pi);
+    } else {
+      angle = std::clamp(angle, star.begin(), star.begin() + star.total_angle());
     }
     result.distance.push_back(label.distance);
     result.angle.push_back(angle);
@@ -113,13 +123,13 @@ SurfacePoints exp_map(const Mesh& mesh, const SurfacePoint& given, std::span<con
       throw InputError(message("uv: vector ", i, " is (", uv[i].x(), ", ", uv[i].y(), "), which is not finite"));
   }
   const JobStage stage(job, "Tracing");
+  const Index vertex = vertex_at(mesh, centre);
   const double scale = angle_scale(mesh, centre);
   SurfacePoints result(uv.size());
   std::atomic<Index> done{0};
   parallel_for(count, threads, 64, [&](Index i, int) {
     const double angle = std::atan2(uv[i].y(), uv[i].x());
-    const double turned = angle < 0 && vertex_at(mesh, centre) != k_none ? angle + 2 * std::numbers::pi : angle;
-    result[i] = trace_end(mesh, centre, turned * scale, uv[i].stableNorm()).point;
+    result[i] = trace_end(mesh, centre, from_zero(mesh, vertex, angle) * scale, uv[i].stableNorm()).point;
     if (const Index n = done.fetch_add(1, std::memory_order_relaxed) + 1; n % 64 == 0)
       stage.update(static_cast<double>(n) / count);
   });

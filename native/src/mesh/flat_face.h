@@ -13,6 +13,7 @@ inline constexpr double k_snap = 1e-13;
 /// Corner 0 at the origin, corner 1 on the positive x axis, corner 2 above it.
 struct FlatFace {
   Vec2 corner[3];
+  Vec2 last;    ///< from corner 1 to corner 2, where that is short with more digits than their difference
   double size;  ///< bounds the coordinates; the scale of rounding
 
   /// From positions, not from the three lengths: dot and cross products keep a needle's short side accurate.

@@ -28,6 +28,8 @@ namespace {
 /// cannot be derived from length and mean edge, because a curve may wind round a thin tube any number of times for each
 /// of them.
 constexpr std::int64_t k_max_faces = 1'000'000;
+/// Radians by which a straight border may bend away from a curve that runs along it: rounding of angles.
+constexpr double k_along_border = 1e-9;
 constexpr std::int64_t k_faces_a_look = 1024;  ///< at the job: a quarter of a millisecond
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -209,7 +211,8 @@ class Walk {
     const Index twin = mesh_.twin(exit_halfedge);
     if (twin == k_none) return stop(point, c, true);
 
-    const Vec2 back = c.corner[i] - c.corner[j];  // the twin runs from corner j to corner i
+    // The twin runs from corner j to corner i.
+    const Vec2 back = i == 1 ? Vec2(-c.last) : Vec2(c.corner[i] - c.corner[j]);
     const double edge_length = back.norm();
     Vec2 turned = rotated_into(back / edge_length, direction_);
     turned *= 1.5 - 0.5 * turned.squaredNorm();  // a Newton step back to unit length
@@ -228,11 +231,18 @@ class Walk {
     record_.add(mesh_, point);
     const Index out = 3 * point.face + corner_index(i);
     const Index vertex = mesh_.from(out);
-    if (mesh_.is_boundary(vertex)) return stop(point, c, true);
-
-    const Vec2 axis = c.corner[(i + 1) % 3] - c.corner[i];
+    const Vec2 axis = i == 1 ? c.last : Vec2(c.corner[(i + 1) % 3] - c.corner[i]);
     const double back_angle = std::atan2(cross(axis, -direction_), axis.dot(-direction_));
-    set_out(out, std::clamp(back_angle, 0.0, mesh_.corner_angle(out)) + 0.5 * mesh_.total_angle(vertex));
+    const double back = std::clamp(back_angle, 0.0, mesh_.corner_angle(out)), total = mesh_.total_angle(vertex);
+    if (!mesh_.is_boundary(vertex)) {
+      set_out(out, back + 0.5 * total);
+      return true;
+    }
+    // The surface lies on one side only, or more of it on one: straight on is half a turn on that side.
+    const double right = fan_angle(mesh_, out) + back, left = total - right;
+    if (std::max(left, right) < std::numbers::pi - k_along_border) return stop(point, c, true);
+    set_out(mesh_.first_halfedge(vertex),
+            std::clamp(right + std::copysign(std::numbers::pi, left - right), 0.0, total));
     return true;
   }
 
@@ -273,7 +283,7 @@ class Walk {
     }
     // From this chart to the face's: edge 0 of the face is an edge of ours, on which the angle is measured.
     const int zero = (3 - halfedge_ % 3) % 3;
-    const Vec2 axis = (c.corner[(zero + 1) % 3] - c.corner[zero]).normalized();
+    const Vec2 axis = (zero == 1 ? c.last : Vec2(c.corner[(zero + 1) % 3] - c.corner[zero])).normalized();
     const Vec2 turned = rotated_into(axis, direction_);
     end_ = {point, std::atan2(turned.y(), turned.x()), travelled_, hit_boundary};
     return false;
