@@ -13,10 +13,10 @@
 namespace saddleback {
 namespace {
 
-// Relative to the face: a line this near to a vertex meets it. The detour is of second order.
-constexpr double k_meet = 1e-9;
+// Relative to the face: a line this near to a vertex meets it, up to rounding.
+constexpr double k_meet = 1e-12;
 // Relative to the face: the unfolded image of a root is off its place by rounding and by what the gaps between windows
-// allow (k_gap in the propagation).
+// allow (k_miss in the propagation).
 constexpr double k_same_place = 1e-5;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -109,7 +109,7 @@ Index ExactTracer::follow(const SightLine& line, const Vec2& from, SurfacePoints
     if ((is_between && std::abs(side) <= k_meet * size * ahead.norm()) || exit == k_none) return frame->apex;
     const Vec2 origin = goes_right ? apex : Vec2(0, 0);
     const double length = goes_right ? frame->right_length : frame->left_length;
-    const Vec2 along = (goes_right ? Vec2(frame->length, 0) - apex : apex) / length;
+    const Vec2 along = (goes_right ? Vec2(frame->to_end(), -apex.y()) : apex) / length;
     const auto turned = [&](const Vec2& p) { return Vec2(along.dot(p - origin), cross(along, p - origin)); };
     const Vec2 back = turned(here);
     image = turned(image);

@@ -11,7 +11,17 @@
 // the order of windows changes the work alone: buckets replace the heap. (2) Rays through a vertex belong to the
 // windows on both its sides, and nothing is dropped that does not lose by more than rounding: that makes regular grids
 // right. (3) A ray to the apex that just misses its window still counts, with the detour round the window's end, which
-// is a real path: so the gaps that dropped slivers leave do no harm.
+// is a real path. (4) No light is lost, whatever lies near to what:
+//  - Directions of short edges come from positions (see unfold): each face turns an image of a root by a few roundings,
+//    not by a rounding of the longest edge over the shortest.
+//  - Windows are told apart by the angle of their rays, which is the same on every edge. Neighbors share the ray
+//    through a vertex v, each with its own rounding. Where they overlap, both go on. Where they leave a gap, or where
+//    one narrower than k_narrow is dropped, the gap's rays lie within k_narrow of a ray that is kept: a vertex in it is
+//    an apex of faces that this ray crosses, and takes the detour; an edge in it has ends closer than k_narrow times
+//    the distance, and what is lit through it alone lies in the gap as well. The detour over a ray at the angle a is
+//    longer by a^2 / 2 of the way, or by no more than the gap where the vertex is next to v.
+//  - "One angle, one split" holds for rays that differ; two that are one but for rounding hide nothing.
+//  - What is left is looked for (see relight).
 
 #include "geodesics/exact_propagation.h"
 
@@ -31,13 +41,16 @@ constexpr double k_pi = std::numbers::pi;
 constexpr double k_slack = 1e-11;
 // Two sources this close, relative to the distance, are equally near.
 constexpr double k_tie = 1e-12;
-// Relative to the edge or, where that is less, to how far the rays have come. Narrower windows are not made: the rays
-// of two windows through one lattice point of a grid lie this far apart at most, by rounding. What is lost is a gap, of
-// which the far end may be 1000 times as wide.
-constexpr double k_sliver = 1e-10, k_gap = 1e-7;
-// Relative to the length of a ray: rounding of where it crosses an edge, which on graded meshes exceeds the share
-// above.
-constexpr double k_ray_gap = 1e-13;
+// Radians. Narrower windows are not made: the rays of two windows through one flat vertex lie this far apart at most,
+// by the rounding of some thousand faces. A share of the edge instead would be a whole near-coincident pair of vertices
+// farther on.
+constexpr double k_narrow = 1e-12;
+// Radians. A ray to the apex that misses its window by no more counts, with the detour round the window's end; rays no
+// farther apart may be one but for rounding.
+constexpr double k_miss = 1e-7;
+// Where rays meet an edge is rounded to a share of the edge, at most this many roundings. Nearer to the root than a
+// share of the edge that is more than k_narrow: there windows are as much wider, so that neighbors overlap.
+constexpr double k_rounding = 16 * std::numeric_limits<double>::epsilon(), k_near = 1.0 / 16;
 constexpr double k_narrow_fan = 1e-12;  ///< radians; rounding of the sum of a vertex's angles
 constexpr double k_buckets_per_edge = 4;
 constexpr Index k_ahead = 4;  ///< windows, enough for memory to answer
@@ -48,9 +61,10 @@ double length_of(double x, double y) { return std::sqrt(squared(x, y)); }
 /// Whether a length, which may be negative, is less than the root of a square.
 bool is_less(double length, double square) { return length < 0 || length * length < square; }
 
-/// What is too narrow for a window on an edge of that length.
-double least_width(double length, double sx, double sy, double b0, double b1) {
-  return k_sliver * std::min(length, std::abs(std::clamp(sx, b0, b1) - sx) - sy);
+/// Whether the rays from (x, y), y < 0, through two places of the x axis lie no more than that angle apart.
+bool is_within(double angle, double x, double y, double b, double c) {
+  const double area = (c - b) * y;
+  return area * area <= angle * angle * (squared(b - x, y) * squared(c - x, y));
 }
 
 }  // namespace
@@ -69,13 +83,39 @@ ExactPropagation::ExactPropagation(const ExactSurface& surface, const SurfacePoi
 void ExactPropagation::run(ExactProgress& progress) {
   progress.foretell(surface_, queue_->width());
   start();
-  while (queue_->advance() && queue_->reached() <= options_.limit) {
-    while (WindowBlock* const block = queue_->take()) drain(block, progress);
-    // Last in the bucket: by now their distances are final, nearly always.
-    for (const Index vertex : due_) bend(vertex);
-    due_.clear();
-  }
+  do {
+    while (queue_->advance() && queue_->reached() <= options_.limit) {
+      while (WindowBlock* const block = queue_->take()) drain(block, progress);
+      // Last in the bucket: by now their distances are final, nearly always.
+      for (const Index vertex : due_) bend(vertex);
+      due_.clear();
+    }
+  } while (relight());
   progress.end();
+}
+
+/// Whether some vertex is farther than by an edge from its neighbor. No light that comes to the neighbor went on,
+/// then: it becomes a root, which lights all round it. So whatever rounding does, no vertex of a component stays
+/// unreached and no two ends of an edge are farther from each other than it is long.
+bool ExactPropagation::relight() {
+  const auto look = [&](Index a, Index b, double length) {
+    if (!(std::abs(distances_[a] - distances_[b]) > length)) [[likely]]
+      return;
+    const Index from = distances_[a] < distances_[b] ? a : b, to = from == a ? b : a;
+    const double way = distances_[from] + length;
+    if (way <= options_.limit && way < distances_[to] * (1 - k_tie)) due_.push_back(from);
+  };
+  for (Index h = 0; h < surface_.halfedge_count(); h += 3) {
+    const EdgeFrame& frame = surface_.frame(h);
+    look(frame.from, frame.to, frame.length);
+    look(frame.from, frame.apex, frame.left_length);
+    look(frame.to, frame.apex, frame.right_length);
+  }
+  if (due_.empty()) return false;
+  queue_->clear();
+  for (const Index vertex : due_) bend(vertex);
+  due_.clear();
+  return true;
 }
 
 void ExactPropagation::release() {
@@ -106,7 +146,7 @@ void ExactPropagation::drain(WindowBlock* block, ExactProgress& progress) {
       const Window& window = block->items[i];
       if (i + k_ahead < block->size) fetch(block->items[i + k_ahead].halfedge);
       if (window.halfedge >= 0) {
-        if (surface_.frame(window.halfedge).source_beside != k_none) [[unlikely]] {
+        if (surface_.has_sources_beside(window.halfedge)) [[unlikely]] {
           pass_sources(window);
         } else {
           propagate(window);
@@ -271,26 +311,26 @@ void ExactPropagation::propagate(const Window& window) {
   if (is_beaten_by_corners(window)) return;
   const double ox = ax - sx, oy = ay - sy;
   const double split = sx - ox * (sy / oy);  // where the ray to the apex crosses the half-edge
-  const double sliver = least_width(length, sx, sy, b0, b1);
-  const double gap = k_gap * length + k_ray_gap * (std::abs(ox) + oy);
-  const bool has_left = split > b0 + sliver, has_right = split < b1 - sliver;
+  // Nearly always told by this bound of the product of the two rays.
+  const double wide = k_narrow * (squared(b0 - sx, sy) + squared(b1 - sx, sy));
+  const bool has_left = split > b0 && ((b0 - split) * sy > wide || !is_within(k_narrow, sx, sy, b0, split));
+  const bool has_right = split < b1 && ((split - b1) * sy > wide || !is_within(k_narrow, sx, sy, b1, split));
   bool go_left = has_left && frame.left != k_none, go_right = has_right && frame.right != k_none;
-  if (split >= b0 - gap && split <= b1 + gap) {
+  const double b = std::clamp(split, b0, b1);
+  if (split == b || is_within(k_miss, sx, sy, b, split)) {
     const double reach = sigma + length_of(ox, oy);
-    if (split >= b0 && split <= b1) {
+    if (split == b) {
       offer(frame.apex, reach, {ox, oy, halfedge, root});
     } else {
-      const double b = split < b0 ? b0 : b1;
       offer(frame.apex, sigma + length_of(b - sx, sy) + length_of(ax - b, ay), {ox, oy, halfedge, root});
     }
     if (has_left && has_right) {
       Occupant& occupant = occupants_[halfedge];
       if (reach < occupant.distance) {
         occupant = {reach, split};
-      } else if (split < occupant.split) {  // beyond the ray of a nearer window all is nearer by that one
-        go_right = false;
-      } else {
-        go_left = false;
+      } else if (!is_within(k_miss, sx, sy, split, occupant.split)) {  // as the same ray, neighbors that overlap
+        // Beyond the ray of a nearer window all is nearer by that one.
+        (split < occupant.split ? go_right : go_left) = false;
       }
     }
   }
@@ -299,14 +339,19 @@ void ExactPropagation::propagate(const Window& window) {
   // half-edge on the x axis, the edge of length `l` in direction (ux, uy), the parent between `begin` and `end`.
   const auto child = [&](double l, double ux, double uy, double x, double begin, double end, bool to_apex,
                          double at_near, double at_far, auto&& make) {
-    const auto hit = [&](double b) {  // where the ray through (b, 0) meets the edge
-      const double divisor = uy * (x - b) - sy * ux;
-      return divisor > 0 ? std::min(-sy * b / divisor, l) : l;
+    const auto hit = [&](double at) {  // where the ray through (at, 0) meets the edge
+      const double divisor = uy * (x - at) - sy * ux;
+      return divisor > 0 ? std::min(-sy * at / divisor, l) : l;
     };
-    const double q0 = hit(begin), q1 = to_apex ? l : hit(end);
+    double q0 = hit(begin), q1 = to_apex ? l : hit(end);
     const double cx = ux * x + uy * sy, cy = std::min(0.0, ux * sy - uy * x);
-    if (!(q1 > q0) || q1 - q0 <= least_width(l, cx, cy, q0, q1)) return;
-    const double to_q0 = squared(cx - q0, cy), to_q1 = squared(cx - q1, cy);
+    double to_q0 = squared(cx - q0, cy), to_q1 = squared(cx - q1, cy);
+    if (std::min(to_q0, to_q1) < k_near * k_near * l * l) [[unlikely]] {
+      const double share = k_rounding * l / std::max(-cy, k_rounding * l);
+      q0 = std::max(0.0, q0 - share * std::sqrt(to_q0)), q1 = std::min(l, q1 + share * std::sqrt(to_q1));
+      to_q0 = squared(cx - q0, cy), to_q1 = squared(cx - q1, cy);
+    }
+    if (!(q1 > q0)) return;
     if (is_less(at_near + q1, to_q1) || is_less(at_apex + (l - q0), to_q0)) return;
     if (is_less(at_far + length_of(length - q0 * ux, q0 * uy), to_q0)) return;
     make(cx, cy, q0, q1, sigma + (cx < q0 ? std::sqrt(to_q0) : cx > q1 ? std::sqrt(to_q1) : -cy));
@@ -320,7 +365,7 @@ void ExactPropagation::propagate(const Window& window) {
   }
   if (go_right) {  // the mirror image
     const double l = frame.right_length, to_unit = 1 / l;
-    child(l, (length - ax) * to_unit, ay * to_unit, length - sx, length - b1, length - b0, has_left, at_to, at_from,
+    child(l, frame.to_end() * to_unit, ay * to_unit, length - sx, length - b1, length - b0, has_left, at_to, at_from,
           [&](double cx, double cy, double q0, double q1, double key) {
             queue_->push({l - cx, cy, l - q1, l - q0, sigma, frame.right, root}, key);
           });
@@ -359,7 +404,8 @@ void ExactPropagation::bend(Index vertex) {
   const Index original = surface_.mesh_vertex(vertex);
   const double total = mesh.total_angle(original);
   double lit[2][2] = {{0, total}, {0, 0}};
-  if (arrivals_[vertex].halfedge != Arrival::k_at_source && !surface_.is_beside_source(vertex)) {
+  const bool is_relit = !surface_.may_bend(vertex);
+  if (arrivals_[vertex].halfedge != Arrival::k_at_source && !surface_.is_beside_source(vertex) && !is_relit) {
     const double angle = arrival_angle(vertex);
     if (mesh.is_boundary(original)) {  // round the outside any angle will do
       lit[0][1] = angle - k_pi;
@@ -405,7 +451,7 @@ void ExactPropagation::light_opposite(Index vertex, Index out, double begin, dou
     return length * (c / (a + c));
   };
   const EdgeFrame& opposite = surface_.frame(Mesh::next(out));
-  light({length - opposite.apex_x, -opposite.apex_y, place(end), place(begin), distances_[vertex], entered, vertex});
+  light({opposite.to_end(), -opposite.apex_y, place(end), place(begin), distances_[vertex], entered, vertex});
 }
 
 }  // namespace saddleback

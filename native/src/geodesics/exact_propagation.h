@@ -65,6 +65,7 @@ class ExactPropagation {
   void tell_kept(ExactProgress& progress) const;
   void offer(Index vertex, double distance, const Arrival& arrival);
   bool owns_before(const Arrival& a, const Arrival& b) const;
+  bool relight();
   void light(const Window& window);
   void pass_sources(const Window& window);
   Window left_by_sources(Window window) const;

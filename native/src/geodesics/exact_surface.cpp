@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "geodesics/unfolding.h"
 #include "mesh/hilbert.h"
 #include "mesh/key_order.h"
 
@@ -55,7 +56,8 @@ ExactSurface::ExactSurface(const Mesh& mesh, const SurfacePoints& sources, const
 
 std::size_t ExactSurface::nbytes() const {
   return frames_.size() * sizeof(EdgeFrame) + beside_.size() * sizeof(SourceBeside) + bends_.size() +
-         (vertex_of_.size() + face_of_.size() + mesh_vertex_.size() + mesh_face_.size()) * sizeof(Index);
+         (vertex_of_.size() + face_of_.size() + mesh_vertex_.size() + mesh_face_.size() + first_beside_.size()) *
+             sizeof(Index);
 }
 
 void ExactSurface::renumber(const SurfacePoints& sources, const JobStage& stage) {
@@ -104,16 +106,15 @@ void ExactSurface::lay_out(const JobStage& stage) {
     frame.length = mesh.length(g);
     frame.left_length = mesh.length(prev);
     frame.right_length = mesh.length(next);
-    // x from the lengths, factored against cancellation on needles; y from the area, which the mesh computes stably.
-    const double base = frame.length, left = frame.left_length, right = frame.right_length;
-    frame.apex_x = (base + (left - right) * ((left + right) / base)) / 2;
-    frame.apex_y = 2 * mesh.face_area(g / 3) / base;
+    const UnfoldedFace face = unfold(mesh, g);
+    frame.apex_x = face.apex.x();
+    frame.apex_y = face.apex.y();
+    frame.to_end_rest = static_cast<float>((face.to_end - (frame.length - frame.apex_x)) / frame.length);
     frame.left = beyond(prev);
     frame.right = beyond(next);
     frame.from = vertex_of_[mesh.from(g)];
     frame.to = vertex_of_[mesh.to(g)];
     frame.apex = vertex_of_[mesh.apex(g)];
-    frame.source_beside = k_none;
   }
   bends_.resize(mesh_vertex_.size());
   for (Index v = 0; v < vertex_count(); ++v) {
@@ -137,9 +138,10 @@ void ExactSurface::place_sources(const SurfacePoints& sources) {
   }
   std::stable_sort(in_faces_.begin(), in_faces_.end(),
                    [](const SourceInFace& a, const SourceInFace& b) { return a.face < b.face; });
+  if (!in_faces_.empty()) first_beside_.assign(frames_.size(), k_none);
   const auto add_beside = [&](Index h, const Vec2& place, Index source) {
-    beside_.push_back({place, source, frames_[h].source_beside});
-    frames_[h].source_beside = static_cast<Index>(beside_.size()) - 1;
+    beside_.push_back({place, source, first_beside_[h]});
+    first_beside_[h] = static_cast<Index>(beside_.size()) - 1;
   };
   beside_.reserve(6 * in_faces_.size());
   for (const SourceInFace& place : in_faces_) {
@@ -152,7 +154,7 @@ void ExactSurface::place_sources(const SurfacePoints& sources) {
 }
 
 std::span<const SourceInFace> ExactSurface::sources_in(Index face) const {
-  if (frames_[3 * face].source_beside == k_none) return {};
+  if (!has_sources_beside(3 * face)) return {};
   const auto [begin, end] =
       std::equal_range(in_faces_.begin(), in_faces_.end(), SourceInFace{face, 0, {}},
                        [](const SourceInFace& a, const SourceInFace& b) { return a.face < b.face; });

@@ -18,7 +18,10 @@ struct alignas(64) EdgeFrame {
   double left_length, right_length;  ///< of the face's edges from-apex and apex-to
   Index left, right;                 ///< half-edges on the far side of those two edges, k_none on the boundary
   Index from, to, apex;
-  Index source_beside;  ///< see ExactSurface::for_sources_beside; k_none for none
+  float to_end_rest;  ///< of `length`: what rounding leaves out of length - apex_x, too much for a needle's short side
+
+  /// From the apex to the end, along x.
+  double to_end() const { return (length - apex_x) + static_cast<double>(to_end_rest) * length; }
 };
 static_assert(sizeof(EdgeFrame) == 64);
 
@@ -52,10 +55,12 @@ class ExactSurface {
   Index twin(Index h) const { return frames_[Mesh::prev(h)].right; }
   std::span<const SourceInFace> sources_in(Index face) const;
   std::span<const SourceInFace> sources_in_faces() const { return in_faces_; }  ///< all, by face
+  bool has_sources_beside(Index h) const { return !first_beside_.empty() && first_beside_[h] != k_none; }
   /// Visits the sources that lie in one of the two faces at a half-edge.
   template <class Visit>
   void for_sources_beside(Index h, Visit&& visit) const {
-    for (Index i = frames_[h].source_beside; i != k_none; i = beside_[i].next) visit(beside_[i]);
+    if (first_beside_.empty()) return;
+    for (Index i = first_beside_[h]; i != k_none; i = beside_[i].next) visit(beside_[i]);
   }
   /// Where the point of the half-edge's face is, in the frame of the half-edge.
   Vec2 in_frame(Index h, const Vec3& barycentric) const;
@@ -89,6 +94,7 @@ class ExactSurface {
   std::vector<Bends> bends_;
   std::vector<SourceInFace> in_faces_;
   std::vector<SourceBeside> beside_;
+  std::vector<Index> first_beside_;  ///< of each half-edge; empty where all sources are vertices
 };
 
 }  // namespace saddleback

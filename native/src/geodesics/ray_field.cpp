@@ -22,10 +22,12 @@ constexpr double k_shorter = 1 - 1e-12;
 constexpr double k_as_short = 1 + 1e-12;
 // What a filter must win by, relative to the distance: rounding over thousands of faces stays below it.
 constexpr double k_slack = 1 + 1e-11;
-// Relative to the edge or, where that is less, to how far the rays have come: narrower windows are not made, see
-// exact_propagation.cpp. A ray to an apex that misses its window by no more than the gap that they leave (relative to
-// the edge), or by rounding (relative to the ray), counts with the detour round the window's end.
-constexpr double k_sliver = 1e-10, k_gap = 1e-7, k_ray_gap = 1e-13;
+// Radians, or of parallel rays a share of the edge: narrower windows are not made, and a ray to an apex that misses its
+// window by no more counts with the detour round the window's end. See exact_propagation.cpp.
+constexpr double k_narrow = 1e-12, k_miss = 1e-7;
+constexpr double k_rounding = 16 * std::numeric_limits<double>::epsilon(), k_near = 1.0 / 16;  // as there
+// Relative to the edge: a place beside a window by no more is in it.
+constexpr double k_at_border = 1e-10;
 // A total angle above 2 pi by no more than this is flat: what lies behind is seen past the vertex.
 constexpr double k_flat = 1e-9;
 constexpr double k_buckets_per_edge = 4;
@@ -54,10 +56,20 @@ struct Radial {
     if (w.b0 <= w.source.x() && w.source.x() <= w.b1) return w.offset - w.source.y();
     return distance(w, w.source.x() < w.b0 ? w.b0 : w.b1);
   }
-  /// What is too narrow for a window on an edge of that length.
-  static double sliver(const RayWindow& w, double length) {
-    const double x = std::clamp(w.source.x(), w.b0, w.b1);
-    return k_sliver * std::min(length, std::abs(x - w.source.x()) - w.source.y());
+  /// Whether the rays through two places of an edge of that length are no farther from each other.
+  static bool is_within(double angle, const RayWindow& w, double, double b, double c) {
+    const double x = w.source.x(), y2 = w.source.y() * w.source.y(), width = c - b;
+    return width * width * y2 <= angle * angle * (((b - x) * (b - x) + y2) * ((c - x) * (c - x) + y2));
+  }
+  /// Near to the root rays are told from each other by less than an edge is rounded to: makes neighbors overlap.
+  static void widen(RayWindow& w, double length) {
+    const double x = w.source.x(), y2 = w.source.y() * w.source.y();
+    const double to_b0 = (w.b0 - x) * (w.b0 - x) + y2, to_b1 = (w.b1 - x) * (w.b1 - x) + y2;
+    if (std::min(to_b0, to_b1) >= k_near * k_near * length * length) [[likely]]
+      return;
+    const double share = k_rounding * length / std::max(-w.source.y(), k_rounding * length);
+    w.b0 = std::max(0.0, w.b0 - share * std::sqrt(to_b0));
+    w.b1 = std::min(length, w.b1 + share * std::sqrt(to_b1));
   }
 };
 
@@ -69,7 +81,10 @@ struct Parallel {
   static double distance(const RayWindow& w, const Vec2&, const Vec2& to) { return w.offset + w.source.dot(to); }
   static bool is_less(double length, const RayWindow& w, double x) { return length < distance(w, x); }
   static double least(const RayWindow& w) { return std::max(0.0, distance(w, w.source.x() > 0 ? w.b0 : w.b1)); }
-  static double sliver(const RayWindow&, double length) { return k_sliver * length; }
+  static bool is_within(double share, const RayWindow&, double length, double b, double c) {
+    return std::abs(c - b) <= share * length;
+  }
+  static void widen(RayWindow&, double) {}
 };
 
 /// Direction of increasing arc length.
@@ -87,16 +102,16 @@ bool window_of_corner(const Unfolding& unfolding, Index h, double begin, double 
   if (entered == k_none) return false;
   const double base = mesh.length(opposite);
   const Vec2& apex = unfolding.apex(opposite);  // the twin's frame is turned by half a circle
-  const double corner = mesh.corner_angle(h);
+  const double corner = mesh.corner_angle(h), to_end = unfolding.to_end(opposite);
   const auto met = [&](double angle) {
     const Vec2 ray = turned(apex, angle);
-    return ray.y() > 0 ? std::clamp(base - apex.x() + apex.y() * ray.x() / ray.y(), 0.0, base) : 0.0;
+    return ray.y() > 0 ? std::clamp(to_end + apex.y() * ray.x() / ray.y(), 0.0, base) : 0.0;
   };
-  window.source = {base - apex.x(), -apex.y()};
+  window.source = {to_end, -apex.y()};
   window.b0 = end >= corner ? 0 : met(end);
   window.b1 = begin <= 0 ? base : met(begin);
   window.halfedge = entered;
-  return window.b1 - window.b0 > k_sliver * base;
+  return std::min(end, corner) - std::max(begin, 0.0) > k_narrow && window.b1 > window.b0;
 }
 
 RayField::RayField(const Unfolding& unfolding)
@@ -175,15 +190,41 @@ bool RayField::is_too_far(const RayWindow& window, double key) const {
 
 void RayField::run(const RayLimits& limits, const JobStage& stage, const ReportRays& report) {
   limits_ = limits;
-  while (queue_.advance() && queue_.reached() <= limits_.radius) {
-    if (report) report(queue_.reached(), static_cast<Index>(reached_.size()));
-    while (auto* const block = queue_.take()) drain(block, stage);
-    // Last in the bucket: by now their distances are final, nearly always.
-    for (const Index vertex : due_) bend(vertex);
-    due_.clear();
-  }
+  do {
+    while (queue_.advance() && queue_.reached() <= limits_.radius) {
+      if (report) report(queue_.reached(), static_cast<Index>(reached_.size()));
+      while (auto* const block = queue_.take()) drain(block, stage);
+      // Last in the bucket: by now their distances are final, nearly always.
+      for (const Index vertex : due_) bend(vertex);
+      due_.clear();
+    }
+  } while (relight());
   std::ranges::copy_if(reached_, std::back_inserter(settled_),
                        [this](Index vertex) { return distances_[vertex] <= limits_.radius; });
+}
+
+/// Whether some vertex is farther than by an edge from its neighbor: see ExactPropagation::relight.
+bool RayField::relight() {
+  if (std::isfinite(limits_.edges)) return false;  // rays stop on purpose
+  for (const Index vertex : reached_) {
+    const auto look = [&](Index to, double length) {
+      const double way = distances_[vertex] + length;
+      if (way <= limits_.radius && way < distances_[to] * k_shorter) due_.push_back(vertex);
+    };
+    const Index first = mesh_.first_halfedge(vertex);
+    Index h = first;
+    do {
+      const Index last = Mesh::prev(h);
+      look(mesh_.to(h), mesh_.length(h));
+      if (mesh_.twin(last) == k_none) look(mesh_.from(last), mesh_.length(last));
+      h = mesh_.rotate(h);
+    } while (h != k_none && h != first);
+  }
+  if (due_.empty()) return false;
+  queue_.clear();
+  due_.erase(std::unique(due_.begin(), due_.end()), due_.end());
+  for (const Index vertex : std::exchange(due_, {})) shine_from(vertex, 0, mesh_.total_angle(vertex));
+  return true;
 }
 
 /// Propagates a chain of blocks.
@@ -270,19 +311,21 @@ void RayField::propagate(const RayWindow& window) {
   if (ray.y() <= 0) return;  // grazes the edge: only rounding brings it here
   if (!places_.empty()) reach_places(window);
   const double reach = Front::distance(window, ray, apex);
-  const double least = Front::sliver(window, base), gap = k_gap * base + k_ray_gap * (reach - window.offset);
   // Where the ray to the apex crosses the half-edge.
   const double split = apex.x() - ray.x() * (apex.y() / ray.y());
-  if (split >= window.b0 - gap && split <= window.b1 + gap) reach_apex<Front>(window, ray, split, reach);
-  const bool has_left = split > window.b0 + least, has_right = split < window.b1 - least;
+  const double nearest = std::clamp(split, window.b0, window.b1);
+  const auto is_within = [&](double share, double b) { return Front::is_within(share, window, base, b, split); };
+  if (split == nearest || is_within(k_miss, nearest)) reach_apex<Front>(window, ray, split, reach);
+  const bool has_left = split > window.b0 && !is_within(k_narrow, window.b0);
+  const bool has_right = split < window.b1 && !is_within(k_narrow, window.b1);
   bool go_left = has_left, go_right = has_right;
   if (has_left && has_right) {
     Occupant& occupant = occupants_[h];
     if (occupant.epoch != epoch_ || reach < occupant.distance * k_shorter) {
       occupant = {reach, split, epoch_};
-    } else if (std::abs(split - occupant.split) > least || reach > occupant.distance * k_as_short) {
+    } else if (!is_within(k_miss, occupant.split)) {
       // A nearer window has split this angle: behind its ray everything is nearer by the other one. (The same ray, of
-      // pieces of a curve that lie on each other, hides nothing.)
+      // neighbors that overlap or pieces of a curve that lie on each other, hides nothing.)
       go_left = split < occupant.split;
       go_right = !go_left;
     }
@@ -312,7 +355,7 @@ void RayField::reach_apex(const RayWindow& window, const Vec2& ray, double split
 /// Of the places in the face that the window enters those that its rays meet.
 void RayField::reach_places(const RayWindow& window) {
   const Index h = window.halfedge;
-  const double base = mesh_.length(h), tolerance = k_sliver * base;
+  const double base = mesh_.length(h), tolerance = k_at_border * base;
   places_.places().in_face(Mesh::face_of(h), [&](Index index, const Vec3& weights) {
     const Vec2 place = weights[Mesh::next(h) % 3] * Vec2(base, 0) + weights[Mesh::prev(h) % 3] * unfolding_.apex(h);
     const bool is_parallel = window.rays == Rays::perpendicular;
@@ -337,7 +380,7 @@ void RayField::add_child(const RayWindow& parent, const Side& side, double begin
   double sx = parent.source.x(), ux = apex.x() * to_unit;
   const double sy = parent.source.y(), uy = apex.y() * to_unit;
   if (!side.left) {  // the mirror image
-    ux = (base - apex.x()) * to_unit;
+    ux = unfolding_.to_end(parent.halfedge) * to_unit;
     if (Front::is_parallel) child.offset += sx * base;
     sx = Front::is_parallel ? -sx : base - sx;
   }
@@ -346,14 +389,15 @@ void RayField::add_child(const RayWindow& parent, const Side& side, double begin
     const double divisor = ux * ry - uy * rx;
     return divisor > 0 ? std::min(b * ry / divisor, length) : length;
   };
-  const double q0 = hit(std::max(begin, 0.0)), q1 = to_apex ? length : hit(end);
   child.halfedge = entered;
-  child.b0 = q0;
-  child.b1 = q1;
+  child.b0 = hit(std::max(begin, 0.0));
+  child.b1 = to_apex ? length : hit(end);
   child.source = {sx * ux + sy * uy, ux * sy - uy * sx};
   if (!Front::is_parallel) child.source.y() = std::min(0.0, child.source.y());
   if (Front::is_parallel && child.source.y() <= 0) return;
-  if (!(q1 - q0 > Front::sliver(child, length))) return;
+  Front::widen(child, length);
+  const double q0 = child.b0, q1 = child.b1;
+  if (!(q1 > q0)) return;
   if (Front::is_less(side.at_near + q1, child, q1)) return;
   if (Front::is_less(side.at_apex + (length - q0), child, q0)) return;
   if (Front::is_less(side.at_far + length_of(base - q0 * ux, q0 * uy), child, q0)) return;

@@ -88,6 +88,7 @@ class RayField {
   void improve(Index vertex, const RayLabel& label, const Vec2& ray, Index halfedge);
   void push(const RayWindow& window);
   void drain(BlockQueue<RayWindow>::Block* block, const JobStage& stage);
+  bool relight();
   void bend(Index vertex);
   double angle_back(Index vertex) const;
   void shine_from(Index vertex, double begin, double end);

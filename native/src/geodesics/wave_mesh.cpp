@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "geodesics/planar.h"
+#include "geodesics/unfolded_corner.h"
 #include "support/parallel.h"
 
 namespace saddleback {
@@ -86,8 +87,15 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span
       [&](Index node, Index e, Index h) {
         if (e == first_[node]) saddles_[node] = mesh.is_saddle(vertices[node]);
         const Index apex = mesh.apex(h);
-        const Vec2 place = unfolding.apex(h) / mesh.length(h);
-        records_[e] = {place.x(), place.y(), edge_behind(Mesh::prev(h)), edge_behind(Mesh::next(h)), nodes[apex], 0};
+        // As the device lays it, which has no positions: directions are of single precision here.
+        const double base = mesh.length(h), left = mesh.length(Mesh::prev(h)), right = mesh.length(Mesh::next(h));
+        const double off = corner_off(base, mesh.face_area(Mesh::face_of(h)));
+        records_[e] = {corner_along(base, left, right) / base,
+                       off / base,
+                       edge_behind(Mesh::prev(h)),
+                       edge_behind(Mesh::next(h)),
+                       nodes[apex],
+                       0};
         targets_[e] = nodes[mesh.to(h)];
         lengths_[e] = mesh.length(h) / unit_;
       },
@@ -95,7 +103,7 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span
         __builtin_prefetch(twins + h);
         __builtin_prefetch(&mesh.triangles()[Mesh::face_of(h)]);
         __builtin_prefetch(mesh.lengths().data() + h);
-        __builtin_prefetch(&unfolding.apex(h));
+        __builtin_prefetch(&mesh.face_areas()[Mesh::face_of(h)]);
       },
       [&](Index h) {
         __builtin_prefetch(edge_of + std::max(twins[Mesh::prev(h)], 0));

@@ -14,14 +14,22 @@ namespace {
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // A distance replaces another only if it is shorter by more than rounding: keeps ties on regular grids from cycling.
 constexpr double k_shorter = 1 - 1e-12;
-// Relative to the edge: a ray this close to a window's end meets the end, and narrower windows serve no further vertex.
-constexpr double k_edge_tolerance = 1e-10;
+// Radians, as in exact_propagation.cpp: a ray this close to a window's end meets the end, and narrower windows serve no
+// further vertex.
+constexpr double k_narrow = 1e-12, k_same_ray = 1e-7;
 // Windows per settled vertex are 7 to 15 on any sane mesh; needles by the thousand round one vertex may exceed that
 // without end, and stopping only costs arcs, never correctness.
 constexpr Index k_windows_per_vertex = 256;
 constexpr Index k_windows_at_least = 4096;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Whether the rays from the source through two places of the x axis lie no more than that angle apart.
+bool is_within(double angle, const Vec2& source, double b, double c) {
+  const double area = (c - b) * source.y(), y2 = source.y() * source.y();
+  const double to_b = b - source.x(), to_c = c - source.x();
+  return area * area <= angle * angle * ((to_b * to_b + y2) * (to_c * to_c + y2));
+}
 
 }  // namespace
 
@@ -112,7 +120,7 @@ void WindowPropagator::from_vertex(Index source, Index k, std::vector<DirectArc>
     if (const Index entered = mesh_.twin(opposite); entered != k_none) {
       // In the frame of `opposite` the source is the apex; its twin's frame is that one turned by half a circle.
       const Vec2 apex = unfolding_.apex(opposite);
-      push_window({{mesh_.length(opposite) - apex.x(), -apex.y()},
+      push_window({{unfolding_.to_end(opposite), -apex.y()},
                    0,
                    mesh_.length(opposite),
                    unfolding_.polar(h) - mesh_.corner_angle(opposite),
@@ -194,18 +202,21 @@ void WindowPropagator::propagate(const Window& window) {
   const Index h = window.halfedge, apex = mesh_.apex(h);
   const Vec2 offset = unfolding_.apex(h) - window.source;
   const double reach = offset.norm();
-  const double tolerance = k_edge_tolerance * mesh_.length(h);
   // Where the ray to the apex crosses the half-edge.
   const double split = window.source.x() - offset.x() * (window.source.y() / offset.y());
-  if (split >= window.b0 - tolerance && split <= window.b1 + tolerance) offer_direct(apex, reach, window, offset);
+  const bool meets_b0 = is_within(k_narrow, window.source, window.b0, split),
+             meets_b1 = is_within(k_narrow, window.source, window.b1, split);
+  const bool is_inside = split >= window.b0 && split <= window.b1;
+  if (is_inside || meets_b0 || meets_b1) offer_direct(apex, reach, window, offset);
 
-  const bool has_left = split > window.b0 + tolerance, has_right = split < window.b1 - tolerance;
+  const bool has_left = split > window.b0 && !meets_b0, has_right = split < window.b1 && !meets_b1;
   bool go_left = has_left, go_right = has_right;
   if (has_left && has_right) {
     Occupant& occupant = occupants_[h];
     if (occupant.epoch != epoch_ || reach < occupant.distance * k_shorter) {
       occupant = {reach, split, epoch_};
-    } else {  // a nearer window has split this angle: behind its ray everything is nearer by the other one
+    } else if (!is_within(k_same_ray, window.source, split, occupant.split)) {
+      // A nearer window has split this angle: behind its ray everything is nearer by the other one.
       go_left = split < occupant.split;
       go_right = !go_left;
     }
@@ -230,7 +241,7 @@ WindowPropagator::Side WindowPropagator::side_of(const Window& window, bool left
           mesh_.from(h),
           Mesh::next(h),
           length,
-          Vec2(base - apex.x(), apex.y()) / length,
+          Vec2(unfolding_.to_end(h), apex.y()) / length,
           Vec2(base - window.source.x(), window.source.y())};
 }
 
@@ -245,7 +256,7 @@ void WindowPropagator::add_child(const Window& parent, const Side& side, double 
     return divisor > 0 ? std::min(-s.y() * b / divisor, side.length) : side.length;
   };
   const double q0 = hit(std::max(begin, 0.0)), q1 = to_apex ? side.length : hit(end);
-  if (q1 - q0 <= k_edge_tolerance * side.length) return;
+  if (!(q1 > q0)) return;
   const Vec2 source(s.dot(u), std::min(0.0, cross(u, s)));
   const double base = mesh_.length(parent.halfedge);
   if (is_useless(side, source, q0, q1, mesh_.apex(parent.halfedge), base)) return;
