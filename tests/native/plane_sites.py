@@ -65,6 +65,14 @@ def small_integers(n: int, rng: np.random.Generator) -> Points:
     return rng.integers(0, max(2, int(n**0.5)), size=(n, 2)).astype(float)
 
 
+def near_twins(n: int, rng: np.random.Generator) -> Points:
+    """Each second site next to another, 1e-6 to 1e-16 apart."""
+    sites = rng.random((n, 2))
+    apart = 10.0 ** rng.uniform(-16, -6, (n // 2, 1))
+    sites[: n // 2] = sites[n - n // 2 :] + apart * rng.normal(size=(n // 2, 2))
+    return sites
+
+
 def huge(n: int, rng: np.random.Generator) -> Points:
     return 1e300 * (rng.random((n, 2)) - 0.5)
 
@@ -81,7 +89,7 @@ KINDS: dict[str, Callable[[int, np.random.Generator], Points]] = {
     kind.__name__: kind
     for kind in (
         uniform, clusters, circle, grid, nearly_collinear, duplicates, collinear, two_rings, regular_polygon,
-        all_scales, small_integers, huge, tiny, far_away,
+        all_scales, small_integers, near_twins, huge, tiny, far_away,
     )
 }  # fmt: skip
 

@@ -7,13 +7,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "voronoi2d/cell_sides.h"
+
 namespace saddleback::charts {
 namespace {
 
 // Places nearer than this part of their coordinates are one: far below what single precision shows, far above what
 // rounding does to vertices of the diagram. So an edge along a mesh edge lies on it, and what meets there meets in one
 // point.
-constexpr double k_same_place = 0x1p-40;
+constexpr double k_same_place = 0x1p-47;
 
 /// Points nearer to `mine` than to `other` have a positive value; for the cell beyond it is the same with the other
 /// sign, to the last bit. Zero on the bisector, for both.
@@ -35,18 +37,18 @@ Index edge_key(const Chart& chart, Index h) { return chart.is_joined(h) ? std::m
 class CellClip {
  public:
   CellClip(const Chart& chart, const Voronoi2d& diagram, Index face, Index site)
-      : chart_(chart), diagram_(diagram), site_(site), cell_edges_(diagram.cell_edges(site)) {
+      : chart_(chart), diagram_(diagram), sides_(diagram, site) {
     for (Index h = 3 * face; h < 3 * face + 3; ++h)
       loop_.push_back({{CornerKey::Kind::vertex, chart.mesh().from(h), k_none}, chart.corners()[h], k_none, h});
   }
 
   /// What is left of the face; fewer than three corners where nothing is.
   std::vector<PieceCorner> clip() {
-    for (std::size_t k = 0; k < cell_edges_.size() && !loop_.empty(); ++k) cut(static_cast<Index>(k));
+    for (Index k = 0; k < sides_.count() && !loop_.empty(); ++k) cut(k);
     std::vector<PieceCorner> corners;
     for (const Corner& corner : loop_) {
       const bool is_side = corner.line < 0;
-      const PieceCorner next{corner.key, corner.place, corner.halfedge, is_side ? cell_edges_[~corner.line] : k_none,
+      const PieceCorner next{corner.key, corner.place, corner.halfedge, is_side ? sides_.edge(~corner.line) : k_none,
                              is_side ? k_none : corner.line};
       if (!corners.empty() && corners.back().key == next.key) corners.pop_back();  // a side of no length goes
       corners.push_back(next);
@@ -54,6 +56,9 @@ class CellClip {
     while (corners.size() > 1 && corners.front().key == corners.back().key) corners.pop_back();
     return corners;
   }
+
+  /// Of the diagram: those that have cut something off.
+  const std::vector<Index>& cutting_edges() const { return cutting_edges_; }
 
  private:
   struct Corner {
@@ -64,48 +69,50 @@ class CellClip {
   };
 
   void cut(Index k) {
-    const auto [left, right] = diagram_.edge_sites[cell_edges_[k]];
-    const Bisector side(diagram_.sites[site_], diagram_.sites[left == site_ ? right : left]);
-    std::vector<double> values;
-    for (const Corner& corner : loop_) values.push_back(side.value(corner.place));
-    if (std::all_of(values.begin(), values.end(), [](double v) { return v >= 0; })) return;
+    const Bisector by(sides_.mine(), sides_.neighbour(k));
+    values_.clear();
+    for (std::size_t i = 0; i < loop_.size(); ++i)
+      values_.push_back(value(loop_[i == 0 ? loop_.size() - 1 : i - 1].line, loop_[i], k, by));
+    if (std::all_of(values_.begin(), values_.end(), [](double v) { return v >= 0; })) return;
+    cutting_edges_.push_back(sides_.edge(k));
     std::vector<Corner> kept;
     for (std::size_t i = 0; i < loop_.size(); ++i) {
       const std::size_t j = (i + 1) % loop_.size();
-      if (values[i] >= 0) kept.push_back(loop_[i]);
-      if (values[i] >= 0 && values[j] < 0) {  // goes out: the side follows
-        if (values[i] > 0) {
-          kept.push_back(crossing(loop_[i], loop_[j], values[i], values[j], loop_[i].line, k));
-        }
+      if (values_[i] >= 0) kept.push_back(loop_[i]);
+      if (values_[i] >= 0 && values_[j] < 0) {  // goes out: the side follows
+        if (values_[i] > 0) kept.push_back(crossing(loop_[i], loop_[j].place, k));
         kept.back().line = ~k;
-      } else if (values[i] < 0 && values[j] > 0) {
-        kept.push_back(crossing(loop_[i], loop_[j], values[i], values[j], loop_[i].line, k));
+      } else if (values_[i] < 0 && values_[j] > 0) {
+        kept.push_back(crossing(loop_[i], loop_[j].place, k));
         kept.back().line = loop_[i].line;
       }
     }
     loop_ = std::move(kept);
   }
 
-  Corner crossing(const Corner& from, const Corner& to, double from_value, double to_value, Index line, Index k) const {
-    if (line >= 0) return edge_crossing(line, k);
-    // Two sides of the cell: they meet at the vertex between them. Side k leads to vertex k of the cell.
-    const Index other = ~line, count = static_cast<Index>(cell_edges_.size());
-    const bool goes_out = from_value > 0;
-    const Index first = goes_out ? other : k, second = goes_out ? k : other;
-    const Index vertex = diagram_.cell_vertices(site_)[first];
-    const Vec2 place = from.place + from_value / (from_value - to_value) * (to.place - from.place);
-    // Those that are no neighbours meet outside of the cell, and what lies there is cut off later.
-    const bool is_vertex = (first + 1) % count == second && vertex != k_none;
-    return {{CornerKey::Kind::branch, vertex, k_none}, is_vertex ? diagram_.vertices[vertex] : place, k_none, 0};
+  double value(Index line_before, const Corner& corner, Index k, const Bisector& by) const {
+    if (corner.key.kind == CornerKey::Kind::vertex) return by.value(corner.place);
+    int least = 1;
+    if (corner.key.kind == CornerKey::Kind::crossing || corner.key.a == k_none)
+      for (const Index line : {line_before, corner.line})
+        if (line < 0) least = std::min(least, sides_.compare(corner.place, ~line, k));
+    return least == 0 ? by.value(corner.place) : least;
+  }
+
+  Corner crossing(const Corner& from, const Vec2& to, Index k) const {
+    if (from.line >= 0) return edge_crossing(from.line, k);
+    // Two sides that are no neighbours meet outside of the cell, and what lies there is cut off later.
+    const CornerKey key{CornerKey::Kind::branch, sides_.vertex_between(~from.line, k), k_none};
+    return {key, sides_.place_between(from.place, sides_.meeting(~from.line, k), to), k_none, 0};
   }
 
   Corner edge_crossing(Index h, Index k) const {
-    const Index edge = cell_edges_[k];
+    const Index edge = sides_.edge(k);
     const auto [left, right] = diagram_.edge_sites[edge];
     Vec2 a = chart_.corners()[h], b = chart_.corners()[Mesh::next(h)];
     if (b.x() < a.x() || (b.x() == a.x() && b.y() < a.y())) std::swap(a, b);  // the same from both sides of the edge
-    const Bisector side(diagram_.sites[left], diagram_.sites[right]);
-    const double at_a = side.value(a), at_b = side.value(b);
+    const Bisector by(diagram_.sites[left], diagram_.sites[right]);
+    const double at_a = by.value(a), at_b = by.value(b);
     const double share = std::clamp(at_a / (at_a - at_b), 0.0, 1.0);
     const Vec2 place = a + share * (b - a);
     for (const Index vertex :
@@ -120,9 +127,10 @@ class CellClip {
 
   const Chart& chart_;
   const Voronoi2d& diagram_;
-  Index site_;
-  std::span<const Index> cell_edges_;
+  voronoi2d::CellSides sides_;
   std::vector<Corner> loop_;
+  std::vector<double> values_;
+  std::vector<Index> cutting_edges_;
 };
 
 /// Whether a cell holds the whole face: nearly all faces of fine meshes.
@@ -142,18 +150,23 @@ void divide_face(const Chart& chart, const Voronoi2d& diagram, Index face, Index
   pieces.clear();
   if (holds(diagram, site, &chart.corners()[3 * face])) return;
   std::vector<Index> found{site}, known{site};  // `known` is sorted
+  const auto find = [&](Index of, Index edge) {
+    const auto [left, right] = diagram.edge_sites[edge];
+    const Index other = left == of ? right : left;
+    const auto place = std::lower_bound(known.begin(), known.end(), other);
+    if (place != known.end() && *place == other) return;
+    known.insert(place, other);
+    found.push_back(other);
+  };
   for (std::size_t i = 0; i < found.size(); ++i) {
-    FacePiece piece{found[i], CellClip(chart, diagram, face, found[i]).clip()};
-    if (piece.corners.size() < 3) continue;
-    for (const PieceCorner& corner : piece.corners) {
-      if (corner.side == k_none) continue;
-      const auto [left, right] = diagram.edge_sites[corner.side];
-      const Index other = left == piece.site ? right : left;
-      const auto place = std::lower_bound(known.begin(), known.end(), other);
-      if (place != known.end() && *place == other) continue;
-      known.insert(place, other);
-      found.push_back(other);
+    CellClip cell(chart, diagram, face, found[i]);
+    FacePiece piece{found[i], cell.clip()};
+    if (piece.corners.size() < 3) {  // a neighbour's side was taken for its: who cuts it off has the part
+      for (const Index edge : cell.cutting_edges()) find(piece.site, edge);
+      continue;
     }
+    for (const PieceCorner& corner : piece.corners)
+      if (corner.side != k_none) find(piece.site, corner.side);
     pieces.push_back(std::move(piece));
   }
   std::sort(pieces.begin(), pieces.end(), [](const FacePiece& a, const FacePiece& b) { return a.site < b.site; });

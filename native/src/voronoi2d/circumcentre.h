@@ -27,13 +27,20 @@ struct TwoCentres {
   TwoCentres(const SiteColumns& sites, const Index* first, const Index* second) {
     using Two = TwoDoubles;
     const auto at = [&](const double* column, int k) { return Two::of(column[first[k]], column[second[k]]); };
-    const Two ax = at(sites.x, 0), ay = at(sites.y, 0);
-    const Two ux = at(sites.x, 1) - ax, uy = at(sites.y, 1) - ay, vx = at(sites.x, 2) - ax, vy = at(sites.y, 2) - ay;
-    const Two left = ux * vy, right = uy * vx, det = left - right;
-    const Two u2 = ux * ux + uy * uy, v2 = vx * vx + vy * vy;
-    x = ax + Two::both(0.5) * ((vy * u2 - uy * v2) / det);
-    y = ay + Two::both(0.5) * ((ux * v2 - vx * u2) / det);
-    constexpr double k_cancelled = 0x1p-10;  // as in `circumcentre_point`
+    const Two ax = at(sites.x, 0), ay = at(sites.y, 0), bx = at(sites.x, 1), by = at(sites.y, 1), cx = at(sites.x, 2),
+              cy = at(sites.y, 2);
+    const Two abx = bx - ax, aby = by - ay, bcx = cx - bx, bcy = cy - by, cax = ax - cx, cay = ay - cy;
+    const Two ab = abx * abx + aby * aby, bc = bcx * bcx + bcy * bcy, ca = cax * cax + cay * cay;
+    // From the corner opposite the longest side.
+    const Two from_c = ab - Two::larger(bc, ca), from_b = ca - bc;
+    const auto choose = [&](Two a, Two b, Two c) {
+      return Two::if_positive(from_c, c, Two::if_positive(from_b, b, a));
+    };
+    const Two ux = choose(abx, bcx, cax), uy = choose(aby, bcy, cay), u2 = choose(ab, bc, ca);
+    const Two vx = choose(cax, abx, bcx), vy = choose(cay, aby, bcy), v2 = choose(ca, ab, bc);  // negated
+    const Two left = ux * vy, right = uy * vx, det = right - left;
+    x = choose(ax, bx, cx) - Two::both(0.5) * ((vy * u2 + uy * v2) / det);
+    y = choose(ay, by, cy) + Two::both(0.5) * ((ux * v2 + vx * u2) / det);
     certainty = Two::size(det) - Two::both(k_cancelled) * (Two::size(left) + Two::size(right));
   }
   bool are_good() const { return TwoDoubles::are_positive(certainty); }

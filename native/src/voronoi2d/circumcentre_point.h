@@ -42,17 +42,17 @@ SADDLEBACK_RARE inline double summed_cross(predicates::Point2 a, predicates::Poi
   return sum;
 }
 
-/// The point equally far from three sites, counter-clockwise, not on a line. Differences count from `a`; the
-/// determinant is exact where it would lose digits, so that the relative error stays at a few roundings however flat
-/// the triangle is. Overflows only where the point itself does.
-SADDLEBACK_HOST_DEVICE inline predicates::Point2 circumcentre_point(const predicates::Point2& a,
-                                                                    const predicates::Point2& b,
-                                                                    const predicates::Point2& c) {
+/// Below this share of its terms a determinant is summed up exactly, so as to keep all its digits but a few.
+constexpr double k_cancelled = 0x1p-5;
+
+/// The point equally far from three sites, differences counted from the first.
+SADDLEBACK_HOST_DEVICE inline predicates::Point2 circumcentre_from(const predicates::Point2& a,
+                                                                   const predicates::Point2& b,
+                                                                   const predicates::Point2& c) {
   using namespace predicates;
   const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
   const double left = bx * cy, right = by * cx;
   double det = left - right;
-  constexpr double k_cancelled = 0x1p-10;
   if (fabs(det) < k_cancelled * (fabs(left) + fabs(right))) {
     double ux, uy, vx, vy, rests[4];
     two_sum(b.x, -a.x, ux, rests[0]);
@@ -67,6 +67,23 @@ SADDLEBACK_HOST_DEVICE inline predicates::Point2 circumcentre_point(const predic
   }
   const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
   return {a.x + 0.5 * ((cy * b2 - by * c2) / det), a.y + 0.5 * ((bx * c2 - cx * b2) / det)};
+}
+
+SADDLEBACK_HOST_DEVICE inline double squared_distance(const predicates::Point2& a, const predicates::Point2& b) {
+  const double x = b.x - a.x, y = b.y - a.y;
+  return x * x + y * y;
+}
+
+/// The point equally far from three sites, counter-clockwise, not on a line, to a few roundings of its distance from
+/// them and of their coordinates. Differences count from the corner opposite the longest side: with both of them no
+/// longer than that side, what cancels is no more than the result, however near each other two of the sites are and
+/// however flat the triangle is. Overflows only where the point itself does.
+SADDLEBACK_HOST_DEVICE inline predicates::Point2 circumcentre_point(const predicates::Point2& a,
+                                                                    const predicates::Point2& b,
+                                                                    const predicates::Point2& c) {
+  const double ab = squared_distance(a, b), bc = squared_distance(b, c), ca = squared_distance(c, a);
+  if (bc >= ab && bc >= ca) return circumcentre_from(a, b, c);
+  return ca >= ab ? circumcentre_from(b, c, a) : circumcentre_from(c, a, b);
 }
 
 }  // namespace saddleback::voronoi2d

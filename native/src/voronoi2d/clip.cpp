@@ -10,6 +10,7 @@
 #include "saddleback/voronoi_2d.h"
 
 #include "support/parallel.h"
+#include "voronoi2d/cell_sides.h"
 #include "voronoi2d/clip_weighted.h"
 #include "voronoi2d/domain_map.h"
 #include "voronoi2d/loops.h"
@@ -30,100 +31,160 @@ struct Side {
   double value(const Vec2& p) const { return (p - middle).dot(across) - distance; }
 };
 
+struct Corner {
+  Vec2 place;
+  Index side;  ///< of the cell, that goes on from here; k_none for edges of the domain
+};
+using Corners = std::vector<Corner>;
+
 /// What a cut leaves of a loop: from where it comes in to where it goes out.
 struct Chain {
-  Loop points;
-  double in, out;  ///< places along the side
+  std::size_t begin, end;  ///< of the corners of all chains
+  double in, out;          ///< places along the side
 };
 
-// The chains of a loop that has points on both sides.
-void cut_loop(const Loop& loop, const std::vector<double>& values, const Side& side, std::vector<Chain>& chains) {
-  const std::size_t count = loop.size();
-  std::size_t start = 0;
-  while (values[start] >= 0) ++start;  // outside: whatever comes in from here on goes out again
-  bool is_in = false;
-  for (std::size_t step = 0; step < count; ++step) {
-    const std::size_t i = (start + step) % count, j = (i + 1) % count;
-    const bool will_be_in = values[j] >= 0;
-    if (is_in != will_be_in) {
-      const Vec2 crossing = loop[i] + (values[i] / (values[i] - values[j])) * (loop[j] - loop[i]);
-      const double place = (crossing - side.middle).dot(side.along);
-      if (will_be_in) chains.push_back({{}, place, 0});
-      add_point(chains.back().points, crossing);
-      if (!will_be_in) chains.back().out = place;
-    }
-    if (will_be_in) add_point(chains.back().points, loop[j]);
-    is_in = will_be_in;
-  }
-}
+/// Cuts the domain by the sides of a cell, one after another.
+class CellClip {
+ public:
+  CellClip(const Voronoi2d& diagram, Index site, double gap) : sides_(diagram, site), gap_(gap) {}
 
-// Going out at one place the border of what is left runs along the side to the next place where a chain comes in.
-void join_chains(std::vector<Chain>& chains, std::vector<Loop>& loops) {
-  std::vector<std::size_t> by_in(chains.size()), by_out(chains.size()), next(chains.size());
-  for (std::size_t i = 0; i < chains.size(); ++i) by_in[i] = by_out[i] = i;
-  std::sort(by_in.begin(), by_in.end(), [&](std::size_t a, std::size_t b) { return chains[a].in < chains[b].in; });
-  std::sort(by_out.begin(), by_out.end(), [&](std::size_t a, std::size_t b) { return chains[a].out < chains[b].out; });
-  for (std::size_t k = 0; k < chains.size(); ++k) next[by_out[k]] = by_in[k];
-  std::vector<bool> is_done(chains.size(), false);
-  for (std::size_t first = 0; first < chains.size(); ++first) {
-    if (is_done[first]) continue;
-    Loop loop;
-    for (std::size_t chain = first; !is_done[chain]; chain = next[chain]) {
-      is_done[chain] = true;
-      for (const Vec2& point : chains[chain].points) add_point(loop, point);
+  std::vector<Loop> clip(std::span<const Loop> within) {
+    for (const Loop& loop : within) {
+      Corners& corners = loops_.emplace_back(loop.size());
+      for (std::size_t i = 0; i < loop.size(); ++i) corners[i] = {loop[i], k_none};
     }
-    if (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
-    if (loop.size() >= 3) loops.push_back(std::move(loop));
+    for (Index k = 0; k < sides_.count() && !loops_.empty(); ++k) cut(k);
+    std::vector<Loop> result;
+    for (const Corners& corners : loops_) {
+      Loop& loop = result.emplace_back(corners.size());
+      for (std::size_t i = 0; i < loop.size(); ++i) loop[i] = corners[i].place;
+    }
+    return result;
   }
-}
 
-void cut(std::vector<Loop>& loops, const Side& side) {
-  std::vector<Loop> kept;
-  std::vector<Chain> chains;
-  std::vector<double> values;
-  for (Loop& loop : loops) {
-    values.resize(loop.size());
-    std::transform(loop.begin(), loop.end(), values.begin(), [&](const Vec2& p) { return side.value(p); });
-    const auto is_in = [](double value) { return value >= 0; };
-    if (std::all_of(values.begin(), values.end(), is_in)) {
-      kept.push_back(std::move(loop));
-    } else if (std::any_of(values.begin(), values.end(), is_in)) {
-      cut_loop(loop, values, side, chains);
+ private:
+  Side side(Index k) const {
+    Side result(sides_.mine(), sides_.neighbour(k));
+    result.distance = 0.5 * gap_ * result.across.norm();
+    return result;
+  }
+
+  void cut(Index k) {
+    const Side by = side(k);
+    kept_.clear();
+    chains_.clear();
+    chain_corners_.clear();
+    for (Corners& loop : loops_) {
+      values_.resize(loop.size());
+      for (std::size_t i = 0; i < loop.size(); ++i)
+        values_[i] = value(loop[i == 0 ? loop.size() - 1 : i - 1].side, loop[i], k, by);
+      const auto is_in = [](double value) { return value >= 0; };
+      if (std::all_of(values_.begin(), values_.end(), is_in)) {
+        kept_.push_back(std::move(loop));
+      } else if (std::any_of(values_.begin(), values_.end(), is_in)) {
+        cut_loop(loop, k, by);
+      }
+    }
+    join_chains();
+    loops_.swap(kept_);
+  }
+
+  // The chains of a loop that has points on both sides.
+  void cut_loop(const Corners& loop, Index k, const Side& by) {
+    const std::size_t count = loop.size();
+    std::size_t start = 0;
+    while (values_[start] >= 0) ++start;  // outside: whatever comes in from here on goes out again
+    bool is_in = false;
+    for (std::size_t step = 0, i = start; step < count; ++step) {
+      const std::size_t j = i + 1 == count ? 0 : i + 1;
+      const bool will_be_in = values_[j] >= 0;
+      if (is_in != will_be_in) {
+        const Vec2 point = crossing(loop[i], loop[j].place, k, by);
+        const double place = (point - by.middle).dot(by.along);
+        if (will_be_in) chains_.push_back({chain_corners_.size(), 0, place, 0});
+        add_corner(chain_corners_, chains_.back().begin, {point, will_be_in ? loop[i].side : k});
+        if (!will_be_in) chains_.back().end = chain_corners_.size(), chains_.back().out = place;
+      }
+      if (will_be_in) add_corner(chain_corners_, chains_.back().begin, loop[j]);
+      is_in = will_be_in;
+      i = j;
     }
   }
-  join_chains(chains, kept);
-  loops = std::move(kept);
-}
+
+  static void add_corner(Corners& corners, std::size_t begin, const Corner& corner) {
+    if (corners.size() == begin || corners.back().place != corner.place) return corners.push_back(corner);
+    corners.back().side = corner.side;
+  }
+
+  double value(Index side_before, const Corner& corner, Index k, const Side& by) const {
+    const bool is_first = side_before == k_none, is_last = corner.side == k_none;
+    if (gap_ > 0 || (is_first && is_last)) return by.value(corner.place);
+    int least = 1;
+    if (is_first || is_last || sides_.vertex_between(side_before, corner.side) == k_none)
+      for (const Index j : {side_before, corner.side})
+        if (j != k_none) least = std::min(least, sides_.compare(corner.place, j, k));
+    return least == 0 ? by.value(corner.place) : least;
+  }
+
+  Vec2 crossing(const Corner& from, const Vec2& to, Index k, const Side& by) const {
+    if (from.side != k_none) return CellSides::place_between(from.place, sides_.meeting(from.side, k, 0.5 * gap_), to);
+    const double at_from = by.value(from.place), share = at_from / (at_from - by.value(to));
+    return from.place + (share > 0 ? std::min(share, 1.0) : 0.0) * (to - from.place);
+  }
+
+  // Going out at one place the border of what is left runs along the side to the next place where a chain comes in.
+  void join_chains() {
+    const std::size_t count = chains_.size();
+    by_in_.resize(count), by_out_.resize(count), next_.resize(count), is_done_.assign(count, false);
+    for (std::size_t i = 0; i < count; ++i) by_in_[i] = by_out_[i] = i;
+    std::sort(by_in_.begin(), by_in_.end(),
+              [&](std::size_t a, std::size_t b) { return chains_[a].in < chains_[b].in; });
+    std::sort(by_out_.begin(), by_out_.end(),
+              [&](std::size_t a, std::size_t b) { return chains_[a].out < chains_[b].out; });
+    for (std::size_t k = 0; k < count; ++k) next_[by_out_[k]] = by_in_[k];
+    for (std::size_t first = 0; first < count; ++first) {
+      if (is_done_[first]) continue;
+      Corners loop;
+      for (std::size_t chain = first; !is_done_[chain]; chain = next_[chain]) {
+        is_done_[chain] = true;
+        for (std::size_t i = chains_[chain].begin; i < chains_[chain].end; ++i) add_corner(loop, 0, chain_corners_[i]);
+      }
+      if (loop.size() > 1 && loop.front().place == loop.back().place) loop.pop_back();
+      if (loop.size() >= 3) kept_.push_back(std::move(loop));
+    }
+  }
+
+  CellSides sides_;
+  double gap_;
+  std::vector<Corners> loops_, kept_;
+  // Of the cut at hand.
+  std::vector<double> values_;  ///< at the corners of a loop
+  std::vector<Chain> chains_;
+  Corners chain_corners_;
+  std::vector<std::size_t> by_in_, by_out_, next_;
+  std::vector<bool> is_done_;
+};
 
 std::vector<Loop> clip_cell(const Voronoi2d& diagram, Index site, const PlanarDomain& domain, const DomainMap& map,
                             double gap) {
-  std::vector<Loop> loops(domain.loops().begin(), domain.loops().end());
-  if (diagram.is_bounded(site)) {
-    Vec2 low = diagram.sites[site], high = low;
-    Loop whole;
-    for (const Index vertex : diagram.cell_vertices(site)) {
-      whole.push_back(diagram.vertices[vertex]);
-      low = low.cwiseMin(whole.back());
-      high = high.cwiseMax(whole.back());
-    }
-    switch (map.place(low, high)) {
-      case DomainMap::Place::inside:
-        if (gap == 0) return {whole};
-        loops.assign(1, whole);
-        break;
-      case DomainMap::Place::outside:
-        return {};
-      case DomainMap::Place::at_edge:
-        break;
-    }
+  CellClip cell(diagram, site, gap);
+  if (!diagram.is_bounded(site)) return cell.clip(domain.loops());
+  Vec2 low = diagram.sites[site], high = low;
+  Loop whole;
+  for (const Index vertex : diagram.cell_vertices(site)) {
+    whole.push_back(diagram.vertices[vertex]);
+    low = low.cwiseMin(whole.back());
+    high = high.cwiseMax(whole.back());
   }
-  for (const Index edge : diagram.cell_edges(site)) {
-    const auto [left, right] = diagram.edge_sites[edge];
-    Side side(diagram.sites[site], diagram.sites[left == site ? right : left]);
-    side.distance = 0.5 * gap * side.across.norm();
-    cut(loops, side);
+  switch (map.place(low, high)) {
+    case DomainMap::Place::inside:
+      return gap == 0 ? std::vector<Loop>{whole} : cell.clip({&whole, 1});
+    case DomainMap::Place::outside:
+      return {};
+    case DomainMap::Place::at_edge:
+      break;
   }
-  return loops;
+  return cell.clip(domain.loops());
 }
 
 }  // namespace

@@ -158,9 +158,10 @@ Moments cell_moments(const Voronoi2d& diagram, Index site) {
   const Vec2& inside = diagram.sites[site];
   const std::span<const Index> corners = diagram.cell_vertices(site), sides = diagram.cell_edges(site);
   double area = 0;
-  Vec2 moment(0, 0), before = diagram.vertices[corners.back()] - inside;
+  Vec2 moment(0, 0), before = diagram.vertices[corners.back()] - inside, low = before, high = before;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec2 corner = diagram.vertices[corners[i]] - inside;
+    low = low.cwiseMin(corner), high = high.cwiseMax(corner);
     const double half = 0.5 * (before.x() * corner.y() - before.y() * corner.x());
     area += half;
     moment += half / 3 * (before + corner);
@@ -172,7 +173,10 @@ Moments cell_moments(const Voronoi2d& diagram, Index site) {
     }
     before = corner;
   }
-  return {area, inside + moment / area};
+  // A sliver's numbers are roundings: still an area of 0 or more, and a place within the cell's box.
+  if (!(area > 0)) return {0, inside + 0.5 * (low + high)};
+  if (!diagram.weights.empty()) return {area, inside + moment / area};
+  return {area, inside + (moment / area).cwiseMax(low).cwiseMin(high)};
 }
 
 }  // namespace
