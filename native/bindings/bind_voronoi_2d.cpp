@@ -132,8 +132,9 @@ gap : float
     How far neighbouring cells are apart; the polygon's own sides stay. A cell narrower than that has no loop. Not with
     weights.
 tolerance : float
-    How far polylines may be from curved edges; 0: a thousandth of a mean cell's width. Neighbours share their points,
-    so that areas, which are those of the polygons, sum to the domain's all the same.
+    How far polylines may be from curved edges; 0: a thousandth of a mean cell's width. One finer than 3.7e-9 of
+    that width is taken as that, with which an edge as long as a cell is wide has some thousands of points. Neighbours
+    share their points, so that areas, which are those of the polygons, sum to the domain's all the same.
 threads : int
     0: all cores.
 job : Job, optional
@@ -155,7 +156,8 @@ Parameters
 ----------
 edge : int
 tolerance : float
-    How far the curve, a branch of a hyperbola where the weights differ, may be from the chords.
+    How far any point of the curve, a branch of a hyperbola where the weights differ, may be from the polyline. One
+    finer than 1e-12 of what the curve spans is taken as that, which takes up to 500,000 points.
 extent : float
     Where an infinite end is cut off: so much farther from the middle of the curve, the point between the two sites, than
     the edge's vertex is, or than the middle itself if that comes later. 0: twice the distance of the sites.

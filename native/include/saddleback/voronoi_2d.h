@@ -43,7 +43,7 @@ struct ClippedCells {
 struct ClipOptions {
   double gap = 0;        ///< between neighbours: each cell is smaller by half of it, but not along the domain's sides
   double tolerance = 0;  ///< of polylines along curved edges, the same for both cells, whose areas are those of the
-                         ///< polygons; 0: a thousandth of a mean cell's width
+                         ///< polygons; 0: a thousandth of a mean cell's width, of which it is 2^-28 at least
   int threads = 0;       ///< 0: all cores
 };
 
@@ -77,10 +77,11 @@ struct Voronoi2d {
   /// (E) unit vectors from first to second vertex; of a ray from its vertex outwards, where a curved one goes at last.
   /// O(E).
   std::vector<Vec2> edge_directions() const;
-  /// Points along an edge from first to second vertex, whose chords are within a tolerance of it: two of a straight
-  /// one. An infinite end is cut off `extent` farther from the middle of the curve than the edge's vertex, or than the
-  /// middle where there is no vertex beyond it; 0: twice the distance of the sites. O(log of the length over the
-  /// tolerance), and O(points). \throw InputError for a wrong index or lengths that are not positive.
+  /// Points along an edge from first to second vertex, two of a straight one. No point of the curve is farther from
+  /// them and the chords between than a tolerance; one finer than 2^-40 of what the curve spans is taken as that. An
+  /// infinite end is cut off `extent` farther from the middle of the curve than the edge's vertex, or than the middle
+  /// where there is no vertex beyond it; 0: twice the distance of the sites. O(log of the length over the tolerance),
+  /// and O(points). \throw InputError for a wrong index or lengths that are not positive.
   std::vector<Vec2> edge_polyline(Index edge, double tolerance, double extent = 0) const;
   /// (T) sites, counter-clockwise: the Delaunay triangulation. Where more than three sites lie on an empty circle, all
   /// triangles share the one with the smallest index. O(E).

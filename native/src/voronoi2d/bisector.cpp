@@ -3,24 +3,54 @@
 #include <algorithm>
 #include <cmath>
 
+#include "predicates/expansion.h"
+
 namespace saddleback::voronoi2d {
 
-Bisector::Bisector(const Vec2& left, const Vec2& right, double weight) {
-  const Vec2 half = 0.5 * right - 0.5 * left;
+namespace {
+
+/// The length of q: half the root of |right - left|^2 - weight^2, from the numbers as they were given, which matter
+/// where the two squares nearly cancel.
+double exact_q_length(const predicates::WeightedPoint2& left, const predicates::WeightedPoint2& right, double unit) {
+  using namespace predicates;
+  const auto x = difference(left.x * unit, right.x * unit), y = difference(left.y * unit, right.y * unit),
+             w = difference(left.weight * unit, right.weight * unit);
+  const auto square = sum(sum(product(x, x), product(y, y)), product(w, w), -1);
+  double total = 0;
+  for (int i = 0; i < square.size; ++i) total += square.terms[i];
+  return 0.5 * std::sqrt(std::max(0.0, total)) / unit;
+}
+
+}  // namespace
+
+Bisector::Bisector(const WeightedPoint2& left, const WeightedPoint2& right, const Vec2& origin) {
+  const Vec2 from = Vec2(left.x, left.y) - origin, to = Vec2(right.x, right.y) - origin, half = 0.5 * to - 0.5 * from;
   const double length = half.stableNorm();
   const Vec2 across = half / length;
-  middle_ = 0.5 * left + 0.5 * right;
-  p_length_ = 0.5 * weight;
-  q_length_ = std::sqrt(std::max(0.0, length - p_length_)) * std::sqrt(std::max(0.0, length + p_length_));
+  middle_ = 0.5 * from + 0.5 * to;
+  p_length_ = 0.5 * (left.weight - right.weight);
+  constexpr double k_thin = 0x1p-6;
+  q_length_ = length - std::fabs(p_length_) > k_thin * length
+                  ? std::sqrt(std::max(0.0, length - p_length_)) * std::sqrt(std::max(0.0, length + p_length_))
+                  : exact_q_length(left, right, std::ldexp(1, -std::ilogb(length)));
   p_ = p_length_ * across;
   q_ = q_length_ * Vec2(-across.y(), across.x());
 }
 
 Vec2 Bisector::at(double t) const { return middle_ + std::cosh(t) * p_ + std::sinh(t) * q_; }
 
+// Along a thin curve the larger coordinate tells more, but near its middle.
 double Bisector::parameter(const Vec2& point) const {
-  return std::asinh((point - middle_).dot(q_ / q_length_) / q_length_);
+  const Vec2 along = q_ / q_length_, way = point - middle_;
+  const double sine = way.dot(along) / q_length_;
+  if (std::fabs(p_length_) > q_length_ && std::fabs(sine) > 1) {
+    const double cosine = way.dot(Vec2(along.y(), -along.x())) / p_length_;
+    if (cosine > 1) return std::copysign(std::acosh(cosine), sine);
+  }
+  return std::asinh(sine);
 }
+
+Vec2 Bisector::slope(double t) const { return std::sinh(t) * p_ + std::cosh(t) * q_; }
 
 Vec2 Bisector::end_direction(bool forwards) const {
   return (forwards ? Vec2(p_ + q_) : Vec2(p_ - q_)).stableNormalized();
@@ -40,17 +70,37 @@ double Bisector::parameter_beyond(double t, bool forwards, double length) const 
   return sign * high;
 }
 
-// From the middle m of two parameters, h apart, the chord is (cosh(h / 2) - 1) |p x q| / |x'(m)| away, which is the
-// farthest.
-void Bisector::sample(double from, double to, double tolerance, std::vector<Vec2>& points) const {
+// From the middle m of two parameters, h apart, the chord is (cosh(h / 2) - 1) |p x q| / |x'(m)| away, the farthest
+// from its line. Where the curve turns back by more than a right angle it also goes beyond the chord's end, up to where
+// its slope is at a right angle to the chord, as tanh t = -(q / p)^2 / tanh m.
+double Bisector::farthest_from_chord(double from, double to) const {
   const double middle = 0.5 * (from + to), quarter = 0.25 * (to - from);
-  const double speed = (std::sinh(middle) * p_ + std::cosh(middle) * q_).stableNorm();
+  const Vec2 slope_there = slope(middle);
+  const double speed = slope_there.stableNorm();
   const double bulge = 2 * std::sinh(quarter) * std::sinh(quarter);  // cosh(h / 2) - 1
-  if (!(bulge * std::fabs(p_length_) * (q_length_ / speed) > tolerance)) return;
-  if (middle == from || middle == to) return;
-  sample(from, middle, tolerance, points);
+  const double distance = bulge * std::fabs(p_length_) * (q_length_ / speed);
+  const Vec2 along = slope_there / speed;
+  for (const double end : {from, to}) {
+    if (!(slope(end).dot(along) < 0)) continue;
+    const double ratio = q_length_ / p_length_, turn = std::atanh(-ratio * ratio / std::tanh(middle));
+    return std::hypot(distance, (at(turn) - at(end)).dot(along));
+  }
+  return distance;
+}
+
+void Bisector::sample(double from, double to, double tolerance, std::vector<Vec2>& points) const {
+  constexpr double k_finest = 0x1p-40;
+  const Vec2 begin = at(from), middle = at(std::clamp(0.0, std::min(from, to), std::max(from, to))), end = at(to);
+  const double span = (begin - middle).stableNorm() + (end - middle).stableNorm();
+  divide(from, to, std::max(tolerance, k_finest * span), points);
+}
+
+void Bisector::divide(double from, double to, double tolerance, std::vector<Vec2>& points) const {
+  const double middle = 0.5 * (from + to);
+  if (!(farthest_from_chord(from, to) > tolerance) || middle == from || middle == to) return;
+  divide(from, middle, tolerance, points);
   points.push_back(at(middle));
-  sample(middle, to, tolerance, points);
+  divide(middle, to, tolerance, points);
 }
 
 // With positions from the curve's own middle x x x' is constant, p x q, which makes the integrals elementary.

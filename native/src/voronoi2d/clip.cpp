@@ -202,14 +202,16 @@ ClippedCells Voronoi2d::clip(const PlanarDomain& domain, const ClipOptions& opti
   const double side = 0.5 * std::sqrt(static_cast<double>(cell_sites.size()));
   const DomainMap map(domain, std::clamp(static_cast<Index>(side), 1, 1024));
   const double mean_width = std::sqrt(domain.area() / std::max<double>(1, static_cast<double>(cell_sites.size())));
-  const CurvedCells curved(*this, domain, map, tolerance > 0 ? tolerance : 1e-3 * mean_width);
+  constexpr double k_usual = 1e-3, k_finest = 0x1p-28;  // of which an edge as long as a cell is wide has thousands
+  const CurvedCells curved(*this, domain, map,
+                           tolerance > 0 ? std::max(tolerance, k_finest * mean_width) : k_usual * mean_width, stage);
   std::vector<std::vector<Loop>> cells(count);
   ClippedCells result;
   result.areas.assign(count, 0);
   result.centroids.assign(count, Vec2::Constant(std::numeric_limits<double>::quiet_NaN()));
   constexpr Index k_block = 256;
   parallel_for(count, options.threads, k_block, [&](Index site, int) {
-    if (site % k_block == 0) stage.check();
+    if (site % k_block == 0) stage.update(0.8 * site / count);
     if (site_of[site] != site || cell_places[site] == k_none) return;
     cells[site] = weights.empty() ? clip_cell(*this, site, domain, map, gap) : curved.clip(site);
     if (cells[site].empty()) return;
@@ -218,6 +220,7 @@ ClippedCells Voronoi2d::clip(const PlanarDomain& domain, const ClipOptions& opti
   stage.update(0.8);
   result.loop_offsets.push_back(0);
   for (Index site = 0; site < count; ++site) {
+    if (site % k_block == 0) stage.check();
     for (const Loop& loop : cells[site]) {
       result.points.insert(result.points.end(), loop.begin(), loop.end());
       result.loop_offsets.push_back(static_cast<Index>(result.points.size()));

@@ -77,13 +77,14 @@ struct Chain {
 };
 
 /// Cuts a loop into chains; true when it does not meet the outline.
-bool cut_loop(const Loop& outline, const Loop& loop, std::vector<Chain>& chains) {
+bool cut_loop(const Loop& outline, const Loop& loop, std::vector<Chain>& chains, const JobStage& stage) {
   std::vector<Passage> passages;
   std::vector<Chain> found;
   Chain first;  // up to the first way out, of one that has come in before the loop's first point
   bool is_in = is_inside(outline, loop[0]);
   Chain* current = is_in ? &first : nullptr;
   for (std::size_t i = 0; i < loop.size(); ++i) {
+    stage.check();
     const Vec2 &a = loop[i], &b = loop[i + 1 == loop.size() ? 0 : i + 1];
     if (is_in) add_point(current->points, a);
     find_passages(outline, a, b, passages);
@@ -155,8 +156,9 @@ void add_far_points(const Vec2& site, double distance, const Vec2& end, const Ve
 
 }  // namespace
 
-CurvedCells::CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, const DomainMap& map, double tolerance)
-    : diagram_(diagram), domain_(domain), map_(map), tolerance_(tolerance) {
+CurvedCells::CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, const DomainMap& map, double tolerance,
+                         const JobStage& stage)
+    : diagram_(diagram), domain_(domain), map_(map), stage_(stage), tolerance_(tolerance) {
   low_ = high_ = domain.loops()[0][0];
   for (const Vec2& point : domain.loops()[0]) low_ = low_.cwiseMin(point), high_ = high_.cwiseMax(point);
 }
@@ -183,6 +185,7 @@ Loop CurvedCells::outline(Index site) const {
   const double far = reach_from(site);
   Loop loop;
   for (std::size_t k = 0; k < edges.size(); ++k) {
+    stage_.check();
     Loop side;
     add_side(site, edges[k], side);
     if (k > 0 && corners[k - 1] == k_none) add_far_points(s, far, loop.back(), side.front(), loop);
@@ -214,7 +217,7 @@ std::vector<Loop> CurvedCells::clip(Index site) const {
   std::vector<Loop> loops;
   std::vector<Chain> chains;
   for (const Loop& loop : domain_.loops())
-    if (cut_loop(cell, loop, chains) && is_inside(cell, loop[0])) loops.push_back(loop);
+    if (cut_loop(cell, loop, chains, stage_) && is_inside(cell, loop[0])) loops.push_back(loop);
   if (!chains.empty()) {
     join_chains(cell, chains, loops);
   } else if (domain_.contains(cell[0])) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "saddleback/job.h"
 #include "saddleback/voronoi_2d.h"
 
 #include "voronoi2d/domain_map.h"
@@ -14,9 +15,11 @@ namespace saddleback::voronoi2d {
 /// Cells of weighted sites as polygons, their edges within a tolerance of the curves. Neighbours share their points.
 class CurvedCells {
  public:
-  CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, const DomainMap& map, double tolerance);
+  CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, const DomainMap& map, double tolerance,
+              const JobStage& stage);
 
   /// What lies of a cell in the domain. O(points of the cell), times the corners of the domain if these are near.
+  /// \throw Cancelled
   std::vector<Loop> clip(Index site) const;
 
  private:
@@ -27,6 +30,7 @@ class CurvedCells {
   const Voronoi2d& diagram_;
   const PlanarDomain& domain_;
   const DomainMap& map_;
+  const JobStage& stage_;
   double tolerance_;
   Vec2 low_, high_;  ///< the domain's box
 };

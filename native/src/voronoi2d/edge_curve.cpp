@@ -8,8 +8,9 @@ namespace saddleback {
 namespace voronoi2d {
 namespace {
 
-double weight_between(const Voronoi2d& diagram, Index left, Index right) {
-  return diagram.weights.empty() ? 0 : diagram.weights[left] - diagram.weights[right];
+WeightedPoint2 weighted_site(const Voronoi2d& diagram, Index site) {
+  const Vec2& place = diagram.sites[site];
+  return {place.x(), place.y(), diagram.weights.empty() ? 0 : diagram.weights[site]};
 }
 
 // Halves and a largest component of 1 keep squares among the doubles.
@@ -24,13 +25,13 @@ Vec2 direction_between(const Vec2& a, const Vec2& b) {
 
 Bisector edge_bisector(const Voronoi2d& diagram, Index edge) {
   const auto [left, right] = diagram.edge_sites[edge];
-  return {diagram.sites[left], diagram.sites[right], weight_between(diagram, left, right)};
+  return {weighted_site(diagram, left), weighted_site(diagram, right)};
 }
 
 Bisector bisector_beside(const Voronoi2d& diagram, Index site, Index edge) {
   const auto [left, right] = diagram.edge_sites[edge];
   const Index other = left == site ? right : left;
-  return {Vec2(0, 0), diagram.sites[other] - diagram.sites[site], weight_between(diagram, site, other)};
+  return {weighted_site(diagram, site), weighted_site(diagram, other), diagram.sites[site]};
 }
 
 void add_edge_points(const Voronoi2d& diagram, Index edge, double tolerance, double extent, std::vector<Vec2>& points) {
