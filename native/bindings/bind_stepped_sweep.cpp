@@ -107,7 +107,8 @@ Notes
 O(m n log n) to make, O(m) for a step.)";
 
 constexpr const char* k_edges_doc =
-    "(E, 2, 2) float64 ends, (E, 2) int32 sites, (E,) bool finished: the others grow at their end, or at both.";
+    "(E, 2, 2) float64 ends, (E, 2) int32 sites, (E,) bool finished: the others grow at their end, or at both. After "
+    "the last event there are as many as the diagram has.";
 
 }  // namespace
 
@@ -157,7 +158,10 @@ void bind_stepped_sweep(py::module_& m) {
           [](const SteppedSweep& s, const py::object& tolerance) {
             return line_list(s.edge_polylines(as_real(tolerance, "tolerance")));
           },
-          py::arg("tolerance"), "List of (k, 2) float64: points along each of `edges`, chords within a tolerance.")
+          py::arg("tolerance"),
+          "List of (k, 2) float64: points along each of `edges`, within a tolerance; one finer than 1.5e-8 of the "
+          "radius is "
+          "taken as that.")
       .def("__repr__",
            [](const SteppedSweep& s) { return message("<saddleback.SweepCircle, radius ", s.radius(), ">"); });
   py::class_<SweepCircles>(m, "SweepCircles", py::module_local(), k_circles_doc)

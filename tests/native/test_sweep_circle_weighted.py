@@ -82,15 +82,26 @@ def test_edges_grow_along_the_beach_curve():
     assert grown > 50
 
 
-def test_a_finished_sweep_has_the_diagrams_edges():
-    sites, weights = disks(80, 4)
-    diagram, sweep = sb.voronoi_2d(sites, weights), sb.SweepCircle(sites, [0.2, 0.2], weights)
+def expect_a_finished_sweep(sites, centre, weights):
+    """After the last event there are the diagram's edges, to the bit where they end, those with two ends finished."""
+    diagram, sweep = sb.voronoi_2d(sites, weights), sb.SweepCircle(sites, centre, weights)
     run(sweep)
-    sweep.grow(sweep.radius + 1)  # the last vertex has an edge that begins there
-    _, pairs, finished = sweep.edges
+    ends, pairs, finished = sweep.edges
     closed = (diagram.edges >= 0).all(axis=1)
-    assert sorted(map(sorted, pairs[finished].tolist())) == sorted(map(sorted, diagram.edge_sites[closed].tolist()))
-    assert len(pairs) == len(diagram.edges)
+    assert sorted(map(sorted, pairs.tolist())) == sorted(map(sorted, diagram.edge_sites.tolist()))
+    assert sorted(ends[finished].tolist()) == sorted(diagram.vertices[diagram.edges[closed]].tolist())
+    begun = {tuple(diagram.vertices[v]) for v in diagram.edges[~closed].ravel() if v >= 0}
+    assert begun <= set(map(tuple, ends[~finished][:, 0].tolist()))
+    assert np.isfinite(ends).all()
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 5, 80])
+def test_a_finished_sweep_has_the_diagrams_edges(n):
+    for seed in range(40 if n < 80 else 2):
+        sites, weights = disks(n, seed)
+        centre = np.random.default_rng(seed).normal(size=2) * (0.5, 3)[seed % 2]
+        expect_a_finished_sweep(sites, centre, weights)
+    expect_a_finished_sweep([[0.87, 0.47], [0.91, 0.77], [0.92, 0.13]], [-2.53, 2.06], [-0.04, -0.04, 0.12])
 
 
 def test_equal_weights_only_shift_the_radius():

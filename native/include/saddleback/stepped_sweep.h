@@ -52,9 +52,11 @@ class SteppedSweep {
   std::vector<Arc> arcs() const;
   /// Points of the beach curve in directions equally far apart, from 0. O(samples + arcs).
   std::vector<Vec2> beach_curve(Index samples) const;
-  /// Edges within the beach curve. O(sites touched).
+  /// Edges within the beach curve, those that begin at it with no length, too: after the last event as many as the
+  /// diagram has. O(sites touched).
   std::vector<Edge> edges() const;
-  /// Points along each of `edges`, whose chords are within a tolerance of it. O(sites touched + points).
+  /// Points along each of `edges`, no part of which is farther from their chords than a tolerance; one finer than 2^-26
+  /// of the radius is taken as that. O(sites touched + points).
   std::vector<std::vector<Vec2>> edge_polylines(double tolerance) const;
 
  private:

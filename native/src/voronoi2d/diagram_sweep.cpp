@@ -40,45 +40,68 @@ DiagramSweep::DiagramSweep(const Voronoi2d& diagram, const Vec2& centre)
 }
 
 void DiagramSweep::add_vertices() {
-  std::vector<bool> is_done(diagram_.vertices.size(), false);
+  vertex_radii_.assign(diagram_.vertices.size(), k_infinity);
   for (std::size_t corner = 0; corner < diagram_.corner_vertices.size(); ++corner) {
     const Index vertex = diagram_.corner_vertices[corner];
-    if (vertex == k_none || is_done[vertex]) continue;
-    is_done[vertex] = true;
+    if (vertex == k_none || vertex_radii_[vertex] < k_infinity) continue;
     Event event{false, 0, {}, diagram_.vertices[vertex]};
     diagram_.sites_around(vertex, diagram_.side_edges[corner], event.sites);
     const Index site = event.sites[0];
     event.radius =
         (event.point - centre_).norm() + (event.point - diagram_.sites[site]).norm() - weight_of(diagram_, site);
+    vertex_radii_[vertex] = event.radius;
     for (const Index around : event.sites) lasts_[around] = std::max(lasts_[around], event.radius);
     events_.push_back(std::move(event));
   }
 }
 
 // Seen from the left site, half the reciprocals of the distances of the edge's curve and of the ellipse are linear in
-// the direction: the curve is within the ellipse between the two directions where they are equal.
-std::optional<DiagramSweep::Part> DiagramSweep::part_within(Index edge, double radius) const {
+// the direction: the curve is within the ellipse between the two directions where they are equal. When a site is
+// touched its ellipse is the way from there to the centre.
+std::optional<std::array<double, 2>> DiagramSweep::parameters_within(Index edge, const Bisector& curve,
+                                                                     double radius) const {
   const auto [left, right] = diagram_.edge_sites[edge];
-  if (radius <= touches_[left] || radius <= touches_[right]) return std::nullopt;
   const Vec2 &site = diagram_.sites[left], way = diagram_.sites[right] - site, to_centre = centre_ - site;
   const double e = weight_of(diagram_, right) - weight_of(diagram_, left), n = way.squaredNorm() - e * e;
+  if (radius <= touches_[left] || radius <= touches_[right]) {
+    const bool is_left = touches_[left] > touches_[right];
+    const Vec2& touched = diagram_.sites[is_left ? left : right];
+    const Vec2 u = (centre_ - touched).stableNormalized();
+    const double rest = is_left ? way.dot(u) + e : -way.dot(u) - e;
+    if (!(rest > 0)) return std::nullopt;
+    const double place = curve.parameter(touched + 0.5 * n / rest * u - site);
+    return std::array{place, place};
+  }
   const double length = radius + weight_of(diagram_, left), m = length * length - to_centre.squaredNorm();
   const Vec2 slope = way / n + to_centre / m;
   const double offset = e / n - length / m, size = slope.norm();
   if (!(m > 0) || !(std::fabs(offset) < size)) return std::nullopt;
   const double middle = std::atan2(slope.y(), slope.x()), half = std::acos(-offset / size);
-  const Bisector curve = bisector_beside(diagram_, left, edge);
   const auto parameter_at = [&](double angle) {
     const Vec2 u = direction_at(angle);
     return curve.parameter(m / (2 * (length - to_centre.dot(u))) * u);
   };
+  return std::array{parameter_at(middle - half), parameter_at(middle + half)};
+}
+
+// Which vertices have been found is known from their events, so that an edge between such is finished, and one from
+// such has begun, whatever rounding makes of the rest.
+std::optional<DiagramSweep::Part> DiagramSweep::part_within(Index edge, double radius) const {
+  const auto [left, right] = diagram_.edge_sites[edge];
   const auto [first, last] = diagram_.edges[edge];
+  const auto is_found = [&](Index vertex) { return vertex != k_none && vertex_radii_[vertex] <= radius; };
+  const bool has_first = is_found(first), has_last = is_found(last);
+  if (!has_first && !has_last && (radius < touches_[left] || radius < touches_[right])) return std::nullopt;
+  const Bisector curve = bisector_beside(diagram_, left, edge);
+  const Vec2& site = diagram_.sites[left];
   const double begin = first == k_none ? -k_infinity : curve.parameter(diagram_.vertices[first] - site);
   const double end = last == k_none ? k_infinity : curve.parameter(diagram_.vertices[last] - site);
-  const double in = parameter_at(middle - half), out = parameter_at(middle + half);
-  const Part part{edge, std::max(begin, in), std::min(end, out), in > begin, out < end};
-  if (!(part.from < part.to)) return std::nullopt;
-  return part;
+  if (has_first && has_last) return Part{edge, begin, end, false, false};
+  const std::optional<std::array<double, 2>> within = parameters_within(edge, curve, radius);
+  if (has_first) return Part{edge, begin, within ? std::clamp((*within)[1], begin, end) : begin, false, true};
+  if (has_last) return Part{edge, within ? std::clamp((*within)[0], begin, end) : end, end, true, false};
+  if (!within || (*within)[1] < begin || (*within)[0] > end) return std::nullopt;
+  return Part{edge, std::max(begin, (*within)[0]), std::min(end, (*within)[1]), true, true};
 }
 
 template <class Visit>
@@ -87,12 +110,18 @@ void DiagramSweep::for_parts(double radius, Visit&& visit) const {
     if (const auto part = part_within(static_cast<Index>(edge), radius)) visit(*part);
 }
 
+/// To the bit the vertices that have been found.
+std::array<Vec2, 2> DiagramSweep::ends(const Part& part, const Bisector& curve) const {
+  const auto [first, last] = diagram_.edges[part.edge];
+  return {part.grows_from ? curve.at(part.from) : diagram_.vertices[first],
+          part.grows_to ? curve.at(part.to) : diagram_.vertices[last]};
+}
+
 std::vector<DiagramSweep::Edge> DiagramSweep::edges(double radius) const {
   std::vector<Edge> result;
   for_parts(radius, [&](const Part& part) {
-    const Bisector curve = edge_bisector(diagram_, part.edge);
-    Edge edge{curve.at(part.from), curve.at(part.to), diagram_.edge_sites[part.edge],
-              !part.grows_from && !part.grows_to};
+    const auto [begin, end] = ends(part, edge_bisector(diagram_, part.edge));
+    Edge edge{begin, end, diagram_.edge_sites[part.edge], !part.grows_from && !part.grows_to};
     if (!part.grows_to && part.grows_from) std::swap(edge.begin, edge.end);
     result.push_back(edge);
   });
@@ -100,12 +129,14 @@ std::vector<DiagramSweep::Edge> DiagramSweep::edges(double radius) const {
 }
 
 std::vector<std::vector<Vec2>> DiagramSweep::polylines(double radius, double tolerance) const {
+  constexpr double k_finest = 0x1p-26;  // some thousands of points an edge
   std::vector<std::vector<Vec2>> result;
   for_parts(radius, [&](const Part& part) {
     const Bisector curve = edge_bisector(diagram_, part.edge);
-    std::vector<Vec2> points{curve.at(part.from)};
-    curve.sample(part.from, part.to, tolerance, points);
-    points.push_back(curve.at(part.to));
+    const auto [begin, end] = ends(part, curve);
+    std::vector<Vec2> points{begin};
+    curve.sample(part.from, part.to, std::max(tolerance, k_finest * radius), points);
+    points.push_back(end);
     if (!part.grows_to && part.grows_from) std::reverse(points.begin(), points.end());
     result.push_back(std::move(points));
   });

@@ -1,12 +1,15 @@
 #pragma once
 // What a sweep circle has found of a diagram that is known, with weights or without.
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "saddleback/stepped_sweep.h"
 #include "saddleback/voronoi_2d.h"
+
+#include "voronoi2d/bisector.h"
 
 namespace saddleback::voronoi2d {
 
@@ -37,11 +40,11 @@ class DiagramSweep {
   std::vector<Vec2> beach_curve(double radius, Index samples) const;
   /// O(edges touched).
   std::vector<Edge> edges(double radius) const;
-  /// Points along each of `edges`, whose chords are within a tolerance.
+  /// Points along each of `edges`, within a tolerance, which is taken to be 2^-26 of the radius at least.
   std::vector<std::vector<Vec2>> polylines(double radius, double tolerance) const;
 
  private:
-  /// The part of an edge within the beach curve.
+  /// The part of an edge within the beach curve, of no length where it has just begun.
   struct Part {
     Index edge;
     double from, to;            ///< parameters on the bisector
@@ -52,11 +55,14 @@ class DiagramSweep {
   void for_parts(double radius, Visit&& visit) const;
   std::optional<double> reach(Index site, double radius, const Vec2& direction) const;
   std::vector<Index> sites_on_beach(double radius) const;
+  std::optional<std::array<double, 2>> parameters_within(Index edge, const Bisector& curve, double radius) const;
+  std::array<Vec2, 2> ends(const Part& part, const Bisector& curve) const;
   void add_vertices();
 
   const Voronoi2d& diagram_;
   Vec2 centre_;
   std::vector<double> touches_, lasts_;  ///< by site
+  std::vector<double> vertex_radii_;     ///< when a vertex is found
   std::vector<Event> events_;
 };
 

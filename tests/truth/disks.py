@@ -1,0 +1,158 @@
+"""Truths about the diagram of disks, additively weighted sites of the plane, by brute force in 250 digits."""
+
+from __future__ import annotations
+
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+
+import saddleback as sb
+from tests.truth.plane import ROUNDINGS, Floats, Random, box_about, random_domain, some_of
+from tests.truth.registry import guards
+
+
+def random_weights(sites: Floats, rng: Random) -> Floats:
+    """Radii of every sort: small, large, and so that some disks nearly touch others from inside."""
+    size = float(np.ptp(sites, axis=0).max()) or 1.0
+    weights = size * float(rng.choice([0.02, 0.2, 0.6])) * rng.uniform(-1, 1, len(sites))
+    for i in rng.permutation(len(sites))[: int(rng.integers(0, 3))]:
+        j = int(rng.integers(len(sites)))
+        apart = float(np.hypot(*(sites[i] - sites[j])))
+        weights[i] = weights[j] - apart * (1 - 10.0 ** rng.uniform(-9, -1))
+    return weights
+
+
+def scaled_distances(point: Floats, sites: Floats, weights: Floats) -> list[Decimal]:
+    """|point - site| - weight, in 250 digits."""
+    with localcontext() as context:
+        context.prec = 250
+        x, y = (Decimal(c) for c in point.tolist())
+        rows = zip(*([Decimal(c) for c in column.tolist()] for column in (*sites.T, weights)), strict=True)
+        return [((x - a) ** 2 + (y - b) ** 2).sqrt() - w for a, b, w in rows]
+
+
+def distances_to_polyline(points: Floats, line: Floats) -> Floats:
+    """The distance of each point from the nearest chord."""
+    best = np.full(len(points), np.inf)
+    for a, b in pairwise(line):
+        along = b - a
+        share = np.clip((points - a) @ along / max(float(along @ along), 1e-300), 0, 1)
+        best = np.minimum(best, np.hypot(*(points - a - share[:, None] * along).T))
+    return best
+
+
+def curve_between(light: Floats, heavy: Floats, weight: float, ends: Floats) -> Floats:
+    """Points of the curve |x - light| = |x - heavy| - weight, seen from its focus, the lighter site, between two points
+    of it: r (d.u + weight) = (d^2 - weight^2) / 2 with d the way to the heavier one and u the direction.
+    """
+    d = heavy - light
+    exact = [Fraction(float(b)) - Fraction(float(a)) for a, b in zip(light, heavy, strict=True)]
+    above = float(sum(c * c for c in exact) - Fraction(weight) ** 2)
+    toward = np.arctan2(d[1], d[0])
+    angles = [np.remainder(np.arctan2(*(end - light)[::-1]) - toward + np.pi, 2 * np.pi) - np.pi for end in ends]
+    turn = np.linspace(min(angles), max(angles), 400)  # the curve passes the way to the heavier site, or stays aside
+    rest = np.hypot(*d) * np.cos(turn) + weight
+    reach = 0.5 * above / np.where(rest > 1e-7 * np.hypot(*d), rest, np.nan)
+    points = light + reach[:, None] * np.column_stack([np.cos(turn + toward), np.sin(turn + toward)])
+    return points[np.isfinite(reach)]
+
+
+@guards("Voronoi2d.edge_polyline", on="plane")
+def polylines_of_edges(sites: Floats, rng: Random) -> None:
+    """Every point of a curved edge is within the tolerance of its polyline, whatever the tolerance."""
+    sites = some_of(sites, rng, 8)
+    weights = random_weights(sites, rng)
+    diagram = sb.voronoi_2d(sites, weights, threads=1)
+    if len(diagram.weights) == 0:
+        return
+    for edge, (left, right) in enumerate(diagram.edge_sites):
+        apart = float(np.hypot(*(sites[right] - sites[left])))
+        tolerance = apart * 10.0 ** rng.uniform(-6, 1)
+        line = diagram.edge_polyline(edge, tolerance)
+        assert len(line) < 500_000
+        light, heavy = (left, right) if weights[left] <= weights[right] else (right, left)
+        difference = float(weights[heavy] - weights[light])
+        if Fraction(difference) != Fraction(float(weights[heavy])) - Fraction(float(weights[light])):
+            continue  # the sampled curve would be another
+        curve = curve_between(sites[light], sites[heavy], difference, line[[0, -1]])
+        size = np.abs(line).max() + np.abs(sites).max()
+        if len(curve):
+            off = distances_to_polyline(curve, line).max()
+            assert off <= tolerance * (1 + 1e-6) + 1e-9 * size, f"edge {edge}: {off} for {tolerance}"
+
+
+@guards("Voronoi2d.locate", "Voronoi2d.hidden", on="plane")
+def nearest_disks(sites: Floats, rng: Random) -> None:
+    """The nearest disk of points everywhere, in 250 digits; hidden ones are nowhere nearest."""
+    weights = random_weights(sites, rng)
+    diagram = sb.voronoi_2d(sites, weights, threads=1)
+    corner, side = box_about(sites, rng)
+    points = np.vstack([corner + side * rng.random((6, 2)), sites[:3]])
+    seen = sorted(set(range(len(sites))) - set(diagram.hidden.tolist()))
+    for point, found in zip(points, diagram.locate(points, threads=1), strict=True):
+        distances = scaled_distances(point, sites, weights)
+        assert found == min(seen, key=lambda i: (distances[i], i))
+        assert distances[found] == min(distances)
+
+
+@guards("voronoi_2d", "Voronoi2d.vertices", on="plane")
+def vertices_of_disks(sites: Floats, rng: Random) -> None:
+    """Vertices are as far from all disks about them, and from no other less, in 250 digits."""
+    sites = some_of(sites, rng, 14)
+    weights = random_weights(sites, rng)
+    diagram = sb.voronoi_2d(sites, weights, threads=1)
+    about: list[set[int]] = [set() for _ in diagram.vertices]
+    for ends, pair in zip(diagram.edges.tolist(), diagram.edge_sites.tolist(), strict=True):
+        for vertex in ends:
+            if vertex >= 0:
+                about[vertex] |= set(pair)
+    for vertex, of in zip(diagram.vertices, about, strict=True):
+        distances = scaled_distances(vertex, sites, weights)
+        size = max(np.abs(sites).max(), np.abs(vertex).max())
+        mine = [float(distances[i] - min(distances)) for i in of]
+        assert max(mine) <= 8 * ROUNDINGS * size, f"{vertex}: {mine}"
+
+
+@guards("Voronoi2d.clip", on="plane")
+def clipped_disks(sites: Floats, rng: Random) -> None:
+    """Cells of disks within domains: areas sum, points of the plane are in their nearest disk's loops."""
+    weights = random_weights(sites, rng)
+    loops = random_domain(sites, rng)
+    size = float(np.ptp(loops[0], axis=0).max())
+    tolerance = size * 10.0 ** rng.uniform(-12, -2)
+    clipped = sb.voronoi_2d(sites, weights, threads=1).clip(loops if len(loops) > 1 else loops[0], tolerance=tolerance)
+    assert (clipped.areas >= 0).all()
+    total = 0.0
+    for k, loop in enumerate(loops):
+        x, y = (loop - loop[0]).T
+        area = 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+        total += area if k == 0 else -area
+    scale = max(np.abs(sites).max(), np.abs(loops[0]).max())
+    assert abs(clipped.areas.sum() - total) <= 1e-11 * size * scale
+    assert len(clipped.points) < 200_000 * (1 + len(sites))
+    owners = np.repeat(clipped.loop_sites, np.diff(clipped.loop_offsets))
+    some = rng.permutation(len(clipped.points))[:40]
+    for point, owner in zip(clipped.points[some], owners[some], strict=True):
+        distances = scaled_distances(point, sites, weights)
+        assert float(distances[owner] - min(distances)) <= 4 * max(tolerance, 2.0**-24 * size) + 1e-12 * scale
+
+
+@guards("SweepCircle", "SweepCircles", on="plane")
+def finished_sweeps(sites: Floats, rng: Random) -> None:
+    """After its last event a sweep over disks has the edges of the diagram, those with two ends finished."""
+    sites = some_of(sites, rng, 8)
+    weights = random_weights(sites, rng)
+    diagram = sb.voronoi_2d(sites, weights, threads=1)
+    center = sites.mean(axis=0) + np.ptp(sites, axis=0).max() * rng.normal(size=2)
+    sweep = sb.SweepCircle(sites, center, weights)
+    found = 0
+    while event := sweep.step():
+        found += event.kind == "vanish"
+    assert found == len(diagram.vertices)
+    ends, pairs, finished = sweep.edges
+    closed = (diagram.edges >= 0).all(axis=1)
+    assert np.isfinite(ends).all()
+    assert sorted(map(sorted, pairs[finished].tolist())) == sorted(map(sorted, diagram.edge_sites[closed].tolist()))
+    assert sorted(map(sorted, pairs.tolist())) == sorted(map(sorted, diagram.edge_sites.tolist()))
