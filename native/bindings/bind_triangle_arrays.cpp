@@ -131,8 +131,10 @@ fields : (V, k) float array
     both sides, so that no crack opens.
 triangles : (T, 3) int array
 column : int
-    Of the function. A vertex nearer to the level than 1e-9 of its greatest value is on it.
+    Of the function. A vertex nearer to the level than 1e-9 of its greatest value is on it. Values may be infinite, as
+    distances beyond a limit are: an edge from a finite value to such a one crosses the level at its finite end.
 level : float
+    Finite.
 
 Returns
 -------

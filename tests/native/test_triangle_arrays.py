@@ -109,3 +109,29 @@ def test_what_is_wrong_is_named() -> None:
         sb.cut_at_level(vertices, triangles, 2, 0.5)
     with pytest.raises(sb.InputError, match="triangle_cell: wanted one cell for each of the 8 triangles, got 2"):
         sb.cell_boundary_distance(vertices, triangles, np.zeros(2, np.int32))
+
+
+@pytest.mark.parametrize("level", [0.1, 0.35, 0.4999, 0.5, 0.7])
+@pytest.mark.parametrize("beyond", [np.inf, -np.inf])
+def test_a_level_cut_of_distances_up_to_a_limit(level, beyond):
+    """What is infinite lies wholly beyond: no place that is no number, no crack, nothing lost."""
+    vertices, triangles = meshes.grid(9, 9, jitter=0.3)
+    distance = np.linalg.norm(vertices - vertices[40], axis=1) / np.linalg.norm(vertices[0] - vertices[40])
+    values = np.where(distance <= 0.5, distance, beyond)
+    fields, parts, parents, above = sb.cut_at_level(np.column_stack([vertices, values, values]), triangles, 3, level)
+    assert np.isfinite(fields[:, :3]).all()
+    assert not np.isnan(fields).any()
+    areas = sb.Mesh(fields[:, :3], parts).face_areas
+    assert np.allclose(np.bincount(parents, areas), sb.Mesh(vertices, triangles).face_areas)
+    assert sb.border_edges(parts, len(fields))[0].shape == sb.border_edges(triangles, len(vertices))[0].shape
+    highest, lowest = fields[parts, 3].max(axis=1), fields[parts, 3].min(axis=1)
+    assert (above[np.isinf(fields[parts, 3]).any(axis=1)] == (beyond > 0)).all()
+    whole = np.isfinite(lowest) & np.isfinite(highest)
+    assert (lowest[whole & above] >= level).all()
+    assert (highest[whole & ~above] <= level).all()
+
+
+def test_a_level_must_be_finite():
+    vertices, triangles = meshes.grid(2, 2)
+    with pytest.raises(sb.InputError, match="level"):
+        sb.cut_at_level(np.column_stack([vertices, vertices[:, 0]]), triangles, 3, np.inf)

@@ -43,7 +43,9 @@ struct LevelCut {
 /// Cuts all triangles where a function, linear over each, equals `level` (marching triangles). `fields` (V, k) holds
 /// all numbers of a vertex side by side, the position first, the function in `column`: new vertices interpolate each,
 /// and are shared by both sides, so that no crack opens. A vertex nearer to the level than 1e-9 of the greatest value
-/// is on it; a triangle wholly on it counts as below. \throw InputError for a column that is not there. O(V k + T).
+/// is on it; a triangle wholly on it counts as below. Values may be infinite, as distances beyond a limit are: an edge
+/// from a finite value to such a one crosses the level at its finite end. \throw InputError for a column that is not
+/// there, and a level that is not finite. O(V k + T).
 LevelCut cut_at_level(std::span<const double> fields, Index width, std::span<const Triangle> triangles, Index column,
                       double level);
 

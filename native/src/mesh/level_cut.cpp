@@ -62,23 +62,29 @@ class Cutter {
     out_.aboves.push_back(above);
   }
 
+  /// One without an inside is none: where a value is infinite, an edge may be cut at its other end.
+  void put_part(Index parent, const Triangle& t, bool above) {
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) put(parent, t, above);
+  }
+
   void cut_through_vertex(Index parent, const Triangle& t) {
     const Index cut = between(t[1], t[2]);
-    put(parent, {t[0], t[1], cut}, signs_[t[1]] > 0);
-    put(parent, {t[0], cut, t[2]}, signs_[t[2]] > 0);
+    put_part(parent, {t[0], t[1], cut}, signs_[t[1]] > 0);
+    put_part(parent, {t[0], cut, t[2]}, signs_[t[2]] > 0);
   }
 
   /// The first corner from the two others; what they keep is parted along its shorter diagonal.
   void cut_off(Index parent, const Triangle& t) {
     const bool lone_above = signs_[t[0]] > 0;
     const Index y = between(t[0], t[1]), z = between(t[0], t[2]);
-    put(parent, {t[0], y, z}, lone_above);
-    if (squared_distance(y, t[2]) <= squared_distance(t[1], z)) {
-      put(parent, {y, t[1], t[2]}, !lone_above);
-      put(parent, {y, t[2], z}, !lone_above);
+    put_part(parent, {t[0], y, z}, lone_above);
+    const bool is_forced = y == t[0] || z == t[0];  // the other diagonal would run along a side
+    if (is_forced ? z == t[0] : squared_distance(y, t[2]) <= squared_distance(t[1], z)) {
+      put_part(parent, {y, t[1], t[2]}, !lone_above);
+      put_part(parent, {y, t[2], z}, !lone_above);
     } else {
-      put(parent, {y, t[1], z}, !lone_above);
-      put(parent, {t[1], t[2], z}, !lone_above);
+      put_part(parent, {y, t[1], z}, !lone_above);
+      put_part(parent, {t[1], t[2], z}, !lone_above);
     }
   }
 
@@ -88,19 +94,21 @@ class Cutter {
   }
   const double* row(Index vertex) const { return out_.fields.data() + static_cast<std::size_t>(vertex) * width_; }
 
-  /// The vertex where an edge crosses the level; the same bits from both sides.
+  /// The vertex where an edge crosses the level; the same bits from both sides. On the way to an infinite value the
+  /// level is crossed at once, between two of them in the middle.
   Index between(Index a, Index b) {
+    if (std::isfinite(at(a)) != std::isfinite(at(b))) return std::isfinite(at(a)) ? a : b;
     if (a > b) std::swap(a, b);
     for (Index i = last_cut_[a]; i != k_none; i = cuts_[i].before)
       if (cuts_[i].end == b) return count_ + i;
     const Index next = count_ + static_cast<Index>(cuts_.size());
     cuts_.push_back({b, last_cut_[a]});
     last_cut_[a] = next - count_;
-    const double share = (level_ - at(a)) / (at(b) - at(a));
+    const double share = std::isfinite(at(a)) ? (level_ - at(a)) / (at(b) - at(a)) : 0.5;
     out_.fields.resize(out_.fields.size() + width_);
     const double *from = row(a), *to = row(b);
     double* const mine = out_.fields.data() + static_cast<std::size_t>(next) * width_;
-    for (Index i = 0; i < width_; ++i) mine[i] = from[i] + share * (to[i] - from[i]);
+    for (Index i = 0; i < width_; ++i) mine[i] = std::isfinite(from[i]) ? from[i] + share * (to[i] - from[i]) : from[i];
     mine[column_] = level_;
     return next;
   }
@@ -123,6 +131,7 @@ LevelCut cut_at_level(std::span<const double> fields, Index width, std::span<con
                       double level) {
   if (width < 4) throw InputError(message("fields: wanted a position and a value for each vertex, got ", width));
   if (column < 3 || column >= width) throw InputError(message("column: wanted 3 to ", width - 1, ", got ", column));
+  if (!std::isfinite(level)) throw InputError(message("level: wanted a finite number, got ", level));
   check_corners(triangles, static_cast<Index>(fields.size() / width));
   Cutter cutter(fields, width, column, level);
   cutter.expect(triangles.size() + triangles.size() / 2);
