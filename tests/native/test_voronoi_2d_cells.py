@@ -156,3 +156,50 @@ def test_cells_a_gap_apart(domain):
     assert 0 < lost.sum() < edges * gap / 2 * 1.01
     with pytest.raises(sb.InputError, match="gap"):
         diagram.clip(domain, gap=-1.0)
+
+
+@pytest.mark.parametrize(
+    ("domain", "area"),
+    [
+        ([(0, 0), (0, 0), (1, 0), (1, 1), (1, 1), (1, 1), (0, 1), (0, 0)], 1.0),  # repeated corners
+        ([(0, 0), (0.25, 0), (0.5, 0), (1, 0), (1, 0.5), (1, 1), (0, 1), (0, 0.125)], 1.0),  # in a row
+        ([SQUARE[::-1], [(0.25, 0.25), (0.5, 0.25), (0.5, 0.5)]], 1 - 1 / 32),  # in any direction
+        ([SQUARE, [(0.5, 0), (0.75, 0.5), (0.25, 0.5)]], 0.875),  # a corner on a side
+        ([SQUARE, [(0, 0), (0.5, 0.25), (0.25, 0.5)]], 1 - 3 / 32),  # in a corner
+        ([SQUARE, [(0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)]], 0.5),  # on all sides
+        ([SQUARE, [(0.125, 0.125), (0.5, 0.5), (0.125, 0.5)], [(0.5, 0.5), (0.875, 0.875), (0.5, 0.875)]], 55 / 64),
+        ([L_SHAPE, [(0.4, 0.3), (0.2, 0.3), (0.2, 0.2)]], 0.58 - 0.01),  # in a reflex corner
+    ],
+)
+@pytest.mark.parametrize("weighted", [False, True])
+def test_domains_that_touch_themselves_in_points(domain, area, weighted):
+    """Also where sites have their bisectors through these points."""
+    rng = np.random.default_rng(11)
+    for n in (1, 2, 7, 60):
+        sites = np.round(8 * rng.random((n, 2))) / 8 if n < 60 else rng.random((n, 2))
+        diagram = sb.voronoi_2d(sites, 0.1 * rng.random(n) / n if weighted else None)
+        clipped = diagram.clip(domain)
+        assert clipped.areas.min() >= 0
+        assert clipped.areas.sum() == pytest.approx(area, rel=1e-12)
+        owners = np.repeat(clipped.loop_sites, np.diff(clipped.loop_offsets))
+        distances = np.linalg.norm(clipped.points[:, None] - sites, axis=2) - (
+            diagram.weights if weighted and n > 1 else 0
+        )
+        assert (distances[np.arange(len(owners)), owners] <= distances.min(axis=1) + 2e-3).all()
+
+
+@pytest.mark.parametrize(
+    ("domain", "text"),
+    [
+        ([SQUARE, [(0.5, 0), (0.75, -0.5), (0.25, -0.5)]], "not a hole"),  # touches from outside
+        ([SQUARE, [(0, 0), (0.5, 0), (0.25, 0.5)]], "meets"),  # part of a side in common
+        ([SQUARE, [(0.5, 0.5), (1, 0.5), (1.5, 0.75), (0.5, 0.75)]], "meets"),  # through
+        ([SQUARE, [(0.5, 0.5), (1, 0.25), (1.5, 0.5), (1, 0.75)]], "meets"),  # through in corners on a side
+        ([SQUARE, [(0.25, 0.25), (0.75, 0.25), (0.5, 0.75)], [(0.25, 0.25), (0.5, 0.25), (0.5, 0.5)]], "meets"),
+        ([SQUARE, [(0.25, 0.25), (0.75, 0.25), (0.5, 0.75)], [(0.25, 0.25), (0.5, 0.375), (0.5, 0.5)]], "loop 1"),
+        ([(0, 0), (0, 0), (1, 1), (1, 1)], "2 corners"),
+    ],
+)
+def test_domains_that_do_more_than_touch_are_named(domain, text):
+    with pytest.raises(sb.InputError, match=text):
+        sb.voronoi_2d([[0, 0]], domain=domain)

@@ -11,9 +11,10 @@ namespace saddleback {
 /// A simple polygon with holes.
 class PlanarDomain {
  public:
-  /// The outline first, then the holes, each in either direction, its last corner joined to its first (which may be
-  /// repeated). \throw InputError naming loop and corner: fewer than three corners, a coordinate that is not finite or
-  /// beyond 1e60, loops that touch or cross themselves or each other, a hole outside. O(m log m) expected.
+  /// The outline first, then the holes, each in either direction, its last corner joined to its first. Corners may be
+  /// repeated in a row, and loops may touch other loops in points. \throw InputError naming loop and corner: fewer than
+  /// three corners, a coordinate that is not finite or beyond 1e60, loops that touch or cross themselves, cross each
+  /// other or have a part of a side in common, a hole outside. O(m log m) expected.
   explicit PlanarDomain(std::vector<std::vector<Vec2>> loops);
 
   /// Outline counter-clockwise, holes clockwise.

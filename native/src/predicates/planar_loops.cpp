@@ -33,6 +33,39 @@ bool folds_back(const Edge& e, const Edge& f) {
   return is_between(e.a, e.b, f.b) || is_between(f.a, f.b, e.a);
 }
 
+/// A loop about one of its points: where it comes from and where it goes on.
+struct Turn {
+  Vec2 from, at, to;
+  bool is_on_left(const Vec2& point) const {
+    const bool of_first = turn(from, at, point) == Sign::positive, of_second = turn(at, to, point) == Sign::positive;
+    return turn(from, at, to) == Sign::positive ? of_first && of_second : of_first || of_second;
+  }
+  /// Whether a point is straight ahead on one of the two ways.
+  bool is_along(const Vec2& point) const { return lies_along(from, point) || lies_along(to, point); }
+  bool lies_along(const Vec2& way, const Vec2& point) const {
+    return turn(at, way, point) == Sign::zero && (is_between(at, way, point) || is_between(at, point, way));
+  }
+};
+
+Turn turn_at(const Loop& loop, const Edge& e, const Vec2& point) {
+  const std::size_t count = loop.size(), corner = e.corner;
+  if (point == e.a) return {loop[(corner + count - 1) % count], point, e.b};
+  if (point == e.b) return {e.a, point, loop[(corner + 2) % count]};
+  return {e.a, point, e.b};
+}
+
+/// Of edges of two loops with a point in common: whether that is all, and neither loop goes through the other there.
+bool only_touch(std::span<const Loop> loops, const Edge& e, const Edge& f) {
+  for (const Vec2& point : {e.a, e.b, f.a, f.b}) {
+    if (turn(e.a, e.b, point) != Sign::zero || !is_between(e.a, e.b, point)) continue;
+    if (turn(f.a, f.b, point) != Sign::zero || !is_between(f.a, f.b, point)) continue;
+    const Turn mine = turn_at(loops[e.loop], e, point), other = turn_at(loops[f.loop], f, point);
+    if (mine.is_along(other.from) || mine.is_along(other.to)) return false;
+    return mine.is_on_left(other.from) == mine.is_on_left(other.to);
+  }
+  return false;
+}
+
 }  // namespace
 
 double twice_area(const Loop& loop) {
@@ -64,7 +97,7 @@ bool segments_touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) 
          d_side != Sign::zero;
 }
 
-std::optional<LoopMeeting> first_meeting(std::span<const Loop> loops) {
+std::optional<LoopMeeting> first_meeting(std::span<const Loop> loops, bool may_touch) {
   std::vector<Edge> edges;
   for (std::size_t l = 0; l < loops.size(); ++l) {
     const std::size_t count = loops[l].size();
@@ -81,6 +114,7 @@ std::optional<LoopMeeting> first_meeting(std::span<const Loop> loops) {
       const bool meet = is_next(e, f)   ? folds_back(e, f)
                         : is_next(f, e) ? folds_back(f, e)
                                         : segments_touch(e.a, e.b, f.a, f.b);
+      if (meet && may_touch && e.loop != f.loop && only_touch(loops, e, f)) continue;
       if (meet) return LoopMeeting{e.loop, e.corner, f.loop, f.corner};
     }
   }

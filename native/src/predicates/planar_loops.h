@@ -25,7 +25,8 @@ struct LoopMeeting {
   Index loop, corner;  ///< the edge after this corner
   Index other_loop, other_corner;
 };
-/// Exact. O(m log m) expected for m corners in all.
-std::optional<LoopMeeting> first_meeting(std::span<const Loop> loops);
+/// Exact. If `may_touch`, loops may have a point in common with other loops where they do not go through them. O(m log
+/// m) expected for m corners in all, none of which equals the next.
+std::optional<LoopMeeting> first_meeting(std::span<const Loop> loops, bool may_touch = false);
 
 }  // namespace saddleback::predicates
