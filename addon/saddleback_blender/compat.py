@@ -206,6 +206,12 @@ def modifier_input(modifier: bpy.types.Modifier, name: str) -> Any:
     return getattr(inputs, identifier).value if inputs is not None else modifier[identifier]
 
 
+def modifier_inputs(modifier: bpy.types.Modifier) -> dict[str, Any]:
+    """The values of all inputs of a Geometry Nodes modifier by name, but for the geometry."""
+    names = list(group_input_identifiers(modifier.node_group))[1:]
+    return {name: modifier_input(modifier, name) for name in names}
+
+
 def user_folder() -> str:
     """Where this add-on may keep files of its own; an extension has a place of its own from 4.2 on."""
     is_extension = __package__.startswith("bl_ext.")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import bpy
 
-from . import compat
+from . import compat, rollback
 
 MARK = "saddleback_made"  # custom property: which of the things below a data-block is
 
@@ -50,7 +51,7 @@ def set_tubes(item: bpy.types.Object, radius: float, material: bpy.types.Materia
         modifier = add_first(item, "Saddleback Tubes", _shared_group(TUBES))
         compat.set_modifier_input(modifier, "Resolution", 8)
         compat.set_modifier_input(modifier, "Material", material)
-    compat.set_modifier_input(modifier, "Radius", radius)
+    set_input(modifier, "Radius", radius)
     return modifier
 
 
@@ -59,18 +60,60 @@ def set_instances(item: bpy.types.Object, instance: bpy.types.Object | None, sca
     modifier = modifier_of(item, INSTANCES)
     if instance is None:
         if modifier is not None:
-            group = modifier.node_group
-            item.modifiers.remove(modifier)
-            if group.users == 0:
-                bpy.data.node_groups.remove(group)
+            rollback.when_written(partial(remove_modifier, item, modifier))
         return None
     if modifier is None:
         # Each output has a group of its own: the object stands on the node, which works alike in all versions.
         modifier = add_first(item, "Saddleback Instances", _new_instances_group())
     info = next(node for node in modifier.node_group.nodes if node.type == "OBJECT_INFO")
+    rollback.remember(info.inputs["Object"], "default_value")
     info.inputs["Object"].default_value = instance
-    compat.set_modifier_input(modifier, "Scale", scale)
+    set_input(modifier, "Scale", scale)
     return modifier
+
+
+def put_group(
+    item: bpy.types.Object, kind: str, name: str, group: bpy.types.NodeTree, inputs: dict[str, Any]
+) -> bpy.types.Modifier:
+    """Gives the object's modifier of this kind another group, or adds one before the artist's own; sets its inputs.
+
+    Objects are inputs and not on nodes, since Blender leads a duplicate's inputs to what is duplicated with it.
+    """
+    modifier = modifier_of(item, kind)
+    if modifier is None:
+        modifier = add_first(item, name, group)
+    else:
+        old = modifier.node_group
+        rollback.undo_with(partial(_put_back, modifier, old, compat.modifier_inputs(modifier)))
+        modifier.node_group = group
+        rollback.when_written(partial(_remove_if_unused, old))
+    for label, value in inputs.items():
+        compat.set_modifier_input(modifier, label, value)
+    return modifier
+
+
+def _put_back(modifier: bpy.types.Modifier, group: bpy.types.NodeTree, inputs: dict[str, Any]) -> None:
+    modifier.node_group = group
+    for label, value in inputs.items():
+        compat.set_modifier_input(modifier, label, value)
+
+
+def _remove_if_unused(group: bpy.types.NodeTree) -> None:
+    if group.users == 0:
+        bpy.data.node_groups.remove(group)
+
+
+def set_input(modifier: bpy.types.Modifier, name: str, value: Any) -> None:
+    """Sets an input of a modifier by its name."""
+    rollback.undo_with(partial(compat.set_modifier_input, modifier, name, compat.modifier_input(modifier, name)))
+    compat.set_modifier_input(modifier, name, value)
+
+
+def remove_modifier(item: bpy.types.Object, modifier: bpy.types.Modifier) -> None:
+    """Removes a modifier, and its group unless something else uses it."""
+    group = modifier.node_group
+    item.modifiers.remove(modifier)
+    _remove_if_unused(group)
 
 
 def set_sweep(item: bpy.types.Object, circle: bpy.types.Object, draws_circle: bool) -> bpy.types.Modifier:
@@ -78,12 +121,13 @@ def set_sweep(item: bpy.types.Object, circle: bpy.types.Object, draws_circle: bo
 
     With `draws_circle` the circle itself is shown, too, about the object's origin.
     """
-    return add_first(item, "Saddleback Sweep", _new_sweep_group(circle, draws_circle))
+    return put_group(item, SWEEP, "Saddleback Sweep", _new_sweep_group(draws_circle), {"Circle": circle})
 
 
 def add_first(item: bpy.types.Object, name: str, group: bpy.types.NodeTree) -> bpy.types.Modifier:
     """Adds our modifier before those of the artist, which expect its result."""
     modifier = item.modifiers.new(name, "NODES")
+    rollback.undo_with(partial(item.modifiers.remove, modifier))
     modifier.node_group = group
     if item.modifiers[0] != modifier:
         compat.move_modifier_first(item, modifier)
@@ -201,13 +245,14 @@ def _new_instances_group() -> bpy.types.NodeTree:
     return group
 
 
-def _new_sweep_group(circle: bpy.types.Object, draws_circle: bool) -> bpy.types.NodeTree:
+def _new_sweep_group(draws_circle: bool) -> bpy.types.NodeTree:
     """Keyframes of the circle's scale drive everything: an artist may move them."""
     group, source, sink = new_group("Saddleback Sweep", SWEEP)
+    compat.new_group_socket(group, "Circle", "INPUT", "NodeSocketObject")
     nodes, link = group.nodes, group.links.new
 
     info = nodes.new("GeometryNodeObjectInfo")
-    info.inputs["Object"].default_value = circle
+    link(source.outputs["Circle"], info.inputs["Object"])
     radius = nodes.new("ShaderNodeSeparateXYZ")
     begin, end = nodes.new("GeometryNodeInputNamedAttribute"), nodes.new("GeometryNodeInputNamedAttribute")
     is_early, is_late = nodes.new("FunctionNodeCompare"), nodes.new("FunctionNodeCompare")

@@ -2,37 +2,48 @@
 
 Each point knows the triangle of the mesh that it stands on: its three vertices, where in it the point is, and how it is
 shifted (and its shape turned) as seen from it. The group looks up where those vertices are now, after all modifiers. A
-mesh that has another number of vertices by then is another mesh: there the points stay where they were put. Points of
-meshes carry what they know as attributes; curve objects cannot, so that for them a hidden mesh keeps it, in order.
+mesh that has another number of vertices by then, say of another subdivision level in the render than in the viewport,
+is asked by places instead: where is now what was there at rest? Blender keeps the places at rest as an attribute
+of the mesh. Where it does not, the points stay where they were put. Points of meshes carry what they know as
+attributes; curve objects cannot, so that for them a hidden mesh keeps it, in order.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import bpy
 import numpy as np
 from mathutils import Matrix
 
+from . import compat, rollback
 from .nodes import (
     CLASS_ATTRIBUTE,
     FOLLOW,
     ROTATION_ATTRIBUTE,
     SCALE_ATTRIBUTE,
     SHAPES,
-    add_first,
     attribute_output,
     lay_out,
     modifier_of,
     new_group,
+    put_group,
+    remove_modifier,
 )
 
 # Of the points: the vertices of the triangle, the weights of each, and vectors by the triangle's axes.
 CORNER_ATTRIBUTES = ("saddleback_corner_a", "saddleback_corner_b", "saddleback_corner_c")
 WEIGHTS_ATTRIBUTE, SHIFT_ATTRIBUTE = "saddleback_barycentric", "saddleback_shift"
 X_ATTRIBUTE, Z_ATTRIBUTE = "saddleback_axis_x", "saddleback_axis_z"
+# Of the points: where they stand on the mesh at rest, and steps from there along the triangle's first two axes.
+REST_ATTRIBUTES = ("saddleback_rest", "saddleback_rest_x", "saddleback_rest_y")
+REST_POSITION = "rest_position"  # Blender's own, of the mesh
+NOW_POSITION = "saddleback_now"  # of the mesh, within the groups: where its vertices are, as seen from the points
+# Inputs of the groups.
+HOST, KEEPER = "Surface", "Anchors"
 
 
 @dataclass(frozen=True)
@@ -43,12 +54,13 @@ class Host:
     axes: tuple[tuple[float, ...], ...]  # three: where its unit vectors lead
     origin: tuple[float, ...]
     vertex_count: int
+    has_rest: bool  # the points have REST_ATTRIBUTES
 
     @classmethod
-    def of(cls, item: bpy.types.Object, place: Matrix, vertex_count: int) -> Host:
+    def of(cls, item: bpy.types.Object, place: Matrix, vertex_count: int, has_rest: bool) -> Host:
         """As seen from an object whose world matrix is `place`."""
         columns = np.array(place.inverted() @ item.matrix_world).T[:, :3].tolist()
-        return cls(item, tuple(map(tuple, columns[:3])), tuple(columns[3]), vertex_count)
+        return cls(item, tuple(map(tuple, columns[:3])), tuple(columns[3]), vertex_count, has_rest)
 
 
 def set_shapes(item: bpy.types.Object, shapes: list[bpy.types.Object], host: Host | None) -> bpy.types.Modifier:
@@ -56,19 +68,15 @@ def set_shapes(item: bpy.types.Object, shapes: list[bpy.types.Object], host: Hos
 
     The objects stand on the nodes of a group of the output's own; one that is there already gets them anew.
     """
-    modifier = modifier_of(item, SHAPES)
     group = _new_shapes_group(shapes, host)
-    if modifier is None:
-        return add_first(item, "Saddleback Shapes", group)
-    old, modifier.node_group = modifier.node_group, group
-    if old.users == 0:
-        bpy.data.node_groups.remove(old)
-    return modifier
+    return put_group(item, SHAPES, "Saddleback Shapes", group, {} if host is None else {HOST: host.item})
 
 
 def _new_shapes_group(shapes: list[bpy.types.Object], host: Host | None) -> bpy.types.NodeTree:
     """One Instance on Points for each class, since the order of a collection's children is not ours to tell."""
     group, source, sink = new_group("Saddleback Shapes", SHAPES)
+    if host is not None:
+        compat.new_group_socket(group, HOST, "INPUT", "NodeSocketObject")
     nodes, link = group.nodes, group.links.new
     points, joined = nodes.new("GeometryNodeMeshToPoints"), nodes.new("GeometryNodeJoinGeometry")
     wiring = _Wiring(group)
@@ -77,7 +85,7 @@ def _new_shapes_group(shapes: list[bpy.types.Object], host: Host | None) -> bpy.
     kind = wiring.attribute(CLASS_ATTRIBUTE, "INT")
     lay_out((source, rotation.node, scale.node, kind.node), points)
     if host is not None:
-        now = _triangle_now(wiring, host, wiring.attribute)
+        now = _triangle_now(wiring, source, host, wiring.attribute)
         link(_place_of(wiring, now, wiring.attribute), points.inputs["Position"])
         rotation = _turn_of(wiring, now, rotation)
     link(source.outputs["Geometry"], points.inputs["Mesh"])
@@ -110,33 +118,27 @@ class Tubes:
 
 def set_following(item: bpy.types.Object, host: Host, tubes: Tubes | None = None) -> bpy.types.Modifier:
     """Takes the points of a mesh, or of a curve object that becomes tubes, along with the host."""
-    modifier = modifier_of(item, FOLLOW)
     group, source, sink = new_group("Saddleback Follow", FOLLOW)
+    inputs = {HOST: host.item} if tubes is None else {HOST: host.item, KEEPER: tubes.keeper}
+    for name in inputs:
+        compat.new_group_socket(group, name, "INPUT", "NodeSocketObject")
     wiring = _Wiring(group)
-    read = wiring.attribute if tubes is None else wiring.kept_by(tubes.keeper)
-    now = _triangle_now(wiring, host, read)
+    read = wiring.attribute if tubes is None else wiring.kept_by(source.outputs[KEEPER])
+    now = _triangle_now(wiring, source, host, read)
     moved = group.nodes.new("GeometryNodeSetPosition")
     group.links.new(source.outputs["Geometry"], moved.inputs["Geometry"])
     group.links.new(_place_of(wiring, now, read), moved.inputs["Position"])
     shown = moved.outputs["Geometry"] if tubes is None else _tubes(wiring, moved.outputs["Geometry"], tubes)
     group.links.new(shown, sink.inputs["Geometry"])
     lay_out((source,), moved, sink)
-    if modifier is None:
-        return add_first(item, "Saddleback Follow", group)
-    old, modifier.node_group = modifier.node_group, group
-    if old.users == 0:
-        bpy.data.node_groups.remove(old)
-    return modifier
+    return put_group(item, FOLLOW, "Saddleback Follow", group, inputs)
 
 
 def stop_following(item: bpy.types.Object) -> None:
     """Leaves the points where they are."""
     modifier = modifier_of(item, FOLLOW)
     if modifier is not None:
-        group = modifier.node_group
-        item.modifiers.remove(modifier)
-        if group.users == 0:
-            bpy.data.node_groups.remove(group)
+        rollback.when_written(partial(remove_modifier, item, modifier))
 
 
 def _tubes(wiring: _Wiring, curve: Any, tubes: Tubes) -> Any:
@@ -157,15 +159,15 @@ def _tubes(wiring: _Wiring, curve: Any, tubes: Tubes) -> Any:
 class _TriangleNow:
     """Sockets about the triangle that a point stands on."""
 
-    is_same: Any  # the mesh has as many vertices as it had
+    is_known: Any  # where the point is on the mesh by now
     own: Any  # where the point was put
     foot: Any  # where on the triangle it stands by now
     axes: tuple[Any, Any, Any]  # of the triangle
 
 
-def _triangle_now(wiring: _Wiring, host: Host, read: Callable[[str, str], Any]) -> _TriangleNow:
+def _triangle_now(wiring: _Wiring, source: Any, host: Host, read: Callable[[str, str], Any]) -> _TriangleNow:
     info = wiring.node("GeometryNodeObjectInfo")
-    info.inputs["Object"].default_value = host.item
+    wiring.link(source.outputs[HOST], info.inputs["Object"])
     mesh = info.outputs["Geometry"]
     size = wiring.node("GeometryNodeAttributeDomainSize")
     wiring.link(mesh, size.inputs["Geometry"])
@@ -176,17 +178,62 @@ def _triangle_now(wiring: _Wiring, host: Host, read: Callable[[str, str], Any]) 
     seen = wiring.vector("ADD", wiring.combined(own, host.axes), host.origin)
     corners = [wiring.sampled(mesh, "FLOAT_VECTOR", seen, read(name, "INT")) for name in CORNER_ATTRIBUTES]
     foot = wiring.combined(read(WEIGHTS_ATTRIBUTE, "FLOAT_VECTOR"), corners)
-
     first, second = (wiring.vector("SUBTRACT", corner, corners[0]) for corner in corners[1:])
+    is_known = is_same
+    if host.has_rest:
+        rest = _RestMesh(wiring, mesh, seen)
+        place, *steps = (read(name, "FLOAT_VECTOR") for name in REST_ATTRIBUTES)
+        foot = wiring.chosen(is_same, rest.now(place), foot)
+        first, second = (
+            wiring.chosen(is_same, rest.way(place, step), side)
+            for step, side in zip(steps, (first, second), strict=True)
+        )
+        is_known = wiring.either(is_same, rest.is_there)
     x = wiring.vector("NORMALIZE", first)
     z = wiring.vector("NORMALIZE", wiring.vector("CROSS_PRODUCT", first, second))
-    return _TriangleNow(is_same, own, foot, (x, wiring.vector("CROSS_PRODUCT", z, x), z))
+    return _TriangleNow(is_known, own, foot, (x, wiring.vector("CROSS_PRODUCT", z, x), z))
+
+
+class _RestMesh:
+    """The mesh with its vertices where they are at rest, and for each of those places where it is now."""
+
+    def __init__(self, wiring: _Wiring, mesh: Any, seen: Any) -> None:
+        self._wiring = wiring
+        places = wiring.attribute(REST_POSITION, "FLOAT_VECTOR")
+        extent = wiring.node("GeometryNodeAttributeStatistic")
+        extent.data_type = "FLOAT_VECTOR"
+        wiring.link(mesh, extent.inputs["Geometry"])
+        wiring.link(places, wiring.enabled(extent.inputs, "Attribute"))
+        self.is_there = wiring.is_long(wiring.enabled(extent.outputs, "Range"))  # what is not there reads as zeros
+        kept, laid = wiring.node("GeometryNodeStoreNamedAttribute"), wiring.node("GeometryNodeSetPosition")
+        kept.data_type, kept.domain = "FLOAT_VECTOR", "POINT"
+        kept.inputs["Name"].default_value = NOW_POSITION
+        wiring.link(mesh, kept.inputs["Geometry"])
+        wiring.link(seen, wiring.enabled(kept.inputs, "Value"))
+        wiring.link(kept.outputs["Geometry"], laid.inputs["Geometry"])
+        wiring.link(places, laid.inputs["Position"])
+        self._mesh = laid.outputs["Geometry"]
+        self._now = wiring.attribute(NOW_POSITION, "FLOAT_VECTOR")
+
+    def now(self, place: Any) -> Any:
+        """Where the place of the surface is now that is next to one at rest."""
+        made = self._wiring.node("GeometryNodeSampleNearestSurface")
+        made.data_type = "FLOAT_VECTOR"
+        self._wiring.link(self._mesh, made.inputs["Mesh"])
+        self._wiring.link(self._now, self._wiring.enabled(made.inputs, "Value"))
+        self._wiring.link(place, made.inputs["Sample Position"])
+        return self._wiring.enabled(made.outputs, "Value")
+
+    def way(self, place: Any, step: Any) -> Any:
+        """From where a step back from the place leads, to where one ahead does."""
+        back, ahead = (self._wiring.vector(operation, place, step) for operation in ("SUBTRACT", "ADD"))
+        return self._wiring.vector("SUBTRACT", self.now(ahead), self.now(back))
 
 
 def _place_of(wiring: _Wiring, now: _TriangleNow, read: Callable[[str, str], Any]) -> Any:
     """Where a point is now; where it was put where the mesh has become another one."""
     shift = wiring.combined(read(SHIFT_ATTRIBUTE, "FLOAT_VECTOR"), now.axes)
-    return wiring.chosen(now.is_same, now.own, wiring.vector("ADD", now.foot, shift))
+    return wiring.chosen(now.is_known, now.own, wiring.vector("ADD", now.foot, shift))
 
 
 def _turn_of(wiring: _Wiring, now: _TriangleNow, rotation: Any) -> Any:
@@ -195,7 +242,7 @@ def _turn_of(wiring: _Wiring, now: _TriangleNow, rotation: Any) -> Any:
         wiring.combined(wiring.attribute(name, "FLOAT_VECTOR"), now.axes) for name in (X_ATTRIBUTE, Z_ATTRIBUTE)
     )
     upright = wiring.aligned("Z", "AUTO", away, None)
-    return wiring.chosen(now.is_same, rotation, wiring.aligned("X", "Z", along, upright))
+    return wiring.chosen(now.is_known, rotation, wiring.aligned("X", "Z", along, upright))
 
 
 class _Wiring:
@@ -233,10 +280,10 @@ class _Wiring:
         self.link(index, made.inputs["Index"])
         return self.enabled(made.outputs, "Value")
 
-    def kept_by(self, keeper: bpy.types.Object) -> Callable[[str, str], Any]:
+    def kept_by(self, keeper: Any) -> Callable[[str, str], Any]:
         """What reads attributes of another object's mesh, of the vertex with the same index."""
         info = self.node("GeometryNodeObjectInfo")
-        info.inputs["Object"].default_value = keeper
+        self.link(keeper, info.inputs["Object"])
         index = self.node("GeometryNodeInputIndex").outputs["Index"]
         return lambda name, data_type: self.sampled(
             info.outputs["Geometry"], data_type, self.attribute(name, data_type), index
@@ -249,6 +296,24 @@ class _Wiring:
         self.link(number, self.enabled(made.inputs, "A"))
         self.enabled(made.inputs, "B").default_value = to
         return made.outputs["Result"]
+
+    def is_long(self, vector: Any) -> Any:
+        """Whether a vector is longer than zero."""
+        length, made = self.node("ShaderNodeVectorMath"), self.node("FunctionNodeCompare")
+        length.operation = "LENGTH"
+        self.link(vector, length.inputs[0])
+        made.data_type, made.operation = "FLOAT", "GREATER_THAN"
+        self.link(length.outputs["Value"], self.enabled(made.inputs, "A"))
+        self.enabled(made.inputs, "B").default_value = 0.0
+        return made.outputs["Result"]
+
+    def either(self, one: Any, other: Any) -> Any:
+        """Whether one of two is true."""
+        made = self.node("FunctionNodeBooleanMath")
+        made.operation = "OR"
+        self.link(one, made.inputs[0])
+        self.link(other, made.inputs[1])
+        return made.outputs["Boolean"]
 
     def vector(self, operation: str, *operands: Any) -> Any:
         """Vector mathematics with sockets or constants."""

@@ -65,17 +65,16 @@ def test_a_very_flat_but_not_zero_scale_is_fine():
 
 
 @pytest.mark.parametrize("operator", ["distance", "path", "tessellate", "repair"])
-def test_linked_data(operator, tmp_path):
+def test_linked_object(operator, tmp_path):
     sphere()
     path = str(tmp_path / "library.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     with bpy.data.libraries.load(path, link=True) as (source, target):
-        target.meshes = source.meshes
-    item = bpy.data.objects.new("Local", target.meshes[0])
-    bpy.context.scene.collection.objects.link(item)
-    bpy.context.view_layer.objects.active = item
-    refuse("'Local' is linked from", "library.blend", "make it and its mesh local", operator=operator)
+        target.objects = source.objects
+    bpy.context.scene.collection.objects.link(target.objects[0])
+    bpy.context.view_layer.objects.active = target.objects[0]
+    refuse("'Sphere' is linked from", "library.blend", "make a library override of it first", operator=operator)
 
 
 def test_empty_mesh_and_mesh_without_faces():

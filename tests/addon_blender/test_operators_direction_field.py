@@ -76,10 +76,12 @@ def test_a_curve_is_followed_and_the_field_is_shown():
     (output,) = outputs_of(item)
     assert output.name == "Grid Arrows" and output.users_collection[0].name == "Saddleback"
     assert "vectors, no singularities, along 1 stroke" in jobs.state.line
-    # Again, with lines instead: the arrows go, the settings stay.
-    assert bpy.ops.saddleback.direction_field(make_arrows=False, make_streamlines=True) == {"FINISHED"}
+    # Again, with lines instead: the arrows go, the panel's settings stay.
+    item.saddleback.direction_field.arrow_count = 51
+    settings = {"strokes": "COLLECTION", "make_arrows": False, "make_streamlines": True}
+    assert bpy.ops.saddleback.direction_field(**settings) == {"FINISHED"}
     (output,) = outputs_of(item)
-    assert output.type == "CURVE" and len(output.data.splines) > 5 and item.saddleback.direction_field.arrow_count == 50
+    assert output.type == "CURVE" and len(output.data.splines) > 5 and item.saddleback.direction_field.arrow_count == 51
     assert bpy.ops.saddleback.clear() == {"FINISHED"} and NAME not in item.data.attributes
 
 

@@ -132,7 +132,7 @@ def test_it_is_replaced_kept_and_cleared():
     output = find_output(item, "paths")
     output.name = "My Way"
     curves = len(bpy.data.curves)
-    bpy.ops.saddleback.path(connect="PAIRS")
+    bpy.ops.saddleback.path(k=20, connect="PAIRS")
     assert find_output(item, "paths").name == "My Way" and len(bpy.data.curves) == curves
     assert item.saddleback.path.k == 20 and item.saddleback.path.connect == "PAIRS"
     assert bpy.ops.saddleback.clear() == {"FINISHED"}

@@ -133,7 +133,7 @@ def test_heavier_sites_have_larger_cells():
     plain = np.bincount(*faces(find_output(item, CELLS)))
     values = np.array([0, 0, 0, 0, 0.1], np.float32)
     dots.data.attributes.new("size", "FLOAT", "POINT").data.foreach_set("value", values)
-    bpy.ops.saddleback.voronoi_2d(weights_name="size")
+    bpy.ops.saddleback.voronoi_2d(sites_source="OBJECT", sites_object="Dots", weights_name="size")
     cells, areas = faces(find_output(item, CELLS))
     heavy = np.bincount(cells, areas)
     assert heavy.sum() == pytest.approx(1, rel=1e-5) and heavy[4] > 1.5 * plain[4]

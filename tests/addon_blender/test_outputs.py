@@ -96,7 +96,7 @@ def test_only_our_attributes_are_cleared():
     write_vertex_attributes(item, {"a": np.zeros(9), "b": np.zeros(9)})
     write_vertex_attributes(item, {"c": np.zeros(9)})
     item.data.attributes.remove(item.data.attributes["b"])  # the artist was faster
-    assert clear_attributes(item.data) == 2
+    assert clear_attributes(item) == 2
     assert set(item.data.attributes.keys()) == before
     assert list(item.data.keys()) == ["note"]
 

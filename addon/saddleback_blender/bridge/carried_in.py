@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from .. import compat
 from ..core.carried import Anchors
 from ..core.results import Indices, Reals
+from ..shape_nodes import REST_POSITION
+from .groups_in import group_numbers
 from .mesh_in import read_triangles
 from .out_attributes import KINDS, recorded
 
@@ -28,7 +30,7 @@ READ = {
     "BYTE_COLOR": ("color", 4, np.float32),
 }
 # What Blender itself keeps as attributes, and what has a place of its own below.
-NOT_CARRIED = ("position", "material_index", "sharp_face", "sharp_edge", "custom_normal")
+NOT_CARRIED = ("position", "material_index", "sharp_face", "sharp_edge", "custom_normal", REST_POSITION)
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def _anchors(source: bpy.types.Object, mesh: bpy.types.Mesh, faces: Indices, bar
 
 def _attributes(source: bpy.types.Object, mesh: bpy.types.Mesh, anchors: Anchors) -> dict[str, NDArray[Any]]:
     """All numbers but our own results. Edges have no value at a point of the surface."""
-    skipped = {*NOT_CARRIED, *recorded(source.data), *mesh.uv_layers.keys(), *source.vertex_groups.keys()}
+    skipped = {*NOT_CARRIED, *recorded(source.data), *mesh.uv_layers.keys(), *group_numbers(source, mesh)}
     found = {}
     for attribute in mesh.attributes:
         name, kind = attribute.name, attribute.data_type
@@ -102,7 +104,7 @@ def _groups(
     source: bpy.types.Object, mesh: bpy.types.Mesh, anchors: Anchors
 ) -> dict[str, tuple[NDArray[np.int32], NDArray[np.float64]]]:
     """Weights are read of the few vertices beside the points only: Blender hands them out one by one."""
-    names = {group.index: group.name for group in source.vertex_groups}
+    names = {index: name for name, index in group_numbers(source, mesh).items() if name in source.vertex_groups}
     if not names:
         return {}
     sums: dict[int, dict[int, float]] = {index: defaultdict(float) for index in names}

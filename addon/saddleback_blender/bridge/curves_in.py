@@ -6,11 +6,13 @@ import bpy
 import numpy as np
 
 from .. import compat
+from ..blocks import find
 from ..core.edge_chains import chains
 from ..core.errors import BadInputError
 from ..core.requests import Polyline
+from .evaluated import evaluated
 from .mesh_in import to_world
-from .out_collection import SOURCE
+from .tokens import SOURCE
 
 
 def read_curves(source: bpy.types.Object, name: str, collection: str) -> tuple[Polyline, ...]:
@@ -27,14 +29,14 @@ def read_curves(source: bpy.types.Object, name: str, collection: str) -> tuple[P
 
 def _curve_objects(source: bpy.types.Object, name: str, collection: str) -> tuple[list[bpy.types.Object], str]:
     if name:
-        item = bpy.data.objects.get(name)
+        item = find(bpy.data.objects, name)
         if item is None:
             raise BadInputError(f"'{source.name}': there is no object '{name}' to measure from; choose a curve")
         if item.type != "CURVE":
             raise BadInputError(f"'{source.name}': '{name}' is no curve object; choose a curve to measure from")
         return [item], f"'{name}'"
     if collection:
-        group = bpy.data.collections.get(collection)
+        group = find(bpy.data.collections, collection)
         if group is None:
             raise BadInputError(
                 f"'{source.name}': there is no collection '{collection}' to take curves from; choose one"
@@ -47,7 +49,7 @@ def _curve_objects(source: bpy.types.Object, name: str, collection: str) -> tupl
     if not curves:
         place = f"in collection '{collection}'" if collection else f"parented to '{source.name}'"
         raise BadInputError(f"'{source.name}': no curve is {place}; choose one to measure from")
-    return sorted(curves, key=lambda item: item.name), where
+    return sorted(curves, key=lambda item: item.name_full), where
 
 
 def polylines_of(item: bpy.types.Object) -> list[Polyline]:
@@ -70,7 +72,8 @@ def polylines_of(item: bpy.types.Object) -> list[Polyline]:
 def _plain(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline]:
     holder = bpy.data.objects.new("Saddleback", plain)
     try:
-        lines = _lines(item, holder.to_mesh())
+        with evaluated(bpy.context, [item]) as (shown,):
+            lines = _lines(shown, holder.to_mesh())
         holder.to_mesh_clear()
     finally:
         bpy.data.objects.remove(holder)
@@ -84,10 +87,10 @@ def _modified(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline] 
     holder.data, holder.hide_viewport = plain, False
     scene.objects.link(holder)
     try:
-        evaluated = holder.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        mesh = evaluated.to_mesh()
-        lines = None if len(mesh.polygons) else _lines(item, mesh)
-        evaluated.to_mesh_clear()
+        shown = holder.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        mesh = shown.to_mesh()
+        lines = None if len(mesh.polygons) else _lines(shown, mesh)
+        shown.to_mesh_clear()
     finally:
         bpy.data.objects.remove(holder)
     return lines

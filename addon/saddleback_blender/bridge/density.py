@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import compat
+from ..blocks import find
 from ..core import density as density_maths
 from ..core.density import DensityError
 from ..core.errors import BadInputError
@@ -14,7 +15,8 @@ from ..core.image_colors import colors_at
 from ..core.requests import CurvatureDensity, Density, DistanceDensity, SpreadDensity
 from ..core.settings import DensitySettings
 from .curves_in import read_curves
-from .images_in import read_pixels
+from .groups_in import group_numbers
+from .images_in import read_tiles
 
 # How each number type of attribute is read: the property's name and the exact type that Blender copies in one go.
 NUMBER_TYPES = {
@@ -83,7 +85,11 @@ def _read_members(
     if group is None:
         missing = f"no vertex group '{name}'" if name else "no vertex group"
         raise BadInputError(f"'{source.name}' has {missing}; paint one or {otherwise}")
-    index = group.index
+    label = f"vertex group '{group.name}'"
+    numbers = group_numbers(source, mesh)
+    if group.name not in numbers:
+        return *_read_former_group(source, mesh, group.name, otherwise), label
+    index = numbers[group.name]
     vertices: list[int] = []
     weights: list[float] = []
     for number, vertex in enumerate(mesh.vertices):
@@ -91,7 +97,21 @@ def _read_members(
             if element.group == index:
                 vertices.append(number)
                 weights.append(element.weight)
-    return vertices, weights, f"vertex group '{group.name}'"
+    return vertices, weights, label
+
+
+def _read_former_group(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, otherwise: str
+) -> tuple[list[int], list[float]]:
+    """Geometry nodes may leave a vertex group as an attribute, or without members, as plain numbers of all vertices."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.data_type not in NUMBER_TYPES:
+        raise BadInputError(
+            f"'{source.name}': its modifiers leave no vertex group '{name}'; {otherwise}, or run without them"
+        )
+    values, _ = read_attribute(source, mesh, name)
+    members = np.flatnonzero(values)
+    return members.tolist(), values[members].tolist()
 
 
 def read_attribute(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> tuple[NDArray[np.float64], str]:
@@ -142,7 +162,7 @@ def read_image(
 ) -> tuple[NDArray[np.float64], str]:
     """(V,) one channel of an image seen through a UV map, averaged to the vertices, and its name for messages."""
     name = settings.density_image
-    image = bpy.data.images.get(name) if name else None
+    image = find(bpy.data.images, name)
     if image is None:
         missing = f"there is no image '{name}'" if name else "there is no image chosen"
         raise BadInputError(f"'{source.name}': {missing} for the density; choose one")
@@ -152,10 +172,35 @@ def read_image(
         raise BadInputError(f"'{source.name}' has {missing} to see image '{name}' through; unwrap it (UV > Unwrap)")
     places = np.empty(2 * len(mesh.loops), np.float32)
     layer.data.foreach_get("uv", places)
-    pixels, is_encoded = read_pixels(source, image)
-    colors = colors_at(pixels, places.reshape(-1, 2).astype(np.float64), is_encoded)
+    colors = _colors_of_tiles(source, mesh, image, places.reshape(-1, 2).astype(np.float64))
     values = density_maths.channel(colors, settings.density_channel)
     return to_vertices(mesh, values, "CORNER"), f"image '{name}'"
+
+
+def _colors_of_tiles(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, image: bpy.types.Image, places: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Linear colors (L, 4) at the UV places (L, 2) of face corners. A polygon lies on the UDIM tile of its middle."""
+    tiles = read_tiles(source, image)
+    if list(tiles) == [0]:
+        return colors_at(tiles[0][0], places, tiles[0][1])
+    totals = compat.read_numbers(mesh.polygons, "loop_total")
+    middles = np.add.reduceat(places, np.cumsum(totals) - totals) / totals[:, None]
+    squares = np.repeat(np.floor(middles), totals, axis=0)
+    numbers = (1001 + squares[:, 0] + 10 * squares[:, 1]).astype(np.int64)
+    outside = ~np.isin(numbers, list(tiles)) | (squares[:, 0] < 0) | (squares[:, 0] > 9)
+    if outside.any():
+        raise BadInputError(
+            f"'{source.name}': image '{image.name}' has no tile {numbers[outside][0]}, where faces lie; "
+            "add the tile, or move them in the UV Editor"
+        )
+    colors = np.zeros((len(places), 4))
+    for number, (pixels, is_encoded) in tiles.items():
+        there = numbers == number
+        # A tile does not repeat: its border has the color of its last pixel.
+        half = 0.5 / np.array([pixels.shape[1], pixels.shape[0]])
+        colors[there] = colors_at(pixels, np.clip(places[there] - squares[there], half, 1.0 - half), is_encoded)
+    return colors
 
 
 def to_vertices(mesh: bpy.types.Mesh, values: NDArray[np.generic], domain: str) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ from .. import compat
 from ..core.errors import BadInputError
 from ..core.requests import Surface
 from ..core.results import Indices, Reals
+from .evaluated import evaluated
 
 
 @contextmanager
@@ -21,13 +22,19 @@ def mesh_of(context: bpy.types.Context, source: bpy.types.Object, use_modifiers:
     if not use_modifiers:
         yield source.data
         return
-    depsgraph = context.evaluated_depsgraph_get()
-    evaluated = source.evaluated_get(depsgraph)
-    mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
-    try:
+    with modified(context, source) as (_, mesh):
         yield mesh
-    finally:
-        evaluated.to_mesh_clear()
+
+
+@contextmanager
+def modified(context: bpy.types.Context, item: bpy.types.Object) -> Iterator[tuple[bpy.types.Object, bpy.types.Mesh]]:
+    """The object and its mesh as evaluated, whether or not the view layer shows it; to be read inside the `with`."""
+    with evaluated(context, [item]) as (shown,):
+        mesh = shown.to_mesh(preserve_all_data_layers=True, depsgraph=context.evaluated_depsgraph_get())
+        try:
+            yield shown, mesh
+        finally:
+            shown.to_mesh_clear()
 
 
 def read_surface(source: bpy.types.Object, mesh: bpy.types.Mesh, check: bool = True) -> Surface:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import rollback
+from ..blocks import is_editable
 from ..core.errors import BadInputError
+from .tokens import SOURCE, owns, source_token, token_of
 
-# A mesh's own list of the attributes that we wrote, one name a line: clear removes these and no others.
+# On a mesh: the attributes that we wrote, each with the token of the object that they are of, in JSON. Files of older
+# versions have names only, one a line. Clear removes these and no others.
 RECORD = "saddleback_attributes"
 
 # dtype kind and trailing shape -> attribute type, its element property, and the dtype that is copied without a loop.
@@ -40,7 +45,7 @@ def write_attributes(item: bpy.types.Object, domain: str, values: dict[str, NDAr
     changed = {name: array for name, array in values.items() if not _holds(mesh, name, domain, array)}
     for name, array in changed.items():
         set_attribute(mesh, name, domain, array)
-    record(mesh, values)
+    record(item, values)
     if changed:
         mesh.update_tag()
 
@@ -64,6 +69,7 @@ def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[
     wanted = len(getattr(mesh, DOMAIN_ELEMENTS[domain]))
     if len(values) != wanted:
         raise BadInputError(f"'{mesh.name}': attribute '{name}' has {len(values)} values for {wanted} elements")
+    rollback.remember_attribute(mesh, name)
     attribute = mesh.attributes.get(name)
     if attribute is not None and (attribute.data_type, attribute.domain) != (kind, domain):
         mesh.attributes.remove(attribute)
@@ -77,35 +83,56 @@ def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[
     return attribute
 
 
-def record(mesh: bpy.types.Mesh, names: Any) -> None:
-    """Adds names to the mesh's list."""
-    names = "\n".join(sorted({*recorded(mesh), *names}))
-    if mesh.get(RECORD) != names:
-        mesh[RECORD] = names
+def record(item: bpy.types.Object, names: Any) -> None:
+    """Adds names to the list of the object's mesh, as the object's; an output's own mesh is nobody else's."""
+    _keep(item.data, _writers(item.data) | dict.fromkeys(names, "" if SOURCE in item else source_token(item)))
 
 
 def forget(mesh: bpy.types.Mesh, name: str) -> None:
     """Takes a name off the mesh's list: the attribute is the artist's from now on."""
-    names = [other for other in recorded(mesh) if other != name]
-    if names:
-        mesh[RECORD] = "\n".join(names)
-    elif RECORD in mesh:
-        del mesh[RECORD]
+    _keep(mesh, {other: token for other, token in _writers(mesh).items() if other != name})
 
 
 def recorded(mesh: bpy.types.Mesh) -> list[str]:
     """The attributes that we wrote, whether or not they still exist."""
-    return str(mesh.get(RECORD, "")).split("\n") if mesh.get(RECORD) else []
+    return list(_writers(mesh))
 
 
-def clear_attributes(mesh: bpy.types.Mesh) -> int:
-    """Removes the attributes that we wrote, and their list; returns how many there were."""
+def clear_attributes(source: bpy.types.Object) -> int:
+    """Removes the attributes that we wrote for the object, and their list; returns how many there were.
+
+    Those of another object with the same mesh stay.
+    """
+    mesh = source.data
+    if not is_editable(mesh):
+        return 0
+    twins = [item for item in bpy.data.objects if item.data == mesh and item != source]
+    writers = _writers(mesh)
+    others = {token for item in twins for token in {token_of(item)} if token and owns(item, token)}
+    own = [name for name, token in writers.items() if token not in others]
     count = 0
-    for name in recorded(mesh):
+    for name in own:
         attribute = mesh.attributes.get(name)
         if attribute is not None:
+            rollback.remember_attribute(mesh, name)
             mesh.attributes.remove(attribute)
             count += 1
-    if RECORD in mesh:
-        del mesh[RECORD]
+    _keep(mesh, {name: token for name, token in writers.items() if name not in own})
     return count
+
+
+def _writers(mesh: bpy.types.Mesh) -> dict[str, str]:
+    """Token by name of the attributes that we wrote; "" where an older version wrote it."""
+    text = str(mesh.get(RECORD, ""))
+    return dict(json.loads(text)) if text.startswith("{") else dict.fromkeys(filter(None, text.split("\n")), "")
+
+
+def _keep(mesh: bpy.types.Mesh, writers: dict[str, str]) -> None:
+    text = json.dumps(writers, sort_keys=True)
+    if mesh.get(RECORD, "{}") == text:
+        return
+    rollback.remember_keys(mesh, RECORD)
+    if writers:
+        mesh[RECORD] = text
+    else:
+        del mesh[RECORD]

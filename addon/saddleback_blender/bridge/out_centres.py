@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from .. import nodes
+from ..blocks import find
 from ..core.centres import cell_size, euler_to_normal
 from ..core.errors import BadInputError
 from ..core.results import CellsResult
@@ -55,7 +56,7 @@ def _instance(source: bpy.types.Object, name: str, role: str) -> bpy.types.Objec
     """The object to put on the centres. Raises BadInputError where none has that name, or it is the centres'."""
     if not name:
         return None
-    instance = bpy.data.objects.get(name)
+    instance = find(bpy.data.objects, name)
     if instance is None:
         raise BadInputError(f"There is no object '{name}' to put on the centres of '{source.name}'; choose another")
     if instance == find_output(source, role):

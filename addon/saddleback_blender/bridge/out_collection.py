@@ -8,17 +8,18 @@ kept, since a pointer in a custom property would keep a deleted object in the fi
 
 from __future__ import annotations
 
-import uuid
+from functools import partial
 
 import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import nodes
+from .. import nodes, rollback
+from ..blocks import is_editable
 from .out_attributes import clear_attributes
+from .rest_places import forget_rest
+from .tokens import SOURCE, forget_token, owns, source_token, token_of
 
-TOKEN = "saddleback_token"  # on a source
-SOURCE = "saddleback_source"  # on outputs: the token of their source
 ROLE = "saddleback_role"  # on outputs: what it shows
 NAME = "saddleback_name"  # on outputs: the name that we gave it
 PLACE = "saddleback_place"  # on outputs: the matrix that we gave it
@@ -31,13 +32,12 @@ COLLECTION_NAME = "Saddleback"
 def output_collection(context: bpy.types.Context, source: bpy.types.Object) -> bpy.types.Collection:
     """The collection `Saddleback` beside the source: found by its mark, whatever its name is by now, or made."""
     scene = context.scene.collection
-    reachable = [scene, *scene.children_recursive]
-    homes = [home for home in reachable if source.name in home.objects and home.library is None]
+    homes = [home for home in _reachable(context) if source.name in home.objects and is_editable(home)]
     home = homes[0] if homes else scene
     if COLLECTION in home:  # the source is an output itself
         return home
     for child in home.children:
-        if COLLECTION in child and child.library is None:
+        if COLLECTION in child and is_editable(child):
             return child
     collection = bpy.data.collections.new(COLLECTION_NAME)
     collection[COLLECTION] = True
@@ -51,7 +51,8 @@ def replace_object(
     """Shows `data` as the source's output of this role: in the object that is there from the last run, or a new one.
 
     `place` is the world matrix that the data is made for, the source's own by default. What the artist did to the
-    object stays: name, collection, modifiers, materials, and a move away from where we put it.
+    object stays: name, collection, modifiers, materials, and a move away from where we put it. An output that was made
+    in another scene is shown in this one, too.
     """
     place = source.matrix_world.copy() if place is None else place
     item = find_output(source, role)
@@ -64,19 +65,31 @@ def replace_object(
         moved = Matrix.Identity(4)
         given = _names(data)
     else:
+        rollback.remember(item, "matrix_basis", "matrix_parent_inverse", "parent_type", "parent", "data")
+        rollback.remember_keys(item, MATERIALS, SOURCE, PLACE)
         moved = _artists_move(item)
         given = _names(data)
         _swap_data(item, data)
     item[MATERIALS] = "\n".join(given)
-    if not item.users_collection:
-        output_collection(context, source).objects.link(item)
+    if not any(home in item.users_collection for home in _reachable(context)):
+        collection = output_collection(context, source)
+        collection.objects.link(item)
+        rollback.undo_with(partial(collection.objects.unlink, item))
     item[SOURCE] = source_token(source)
     item.parent, item.parent_type = source, "OBJECT"
-    item.matrix_parent_inverse = source.matrix_world.inverted_safe()
-    item[PLACE] = [value for row in place for value in row]
-    item.matrix_basis = moved @ place
+    # Location, rotation and scale cannot hold a shear: the parent's inverse holds it.
+    basis, inverse = Matrix.LocRotScale(*place.decompose()), source.matrix_world.inverted_safe()
+    is_sheared = not _are_equal(basis, place)
+    item.matrix_parent_inverse = inverse @ place @ basis.inverted_safe() if is_sheared else inverse
+    item[PLACE] = [value for row in (basis if is_sheared else place) for value in row]
+    item.matrix_basis = moved @ (basis if is_sheared else place)
     data.name = item.name
     return item
+
+
+def _reachable(context: bpy.types.Context) -> list[bpy.types.Collection]:
+    scene = context.scene.collection
+    return [scene, *scene.children_recursive]
 
 
 def level_place(source: bpy.types.Object) -> Matrix:
@@ -97,24 +110,15 @@ def directions_to_place(place: Matrix, directions: np.ndarray) -> np.ndarray:
     return directions @ np.array(place, np.float64)[:3, :3]
 
 
-def source_token(source: bpy.types.Object) -> str:
-    """The source's token; a new one for a new source, and for a duplicate of a source."""
-    token = str(source.get(TOKEN, ""))
-    if token and _owns(source, token):
-        return token
-    source[TOKEN] = token = uuid.uuid4().hex
-    return token
-
-
 def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
     """What we made for the source and still exists, one object for each role."""
-    token = str(source.get(TOKEN, ""))
-    if not token or not _owns(source, token):
+    token = token_of(source)
+    if not token or not owns(source, token):
         return []
     by_role: dict[str, list[bpy.types.Object]] = {}
     for item in bpy.data.objects:
         is_ours = item.get(SOURCE) == token and item.library is None and item != source
-        if is_ours and (item.parent is None or item.parent == source or item.parent.get(TOKEN) != token):
+        if is_ours and (item.parent is None or item.parent == source or token_of(item.parent) != token):
             by_role.setdefault(str(item.get(ROLE)), []).append(item)
     return [_original(candidates) for candidates in by_role.values()]
 
@@ -131,7 +135,7 @@ def remove_output(source: bpy.types.Object, role: str) -> bool:
         return False
     collections = list(item.users_collection)
     remove_object(item)
-    _remove_empty(collections)
+    rollback.when_written(partial(_remove_empty, collections))
     return True
 
 
@@ -141,16 +145,30 @@ def clear_outputs(context: bpy.types.Context, source: bpy.types.Object) -> int:
     collections = [collection for item in items for collection in item.users_collection]
     for item in items:
         remove_object(item)
-    _remove_empty(collections)
-    nodes.remove_unused()
-    if TOKEN in source:
-        del source[TOKEN]
-    context.view_layer.update()
-    return len(items) + clear_attributes(source.data)
+    rollback.when_written(partial(_remove_empty, collections))
+    rollback.when_written(nodes.remove_unused)
+    cleared = clear_attributes(source)
+    forget_rest(source)
+    forget_token(source)
+    rollback.when_written(context.view_layer.update)
+    return len(items) + cleared
 
 
 def remove_object(item: bpy.types.Object) -> None:
-    """Removes an object, and its data and node groups unless something else uses them."""
+    """Removes an object, and its data and node groups unless something else uses them, when all is written.
+
+    Until then it is no output any more, and its name is free.
+    """
+    rollback.remember_keys(item, ROLE, SOURCE)
+    rollback.remember_name(item)
+    for key in (ROLE, SOURCE):
+        if key in item:
+            del item[key]
+    item.name = "Saddleback Former"
+    rollback.when_written(partial(_remove, item))
+
+
+def _remove(item: bpy.types.Object) -> None:
     data, animation = item.data, item.animation_data
     action = animation.action if animation is not None else None
     groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
@@ -161,15 +179,6 @@ def remove_object(item: bpy.types.Object) -> None:
             bpy.data.node_groups.remove(group)
     if action is not None and action.users == 0:
         bpy.data.actions.remove(action)
-
-
-def _owns(source: bpy.types.Object, token: str) -> bool:
-    """False for a duplicate, whose token's outputs are children of another object that has the token too."""
-    twins = [item for item in bpy.data.objects if item.get(TOKEN) == token and item != source]
-    if not twins:
-        return True
-    parents = [item.parent for item in bpy.data.objects if item.get(SOURCE) == token]
-    return source in parents or not any(twin in parents for twin in twins)
 
 
 def _original(candidates: list[bpy.types.Object]) -> bpy.types.Object:
@@ -199,7 +208,7 @@ def _swap_data(item: bpy.types.Object, data: bpy.types.ID) -> None:
     for material in old.materials[len(given) :]:
         data.materials.append(material)
     item.data = data
-    _remove_data(old)
+    rollback.when_written(partial(_remove_data, old))
 
 
 def _counted(names: list[str]) -> list[tuple[str, int]]:
@@ -219,11 +228,13 @@ def _artists_move(item: bpy.types.Object) -> Matrix:
         return Matrix.Identity(4)
     values = [float(value) for value in ours]
     before = Matrix([values[4 * row : 4 * row + 4] for row in range(4)])
-    now = item.matrix_basis
-    size = max(1.0, max(abs(value) for row in now for value in row))
-    if all(abs(now[i][j] - before[i][j]) <= 1e-5 * size for i in range(4) for j in range(4)):
-        return Matrix.Identity(4)
-    return now @ before.inverted_safe()
+    return Matrix.Identity(4) if _are_equal(item.matrix_basis, before) else item.matrix_basis @ before.inverted_safe()
+
+
+def _are_equal(one: Matrix, other: Matrix) -> bool:
+    """But for rounding."""
+    size = max(1.0, max(abs(value) for row in one for value in row))
+    return all(abs(one[i][j] - other[i][j]) <= 1e-5 * size for i in range(4) for j in range(4))
 
 
 def _remove_empty(collections: list[bpy.types.Collection]) -> None:

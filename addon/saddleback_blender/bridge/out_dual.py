@@ -10,6 +10,7 @@ from ..core.results import CellsResult, Dual
 from ..core.settings import TessellateSettings
 from .carried_in import Carried, read_carried
 from .carried_out import write_groups
+from .materials_in import shown_materials
 from .mesh_in import from_world, mesh_of
 from .out_attributes import set_attribute
 from .out_collection import replace_object
@@ -32,8 +33,9 @@ def write_dual(
         carried = read_carried(source, read, dual.faces, dual.barycentric)
         mesh = _mesh(source, dual)
         compat.copy_auto_smooth(read, mesh)
+        materials = shown_materials(source, read)
     _write_layers(mesh, carried)
-    for material in source.data.materials:
+    for material in materials:
         mesh.materials.append(material)
     item = replace_object(context, source, DUAL_ROLE, mesh)
     write_groups(item, carried)

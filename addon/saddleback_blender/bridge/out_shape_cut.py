@@ -15,10 +15,12 @@ from ..core.shape_templates import ShapeTemplate
 from ..shape_nodes import Host, set_following, stop_following
 from .carried_in import read_carried
 from .carried_out import write_groups
+from .materials_in import shown_materials
 from .mesh_in import mesh_of
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
 from .out_shapes import RANDOM_ATTRIBUTE, SHAPE_ATTRIBUTE, SHAPE_UV, add_materials, write_anchors
+from .rest_places import read_rest
 
 CUT_ROLE = "shape cut"
 
@@ -47,6 +49,7 @@ def write_cut(
         carried = read_carried(source, read, cut.faces, cut.barycentric)
         corners = read_carried(source, read, cut.corner_faces, cut.corner_barycentric, has_corners=True)
         compat.copy_auto_smooth(read, mesh)
+        materials = shown_materials(source, read)
     for name, values in carried.attributes.items():
         set_attribute(mesh, name, "POINT", values)
     for name, places in corners.uv_maps.items():
@@ -61,18 +64,19 @@ def write_cut(
     if own is not None:
         own.data.foreach_set("uv", cut.uv.astype(np.float32).ravel())
     mesh.polygons.foreach_set("use_smooth", np.ascontiguousarray(corners.smooth[::3]))
-    for material in source.data.materials or [None]:
+    for material in materials or [None]:
         mesh.materials.append(material)
     firsts = add_materials(mesh, templates)
     slots = np.where(cut.copy >= 0, firsts[cut.shape], corners.material[::3]).astype(np.int32)
     mesh.polygons.foreach_set("material_index", slots)
+    rest = read_rest(context, source, settings.use_modifiers, result.vertex_count) if settings.follow_surface else None
     if result.cut_anchors is not None:
-        write_anchors(mesh, result.cut_anchors)
+        write_anchors(mesh, result.cut_anchors, rest)
     mesh.update()
     item = replace_object(context, source, CUT_ROLE, mesh, place)
     write_groups(item, carried)
     if result.cut_anchors is not None:
-        set_following(item, Host.of(source, place, result.vertex_count))
+        set_following(item, Host.of(source, place, result.vertex_count, rest is not None))
     else:
         stop_following(item)
     return item

@@ -9,6 +9,7 @@ import numpy as np
 from mathutils import Matrix
 
 from .. import compat, nodes
+from ..blocks import find
 from ..core.errors import BadInputError
 from ..core.local_frames import in_frames, triangle_frames
 from ..core.quaternions import euler_of, quaternions_of, turned
@@ -28,11 +29,12 @@ from ..shape_nodes import (
     set_shapes,
     stop_following,
 )
+from .materials_in import shown_materials
+from .mesh_in import modified
 from .out_attributes import set_attribute, write_vertex_attributes
 from .out_collection import (
     NAME,
     ROLE,
-    SOURCE,
     directions_to_place,
     find_output,
     level_place,
@@ -40,10 +42,11 @@ from .out_collection import (
     remove_object,
     remove_output,
     replace_object,
-    source_token,
     to_place,
 )
 from .out_curves import new_curve
+from .rest_places import read_rest, write_rest
+from .tokens import SOURCE, source_token
 
 BENT_ROLE, INSTANCES_ROLE, OUTLINES_ROLE = "shapes", "shape instances", "shape outlines"
 KEEPER_ROLE = "shape outline anchors"
@@ -60,7 +63,7 @@ def write_bent(
     source: bpy.types.Object,
     result: DistributeResult,
     templates: Sequence[ShapeTemplate],
-    seed: int,
+    settings: DistributeSettings,
 ) -> bpy.types.Object:
     """Makes or replaces the source's shapes object: all bent copies as one mesh, which may follow the source.
 
@@ -71,7 +74,7 @@ def write_bent(
     place = level_place(source)
     mesh = bpy.data.meshes.new("Saddleback Shapes")
     _fill(mesh, to_place(place, bent.vertices), bent.corners, bent.offsets, bent.uv, bent.smooth)
-    random = random_of(len(result.placed.shape), seed)
+    random = random_of(len(result.placed.shape), settings.seed)
     set_attribute(mesh, SHAPE_ATTRIBUTE, "FACE", bent.polygon_copy)
     set_attribute(mesh, nodes.CLASS_ATTRIBUTE, "FACE", bent.polygon_shape)
     set_attribute(mesh, RANDOM_ATTRIBUTE, "FACE", random[bent.polygon_copy])
@@ -82,23 +85,25 @@ def write_bent(
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
     firsts = add_materials(mesh, templates)
     compat.write_numbers(mesh.polygons, "material_index", bent.material + firsts[bent.polygon_shape])
+    rest = read_rest(context, source, settings.use_modifiers, result.vertex_count) if settings.follow_surface else None
     if result.bent_anchors is not None:
-        write_anchors(mesh, result.bent_anchors)
+        write_anchors(mesh, result.bent_anchors, rest)
     mesh.update()
     item = replace_object(context, source, BENT_ROLE, mesh, place)
     if result.bent_anchors is not None:
-        set_following(item, Host.of(source, place, result.vertex_count))
+        set_following(item, Host.of(source, place, result.vertex_count, rest is not None))
     else:
         stop_following(item)
     return item
 
 
-def write_anchors(mesh: bpy.types.Mesh, anchors: Anchors) -> None:
+def write_anchors(mesh: bpy.types.Mesh, anchors: Anchors, rest: Reals | None) -> None:
     """Writes what `set_following` asks of a mesh: where its vertices stand on the source."""
     for i, name in enumerate(CORNER_ATTRIBUTES):
         set_attribute(mesh, name, "POINT", np.ascontiguousarray(anchors.corners[:, i]))
     set_attribute(mesh, WEIGHTS_ATTRIBUTE, "POINT", anchors.barycentric)
     set_attribute(mesh, SHIFT_ATTRIBUTE, "POINT", anchors.shift)
+    write_rest(mesh, rest, anchors.corners, anchors.barycentric)
 
 
 def write_instances(
@@ -114,7 +119,7 @@ def write_instances(
     units = np.array([template.scale for template in own]).reshape(-1, 1)
     shifts = np.array([template.shift for template in own]).reshape(-1, 3)
     points = placed.points + turned(placed.rotations, placed.scales * units * shifts)
-    scales = placed.scales * units * np.array([_own_scale(template) for template in own]).reshape(-1, 3)
+    scales = placed.scales * units * np.array([template.own_scale for template in own]).reshape(-1, 3)
     mesh = bpy.data.meshes.new("Saddleback Shapes")
     mesh.vertices.add(len(points))
     mesh.vertices.foreach_set("co", to_place(place, points).astype(np.float32).ravel())
@@ -129,10 +134,12 @@ def write_instances(
     }
     for name, values in columns.items():
         set_attribute(mesh, name, "POINT", values)
+    rest = read_rest(context, source, settings.use_modifiers, result.vertex_count) if settings.follow_surface else None
+    write_rest(mesh, rest, placed.corners, placed.barycentric)
     mesh.update()
     item = replace_object(context, source, INSTANCES_ROLE, mesh, place)
     remove_templates(source)
-    host = Host.of(source, place, result.vertex_count) if settings.follow_surface else None
+    host = Host.of(source, place, result.vertex_count, rest is not None) if settings.follow_surface else None
     shown = [_shown_object(source, number, template) for number, template in enumerate(templates)]
     set_shapes(item, shown, host)
     return item
@@ -153,12 +160,12 @@ def _by_triangles(place: Matrix, placed: PlacedShapes, points: Reals) -> dict[st
 
 
 def write_outlines(
-    context: bpy.types.Context, source: bpy.types.Object, result: DistributeResult, radius: float
+    context: bpy.types.Context, source: bpy.types.Object, result: DistributeResult, settings: DistributeSettings
 ) -> bpy.types.Object:
-    """Makes or replaces the source's outlines object, which may follow the source; the radius is in world units."""
+    """Makes or replaces the source's outlines object, which may follow the source; radii are in world units."""
     lines = result.outlines
     assert lines is not None
-    place = level_place(source)
+    place, radius = level_place(source), settings.outline_radius
     points = to_place(place, lines.points)
     ends = zip(lines.offsets[:-1], lines.offsets[1:], strict=True)
     is_followed, material = result.outline_anchors is not None, nodes.edges_material()
@@ -166,19 +173,21 @@ def write_outlines(
     curve = new_curve("Saddleback Outlines", ((points[begin:end], True) for begin, end in ends), own_radius)
     curve.materials.append(material)
     item = replace_object(context, source, OUTLINES_ROLE, curve, place)
-    stop_following(item)
     _remove_keeper(source)
     if result.outline_anchors is not None:
-        tubes = Tubes(_keeper(source, result.outline_anchors), radius, material)
-        set_following(item, Host.of(source, place, result.vertex_count), tubes)
+        rest = read_rest(context, source, settings.use_modifiers, result.vertex_count)
+        tubes = Tubes(_keeper(source, result.outline_anchors, rest), radius, material)
+        set_following(item, Host.of(source, place, result.vertex_count, rest is not None), tubes)
+    else:
+        stop_following(item)
     return item
 
 
-def _keeper(source: bpy.types.Object, anchors: Anchors) -> bpy.types.Object:
+def _keeper(source: bpy.types.Object, anchors: Anchors, rest: Reals | None) -> bpy.types.Object:
     """An object in no collection that knows where the points of the outlines stand, which curves cannot."""
     mesh = bpy.data.meshes.new("Saddleback Outline Anchors")
     mesh.vertices.add(len(anchors.corners))
-    write_anchors(mesh, anchors)
+    write_anchors(mesh, anchors, rest)
     item = bpy.data.objects.new(mesh.name, mesh)
     item[ROLE], item[NAME], item[SOURCE] = KEEPER_ROLE, item.name, source_token(source)
     return item
@@ -258,7 +267,7 @@ def remove_templates(source: bpy.types.Object) -> None:
 def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate) -> bpy.types.Object:
     """What an instance shows: the artist's own object, or a new one of ours."""
     if template.source:
-        return bpy.data.objects[template.source]
+        return find(bpy.data.objects, template.source)
     mesh = bpy.data.meshes.new(template.name)
     if template.solid is not None:
         solid = template.solid
@@ -301,21 +310,17 @@ def add_materials(mesh: bpy.types.Mesh, templates: Sequence[ShapeTemplate]) -> n
     firsts = []
     for template in templates:
         firsts.append(len(mesh.materials))
-        item = bpy.data.objects.get(template.source) if template.source else None
-        own = (
-            [slot.material for slot in item.material_slots]
-            if item is not None and item.type in ("MESH", "FONT")
-            else []
-        )
+        own = _materials(find(bpy.data.objects, template.source))
         for material in own if any(own) else [nodes.shapes_material()]:
             mesh.materials.append(material)
     return np.array(firsts, np.int32)
 
 
-def _own_scale(template: ShapeTemplate) -> tuple[float, float, float]:
-    item = bpy.data.objects.get(template.source) if template.source else None
-    scale: tuple[float, float, float] = tuple(item.matrix_world.to_scale()) if item is not None else (1.0, 1.0, 1.0)
-    return scale
+def _materials(item: bpy.types.Object | None) -> list[bpy.types.Material | None]:
+    if item is None or item.type not in ("MESH", "FONT"):
+        return []
+    with modified(bpy.context, item) as (shown, mesh):
+        return shown_materials(shown, mesh)
 
 
 def _to_place(place: object, rotations: Reals) -> Reals:

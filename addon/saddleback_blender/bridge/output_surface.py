@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from .. import compat
+from ..blocks import is_editable
 from ..core.errors import BadInputError
 from .mesh_in import mesh_of
 from .out_attributes import recorded
@@ -15,12 +16,14 @@ SURFACE_ROLE = "surface"
 
 
 def output_surface(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> bpy.types.Object:
-    """The object whose mesh has the vertices that were read."""
-    if not use_modifiers or _same_topology(context, source):
+    """The object whose mesh has the vertices that were read: the source, unless its own are others or are linked."""
+    if is_editable(source.data) and (not use_modifiers or has_own_faces(context, source)):
         return source
     existing = find_output(source, SURFACE_ROLE)
-    if existing is not None and _same_shape(context, source, existing):
+    if existing is not None and _same_shape(context, source, existing, use_modifiers):
         return existing  # with the other operators' results on it
+    if not use_modifiers:
+        return replace_object(context, source, SURFACE_ROLE, source.data.copy())
     depsgraph = context.evaluated_depsgraph_get()
     mesh = bpy.data.meshes.new_from_object(
         source.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph
@@ -58,13 +61,16 @@ def check_attribute_names(
             )
 
 
-def _same_topology(context: bpy.types.Context, source: bpy.types.Object) -> bool:
+def has_own_faces(context: bpy.types.Context, source: bpy.types.Object) -> bool:
+    """Whether the object's faces are those of its own mesh after its modifiers, too, wherever they have moved."""
     with mesh_of(context, source, True) as mesh:
         return _equal_faces(mesh, source.data)
 
 
-def _same_shape(context: bpy.types.Context, source: bpy.types.Object, other: bpy.types.Object) -> bool:
-    with mesh_of(context, source, True) as mesh:
+def _same_shape(
+    context: bpy.types.Context, source: bpy.types.Object, other: bpy.types.Object, use_modifiers: bool
+) -> bool:
+    with mesh_of(context, source, use_modifiers) as mesh:
         return _equal_faces(mesh, other.data) and np.array_equal(
             compat.read_positions(mesh), compat.read_positions(other.data)
         )

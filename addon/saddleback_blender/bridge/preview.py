@@ -6,11 +6,12 @@ materials. Taking the preview away links the slots back.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import bpy
 
-from .. import compat, nodes
+from .. import compat, nodes, rollback
 
 KIND = "distance"
 ADDED_SLOT = "saddleback_preview_slot"  # on an object: the slot that a mesh without materials was given
@@ -33,6 +34,7 @@ RAMP = (
 
 def show_preview(item: bpy.types.Object, attribute: str, farthest: float, spacing: float) -> bpy.types.Material:
     """Shows the attribute from 0 to `farthest` in colours, with a line every `spacing` (0: none) mesh units."""
+    _remember(item)
     material = _own_material(item)
     if material is None:
         material = _new_material()
@@ -50,6 +52,7 @@ def show_preview(item: bpy.types.Object, attribute: str, farthest: float, spacin
 
 def hide_preview(item: bpy.types.Object) -> bool:
     """Gives the object its own materials back; says whether it showed a preview."""
+    _remember(item)
     shown = [(number, slot) for number, slot in enumerate(item.material_slots) if _is_preview(slot.material)]
     materials = {slot.material for _, slot in shown}
     for number, slot in shown:
@@ -65,9 +68,31 @@ def hide_preview(item: bpy.types.Object) -> bool:
         if len(item.data.materials) == 1 and item.data.materials[0] is None:
             compat.remove_material_slots(item.data)
     for material in materials:
-        if material.users == 0:
-            bpy.data.materials.remove(material)
+        rollback.when_written(partial(_remove_if_unused, material))
     return bool(shown)
+
+
+def _remember(item: bpy.types.Object) -> None:
+    """The slots, which are about to change."""
+    keys = [ADDED_SLOT, *(f"{BEFORE}{number}" for number in range(len(item.material_slots)))]
+    rollback.remember_keys(item, *keys)
+    slots = [(slot.link, slot.material) for slot in item.material_slots]
+    rollback.undo_with(partial(_put_back, item, slots))
+
+
+def _put_back(item: bpy.types.Object, slots: list[tuple[str, bpy.types.Material | None]]) -> None:
+    while len(item.data.materials) < len(slots):
+        item.data.materials.append(None)
+    for slot, (link, material) in zip(item.material_slots, slots, strict=False):
+        slot.link = link
+        slot.material = material
+    if not slots and len(item.data.materials):
+        compat.remove_material_slots(item.data)
+
+
+def _remove_if_unused(material: bpy.types.Material) -> None:
+    if material.users == 0:
+        bpy.data.materials.remove(material)
 
 
 def _is_preview(material: bpy.types.Material | None) -> bool:
@@ -86,11 +111,13 @@ def _own_material(item: bpy.types.Object) -> bpy.types.Material | None:
 def _set(material: bpy.types.Material, attribute: str, farthest: float, spacing: float) -> None:
     tree = material.node_tree.nodes
     if ATTRIBUTE in tree:
+        rollback.remember(tree[ATTRIBUTE], "attribute_name")
         tree[ATTRIBUTE].attribute_name = attribute
     values = {FARTHEST: max(farthest, 1e-30), SPACING: spacing if spacing > 0.0 else 1.0}
     values[DARKNESS] = LINE_DARKNESS if spacing > 0.0 else 0.0
     for name, value in values.items():
         if name in tree:
+            rollback.remember(tree[name].inputs[1], "default_value")
             tree[name].inputs[1].default_value = value
 
 

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from .. import compat
+from ..blocks import find, name_of
 from ..core import native
 from ..core.distribute_texts import outline_refusal
 from ..core.errors import BadInputError
@@ -20,9 +21,10 @@ from ..core.settings import DistributeSettings
 from ..core.shape_presets import PRESETS, preset
 from ..core.shape_templates import Parts, ShapeTemplate, Solid, box_uv, fitted
 from .curves_in import polylines_of
+from .evaluated import evaluated
 from .images_in import read_pixels
-from .mesh_in import mesh_of, read_triangles
-from .out_collection import SOURCE
+from .mesh_in import modified, read_triangles
+from .tokens import SOURCE
 
 SHARE = "share"  # custom property of a shape's object: how many there shall be, to those of others
 FLAT = 1e-9  # of a curve's extent: what is thinner is a line
@@ -39,20 +41,23 @@ def read_templates(
         return (_of_image(source, _image(source, settings.shapes_image)),)
     items = _items(source, settings.shapes_collection)
     found = [(_template(context, source, item), item) for item in items]
+    with evaluated(context, items) as shown:
+        scales = [(x, y, z) for x, y, z in (item.matrix_world.to_scale() for item in shown)]
     largest = max(1.0 / template.scale for template, _ in found)
     return tuple(
         replace(
             template,
             size=1.0 / template.scale / largest,
             share=_share(source, item),
-            source="" if item.type == "EMPTY" else item.name,
+            source="" if item.type == "EMPTY" else name_of(bpy.data.objects, item),
+            own_scale=(1.0, 1.0, 1.0) if item.type == "EMPTY" else scale,
         )
-        for template, item in found
+        for (template, item), scale in zip(found, scales, strict=True)
     )
 
 
 def _items(source: bpy.types.Object, name: str) -> list[bpy.types.Object]:
-    group = bpy.data.collections.get(name) if name else None
+    group = find(bpy.data.collections, name)
     if group is None:
         missing = f"there is no collection '{name}'" if name else "no collection is chosen"
         raise BadInputError(f"'{source.name}': {missing} to take shapes from; choose one, or shapes of the list")
@@ -61,7 +66,7 @@ def _items(source: bpy.types.Object, name: str) -> list[bpy.types.Object]:
         raise BadInputError(
             f"'{source.name}': collection '{name}' has no mesh, curve, text or image to lay on the surface; add one"
         )
-    return sorted(items, key=lambda item: item.name)
+    return sorted(items, key=lambda item: item.name_full)
 
 
 def _may_be_shape(item: bpy.types.Object) -> bool:
@@ -84,7 +89,7 @@ def _template(context: bpy.types.Context, source: bpy.types.Object, item: bpy.ty
     if item.type == "EMPTY":
         return replace(_of_image(source, item.data), name=item.name)
     try:
-        parts, solid = _of_curve(source, item) if item.type == "CURVE" else _of_mesh(context, source, item)
+        parts, solid = _of_curve(context, source, item) if item.type == "CURVE" else _of_mesh(context, source, item)
         native.load().Shape(*[list(part) for part in parts])
     except native.load().InputError as error:
         raise BadInputError(f"'{source.name}': '{item.name}' is no shape: {outline_refusal(str(error))}") from error
@@ -101,8 +106,8 @@ def _centre(parts: Parts) -> Reals:
 
 def _of_mesh(context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object) -> tuple[Parts, Solid]:
     """The outline of what is seen from above, in the object's scale, and the mesh itself."""
-    with mesh_of(context, item, True) as mesh:
-        vertices = compat.read_positions(mesh).astype(np.float64) * np.array(item.matrix_world.to_scale()[:])
+    with modified(context, item) as (shown, mesh):
+        vertices = compat.read_positions(mesh).astype(np.float64) * np.array(shown.matrix_world.to_scale()[:])
         triangles = read_triangles(mesh)
         if not len(triangles) or not np.isfinite(vertices).all():
             raise BadInputError(f"'{source.name}': shape '{item.name}' has no faces; give it some, or take it away")
@@ -143,10 +148,11 @@ def _solid(mesh: bpy.types.Mesh, vertices: Reals) -> Solid:
     return Solid(vertices, corners, offsets, uv, smooth, material, triangles.reshape(-1, 3))
 
 
-def _of_curve(source: bpy.types.Object, item: bpy.types.Object) -> tuple[Parts, None]:
+def _of_curve(context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.Object) -> tuple[Parts, None]:
     """The closed splines of a curve in its own plane."""
-    back = np.linalg.inv(np.array(item.matrix_world, np.float64))
-    scale = np.array(item.matrix_world.to_scale()[:2])
+    with evaluated(context, [item]) as (shown,):
+        back = np.linalg.inv(np.array(shown.matrix_world, np.float64))
+        scale = np.array(shown.matrix_world.to_scale()[:2])
     loops = [
         (line.points @ back[:3, :3].T + back[:3, 3])[:, :2] * scale
         for line in polylines_of(item)
@@ -162,7 +168,7 @@ def _of_curve(source: bpy.types.Object, item: bpy.types.Object) -> tuple[Parts, 
 
 
 def _image(source: bpy.types.Object, name: str) -> bpy.types.Image:
-    image = bpy.data.images.get(name) if name else None
+    image = find(bpy.data.images, name)
     if image is None:
         missing = f"there is no image '{name}'" if name else "no image is chosen"
         raise BadInputError(f"'{source.name}': {missing} to make a shape from; choose one")

@@ -7,13 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import compat
+from ..blocks import find
 from ..core.errors import BadInputError
 from ..core.requests import Points, Polyline
 from ..core.results import Reals
 from ..core.settings import DistanceSettings, PathSettings, TessellateSettings
 from .curves_in import read_curves
 from .density import read_vertex_group
-from .mesh_in import mesh_of, to_world
+from .evaluated import places_of
+from .mesh_in import modified, to_world
 
 
 def read_sites(
@@ -86,7 +88,7 @@ def selected_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh) -> NDArray
 
 def object_points(context: bpy.types.Context, source: bpy.types.Object, name: str) -> Reals:
     """(n, 3) world places of another mesh object's vertices, as its modifiers leave them."""
-    other = bpy.data.objects.get(name) if name else None
+    other = find(bpy.data.objects, name)
     if other is None:
         raise BadInputError(f"'{source.name}': there is no object '{name}' to take sites from; choose one")
     if other == source:
@@ -95,8 +97,8 @@ def object_points(context: bpy.types.Context, source: bpy.types.Object, name: st
         )
     if other.type != "MESH":
         raise BadInputError(f"'{name}' is no mesh object, so '{source.name}' cannot take sites from it; choose a mesh")
-    with mesh_of(context, other, True) as mesh:
-        points = to_world(other, compat.read_positions(mesh))
+    with modified(context, other) as (shown, mesh):
+        points = to_world(shown, compat.read_positions(mesh))
     if not len(points):
         raise BadInputError(
             f"'{name}' has no vertices, so '{source.name}' cannot take sites from it; choose another object"
@@ -107,7 +109,7 @@ def object_points(context: bpy.types.Context, source: bpy.types.Object, name: st
 def empty_points(context: bpy.types.Context, source: bpy.types.Object, collection: str) -> Reals:
     """(n, 3) world places of the empties in a collection or, without one, of those parented to the object."""
     if collection:
-        group = bpy.data.collections.get(collection)
+        group = find(bpy.data.collections, collection)
         if group is None:
             raise BadInputError(
                 f"'{source.name}': there is no collection '{collection}' to take empties from; choose one"
@@ -116,7 +118,7 @@ def empty_points(context: bpy.types.Context, source: bpy.types.Object, collectio
     else:
         candidates, where = list(source.children), f"parented to '{source.name}'"
     # By name, so that the sources' order does not depend on the order of linking.
-    empties = sorted((item for item in candidates if item.type == "EMPTY"), key=lambda item: item.name)
+    empties = sorted((item for item in candidates if item.type == "EMPTY"), key=lambda item: item.name_full)
     if not empties:
         raise BadInputError(f"'{source.name}': no empty is {where}; add one at each place to measure from")
-    return np.array([item.matrix_world.translation[:] for item in empties], np.float64)
+    return places_of(context, empties)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 import numpy as np
 
 from .. import compat
+from ..blocks import is_editable
 from ..core.errors import BadInputError
 from .mesh_in import mesh_of
 
@@ -16,9 +18,16 @@ from .mesh_in import mesh_of
 FLAT_TRANSFORM = 1e-9
 
 
+def active_object(context: bpy.types.Context) -> Any:
+    """The active object or None: of `Context.temp_override` where that names one, else of the view layer."""
+    own = context.view_layer.objects.active
+    named = (getattr(context, name, None) for name in ("object", "active_object"))  # neither is there without a window
+    return next((item for item in named if item is not None and item != own), own)
+
+
 def why_not(context: bpy.types.Context) -> str:
     """Why no operator can run on the active object, or "". Cheap enough to be asked at every redraw."""
-    active = context.view_layer.objects.active
+    active = active_object(context)
     if active is None:
         return "Choose a mesh object first: there is no active object"
     if active.type != "MESH":
@@ -34,19 +43,34 @@ def usable_source(context: bpy.types.Context) -> bpy.types.Object:
     problem = why_not(context)
     if problem:
         raise BadInputError(problem)
-    source = context.view_layer.objects.active
+    source: bpy.types.Object = active_object(context)
     name = source.name
-    if source.library is not None or source.data.library is not None:
-        library = (source.library or source.data.library).filepath
-        raise BadInputError(f"'{name}' is linked from {library}: make it and its mesh local first (Object > Relations)")
+    if source.library is not None:
+        raise BadInputError(
+            f"'{name}' is linked from {source.library.filepath}: make a library override of it first, or make it local "
+            "(Object > Library Override, Object > Relations)"
+        )
     if not source.visible_get(view_layer=context.view_layer):
         raise BadInputError(f"'{name}' is hidden: show it first")
     if source.mode == "SCULPT" and source.use_dynamic_topology_sculpting:
         raise BadInputError(f"'{name}' is sculpted with dynamic topology: leave Sculpt Mode first")
+    if source.mode == "SCULPT" and any(modifier.type == "MULTIRES" for modifier in source.modifiers):
+        raise BadInputError(f"'{name}' is sculpted with a Multiresolution modifier: leave Sculpt Mode first")
+    context.view_layer.update()  # a script may have moved it just now
     _check_transform(source)
     if not len(source.data.vertices):
         raise BadInputError(f"'{name}' is empty: it has no vertices")
     return source
+
+
+def check_own_mesh(source: bpy.types.Object) -> None:
+    """Refuses an object whose mesh is another file's. Raises BadInputError."""
+    if not is_editable(source.data):
+        library = source.data.library or source.data.override_library.reference.library
+        raise BadInputError(
+            f"The mesh of '{source.name}' is linked from {library.filepath}: make it local first "
+            "(Object > Relations > Make Local)"
+        )
 
 
 def shared_mesh_warning(source: bpy.types.Object) -> str:

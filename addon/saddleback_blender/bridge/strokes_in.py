@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import re
+
 import bpy
 import numpy as np
 
 from .. import compat
+from ..blocks import find
 from ..core.errors import BadInputError
 from ..core.requests import StrokeLine
 from ..core.settings import DirectionFieldSettings
 from .curves_in import polylines_of
+from .evaluated import evaluated
 from .mesh_in import to_world
-from .out_collection import SOURCE
+from .tokens import SOURCE
 
-HARD = "hard"  # in the name of a layer or object: its strokes are met exactly
+HARD = "hard"  # a word of the name of a layer or object: its strokes are met exactly
 
 
 def read_strokes(
@@ -45,7 +49,7 @@ def _of_annotations(scene: bpy.types.Scene) -> list[StrokeLine]:
 
 
 def _of_object(context: bpy.types.Context, source: bpy.types.Object, name: str) -> tuple[list[StrokeLine], str]:
-    item = bpy.data.objects.get(name) if name else None
+    item = find(bpy.data.objects, name)
     if item is None:
         missing = f"there is no object '{name}'" if name else "no object is chosen"
         raise BadInputError(f"'{source.name}': {missing} to take strokes from; choose a curve or grease pencil")
@@ -56,14 +60,16 @@ def _of_object(context: bpy.types.Context, source: bpy.types.Object, name: str) 
 
 def _of_collection(context: bpy.types.Context, source: bpy.types.Object, name: str) -> tuple[list[StrokeLine], str]:
     if name:
-        group = bpy.data.collections.get(name)
+        group = find(bpy.data.collections, name)
         if group is None:
             raise BadInputError(f"'{source.name}': there is no collection '{name}' to take strokes from; choose one")
         candidates, where = list(group.all_objects), f"in collection '{name}'"
     else:
         candidates, where = list(source.children), f"parented to '{source.name}'"
     # What we made ourselves, streamlines and the like, is no stroke.
-    items = sorted((item for item in candidates if _has_strokes(item) and SOURCE not in item), key=lambda i: i.name)
+    items = sorted(
+        (item for item in candidates if _has_strokes(item) and SOURCE not in item), key=lambda i: i.name_full
+    )
     return [
         line for item in items for line in _lines_of(context, item)
     ], f"no stroke of any length is {where}; draw a curve on the mesh"
@@ -78,12 +84,14 @@ def _lines_of(context: bpy.types.Context, item: bpy.types.Object) -> list[Stroke
     if item.type == "CURVE":
         hard = _is_hard(item.name)
         return [StrokeLine(line.points, line.closed, hard, label) for line in polylines_of(item)]
-    shown = item.evaluated_get(context.evaluated_depsgraph_get())  # with its modifiers
-    return [
-        StrokeLine(to_world(item, places), closed, _is_hard(item.name) or _is_hard(layer), label)
-        for layer, places, closed in compat.grease_pencil_strokes(shown)
-    ]
+    with evaluated(context, [item]) as (shown,):
+        return [
+            StrokeLine(to_world(shown, places), closed, _is_hard(item.name) or _is_hard(layer), label)
+            for layer, places, closed in compat.grease_pencil_strokes(shown)
+        ]
 
 
 def _is_hard(name: str) -> bool:
-    return HARD in name.lower()
+    """Whether one of the name's words is it: 'Hard', 'eyes_hard.001', 'HardEdges', but not 'Orchard'."""
+    words = re.findall(r"[^\W\d_]+", re.sub(r"(?<=[^\W\d_A-Z])(?=[A-Z])", " ", name))
+    return HARD in map(str.lower, words)

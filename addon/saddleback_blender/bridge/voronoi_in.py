@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import compat
+from ..blocks import find
 from ..core import darkness
 from ..core.errors import BadInputError
 from ..core.requests import Points
@@ -48,7 +49,7 @@ def read_voronoi_sites(
         return vertices, None if weights is None else weights[vertices]
     if settings.sites_source == "OBJECT":
         points = object_points(context, source, settings.sites_object)
-        other = bpy.data.objects[settings.sites_object]
+        other = find(bpy.data.objects, settings.sites_object)
         with mesh_of(context, other, True) as sites_mesh:
             return points, _weights(other, sites_mesh, settings.weights_name)
     if settings.weights_name:
@@ -81,7 +82,7 @@ def read_darkness(source: bpy.types.Object, settings: Voronoi2dSettings) -> Real
     if settings.sites_source != "IMAGE":
         return None
     name = settings.image_name
-    image = bpy.data.images.get(name) if name else None
+    image = find(bpy.data.images, name)
     if image is None:
         missing = f"there is no image '{name}'" if name else "there is no image chosen"
         raise BadInputError(f"'{source.name}': {missing} to place sites by; choose one")

@@ -8,6 +8,8 @@ from .progress import Progress
 from .requests import Surface
 from .results import Anchors, Indices, Reals
 
+REST_STEP = 0.1  # of a triangle's shortest side
+
 
 def triangle_frames(corners: Reals) -> Reals:
     """(n, 3, 3) rows: along the first side, in the plane at right angles to it, along the normal, each of length 1.
@@ -19,6 +21,18 @@ def triangle_frames(corners: Reals) -> Reals:
     x, z = (v / np.linalg.norm(v, axis=1, keepdims=True) for v in (first, normal))
     frames: Reals = np.stack([x, np.cross(z, x), z], axis=1)
     return frames
+
+
+def rest_anchors(rest: Reals, corners: Indices, barycentric: Reals) -> tuple[Reals, Reals, Reals]:
+    """Where points (n,) stand on a mesh at rest, and steps from there along the first two axes of their triangles.
+
+    `rest` (V, 3) its vertices' places, `corners` (n, 3) of the triangles, `barycentric` (n, 3). O(n).
+    """
+    places = rest[corners]
+    sides = np.linalg.norm(places - np.roll(places, 1, axis=1), axis=2)
+    frames = triangle_frames(places) * (REST_STEP * sides.min(axis=1))[:, None, None]
+    feet: Reals = np.einsum("ni,nij->nj", barycentric, places)
+    return feet, frames[:, 0], frames[:, 1]
 
 
 def in_frames(frames: Reals, vectors: Reals) -> Reals:

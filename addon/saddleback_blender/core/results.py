@@ -20,7 +20,7 @@ class Figures:
     triangle_quality: float  # 1 = equilateral, 0 = without area
     least_angle: float  # radians
     irregular: float  # share of vertices that have not six neighbours (four at a border)
-    energy: float | None  # times the least that is possible in a plane; None where nothing was relaxed
+    energy: float | None  # times that of regular hexagons in a plane; None where nothing was relaxed
 
 
 @dataclass(frozen=True)

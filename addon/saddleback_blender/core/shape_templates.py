@@ -50,6 +50,7 @@ class ShapeTemplate:
     share: float = 1.0  # how many there shall be, to those of other classes
     size: float = 1.0  # to other classes
     source: str = ""  # name of the object that it was read from
+    own_scale: tuple[float, float, float] = (1.0, 1.0, 1.0)  # of that object in the world
     # From the object's own space to the template's: shift (3,), then scale.
     shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
     scale: float = 1.0

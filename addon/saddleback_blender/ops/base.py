@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from time import perf_counter
 from typing import Any
 
 import bpy
 
-from .. import jobs
-from ..bridge.source import Source, usable_source, why_not
+from .. import jobs, rollback
+from ..bridge.out_collection import outputs_of
+from ..bridge.output_surface import has_own_faces
+from ..bridge.source import Source, active_object, usable_source, why_not
 from ..core import native, runs
 from ..core.errors import BadInputError
 from ..core.progress import Progress
-from ..props import fill_operator
+from ..props import fill_operator, note_call
 
 # Seconds between looks at the thread: a run's end, and a progress step, are seen this late at most. ESC is an event of
 # its own and does not wait for it.
@@ -43,6 +46,7 @@ class SurfaceOperator(PolledOperator):
 
     settings_name: str  # of the group in Object.saddleback
     report: Callable[..., None]
+    options: bpy.types.OperatorOptions
 
     keys = "ESC: stop"  # what the status bar says of a run
 
@@ -80,7 +84,8 @@ class SurfaceOperator(PolledOperator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Computes and writes before it returns: scripts and the redo panel."""
         try:
-            source, call = self._prepare(context)
+            # The redo panel calls as a script does, with what a person has chosen.
+            source, call = self._prepare(context, self.options.is_invoke or self.options.is_repeat)
             progress = runs.new_progress()
             result = call(progress)
         except Exception as error:
@@ -90,7 +95,7 @@ class SurfaceOperator(PolledOperator):
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Starts the run in a thread: the panel."""
         try:
-            source, call = self._prepare(context)
+            source, call = self._prepare(context, True)
             self._source = Source.of(context, source, getattr(self, "use_modifiers", False))
             progress = runs.new_progress()
         except Exception as error:
@@ -130,10 +135,12 @@ class SurfaceOperator(PolledOperator):
             self._task.cancel()
             self._leave(context)
 
-    def _prepare(self, context: bpy.types.Context) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
-        self._began = perf_counter()
+    def _prepare(
+        self, context: bpy.types.Context, is_by_hand: bool
+    ) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
+        self._began, self._is_by_hand = perf_counter(), is_by_hand
         source = usable_source(context)
-        fill_operator(self, source, self.settings_name)
+        self._called = fill_operator(self, source, self.settings_name)
         native.load()
         return source, self.gather(context, source)
 
@@ -152,14 +159,18 @@ class SurfaceOperator(PolledOperator):
         self, context: bpy.types.Context, source: bpy.types.Object, result: Any, progress: Progress
     ) -> set[str]:
         try:
-            line = self.write(context, source, result)
-        except BadInputError as error:
+            with rollback.all_or_nothing():
+                if not source.is_property_set("saddleback"):
+                    rollback.undo_with(partial(source.property_unset, "saddleback"))
+                line = self.write(context, source, result)
+                note_call(source, self.settings_name, self._called, self._is_by_hand)
+        except Exception as error:
             return self._refuse(error, context)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
         jobs.state.figures = self.figures(result)
-        for note in [*progress.notes, *self.notes(result)]:
+        for note in [*progress.notes, *self.notes(result), *_unseen(context, source)]:
             self.report({"WARNING"}, note)
         self.report({"INFO"}, jobs.state.line)
         return {"FINISHED"}
@@ -175,13 +186,20 @@ class SurfaceOperator(PolledOperator):
             return {"CANCELLED"}
         if not isinstance(error, (sb.Error, MemoryError)):
             raise error
-        active = context.view_layer.objects.active
+        active = active_object(context)
         name = self._task.name if self._task is not None else active.name if active is not None else ""
         text = str(error) or "there is not enough memory"
         if isinstance(error, sb.MeshError):
-            jobs.state.needs_repair = name
             text = text.removesuffix("; saddleback.repair mends this")
-            text += "; press Repair in the Saddleback tab, then run again"
+            source = bpy.data.objects.get(name)
+            if source is not None and getattr(self, "use_modifiers", False) and not has_own_faces(context, source):
+                text += (
+                    "; its modifiers make this: apply them (Object > Apply > Visual Geometry to Mesh), press Repair "
+                )
+                text += "in the Saddleback tab, then run again"
+            else:
+                jobs.state.needs_repair = name
+                text += "; press Repair in the Saddleback tab, then run again"
         self.report({"ERROR"}, f"'{name}': {text}")
         return {"CANCELLED"}
 
@@ -206,3 +224,13 @@ class SurfaceOperator(PolledOperator):
             context.workspace.status_text_set(None)
         jobs.redraw(context)
         self._task = None
+
+
+def _unseen(context: bpy.types.Context, source: bpy.types.Object) -> list[str]:
+    """A sentence where outputs are there, but not in this view layer."""
+    layer = context.view_layer.objects
+    names = sorted(item.name for item in outputs_of(source) if item.users_collection and item.name not in layer)
+    if not names:
+        return []
+    told = " and ".join(f"'{name}'" for name in names)
+    return [f"{told}: made, but not seen, since this view layer excludes the collection"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from .. import jobs
+from .. import jobs, rollback
 from ..bridge.out_collection import clear_outputs
 from ..bridge.preview import hide_preview
 from ..bridge.source import usable_source, why_not
@@ -34,7 +34,8 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
         except BadInputError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        removed = hide_preview(source) + clear_outputs(context, source)
+        with rollback.all_or_nothing():
+            removed = hide_preview(source) + clear_outputs(context, source)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = ""

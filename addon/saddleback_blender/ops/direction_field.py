@@ -49,7 +49,7 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
                 surface=read_surface(source, mesh),
                 settings=settings,
                 strokes=read_strokes(context, source, settings),
-                singularities=read_singularities(source, settings),
+                singularities=read_singularities(context, source, settings),
                 polygons=read_triangle_polygons(mesh) if settings.domain == "FACE" else None,
             )
         return partial(field_runs.direction_field, request)

@@ -74,7 +74,7 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
         if result.values is not None:
             write_shape_values(output_surface(context, source, settings.use_modifiers), result)
         if result.bent is not None:
-            write_bent(context, source, result, self._templates, settings.seed)
+            write_bent(context, source, result, self._templates, settings)
         else:
             remove_output(source, BENT_ROLE)
         if settings.make_instances:
@@ -83,7 +83,7 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
             remove_output(source, INSTANCES_ROLE)
             remove_templates(source)
         if result.outlines is not None:
-            write_outlines(context, source, result, settings.outline_radius)
+            write_outlines(context, source, result, settings)
         else:
             remove_outlines(source)
         if result.cut is not None:
@@ -178,7 +178,9 @@ def _read_field(
     if settings.field_source == "ATTRIBUTE":
         return read_directions(source, mesh, settings.direction_attribute)
     own = kept_settings(source, "direction_field", DirectionFieldSettings)
-    return DirectionFieldRequest(surface, own, read_strokes(context, source, own), read_singularities(source, own))
+    return DirectionFieldRequest(
+        surface, own, read_strokes(context, source, own), read_singularities(context, source, own)
+    )
 
 
 def _read_forbidden(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DistributeSettings) -> np.ndarray | None:

@@ -8,9 +8,10 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
+from .. import rollback
 from ..bridge.nearest import nearest_vertex
 from ..bridge.paint_layers import PAINT_NAME, prepare_colors, prepare_weights
-from ..bridge.source import usable_source
+from ..bridge.source import check_own_mesh, usable_source
 from ..core.errors import BadInputError
 from .base import PolledOperator
 
@@ -36,7 +37,8 @@ class HelperOperator(PolledOperator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Does it, or says why not."""
         try:
-            line = self.help(context, usable_source(context))
+            with rollback.all_or_nothing():
+                line = self.help(context, usable_source(context))
         except BadInputError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -59,6 +61,7 @@ class SADDLEBACK_OT_paint_density(HelperOperator, bpy.types.Operator):
 
     def help(self, context: bpy.types.Context, source: bpy.types.Object) -> str:
         """Makes the layer and changes the mode."""
+        check_own_mesh(source)
         name = self.paint_name or PAINT_NAME
         if self.paint == "COLOR":
             prepare_colors(source, name)
@@ -67,6 +70,8 @@ class SADDLEBACK_OT_paint_density(HelperOperator, bpy.types.Operator):
         group = getattr(source.saddleback, self.settings, None)
         if group is None or not hasattr(group, "density_source"):
             raise BadInputError(f"'{source.name}': no settings '{self.settings}' have a density")
+        for setting in ("density_source", "density_name"):
+            rollback.remember_setting(group, setting)
         group.density_source = "COLOR" if self.paint == "COLOR" else "VERTEX_GROUP"
         group.density_name = name
         bpy.ops.object.mode_set(mode="VERTEX_PAINT" if self.paint == "COLOR" else "WEIGHT_PAINT")
@@ -87,6 +92,8 @@ class SADDLEBACK_OT_draw_strokes(HelperOperator, bpy.types.Operator):
     def help(self, context: bpy.types.Context, source: bpy.types.Object) -> str:
         """Chooses the tool, and the strokes in the panel."""
         settings = source.saddleback.direction_field
+        for setting in ("strokes", "strokes_collection"):
+            rollback.remember_setting(settings, setting)
         if self.pen == "ANNOTATE":
             context.tool_settings.annotation_stroke_placement_view3d = "SURFACE"
             settings.strokes = "ANNOTATIONS"
@@ -136,6 +143,7 @@ class SADDLEBACK_OT_add_singularity(HelperOperator, bpy.types.Operator):
         item.parent = source
         item.matrix_parent_inverse = source.matrix_world.inverted_safe()
         item.location = place
+        rollback.remember_setting(source.saddleback.direction_field, "singularities")
         source.saddleback.direction_field.singularities = "EMPTIES"
         context.view_layer.update()
         return f"'{source.name}': singularity of index {self.index:.4g}"

@@ -11,7 +11,7 @@ import numpy as np
 from .. import jobs
 from ..bridge.mesh_in import from_world, read_surface, read_triangle_polygons
 from ..bridge.repair_mesh import apply_repair, polygon_corners
-from ..bridge.source import shared_mesh_warning
+from ..bridge.source import check_own_mesh, shared_mesh_warning
 from ..core import runs
 from ..core.progress import Progress
 from ..core.repair_plan import plan_repair
@@ -38,6 +38,7 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], RepairResult]:
         """Reads the mesh as it is, bad numbers included."""
+        check_own_mesh(source)
         surface = read_surface(source, source.data, check=False)
         return partial(runs.repair, surface, settings_of(self, RepairSettings).weld_distance)
 
@@ -47,10 +48,20 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
         jobs.state.needs_repair = ""
         warning = shared_mesh_warning(source)
         if not result.changes or not _apply(source, result):
-            return f"'{source.name}': nothing to repair"
+            made = (
+                " in its own mesh; to repair what its modifiers make, apply them first"
+                if _has_modifiers(source)
+                else ""
+            )
+            return f"'{source.name}': nothing to repair{made}"
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {result.text}"
+
+
+def _has_modifiers(source: bpy.types.Object) -> bool:
+    """Whether what is seen is not, or not only, the object's own mesh."""
+    return any(modifier.show_viewport for modifier in source.modifiers)
 
 
 def _apply(source: bpy.types.Object, result: RepairResult) -> bool:

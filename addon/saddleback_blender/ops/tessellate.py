@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from .. import prefs
+from ..blocks import find
 from ..bridge.crossings import find_crossings
 from ..bridge.density import read_density
 from ..bridge.live_preview import LivePreview
@@ -223,7 +224,7 @@ def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:
     types = {name: "INT" if name == "cell_attribute" else "FLOAT" for name in names}
     check_attribute_names(source, names, types)
     if settings.make_centres and settings.instance_object:
-        instance = bpy.data.objects.get(settings.instance_object)
+        instance = find(bpy.data.objects, settings.instance_object)
         if instance is None:
             raise BadInputError(
                 f"'{source.name}': there is no object '{settings.instance_object}' to put on the centres"

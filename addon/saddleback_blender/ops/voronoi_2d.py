@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from .. import prefs
+from ..blocks import find
 from ..bridge.mesh_in import mesh_of, read_surface, read_triangle_polygons
 from ..bridge.out_cells import vanished_cells, write_cells, write_polygons
 from ..bridge.out_centres import write_centres
@@ -129,7 +130,7 @@ def _check(source: bpy.types.Object, settings: Voronoi2dSettings) -> None:
             "in which it starts; choose a later end"
         )
     if settings.make_centres and settings.instance_object:
-        instance = bpy.data.objects.get(settings.instance_object)
+        instance = find(bpy.data.objects, settings.instance_object)
         if instance is None:
             raise BadInputError(
                 f"'{source.name}': there is no object '{settings.instance_object}' to put on the centres"

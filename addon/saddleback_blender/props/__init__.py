@@ -5,12 +5,15 @@ The properties themselves lie in a file a panel.
 
 from __future__ import annotations
 
+import json
 from dataclasses import fields
 from typing import Any, TypeVar
 
 import bpy
-from bpy.props import PointerProperty
+from bpy.props import PointerProperty, StringProperty
 
+from .. import rollback
+from ..blocks import find, name_of
 from ..core.settings import (
     DirectionFieldSettings,
     DistanceSettings,
@@ -20,6 +23,7 @@ from ..core.settings import (
     TessellateSettings,
     Voronoi2dSettings,
 )
+from . import overrides
 from .direction_field import DIRECTION_FIELD
 from .distance import DISTANCE
 from .distribute import DISTRIBUTE
@@ -51,6 +55,7 @@ COLLECTION_NAMES = (
     "shapes_collection",
 )
 IMAGE_NAMES = ("image_name", "density_image", "shapes_image")
+CALL = "left_by_call"  # on each group: the values in it that a script's call has set, in JSON
 
 PROPERTIES = {
     "tessellate": TESSELLATE,
@@ -70,7 +75,9 @@ def _kept(properties: dict[str, Any]) -> dict[str, Any]:
         | dict.fromkeys(COLLECTION_NAMES, bpy.types.Collection)
         | dict.fromkeys(IMAGE_NAMES, bpy.types.Image)
     )
-    kept = {}
+    kept = {
+        CALL: StringProperty(name="From a Call", description="Values that a script's call left", options={"HIDDEN"})
+    }
     for name, prop in properties.items():
         if name in pointers:
             kept[name] = PointerProperty(
@@ -149,50 +156,86 @@ CLASSES = (
 )
 
 
-def fill_operator(operator: bpy.types.Operator, source: bpy.types.Object, settings_name: str) -> None:
-    """Gives each property of the operator that the caller did not set the value that the object keeps.
+def fill_operator(operator: bpy.types.Operator, source: bpy.types.Object, settings_name: str) -> tuple[str, ...]:
+    """Gives the operator's properties that the caller did not set the object's values; returns those that he did set.
 
-    Asks before it looks: reading a group or a pointer for the first time stores an empty one in the file.
+    A caller who sets none asks for what was last run. One who sets some means them, and the panel's values for the
+    others, but never what an earlier call set and nobody chose since.
     """
-    if not source.is_property_set("saddleback") or not source.saddleback.is_property_set(settings_name):
-        return
-    group = getattr(source.saddleback, settings_name)
+    called = tuple(name for name in PROPERTIES[settings_name] if operator.properties.is_property_set(name))
+    group = _existing_group(source, settings_name)
+    if group is None:
+        return called
+    left = _left_by_call(group) if called else {}
     for name in PROPERTIES[settings_name]:
-        if not operator.properties.is_property_set(name) and group.is_property_set(name):
-            value = getattr(group, name)
-            if name in OBJECT_NAMES + COLLECTION_NAMES + IMAGE_NAMES:
-                value = value.name if value is not None else ""
-            setattr(operator, name, value)
+        if name not in called and group.is_property_set(name):
+            value = _plain(group, name)
+            if name not in left or left[name] != value:
+                setattr(operator, name, value)
+    return called
+
+
+def note_call(source: bpy.types.Object, settings_name: str, called: tuple[str, ...], is_by_hand: bool) -> None:
+    """Notes which of the kept values a script's call has set; none where they were chosen by hand."""
+    group = _existing_group(source, settings_name)
+    if group is None:
+        return
+    before = {name: value for name, value in _left_by_call(group).items() if value == _plain(group, name)}
+    left = {} if is_by_hand else before | {name: _plain(group, name) for name in called}
+    text = json.dumps(left, sort_keys=True)
+    if getattr(group, CALL) != text and (text != "{}" or group.is_property_set(CALL)):
+        rollback.remember_setting(group, CALL)
+        setattr(group, CALL, text)
 
 
 def keep_settings(settings: Settings, group: bpy.types.PropertyGroup) -> None:
     """Writes the settings of a run to the object, so that tomorrow's run is the same."""
     for field in fields(settings):
-        value = getattr(settings, field.name)
-        if field.name in OBJECT_NAMES:
-            value = bpy.data.objects.get(value)
-        elif field.name in COLLECTION_NAMES:
-            value = bpy.data.collections.get(value)
-        elif field.name in IMAGE_NAMES:
-            value = bpy.data.images.get(value)
         # Default values stay unset, so that an object carries no more than what was chosen for it.
-        if getattr(group, field.name) != value:
-            setattr(group, field.name, value)
+        value = getattr(settings, field.name)
+        if _plain(group, field.name) != value:
+            rollback.remember_setting(group, field.name)
+            _set_plain(group, field.name, value)
+
+
+def _existing_group(source: bpy.types.Object, settings_name: str) -> bpy.types.PropertyGroup | None:
+    """Asks before it looks: reading a group or a pointer for the first time stores an empty one in the file."""
+    if not source.is_property_set("saddleback") or not source.saddleback.is_property_set(settings_name):
+        return None
+    return getattr(source.saddleback, settings_name)
+
+
+def _left_by_call(group: bpy.types.PropertyGroup) -> dict[str, Any]:
+    return dict(json.loads(getattr(group, CALL) or "{}"))
+
+
+def _plain(group: bpy.types.PropertyGroup, name: str) -> Any:
+    """A kept value as the operator has it: of a pointer the name that leads to it."""
+    value = getattr(group, name)
+    return value if _blocks(name) is None else name_of(_blocks(name), value)
+
+
+def _set_plain(group: bpy.types.PropertyGroup, name: str, value: Any) -> None:
+    setattr(group, name, value if _blocks(name) is None else find(_blocks(name), value))
+
+
+def _blocks(name: str) -> Any:
+    """Where the data-blocks are that a setting points to; None for any other setting."""
+    if name in OBJECT_NAMES:
+        return bpy.data.objects
+    if name in COLLECTION_NAMES:
+        return bpy.data.collections
+    return bpy.data.images if name in IMAGE_NAMES else None
 
 
 def kept_settings(source: bpy.types.Object, settings_name: str, kind: type[Settings]) -> Settings:
-    """The settings that the object keeps, or the defaults; asks before it looks, as `fill_operator` does."""
-    if not source.is_property_set("saddleback") or not source.saddleback.is_property_set(settings_name):
+    """The settings that the object keeps, or the defaults."""
+    group = _existing_group(source, settings_name)
+    if group is None:
         return kind()
-    group = getattr(source.saddleback, settings_name)
-    values = {}
-    for field in fields(kind):
-        if group.is_property_set(field.name):
-            value = getattr(group, field.name)
-            if field.name in OBJECT_NAMES + COLLECTION_NAMES + IMAGE_NAMES:
-                value = value.name if value is not None else ""
-            values[field.name] = value
-    return kind(**values)
+    return kind(
+        **{field.name: _plain(group, field.name) for field in fields(kind) if group.is_property_set(field.name)}
+    )
 
 
 def settings_of(operator: bpy.types.Operator, kind: type[Settings]) -> Settings:
@@ -200,15 +243,36 @@ def settings_of(operator: bpy.types.Operator, kind: type[Settings]) -> Settings:
     return kind(**{field.name: getattr(operator, field.name) for field in fields(kind)})
 
 
+def told_settings(source: bpy.types.Object) -> dict[str, dict[str, Any]]:
+    """What the object keeps, by operator and name."""
+    groups = {name: _existing_group(source, name) for name in PROPERTIES}
+    return {
+        name: {prop: _plain(group, prop) for prop in (*PROPERTIES[name], CALL) if group.is_property_set(prop)}
+        for name, group in groups.items()
+        if group is not None
+    }
+
+
+def take_settings(source: bpy.types.Object, told: dict[str, dict[str, Any]]) -> None:
+    """Gives the object what `told_settings` told; what is not known, as from another version, is left out."""
+    for settings_name, values in told.items():
+        group = getattr(source.saddleback, settings_name, None)
+        for name, value in values.items():
+            if group is not None and name in group.bl_rna.properties:
+                _set_plain(group, name, value)
+
+
 def register() -> None:
     """Makes everything of this module known to Blender."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Object.saddleback = PointerProperty(type=SaddlebackObjectProps)
+    overrides.register()
 
 
 def unregister() -> None:
     """Takes it back, in the opposite order."""
+    overrides.unregister()
     del bpy.types.Object.saddleback
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

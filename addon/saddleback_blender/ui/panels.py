@@ -7,7 +7,7 @@ import functools
 import bpy
 
 from .. import compat
-from ..bridge.source import why_not
+from ..bridge.source import active_object, why_not
 from ..core import native
 from . import rows
 from .texts import draw_text
@@ -59,7 +59,7 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
         if problem:
             draw_text(layout, context, problem, "INFO")
             return
-        item = context.view_layer.objects.active
+        item = active_object(context)
         column = layout.column(align=True)
         column.label(text=item.name, icon="OUTLINER_OB_MESH")
         draw_text(column, context, f"{len(item.data.vertices):,} vertices, {len(item.data.polygons):,} faces", "BLANK1")
@@ -111,7 +111,7 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        settings = context.view_layer.objects.active.saddleback.tessellate
+        settings = active_object(context).saddleback.tessellate
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.tessellate", "MOD_EXPLODE")
         if not context.window_manager.saddleback_running:
@@ -129,7 +129,7 @@ class SADDLEBACK_PT_density(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        item = context.view_layer.objects.active
+        item = active_object(context)
         layout = self.split_layout(context)
         rows.draw_density(layout, item.saddleback.tessellate, item)
         rows.draw_paint_buttons(layout, "tessellate")
@@ -144,7 +144,7 @@ class SaddlebackOutputPanel(SaddlebackSubPanel):
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draws the switch."""
         self.layout.enabled = not context.window_manager.saddleback_running
-        self.layout.prop(context.view_layer.objects.active.saddleback.tessellate, self.switch, text="")
+        self.layout.prop(active_object(context).saddleback.tessellate, self.switch, text="")
 
 
 class SADDLEBACK_PT_edges(SaddlebackOutputPanel, bpy.types.Panel):
@@ -155,7 +155,7 @@ class SADDLEBACK_PT_edges(SaddlebackOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_edges(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+        rows.draw_edges(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
 class SADDLEBACK_PT_cells(SaddlebackOutputPanel, bpy.types.Panel):
@@ -167,7 +167,7 @@ class SADDLEBACK_PT_cells(SaddlebackOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_cells(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+        rows.draw_cells(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
 class SADDLEBACK_PT_centres(SaddlebackOutputPanel, bpy.types.Panel):
@@ -179,7 +179,7 @@ class SADDLEBACK_PT_centres(SaddlebackOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_centres(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+        rows.draw_centres(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
 class SADDLEBACK_PT_dual(SaddlebackOutputPanel, bpy.types.Panel):
@@ -191,7 +191,7 @@ class SADDLEBACK_PT_dual(SaddlebackOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_dual(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+        rows.draw_dual(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
 class SADDLEBACK_PT_shell(SaddlebackOutputPanel, bpy.types.Panel):
@@ -203,7 +203,7 @@ class SADDLEBACK_PT_shell(SaddlebackOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_shell(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+        rows.draw_shell(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
 class SADDLEBACK_PT_attributes(SaddlebackSubPanel, bpy.types.Panel):
@@ -215,7 +215,7 @@ class SADDLEBACK_PT_attributes(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_attributes(self.split_layout(context), context.view_layer.objects.active.saddleback.tessellate)
+        rows.draw_attributes(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
 class SADDLEBACK_PT_distance(SaddlebackSubPanel, bpy.types.Panel):
@@ -226,7 +226,7 @@ class SADDLEBACK_PT_distance(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        item = context.view_layer.objects.active
+        item = active_object(context)
         settings = item.saddleback.distance
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.distance", "DRIVER_DISTANCE")
@@ -245,11 +245,11 @@ class SADDLEBACK_PT_isolines(SaddlebackSubPanel, bpy.types.Panel):
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draws the switch."""
         self.layout.enabled = not context.window_manager.saddleback_running
-        self.layout.prop(context.view_layer.objects.active.saddleback.distance, "make_isolines", text="")
+        self.layout.prop(active_object(context).saddleback.distance, "make_isolines", text="")
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_isolines(self.split_layout(context), context.view_layer.objects.active.saddleback.distance)
+        rows.draw_isolines(self.split_layout(context), active_object(context).saddleback.distance)
 
 
 class SADDLEBACK_PT_preview(SaddlebackSubPanel, bpy.types.Panel):
@@ -261,11 +261,11 @@ class SADDLEBACK_PT_preview(SaddlebackSubPanel, bpy.types.Panel):
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draws the switch."""
         self.layout.enabled = not context.window_manager.saddleback_running
-        self.layout.prop(context.view_layer.objects.active.saddleback.distance, "make_preview", text="")
+        self.layout.prop(active_object(context).saddleback.distance, "make_preview", text="")
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        settings = context.view_layer.objects.active.saddleback.distance
+        settings = active_object(context).saddleback.distance
         layout = self.split_layout(context)
         layout.active = settings.make_preview
         layout.prop(settings, "preview_lines")
@@ -279,7 +279,7 @@ class SADDLEBACK_PT_path(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        item = context.view_layer.objects.active
+        item = active_object(context)
         settings = item.saddleback.path
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.path", "CURVE_PATH")
@@ -301,7 +301,7 @@ class SADDLEBACK_PT_voronoi_2d(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        item = context.view_layer.objects.active
+        item = active_object(context)
         settings = item.saddleback.voronoi_2d
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.voronoi_2d", "MESH_GRID")
@@ -318,7 +318,7 @@ class SaddlebackPlaneOutputPanel(SaddlebackSubPanel):
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draws the switch."""
         self.layout.enabled = not context.window_manager.saddleback_running
-        self.layout.prop(context.view_layer.objects.active.saddleback.voronoi_2d, self.switch, text="")
+        self.layout.prop(active_object(context).saddleback.voronoi_2d, self.switch, text="")
 
 
 class SADDLEBACK_PT_plane_edges(SaddlebackPlaneOutputPanel, bpy.types.Panel):
@@ -329,7 +329,7 @@ class SADDLEBACK_PT_plane_edges(SaddlebackPlaneOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_edges(self.split_layout(context), context.view_layer.objects.active.saddleback.voronoi_2d)
+        rows.draw_edges(self.split_layout(context), active_object(context).saddleback.voronoi_2d)
 
 
 class SADDLEBACK_PT_plane_cells(SaddlebackPlaneOutputPanel, bpy.types.Panel):
@@ -340,7 +340,7 @@ class SADDLEBACK_PT_plane_cells(SaddlebackPlaneOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_cells(self.split_layout(context), context.view_layer.objects.active.saddleback.voronoi_2d)
+        rows.draw_cells(self.split_layout(context), active_object(context).saddleback.voronoi_2d)
 
 
 class SADDLEBACK_PT_plane_centres(SaddlebackPlaneOutputPanel, bpy.types.Panel):
@@ -352,7 +352,7 @@ class SADDLEBACK_PT_plane_centres(SaddlebackPlaneOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_centres(self.split_layout(context), context.view_layer.objects.active.saddleback.voronoi_2d)
+        rows.draw_centres(self.split_layout(context), active_object(context).saddleback.voronoi_2d)
 
 
 class SADDLEBACK_PT_sweep(SaddlebackPlaneOutputPanel, bpy.types.Panel):
@@ -364,7 +364,7 @@ class SADDLEBACK_PT_sweep(SaddlebackPlaneOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_sweep(self.split_layout(context), context.view_layer.objects.active.saddleback.voronoi_2d)
+        rows.draw_sweep(self.split_layout(context), active_object(context).saddleback.voronoi_2d)
 
 
 class SADDLEBACK_PT_direction_field(SaddlebackSubPanel, bpy.types.Panel):
@@ -375,7 +375,7 @@ class SADDLEBACK_PT_direction_field(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        settings = context.view_layer.objects.active.saddleback.direction_field
+        settings = active_object(context).saddleback.direction_field
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.direction_field", "FORCE_WIND")
         rows.draw_pens(layout)
@@ -394,7 +394,7 @@ class SaddlebackFieldOutputPanel(SaddlebackSubPanel):
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draws the switch."""
         self.layout.enabled = not context.window_manager.saddleback_running
-        self.layout.prop(context.view_layer.objects.active.saddleback.direction_field, self.switch, text="")
+        self.layout.prop(active_object(context).saddleback.direction_field, self.switch, text="")
 
 
 class SADDLEBACK_PT_arrows(SaddlebackFieldOutputPanel, bpy.types.Panel):
@@ -405,7 +405,7 @@ class SADDLEBACK_PT_arrows(SaddlebackFieldOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_arrows(self.split_layout(context), context.view_layer.objects.active.saddleback.direction_field)
+        rows.draw_arrows(self.split_layout(context), active_object(context).saddleback.direction_field)
 
 
 class SADDLEBACK_PT_streamlines(SaddlebackFieldOutputPanel, bpy.types.Panel):
@@ -417,7 +417,7 @@ class SADDLEBACK_PT_streamlines(SaddlebackFieldOutputPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_streamlines(self.split_layout(context), context.view_layer.objects.active.saddleback.direction_field)
+        rows.draw_streamlines(self.split_layout(context), active_object(context).saddleback.direction_field)
 
 
 class SADDLEBACK_PT_distribute(SaddlebackSubPanel, bpy.types.Panel):
@@ -428,7 +428,7 @@ class SADDLEBACK_PT_distribute(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        item = context.view_layer.objects.active
+        item = active_object(context)
         settings = item.saddleback.distribute
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.distribute", "STICKY_UVS_DISABLE")
@@ -446,7 +446,7 @@ class SADDLEBACK_PT_shape_density(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        item = context.view_layer.objects.active
+        item = active_object(context)
         rows.draw_shape_density(self.split_layout(context), item.saddleback.distribute, item)
 
 
@@ -458,7 +458,7 @@ class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        settings = context.view_layer.objects.active.saddleback.distribute
+        settings = active_object(context).saddleback.distribute
         layout = self.split_layout(context)
         layout.prop(settings, "make_bent")
         row = layout.row()
@@ -490,7 +490,7 @@ class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
         """Draws the panel."""
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.repair", "TOOL_SETTINGS")
-        layout.prop(context.view_layer.objects.active.saddleback.repair, "weld_distance")
+        layout.prop(active_object(context).saddleback.repair, "weld_distance")
 
 
 @functools.cache

@@ -1,0 +1,53 @@
+"""How an output knows its source: by a token, a random word that both keep, so that both may be renamed and saved."""
+
+from __future__ import annotations
+
+import uuid
+
+import bpy
+
+from .. import rollback
+
+TOKEN = "saddleback_token"  # on a source
+SOURCE = "saddleback_source"  # on outputs: the token of their source
+# On a source that overrides one of another file, where Blender keeps registered properties only.
+OVERRIDE_TOKEN = "saddleback_override_token"
+
+
+def token_of(item: bpy.types.Object) -> str:
+    """The object's token, "" where it has none."""
+    return str(item.get(TOKEN, "") or getattr(item, OVERRIDE_TOKEN, ""))
+
+
+def source_token(source: bpy.types.Object) -> str:
+    """The source's token; a new one for a new source, and for a duplicate of a source."""
+    token = token_of(source)
+    if token and owns(source, token):
+        return token
+    token = uuid.uuid4().hex
+    if source.override_library is None:
+        rollback.remember_keys(source, TOKEN)
+        source[TOKEN] = token
+    else:
+        rollback.remember(source, OVERRIDE_TOKEN)
+        setattr(source, OVERRIDE_TOKEN, token)
+    return token
+
+
+def forget_token(source: bpy.types.Object) -> None:
+    """The object is no source any more."""
+    rollback.remember_keys(source, TOKEN)
+    if TOKEN in source:
+        del source[TOKEN]
+    if getattr(source, OVERRIDE_TOKEN, ""):
+        rollback.remember(source, OVERRIDE_TOKEN)
+        setattr(source, OVERRIDE_TOKEN, "")
+
+
+def owns(source: bpy.types.Object, token: str) -> bool:
+    """False for a duplicate, whose token's outputs are children of another object that has the token too."""
+    twins = [item for item in bpy.data.objects if token_of(item) == token and item != source]
+    if not twins:
+        return True
+    parents = [item.parent for item in bpy.data.objects if item.get(SOURCE) == token]
+    return source in parents or not any(twin in parents for twin in twins)
