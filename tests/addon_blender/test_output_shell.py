@@ -81,6 +81,15 @@ def test_walls_thinner_than_the_shell_make_it_thinner():
     assert_solid(shell_of(source, rib_width=0.2, rib_thickness=0.08))
 
 
+def test_an_extruded_text_whose_walls_are_not_joined_becomes_one_solid():
+    bpy.ops.object.text_add()
+    text = bpy.context.active_object
+    text.data.body, text.data.extrude = "A", 0.1
+    bpy.ops.object.convert(target="MESH")
+    item = shell_of(bpy.context.active_object, count=12, k=0)
+    assert_solid(item)
+
+
 def test_a_second_run_replaces_it_and_only_lengths_are_computed_anew():
     source = sphere_source(levels=3)
     first = shell_of(source, rib_width=0.15)

@@ -60,7 +60,7 @@ def test_edges_near_ribs_are_no_longer_than_half_a_rib_and_far_ones_stay():
 def test_the_solid_is_closed_oriented_and_has_the_volume_of_the_ribs():
     mesh, cells = square_cells()
     ribs = ribs_of(mesh, cells, 0.1)
-    shell = thicken(ribs, 0.05, lambda vertices, triangles: NONE, runs.new_progress())
+    shell = thicken(ribs, 0.05, lambda *_: NONE, runs.new_progress())
     edges = np.stack([shell.triangles, np.roll(shell.triangles, -1, axis=1)], axis=2).reshape(-1, 2)
     ways, uses = np.unique(edges, axis=0, return_counts=True)
     assert (uses == 1).all() and np.array_equal(ways, np.unique(edges[:, ::-1], axis=0))
@@ -75,7 +75,7 @@ def test_a_place_that_crosses_becomes_thinner_and_no_other():
     ribs = ribs_of(mesh, cells, 0.1)
     asked = []
 
-    def crossings(vertices, triangles):
+    def crossings(vertices, *_):
         asked.append(vertices)
         return NONE if len(asked) == 3 else np.array([[0, 1]], np.int32)
 
@@ -92,7 +92,7 @@ def test_looking_only_about_what_moved_changes_nothing(monkeypatch):
     graph = sb.SaddleVertexGraph(mesh, k=30)
     ribs = ribs_of(mesh, sb.centroidal_voronoi(graph, count=30).cells, 0.1)
 
-    def too_high(vertices, triangles):
+    def too_high(vertices, triangles, _):
         """Triangles that reach beyond a slope: fewer each time, and some only after the vertices have moved."""
         high = np.linalg.norm(vertices, axis=1) > 1.02 + 0.02 * vertices[:, 0]
         counts.append(len(triangles))
@@ -123,7 +123,7 @@ def test_near_faces_are_all_whose_boxes_overlap():
 def test_what_cannot_be_mended_is_told():
     mesh, cells = square_cells()
     always = np.array([[0, 1]], np.int32)
-    shell = thicken(ribs_of(mesh, cells, 0.1), 0.05, lambda vertices, triangles: always, runs.new_progress())
+    shell = thicken(ribs_of(mesh, cells, 0.1), 0.05, lambda *_: always, runs.new_progress())
     assert shell.crossing == 2 and np.isfinite(shell.vertices).all()
     (told,) = shell_faults_of(shell)
     assert "2 faces of the lamp shell pass through others" in told
@@ -136,7 +136,7 @@ def test_pieces_are_counted():
         2 * len(vertices),
     )  # fmt: skip
     settings = TessellateSettings(count=20, iterations=2, k=30, make_shell=True, rib_width=0.2, rib_thickness=0.1)
-    request = TessellateRequest(both, settings, find_crossings=lambda vertices, triangles: NONE)
+    request = TessellateRequest(both, settings, find_crossings=lambda *_: NONE)
     shell = runs.tessellate(request, runs.new_progress()).shell
     assert shell.pieces == 2 and "2 pieces" in shell_faults_of(shell)[0]
 
@@ -148,7 +148,7 @@ def test_ribs_are_as_wide_as_the_cells_let_them_be():
     shells = []
     for scale in (1.0, 64.0):
         scaled = Surface("Square", scale * square.vertices, square.triangles, len(square.vertices))
-        request = TessellateRequest(scaled, settings, find_crossings=lambda vertices, triangles: NONE)
+        request = TessellateRequest(scaled, settings, find_crossings=lambda *_: NONE)
         shells.append(runs.tessellate(request, runs.new_progress()).shell)
     small, large = shells
     assert np.array_equal(small.triangles, large.triangles)

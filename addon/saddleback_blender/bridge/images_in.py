@@ -52,7 +52,9 @@ def _load_tile(image: bpy.types.Image, number: int) -> bpy.types.Image | None:
     name = image.filepath_raw
     for token, text in (("<UDIM>", str(number)), ("<UVTILE>", _uv_tile(number))):
         name = name.replace(token, text)
-    packed = [part.packed_file.data for part in image.packed_files if os.path.basename(part.filepath) == _base_name(name)]
+    packed = [
+        part.packed_file.data for part in image.packed_files if os.path.basename(part.filepath) == _base_name(name)
+    ]
     if packed:
         loaded = bpy.data.images.new("Saddleback Tile", 1, 1)
         loaded.pack(data=packed[0], data_len=len(packed[0]))

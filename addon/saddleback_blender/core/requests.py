@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,7 +91,7 @@ def digest(*parts: object) -> str:
 
 
 # Given vertices (n, 3) and triangles (m, 3): pairs (k, 2) of triangles that pass through each other.
-FindCrossings = Callable[[Reals, Indices], Indices]
+FindCrossings = Callable[[Reals, Indices, Any], Indices]  # of vertices, triangles and the job that may stop it
 
 Points = NDArray[np.int32] | Reals  # vertices of the Blender mesh (n,), or places in the world (n, 3)
 

@@ -283,9 +283,9 @@ def _shell(
     thickness = request.settings.rib_thickness or width
 
     def build() -> LampShell:
-        with progress.stage(0.99, "making the lamp shell"):
+        with progress.stage(0.95, "making the ribs of the lamp shell"):
             ribs = rib_surface(request.surface.name, mesh, solved.cells, width, progress)
-            return thicken(ribs, thickness, find_crossings, progress)
+        return thicken(ribs, thickness, find_crossings, progress)
 
     return cache.get(("shell", *key, digest(width, thickness)), build, lambda shell: shell.nbytes)
 

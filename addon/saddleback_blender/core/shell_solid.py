@@ -18,9 +18,13 @@ from .progress import Progress
 from .requests import FindCrossings
 from .results import Indices, LampShell, Reals
 from .rib_surface import RibSurface
+from .sewn import sewn
 
-# Each time that a place meets itself it becomes thinner by this factor, so often at most.
-THINNER, MOST_TIMES = 0.6, 24
+# Each time that a place meets itself it becomes thinner by this factor, to this least share.
+THINNER, LEAST_SHARE = 0.6, 1e-5
+# Rounds at most, those without fewer crossings, and triangles that are looked at in all of them, in those of the solid.
+MOST_TIMES, STALLED, MOST_LOOKS = 100, 20, 24
+END = 0.99  # of the run's progress
 # A place that meets itself after so many times is folded, and is smoothed each time from then on.
 FOLDED_AFTER = 5
 MOST_SMOOTHING = 200
@@ -29,28 +33,37 @@ LEAST_COSINE = 0.05
 
 
 def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, progress: Progress) -> LampShell:
-    """The solid, half the thickness to either side of the surface. At most MOST_TIMES rounds: the first in O(t), those
-    after it in what lies about the places that the one before has moved.
+    """The solid, half the thickness to either side of the surface, of which parts that lie border on border are joined.
+
+    The first round is O(t), each after it in what lies about the places that the one before has moved; all together
+    they look at no more than MOST_LOOKS times as many triangles as there are.
     """
-    direction = _directions(ribs.vertices, ribs.triangles, thickness, progress)
-    vertices, triangles = drop_unused(np.column_stack([ribs.vertices, direction]), ribs.triangles[ribs.is_rib])
+    surface = sewn(ribs.vertices, ribs.triangles)
+    direction = _directions(ribs.vertices, surface, thickness, progress)
+    vertices, triangles = drop_unused(np.column_stack([ribs.vertices, direction]), surface[ribs.is_rib])
     places, direction = vertices[:, :3].copy(), vertices[:, 3:].copy()
     count = len(places)
     share = np.ones(count)
     faces = _closed(triangles, count)
     there, extent = np.ones(count, bool), 0.0
+    least, least_at, looks, begin = len(faces) + 1, 0, 0, progress.fraction
     for number in range(MOST_TIMES + 1):
-        progress.check()
         offset = (0.5 * thickness * share)[:, None] * direction
         solid = np.concatenate([places + offset, places - offset])
         moved = np.asarray(there[faces % count].any(axis=1))
         extent = max(extent, largest_extent(solid, faces[moved]))
         looked_at = near_faces(solid, faces, moved, extent)
-        crossing = looked_at[np.unique(find_crossings(solid, faces[looked_at]))]
-        if not len(crossing) or number == MOST_TIMES:
+        end = begin + (END - begin) * (number + 1) / (MOST_TIMES + 1)
+        with progress.stage(end, "making the lamp shell") as job:
+            crossing = looked_at[np.unique(find_crossings(solid, faces[looked_at], job))]
+        if len(crossing) < least:
+            least, least_at = len(crossing), number
+        looks += len(looked_at)
+        is_enough = number == MOST_TIMES or number - least_at == STALLED or looks > MOST_LOOKS * len(faces)
+        if not len(crossing) or is_enough:
             break
         there = _beside(triangles, np.unique(faces[crossing] % count), count)
-        share[there] *= THINNER
+        share[there] = np.maximum(THINNER * share[there], LEAST_SHARE)
         if number >= FOLDED_AFTER:
             _smooth(places, direction, triangles, there)
     return LampShell(solid, faces, _pieces(triangles, count), float((share < 1.0).mean()), len(crossing))
