@@ -76,9 +76,10 @@ def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[
         attribute = None
     if attribute is None:
         attribute = mesh.attributes.new(name=name, type=kind, domain=domain)
-        if attribute.name != name:
-            mesh.attributes.remove(attribute)
-            raise BadInputError(f"'{mesh.name}': the name '{name}' is taken; choose another name for the attribute")
+        if attribute is None or attribute.name != name:
+            if attribute is not None:
+                mesh.attributes.remove(attribute)
+            raise BadInputError(f"'{mesh.name}': the name '{name}' is taken or too long; choose another for the attribute")
     attribute.data.foreach_set(element, np.ascontiguousarray(values, dtype).ravel())
     return attribute
 

@@ -160,11 +160,12 @@ def remove_object(item: bpy.types.Object) -> None:
     Until then it is no output any more, and its name is free.
     """
     rollback.remember_keys(item, ROLE, SOURCE)
-    rollback.remember_name(item)
     for key in (ROLE, SOURCE):
         if key in item:
             del item[key]
-    item.name = "Saddleback Former"
+    for block in (item, item.data) if item.data.users == 1 else (item,):
+        rollback.remember_name(block)
+        block.name = "Saddleback Former"
     rollback.when_written(partial(_remove, item))
 
 
@@ -208,6 +209,9 @@ def _swap_data(item: bpy.types.Object, data: bpy.types.ID) -> None:
     for material in old.materials[len(given) :]:
         data.materials.append(material)
     item.data = data
+    if old.users == 0:
+        rollback.remember_name(old)
+        old.name = "Saddleback Former"
     rollback.when_written(partial(_remove_data, old))
 
 
