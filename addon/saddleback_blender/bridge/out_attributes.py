@@ -79,7 +79,9 @@ def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[
         if attribute is None or attribute.name != name:
             if attribute is not None:
                 mesh.attributes.remove(attribute)
-            raise BadInputError(f"'{mesh.name}': the name '{name}' is taken or too long; choose another for the attribute")
+            raise BadInputError(
+                f"'{mesh.name}': the name '{name}' is taken or too long; choose another name for the attribute"
+            )
     attribute.data.foreach_set(element, np.ascontiguousarray(values, dtype).ravel())
     return attribute
 
