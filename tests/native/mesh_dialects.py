@@ -1,6 +1,8 @@
 """One box in the dialects that programs write: each is (extension, contents)."""
 
 import struct
+import sys
+from pathlib import Path
 
 import numpy as np
 
@@ -148,3 +150,9 @@ def contents(name):
     """The bytes of a dialect."""
     data = DIALECTS[name][1]
     return data if isinstance(data, bytes) else data.encode()
+
+
+if __name__ == "__main__":  # seeds for tests/fuzz_readers.cpp: the format's number, then the file
+    for number, name in enumerate(DIALECTS):
+        kind = bytes([("obj", "off", "ply", "stl").index(DIALECTS[name][0])])
+        (Path(sys.argv[1]) / f"seed-{number}").write_bytes(kind + contents(name))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,3 +140,64 @@ def check_plain_obj(rng: np.random.Generator) -> None:
         vertices, triangles = sb.read_arrays(path)
     assert vertices.tolist() == wanted_vertices
     assert triangles.tolist() == wanted_polygons
+
+
+STRANGE: tuple[Any, ...] = (
+    None,
+    True,
+    "false",
+    "",
+    -1,
+    0,
+    1,
+    3,
+    1.9,
+    2**31,
+    10**400,
+    float("nan"),
+    1e308,
+    [],
+    [[]],
+    {},
+)
+
+
+def damaged(value: Any, rng: np.random.Generator) -> Any:
+    """The same but for one entry, somewhere, that is another, twice there or gone."""
+    if isinstance(value, dict) and value and rng.random() < 0.95:
+        key = list(value)[rng.integers(len(value))]
+        return {**value, key: damaged(value[key], rng)}
+    if isinstance(value, list) and value and rng.random() < 0.8:
+        i = int(rng.integers(len(value)))
+        entries = ([damaged(value[i], rng)], [value[i], value[i]], [])[rng.choice(3, p=[0.8, 0.1, 0.1])]
+        return [*value[:i], *entries, *value[i + 1 :]]
+    return STRANGE[rng.integers(len(STRANGE))]
+
+
+@guards("read_placements", "read_placement_field", "write_placements", on="nothing")
+def check_placement_files(rng: np.random.Generator) -> None:
+    """Placements come back to the bit; a damaged file is refused by one sentence that names it, or makes sense."""
+    mesh = sb.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    count = int(rng.integers(1, 5))
+    centre = sb.SurfacePoints(rng.integers(0, 4, count), rng.dirichlet([1, 1, 1], count))
+    laid = sb.Placements(
+        rng.integers(0, 2, count), centre, rng.normal(size=count), rng.uniform(0.1, 9, count), rng.random(count) < 0.5
+    )
+    shapes = [sb.Shape.star(), sb.Shape.disk(5)]
+    field = sb.direction_field(mesh, symmetry=1) if rng.random() < 0.5 else None
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "placements.json"
+        sb.write_placements(path, mesh, shapes, laid, field)
+        read = sb.read_placements(path, mesh)[1]
+        for name in ("shape", "angle", "scale", "mirrored"):
+            assert np.array_equal(getattr(read, name), getattr(laid, name)), name
+        assert np.array_equal(read.centre.barycentric, centre.barycentric)
+        path.write_text(json.dumps(damaged(json.loads(path.read_text()), rng)))
+        try:
+            found, read = sb.read_placements(path, mesh)
+            assert set(read.shape.tolist()) <= set(range(len(found)))
+            assert set(read.centre.faces.tolist()) <= set(range(4))
+            sb.read_placement_field(path, mesh)
+        except sb.InputError as error:
+            assert str(error).startswith(f"{path}: "), str(error)
+            assert "\n" not in str(error), str(error)
