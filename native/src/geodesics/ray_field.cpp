@@ -61,6 +61,12 @@ struct Radial {
     const double x = w.source.x(), y2 = w.source.y() * w.source.y(), width = c - b;
     return width * width * y2 <= angle * angle * (((b - x) * (b - x) + y2) * ((c - x) * (c - x) + y2));
   }
+  /// Twice the area between rays to the ends of a part of the window, and a bound from which on that is not narrow.
+  static double area(const RayWindow& w, double width) { return -w.source.y() * width; }
+  static double wide(const RayWindow& w, double) {
+    const double to_b0 = w.b0 - w.source.x(), to_b1 = w.b1 - w.source.x();
+    return k_narrow * (to_b0 * to_b0 + to_b1 * to_b1 + 2 * w.source.y() * w.source.y());
+  }
   /// Near to the root rays are told from each other by less than an edge is rounded to: makes neighbors overlap.
   static void widen(RayWindow& w, double length) {
     const double x = w.source.x(), y2 = w.source.y() * w.source.y();
@@ -84,6 +90,8 @@ struct Parallel {
   static bool is_within(double share, const RayWindow&, double length, double b, double c) {
     return std::abs(c - b) <= share * length;
   }
+  static double area(const RayWindow&, double width) { return width; }
+  static double wide(const RayWindow&, double length) { return k_narrow * length; }
   static void widen(RayWindow&, double) {}
 };
 
@@ -316,8 +324,11 @@ void RayField::propagate(const RayWindow& window) {
   const double nearest = std::clamp(split, window.b0, window.b1);
   const auto is_within = [&](double share, double b) { return Front::is_within(share, window, base, b, split); };
   if (split == nearest || is_within(k_miss, nearest)) reach_apex<Front>(window, ray, split, reach);
-  const bool has_left = split > window.b0 && !is_within(k_narrow, window.b0);
-  const bool has_right = split < window.b1 && !is_within(k_narrow, window.b1);
+  const double wide = Front::wide(window, base);
+  const auto is_wide = [&](double b) {
+    return Front::area(window, std::abs(split - b)) > wide || !is_within(k_narrow, b);
+  };
+  const bool has_left = split > window.b0 && is_wide(window.b0), has_right = split < window.b1 && is_wide(window.b1);
   bool go_left = has_left, go_right = has_right;
   if (has_left && has_right) {
     Occupant& occupant = occupants_[h];
