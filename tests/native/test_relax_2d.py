@@ -145,3 +145,13 @@ def test_what_is_refused(arguments, text):
 def test_progress_and_cancel():
     sites = np.random.default_rng(8).random((100_000, 2))
     check_progress_and_cancel(lambda job: sb.relax_2d(sites, SQUARE, max_iterations=30, job=job), 0.1)
+
+
+@pytest.mark.parametrize("unit", [2.0**-1000, 1e-300, 1e-200, 2.0**400, 1e200, 1e307])
+def test_only_ratios_of_densities_count(unit):
+    rng = np.random.default_rng(8)
+    sites, density = rng.random((20, 2)), rng.random((13, 17)) + 0.1
+    plain = sb.relax_2d(sites, SQUARE, density, max_iterations=20)
+    other = sb.relax_2d(sites, SQUARE, unit * density, max_iterations=20)
+    assert np.allclose(other.sites, plain.sites, rtol=0, atol=1e-12)
+    assert other.iterations == plain.iterations

@@ -20,7 +20,12 @@ RasterIntegral::RasterIntegral(const PlanarDomain& domain, const DensityRaster& 
   width_ = (high.x() - low.x()) / columns_;
   height_ = (high.y() - low.y()) / rows_;
   weights_.assign(static_cast<std::size_t>(rows_) * columns_, 1);
-  std::transform(density.values.begin(), density.values.end(), weights_.begin(), [](double d) { return d * d; });
+  const auto greatest = std::max_element(density.values.begin(), density.values.end());
+  if (greatest != density.values.end() && *greatest > 0) exponent_ = std::ilogb(*greatest);
+  std::transform(density.values.begin(), density.values.end(), weights_.begin(), [&](double d) {
+    const double scaled = std::ldexp(d, -exponent_);
+    return scaled * scaled;
+  });
   sums_.resize(weights_.size());
   for (Index row = 0; row < rows_; ++row)
     for (Index column = 1; column < columns_; ++column)

@@ -9,8 +9,8 @@
 
 namespace saddleback::voronoi2d {
 
-/// Integrals of the squared density: mass, first moments, and the moment of squared distance. Places count from the
-/// raster's middle.
+/// Integrals of the squared density, in the unit of `RasterIntegral::exponent`: mass, first moments, and the moment of
+/// squared distance. Places count from the raster's middle.
 struct RasterMoments {
   double mass = 0, squared = 0;
   Vec2 first = Vec2::Zero();
@@ -31,6 +31,8 @@ class RasterIntegral {
   RasterIntegral(const PlanarDomain& domain, const DensityRaster& density);
 
   const Vec2& middle() const { return middle_; }
+  /// Of the power of two that the density is divided by, so that its squares stay among the doubles.
+  int exponent() const { return exponent_; }
   /// Of a loop in the box: positive inside when it turns counter-clockwise. O(raster cells crossed).
   RasterMoments along(std::span<const Vec2> loop) const;
 
@@ -46,6 +48,7 @@ class RasterIntegral {
   Vec2 middle_;
   double left_, bottom_, width_, height_;  ///< the box's, from its middle; of one cell of the raster
   Index rows_, columns_;
+  int exponent_ = 0;
   std::vector<double> weights_;
   std::vector<Sums> sums_;  ///< at the left of each cell of the raster
 };

@@ -93,8 +93,11 @@ Relaxation2d relax_2d(std::span<const Vec2> sites, const PlanarDomain& domain, c
   const double part = 1.0 / (options.max_iterations + 1);
   Relaxation2d result;
   result.stop_reason = "max_iterations";
+  const auto tell_energy = [&](const State& of) {
+    result.energy.push_back(std::ldexp(of.energy, 2 * integral.exponent()));
+  };
   State state = evaluate({sites.begin(), sites.end()}, domain, integral, options.threads, stage.part(0, part));
-  result.energy.push_back(state.energy);
+  tell_energy(state);
   while (result.iterations < options.max_iterations) {
     const JobStage step =
         stage.part((result.iterations + 1) * part, (result.iterations + 2) * part,
@@ -107,7 +110,7 @@ Relaxation2d relax_2d(std::span<const Vec2> sites, const PlanarDomain& domain, c
     }
     const double fall = state.energy - next.energy;
     state = std::move(next);
-    result.energy.push_back(state.energy);
+    tell_energy(state);
     ++result.iterations;
     if (fall <= options.tolerance * state.energy) {
       result.converged = true;
