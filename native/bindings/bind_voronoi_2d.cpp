@@ -127,7 +127,8 @@ constexpr const char* k_clip_doc = R"(The cells within a simple polygon with hol
 Parameters
 ----------
 polygon : (m, 2) float array or list of such
-    A simple polygon, or an outline and its holes, in any direction.
+    A simple polygon, or an outline and its holes, in any direction. Corners may be repeated in a row, and loops may touch
+    other loops in points.
 gap : float
     How far neighbouring cells are apart; the polygon's own sides stay. A cell narrower than that has no loop. Not with
     weights.
@@ -142,7 +143,8 @@ job : Job, optional
 Raises
 ------
 InputError
-    Fewer than three corners, loops that touch or cross, a hole outside the outline, a gap that is negative or not finite.
+    Fewer than three corners, loops that touch themselves, cross or share a part of a side, a hole outside the outline, a
+    gap that is negative or not finite.
 Cancelled
     The job was cancelled.
 

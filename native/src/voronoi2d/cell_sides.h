@@ -46,8 +46,8 @@ class CellSides {
   Vec2 meeting(Index j, Index k, double distance = 0) const {
     const Index vertex = vertex_between(j, k);
     const auto point = [](const Vec2& site) { return predicates::Point2{site.x(), site.y()}; };
-    const Vec2 place = vertex != k_none ? diagram_.vertices[vertex]
-                                        : circumcentre(point(mine()), point(neighbour(j)), point(neighbour(k)));
+    Vec2 place = vertex != k_none ? diagram_.vertices[vertex]
+                                  : circumcentre(point(mine()), point(neighbour(j)), point(neighbour(k)));
     if (distance == 0) return place;
     const Vec2 a = (mine() - neighbour(j)).normalized(), b = (mine() - neighbour(k)).normalized();
     return place + distance / (1 + a.dot(b)) * (a + b);
