@@ -79,6 +79,7 @@ double Bisector::farthest_from_chord(double from, double to) const {
   const double speed = slope_there.stableNorm();
   const double bulge = 2 * std::sinh(quarter) * std::sinh(quarter);  // cosh(h / 2) - 1
   const double distance = bulge * std::fabs(p_length_) * (q_length_ / speed);
+  if (from * to >= 0 || std::fabs(p_length_) <= q_length_) return distance;  // it does not turn back
   const Vec2 along = slope_there / speed;
   for (const double end : {from, to}) {
     if (!(slope(end).dot(along) < 0)) continue;
@@ -89,18 +90,23 @@ double Bisector::farthest_from_chord(double from, double to) const {
 }
 
 void Bisector::sample(double from, double to, double tolerance, std::vector<Vec2>& points) const {
-  constexpr double k_finest = 0x1p-40;
-  const Vec2 begin = at(from), middle = at(std::clamp(0.0, std::min(from, to), std::max(from, to))), end = at(to);
-  const double span = (begin - middle).stableNorm() + (end - middle).stableNorm();
-  divide(from, to, std::max(tolerance, k_finest * span), points);
+  const double farthest = farthest_from_chord(from, to);
+  if (!(farthest > tolerance)) return;
+  constexpr double k_many = 0x1p10, k_finest = 0x1p-40;
+  if (farthest > k_many * tolerance) {
+    const Vec2 middle = at(std::clamp(0.0, std::min(from, to), std::max(from, to)));
+    const double span = (at(from) - middle).stableNorm() + (at(to) - middle).stableNorm();
+    tolerance = std::max(tolerance, k_finest * span);
+  }
+  divide(from, to, tolerance, points);
 }
 
 void Bisector::divide(double from, double to, double tolerance, std::vector<Vec2>& points) const {
   const double middle = 0.5 * (from + to);
-  if (!(farthest_from_chord(from, to) > tolerance) || middle == from || middle == to) return;
-  divide(from, middle, tolerance, points);
+  if (middle == from || middle == to) return;
+  if (farthest_from_chord(from, middle) > tolerance) divide(from, middle, tolerance, points);
   points.push_back(at(middle));
-  divide(middle, to, tolerance, points);
+  if (farthest_from_chord(middle, to) > tolerance) divide(middle, to, tolerance, points);
 }
 
 // With positions from the curve's own middle x x x' is constant, p x q, which makes the integrals elementary.

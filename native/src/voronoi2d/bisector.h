@@ -42,6 +42,7 @@ class Bisector {
  private:
   Vec2 slope(double t) const;
   double farthest_from_chord(double from, double to) const;
+  /// Of a part of the curve that goes farther than that from its chord.
   void divide(double from, double to, double tolerance, std::vector<Vec2>& points) const;
 
   Vec2 middle_, p_, q_;
