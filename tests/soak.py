@@ -173,7 +173,8 @@ def settings(name: str, rng: random.Random) -> dict[str, Any]:
     """Some of the operator's properties, at their limits or within them."""
     chosen: dict[str, Any] = {}
     for prop in getattr(bpy.ops.saddleback, name).get_rna_type().properties:
-        if prop.identifier == "rna_type" or rng.random() < 0.7:
+        # How long it takes to fill a surface is as small shapes say: minutes where those are tiny.
+        if prop.identifier in ("rna_type", "maximal") or rng.random() < 0.7:
             continue
         if prop.type == "BOOLEAN":
             chosen[prop.identifier] = rng.random() < 0.5
