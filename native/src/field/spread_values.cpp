@@ -68,15 +68,18 @@ std::vector<double> spread_harmonic(const Mesh& mesh, const SurfacePoints& place
 }
 
 /// Splines as sums of what one place alone bends the surface's values by. In each component these are
-/// Laplacian^-1 area Laplacian^-1 of the place, and their factors sum to zero beside a constant.
+/// Laplacian^-1 area Laplacian^-1 of the place, and their factors sum to zero beside a constant. Areas are shares of
+/// the component's: bends in mesh units would drown the constants on large meshes, and be drowned on small ones.
 class Splines {
  public:
   Splines(const Mesh& mesh, const SurfacePoints& places, const JobStage& stage)
-      : mesh_(mesh), places_(places), areas_(mesh.vertex_count(), 0.0), component_areas_(mesh.component_count(), 0.0) {
+      : mesh_(mesh), places_(places), areas_(mesh.vertex_count(), 0.0) {
+    std::vector<double> component_areas(mesh.component_count(), 0.0);
     for (Index f = 0; f < mesh.face_count(); ++f) {
       for (const Index v : mesh.triangles()[f]) areas_[v] += mesh.face_area(f) / 3;
-      component_areas_[mesh.component_of(mesh.triangles()[f][0])] += mesh.face_area(f);
+      component_areas[mesh.component_of(mesh.triangles()[f][0])] += mesh.face_area(f);
     }
+    for (Index v = 0; v < mesh.vertex_count(); ++v) areas_[v] /= component_areas[mesh.component_of(v)];
     GraphMatrix<double> laplacian =
         graph_laplacian(mesh.vertex_count(), vertex_graph(mesh, surface_connection(mesh, stage)));
     std::vector<bool> is_held(mesh.component_count(), false);
@@ -138,12 +141,12 @@ class Splines {
     const Index component = component_of(mesh_, point);
     std::vector<double> right(mesh_.vertex_count(), 0.0);
     for (Index v = 0; v < mesh_.vertex_count(); ++v)
-      if (mesh_.component_of(v) == component) right[v] = -areas_[v] / component_areas_[component];
+      if (mesh_.component_of(v) == component) right[v] = -areas_[v];
     for (int k = 0; k < 3; ++k) right[mesh_.triangles()[point.face][k]] += point.barycentric[k];
     std::vector<double> once = solver.solve(right, {}, k_accuracy, first);
     double mean = 0;
     for (Index v = 0; v < mesh_.vertex_count(); ++v)
-      if (mesh_.component_of(v) == component) mean += areas_[v] * once[v] / component_areas_[component];
+      if (mesh_.component_of(v) == component) mean += areas_[v] * once[v];
     for (Index v = 0; v < mesh_.vertex_count(); ++v)
       right[v] = mesh_.component_of(v) == component ? areas_[v] * (once[v] - mean) : 0;
     return solver.solve(right, {}, k_accuracy, second);
@@ -151,7 +154,7 @@ class Splines {
 
   const Mesh& mesh_;
   const SurfacePoints& places_;
-  std::vector<double> areas_, component_areas_;
+  std::vector<double> areas_;  ///< per vertex, as a share of its component's
   std::vector<std::vector<double>> bends_;
 };
 

@@ -24,7 +24,7 @@ CheckReport check_distribution(const Mesh& mesh, std::span<const Shape> shapes, 
   check_chains(mesh, mapped, faults);
   check_crossings(pieces, options, stage, faults);
   stage.update(0.2);
-  check_nesting(mesh, mapped, pieces, faults);
+  check_nesting(mesh, mapped, pieces, stage, faults);
   stage.update(0.3);
   check_patches(mesh, shapes, placements, mapped, options, stage.part(0.3, 1), faults, report);
   report.fault_count = faults.count();

@@ -1,5 +1,5 @@
-// Which shape each vertex lies in, found from the edges that outlines cross; then whether an outline begins within
-// another shape.
+// Which shapes each vertex lies in, found from the edges that outlines cross; then whether a loop of an outline begins
+// within another shape.
 
 #include <algorithm>
 
@@ -42,15 +42,28 @@ class Nesting {
         mapped_(mapped),
         pieces_(pieces),
         faults_(faults),
-        owners_(static_cast<std::size_t>(mesh.vertex_count()), k_none) {}
+        last_owner_(static_cast<std::size_t>(mesh.vertex_count()), k_none) {}
 
-  void run() {
-    for (std::size_t s = 0; s < mapped_.size(); ++s) spread(static_cast<Index>(s));
-    for (std::size_t s = 0; s < mapped_.size(); ++s)
-      if (!mapped_[s].outline.pieces.empty()) look_around(static_cast<Index>(s));
+  void run(const JobStage& stage) {
+    for (std::size_t s = 0; s < mapped_.size(); ++s) {
+      stage.check();
+      spread(static_cast<Index>(s));
+    }
+    sort_owners();
+    for (std::size_t s = 0; s < mapped_.size(); ++s) {
+      const SurfaceOutline& outline = mapped_[s].outline;
+      for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop) {
+        stage.check();
+        look_around(static_cast<Index>(s), outline.pieces[outline.loop_begins[loop]]);
+      }
+    }
   }
 
  private:
+  struct Owner {
+    Index vertex, shape;
+  };
+
   /// From vertices that the outline's crossings show to be inside, over edges that it does not cross.
   void spread(Index shape) {
     const std::vector<EdgeCount> counts = count_crossings(mesh_, mapped_[shape].outline);
@@ -83,37 +96,41 @@ class Nesting {
   }
 
   void own(Index vertex, Index shape) {
-    if (owners_[vertex] == shape) return;
-    if (owners_[vertex] != k_none) {
-      faults_.add(Fault::nesting, owners_[vertex], shape, at_vertex(mesh_, vertex));
-      // The later one takes the vertex over: so that it ends, and all that it meets are found.
-    }
-    owners_[vertex] = shape;
+    if (last_owner_[vertex] == shape) return;
+    last_owner_[vertex] = shape;
+    owners_.push_back({vertex, shape});
     front_.push_back(vertex);
   }
 
-  /// A point of the outline against all others in its face and around it.
-  void look_around(Index shape) {
-    const OutlinePiece& piece = mapped_[shape].outline.pieces.front();
+  void sort_owners() {
+    std::sort(owners_.begin(), owners_.end(), [](const Owner& a, const Owner& b) {
+      return a.vertex != b.vertex ? a.vertex < b.vertex : a.shape < b.shape;
+    });
+  }
+
+  /// A point of one of the shape's loops against all others in its face and around it. Where no outlines meet, one that
+  /// overlaps another has a loop within it, or the other way round; which of its loops, nobody knows.
+  void look_around(Index shape, const OutlinePiece& piece) {
     const Vec3 weights = outline_point(piece.face, piece.begin).barycentric;
     // From the corner opposite to the edge that the point may lie on: the line runs inside of the face.
     const int corner = weights[0] == 0 ? 0 : weights[1] == 0 ? 1 : 2;
     const Vec2 from = corner == 0 ? Vec2(0, 0) : corner == 1 ? Vec2(1, 0) : Vec2(0, 1);
     inside_.clear();
-    toggle(owners_[mesh_.from(3 * piece.face + corner)]);
-    for (const CheckedPiece& other : pieces_.of(piece.face))
-      if (other.shape != shape && crosses(from, piece.begin, other)) toggle(other.shape);
-    for (const Index other : inside_)
-      if (other != shape) faults_.add(Fault::nesting, shape, other, outline_point(piece.face, piece.begin));
-  }
-
-  void toggle(Index shape) {
-    if (shape == k_none) return;
-    const auto at = std::find(inside_.begin(), inside_.end(), shape);
-    if (at == inside_.end())
-      inside_.push_back(shape);
-    else
-      inside_.erase(at);
+    const Index vertex = mesh_.from(3 * piece.face + corner);
+    auto owner = std::lower_bound(owners_.begin(), owners_.end(), vertex,
+                                  [](const Owner& one, Index wanted) { return one.vertex < wanted; });
+    for (; owner != owners_.end() && owner->vertex == vertex; ++owner) inside_.push_back(owner->shape);
+    pieces_.boxes.visit(piece.face, box_around(from, piece.begin), [&](std::size_t i) {
+      const CheckedPiece& other = pieces_.pieces[i];
+      if (other.shape != shape && crosses(from, piece.begin, other)) inside_.push_back(other.shape);
+    });
+    // Each crossing leads in or out: those that are listed an odd number of times hold the point.
+    std::sort(inside_.begin(), inside_.end());
+    for (std::size_t i = 0, end; i < inside_.size(); i = end) {
+      for (end = i; end < inside_.size() && inside_[end] == inside_[i];) ++end;
+      if ((end - i) % 2 == 1 && inside_[i] != shape)
+        faults_.add(Fault::nesting, shape, inside_[i], outline_point(piece.face, piece.begin));
+    }
   }
 
   static bool crosses(const Vec2& from, const Vec2& to, const CheckedPiece& piece) {
@@ -128,15 +145,16 @@ class Nesting {
   std::span<const MappedShape> mapped_;
   const CheckedPieces& pieces_;
   FaultList& faults_;
-  std::vector<Index> owners_;  ///< per vertex the shape that it lies in
+  std::vector<Index> last_owner_;  ///< per vertex the last shape that was found to hold it
+  std::vector<Owner> owners_;      ///< all that hold a vertex
   std::vector<Index> front_, inside_;
 };
 
 }  // namespace
 
 void check_nesting(const Mesh& mesh, std::span<const MappedShape> mapped, const CheckedPieces& pieces,
-                   FaultList& faults) {
-  Nesting(mesh, mapped, pieces, faults).run();
+                   const JobStage& stage, FaultList& faults) {
+  Nesting(mesh, mapped, pieces, faults).run(stage);
 }
 
 }  // namespace saddleback

@@ -1,6 +1,7 @@
 // Outlines as chains of pieces: that they are closed, and that no two have a point in common.
 
 #include <algorithm>
+#include <numeric>
 
 #include "predicates/predicates.h"
 #include "shape_mapping/check_parts.h"
@@ -69,10 +70,25 @@ CheckedPieces list_pieces(const Mesh& mesh, std::span<const MappedShape> mapped)
   }
   std::stable_sort(result.pieces.begin(), result.pieces.end(),
                    [](const CheckedPiece& a, const CheckedPiece& b) { return a.face < b.face; });
-  result.begins.assign(static_cast<std::size_t>(mesh.face_count()) + 1, 0);
-  for (const CheckedPiece& piece : result.pieces) ++result.begins[piece.face + 1];
-  for (std::size_t f = 1; f < result.begins.size(); ++f) result.begins[f] += result.begins[f - 1];
+  std::vector<std::size_t> begins(static_cast<std::size_t>(mesh.face_count()) + 1, 0);
+  std::vector<charts::Box> boxes;
+  for (const CheckedPiece& piece : result.pieces) {
+    ++begins[piece.face + 1];
+    boxes.push_back(box_around(piece.begin, piece.end));
+  }
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  result.boxes = FaceBoxes(std::move(begins), boxes);
   return result;
+}
+
+FaceBoxes::FaceBoxes(std::vector<std::size_t> begins, std::span<const charts::Box> boxes)
+    : begins_(std::move(begins)), trees_(begins_.size() - 1) {
+  constexpr std::size_t k_few = 32;
+  for (std::size_t face = 0; face < trees_.size(); ++face) {
+    const auto here = boxes.subspan(begins_[face], begins_[face + 1] - begins_[face]);
+    if (here.size() > k_few)
+      trees_[face] = std::make_unique<charts::BoxTree>(std::vector<charts::Box>(here.begin(), here.end()));
+  }
 }
 
 void check_chains(const Mesh& mesh, std::span<const MappedShape> mapped, FaultList& faults) {
@@ -89,22 +105,28 @@ void check_chains(const Mesh& mesh, std::span<const MappedShape> mapped, FaultLi
   }
 }
 
-void check_crossings(const CheckedPieces& pieces, const CheckOptions& options, const JobStage& stage,
+void check_crossings(const CheckedPieces& checked, const CheckOptions& options, const JobStage& stage,
                      FaultList& faults) {
-  const auto faces = static_cast<Index>(pieces.begins.size() - 1);
-  std::vector<std::vector<FaultReport>> found(static_cast<std::size_t>(faces));
-  parallel_for(faces, options.threads, 256, [&](Index face, int) {
-    stage.check();
-    const std::span<const CheckedPiece> here = pieces.of(face);
-    for (std::size_t i = 0; i < here.size(); ++i)
-      for (std::size_t j = i + 1; j < here.size(); ++j)
-        if (is_fault(here[i], here[j], meeting_of(here[i], here[j])))
-          found[face].push_back({Fault::crossing, here[i].shape, here[j].shape,
-                                 outline_point(face, 0.5 * (here[i].begin + here[i].end))});
+  constexpr std::size_t k_chunk = 1024;
+  const std::vector<CheckedPiece>& pieces = checked.pieces;
+  std::vector<FaultList> found(pieces.size() / k_chunk + 1);
+  parallel_for(static_cast<Index>(found.size()), options.threads, 1, [&](Index chunk, int) {
+    std::vector<std::size_t> met;
+    const std::size_t begin = static_cast<std::size_t>(chunk) * k_chunk;
+    for (std::size_t i = begin; i < std::min(pieces.size(), begin + k_chunk); ++i) {
+      stage.check();
+      const CheckedPiece& piece = pieces[i];
+      met.clear();
+      checked.boxes.visit(piece.face, box_around(piece.begin, piece.end), [&](std::size_t j) {
+        if (j > i && is_fault(piece, pieces[j], meeting_of(piece, pieces[j]))) met.push_back(j);
+      });
+      std::sort(met.begin(), met.end());
+      for (const std::size_t j : met)
+        found[chunk].add(Fault::crossing, piece.shape, pieces[j].shape == piece.shape ? k_none : pieces[j].shape,
+                         outline_point(piece.face, 0.5 * (piece.begin + piece.end)));
+    }
   });
-  for (const std::vector<FaultReport>& list : found)
-    for (const FaultReport& report : list)
-      faults.add(report.fault, report.first, report.second == report.first ? k_none : report.second, report.where);
+  for (const FaultList& list : found) faults.add(list);
 }
 
 }  // namespace saddleback

@@ -1,21 +1,28 @@
 #pragma once
 // The parts of check_distribution.
 
+#include <limits>
+#include <memory>
 #include <set>
 #include <tuple>
 
 #include "saddleback/check_distribution.h"
+
+#include "charts/box_tree.h"
 
 namespace saddleback {
 
 /// Faults as they are found: each kind once for each pair of shapes.
 class FaultList {
  public:
-  explicit FaultList(std::size_t most) : most_(most) {}
+  explicit FaultList(std::size_t most = std::numeric_limits<std::size_t>::max()) : most_(most) {}
   void add(Fault fault, Index first, Index second, const SurfacePoint& where) {
     if (second != k_none && second < first) std::swap(first, second);
     if (!known_.insert({fault, first, second}).second) return;
     if (list_.size() < most_) list_.push_back({fault, first, second, where});
+  }
+  void add(const FaultList& found) {
+    for (const FaultReport& report : found.list_) add(report.fault, report.first, report.second, report.where);
   }
   std::int64_t count() const { return static_cast<std::int64_t>(known_.size()); }
   std::vector<FaultReport> take() { return std::move(list_); }
@@ -34,13 +41,34 @@ struct CheckedPiece {
   Vec2 begin, end;
 };
 
-/// All pieces, sorted by face, and where each face's begin.
+/// Things in faces by the boxes of their weights: in a tree where a face has many.
+class FaceBoxes {
+ public:
+  FaceBoxes() = default;
+  /// `begins` (F + 1): where each face's boxes begin.
+  FaceBoxes(std::vector<std::size_t> begins, std::span<const charts::Box> boxes);
+
+  /// Calls visit(i) for the things of the face that may meet the box, in any order.
+  template <class Visit>
+  void visit(Index face, const charts::Box& box, Visit&& visit) const {
+    const std::size_t begin = begins_[face];
+    if (trees_[face])
+      trees_[face]->visit(box, [&](Index i) { visit(begin + static_cast<std::size_t>(i)); });
+    else
+      for (std::size_t i = begin; i < begins_[face + 1]; ++i) visit(i);
+  }
+
+ private:
+  std::vector<std::size_t> begins_;
+  std::vector<std::unique_ptr<charts::BoxTree>> trees_;  ///< per face
+};
+
+inline charts::Box box_around(const Vec2& a, const Vec2& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
+
+/// All pieces, sorted by face.
 struct CheckedPieces {
   std::vector<CheckedPiece> pieces;
-  std::vector<std::size_t> begins;  ///< (F + 1)
-  std::span<const CheckedPiece> of(Index face) const {
-    return std::span(pieces).subspan(begins[face], begins[face + 1] - begins[face]);
-  }
+  FaceBoxes boxes;
 };
 CheckedPieces list_pieces(const Mesh& mesh, std::span<const MappedShape> mapped);
 
@@ -48,7 +76,7 @@ void check_chains(const Mesh& mesh, std::span<const MappedShape> mapped, FaultLi
 void check_crossings(const CheckedPieces& pieces, const CheckOptions& options, const JobStage& stage,
                      FaultList& faults);
 void check_nesting(const Mesh& mesh, std::span<const MappedShape> mapped, const CheckedPieces& pieces,
-                   FaultList& faults);
+                   const JobStage& stage, FaultList& faults);
 /// Orientation and areas of the patches, and the samples.
 void check_patches(const Mesh& mesh, std::span<const Shape> shapes, std::span<const Placement> placements,
                    std::span<const MappedShape> mapped, const CheckOptions& options, const JobStage& stage,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "predicates/predicates.h"
 #include "shape_mapping/check_parts.h"
@@ -29,7 +30,7 @@ struct PatchTriangle {
 /// Triangles of all patches by face.
 struct PatchTriangles {
   std::vector<PatchTriangle> triangles;
-  std::vector<std::size_t> begins;
+  FaceBoxes boxes;
 };
 
 std::uint64_t mixed(std::uint64_t x) {  // splitmix64 (Steele, Lea and Flood 2014)
@@ -50,17 +51,22 @@ Vec2 weights_in(const Mesh& mesh, const SurfacePoint& point, Index face) {
 
 PatchTriangles by_face(const Mesh& mesh, const CutMesh& patches) {
   PatchTriangles result;
-  result.begins.assign(static_cast<std::size_t>(mesh.face_count()) + 1, 0);
-  for (const Index face : patches.triangle_face) ++result.begins[face + 1];
-  for (std::size_t f = 1; f < result.begins.size(); ++f) result.begins[f] += result.begins[f - 1];
-  std::vector<std::size_t> next(result.begins.begin(), result.begins.end() - 1);
+  std::vector<std::size_t> begins(static_cast<std::size_t>(mesh.face_count()) + 1, 0);
+  for (const Index face : patches.triangle_face) ++begins[face + 1];
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
   result.triangles.resize(patches.triangles.size());
+  std::vector<charts::Box> boxes(patches.triangles.size());
   for (std::size_t t = 0; t < patches.triangles.size(); ++t) {
     const Index face = patches.triangle_face[t];
-    PatchTriangle& triangle = result.triangles[next[face]++];
+    const std::size_t place = next[face]++;
+    PatchTriangle& triangle = result.triangles[place];
     triangle.shape = patches.triangle_shape[t];
     for (int i = 0; i < 3; ++i) triangle.weights[i] = weights_in(mesh, patches.vertices[patches.triangles[t][i]], face);
+    const auto& [a, b, c] = triangle.weights;
+    boxes[place] = {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
   }
+  result.boxes = FaceBoxes(std::move(begins), boxes);
   return result;
 }
 
@@ -109,8 +115,9 @@ class PatchCheck {
     const std::int64_t count = options.samples;
     const auto chunks = static_cast<Index>((count + k_chunk - 1) / k_chunk);
     std::vector<std::int64_t> covered(static_cast<std::size_t>(chunks), 0);
-    std::vector<std::vector<FaultReport>> found(static_cast<std::size_t>(chunks));
+    std::vector<FaultList> found(static_cast<std::size_t>(chunks));
     parallel_for(chunks, options.threads, 1, [&](Index chunk, int) {
+      std::vector<std::size_t> hits;
       stage.check();
       const std::int64_t end = std::min<std::int64_t>(count, (chunk + std::int64_t{1}) * k_chunk);
       for (std::int64_t k = chunk * std::int64_t{k_chunk}; k < end; ++k) {
@@ -122,13 +129,12 @@ class PatchCheck {
             static_cast<Index>(std::lower_bound(ends.begin(), ends.end(), at) - ends.begin()), mesh_.face_count() - 1);
         Vec2 w(random(1), random(2));
         if (w.x() + w.y() > 1) w = Vec2(1, 1) - w;
-        covered[chunk] += look(triangles, face, w, found[chunk]);
+        covered[chunk] += look(triangles, face, w, hits, found[chunk]);
       }
     });
     std::int64_t hits = 0;
     for (const std::int64_t part : covered) hits += part;
-    for (const std::vector<FaultReport>& list : found)
-      for (const FaultReport& report : list) faults_.add(report.fault, report.first, report.second, report.where);
+    for (const FaultList& list : found) faults_.add(list);
     report_.sample_count = count;
     if (count == 0) return;
     report_.coverage = static_cast<double>(hits) / static_cast<double>(count);
@@ -153,18 +159,22 @@ class PatchCheck {
   }
 
   /// 1 when the point lies in a patch, else 0.
-  static int look(const PatchTriangles& patches, Index face, const Vec2& w, std::vector<FaultReport>& found) {
-    Index first = k_none;
-    for (std::size_t t = patches.begins[face]; t < patches.begins[face + 1]; ++t) {
-      const PatchTriangle& triangle = patches.triangles[t];
-      bool is_in = true;
-      for (int i = 0; i < 3 && is_in; ++i) {
-        const Vec2 edge = triangle.weights[(i + 1) % 3] - triangle.weights[i];
-        is_in = cross(edge, w - triangle.weights[i]) > k_rim * edge.norm();
+  static int look(const PatchTriangles& patches, Index face, const Vec2& w, std::vector<std::size_t>& hits,
+                  FaultList& found) {
+    hits.clear();
+    patches.boxes.visit(face, {w, w}, [&](std::size_t t) {
+      for (int i = 0; i < 3; ++i) {
+        const Vec2 &from = patches.triangles[t].weights[i], edge = patches.triangles[t].weights[(i + 1) % 3] - from;
+        if (!(cross(edge, w - from) > k_rim * edge.norm())) return;
       }
-      if (!is_in || triangle.shape == first) continue;
-      if (first != k_none) found.push_back({Fault::covered_twice, first, triangle.shape, outline_point(face, w)});
-      first = triangle.shape;
+      hits.push_back(t);
+    });
+    std::sort(hits.begin(), hits.end());
+    Index first = k_none;
+    for (const std::size_t t : hits) {
+      const Index shape = patches.triangles[t].shape;
+      if (first != k_none && shape != first) found.add(Fault::covered_twice, first, shape, outline_point(face, w));
+      first = shape;
     }
     return first != k_none;
   }

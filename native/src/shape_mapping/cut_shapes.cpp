@@ -7,6 +7,7 @@
 
 #include "saddleback/error.h"
 
+#include "predicates/predicates.h"
 #include "shape_mapping/constrained_triangulation.h"
 
 namespace saddleback {
@@ -71,7 +72,10 @@ class Cutter {
     const SurfaceOutline& outline = shapes_[s].outline;
     for (const Index face : outline.faces) face_shape_[face] = static_cast<Index>(s);
     for (std::size_t i = 0; i < outline.inside.size(); ++i) {
-      vertex_shape_[outline.inside[i]] = static_cast<Index>(s);
+      Index& shape = vertex_shape_[outline.inside[i]];
+      if (shape != k_none && !is_only_shapes_)
+        refuse(shape, static_cast<Index>(s), Mesh::face_of(mesh_.first_halfedge(outline.inside[i])));
+      shape = static_cast<Index>(s);
       vertex_plane_[outline.inside[i]] = outline.inside_plane[i];
     }
   }
@@ -147,7 +151,7 @@ class Cutter {
     for (const FacePiece& piece : pieces)
       ends_.push_back({add_point(piece.begin, piece.begin_id), add_point(piece.end, piece.end_id)});
     for (std::size_t i = 0; i < pieces.size(); ++i)
-      if (!flat_.connect(ends_[i][0], ends_[i][1])) refuse(face, pieces);
+      if (!flat_.connect(ends_[i][0], ends_[i][1])) refuse(pieces[i], pieces.first(i));
     flat_.improve();
     label(face, pieces);
     for (std::size_t t = 0; t < flat_.triangle_count(); ++t) add_triangle(flat_.triangle(t), face, labels_[t]);
@@ -168,7 +172,10 @@ class Cutter {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       edges_.clear();
       flat_.edges_along(ends_[i][0], ends_[i][1], edges_);
-      for (const Index h : edges_) left_[h] = pieces[i].shape;
+      for (const Index h : edges_) {
+        if (left_[h] != k_unknown && left_[h] != pieces[i].shape) refuse(left_[h], pieces[i].shape, face);
+        left_[h] = pieces[i].shape;
+      }
     }
     const auto set = [&](Index t, Index shape) {
       if (t == k_none || labels_[t] != k_unknown) return;
@@ -180,9 +187,36 @@ class Cutter {
       const bool is_undone = twin != k_none && left_[twin] == left_[h];
       if (left_[h] != k_unknown && !is_undone) set(static_cast<Index>(h / 3), left_[h]);
     }
-    const Index rest = front_.empty() ? vertex_shape_[mesh_.from(3 * face)] : k_none;
     spread(set);
-    for (std::size_t t = 0; t < labels_.size(); ++t) set(static_cast<Index>(t), rest);
+    // What no piece bounds from within is as the corners of the face are.
+    for (std::size_t t = 0; t < labels_.size(); ++t)
+      for (const Index point : flat_.triangle(t))
+        if (point < 3 && corner_shape(face, point, pieces) != k_none)
+          set(static_cast<Index>(t), corner_shape(face, point, pieces));
+    spread(set);
+    for (std::size_t t = 0; t < labels_.size(); ++t) set(static_cast<Index>(t), k_none);
+    if (!is_only_shapes_) check_labels(face, pieces);
+  }
+
+  /// The shape that a corner of the face lies in; of those that are cut out one by one, only the one that is.
+  Index corner_shape(Index face, Index corner, std::span<const FacePiece> pieces) const {
+    const Index shape = vertex_shape_[mesh_.from(3 * face + corner)];
+    return is_only_shapes_ && shape != pieces.front().shape ? k_none : shape;
+  }
+
+  /// Of shapes that do not overlap, what lies right of an outline is in none (or left of another one that touches it),
+  /// and what lies at a corner of the face in the one that the corner is in. Since whatever an outline or a vertex
+  /// bounds is looked at so, overlapping ones differ somewhere. What differs only from itself has been rounded so.
+  void check_labels(Index face, std::span<const FacePiece> pieces) const {
+    const auto differ = [](Index a, Index b) { return a >= 0 && b >= 0 && a != b; };
+    for (std::size_t h = 0; h < left_.size(); ++h) {
+      const Index label = labels_[h / 3], point = flat_.triangle(h / 3)[h % 3],
+                  twin = flat_.twin(static_cast<Index>(h));
+      if (left_[h] == k_unknown && twin != k_none && differ(label, left_[twin])) refuse(label, left_[twin], face);
+      if (point >= 3) continue;
+      const Index own = corner_shape(face, point, pieces);
+      if (differ(label, own)) refuse(label, own, face);
+    }
   }
 
   template <class Set>
@@ -194,12 +228,24 @@ class Cutter {
     }
   }
 
-  [[noreturn]] void refuse(Index face, std::span<const FacePiece> pieces) const {
-    Index other = pieces.front().shape;
-    for (const FacePiece& piece : pieces)
-      if (piece.shape != other)
-        throw InputError(message("shapes ", other, " and ", piece.shape, " overlap in face ", face));
-    throw InputError(message("the outline of shape ", other, " crosses itself in face ", face));
+  [[noreturn]] static void refuse(Index one, Index other, Index face) {
+    throw InputError(
+        message("shapes ", std::min(one, other), " and ", std::max(one, other), " overlap in face ", face));
+  }
+
+  /// For a piece that crosses one of the earlier ones.
+  [[noreturn]] static void refuse(const FacePiece& piece, std::span<const FacePiece> earlier) {
+    const auto parts = [](const FacePiece& one, const FacePiece& other) {
+      const auto side = [&](const Vec2& p) {
+        return static_cast<int>(
+            predicates::orient_2d({one.begin.x(), one.begin.y()}, {one.end.x(), one.end.y()}, {p.x(), p.y()}));
+      };
+      return side(other.begin) * side(other.end) < 0;
+    };
+    for (const FacePiece& other : earlier)
+      if (other.shape != piece.shape && parts(piece, other) && parts(other, piece))
+        refuse(other.shape, piece.shape, piece.face);
+    throw InputError(message("the outline of shape ", piece.shape, " crosses itself in face ", piece.face));
   }
 
   const Mesh& mesh_;
