@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import numpy as np
@@ -159,6 +160,79 @@ def test_every_pair_pushed_together_by_two_percent_is_found(name: str) -> None:
     assert found.keys() == {"crossing", "nesting"}
     assert found["crossing"] == planted["overlap"] | planted["crossing"]
     assert found["nesting"] - found["crossing"] == planted["nesting"]
+
+
+def in_the_plane(mesh: sb.Mesh, poses: list[tuple[int, float, float, float]]) -> sb.Placements:
+    """(shape, x, y, scale) on a mesh of the plane z = 0, all pointing along x."""
+    centers = sb.project(mesh, [(x, y, 0) for _, x, y, _ in poses])
+    corners = mesh.vertices[mesh.triangles[centers.faces]]
+    along = corners[:, 1] - corners[:, 0]
+    shape, _, _, scale = zip(*poses, strict=True)
+    return sb.Placements(shape, centers, -np.arctan2(along[:, 1], along[:, 0]), scale)
+
+
+def disk_at(x: float, y: float, radius: float) -> Floats:
+    return radius * sb.Shape.disk(12).loops[0] + (x, y)
+
+
+TWO = sb.Shape(disk_at(0, 0, 0.5), disk_at(2, 0, 0.1))  # two parts
+
+
+@pytest.mark.parametrize("cells", [2, 12, 101])
+@pytest.mark.parametrize("is_turned", [False, True])
+def test_a_part_of_a_shape_within_another(cells: int, is_turned: bool) -> None:
+    """Whichever part it is, and whichever of the two shapes comes first."""
+    mesh = sb.Mesh(*meshes.grid(cells, cells))
+    shapes = [TWO, DISK, RING]
+    for shape, x, scale, is_guilty in (
+        (1, 0.7, 0.05, True),  # about the second part
+        (1, 0.3, 0.15, True),  # about the first
+        (2, 0.7, 0.06, False),  # the second lies in the hole of a ring
+        (2, 0.82, 0.15, True),  # and in its band
+        (1, 0.5, 0.04, False),  # between the two
+    ):
+        poses = [(0, 0.3, 0.5, 0.2), (shape, x, 0.5, scale)]
+        mapped = sb.map_shapes(mesh, shapes, in_the_plane(mesh, poses[::-1] if is_turned else poses))
+        report = sb.check_distribution(mesh, mapped, samples=0)
+        assert {fault[:3] for fault in report.faults} == ({("nesting", 0, 1)} if is_guilty else set())
+        if is_guilty:
+            with pytest.raises(sb.InputError, match="shapes 0 and 1 overlap in face"):
+                mapped.cut()
+        else:
+            assert (mapped.cut().triangle_shape == 1).any()
+
+
+def test_every_guilty_pair_is_named_and_no_innocent_one() -> None:
+    """Three disks one in the other, beside them a ring about a disk, and one that keeps away from all."""
+    mesh = sb.Mesh(*meshes.grid(30, 30))
+    poses = [(0, 0.3, 0.3, 0.2), (4, 0.7, 0.7, 0.2), (0, 0.3, 0.3, 0.1), (0, 0.7, 0.7, 0.1), (0, 0.3, 0.3, 0.05)]
+    poses += [(0, 0.2, 0.8, 0.1), (0, 0.46, 0.3, 0.1)]  # the last crosses one and only reaches the largest beside
+    report = sb.check_distribution(mesh, sb.map_shapes(mesh, SHAPES, in_the_plane(mesh, poses)), samples=0)
+    assert {fault[1:3] for fault in report.faults} == {(0, 2), (0, 4), (2, 4), (0, 6), (2, 6)}
+
+
+@pytest.mark.parametrize("cells", [2, 40])
+def test_cut_refuses_what_overlaps_and_names_it(cells: int) -> None:
+    mesh = sb.Mesh(*meshes.grid(cells, cells))
+    innocent = (0, 0.2, 0.2, 0.1)
+    # The same again, one within, a ring whose band holds the rim, one that crosses.
+    for second in ((0, 0.6, 0.6, 0.2), (0, 0.6, 0.6, 0.03), (4, 0.6, 0.6, 0.3), (0, 0.75, 0.6, 0.2)):
+        mapped = sb.map_shapes(mesh, SHAPES, in_the_plane(mesh, [innocent, (0, 0.6, 0.6, 0.2), second]))
+        with pytest.raises(sb.InputError, match="shapes 1 and 2 overlap in face"):
+            mapped.cut()
+
+
+def test_a_face_with_thousands_of_shapes_is_quick() -> None:
+    """Every sample was compared with all shapes of its face, and every piece of an outline with all others."""
+    mesh = sb.Mesh([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2), (0, 2, 3)])
+    at = (np.arange(50) + 0.5) / 50
+    poses = [(0, x + 0.003, y, 0.004) for x in at for y in at if abs(x + 0.003 - y) > 0.006]
+    mapped = sb.map_shapes(mesh, SHAPES, in_the_plane(mesh, poses))
+    began = time.process_time()
+    report = sb.check_distribution(mesh, mapped, samples=200_000)
+    assert report.ok
+    assert len(poses) > 2300
+    assert time.process_time() - began < 6  # minutes, before
 
 
 def test_what_could_not_be_laid_is_a_fault() -> None:

@@ -2,6 +2,7 @@
 // within another shape.
 
 #include <algorithm>
+#include <numeric>
 
 #include "predicates/predicates.h"
 #include "shape_mapping/check_parts.h"
@@ -98,14 +99,17 @@ class Nesting {
   void own(Index vertex, Index shape) {
     if (last_owner_[vertex] == shape) return;
     last_owner_[vertex] = shape;
-    owners_.push_back({vertex, shape});
+    found_.push_back({vertex, shape});
     front_.push_back(vertex);
   }
 
   void sort_owners() {
-    std::sort(owners_.begin(), owners_.end(), [](const Owner& a, const Owner& b) {
-      return a.vertex != b.vertex ? a.vertex < b.vertex : a.shape < b.shape;
-    });
+    owner_begins_.assign(static_cast<std::size_t>(mesh_.vertex_count()) + 1, 0);
+    for (const Owner& owner : found_) ++owner_begins_[owner.vertex + 1];
+    std::partial_sum(owner_begins_.begin(), owner_begins_.end(), owner_begins_.begin());
+    std::vector<std::size_t> next(owner_begins_.begin(), owner_begins_.end() - 1);
+    owners_.resize(found_.size());
+    for (const Owner& owner : found_) owners_[next[owner.vertex]++] = owner.shape;
   }
 
   /// A point of one of the shape's loops against all others in its face and around it. Where no outlines meet, one that
@@ -117,9 +121,7 @@ class Nesting {
     const Vec2 from = corner == 0 ? Vec2(0, 0) : corner == 1 ? Vec2(1, 0) : Vec2(0, 1);
     inside_.clear();
     const Index vertex = mesh_.from(3 * piece.face + corner);
-    auto owner = std::lower_bound(owners_.begin(), owners_.end(), vertex,
-                                  [](const Owner& one, Index wanted) { return one.vertex < wanted; });
-    for (; owner != owners_.end() && owner->vertex == vertex; ++owner) inside_.push_back(owner->shape);
+    for (std::size_t i = owner_begins_[vertex]; i < owner_begins_[vertex + 1]; ++i) inside_.push_back(owners_[i]);
     pieces_.boxes.visit(piece.face, box_around(from, piece.begin), [&](std::size_t i) {
       const CheckedPiece& other = pieces_.pieces[i];
       if (other.shape != shape && crosses(from, piece.begin, other)) inside_.push_back(other.shape);
@@ -146,7 +148,9 @@ class Nesting {
   const CheckedPieces& pieces_;
   FaultList& faults_;
   std::vector<Index> last_owner_;  ///< per vertex the last shape that was found to hold it
-  std::vector<Owner> owners_;      ///< all that hold a vertex
+  std::vector<Owner> found_;
+  std::vector<std::size_t> owner_begins_;  ///< (V + 1)
+  std::vector<Index> owners_;              ///< per vertex all shapes that hold it
   std::vector<Index> front_, inside_;
 };
 

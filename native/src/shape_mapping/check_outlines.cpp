@@ -71,24 +71,11 @@ CheckedPieces list_pieces(const Mesh& mesh, std::span<const MappedShape> mapped)
   std::stable_sort(result.pieces.begin(), result.pieces.end(),
                    [](const CheckedPiece& a, const CheckedPiece& b) { return a.face < b.face; });
   std::vector<std::size_t> begins(static_cast<std::size_t>(mesh.face_count()) + 1, 0);
-  std::vector<charts::Box> boxes;
-  for (const CheckedPiece& piece : result.pieces) {
-    ++begins[piece.face + 1];
-    boxes.push_back(box_around(piece.begin, piece.end));
-  }
+  for (const CheckedPiece& piece : result.pieces) ++begins[piece.face + 1];
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
-  result.boxes = FaceBoxes(std::move(begins), boxes);
+  result.boxes = FaceBoxes(std::move(begins),
+                           [&](std::size_t i) { return box_around(result.pieces[i].begin, result.pieces[i].end); });
   return result;
-}
-
-FaceBoxes::FaceBoxes(std::vector<std::size_t> begins, std::span<const charts::Box> boxes)
-    : begins_(std::move(begins)), trees_(begins_.size() - 1) {
-  constexpr std::size_t k_few = 32;
-  for (std::size_t face = 0; face < trees_.size(); ++face) {
-    const auto here = boxes.subspan(begins_[face], begins_[face + 1] - begins_[face]);
-    if (here.size() > k_few)
-      trees_[face] = std::make_unique<charts::BoxTree>(std::vector<charts::Box>(here.begin(), here.end()));
-  }
 }
 
 void check_chains(const Mesh& mesh, std::span<const MappedShape> mapped, FaultList& faults) {

@@ -41,18 +41,30 @@ struct CheckedPiece {
   Vec2 begin, end;
 };
 
+inline charts::Box box_around(const Vec2& a, const Vec2& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
+
 /// Things in faces by the boxes of their weights: in a tree where a face has many.
 class FaceBoxes {
  public:
   FaceBoxes() = default;
-  /// `begins` (F + 1): where each face's boxes begin.
-  FaceBoxes(std::vector<std::size_t> begins, std::span<const charts::Box> boxes);
+  /// `begins` (F + 1): where each face's things begin; box_of(i) is the box of one.
+  template <class BoxOf>
+  FaceBoxes(std::vector<std::size_t> begins, BoxOf&& box_of) : begins_(std::move(begins)) {
+    constexpr std::size_t k_few = 32;
+    for (std::size_t face = 0; face + 1 < begins_.size(); ++face) {
+      if (begins_[face + 1] - begins_[face] <= k_few) continue;
+      std::vector<charts::Box> boxes;
+      for (std::size_t i = begins_[face]; i < begins_[face + 1]; ++i) boxes.push_back(box_of(i));
+      trees_.resize(begins_.size() - 1);
+      trees_[face] = std::make_unique<charts::BoxTree>(std::move(boxes));
+    }
+  }
 
   /// Calls visit(i) for the things of the face that may meet the box, in any order.
   template <class Visit>
   void visit(Index face, const charts::Box& box, Visit&& visit) const {
     const std::size_t begin = begins_[face];
-    if (trees_[face])
+    if (!trees_.empty() && trees_[face])
       trees_[face]->visit(box, [&](Index i) { visit(begin + static_cast<std::size_t>(i)); });
     else
       for (std::size_t i = begin; i < begins_[face + 1]; ++i) visit(i);
@@ -60,10 +72,8 @@ class FaceBoxes {
 
  private:
   std::vector<std::size_t> begins_;
-  std::vector<std::unique_ptr<charts::BoxTree>> trees_;  ///< per face
+  std::vector<std::unique_ptr<charts::BoxTree>> trees_;  ///< per face; empty where no face has many
 };
-
-inline charts::Box box_around(const Vec2& a, const Vec2& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
 
 /// All pieces, sorted by face.
 struct CheckedPieces {

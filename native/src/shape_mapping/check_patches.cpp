@@ -56,17 +56,16 @@ PatchTriangles by_face(const Mesh& mesh, const CutMesh& patches) {
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
   std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
   result.triangles.resize(patches.triangles.size());
-  std::vector<charts::Box> boxes(patches.triangles.size());
   for (std::size_t t = 0; t < patches.triangles.size(); ++t) {
     const Index face = patches.triangle_face[t];
-    const std::size_t place = next[face]++;
-    PatchTriangle& triangle = result.triangles[place];
+    PatchTriangle& triangle = result.triangles[next[face]++];
     triangle.shape = patches.triangle_shape[t];
     for (int i = 0; i < 3; ++i) triangle.weights[i] = weights_in(mesh, patches.vertices[patches.triangles[t][i]], face);
-    const auto& [a, b, c] = triangle.weights;
-    boxes[place] = {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
   }
-  result.boxes = FaceBoxes(std::move(begins), boxes);
+  result.boxes = FaceBoxes(std::move(begins), [&](std::size_t i) {
+    const auto& [a, b, c] = result.triangles[i].weights;
+    return charts::Box{a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+  });
   return result;
 }
 
