@@ -13,6 +13,7 @@
 #include "gap_search.h"
 #include "laying.h"
 #include "placing_rules.h"
+#include "support/only_ratios.h"
 #include "support/random_numbers.h"
 
 namespace saddleback {
@@ -226,6 +227,8 @@ DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, c
   check(mesh, shapes, given);
   DistributionOptions options = given;
   share_out(options);
+  const OnlyRatios density(given.density);
+  options.density.assign(density.values().begin(), density.values().end());
   const JobStage stage(job, "Shapes");
   std::optional<DirectionField> smoothest;
   if (!options.field) {

@@ -8,15 +8,30 @@
 namespace saddleback {
 namespace {
 
+Vec3 face_normal(const Mesh& mesh, Index face) {
+  const Triangle& t = mesh.triangles()[face];
+  return (mesh.position(t[1]) - mesh.position(t[0])).cross(mesh.position(t[2]) - mesh.position(t[0])).normalized();
+}
+
+/// Means by angle. Where faces lie folded onto each other these are nothing but rounding, or zero; there the normal of
+/// the face of the widest corner stands for all.
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
+  constexpr double k_rounding = 1e-12;
   std::vector<Vec3> normals(mesh.vertex_count(), Vec3::Zero());
+  std::vector<Index> widest(mesh.vertex_count(), k_none);
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Triangle& t = mesh.triangles()[f];
-    const Vec3 normal =
-        (mesh.position(t[1]) - mesh.position(t[0])).cross(mesh.position(t[2]) - mesh.position(t[0])).normalized();
-    for (int i = 0; i < 3; ++i) normals[t[i]] += mesh.corner_angle(3 * f + i) * normal;
+    const Vec3 normal = face_normal(mesh, f);
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      const Index v = mesh.from(h);
+      normals[v] += mesh.corner_angle(h) * normal;
+      if (widest[v] == k_none || mesh.corner_angle(h) > mesh.corner_angle(widest[v])) widest[v] = h;
+    }
   }
-  for (Vec3& normal : normals) normal.normalize();
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (normals[v].norm() <= k_rounding * mesh.corner_angle(widest[v]))
+      normals[v] = face_normal(mesh, Mesh::face_of(widest[v]));
+    normals[v].normalize();
+  }
   return normals;
 }
 

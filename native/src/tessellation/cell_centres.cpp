@@ -8,6 +8,7 @@
 
 #include "saddleback/geodesic_centre.h"
 
+#include "support/only_ratios.h"
 #include "support/parallel.h"
 #include "tessellation/diagram.h"
 #include "tessellation/patch_log.h"
@@ -182,6 +183,7 @@ SurfacePoint centre_of(const Mesh& mesh, const CellMass& cell, PatchLog& log, co
 SurfacePoints cell_centres(const Mesh& mesh, const GeodesicVoronoi& cells, std::span<const double> density, int threads,
                            Job* job) {
   check_density(mesh, density);
+  const OnlyRatios weights(density);
   const JobStage stage(job, "Finding the centres of cells");
   const CellTriangles triangles(cells);
   const auto count = static_cast<Index>(cells.areas.size());
@@ -195,7 +197,7 @@ SurfacePoints cell_centres(const Mesh& mesh, const GeodesicVoronoi& cells, std::
   parallel_for(count, threads, 8, [&](Index cell, int thread) {
     stage.check();
     auto& [mass, log] = workers[thread];
-    mass.begin(mesh, triangles, cell, density);
+    mass.begin(mesh, triangles, cell, weights.values());
     centres[cell] = centre_of(mesh, mass, log, cells.sites[cell], std::sqrt(cells.areas[cell]));
   });
   stage.update(1);

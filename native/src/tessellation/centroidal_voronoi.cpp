@@ -6,6 +6,7 @@
 #include "saddleback/error.h"
 #include "saddleback/sample.h"
 
+#include "support/only_ratios.h"
 #include "tessellation/annealing.h"
 #include "tessellation/cell_topology.h"
 #include "tessellation/closed_ball.h"
@@ -169,8 +170,11 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
   check_sites(graph.mesh(), sites);
   check_options(graph.mesh(), options);
   check_fixed(options, static_cast<Index>(sites.size()));
+  const OnlyRatios density(options.density);
+  CentroidalVoronoiOptions scaled = options;
+  scaled.density = density.values();
   CentroidalVoronoi result = relax_at_unit_size(
-      graph, sites.size(), options, JobStage(job, "Finding cells"),
+      graph, sites.size(), scaled, JobStage(job, "Finding cells"),
       [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
           FinalCells final_cells) { return relax_sites(ground, sites, there, stage, final_cells); });
   if (options.closed_ball) result.issues = find_dual_issues(graph.mesh(), result.cells);
@@ -183,8 +187,11 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count
   check_count(graph.mesh(), count);
   check_fixed(options, count);
   if (!options.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
+  const OnlyRatios density(options.density);
+  CentroidalVoronoiOptions scaled = options;
+  scaled.density = density.values();
   CentroidalVoronoi result = relax_at_unit_size(
-      graph, static_cast<std::size_t>(count), options, JobStage(job, "Finding cells"),
+      graph, static_cast<std::size_t>(count), scaled, JobStage(job, "Finding cells"),
       [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
           FinalCells final_cells) { return relax_starts(ground, count, start, seed, there, stage, final_cells); });
   if (options.closed_ball) result.issues = find_dual_issues(graph.mesh(), result.cells);
