@@ -2,6 +2,8 @@
 // A plane laid on the surface: flat coordinates of the vertices about a point or along a curve.
 
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -48,9 +50,15 @@ class ShapeMap {
   ShapeMap(ShapeMap&&) noexcept;
   ShapeMap& operator=(ShapeMap&&) noexcept;
 
+  /// Told of every vertex whose coordinates are found, the nearest first; may throw to end it all.
+  using Watch = std::function<void(Index vertex)>;
+
   /// The exponential map: the centre at the origin, the x axis at `angle` in the FaceChart of centre.face. At a vertex
-  /// angles are scaled so that its total angle becomes 2 pi. O(n log n) for the n vertices within the box.
-  void about_point(const SurfacePoint& centre, double angle, const PlaneBox& box);
+  /// angles are scaled so that its total angle becomes 2 pi. Where the surface folds, the plane may be laid back and
+  /// forth over the box without end: it goes no farther from the centre than `reach`, measured straight through space.
+  /// O(n log n) for the n vertices within the box.
+  void about_point(const SurfacePoint& centre, double angle, const PlaneBox& box,
+                   double reach = std::numeric_limits<double>::infinity(), const Watch& watch = {});
 
   /// Along a curve of the same mesh, whose point at arc length `origin` becomes the origin, the x axis along it. Where
   /// the curve is shorter than the box the plane is laid on straight beyond its ends. O(n log n + segments).
@@ -61,6 +69,8 @@ class ShapeMap {
   Index centre_face() const { return centre_face_; }
 
   bool has(Index vertex) const { return nodes_[vertex].stamp == stamp_; }
+  /// Has coordinates that were found on the way, not laid out beside others.
+  bool is_settled(Index vertex) const { return has(vertex) && nodes_[vertex].state == State::settled; }
   /// Of a vertex that has some.
   const Vec2& coordinates(Index vertex) const { return nodes_[vertex].place; }
   /// All vertices that have coordinates, in no particular order.
@@ -105,8 +115,9 @@ class ShapeMap {
   Node& reach(Index vertex);
   void put(Index vertex, const Vec2& place, double key, double miss, State state);
   void put_source(Index vertex, const Vec2& place) { put(vertex, place, distance_of(place), 0, State::source); }
-  void march(const PlaneBox& box);
-  void settle(Index vertex, const PlaneBox& box);
+  void march(const PlaneBox& box, const Watch& watch);
+  void look_about(Index vertex, const PlaneBox& box);
+  bool is_out_of_reach(Index from, Index to) const;
   void look_through(Index from, Index to, Index apex);
   double distance_of(const Vec2& place) const { return along_curve_ ? std::abs(place.y()) : place.norm(); }
 
@@ -120,6 +131,8 @@ class ShapeMap {
   std::uint32_t stamp_ = 0;
   Index centre_face_ = 0;
   bool along_curve_ = false;
+  Vec3 centre_ = Vec3::Zero();
+  double reach_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace saddleback

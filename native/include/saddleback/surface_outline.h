@@ -76,16 +76,22 @@ class OutlineMapper {
 
  private:
   void lay_corners(std::span<const Loop> loops, const Placement& placement, double turn);
-  MapFailure cut(SurfaceOutline& outline, const MapLimits& limits);
+  MapFailure cut();
   void cut_loop(std::size_t begin, std::size_t end);
   void walk(const Vec2& a, const Vec2& b, Index corner);
   Index exit_of(const Vec2& a, const Vec2& b) const;
   double cross_weight(Index h, const Vec2& a, const Vec2& b) const;
   bool is_in_face(const Vec2& corner) const;
   Vec2 weights_in_face(const Vec2& corner) const;
+  void begin(SurfaceOutline& outline, const MapLimits& limits);
+  struct Stretch {
+    double smallest, largest;
+  };
+  Stretch checked(Index face) const;
+  void look_at(Index vertex);
   void enter(Index face);
   void find_inside();
-  bool is_inside(const Vec2& vertex) const;
+  bool is_in_shape(const Vec2& vertex) const;
   void complete_star(Index vertex);
   void check_crossings();
   bool has_inside(Index vertex) const { return inside_stamps_[vertex] == stamp_; }
@@ -102,6 +108,7 @@ class OutlineMapper {
   std::vector<std::uint32_t> face_stamps_, inside_stamps_;
   std::vector<Index> crossed_;  ///< edges, by their smaller half-edge
   std::uint32_t stamp_ = 0;
+  std::size_t settled_ = 0;  ///< vertices of the plane that have been looked at while it was laid
   SurfaceOutline* outline_ = nullptr;
   MapLimits limits_;
   PlaneBox box_;

@@ -61,6 +61,7 @@ GapSearch::GapSearch(const Mesh& mesh, const PlacingRules& rules, Laying& laying
     const double size = options.smallest * *std::max_element(options.size.begin(), options.size.end());
     certificate_.tolerance = options.tolerance * (size * rules.largest_shape_radius() + 0.5 * options.gap);
   }
+  suspected_.resize(options.maximal ? static_cast<std::size_t>(mesh.face_count()) : 0);
   flag_borders();
 }
 
@@ -201,11 +202,13 @@ void GapSearch::throw_dart(const OpenCell& open, const CellView& view, Index num
   const double radius = view.size * rules_->smallest_factor() * rules_->shape_radius(rules_->kinds()[kind]);
   const double area = mesh_->face_area(open.cell.face) * open.cell.unit() * open.cell.unit();
   const double least = look.free ? k_free_area : k_dart_area;
-  const bool is_thinned = !look.free || !options_->maximal;
+  const bool may_be_lost = options_->maximal && view.radius < least_stuck();
+  const bool is_suspected = may_be_lost && 2 * view.radius < least_stuck() && suspected_[open.cell.face];
+  const bool is_thinned = (!look.free && !is_suspected) || !options_->maximal;
   if (is_thinned && area < uniform(key, 5) * least * radius * radius) return;
-  if (look.free) {
+  if (look.free || is_suspected) {
     // The first cells that may be given up learn whether they have to be: their parts would ask one by one.
-    const bool is_probe = options_->maximal && view.radius < least_stuck() && 2 * view.radius >= least_stuck();
+    const bool is_probe = is_suspected || (may_be_lost && 2 * view.radius >= least_stuck());
     const double scale = view.size * rules_->smallest_factor();
     look.has_dart = true;
     look.dart = {order(view.centre, key), kind, number, view.centre, scale, false, is_probe};
@@ -355,6 +358,18 @@ void GapSearch::look(const OpenCell& open, Index number, Neighbours& near, Look&
   if (look.open) throw_dart(open, view, number, look);
 }
 
+/// The face and those about it.
+void GapSearch::suspect(Index face) {
+  for (const Index vertex : mesh_->triangles()[face]) {
+    const Index first = mesh_->first_halfedge(vertex);
+    Index h = first;
+    do {
+      suspected_[Mesh::face_of(h)] = 1;
+      h = mesh_->rotate(h);
+    } while (h != k_none && h != first);
+  }
+}
+
 void GapSearch::lose(const Cell& cell) {
   certificate_.uncertified_area += mesh_->face_area(cell.face) * cell.unit() * cell.unit();
   certificate_.uncertified.push_back(point_at(cell.face, cell.centre()));
@@ -392,6 +407,7 @@ void GapSearch::round(const JobStage& stage) {
     const Outcome outcome = outcomes[k];
     laid_in_round_ += outcome == Outcome::laid ? 1 : 0;
     const bool is_odd = outcome == Outcome::fold || outcome == Outcome::stretched;
+    if (is_odd && options_->maximal) suspect(candidate.centre.face);
     if (!candidate.is_thorough) {
       is_stuck[candidate.cell] = is_odd;
     } else if (outcome == Outcome::laid || outcome == Outcome::not_wanted) {

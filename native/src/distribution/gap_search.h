@@ -57,6 +57,7 @@ class GapSearch {
   double drawn_scale(const SurfacePoint& point, double chance) const {
     return rules_->size_at(point) * (options_->smallest + (options_->largest - options_->smallest) * chance);
   }
+  void suspect(Index face);
   void throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const;
   std::uint64_t centrally_covered(const CellView& view, std::uint64_t kinds, const Neighbours& near) const;
   bool is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbours& near) const;
@@ -79,8 +80,11 @@ class GapSearch {
   std::vector<OpenCell> open_;
   std::vector<double> front_;              ///< per vertex, for packing
   std::vector<std::uint8_t> near_border_;  ///< per face; empty where there is none
-  std::vector<double> forbidden_depth_;    ///< per vertex: at least so far within what is forbidden
-  std::vector<double> kind_weights_;       ///< sums, by which kinds are drawn
+  /// Per face: near a place where shapes cannot be laid. Cells there that are small enough to be given up are probed,
+  /// as their parts would be one by one.
+  std::vector<std::uint8_t> suspected_;
+  std::vector<double> forbidden_depth_;  ///< per vertex: at least so far within what is forbidden
+  std::vector<double> kind_weights_;     ///< sums, by which kinds are drawn
   Certificate certificate_;
   std::int64_t laid_in_round_ = 0;
   int rounds_ = 0;

@@ -47,16 +47,19 @@ void ShapeMap::begin() {
   queue_.clear();
 }
 
-void ShapeMap::about_point(const SurfacePoint& centre, double angle, const PlaneBox& box) {
+void ShapeMap::about_point(const SurfacePoint& centre, double angle, const PlaneBox& box, double reach,
+                           const Watch& watch) {
   begin();
   along_curve_ = false;
+  centre_ = position(*mesh_, centre);
+  reach_ = reach;
   centre_face_ = centre.face;
   const Index vertex = vertex_at(*mesh_, centre);
   if (vertex == k_none)
     seed_face(centre, angle);
   else
     seed_star(centre, vertex, angle);
-  march(box);
+  march(box, watch);
 }
 
 void ShapeMap::seed_face(const SurfacePoint& centre, double angle) {
@@ -87,6 +90,7 @@ void ShapeMap::seed_star(const SurfacePoint& centre, Index vertex, double angle)
 void ShapeMap::along_curve(const SurfaceCurve& curve, double origin, const PlaneBox& box) {
   begin();
   along_curve_ = true;
+  reach_ = std::numeric_limits<double>::infinity();
   bend_->measure(curve, origin);
   centre_face_ = curve.segments().front().face;
   for (const CurveSegment& segment : curve.segments()) {
@@ -100,7 +104,7 @@ void ShapeMap::along_curve(const SurfaceCurve& curve, double origin, const Plane
     queue_.push_back({node.key, vertex});
   }
   std::make_heap(queue_.begin(), queue_.end());
-  march(box);
+  march(box, {});
 }
 
 /// Corners of the faces that the curve crosses take their foot on the nearest segment, run on straight where it falls
@@ -134,22 +138,33 @@ void ShapeMap::put(Index vertex, const Vec2& place, double key, double miss, Sta
   std::push_heap(queue_.begin(), queue_.end());
 }
 
-void ShapeMap::march(const PlaneBox& box) {
+void ShapeMap::march(const PlaneBox& box, const Watch& watch) {
   while (!queue_.empty()) {
     const Entry entry = queue_.front();
     std::pop_heap(queue_.begin(), queue_.end());
     queue_.pop_back();
-    const Node& node = nodes_[entry.vertex];
-    if (node.state != State::settled && node.key == entry.key) settle(entry.vertex, box);
+    Node& node = nodes_[entry.vertex];
+    if (node.state == State::settled || node.key != entry.key) continue;
+    node.state = State::settled;
+    if (watch) watch(entry.vertex);
+    look_about(entry.vertex, box);
   }
 }
 
+/// Whether the straight way from the centre to the edge is longer than the reach.
+bool ShapeMap::is_out_of_reach(Index from, Index to) const {
+  const Vec3 begin = mesh_->position(from) - centre_, along = mesh_->position(to) - mesh_->position(from);
+  const double foot = std::clamp(-begin.dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (begin + foot * along).squaredNorm() > reach_ * reach_;
+}
+
 /// Looks through every edge of the vertex's faces that has now both ends settled.
-void ShapeMap::settle(Index vertex, const PlaneBox& box) {
-  nodes_[vertex].state = State::settled;
+void ShapeMap::look_about(Index vertex, const PlaneBox& box) {
   const Vec2 place = nodes_[vertex].place;
+  const bool is_near = (mesh_->position(vertex) - centre_).squaredNorm() <= reach_ * reach_;
   const auto is_open = [&](Index other) {
-    return has(other) && nodes_[other].state >= State::source && !is_beyond(box, place, nodes_[other].place);
+    return has(other) && nodes_[other].state >= State::source && !is_beyond(box, place, nodes_[other].place) &&
+           (is_near || !is_out_of_reach(vertex, other));
   };
   const Index first = mesh_->first_halfedge(vertex);
   Index h = first;

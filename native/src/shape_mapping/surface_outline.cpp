@@ -33,18 +33,6 @@ class Failed : public std::exception {
 /// A walk over more faces than this is lost: outlines are at most as long as a few rounds of their box.
 constexpr std::size_t k_most_pieces = 1'000'000;
 
-/// The singular values of the map from the plane to a face.
-struct Stretch {
-  double smallest, largest;
-};
-Stretch stretch_of(const Vec3& e1, const Vec3& e2, const Vec2& u1, const Vec2& u2) {
-  const double scale = 1 / cross(u1, u2);
-  const Vec3 x = scale * (u2.y() * e1 - u1.y() * e2), y = scale * (u1.x() * e2 - u2.x() * e1);
-  const double xx = x.squaredNorm(), yy = y.squaredNorm();
-  const double largest = std::sqrt(0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), x.dot(y)));
-  return {x.cross(y).norm() / largest, largest};
-}
-
 }  // namespace
 
 OutlineMapper::OutlineMapper(const Mesh& mesh)
@@ -53,18 +41,30 @@ OutlineMapper::OutlineMapper(const Mesh& mesh)
       face_stamps_(static_cast<std::size_t>(mesh.face_count()), 0),
       inside_stamps_(static_cast<std::size_t>(mesh.vertex_count()), 0) {}
 
+/// Whatever lies in the shape must be laid out well, so it is looked at while the plane is laid: where the surface
+/// folds that would go on for long.
 MapFailure OutlineMapper::map(std::span<const Loop> loops, const Placement& placement, SurfaceOutline& outline,
                               const MapLimits& limits) {
   lay_corners(loops, placement, 0);
-  plane_.about_point(placement.centre, placement.angle, box_);
-  return cut(outline, limits);
+  begin(outline, limits);
+  double radius = 0;
+  for (const Vec2& corner : corners_) radius = std::max(radius, corner.norm());
+  try {
+    plane_.about_point(placement.centre, placement.angle, box_, limits.largest * radius,
+                       [this](Index vertex) { look_at(vertex); });
+  } catch (const Failed& failed) {
+    return failed.reason();
+  }
+  settled_ = plane_.vertices().size();
+  return cut();
 }
 
 MapFailure OutlineMapper::map_along(std::span<const Loop> loops, const Placement& placement, const CentreLine& line,
                                     SurfaceOutline& outline, const MapLimits& limits) {
   lay_corners(loops, placement, line.turn);
+  begin(outline, limits);
   plane_.along_curve(line.curve, line.origin, box_);
-  return cut(outline, limits);
+  return cut();
 }
 
 /// Loops of a mirrored shape run the other way round, so that it stays on their left.
@@ -92,7 +92,7 @@ void OutlineMapper::lay_corners(std::span<const Loop> loops, const Placement& pl
   begins_.push_back(corners_.size());
 }
 
-MapFailure OutlineMapper::cut(SurfaceOutline& outline, const MapLimits& limits) {
+void OutlineMapper::begin(SurfaceOutline& outline, const MapLimits& limits) {
   if (++stamp_ == 0) {
     std::fill(face_stamps_.begin(), face_stamps_.end(), 0);
     std::fill(inside_stamps_.begin(), inside_stamps_.end(), 0);
@@ -109,6 +109,11 @@ MapFailure OutlineMapper::cut(SurfaceOutline& outline, const MapLimits& limits) 
   outline.largest = 0;
   crossed_.clear();
   touched_.clear();
+  settled_ = 0;
+}
+
+MapFailure OutlineMapper::cut() {
+  SurfaceOutline& outline = *outline_;
   face_ = plane_.centre_face();
   plane_.complete(face_);
   try {
@@ -187,18 +192,45 @@ double OutlineMapper::cross_weight(Index h, const Vec2& a, const Vec2& b) const 
   return right + left > 0 ? right / (right + left) : 0.5;
 }
 
+/// The singular values of the map from the plane to a face, which must be laid out well.
+OutlineMapper::Stretch OutlineMapper::checked(Index face) const {
+  const Index i = mesh_->from(3 * face), j = mesh_->to(3 * face), k = mesh_->apex(3 * face);
+  const Vec2 &a = place(i), &b = place(j), &c = place(k);
+  if (!is_upright(a, b, c)) throw Failed(MapFailure::fold);
+  const Vec3 e1 = mesh_->position(j) - mesh_->position(i), e2 = mesh_->position(k) - mesh_->position(i);
+  const Vec2 u1 = b - a, u2 = c - a;
+  const double scale = 1 / cross(u1, u2);
+  const Vec3 x = scale * (u2.y() * e1 - u1.y() * e2), y = scale * (u1.x() * e2 - u2.x() * e1);
+  const double xx = x.squaredNorm(), yy = y.squaredNorm();
+  const double largest = std::sqrt(0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), x.dot(y)));
+  const Stretch stretch{x.cross(y).norm() / largest, largest};
+  if (!(stretch.smallest >= limits_.smallest && stretch.largest <= limits_.largest))
+    throw Failed(MapFailure::stretched);
+  return stretch;
+}
+
+/// Of faces about vertices in the shape, those whose last corner this is.
+void OutlineMapper::look_at(Index vertex) {
+  const Vec2& at = place(vertex);
+  const bool is_in = is_in_shape(at);
+  if (is_in && mesh_->is_boundary(vertex)) throw Failed(MapFailure::boundary);
+  if (is_in) inside_stamps_[vertex] = stamp_;
+  const Index first = mesh_->first_halfedge(vertex);
+  Index h = first;
+  do {
+    const Index next = mesh_->to(h), apex = mesh_->apex(h);
+    if (plane_.is_settled(next) && plane_.is_settled(apex) && (is_in || has_inside(next) || has_inside(apex)))
+      checked(Mesh::face_of(h));
+    h = mesh_->rotate(h);
+  } while (h != k_none && h != first);
+}
+
 /// The shape touches this face: all of it must be laid out well.
 void OutlineMapper::enter(Index face) {
   if (face_stamps_[face] == stamp_) return;
   face_stamps_[face] = stamp_;
   plane_.complete(face);
-  const Index i = mesh_->from(3 * face), j = mesh_->to(3 * face), k = mesh_->apex(3 * face);
-  const Vec2 &a = place(i), &b = place(j), &c = place(k);
-  if (!is_upright(a, b, c)) throw Failed(MapFailure::fold);
-  const Vec3& origin = mesh_->position(i);
-  const Stretch stretch = stretch_of(mesh_->position(j) - origin, mesh_->position(k) - origin, b - a, c - a);
-  if (!(stretch.smallest >= limits_.smallest && stretch.largest <= limits_.largest))
-    throw Failed(MapFailure::stretched);
+  const Stretch stretch = checked(face);
   outline_->smallest = std::min(outline_->smallest, stretch.smallest);
   outline_->largest = std::max(outline_->largest, stretch.largest);
   outline_->faces.push_back(face);
@@ -227,7 +259,7 @@ void OutlineMapper::find_inside() {
   for (std::size_t i = 0; i < plane_.vertices().size(); ++i) {
     const Index vertex = plane_.vertices()[i];
     const Vec2& at = place(vertex);
-    if ((at.array() < box_.low.array()).any() || (at.array() > box_.high.array()).any() || !is_inside(at)) continue;
+    if (i < settled_ ? !has_inside(vertex) : !is_in_shape(at)) continue;
     if (mesh_->is_boundary(vertex)) throw Failed(MapFailure::boundary);
     inside_stamps_[vertex] = stamp_;
     outline_->inside.push_back(vertex);
@@ -237,7 +269,8 @@ void OutlineMapper::find_inside() {
 }
 
 /// Counts the edges of the outline that the ray to the right of the vertex meets.
-bool OutlineMapper::is_inside(const Vec2& vertex) const {
+bool OutlineMapper::is_in_shape(const Vec2& vertex) const {
+  if ((vertex.array() < box_.low.array()).any() || (vertex.array() > box_.high.array()).any()) return false;
   bool inside = false;
   for (std::size_t loop = 0; loop + 1 < begins_.size(); ++loop) {
     Vec2 a = corners_[begins_[loop + 1] - 1];
