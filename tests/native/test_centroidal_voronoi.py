@@ -186,6 +186,20 @@ def test_painted_density_is_the_number_of_cells_per_area() -> None:
     assert per_cell >= 0.95
 
 
+@pytest.mark.parametrize("unit", [2.0**100, 1e200, 1e-300, 1e-310])
+def test_only_ratios_of_densities_count(unit: float) -> None:
+    mesh = sb.Mesh(*meshes.icosphere(3))
+    graph = sb.SaddleVertexGraph(mesh, k=30)
+    density = 1 + mesh.vertices[:, 2]
+    density[density < 0.1] = 0
+    wanted, found = (sb.centroidal_voronoi(graph, count=20, density=density * u, max_iterations=10) for u in (1, unit))
+    np.testing.assert_allclose(found.sites.positions(mesh), wanted.sites.positions(mesh), atol=1e-6)
+    assert np.isfinite(found.energy).all()
+    assert found.energy[-1] < found.energy[0]
+    centers = (wanted.cells.centres(density * u).positions(mesh) for u in (1, unit))
+    np.testing.assert_allclose(*centers, atol=1e-9)
+
+
 def test_a_sharp_step_of_density_is_followed() -> None:
     """Paint of 1 and 16, side by side: cells per area against the paint that a cell covers, and in 20 strips."""
     mesh = sb.Mesh(*meshes.grid(70, 70, 0.2))

@@ -76,6 +76,19 @@ def test_values_do_not_depend_on_scale_and_place(method: str) -> None:
     np.testing.assert_allclose(first, second, atol=1e-5)
 
 
+@pytest.mark.parametrize("unit", [1e-9, 1e-6, 1e-3, 1e5, 1e6, 1e9])
+@pytest.mark.parametrize("method", METHODS)
+def test_values_do_not_depend_on_the_unit(method: str, unit: float) -> None:
+    """Also of several parts of different sizes, and at places inside faces."""
+    for vertices, triangles in (meshes.grid(9, 9), meshes.torus(30, 12), meshes.two_components()):
+        mesh = sb.Mesh(vertices, triangles)
+        places = sb.sample(mesh, 6, seed=1, one_per_component=True)
+        values = np.arange(len(places)) ** 2 + 1.0
+        wanted = sb.spread_values(mesh, places, values, method)
+        found = sb.spread_values(sb.Mesh(unit * vertices, triangles), places, values, method)
+        np.testing.assert_allclose(found, wanted, atol=1e-5 * values.max())
+
+
 # --- curvature --------------------------------------------------------------------------------------------------------
 
 
@@ -100,6 +113,19 @@ def test_curvature_of_a_torus_converges() -> None:
         across = (ring - 1) / 0.35 / ring
         errors.append(max(np.abs(largest - 1 / 0.35).max(), np.abs(smallest - across).max()))
     assert errors[1] < errors[0] / 2.5 and errors[1] < 0.05
+
+
+@pytest.mark.parametrize("columns", [3, 4, 5, 6])
+@pytest.mark.parametrize("tilt", [0.0, 1e-17, 0.3])
+def test_curvature_of_sheets_folded_onto_themselves_is_finite(columns: int, tilt: float) -> None:
+    """Normals about a fold cancel: exactly, or but for rounding."""
+    vertices, triangles = meshes.grid(columns, 3)
+    vertices[:, 0] = np.abs((vertices[:, 0] * (columns - 1)).round() % 2 - 1)
+    vertices[:, 1] *= 2
+    vertices[:, 2] += tilt * vertices[:, 0]
+    smallest, largest, direction = sb.principal_curvatures(sb.Mesh(vertices, triangles))
+    assert np.isfinite([smallest, largest]).all()
+    np.testing.assert_allclose(np.linalg.norm(direction, axis=1), 1)
 
 
 # --- from distances ---------------------------------------------------------------------------------------------------

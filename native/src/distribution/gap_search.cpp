@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "saddleback/trace.h"
 
@@ -37,6 +38,8 @@ constexpr std::array<double, 10> k_showers{2, 2, 4, 4, 8, 8, 16, 16, 32, 32};
 constexpr std::array<double, 4> k_sweeping_showers{80, 40, 40, 40};
 constexpr std::size_t k_searching_showers = 6, k_searching_sweeps = 2;
 constexpr double k_most_drops = 1e6;  ///< on a face
+/// So many are held at a time; of shapes that are tiny beside the surface there would be more than memory holds.
+constexpr std::size_t k_drops_held = 4'000'000, k_most_cells = 1 << 20;
 /// A certificate that leaves more than this share of the surface open is not called one.
 constexpr double k_unproven = 0.5;
 /// Cells smaller than this share of that square get fewer darts.
@@ -95,10 +98,13 @@ void GapSearch::flag_borders() {
 /// Larger cells are hardly ever covered as a whole.
 double GapSearch::base_radius() const { return 0.5 * rules_->smallest_radius(); }
 
-void GapSearch::make_base_cells() {
+/// Of the next faces, as many as are looked at together.
+void GapSearch::make_base_cells(const JobStage& stage) {
   const std::size_t count = rules_->kinds().size();
   const std::uint64_t all = count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
-  for (Index f = 0; f < mesh_->face_count(); ++f) {
+  while (next_face_ < mesh_->face_count() && open_.size() < k_most_cells) {
+    stage.check();
+    const Index f = next_face_++;
     if (!options_->forbidden.empty() && options_->forbidden[f]) continue;
     const double edge = std::max({mesh_->length(3 * f), mesh_->length(3 * f + 1), mesh_->length(3 * f + 2)});
     int level = 0;
@@ -147,19 +153,61 @@ Index GapSearch::draw_kind(std::uint64_t kinds, double chance) const {
   return kind;
 }
 
-void GapSearch::drop_on(Index face, int shower, double per_area, std::vector<Candidate>& drops) const {
-  if (!options_->forbidden.empty() && options_->forbidden[face]) return;
+double GapSearch::mean_drops(Index face, double per_area) const {
   const double size = rules_->size_at(face, Vec2::Constant(1.0 / 3));
+  return std::min(per_area * mesh_->face_area(face) / (size * size), k_most_drops);
+}
+
+/// Calls visit(key of the drop, its number among random ones, point) for each.
+template <class Visit>
+void GapSearch::drop_on(Index face, int shower, double per_area, const JobStage& stage, Visit&& visit) const {
+  constexpr Index k_drops_between_looks = 1 << 14;
+  if (!options_->forbidden.empty() && options_->forbidden[face]) return;
   const std::uint64_t own = mixed(mixed(options_->seed, static_cast<std::uint64_t>(shower)), face);
-  const double mean = std::min(per_area * mesh_->face_area(face) / (size * size), k_most_drops);
-  const auto count = static_cast<Index>(mean + uniform(own, 0));
+  const auto count = static_cast<Index>(mean_drops(face, per_area) + uniform(own, 0));
   for (Index i = 0; i < count; ++i) {
+    if (i % k_drops_between_looks == 0) stage.check();
     const std::uint64_t key = mixed(own, static_cast<std::uint64_t>(i) + 1);
     double along = uniform(key, 1), up = uniform(key, 2);
     if (along + up > 1) along = 1 - along, up = 1 - up;
     const SurfacePoint point = point_at(face, Vec2(along, up));
-    const Index kind = draw_kind(~std::uint64_t{0}, uniform(key, 0));
-    drops.push_back({order(point, key), kind, face, point, drawn_scale(point, uniform(key, 4))});
+    visit(order(point, key), key, point);
+  }
+}
+
+/// In the order of their keys, as many at a time as are held.
+void GapSearch::shower(int number, double per_area, const JobStage& stage) {
+  constexpr std::size_t k_bins = 4096;
+  const auto for_each = [&](auto&& visit) {
+    for (Index f = 0; f < mesh_->face_count(); ++f) {
+      if (f % 4096 == 0) stage.check();
+      drop_on(f, number, per_area, stage, visit);
+    }
+  };
+  // Few are all held at once, in one bin.
+  double expected = mesh_->face_count();
+  for (Index f = 0; f < mesh_->face_count(); ++f) expected += mean_drops(f, per_area);
+  const std::size_t bin_count = expected < static_cast<double>(k_drops_held) ? 1 : k_bins;
+  const auto bin_of = [&](double key) {
+    return static_cast<std::size_t>(std::clamp(key, 0.0, 1.0) * static_cast<double>(bin_count - 1));
+  };
+  std::vector<std::size_t> bins(bin_count, 1);
+  if (bin_count > 1) for_each([&](double key, std::uint64_t, const SurfacePoint&) { ++bins[bin_of(key)]; });
+  const double count = static_cast<double>(std::accumulate(bins.begin(), bins.end(), std::size_t{0}));
+  std::vector<Candidate> drops;
+  for (std::size_t begin = 0, end, done = 0; begin < bin_count && laying_->is_any_wanted(); begin = end) {
+    std::size_t held = bins[begin];
+    for (end = begin + 1; end < bin_count && held + bins[end] <= k_drops_held;) held += bins[end++];
+    drops.clear();
+    for_each([&](double order, std::uint64_t key, const SurfacePoint& point) {
+      if (bin_of(order) < begin || bin_of(order) >= end) return;
+      const Index kind = draw_kind(~std::uint64_t{0}, uniform(key, 0));
+      drops.push_back({order, kind, point.face, point, drawn_scale(point, uniform(key, 4))});
+    });
+    const auto share = [&](std::size_t drop) { return static_cast<double>(drop) / count; };
+    laying_->lay(drops, stage.part(share(done), share(done + held)));
+    done += held;
+    if (laying_->is_hopeless()) break;
   }
 }
 
@@ -176,13 +224,8 @@ DistributionStop GapSearch::rain(const JobStage& stage) {
       return (static_cast<double>(i) + share) / static_cast<double>(showers.size());
     };
     weigh_kinds();
-    std::vector<Candidate> drops;
-    for (Index f = 0; f < mesh_->face_count(); ++f) {
-      if (f % 4096 == 0) stage.check();
-      drop_on(f, static_cast<int>(i), showers[i] / area, drops);
-    }
     const std::size_t before = laying_->settled().copies().size();
-    laying_->lay(drops, stage.part(part(0), part(1)));
+    shower(static_cast<int>(i), showers[i] / area, stage.part(part(0), part(1)));
     if (laying_->is_hopeless()) break;
     const std::size_t total = laying_->settled().copies().size();
     is_tired = static_cast<double>(total - before) < k_tired * static_cast<double>(total);
@@ -386,6 +429,7 @@ void GapSearch::round(const JobStage& stage) {
   });
   std::vector<Candidate> candidates;
   for (Index i = 0; i < static_cast<Index>(open_.size()); ++i) {
+    if (i % 4096 == 0) stage.check();
     const Look& found = looks[i];
     certificate_.cells += found.tests;
     certificate_.leaves += found.leaves;
@@ -419,6 +463,7 @@ void GapSearch::round(const JobStage& stage) {
   }
   std::vector<OpenCell> next;
   for (std::size_t i = 0; i < open_.size(); ++i) {
+    if (i % 4096 == 0) stage.check();
     if (!looks[i].open) continue;
     const CellView view = rules_->view(open_[i].cell);
     if (is_stuck[i] && view.radius < least_stuck()) {
@@ -431,18 +476,28 @@ void GapSearch::round(const JobStage& stage) {
   ++rounds_;
 }
 
-DistributionStop GapSearch::run(const JobStage& stage) {
-  double done = searches() ? 0.4 : 1;
-  const DistributionStop rained = rain(stage.part(0, done));
-  if (rained == DistributionStop::counts || !searches() || laying_->is_hopeless()) return rained;
-  make_base_cells();
-  while (!open_.empty()) {
-    if (!laying_->is_any_wanted()) return DistributionStop::counts;
+/// Until none is open, or (unless all is wanted) rooms become rare.
+void GapSearch::search_cells(const JobStage& stage) {
+  const int first = rounds_;
+  for (double done = 0; !open_.empty() && laying_->is_any_wanted(); done += 0.5 * (1 - done)) {
     round(stage.part(done, done + 0.5 * (1 - done)));
-    done += 0.5 * (1 - done);
     const auto total = static_cast<double>(laying_->settled().copies().size());
-    const bool is_tired = static_cast<double>(laid_in_round_) < k_tired * total && rounds_ > 1;
+    const bool is_tired = static_cast<double>(laid_in_round_) < k_tired * total && rounds_ > first + 1;
     if (!options_->maximal && (is_tired || total == 0)) break;
+  }
+  open_.clear();
+}
+
+DistributionStop GapSearch::run(const JobStage& stage) {
+  constexpr double k_rain = 0.4;  // of the work, where cells are searched after it
+  const DistributionStop rained = rain(stage.part(0, searches() ? k_rain : 1));
+  if (rained == DistributionStop::counts || !searches() || laying_->is_hopeless()) return rained;
+  const auto share = [&] { return k_rain + (1 - k_rain) * next_face_ / mesh_->face_count(); };
+  while (next_face_ < mesh_->face_count() && laying_->is_any_wanted()) {
+    const double begin = share();
+    make_base_cells(stage);
+    search_cells(stage.part(begin, share()));
+    if (!options_->maximal && laying_->settled().copies().empty()) break;
   }
   if (!laying_->is_any_wanted()) return DistributionStop::counts;
   if (!options_->maximal) return DistributionStop::tired;

@@ -42,14 +42,18 @@ class GapSearch {
   };
   using Neighbours = std::vector<Neighbour>;
 
-  void make_base_cells();
+  void make_base_cells(const JobStage& stage);
   double base_radius() const;
   void flag_borders();
   /// Copies that are wanted by number are looked for where the rain has missed the room.
   bool searches() const { return options_->maximal || !options_->counts.empty(); }
   void weigh_kinds();
   DistributionStop rain(const JobStage& stage);
-  void drop_on(Index face, int shower, double per_area, std::vector<Candidate>& drops) const;
+  double mean_drops(Index face, double per_area) const;
+  void shower(int number, double per_area, const JobStage& stage);
+  template <class Visit>
+  void drop_on(Index face, int shower, double per_area, const JobStage& stage, Visit&& visit) const;
+  void search_cells(const JobStage& stage);
   void round(const JobStage& stage);
   void look(const OpenCell& open, Index number, Neighbours& near, Look& look) const;
   void find_neighbours(const CellView& view, Neighbours& near) const;
@@ -78,6 +82,7 @@ class GapSearch {
   Laying* laying_;
   const DistributionOptions* options_;
   std::vector<OpenCell> open_;
+  Index next_face_ = 0;                    ///< whose cells have not been opened yet
   std::vector<double> front_;              ///< per vertex, for packing
   std::vector<std::uint8_t> near_border_;  ///< per face; empty where there is none
   /// Per face: near a place where shapes cannot be laid. Cells there that are small enough to be given up are probed,

@@ -15,6 +15,7 @@ namespace saddleback::distribution {
 namespace {
 
 constexpr std::size_t k_least_batch = 8, k_first_batch = 64, k_largest_batch = 4096;
+constexpr std::size_t k_sorted_at_once = 1 << 18;  ///< candidates, more than a batch
 /// Candidates that a thread takes at a time: fewer are not worth waking it up for.
 constexpr Index k_share = 32;
 
@@ -183,13 +184,20 @@ std::vector<Outcome> Laying::lay(std::vector<Candidate> candidates, const JobSta
   std::vector<Outcome> outcomes(candidates.size(), Outcome::not_wanted);
   std::vector<Index> order(candidates.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+  const auto comes_first = [&](Index a, Index b) {
     return candidates[a].key != candidates[b].key ? candidates[a].key < candidates[b].key : a < b;
-  });
-  std::size_t size = k_first_batch;
+  };
+  std::size_t size = k_first_batch, sorted = 0;
   for (std::size_t begin = 0, end; begin < order.size() && is_any_wanted() && !is_hopeless(); begin = end) {
     stage.update(static_cast<double>(begin) / static_cast<double>(order.size()));
     end = std::min(order.size(), begin + size);
+    if (end > sorted) {  // a part at a time: sorting millions could not be stopped
+      const auto from = order.begin() + static_cast<std::ptrdiff_t>(sorted);
+      sorted = std::min(order.size(), sorted + k_sorted_at_once);
+      const auto to = order.begin() + static_cast<std::ptrdiff_t>(sorted);
+      if (to != order.end()) std::nth_element(from, to, order.end(), comes_first);
+      std::sort(from, to, comes_first);
+    }
     ++batch_;
     attempts_.resize(std::max(attempts_.size(), end - begin));
     parallel_for(static_cast<Index>(end - begin), threads_, k_share, [&](Index i, int thread) {

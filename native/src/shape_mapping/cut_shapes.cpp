@@ -163,8 +163,7 @@ class Cutter {
     return point;
   }
 
-  /// A piece and one that runs back along it (a corner that rounding has put on an edge) bound nothing. Where no others
-  /// are left the face is as its corners are.
+  /// A piece and one that runs back along it (a corner that rounding has put on an edge) bound nothing.
   void label(Index face, std::span<const FacePiece> pieces) {
     labels_.assign(flat_.triangle_count(), k_unknown);
     left_.assign(3 * flat_.triangle_count(), k_unknown);
@@ -187,40 +186,38 @@ class Cutter {
       const bool is_undone = twin != k_none && left_[twin] == left_[h];
       if (left_[h] != k_unknown && !is_undone) set(static_cast<Index>(h / 3), left_[h]);
     }
-    const Index rest = front_.empty() ? vertex_shape_[mesh_.from(3 * face)] : k_none;
     spread(set);
-    if (is_shared(face, pieces)) {
-      // What lies right of one shape's outline may be within another.
-      for (std::size_t t = 0; t < labels_.size(); ++t)
+    // What no piece bounds from within is as the corners of the face are: rounding may have turned a sliver over, or
+    // another shape lies around all of this.
+    const std::array<Index, 3> corners = {corner_shape(face, 0, pieces), corner_shape(face, 1, pieces),
+                                          corner_shape(face, 2, pieces)};
+    for (std::size_t t = 0; t < labels_.size(); ++t)
+      if (labels_[t] == k_unknown)
         for (const Index point : flat_.triangle(t))
-          if (point < 3 && corner_shape(face, point) != k_none) set(static_cast<Index>(t), corner_shape(face, point));
-      spread(set);
-      check_labels(face);
-    }
-    for (std::size_t t = 0; t < labels_.size(); ++t) set(static_cast<Index>(t), rest);
+          if (point < 3 && corners[point] != k_none) set(static_cast<Index>(t), corners[point]);
+    spread(set);
+    const auto is_other = [&](Index shape) { return shape != k_none && shape != pieces.front().shape; };
+    if (std::ranges::any_of(corners, is_other) || is_other(pieces.back().shape)) check_labels(face, corners);
+    for (std::size_t t = 0; t < labels_.size(); ++t) set(static_cast<Index>(t), k_none);
   }
 
-  /// Whether several shapes have a part of the face.
-  bool is_shared(Index face, std::span<const FacePiece> pieces) const {
-    const auto is_other = [&](Index shape) { return shape != k_none && shape != pieces.front().shape; };
-    if (is_only_shapes_) return false;
-    return std::any_of(pieces.begin(), pieces.end(), [&](const FacePiece& piece) { return is_other(piece.shape); }) ||
-           is_other(corner_shape(face, 0)) || is_other(corner_shape(face, 1)) || is_other(corner_shape(face, 2));
+  /// The shape that a corner of the face lies in; of those that are cut out one by one, only the one that is.
+  Index corner_shape(Index face, Index corner, std::span<const FacePiece> pieces) const {
+    const Index shape = vertex_shape_[mesh_.from(3 * face + corner)];
+    return is_only_shapes_ && shape != pieces.front().shape ? k_none : shape;
   }
-  Index corner_shape(Index face, Index corner) const { return vertex_shape_[mesh_.from(3 * face + corner)]; }
 
   /// Of shapes that do not overlap, what lies right of an outline is in none (or left of another one that touches it),
   /// and what lies at a corner of the face in the one that the corner is in. Since whatever an outline or a vertex
   /// bounds is looked at so, overlapping ones differ somewhere. What differs only from itself has been rounded so.
-  void check_labels(Index face) const {
+  void check_labels(Index face, const std::array<Index, 3>& corners) const {
     const auto differ = [](Index a, Index b) { return a >= 0 && b >= 0 && a != b; };
     for (std::size_t h = 0; h < left_.size(); ++h) {
       const Index label = labels_[h / 3], point = flat_.triangle(h / 3)[h % 3],
                   twin = flat_.twin(static_cast<Index>(h));
       if (left_[h] == k_unknown && twin != k_none && differ(label, left_[twin])) refuse(label, left_[twin], face);
       if (point >= 3) continue;
-      const Index own = corner_shape(face, point);
-      if (differ(label, own)) refuse(label, own, face);
+      if (differ(label, corners[point])) refuse(label, corners[point], face);
     }
   }
 
