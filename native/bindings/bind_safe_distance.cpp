@@ -11,7 +11,8 @@ constexpr const char* k_table_doc =
     R"(From which distance on two shapes in the plane are certainly apart, at any angles and scales.
 
 Two shapes slid together from afar first meet where their fronts do. The table keeps fronts over whole ranges of angles (720
-to a turn) and strips (256 to a shape), so that what it tells can only be too large, by about one percent.
+to a turn) and strips (256 to a shape), so that what it tells can only be too large: by about one percent, by up to
+8.4 % for needles.
 
 Args:
     a, b: Shapes.
