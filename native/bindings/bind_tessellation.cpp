@@ -73,19 +73,29 @@ DualMesh dual(const Cells& cells, const std::string& policy, const py::object& t
   return without_gil([&] { return dual_mesh(graph, cells.diagram, chosen, count, token); });
 }
 
-py::tuple locate(const Cells& cells, const py::object& points) {
+py::tuple locate(const Cells& cells, const py::object& points, const py::object& job) {
   const SurfacePoints places = as_surface_points(points, cells.mesh(), "points");
-  std::vector<Index> cell(places.size());
-  std::vector<double> distance(places.size());
-  const Mesh& mesh = cells.mesh();
+  const JobIn token(job);
+  const auto& graph = py::cast<const SaddleVertexGraph&>(cells.graph);
+  std::vector<Index> cell;
+  std::vector<double> distance;
   without_gil([&] {
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const CellAt at = cells.diagram.locate(mesh, places[i]);
-      cell[i] = at.cell;
-      distance[i] = at.distance;
+    for (const CellAt& at : cells.diagram.locate(graph, places, token)) {
+      cell.push_back(at.cell);
+      distance.push_back(at.distance);
     }
   });
   return py::make_tuple(to_array(std::move(cell)), to_array(std::move(distance)));
+}
+
+py::array cells_at(const Cells& cells, const py::object& points) {
+  const SurfacePoints places = as_surface_points(points, cells.mesh(), "points");
+  const Mesh& mesh = cells.mesh();
+  std::vector<Index> cell;
+  without_gil([&] {
+    for (const SurfacePoint& place : places) cell.push_back(cells.diagram.cell_at(mesh, place));
+  });
+  return to_array(std::move(cell));
 }
 
 constexpr const char* k_dual_doc = R"(Make the dual mesh: the intrinsic Delaunay triangulation of the sites.
@@ -372,9 +382,13 @@ void bind_tessellation(py::module_& m) {
            py::arg("job") = py::none(), k_centres_doc)
       .def("dual", &dual, py::arg("policy") = "repair", py::kw_only(), py::arg("threads") = 0,
            py::arg("job") = py::none(), k_dual_doc)
-      .def("locate", &locate, py::arg("points"),
-           "The cells of points of the surface (vertices or SurfacePoints), (m,) int32, and the distances from their "
-           "sites, (m,) float64. Ties go to the smaller cell. O(cells that share a face) each.")
+      .def("cells_at", &cells_at, py::arg("points"),
+           "The cells of points of the surface (vertices or SurfacePoints), (m,) int32. Ties go to the smaller cell. "
+           "O(cells that share a face) each.")
+      .def("locate", &locate, py::arg("points"), py::kw_only(), py::arg("job") = py::none(),
+           "The cells of points of the surface (vertices or SurfacePoints), (m,) int32, as `cells_at`, and the "
+           "distances from the nearest site, (m,) float64: lengths of ways in the graph, never too short and too long "
+           "by its accuracy at most, or exact ones of exact cells. O(k log k) each. Raises Cancelled.")
       .def(
           "split",
           [](const Cells& c) {

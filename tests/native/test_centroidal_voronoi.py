@@ -397,9 +397,9 @@ def test_annealed_cells_are_more_even_than_relaxed_ones() -> None:
     """At equal numbers of steps, from the same samples: a relaxation ends at the next rest, which luck decides."""
     mesh = sb.Mesh(*meshes.torus(72, 30))
     graph = sb.SaddleVertexGraph(mesh, k=20)
-    irregular, energy = np.empty((2, 4)), np.empty((2, 4))
+    irregular, energy = np.empty((2, 8)), np.empty((2, 8))
     for row, (annealing, iterations) in enumerate(((0, 200), (150, 50))):
-        for seed in range(4):
+        for seed in range(8):
             relaxed = sb.centroidal_voronoi(
                 graph,
                 count=400,

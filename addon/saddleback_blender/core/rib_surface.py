@@ -129,7 +129,7 @@ class _Lines:
         found = np.full(len(places), np.inf)
         if not len(places):
             return found
-        own, _ = self.cells.locate(points)
+        own = self.cells.cells_at(points)
         count = self.count[own]
         total = np.cumsum(count)
         cuts = np.searchsorted(total, np.arange(0, int(total[-1]) + PAIRS, PAIRS), side="left")
@@ -163,5 +163,5 @@ def _rim(mesh: Any, cells: Any, step: float) -> tuple[Reals, Reals, Indices]:
     middle = (number + 0.5) / pieces[edge]
     is_start, is_end = (triangles[face[edge]] == ends[edge][:, None] for ends in (start, end))
     barycentric = is_start * (1 - middle)[:, None] + is_end * middle[:, None]
-    cell, _ = cells.locate(native.load().SurfacePoints(face[edge], barycentric))
+    cell = cells.cells_at(native.load().SurfacePoints(face[edge], barycentric))
     return along(number / pieces[edge]), along((number + 1) / pieces[edge]), cell

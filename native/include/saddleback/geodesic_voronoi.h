@@ -73,8 +73,12 @@ struct GeodesicVoronoi {
 
   /// Cuts the mesh along the boundaries. O(V + F).
   SplitMesh split(const Mesh& mesh) const;
-  /// The cell of a point of the surface, ties to the smaller, and its distance. O(claims on the face).
-  CellAt locate(const Mesh& mesh, const SurfacePoint& point) const;
+  /// The cell of a point of the surface, ties to the smaller. O(claims on the face).
+  Index cell_at(const Mesh& mesh, const SurfacePoint& point) const;
+  /// The cells of points of the surface, as cell_at, and the distances from the nearest site: of cells by a graph,
+  /// which must be theirs, the lengths of ways in it, never shorter than the surface's and longer by no more than its
+  /// accuracy. \throw InputError for a point off the mesh, Cancelled. O(k log k) a point.
+  std::vector<CellAt> locate(const SaddleVertexGraph& graph, const SurfacePoints& points, Job* job = nullptr) const;
   /// The points where boundaries meet around a cell (branch points, ends at the mesh's boundary), in order with the
   /// cell on the left; indices into `points`. \throw InputError for a cell out of range.
   std::vector<Index> corners(Index cell) const;

@@ -85,12 +85,6 @@ struct QueryStages {
   JobStage fans, fields;
 };
 
-double through_fan(const GraphSearch& search, const SaddleVertexGraph& graph, const PointFan& fan) {
-  double best = k_infinity;
-  for (const PointFan::Arc& arc : fan.arcs) best = std::min(best, search.distance(graph, arc.vertex) + arc.length);
-  return best;
-}
-
 }  // namespace
 
 std::vector<double> SaddleVertexGraph::distances(const QuerySources& sources, const QueryOptions& options,
@@ -195,18 +189,9 @@ std::vector<double> SaddleVertexGraph::distances_to(const QuerySources& sources,
   const SourceFans from = find_fans(*this, sources, stage.part(0, prepared), {.places = &places});
   const auto search = queries_->field_searches.lease();
   search->run(*this, seeds_of(from.fans), {}, SearchLabels::none, stage.part(prepared, searched));
-  const NearbySources nearby(*this, sources.points, from.fans);
-  std::vector<double> result = from.at_places;
-  const auto reach = [&](Index i, const PointFan& fan) {
-    result[i] = std::min(result[i], through_fan(*search, *this, fan));
-    result[i] = nearby.least_length(targets[i], fan, result[i], stage);
-  };
-  const JobStage looking = stage.part(searched, 1);
-  for (Index i = 0; i < static_cast<Index>(targets.size()); ++i)
-    if (vertex_at(*mesh_, targets[i]) != k_none) reach(i, point_fan(*this, targets[i], {}));
-  // Looked at as soon as its fan is there: how the two share the time differs from mesh to mesh.
-  for_each_fan(*this, targets, {}, FanAngles::none, 0, looking,
-               [&](Index i, std::span<const DirectArc> arcs) { reach(i, point_fan(*this, targets[i], arcs)); });
+  std::vector<double> result = distances_at(
+      *this, sources.points, from.fans, [&](Index vertex) { return search->distance(*this, vertex); }, targets,
+      from.at_places, stage.part(searched, 1));
   stage.update(1);
   return result;
 }

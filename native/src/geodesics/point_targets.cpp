@@ -75,4 +75,20 @@ double NearbySources::least_length(const SurfacePoint& target, const PointFan& f
   return upper;
 }
 
+std::vector<double> distances_at(const SaddleVertexGraph& graph, const SurfacePoints& points,
+                                 std::span<const PointFan> fans, const std::function<double(Index)>& at_vertex,
+                                 const SurfacePoints& targets, std::vector<double> known, const JobStage& stage) {
+  const NearbySources nearby(graph, points, fans);
+  const auto reach = [&](Index i, const PointFan& fan) {
+    for (const PointFan::Arc& arc : fan.arcs) known[i] = std::min(known[i], at_vertex(arc.vertex) + arc.length);
+    known[i] = nearby.least_length(targets[i], fan, known[i], stage);
+  };
+  for (Index i = 0; i < static_cast<Index>(targets.size()); ++i)
+    if (vertex_at(graph.mesh(), targets[i]) != k_none) reach(i, point_fan(graph, targets[i], {}));
+  // Looked at as soon as its fan is there: how the two share the time differs from mesh to mesh.
+  for_each_fan(graph, targets, {}, FanAngles::none, 0, stage,
+               [&](Index i, std::span<const DirectArc> arcs) { reach(i, point_fan(graph, targets[i], arcs)); });
+  return known;
+}
+
 }  // namespace saddleback

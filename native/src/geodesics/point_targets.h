@@ -1,6 +1,7 @@
 #pragma once
 // From distances at vertices to distances at any point.
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -34,5 +35,11 @@ class NearbySources {
   std::vector<Vec3> positions_;
   std::vector<Entry> entries_;  ///< by vertex
 };
+
+/// Distances of targets from the nearest of points, whose fans are given, where those of the vertices are known: over
+/// the vertices that a target sees, or straight. `known`: what else is known of the targets. \throw Cancelled.
+std::vector<double> distances_at(const SaddleVertexGraph& graph, const SurfacePoints& points,
+                                 std::span<const PointFan> fans, const std::function<double(Index)>& at_vertex,
+                                 const SurfacePoints& targets, std::vector<double> known, const JobStage& stage);
 
 }  // namespace saddleback

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <queue>
 #include <unordered_map>
 #include <utility>
 
@@ -88,11 +89,58 @@ struct alignas(k_apart) CellClaims::Worker {
   }
 };
 
-/// Corners that no path in the graph places: those of long faces that cells without vertices cross. The first face
-/// that lays them decides, for all.
-struct CellClaims::Laid {
-  std::unordered_map<std::uint64_t, PackedVec2> corners;
+/// Corners that neither the site nor a vertex of its cell sees: those of long faces that cells without vertices cross.
+/// The first face that lays them decides, for all.
+class CellClaims::Laid {
+ public:
+  explicit Laid(const SiteMaps& maps) : maps_(maps) {}
+  const PackedVec2* find(Index site, Index node) const {
+    const auto found = corners_.find(pair_key(site, node));
+    return found != corners_.end() ? &found->second : nullptr;
+  }
+  const PackedVec2& lay(Index site, Index node, const PackedVec2& corner) {
+    return corners_.try_emplace(pair_key(site, node), corner).first->second;
+  }
+  /// The shortest way in the graph, as if it went on as it begins.
+  PackedVec2 along_arcs(Index site, Index node);
+
+ private:
+  /// From one site; goes on from where it was.
+  struct Search {
+    struct Step {
+      double distance;
+      Index node;
+      PackedVec2 towards;
+      bool operator<(const Step& other) const {  // the nearest on top of a heap
+        return distance != other.distance ? distance > other.distance : node > other.node;
+      }
+    };
+    std::priority_queue<Step> queue;
+    std::unordered_map<Index, PackedVec2> reached;
+  };
+  const SiteMaps& maps_;
+  std::unordered_map<std::uint64_t, PackedVec2> corners_;
+  std::unordered_map<Index, Search> searches_;  ///< by site
 };
+
+PackedVec2 CellClaims::Laid::along_arcs(Index site, Index node) {
+  const auto [entry, is_new] = searches_.try_emplace(site);
+  Search& search = entry->second;
+  if (is_new)
+    maps_.visit_seen(site, [&](Index seen, const PackedVec2& at) {
+      search.queue.push({at.norm(), seen, at.norm() > 0 ? PackedVec2(at.normalized()) : PackedVec2(1, 0)});
+    });
+  const ArcRows& arcs = maps_.graph().arcs();
+  while (!search.reached.contains(node)) {
+    const Search::Step step = search.queue.top();
+    search.queue.pop();
+    if (!search.reached.try_emplace(step.node, step.distance * step.towards).second) continue;
+    for (std::int64_t arc = arcs.first(step.node); arc < arcs.first(step.node + 1); ++arc)
+      if (const Index other = arcs.target(arc); !search.reached.contains(other))
+        search.queue.push({step.distance + arcs.length(arc), other, step.towards});
+  }
+  return search.reached.at(node);
+}
 
 CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads, int cuda_device)
     : graph_(graph), rings_(rings), threads_(threads), maps_(graph, rings, cuda_device) {
@@ -376,29 +424,41 @@ bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& wo
     const Worker::Known& known = worker.find(maps_, site, nodes[i]);
     claim.corner[i] = known.vector.log;
     if (known.found) continue;
-    const auto found = laid.corners.find(pair_key(site, nodes[i]));
-    if (found != laid.corners.end())
-      claim.corner[i] = found->second;
+    if (const PackedVec2* const found = laid.find(site, nodes[i]))
+      claim.corner[i] = *found;
     else
       claim.corner[i].setConstant(k_unknown), complete = false;
   }
   return complete;
 }
 
-/// Completes a claim from the same site's on the face beyond the side.
+/// Completes a claim: by what is seen across the side, else along arcs.
 void CellClaims::lay_corners(Index side, Laid& laid, CellClaim& claim) const {
-  const int start = side % 3, end = Mesh::next(side) % 3, apex = Mesh::prev(side) % 3;
-  const VertexRings::Face& face = rings_.face(side / 3);
-  const Index twin = face.twins[start];
-  visit_claims(twin / 3, [&](const CellClaim& beyond) {
-    if (beyond.site != claim.site) return;
-    claim.corner[start] = beyond.corner[Mesh::next(twin) % 3];
-    claim.corner[end] = beyond.corner[twin % 3];
-  });
-  if (!is_unknown(claim.corner[apex])) return;
-  const auto key = pair_key(claim.site, face.nodes[apex]);
-  const PackedVec2 beside = maps_.laid_beside(rings_.halfedge(side), claim.corner[start], claim.corner[end]);
-  claim.corner[apex] = laid.corners.try_emplace(key, beside).first->second;
+  const auto& nodes = rings_.face(claim.face).nodes;
+  const auto lay = [&](int corner, const std::optional<PackedVec2>& seen) {
+    if (!is_unknown(claim.corner[corner])) return;
+    const Index node = nodes[corner];
+    claim.corner[corner] = laid.lay(claim.site, node, seen ? *seen : laid.along_arcs(claim.site, node));
+  };
+  const int apex = side == k_none ? 2 : Mesh::prev(side) % 3, start = Mesh::next(apex), end = Mesh::prev(apex);
+  lay(start, {});
+  lay(end, {});
+  lay(apex,
+      side == k_none ? std::nullopt : maps_.seen_beyond(rings_.halfedge(side), claim.corner[start], claim.corner[end]));
+}
+
+/// No site is nearer to a vertex than that of its label: which one is, the graph says.
+void CellClaims::yield_to_labels(CellClaim& claim) {
+  constexpr double k_farther = 1 + 4 * std::numeric_limits<double>::epsilon();
+  const auto& nodes = rings_.face(claim.face).nodes;
+  for (int i = 0; i < 3; ++i) {
+    const Index label = maps_.label(nodes[i]);
+    if (label == claim.site) continue;
+    const double own = claim.squared_distance(i), least = maps_.own(nodes[i]).log.squaredNorm();
+    if (own > least || (own == least && label < claim.site)) continue;
+    claim.corner[i] = std::sqrt(least) * k_farther * claim.corner[i].normalized();
+    std::atomic_ref(has_laid_[claim.site]).store(1, std::memory_order_relaxed);
+  }
 }
 
 /// Makes the claims that are wished for; each face and site once.
@@ -409,13 +469,16 @@ void CellClaims::grant(const std::vector<Wish>& wishes, Laid& laid) {
   parallel_for(count, threads_, 32, [&](Index i, int thread) {
     CellClaim& claim = late_[first + i].claim;
     complete[i] = make_claim(wishes[i].face, wishes[i].site, laid, workers_[thread], claim);
-    if (complete[i]) reach_corners(claim);
+    if (!complete[i]) return;
+    yield_to_labels(claim);
+    reach_corners(claim);
   });
   for (Index i = 0; i < count; ++i) {
     if (complete[i]) continue;
     CellClaim& claim = late_[first + i].claim;
     has_laid_[claim.site] = 1;
-    if (wishes[i].side != k_none) lay_corners(wishes[i].side, laid, claim);
+    lay_corners(wishes[i].side, laid, claim);
+    yield_to_labels(claim);
     reach_corners(claim);
   }
   const auto known = std::ssize(late_faces_);
@@ -464,13 +527,16 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
   forget_late();
   for (Worker& worker : workers_) worker.forget();
   find_wishes_of_sites(sites);
-  Laid laid;
+  Laid laid(maps_);
   std::vector<Index> changed;  // empty: all shared faces
   while (true) {
     const auto count = static_cast<Index>(changed.empty() ? rows_.size() : changed.size());
     parallel_for(count, threads_, 128, [&](Index i, int thread) {
       stage.check();
       const Index face = changed.empty() ? rows_[i].face : changed[i];
+      if (is_settled(face)) return;
+      if (changed.empty())
+        for (CellClaim& claim : claims_of(rows_[i])) yield_to_labels(claim);
       if (!is_settled(face)) find_wishes(face, workers_[thread]);
     });
     const std::vector<Wish> wishes = all_wishes();

@@ -136,7 +136,7 @@ class CellClaims {
     Index side;  ///< of the face, beyond which the site is nearest; k_none: it lies in the face
     auto operator<=>(const Wish&) const = default;
   };
-  struct Laid;
+  class Laid;
   /// What is looked up of the cells before.
   struct Before {
     LargeArray<Index> shared_index;
@@ -165,11 +165,15 @@ class CellClaims {
   void forget_late();
   std::vector<Wish> all_wishes();
   void merge_late();
+  std::span<CellClaim> claims_of(const Row& row) {
+    return {claims_.data() + row.first, static_cast<std::size_t>(row.count)};
+  }
   void reach_corners(const CellClaim& claim);
   void mark_border(Index face);
   void grant(const std::vector<Wish>& wishes, Laid& laid);
   bool make_claim(Index face, Index site, const Laid& laid, Worker& worker, CellClaim& claim) const;
   void lay_corners(Index side, Laid& laid, CellClaim& claim) const;
+  void yield_to_labels(CellClaim& claim);
   template <class Visit>
   void visit_claims(Index face, Visit&& visit) const;
   bool is_settled(Index face) const;

@@ -136,26 +136,12 @@ void CellComplex::add_pieces(Index face, const FacePartition& partition) {
   }
 }
 
-/// The label, unless another site is nearer by more than the rounding of arcs: sums of arcs are exact, and so are the
-/// graph's ties.
 void CellComplex::label_vertices() {
-  constexpr double k_rounding = 2e-9;
   vertex_site_.resize(mesh_.vertex_count());
   vertex_distance_.resize(mesh_.vertex_count());
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
     vertex_site_[v] = claims_.label(v);
     vertex_distance_[v] = claims_.distance(v);
-  }
-  for (Index shared = 0; shared < claims_.shared_count(); ++shared) {
-    const Triangle& t = mesh_.triangles()[claims_.face(shared)];
-    for (const FaceClaim& claim : claims_.claims(shared)) {
-      for (int corner = 0; corner < 3; ++corner) {
-        const double distance = std::sqrt(claim.squared_distance[corner]);
-        if (distance >= (1 - k_rounding) * vertex_distance_[t[corner]]) continue;
-        vertex_site_[t[corner]] = claim.site;
-        vertex_distance_[t[corner]] = distance;
-      }
-    }
   }
 }
 

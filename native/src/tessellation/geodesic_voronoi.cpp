@@ -7,6 +7,7 @@
 
 #include "saddleback/error.h"
 
+#include "geodesics/point_targets.h"
 #include "tessellation/diagram.h"
 #include "tessellation/split_mesh.h"
 
@@ -148,29 +149,76 @@ double bulge_at(const Mesh& mesh, const SurfacePoint& point) {
   return bulge;
 }
 
-}  // namespace
-
-CellAt GeodesicVoronoi::locate(const Mesh& mesh, const SurfacePoint& point) const {
-  if (exact_field) {
-    const ExactField::Sight sight = exact_field->nearest_at(point);
-    return {sight.source, sight.distance};
-  }
+/// The claim that is least at a point, and the distance that it tells: the face's interpolation of squared distances.
+CellAt claim_at(const GeodesicVoronoi& cells, const Mesh& mesh, const SurfacePoint& point) {
   const auto at_point = [&](const std::array<double, 3>& squared) {
     return squared[0] * point.barycentric[0] + squared[1] * point.barycentric[1] + squared[2] * point.barycentric[2];
   };
-  CellAt result{face_cell[point.face], 0};
+  CellAt result{cells.face_cell[point.face], 0};
   double least = std::numeric_limits<double>::infinity();
   if (result.cell != k_none) {
     const Triangle& t = mesh.triangles()[point.face];
     std::array<double, 3> squared;
-    for (int i = 0; i < 3; ++i) squared[i] = vertex_distance[t[i]] * vertex_distance[t[i]];
+    for (int i = 0; i < 3; ++i) squared[i] = cells.vertex_distance[t[i]] * cells.vertex_distance[t[i]];
     least = at_point(squared);
   }
-  for (Index i = face_claims[point.face]; i < face_claims[point.face + 1]; ++i) {
-    const double squared = at_point(claims[i].squared_distance);
-    if (squared < least) least = squared, result.cell = claims[i].cell;
+  for (Index i = cells.face_claims[point.face]; i < cells.face_claims[point.face + 1]; ++i) {
+    const double squared = at_point(cells.claims[i].squared_distance);
+    if (squared < least) least = squared, result.cell = cells.claims[i].cell;
   }
   result.distance = std::sqrt(std::max(0.0, least - bulge_at(mesh, point)));
+  return result;
+}
+
+/// The shortest way to a site that leads straight to a corner of the face; from a vertex, its own.
+double way_over_corner(const GeodesicVoronoi& cells, const Mesh& mesh, const SurfacePoint& point) {
+  if (const Index vertex = vertex_at(mesh, point); vertex != k_none) return cells.vertex_distance[vertex];
+  const Vec3 place = position(mesh, point);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Index v : mesh.triangles()[point.face])
+    shortest = std::min(shortest, cells.vertex_distance[v] + (mesh.position(v) - place).norm());
+  return shortest;
+}
+
+}  // namespace
+
+Index GeodesicVoronoi::cell_at(const Mesh& mesh, const SurfacePoint& point) const {
+  return exact_field ? exact_field->nearest_at(point).source : claim_at(*this, mesh, point).cell;
+}
+
+std::vector<CellAt> GeodesicVoronoi::locate(const SaddleVertexGraph& graph, const SurfacePoints& places,
+                                            Job* job) const {
+  const JobStage stage(job, "Locating points");
+  const Mesh& mesh = graph.mesh();
+  check_surface_points(mesh, places, "points");
+  std::vector<CellAt> result;
+  if (exact_field) {
+    for (const SurfacePoint& place : places) {
+      stage.check();
+      const ExactField::Sight sight = exact_field->nearest_at(place);
+      result.push_back({sight.source, sight.distance});
+    }
+    return result;
+  }
+  std::vector<Index> rivals;  // whose site may be seen straight from a place
+  std::vector<double> known;
+  for (const SurfacePoint& place : places) {
+    result.push_back({claim_at(*this, mesh, place).cell, 0});
+    known.push_back(way_over_corner(*this, mesh, place));
+    rivals.push_back(result.back().cell);
+    for (Index i = face_claims[place.face]; i < face_claims[place.face + 1]; ++i) rivals.push_back(claims[i].cell);
+  }
+  std::ranges::sort(rivals);
+  const auto repeated = std::ranges::unique(rivals);
+  rivals.erase(repeated.begin(), repeated.end());
+  SurfacePoints rival_sites;
+  for (const Index rival : rivals) rival_sites.push_back(sites[rival]);
+  const std::vector<PointFan> fans = find_fans(graph, rival_sites, stage.part(0, 0.2));
+  known = distances_at(
+      graph, rival_sites, fans, [&](Index vertex) { return vertex_distance[vertex]; }, places, std::move(known),
+      stage.part(0.2, 1));
+  for (std::size_t i = 0; i < places.size(); ++i) result[i].distance = known[i];
+  stage.update(1);
   return result;
 }
 
@@ -195,7 +243,7 @@ GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& si
   GeodesicVoronoi result = subdivision(complex, sites, stage);
   copy_claims(complex.claims(), result);
   for (const SurfacePoint& point : result.points)
-    result.point_distance.push_back(result.locate(complex.mesh(), point).distance);
+    result.point_distance.push_back(claim_at(result, complex.mesh(), point).distance);
   return result;
 }
 

@@ -44,6 +44,19 @@ constexpr double k_end_on = 1e-10;
 // The same where only the roundings of the two distances to its ends tell it from one seen end-on, see there.
 constexpr double k_end_on_rounded = 1e-8;
 
+// A triangle of the site and an edge whose sides fit this well, relative to the longer ones, is flat but for rounding:
+// where anything bends the surface inside, sides fit by an accident alone.
+constexpr double k_fits = 1e-11;
+
+/// Whether an edge of this length fits between two places in a plane.
+bool fits(const Vec2& from, const Vec2& to, double length) {
+  const double excess = (to - from).squaredNorm() - length * length;
+  return excess * excess <= 4 * k_fits * k_fits * length * length * std::max(from.squaredNorm(), to.squaredNorm());
+}
+
+/// Whether a place at this distance from its anchor is seen straight: a way that bends to it is longer.
+bool is_straight(const Vec2& at, double distance) { return std::abs(at.norm() - distance) < k_fits * distance; }
+
 Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
 
 double angle_between(const Vec2& a, const Vec2& b) { return std::atan2(cross(a, b), a.dot(b)); }
@@ -224,6 +237,13 @@ Index SiteMaps::find_in_fan(Index site, Index node) const {
   return found != nodes.end() ? static_cast<Index>(found - nodes.begin()) : k_none;
 }
 
+/// The same, sooner for the site that was placed last.
+Index SiteMaps::find_seen(Index site, Index node, const Scratch& scratch) const {
+  if (scratch.site != site) return find_in_fan(site, node);
+  const Scratch::Known known = scratch.table[node];
+  return known.round == scratch.round && known.at >= 0 ? known.at : k_none;
+}
+
 /// Whether a path may bend where it comes from `back` and goes on towards `out`, so much that it counts. One that goes
 /// on straight may, too.
 bool SiteMaps::is_anchor(Index vertex, double back, double out) const {
@@ -249,18 +269,21 @@ Index SiteMaps::node_before(Index node, Index site, double shortest) const {
 }
 
 SiteMaps::Place SiteMaps::place_after(Index node, Index previous, Scratch& scratch) const {
-  const double back = direction_back(previous, scratch);
-  const Place& before = places_[previous];
+  return place_after(node, previous, places_[previous], direction_back(previous, scratch), scratch);
+}
+
+/// `back`: to the anchor of the node before.
+SiteMaps::Place SiteMaps::place_after(Index node, Index previous, const Place& before, double back,
+                                      Scratch& scratch) const {
   const Index vertex = graph_.vertex_of(previous);
   const std::int64_t arc = graph_.arcs().find(previous, node);
   const bool unfolds = scratch.unfolder.unfold(graph_.hint(previous, arc), scratch.unfolded);
   const double length = unfolds ? scratch.unfolded.length : graph_.arcs().length(arc);
   const double out = scratch.unfolded.start_angle;
-  if (is_anchor(vertex, back, out))
-    return {polar(length, out - back), before.distance + length, previous, k_after_another};
+  const double distance = before.distance + length;
+  if (is_anchor(vertex, back, out)) return {polar(length, out - back), distance, previous, k_after_another};
   const double heading = std::atan2(before.at.y(), before.at.x()) + turn_at(mesh_, vertex, back, out);
-  const Vec2 at = before.at + polar(length, heading);
-  return {at, anchor_distance(before) + at.norm(), before.anchor, k_after_another};
+  return {before.at + polar(length, heading), distance, before.anchor, k_after_another};
 }
 
 /// To the anchor of a placed node, surface angle at the node. Few are asked for it.
@@ -268,10 +291,7 @@ double SiteMaps::direction_back(Index node, Scratch& scratch) const {
   const Place& place = places_[node];
   if (place.found_by == k_centre) return 0;
   if (place.found_by == k_straight) {
-    const Fan& fan = fans_[label_[node]];
-    const Index i = find_in_fan(label_[node], node);
-    const auto& [from, edge] = fan.across[i];
-    return saddleback::direction_back(graph_, {node, edge, true, place.distance, fan.places[i], from});
+    return direction_back_to(label_[node], find_in_fan(label_[node], node));
   }
   if (place.found_by == k_after_another) {
     const Index previous = node_before(node, label_[node], distance_[node]);
@@ -284,6 +304,14 @@ double SiteMaps::direction_back(Index node, Scratch& scratch) const {
   see(wedge, places_[wedge.from], places_[wedge.to], sight);
   return graph_.unfolding().polar(Mesh::prev(rings_.halfedge(wedge.side))) +
          angle_between(Vec2(-wedge.apex), Vec2(-sight.ray));
+}
+
+/// The same to a site that sees a node straight.
+double SiteMaps::direction_back_to(Index site, Index seen) const {
+  const Fan& fan = fans_[site];
+  const auto& [from, edge] = fan.across[seen];
+  return saddleback::direction_back(graph_,
+                                    {fan.nodes[seen], edge, true, fan.places[seen].norm(), fan.places[seen], from});
 }
 
 /// False where the anchor is on the corner's own side of the edge, where the lengths make no triangle, or where the ray
@@ -304,14 +332,15 @@ bool SiteMaps::see(const Wedge& wedge, const Place& from, const Place& to, Sight
   const double miss = at_edge < 0 ? at_edge / length : std::max(0.0, at_edge / length - 1);
   sight.beyond = std::abs(miss) > k_hit ? miss : 0;
   sight.distance = sight.ray.norm();
+  sight.is_flat = sight.beyond == 0 && fits(from.at, to.at, length);
   return sight.beyond == 0 || !(sight.beyond < 0 ? wedge.from_bends : wedge.to_bends);
 }
 
+/// At an infinite distance unless that is known to be the straight one.
 SiteMaps::Place SiteMaps::place_by(const Sight& sight, const Wedge& wedge, const Place& from, const Place& to) const {
   const Vec2 to_start = -sight.anchor, to_end = Vec2(wedge.length, 0) - sight.anchor;
-  Place place{seen_between(from.at, to.at, to_start, to_end, sight.ray), sight.distance, from.anchor,
-              rings_.index(wedge)};
-  place.distance += anchor_distance(place);
+  Place place{seen_between(from.at, to.at, to_start, to_end, sight.ray), k_infinity, from.anchor, rings_.index(wedge)};
+  if (sight.is_flat) place.distance = sight.distance + anchor_distance(place);
   return place;
 }
 
@@ -328,10 +357,17 @@ bool SiteMaps::place_own(Index node, Index site, Place& place) const {
     if (from.found_by == k_unplaced || to.found_by == k_unplaced) continue;
     Sight sight;
     if (!see(wedge, from, to, sight) || std::abs(sight.beyond) > k_least_miss) continue;
+    const double to_anchor = anchor_distance(from);
+    if (to_anchor >= distance_[node]) continue;
+    sight.is_flat =
+        sight.is_flat && is_straight(from.at, from.distance - to_anchor) && is_straight(to.at, to.distance - to_anchor);
     const double distance = anchor_distance(from) + sight.distance;
     if (distance < least || distance >= shortest * (1 - k_arc_rounding)) continue;
     place = place_by(sight, wedge, from, to);
-    if (distance <= most) return true;
+    if (distance <= most) {
+      if (!sight.is_flat) place.distance = distance_[node];
+      return true;
+    }
     shortest = distance;
     detour = &wedge;
   }
@@ -382,14 +418,18 @@ bool SiteMaps::place_beside(Index node, Index site, Scratch* deep, Place& place)
     if (better) best = found, best_wedge = &wedge, best_from = *from, best_to = *to;
   }
   if (!best_wedge) return false;
+  const double to_anchor = anchor_distance(best_from);
+  best.is_flat = best.is_flat && is_straight(best_from.at, best_from.distance - to_anchor) &&
+                 is_straight(best_to.at, best_to.distance - to_anchor);
   place = place_by(best, *best_wedge, best_from, best_to);
   return true;
 }
 
 /// What lies behind an anchor is seen in its direction.
 SiteVector SiteMaps::vector_of(const Place& place) const {
-  if (place.anchor == k_none) return {place.at, place.distance};
-  return {place.distance * vector_of(places_[place.anchor]).log.normalized(), place.distance};
+  if (place.found_by == k_straight || place.found_by == k_centre) return {place.at, place.distance};
+  const Vec2 towards = place.anchor == k_none ? place.at : Vec2(vector_of(places_[place.anchor]).log);
+  return {place.distance * towards.normalized(), place.distance};
 }
 
 bool SiteMaps::find(Index site, Index node, Scratch& scratch, SiteVector& vector) const {
@@ -401,18 +441,14 @@ bool SiteMaps::find(Index site, Index node, Scratch& scratch, SiteVector& vector
     vector = {};
     return true;
   }
-  Index seen = k_none;
   if (scratch.site == site) {
     const Scratch::Known known = scratch.table[node];
     if (known.round == scratch.round && known.at < 0) {
       vector = scratch.answers[~known.at].vector;
       return scratch.answers[~known.at].found;
     }
-    if (known.round == scratch.round) seen = known.at;
-  } else {
-    seen = find_in_fan(site, node);
   }
-  if (seen != k_none) {
+  if (const Index seen = find_seen(site, node, scratch); seen != k_none) {
     const PackedVec2& place = fans_[site].places[seen];
     vector = {place, place.norm()};
     return true;
@@ -437,8 +473,11 @@ bool SiteMaps::place_near(Index node, Index site, Scratch& scratch, SiteVector& 
 /// Next to vertices of the site's own cell, if it has any.
 bool SiteMaps::place_by_cell(Index node, Index site, Scratch& scratch, Place& place) const {
   if (first_node_[site] == first_node_[site + 1]) return false;
-  return beside_own(node, site, scratch, place) || place_beside(node, site, &scratch, place) ||
-         place_through_neighbour(node, site, scratch, place);
+  const bool is_seen = beside_own(node, site, scratch, place) || place_beside(node, site, &scratch, place);
+  const double straight = is_seen ? place.distance : k_infinity;
+  if (!place_by_arc(node, site, scratch, is_seen, place)) return straight < k_infinity;
+  place.distance = std::min(place.distance, straight);
+  return true;
 }
 
 /// The corners of its face a site sees straight, even where its fan leaves them out.
@@ -453,25 +492,75 @@ bool SiteMaps::in_own_face(Index node, Index site, SiteVector& vector) const {
   return true;
 }
 
-PackedVec2 SiteMaps::laid_beside(Index halfedge, const PackedVec2& from, const PackedVec2& to) const {
-  Vec2 along = to - from;
-  along = along.norm() > 0 ? along.normalized() : Vec2(1, 0);
+std::optional<PackedVec2> SiteMaps::seen_beyond(Index halfedge, const PackedVec2& from, const PackedVec2& to) const {
+  if (!fits(from, to, mesh_.length(halfedge))) return {};
+  const Vec2 along = (to - from).normalized();
   const Vec2& apex = graph_.unfolding().apex(halfedge);
-  return from + apex.x() * along + apex.y() * Vec2(-along.y(), along.x());
+  const Vec2 place = from + apex.x() * along + apex.y() * Vec2(-along.y(), along.x());
+  const bool crosses = cross(Vec2(to), Vec2(from)) > 0 && cross(Vec2(to), place) >= 0 && cross(place, Vec2(from)) >= 0;
+  return crosses ? std::optional<PackedVec2>(place) : std::nullopt;
 }
 
-/// By the nearest way over a graph neighbour that the site owns.
-bool SiteMaps::place_through_neighbour(Index node, Index site, Scratch& scratch, Place& place) const {
-  double shortest = k_infinity;
+/// Gives a place the length of the shortest way over a graph neighbour that the site owns or, where it owns hardly one,
+/// sees, and, unless it has one, the direction of that way. False where there is none.
+bool SiteMaps::place_by_arc(Index node, Index site, Scratch& scratch, bool has_direction, Place& place) const {
+  constexpr int k_enough = 2;
   const ArcRows& arcs = graph_.arcs();
+  double shortest = k_infinity;
+  Index before = k_none, seen_before = k_none;
+  int count = 0;
   for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
-    const Index neighbour = arcs.target(arc);
-    if (label_[neighbour] == site) shortest = std::min(shortest, distance_[neighbour] + arcs.length(arc));
+    const Index other = arcs.target(arc);
+    if (label_[other] != site) continue;
+    ++count;
+    const double distance = places_[other].distance + arcs.length(arc);
+    if (distance < shortest) shortest = distance, before = other;
   }
-  const Index through = node_before(node, site, shortest);
-  if (through == k_none || through == fans_[site].centre) return false;
-  place = place_after(node, through, scratch);
+  for (std::int64_t arc = arcs.first(node); count < k_enough && arc < arcs.first(node + 1); ++arc) {
+    const Index seen = find_seen(site, arcs.target(arc), scratch);
+    if (seen == k_none) continue;
+    const double distance = fans_[site].places[seen].norm() + arcs.length(arc);
+    if (distance < shortest) shortest = distance, seen_before = seen;
+  }
+  if (shortest == k_infinity) return false;
+  if (!has_direction)
+    place = before != k_none ? place_after(node, before, scratch) : place_after_seen(node, site, seen_before, scratch);
+  place.distance = shortest;
+  if (lies_flat(node, site, place, count >= k_enough ? nullptr : &scratch))
+    place.distance = anchor_distance(place) + place.at.norm();
   return true;
+}
+
+/// Where a way over a node that the site sees leads, straight from the site unless it bends there for good.
+SiteMaps::Place SiteMaps::place_after_seen(Index node, Index site, Index seen, Scratch& scratch) const {
+  const Index before = fans_[site].nodes[seen];
+  const Place at_seen = place_straight(fans_[site].places[seen]);
+  const Place place = place_after(node, before, at_seen, direction_back_to(site, seen), scratch);
+  return place.anchor == before ? at_seen : place;
+}
+
+/// Whether the arcs from all of the site's nodes, and with scratch from those that it sees, end where the node was
+/// placed: then nothing there bends the surface.
+bool SiteMaps::lies_flat(Index node, Index site, const Place& place, const Scratch* scratch) const {
+  const ArcRows& arcs = graph_.arcs();
+  int count = 0;
+  for (std::int64_t arc = arcs.first(node); arc < arcs.first(node + 1); ++arc) {
+    const Index other = arcs.target(arc);
+    Vec2 at;
+    if (label_[other] == site) {
+      at = places_[other].at;
+      if (places_[other].anchor != place.anchor) return false;
+      if (!is_straight(at, places_[other].distance - anchor_distance(place))) return false;
+    } else {
+      const Index seen = scratch && place.anchor == k_none ? find_seen(site, other, *scratch) : k_none;
+      if (seen == k_none) continue;
+      at = fans_[site].places[seen];
+    }
+    const double length = arcs.length(arc);
+    if (std::abs((place.at - at).norm() - length) > k_arc_rounding * length) return false;
+    ++count;
+  }
+  return count > 1;
 }
 
 }  // namespace saddleback

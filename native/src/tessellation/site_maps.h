@@ -35,8 +35,8 @@ struct SiteVector {
 /// angles scaled to 2 pi when it is not on the boundary.
 class SiteMaps {
   struct Place {
-    Vec2 at = Vec2::Zero();  ///< from the anchor, in its plane
-    double distance = 0;     ///< from the site
+    Vec2 at = Vec2::Zero();  ///< from the anchor, in its plane; as seen, see above
+    double distance = 0;     ///< from the site, never less than it is
     Index anchor = k_none;   ///< node from which it is seen straight on; k_none: the site
     Index found_by = 0;      ///< a wedge across whose edge it was placed, or one of the below
   };
@@ -133,8 +133,12 @@ class SiteMaps {
   /// that share an edge get the same bits. False where the node is neither seen straight from the site nor next to a
   /// node of its label.
   bool find(Index site, Index node, Scratch& scratch, SiteVector& vector) const;
-  /// Beyond an edge whose ends are known, the third corner of the half-edge's face laid in the plane.
-  PackedVec2 laid_beside(Index halfedge, const PackedVec2& from, const PackedVec2& to) const;
+  /// Beyond an edge whose ends are known, the third corner of the half-edge's face laid in the plane, if it is seen
+  /// there in truth: the site and the ends make a flat triangle, and the way to the corner crosses the edge.
+  std::optional<PackedVec2> seen_beyond(Index halfedge, const PackedVec2& from, const PackedVec2& to) const;
+  /// Calls visit(node, PackedVec2) for what a site sees straight: no longer than it is, and nothing that is hidden.
+  template <class Visit>
+  void visit_seen(Index site, Visit&& visit) const;
 
  private:
   using Wedge = VertexRings::Wedge;
@@ -160,9 +164,10 @@ class SiteMaps {
   };
   /// The anchor of an edge's ends, both placed from it, seen across the edge from the third corner.
   struct Sight {
-    Vec2 anchor, ray;     ///< in the frame of the half-edge; from the anchor to the corner
-    double distance = 0;  ///< the ray's length
-    double beyond = 0;    ///< by how much of the edge's length the ray passes the edge's ends; below 0 past its start
+    Vec2 anchor, ray;      ///< in the frame of the half-edge; from the anchor to the corner
+    double distance = 0;   ///< the ray's length
+    double beyond = 0;     ///< by how much of the edge's length the ray passes the edge's ends; below 0 past its start
+    bool is_flat = false;  ///< nothing bends the surface between the anchor and the edge, nor the ray
   };
 
   void label_all(int threads, const JobStage& stage);
@@ -177,9 +182,11 @@ class SiteMaps {
   void group_again(std::span<const Index> moving);
   void order_sites();
   Index find_in_fan(Index site, Index node) const;
+  Index find_seen(Index site, Index node, const Scratch& scratch) const;
   static Place place_straight(const Vec2& place) { return {place, place.norm(), k_none, k_straight}; }
   Index node_before(Index node, Index site, double shortest) const;
   Place place_after(Index node, Index previous, Scratch& scratch) const;
+  Place place_after(Index node, Index previous, const Place& before, double back, Scratch& scratch) const;
   bool place_own(Index node, Index site, Place& place) const;
   bool place_beside(Index node, Index site, Scratch* deep, Place& place) const;
   bool beside_own(Index node, Index site, Scratch& scratch, Place& place) const;
@@ -187,9 +194,12 @@ class SiteMaps {
   static bool see(const Wedge& wedge, const Place& from, const Place& to, Sight& sight);
   Place place_by(const Sight& sight, const Wedge& wedge, const Place& from, const Place& to) const;
   double direction_back(Index node, Scratch& scratch) const;
+  double direction_back_to(Index site, Index seen) const;
   bool place_near(Index node, Index site, Scratch& scratch, SiteVector& vector) const;
   bool place_by_cell(Index node, Index site, Scratch& scratch, Place& place) const;
-  bool place_through_neighbour(Index node, Index site, Scratch& scratch, Place& place) const;
+  bool place_by_arc(Index node, Index site, Scratch& scratch, bool has_direction, Place& place) const;
+  Place place_after_seen(Index node, Index site, Index seen, Scratch& scratch) const;
+  bool lies_flat(Index node, Index site, const Place& place, const Scratch* scratch) const;
   bool in_own_face(Index node, Index site, SiteVector& vector) const;
   SiteVector vector_of(const Place& place) const;
   double anchor_distance(const Place& place) const {
@@ -217,5 +227,15 @@ class SiteMaps {
   FlatSeeds seeds_;                        ///< for a device
   LargeArray<Place> places_;
 };
+
+template <class Visit>
+void SiteMaps::visit_seen(Index site, Visit&& visit) const {
+  const Fan& fan = fans_[site];
+  if (fan.centre != k_none) visit(fan.centre, PackedVec2(PackedVec2::Zero()));
+  for (std::size_t i = 0; i < fan.nodes.size(); ++i) visit(fan.nodes[i], fan.places[i]);
+  SiteVector vector;
+  for (const Index node : fan.corners)
+    if (in_own_face(node, site, vector)) visit(node, vector.log);
+}
 
 }  // namespace saddleback

@@ -30,11 +30,10 @@ class Walk {
   template <class Visit>
   void for_each_cell(const Mesh& mesh, const GeodesicVoronoi& cells, Index curve, Visit&& visit) const {
     for (std::size_t i = 0; i < points_.size();) {
-      const Index cell = cells.locate(mesh, points_[i]).cell;
+      const Index cell = cells.cell_at(mesh, points_[i]);
       const std::size_t begin = i;
       double length = 0;
-      for (; i < points_.size() && (i == begin || cells.locate(mesh, points_[i]).cell == cell); ++i)
-        length += lengths_[i];
+      for (; i < points_.size() && (i == begin || cells.cell_at(mesh, points_[i]) == cell); ++i) length += lengths_[i];
       visit(cell, Stretch{length, curve, points_[(begin + i) / 2]});
     }
   }

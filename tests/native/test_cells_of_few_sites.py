@@ -1,0 +1,93 @@
+"""Cells tell what the graph tells that they are made from, however few or close the sites; nothing is too short."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import saddleback as sb
+from tests import meshes
+from tests.truth.cells import any_graph, check_points, check_vertices
+
+
+@cache
+def rough_torus(around: int, tube: int, seed: int) -> sb.Mesh:
+    u, w = np.meshgrid(*(np.linspace(0, 2 * np.pi, n, endpoint=False) for n in (around, tube)))
+    radius = 0.4 + 0.005 * np.random.default_rng(seed).normal(size=u.shape)
+    places = np.stack([(1 + radius * np.cos(w)) * np.cos(u), (1 + radius * np.cos(w)) * np.sin(u), radius * np.sin(w)])
+    return sb.Mesh(places.reshape(3, -1).T, meshes.torus(around, tube)[1])
+
+
+@cache
+def rough_sphere() -> sb.Mesh:
+    vertices, triangles = meshes.icosphere(4)
+    return sb.Mesh(vertices * (1 + 0.05 * np.random.default_rng(2).random((len(vertices), 1))), triangles)
+
+
+def sites_of_kind(mesh: sb.Mesh, kind: str, seed: int) -> sb.SurfacePoints:
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(2, 12))
+    faces, weights = rng.integers(mesh.face_count, size=count), rng.dirichlet([1.0, 1.0, 1.0], count)
+    if kind == "clustered":
+        faces = faces[0] + rng.integers(20, size=count)
+    elif kind == "few faces":
+        faces, weights = rng.choice(faces[:2], 25), rng.dirichlet([1.0, 1.0, 1.0], 25)
+    elif kind == "twins":
+        faces, weights = np.repeat(faces, 2), np.repeat(weights, 2, axis=0)
+        weights[::4] += 1e-9 * rng.random((len(weights[::4]), 3))
+        weights /= weights.sum(axis=1, keepdims=True)
+    elif kind == "vertices":
+        weights = np.eye(3)[rng.integers(3, size=count)]
+    return sb.SurfacePoints(np.minimum(faces, mesh.face_count - 1).astype(np.int32), weights)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("kind", ["scattered", "clustered", "few faces", "twins", "vertices"])
+@pytest.mark.parametrize("mesh", [rough_torus(60, 30, 1), rough_sphere()], ids=["torus", "sphere"])
+def test_vertices_belong_to_their_nearest_site(mesh: sb.Mesh, kind: str, seed: int) -> None:
+    graph, accuracy = any_graph(mesh)
+    check_vertices(mesh, graph, sites_of_kind(mesh, kind, seed), accuracy)
+
+
+@pytest.mark.parametrize("name", ["tetrahedron", "cube", "sphere", "torus"])
+def test_points_are_never_nearer_than_they_are(name: str) -> None:
+    """Where geodesics pass a corner on both sides, what one side tells of a face is too short on the other."""
+    coarse = {"tetrahedron": meshes.tetrahedron(), "cube": meshes.cube()}
+    fine = {"sphere": rough_sphere(), "torus": rough_torus(60, 30, 1)}
+    mesh = sb.Mesh(*coarse[name]) if name in coarse else fine[name]
+    graph, accuracy = any_graph(mesh)
+    for seed in range(4):
+        check_points(mesh, graph, sb.sample(mesh, 1 + 2 * seed, seed=seed), accuracy)
+
+
+def test_areas_of_few_cells() -> None:
+    mesh = rough_torus(60, 30, 1)
+    graph = sb.SaddleVertexGraph(mesh)
+    for seed in range(3):
+        sites = sb.sample(mesh, 4, seed=seed)
+        areas, exact = (sb.geodesic_voronoi(graph, sites, exact=flag).areas for flag in (False, True))
+        np.testing.assert_allclose(areas, exact, atol=5e-3 * mesh.area / 4)
+
+
+def test_relaxation_from_few_sites_goes_on() -> None:
+    """It once ended after a step, since cells were wrong in other ways from one place to the next."""
+    mesh = rough_torus(100, 50, 1)
+    graph = sb.SaddleVertexGraph(mesh)
+    relaxed = sb.centroidal_voronoi(graph, np.array([2511, 2014, 1017, 4517, 669, 1915]), max_iterations=40)
+    assert relaxed.iterations > 10
+    assert relaxed.energy[-1] < 0.5 * relaxed.energy[0]
+    _, nearest = sb.exact_nearest(mesh, relaxed.sites)
+    assert (sb.geodesic_voronoi(graph, relaxed.sites).vertex_cell != nearest).mean() < 0.005
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.3])
+def test_the_plane_beyond_what_a_site_sees(jitter: float) -> None:
+    """Distances between Euclid's and those within the accuracy."""
+    mesh = sb.Mesh(*meshes.grid(40, 40, jitter))
+    sites = sb.sample(mesh, 4, seed=3)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh), sites)
+    table = np.linalg.norm(mesh.vertices[:, None] - sites.positions(mesh)[None], axis=2)
+    np.testing.assert_allclose(cells.vertex_distance, table.min(axis=1), atol=5e-3 * table.max())
+    assert (cells.vertex_distance >= table.min(axis=1) * (1 - 1e-9)).all()
