@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 
@@ -135,3 +137,27 @@ def test_a_level_must_be_finite():
     vertices, triangles = meshes.grid(2, 2)
     with pytest.raises(sb.InputError, match="level"):
         sb.cut_at_level(np.column_stack([vertices, vertices[:, 0]]), triangles, 3, np.inf)
+
+
+def test_a_wheel_takes_no_longer_than_its_spokes_are_many() -> None:
+    """Thousands of triangles about one vertex: the first and the last of the vertices, since edges go by their ends."""
+    count = 20_000
+    angles = 2 * np.pi * np.arange(count) / count
+    rim = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+    begun = time.process_time()
+    for hub in (0, count):
+        vertices = np.insert(rim, hub, 0, axis=0)
+        around = np.delete(np.arange(count + 1), hub)
+        triangles = np.column_stack([np.full(count, hub), around, np.roll(around, -1)]).astype(np.int32)
+        ends, owners = sb.border_edges(triangles, len(vertices))
+        np.testing.assert_array_equal(owners, np.arange(count))
+        np.testing.assert_array_equal(ends, triangles[:, 1:])
+        cells = (np.arange(count) % 2).astype(np.int32)
+        segments, sides = sb.cell_boundary(triangles, cells, len(vertices))
+        assert len(segments) == count and (np.sort(sides, axis=1) == [0, 1]).all()
+        assert len(np.unique(np.sort(segments, axis=1), axis=0)) == count and (segments == hub).any(axis=1).all()
+        fields = np.column_stack([vertices, np.hypot(vertices[:, 0], vertices[:, 1])])
+        cut, pieces, *_ = sb.cut_at_level(fields, triangles, 3, 0.5)
+        assert len(cut) == 2 * count + 1 and len(pieces) == 3 * count
+        np.testing.assert_allclose(np.hypot(cut[count + 1 :, 0], cut[count + 1 :, 1]), 0.5)
+    assert time.process_time() - begun < 2  # the square of the spokes would take a hundred times as long

@@ -13,6 +13,12 @@
 
 namespace saddleback {
 
+/// How long the ways on a mesh are.
+struct PathBounds {
+  double longest;        ///< bounds every finite distance from above
+  double shortest_edge;  ///< no edge is shorter
+};
+
 /// Packs an arc into 64 bits, from the low end: target, direction and length.
 ///
 /// The direction is the 256th part of the full angle about the vertex in which the arc leaves: enough to find the
@@ -20,18 +26,25 @@ namespace saddleback {
 /// its own exponent: a relative error of at most 1e-9 for two million vertices, 1.2e-10 for 200,000 and fewer.
 ///
 /// Lengths are rounded to multiples of a quantum so small a part of the longest path that sums of arcs are exact in
-/// double precision: a path is equally long from both ends and by every method, to the bit.
+/// double precision: a path is equally long from both ends and by every method, to the bit. Where edges are shorter
+/// than the 2^-27th part of the longest path, the quantum is smaller, lest they be rounded by more than 6e-8.
+/// Sums of arcs so unlike may be rounded then, which shows only between the two ends of a path: the least of the sums
+/// from a source on is the same by every method all the same, since a sum never falls where one of its terms rises.
 class ArcCodec {
  public:
   static constexpr int k_sectors = 256;
   static constexpr Index k_most_vertices = 1 << 28;
 
   ArcCodec() = default;
-  /// `longest_path` bounds every distance in the graph from above.
-  ArcCodec(Index vertex_count, double mean_edge, double longest_path);
+  /// \throw InputError where lengths differ by more than their exponents hold.
+  ArcCodec(Index vertex_count, double mean_edge, const PathBounds& bounds);
 
   /// As `length` will return it, or as an exact multiple of the quantum that is no arc; never zero.
-  double round(double length) const { return packing_.round(length); }
+  double round(double length) const {
+    // What is long takes the coarser quantum of meshes without short edges: sums of long ones are exact on any mesh.
+    constexpr double k_long = 1.0 / (1 << 20);
+    return length < k_long * longest_ ? packing_.round(length) : (length + longest_) - longest_;
+  }
   std::uint64_t pack(Index target, int sector, double length) const { return packing_.pack(target, sector, length); }
   const ArcPacking& packing() const { return packing_; }
 
@@ -51,13 +64,15 @@ class ArcCodec {
   std::uint64_t length_bias() const { return packing_.bias; }
 
   double quantum() const { return quantum_; }
+  double shortest() const { return packing_.least; }  ///< no length is shorter, nor any rounded by more
+  double longest() const { return longest_; }         ///< nor longer
   int target_bits() const { return packing_.target_bits; }
   std::int32_t least_exponent() const { return least_exponent_; }
 
  private:
   ArcPacking packing_;
   std::int32_t least_exponent_ = 0;
-  double quantum_ = 1;
+  double quantum_ = 1, longest_ = 1;
 };
 
 /// Whoever fills it touches it first, on a core of its own; huge pages spare those who look rows up here and there.

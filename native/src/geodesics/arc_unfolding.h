@@ -17,6 +17,9 @@ struct ArcHint {
   /// Relative: how near its length an arc must be. Two geodesics to one vertex inside one window usually differ by
   /// more.
   double tolerance = 1e-7;
+  /// Whether rounding may be far more than usual: beside edges that are millions of times longer, or where an arc
+  /// passes a vertex on its other side, by less than the single precision in which it was found.
+  bool is_rough = false;
 };
 
 /// A straight geodesic from a vertex to a vertex or point.
@@ -61,7 +64,7 @@ class ArcUnfolder {
   bool start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc);
   bool search(const ArcHint& hint, double base_angle, UnfoldedArc& arc);
   void push(Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right, const Vec2& left);
-  bool was_followed(const Window& window, double farthest);
+  bool was_followed(const ArcHint& hint, const Window& window, double farthest);
   bool finish(const Window& last, const Vec2& target, double base_angle, UnfoldedArc& arc);
 
   const Unfolding& unfolding_;

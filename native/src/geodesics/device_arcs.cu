@@ -59,11 +59,21 @@ template <bool All>
 using LastRoom = Room<All, 8192, 1 << 14, 1, false, false>;
 constexpr int k_most_in_last = 1024;
 
-/// Whether there are edges that are none for WarpWaves.
-__global__ void look_for_extremes(const double* lengths, std::int32_t count, int* has_extremes) {
-  for (auto i = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); i < count;
-       i += static_cast<std::int32_t>(gridDim.x * blockDim.x))
-    if (!(lengths[i] < k_longest && lengths[i] * k_longest > 1)) *has_extremes = 1;
+/// Whether there are edges that are none for WarpWaves, nodes that the processor gives a unit of their own, or corners
+/// that it places in another way.
+__global__ void look_for_extremes(DeviceMesh mesh, std::int32_t nodes, int* has_extremes) {
+  for (auto node = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); node < nodes;
+       node += static_cast<std::int32_t>(gridDim.x * blockDim.x)) {
+    double shortest = k_longest, longest = 0, farthest = 0;
+    for (std::int32_t e = mesh.first[node]; e < mesh.first[node + 1]; ++e) {
+      const EdgeRecord& record = mesh.records[e];
+      shortest = min(shortest, mesh.lengths[e]);
+      longest = max(longest, mesh.lengths[e]);
+      farthest = max(farthest, record.a * record.a + record.b * record.b);
+    }
+    const bool is_usual = longest < k_longest && shortest * k_longest > 1 && longest >= k_small_edges;
+    if (!(is_usual && farthest < k_extreme * k_extreme / 4)) *has_extremes = 1;
+  }
 }
 
 struct Work {
@@ -186,7 +196,7 @@ class ArcFinder {
         tables_(request, stream, choose_packing) {
     rows_.set_target_mask(packing().target_mask);
     fails_.fill_bytes(0);
-    look_for_extremes<<<256, 256, 0, stream>>>(tables_.mesh().lengths, request.edge_count, fails_.data());
+    look_for_extremes<<<256, 256, 0, stream>>>(tables_.mesh(), request.node_count, fails_.data());
     check_cuda(cudaGetLastError(), "looking at edges");
   }
 

@@ -22,7 +22,8 @@ namespace {
 constexpr double k_fan_mesh_cost = 0.07;
 // Points a thread takes at a time, fewer where each has only so many chunks.
 constexpr Index k_most_at_once = 8 * k_batch, k_chunks_a_thread = 4;
-// In mean edges: a corner nearer than this has no direction in single precision, where its square is as good as zero.
+// In units of the source's plane: a corner nearer than this has no direction in single precision, where its square is
+// as good as zero.
 constexpr double k_nearest = 1e-18;
 
 bool is_vertex(const Mesh& mesh, const SurfacePoint& point) { return vertex_at(mesh, point) != k_none; }
@@ -31,11 +32,14 @@ FaceSource face_source(const SaddleVertexGraph& graph, const WaveMesh& waves, co
   const Mesh& mesh = graph.mesh();
   const FaceChart chart(mesh, point.face);
   FaceSource source;
+  const Index h = 3 * point.face;
+  source.scale = scale_about(std::max({mesh.length(h), mesh.length(h + 1), mesh.length(h + 2)}) / waves.unit());
+  const double unit = waves.unit() / source.scale;
   for (int i = 0; i < 3; ++i) {
     const int next = (i + 1) % 3, last = (i + 2) % 3;
     // From differences, so that the nearest corner lies in its true direction.
     const Vec2 from_next = chart.corner[i] - chart.corner[next], from_last = chart.corner[i] - chart.corner[last];
-    Vec2 corner = (point.barycentric[next] * from_next + point.barycentric[last] * from_last) / waves.unit();
+    Vec2 corner = (point.barycentric[next] * from_next + point.barycentric[last] * from_last) / unit;
     if (corner.norm() < k_nearest) corner = k_nearest * (from_next + from_last).normalized();
     source.corner[i] = corner;
     source.node[i] = graph.node_of(mesh.triangles()[point.face][i]);
@@ -89,7 +93,7 @@ void DirectFanFinder::view(const SaddleVertexGraph& graph, std::span<const Surfa
                            std::span<const double> limits, const JobStage& stage, const UseSeen& use) {
   see_each(graph, points, limits, stage, [&](std::size_t i, int lane) {
     if (lane < 0) return;
-    if (!graph.is_exact()) return use(static_cast<Index>(i), SeenView(*waves_, lane, mesh_->waves().unit()));
+    if (!graph.is_exact()) return use(static_cast<Index>(i), SeenView(*waves_, lane));
     listed_.clear();
     for (const DirectArc& arc : row_) {
       const Vec2 place = arc.length * Vec2(std::cos(arc.start_angle), std::sin(arc.start_angle));
@@ -163,7 +167,7 @@ void DirectFanFinder::append_arcs(const SaddleVertexGraph& graph, int lane, FanA
   row_.clear();
   for (const std::int32_t i : waves_->chosen(lane)) {
     const Vec2 place(rows.x[i], rows.y[i]);
-    DirectArc arc{graph.vertex_of(rows.slot[i] / k_batch), place.norm() * mesh_->waves().unit(), 0, 0};
+    DirectArc arc{graph.vertex_of(rows.slot[i] / k_batch), place.norm() * waves_->unit(lane), 0, 0};
     if (angles == FanAngles::both) {
       arc.start_angle = std::atan2(place.y(), place.x());
       arc.end_angle = end_angle(*mesh_, rows, i);

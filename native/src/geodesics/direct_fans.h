@@ -48,8 +48,8 @@ using DirectFans = FanRows<DirectArc>;  ///< each row by vertex
 class SeenView {
  public:
   /// The source in a lane of waves that have run; the view lasts until they run again.
-  SeenView(DiskFinder& waves, int lane, double unit)
-      : chosen_(waves.chosen(lane)), served_(waves.served(lane)), rows_(waves.sightings()), unit_(unit) {}
+  SeenView(DiskFinder& waves, int lane)
+      : chosen_(waves.chosen(lane)), served_(waves.served(lane)), rows_(waves.sightings()), unit_(waves.unit(lane)) {}
   /// Arcs all.
   explicit SeenView(std::span<const SeenNode> listed) : listed_(listed) {}
 

@@ -14,6 +14,8 @@ const std::int32_t k_unreached = std::bit_cast<std::int32_t>(k_infinity);
 constexpr float k_as_far = 1 + 1e-5f;
 constexpr float k_longer = 1 + 1e-6f;
 constexpr double k_rounding = 1e-6;
+// Disks' worth of vertices that bends may reach before it is asked what radius the edges allow.
+constexpr std::size_t k_flood = 8;
 // Windows end where a flank serves within this many times the tolerance. Less costs windows and arcs: with 1 a tenth
 // more of both; more lets errors come near the accuracy here and there, with 1.5 to a fiftieth.
 constexpr double k_radius_tolerance = 1.1;
@@ -53,6 +55,10 @@ WaveScene wave_scene(const EdgeRecord* records, const DiskRule& rule) {
           static_cast<float>(radius_tolerance(rule.lattice) * rule.tolerance)};
 }
 
+double scale_about(double longest_edge) {
+  return longest_edge < k_small_edges ? std::ldexp(1.0, -std::ilogb(longest_edge)) : 1;
+}
+
 double arc_slack(const DiskRule& rule) { return 1 + std::max(detour_of(rule), k_rounding); }
 
 DiskFinder::DiskFinder(const WaveMesh& mesh, const WaveKernel& kernel, const DiskRule& rule)
@@ -68,15 +74,19 @@ void DiskFinder::begin(Sources sources) {
   sighting_count_ = 0;
   now_->left_count = now_->right_count = 0;
   limits_.fill(k_infinity);
+  is_dammed_.fill(false);
   generation_ = 0;
 }
 
 void DiskFinder::add_node(int lane, Index node) {
+  double longest = 0;
+  for_each_neighbour(node, [&](Index, double length) { longest = std::max(longest, length); });
+  const double scale = scales_[lane] = scale_about(longest);
   const std::int32_t centre = node * k_batch + lane;
   labels_[centre] = label_of(0, false);
   touched_[by_count() ? lane : 0].push_back(centre);
   for (Index e = mesh_.begin(node); e < mesh_.end(node); ++e) {
-    const Vec2 along(mesh_.length(e), 0), apex = mesh_.apex(e), other(apex.norm(), 0);
+    const Vec2 along(scale * mesh_.length(e), 0), apex = scale * mesh_.apex(e), other(apex.norm(), 0);
     const Index apex_node = mesh_.records()[e].apex;
     add_link(mesh_.target(e) * k_batch + lane, along, along, 0, ~e);
     if (!mesh_.has_left(e)) add_link(apex_node * k_batch + lane, other, other, 1, ~e);
@@ -85,7 +95,8 @@ void DiskFinder::add_node(int lane, Index node) {
 }
 
 void DiskFinder::add_point(int lane, const FaceSource& source, double limit) {
-  limits_[lane] = static_cast<float>(limit);
+  scales_[lane] = source.scale;
+  limits_[lane] = static_cast<float>(limit * source.scale);
   for (int i = 0; i < 3; ++i) {
     const int next = (i + 1) % 3;
     add_link(source.node[i] * k_batch + lane, source.corner[i], source.corner[next], source.edge[next] * k_batch + lane,
@@ -370,7 +381,8 @@ float DiskFinder::radius_by_edges(int lane) {
       radius = distance * k_as_far;
       break;
     }
-    for_each_neighbour(node, [&](Index there, double length) { offer(there, distance + static_cast<float>(length)); });
+    for_each_neighbour(
+        node, [&](Index there, double length) { offer(there, distance + static_cast<float>(scales_[lane] * length)); });
   }
   for (const Index node : reached) by_edges_[node] = k_infinity;
   return radius;
@@ -382,13 +394,24 @@ void DiskFinder::relax_bends() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < changed_.size(); ++i) {
     const std::int32_t slot = changed_[i];
-    if (limits_[slot % k_batch] == k_infinity) {
+    const int lane = slot % k_batch;
+    if (limits_[lane] == k_infinity) {
       changed_[kept++] = slot;
-    } else {
-      relax_from(slot);
+      continue;
     }
+    if (!is_dammed_[lane] && touched_[lane].size() > k_flood * static_cast<std::size_t>(nearest_before() + 1))
+      dam(lane);
+    relax_from(slot);
   }
   changed_.resize(kept);
+}
+
+/// Where vertices on the far side of needles are among the first that are seen, the radius so far is theirs, and the
+/// whole mesh may lie within it.
+void DiskFinder::dam(int lane) {
+  constexpr float k_roomy = 1 + 1e-4f;  // the disk's own radius comes from its labels, on every device
+  is_dammed_[lane] = true;
+  limits_[lane] = std::min(limits_[lane], k_roomy * radius_by_edges(lane));
 }
 
 void DiskFinder::relax_from(std::int32_t slot) {
@@ -399,7 +422,8 @@ void DiskFinder::relax_from(std::int32_t slot) {
   const auto offer = [&](Index target, double length) {
     const std::int32_t there = target * k_batch + lane;
     // Longer by more than rounding: what is collinear stays an arc. Beyond the disk nothing is wanted.
-    const std::int32_t bent = label_of((distance_of(label) + static_cast<float>(length)) * k_longer, false);
+    const std::int32_t bent =
+        label_of((distance_of(label) + static_cast<float>(scales_[lane] * length)) * k_longer, false);
     if (bent >= labels_[there] || distance_of(bent) >= limits_[lane]) return;
     if (labels_[there] == k_unreached) touched_[lane].push_back(there);
     labels_[there] = bent;

@@ -28,9 +28,15 @@ WaveScene wave_scene(const EdgeRecord* records, const DiskRule& rule);
 /// What an arc may be longer by than the shortest way found.
 double arc_slack(const DiskRule& rule);
 
+/// By how much the plane of a source is enlarged whose longest edge, in units of the WaveMesh, is that: where all edges
+/// about it are shorter than k_small_edges, single precision would lose them, and bounds that are meant for mean edges
+/// would keep windows for far too long. A power of two, so that nothing is rounded; 1 on nearly all meshes.
+double scale_about(double longest_edge);
+
 /// A source inside a face or on its border, in a plane of its own with the source at the origin.
 struct FaceSource {
-  std::array<Vec2, 3> corner;    ///< counter-clockwise, in units of the WaveMesh
+  double scale;                  ///< scale_about
+  std::array<Vec2, 3> corner;    ///< counter-clockwise, in units of the WaveMesh, enlarged by the scale
   std::array<Index, 3> node;     ///< of the corners
   std::array<Index, 3> edge;     ///< from each corner to the next, inside the face
   std::array<Index, 3> entered;  ///< the same from the other side; -1 at the boundary
@@ -60,6 +66,8 @@ class DiskFinder {
   /// Of a point, in the same order: the shortest sightings of vertices that no arc is kept to, because a way over
   /// another vertex will do.
   std::span<const std::int32_t> served(int lane) const { return served_[lane]; }
+  /// Of the places of a lane's sightings.
+  double unit(int lane) const { return mesh_.unit() / scales_[lane]; }
   SightingRows sightings() { return sightings_.rows(sources_ == Sources::points); }
 
   /// Sightings of what a source is linked with by mesh edges or, of a point, by the lines to its face's corners. From a
@@ -111,6 +119,7 @@ class DiskFinder {
   void bound_blind_disks();
   float radius_by_edges(int lane);
   void relax_bends();
+  void dam(int lane);
   bool bends(std::int32_t slot, std::int32_t label) const;
   void relax_from(std::int32_t slot);
   template <class Offer>
@@ -131,7 +140,9 @@ class DiskFinder {
   SightingColumns sightings_;
   int sighting_count_ = 0, generation_ = 0, window_count_ = 0;
   alignas(64) std::array<float, k_batch> limits_{};
-  std::vector<std::int32_t> changed_;  ///< slots whose neighbours may have to be told of their labels
+  std::array<double, k_batch> scales_{};   ///< of the lanes' planes, see scale_about
+  std::array<bool, k_batch> is_dammed_{};  ///< whether the limit is no more than what edges allow
+  std::vector<std::int32_t> changed_;      ///< slots whose neighbours may have to be told of their labels
   std::vector<float> radii_;
   std::vector<float> by_edges_;  ///< per node, where a disk was bounded by edges; infinite in between
   std::array<std::vector<std::int32_t>, k_batch> chosen_;  ///< with room behind what was chosen

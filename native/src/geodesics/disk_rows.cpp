@@ -31,7 +31,7 @@ void DiskRows::write_row(Index node, int lane, FoundArcs& found) {
   // What is written are bytes, which might be anything's as far as a compiler knows: all that is read is at hand.
   const WaveSectors& sectors = sectors_;
   const ArcPacking packing = codec_.packing();
-  const double unit = mesh_.unit(), *const lengths = lengths_.data();
+  const double unit = finder_.unit(lane), *const lengths = lengths_.data();
   const float per_radian = sectors.per_radian(node), *const leaving_angles = leaving_.data(),
               *const back_angles = back_.data();
   std::uint64_t* const words = found.words.data() + before;

@@ -13,7 +13,7 @@ class DiskRows {
  public:
   DiskRows(const WaveMesh& mesh, const WaveSectors& sectors, const ArcCodec& codec, const WaveKernel& kernel,
            const DiskRule& rule)
-      : mesh_(mesh), sectors_(sectors), codec_(codec), kernel_(kernel), finder_(mesh, kernel, rule) {}
+      : sectors_(sectors), codec_(codec), kernel_(kernel), finder_(mesh, kernel, rule) {}
 
   /// Appends the arcs of nodes first to first + count - 1, at most k_batch. Mesh edges are always among them.
   /// \throw Cancelled.
@@ -22,7 +22,6 @@ class DiskRows {
  private:
   void write_row(Index node, int lane, FoundArcs& found);
 
-  const WaveMesh& mesh_;
   const WaveSectors& sectors_;
   const ArcCodec& codec_;
   const WaveKernel& kernel_;

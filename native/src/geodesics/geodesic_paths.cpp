@@ -25,6 +25,8 @@ namespace {
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // An arc's stored length is rounded to this; a looser search follows for graphs that round more.
 constexpr double k_rounding = 2e-9;
+// What is laid out beyond an edge 10^12 times shorter is known to so much of its length.
+constexpr double k_behind_short_edges = 1e-3;
 // Direction and length of an end's own arc are known to rounding.
 constexpr double k_angle_margin = 1e-7;
 // A crossing this near to an end of its edge is at the vertex: as a share of the edge or, where that is less than the
@@ -154,6 +156,11 @@ class PathMaker {
     hint.tolerance = k_rounding;
     if (unfolder_.unfold(hint, leg)) return;
     hint.tolerance = loose;
+    if (unfolder_.unfold(hint, leg)) return;
+    hint.is_rough = true;
+    hint.tolerance = std::max(loose, k_behind_short_edges);
+    hint.begin_angle = 0;
+    hint.end_angle = mesh_.total_angle(from);
     if (!unfolder_.unfold(hint, leg)) {
       throw Error(message("the arc from vertex ", from, " to vertex ", to, " is not one of this mesh"));
     }

@@ -1,6 +1,7 @@
 #include "geodesics/graph_checks.h"
 
 #include <atomic>
+#include <cmath>
 
 #include "saddleback/error.h"
 
@@ -44,16 +45,15 @@ class ArcChecker {
   }
 
  private:
-  /// As ArcCodec::pack leaves a word: nothing in its spare bits; a length of so many quanta that sums are exact.
+  /// As ArcCodec::pack leaves a word: nothing in its spare bits; a length of whole quanta, no longer than paths are.
   bool is_packed(std::uint64_t word) const {
-    constexpr double k_most = static_cast<double>(std::int64_t{1} << 52);
     const ArcCodec& codec = arcs_.codec();
     const double quanta = codec.length(word) / codec.quantum();
-    if (!(quanta >= 1 && quanta <= k_most)) return false;
+    if (!(quanta >= 1 && codec.length(word) <= codec.longest())) return false;
     const std::uint64_t all = codec.length_bits(word) |
                               static_cast<std::uint64_t>(codec.sector(word)) << codec.target_bits() |
                               static_cast<std::uint64_t>(codec.target(word));
-    return word == all && static_cast<double>(static_cast<std::int64_t>(quanta)) == quanta;
+    return word == all && std::floor(quanta) == quanta;
   }
   [[noreturn]] void refuse(Index node, const std::string& what) const {
     refuse_graph_file(path_, message("an arc of node ", node, " ", what));

@@ -201,8 +201,8 @@ SaddleVertexGraph SaddleVertexGraph::load(const std::string& path, const Mesh& m
 
   check_build(header, path);
   graph.nodes_ = inverse_order(graph.vertices_, path);
-  const double longest = longest_path_bound(mesh, graph.nodes_, graph.vertices_, 0, stage.part(0.24, 0.35));
-  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
+  const PathBounds bounds = path_bounds(mesh, graph.nodes_, graph.vertices_, 0, stage.part(0.24, 0.35));
+  const ArcCodec codec(mesh.vertex_count(), mesh.mean_edge_length(), bounds);
   if (!same_codec(header, codec)) refuse_graph_file(path, "its lengths are in another unit than this mesh needs");
   if (offsets.back() != static_cast<std::int64_t>(words.size()))
     refuse_graph_file(path, message("its rows hold ", offsets.back(), " arcs instead of ", words.size()));

@@ -45,12 +45,16 @@ class PathBound {
         piece_(neighbours.count, k_none),
         depth_(neighbours.count, 0) {}
 
-  double find() {
+  PathBounds find() {
     const Index blocks = (node_count() + k_block - 1) / k_block;
     std::vector<std::vector<double>> depths(blocks);
+    std::vector<double> shortest(blocks);
     parallel_for(blocks, threads_, 1, [&](Index block, int) {
       stage_.check();
       depths[block] = cut_into_pieces(block);
+      const double* const lengths = neighbours_.lengths;
+      shortest[block] =
+          *std::min_element(lengths + neighbours_.first[block * k_block], lengths + neighbours_.first[end_of(block)]);
     });
     std::vector<Index> first(static_cast<std::size_t>(blocks) + 1, 0);
     for (Index block = 0; block < blocks; ++block) {
@@ -63,7 +67,7 @@ class PathBound {
       stage_.check();
       links[block] = links_of(block);
     });
-    return 2 * deepest_over_pieces(links);
+    return {2 * deepest_over_pieces(links), *std::ranges::min_element(shortest)};
   }
 
  private:
@@ -149,15 +153,19 @@ class PathBound {
   std::vector<double> piece_depths_;
 };
 
-}  // namespace
-
-double longest_path_bound(const WaveMesh& mesh, int threads, const JobStage& stage) {
-  const Neighbours neighbours{mesh.node_count(), mesh.firsts(), mesh.targets(), mesh.lengths()};
-  return PathBound(neighbours, threads, stage).find() * mesh.unit();
+PathBounds in_units(const PathBounds& bounds, double unit) {
+  return {bounds.longest * unit, bounds.shortest_edge * unit};
 }
 
-double longest_path_bound(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
-                          const JobStage& stage) {
+}  // namespace
+
+PathBounds path_bounds(const WaveMesh& mesh, int threads, const JobStage& stage) {
+  const Neighbours neighbours{mesh.node_count(), mesh.firsts(), mesh.targets(), mesh.lengths()};
+  return in_units(PathBound(neighbours, threads, stage).find(), mesh.unit());
+}
+
+PathBounds path_bounds(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+                       const JobStage& stage) {
   const NodeEdges edges(mesh, vertices, threads, stage);
   const double unit = mesh.mean_edge_length();
   const auto count = static_cast<Index>(edges.halfedges.size());
@@ -175,7 +183,7 @@ double longest_path_bound(const Mesh& mesh, std::span<const Index> nodes, std::s
     }
   });
   const Neighbours neighbours{static_cast<Index>(vertices.size()), edges.first.data(), targets.data(), lengths.data()};
-  return PathBound(neighbours, threads, stage).find() * unit;
+  return in_units(PathBound(neighbours, threads, stage).find(), unit);
 }
 
 }  // namespace saddleback

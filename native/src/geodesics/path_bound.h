@@ -1,8 +1,9 @@
 #pragma once
-// How long a shortest path can be.
+// How long a shortest path can be, and how short an edge is.
 
 #include <span>
 
+#include "saddleback/arc_rows.h"
 #include "saddleback/job.h"
 #include "saddleback/mesh.h"
 
@@ -10,11 +11,11 @@
 
 namespace saddleback {
 
-/// An upper bound of every finite geodesic distance on the mesh, and rarely more than a few times the longest. It does
-/// not depend on the threads. O(V). \throw Cancelled.
-double longest_path_bound(const WaveMesh& mesh, int threads, const JobStage& stage);
-/// The same number where there are no such tables. `nodes` of the vertices and `vertices` of the nodes.
-double longest_path_bound(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
-                          const JobStage& stage);
+/// An upper bound of every finite geodesic distance on the mesh, rarely more than a few times the longest, and the
+/// length of the shortest edge. They do not depend on the threads. O(V). \throw Cancelled.
+PathBounds path_bounds(const WaveMesh& mesh, int threads, const JobStage& stage);
+/// The same numbers where there are no such tables. `nodes` of the vertices and `vertices` of the nodes.
+PathBounds path_bounds(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+                       const JobStage& stage);
 
 }  // namespace saddleback

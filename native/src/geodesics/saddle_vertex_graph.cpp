@@ -77,10 +77,10 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
     tables.emplace(*unfolding_, nodes_, vertices_, options.threads, progress.laying(k_ordered, k_laid_for_waves));
   const JobStage bounding = progress.laying(tables ? k_laid_for_waves : k_ordered, k_bounded);
   const auto choose_codec = [&] {
-    const double longest = tables ? longest_path_bound(tables->mesh, options.threads, bounding)
-                                  : longest_path_bound(mesh, nodes_, vertices_, options.threads, bounding);
+    const PathBounds bounds = tables ? path_bounds(tables->mesh, options.threads, bounding)
+                                     : path_bounds(mesh, nodes_, vertices_, options.threads, bounding);
     bounding.update(1);
-    return ArcCodec(mesh.vertex_count(), mesh.mean_edge_length(), longest);
+    return ArcCodec(mesh.vertex_count(), mesh.mean_edge_length(), bounds);
   };
   const DiskRule rule =
       disk_rule(k_, accuracy_, accuracy_ > 0 ? lattice_of(*unfolding_, options.threads, stage) : Lattice::none);
@@ -126,8 +126,10 @@ ArcHint SaddleVertexGraph::hint(Index node, std::int64_t arc) const {
   constexpr double k_margin = 3e-5;
   const Index vertex = vertices_[node];
   const double sector = arcs_.sector(arc), width = mesh_->total_angle(vertex) / ArcCodec::k_sectors;
-  return {vertex, vertices_[arcs_.target(arc)], arcs_.length(arc), sector * width - k_margin,
-          (sector + 1) * width + k_margin};
+  ArcHint hint{vertex, vertices_[arcs_.target(arc)], arcs_.length(arc), sector * width - k_margin,
+               (sector + 1) * width + k_margin};
+  hint.tolerance = std::max(hint.tolerance, arcs_.codec().shortest() / hint.length);
+  return hint;
 }
 
 }  // namespace saddleback

@@ -87,15 +87,13 @@ WaveMesh::WaveMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span
       [&](Index node, Index e, Index h) {
         if (e == first_[node]) saddles_[node] = mesh.is_saddle(vertices[node]);
         const Index apex = mesh.apex(h);
-        // As the device lays it, which has no positions: directions are of single precision here.
+        // As the device lays it, which has no positions and leaves the extreme to the processor: directions are of
+        // single precision here.
         const double base = mesh.length(h), left = mesh.length(Mesh::prev(h)), right = mesh.length(Mesh::next(h));
         const double off = corner_off(base, mesh.face_area(Mesh::face_of(h)));
-        records_[e] = {corner_along(base, left, right) / base,
-                       off / base,
-                       edge_behind(Mesh::prev(h)),
-                       edge_behind(Mesh::next(h)),
-                       nodes[apex],
-                       0};
+        const double along = left > k_extreme * base ? unfolding.apex(h).x() : corner_along(base, left, right);
+        records_[e] = {along / base, off / base, edge_behind(Mesh::prev(h)), edge_behind(Mesh::next(h)),
+                       nodes[apex],  0};
         targets_[e] = nodes[mesh.to(h)];
         lengths_[e] = mesh.length(h) / unit_;
       },

@@ -23,6 +23,8 @@ inline constexpr int k_free_generations = 32;
 /// Windows of a batch after which no more are followed. There are 200 to 1,000 a source on any sane mesh; needles by
 /// the thousand round one vertex may exceed that without end, and stopping only costs arcs, never correctness.
 inline constexpr int k_most_windows = 1 << 20;
+/// In mean edges: a source whose edges are all shorter has a unit of its own, see scale_about.
+inline constexpr double k_small_edges = 1.0 / (1 << 6);
 /// Rows may be read and written so many entries past their end.
 inline constexpr int k_row_padding = 16;
 

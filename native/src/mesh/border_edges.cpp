@@ -30,9 +30,10 @@ BorderEdges border_edges(std::span<const Triangle> triangles, Index vertex_count
   std::vector<Edge> edges;
   for (Index vertex = 0; vertex < vertex_count; ++vertex) {
     const auto corners = table.at(vertex);
+    const SharedEdges shared(corners);
     for (const CornerTable::Corner& corner : corners) {
-      const auto shares = [&](const CornerTable::Corner& other) { return has_edge(corner, other); };
-      if (std::ranges::none_of(corners, shares)) edges.push_back({corner.triangle, vertex, corner.next});
+      const auto any = [](const CornerTable::Corner&) { return true; };
+      if (!shared.any(corner, any)) edges.push_back({corner.triangle, vertex, corner.next});
     }
   }
   std::ranges::sort(edges);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "saddleback/error.h"
@@ -20,7 +21,7 @@ class Cutter {
         column_(column),
         level_(level),
         count_(static_cast<Index>(fields.size() / width)),
-        last_cut_(count_, k_none) {
+        last_cut_(std::bit_ceil(static_cast<std::size_t>(count_) + 1), k_none) {
     out_.fields.reserve(fields.size() + fields.size() / 4);
     out_.fields.assign(fields.begin(), fields.end());
     double greatest = std::abs(level);
@@ -99,11 +100,14 @@ class Cutter {
   Index between(Index a, Index b) {
     if (std::isfinite(at(a)) != std::isfinite(at(b))) return std::isfinite(at(a)) ? a : b;
     if (a > b) std::swap(a, b);
-    for (Index i = last_cut_[a]; i != k_none; i = cuts_[i].before)
-      if (cuts_[i].end == b) return count_ + i;
+    // Spread by both ends: thousands of edges may share one.
+    Index& last =
+        last_cut_[(static_cast<std::size_t>(a) + k_spread * static_cast<std::size_t>(b)) & (last_cut_.size() - 1)];
+    for (Index i = last; i != k_none; i = cuts_[i].before)
+      if (cuts_[i].from == a && cuts_[i].to == b) return count_ + i;
     const Index next = count_ + static_cast<Index>(cuts_.size());
-    cuts_.push_back({b, last_cut_[a]});
-    last_cut_[a] = next - count_;
+    cuts_.push_back({a, b, last});
+    last = next - count_;
     const double share = std::isfinite(at(a)) ? (level_ - at(a)) / (at(b) - at(a)) : 0.5;
     out_.fields.resize(out_.fields.size() + width_);
     const double *from = row(a), *to = row(b);
@@ -117,11 +121,12 @@ class Cutter {
   const double level_;
   const Index count_;  ///< of the given vertices
   std::vector<std::int8_t> signs_;
+  static constexpr std::size_t k_spread = 0x9e3779b1;
   struct Cut {
-    Index end, before;  ///< the greater end of its edge; an earlier cut of an edge with the same smaller one
+    Index from, to, before;  ///< the ends of its edge, the smaller one first; an earlier cut in the same place
   };
   std::vector<Cut> cuts_;        ///< one for each new vertex
-  std::vector<Index> last_cut_;  ///< by the smaller end
+  std::vector<Index> last_cut_;  ///< by place, which its edge's ends tell
   LevelCut out_;
 };
 

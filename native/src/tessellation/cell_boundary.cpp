@@ -23,15 +23,17 @@ CellBoundary find_boundary(const CornerTable& table, std::span<const Index> tria
     const auto cell_of = [&](const CornerTable::Corner& corner) { return triangle_cell[corner.triangle]; };
     const auto is_first = [&](const CornerTable::Corner& corner) { return cell_of(corner) == cell_of(corners[0]); };
     if (std::ranges::all_of(corners, is_first)) continue;
+    const SharedEdges shared(corners);
     for (const CornerTable::Corner& corner : corners) {
-      for (const CornerTable::Corner& other : corners) {
+      shared.any(corner, [&](const CornerTable::Corner& other) {
         // Edges are met from both ends and by both triangles: once is enough.
         const bool is_met_again =
             other.previous == corner.next ? vertex > corner.next : other.triangle < corner.triangle;
-        if (!has_edge(corner, other) || cell_of(corner) == cell_of(other) || is_met_again) continue;
+        if (cell_of(corner) == cell_of(other) || is_met_again) return false;
         result.segments.push_back({vertex, corner.next});
         result.cells.push_back({cell_of(corner), cell_of(other)});
-      }
+        return false;
+      });
     }
   }
   return result;

@@ -225,7 +225,11 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
     if (last - node > k_ahead) rings_.fetch(node[k_ahead]);
     if (places_[*node].found_by != k_unplaced) continue;
     Place place;
-    if (!place_own(*node, site, place)) place = place_after(*node, node_before(*node, site, distance_[*node]), scratch);
+    if (!place_own(*node, site, place)) {
+      const Index previous = node_before(*node, site, distance_[*node]);
+      // None is nearer where an arc is shorter than the rounding of the whole path.
+      place = previous != k_none ? place_after(*node, previous, scratch) : place_straight(Vec2(distance_[*node], 0));
+    }
     places_[*node] = place;
   }
 }
