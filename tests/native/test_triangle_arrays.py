@@ -141,7 +141,7 @@ def test_a_level_must_be_finite():
 
 def test_a_wheel_takes_no_longer_than_its_spokes_are_many() -> None:
     """Thousands of triangles about one vertex: the first and the last of the vertices, since edges go by their ends."""
-    count = 20_000
+    count = 80_000
     angles = 2 * np.pi * np.arange(count) / count
     rim = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
     begun = time.process_time()
@@ -160,4 +160,4 @@ def test_a_wheel_takes_no_longer_than_its_spokes_are_many() -> None:
         cut, pieces, *_ = sb.cut_at_level(fields, triangles, 3, 0.5)
         assert len(cut) == 2 * count + 1 and len(pieces) == 3 * count
         np.testing.assert_allclose(np.hypot(cut[count + 1 :, 0], cut[count + 1 :, 1]), 0.5)
-    assert time.process_time() - begun < 2  # the square of the spokes would take a hundred times as long
+    assert time.process_time() - begun < 4  # the square of the spokes would take a hundred times as long
