@@ -11,8 +11,6 @@ namespace {
 // Geodesics may run through vertices: they lie on the border of their windows, up to rounding.
 constexpr double k_on_border = 1e-9, k_on_rough_border = 1e-5;
 
-double border(const ArcHint& hint) { return hint.is_rough ? k_on_rough_border : k_on_border; }
-
 // Of the longest length: what rounding makes of one place.
 constexpr double k_same_place = 1e-11;
 
@@ -36,6 +34,7 @@ bool ArcUnfolder::unfold(const ArcHint& hint, const SurfacePoint* target, Unfold
   arc.entered.clear();
   arc.crossings.clear();
   target_ = target;
+  border_ = hint.is_rough ? k_on_rough_border : k_on_border;
   if (!target && along_an_edge(hint, arc)) return true;
   const Index first = mesh_.first_halfedge(hint.from);
   Index h = first;
@@ -105,7 +104,7 @@ bool ArcUnfolder::find_target(const ArcHint& hint, const Window& window, const V
     if (mesh_.apex(h) != hint.to) return false;
     place = apex;
   }
-  const double reach = place.norm(), tolerance = border(hint) * reach;
+  const double reach = place.norm(), tolerance = border_ * reach;
   return same_length(reach, hint) && cross(window.right, place) >= -tolerance &&
          cross(place, window.left) >= -tolerance;
 }
@@ -118,8 +117,8 @@ void ArcUnfolder::push(Index edge, Index depth, const Vec2& from, const Vec2& to
 /// Whether a window without width has been there before. Past each vertex on its ray such a window goes on on both
 /// sides: behind many in a row, as on the spokes of a wheel, each side would be followed once for every way that leads
 /// there.
-bool ArcUnfolder::was_followed(const ArcHint& hint, const Window& window, double farthest) {
-  if (cross(window.right, window.left) > border(hint)) return false;
+bool ArcUnfolder::was_followed(const Window& window, double farthest) {
+  if (cross(window.right, window.left) > border_) return false;
   const double tolerance = k_same_place * farthest;
   const auto near = [&](const Vec2& a, const Vec2& b) { return (a - b).squaredNorm() <= tolerance * tolerance; };
   for (const Crossed& ray : rays_) {
@@ -140,14 +139,14 @@ bool ArcUnfolder::search(const ArcHint& hint, double base_angle, UnfoldedArc& ar
       const Index h = window.entered;
       const Vec2 edge = window.to - window.from;
       const double squared = edge.squaredNorm();  // the mesh knows the length, but memory is slower than a root
-      if (is_beyond(window.from, window.to, squared, farthest) || was_followed(hint, window, farthest)) break;
+      if (is_beyond(window.from, window.to, squared, farthest) || was_followed(window, farthest)) break;
       trail_.push_back({h, window.from, window.to});
       // As the other corners are placed, so that this one is as near to them as it should be.
       const Vec2 along = edge / (hint.is_rough ? mesh_.length(h) : std::sqrt(squared));
       const Vec2 offset = unfolding_.apex(h);
       const Vec2 apex = window.from + offset.x() * along + offset.y() * Vec2(-along.y(), along.x());
       if (Vec2 place; find_target(hint, window, apex, place)) return finish(window, place, base_angle, arc);
-      const double reach = apex.norm(), tolerance = border(hint) * reach;
+      const double reach = apex.norm(), tolerance = border_ * reach;
       const double from_right = cross(window.right, apex), to_left = cross(apex, window.left);
       const bool goes_left = to_left > -tolerance, goes_right = from_right > -tolerance;
       const Vec2 ray = apex / reach;

@@ -64,13 +64,14 @@ class ArcUnfolder {
   bool start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc);
   bool search(const ArcHint& hint, double base_angle, UnfoldedArc& arc);
   void push(Index edge, Index depth, const Vec2& from, const Vec2& to, const Vec2& right, const Vec2& left);
-  bool was_followed(const ArcHint& hint, const Window& window, double farthest);
+  bool was_followed(const Window& window, double farthest);
   bool finish(const Window& last, const Vec2& target, double base_angle, UnfoldedArc& arc);
 
   const Unfolding& unfolding_;
   const Mesh& mesh_;
   const bool with_angles_;
   const SurfacePoint* target_ = nullptr;  ///< null: the vertex hint.to
+  double border_ = 0;                     ///< how far off a ray, relative, what lies on it may be
   std::vector<Window> stack_;
   std::vector<Crossed> trail_;
   std::vector<Crossed> rays_;  ///< where windows without width have been
