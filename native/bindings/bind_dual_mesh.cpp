@@ -74,7 +74,9 @@ void bind_dual(py::module_& m) {
           },
           "(e, 2) int32: the sites on both sides of each boundary between cells.")
       .def_property_readonly("edge_lengths", &member_array<&DualMesh::edge_lengths, DualMesh>,
-                             "(e,) float64: of the geodesic from site to site across that boundary.")
+                             "(e,) float64, mesh units: of the straightest geodesic from site to site across that "
+                             "boundary; where vertices are in its way, of the shortest way over the boundary, as the "
+                             "cells' distances say. As `GeodesicVoronoi.dual_paths` within the accuracy of those.")
       .def_readonly("issues", &DualMesh::issues, "List of DualIssue; empty: a triangulation of the surface.")
       .def_readonly("added", &DualMesh::added, "How many sites repair added.")
       .def_readonly("euler_characteristic", &DualMesh::euler_characteristic, "Vertices - edges + triangles.")

@@ -104,7 +104,7 @@ Parameters
 ----------
 policy : str
     "repair": add sites where cells are too large for a triangulation of the surface (a cell that is no disk, two cells
-    that meet twice, ...), until there is one. "strict": keep the sites; triangles and edges may repeat corners, and
+    that meet twice, ...), until there is one, at most ten for each and 1,000. "strict": keep the sites; triangles and edges may repeat corners, and
     `issues` lists every violation. "fail": refuse where there is a violation.
 threads : int
     0: all cores. The result does not depend on it.
@@ -118,7 +118,7 @@ DualMesh
 Raises
 ------
 InputError
-    The policy is to fail and the cells have no triangulation as their dual; or no number of sites mends them.
+    The policy is to fail and the cells have no triangulation as their dual; or so many more sites do not mend them.
 Cancelled
     The job was cancelled.
 
@@ -175,7 +175,7 @@ Cancelled
 
 Notes
 -----
-O(faces crossed) each, with a distance field for those that pass a saddle vertex.)";
+O(faces crossed) each, with a distance field for those that pass a saddle vertex. Each is as long as its polyline.)";
 
 SurfacePoints centres(const Cells& cells, const py::object& density, const py::object& threads, const py::object& job) {
   ArrayIn<double> weights;
@@ -261,8 +261,8 @@ sites : (n,) int array or SurfacePoints
     Vertices, or points anywhere on the surface.
 exact : bool
     By exact distances instead of the graph's, as a reference: bisectors are hyperbolas where they should be, and no
-    point lies in a cell whose site is farther than another by more than 1e-7 of a cell's size. Many times slower, and on
-    one core.
+    point lies in a cell whose site is farther than another by more than 1e-5 of a cell's size (the root of its area).
+    Sites within 1e-10 of that of each other are one: the first of them has the cell. Many times slower, and on one core.
 threads : int
     0: all cores. The result does not depend on it.
 device : str

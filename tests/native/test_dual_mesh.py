@@ -191,6 +191,73 @@ def test_dual_edges_as_paths(arrays: meshes.Arrays) -> None:
     assert all(np.array_equal(p.points, q.points) for p, q in zip(paths, again, strict=True))
 
 
+def noisy_torus() -> meshes.Arrays:
+    vertices, triangles = meshes.torus(30, 15)
+    return vertices + 0.02 * np.random.default_rng(1).normal(size=vertices.shape), triangles
+
+
+ROUGH = [meshes.tetrahedron(), meshes.cube(), meshes.icosphere(1), noisy_torus()]
+
+
+@pytest.mark.parametrize("arrays", ROUGH, ids=["tetrahedron", "cube", "icosphere", "noisy torus"])
+@pytest.mark.parametrize("seed", range(3))
+def test_dual_edges_are_as_long_as_ways_on_the_surface(arrays: meshes.Arrays, seed: int) -> None:
+    """By exact cells: never below the distance of the two sites, never above the shortest way over their boundary."""
+    mesh = sb.Mesh(*arrays)
+    graph = sb.SaddleVertexGraph(mesh, k=min(60, len(mesh.vertices) - 1))
+    cells = sb.geodesic_voronoi(graph, sb.sample(mesh, 12, seed=seed), exact=True)
+    dual, paths = cells.dual("strict"), cells.dual_paths()
+    fields = [sb.ExactField(mesh, cells.sites[i]) for i in range(12)]
+    open_ones = [edge for edge in cells.edges if not edge.closed]
+    for path, (a, b), length, edge in zip(paths, dual.edges, dual.edge_lengths, open_ones, strict=True):
+        assert np.linalg.norm(np.diff(path.points, axis=0), axis=1).sum() == pytest.approx(path.length, rel=1e-12)
+        distance = fields[a].distance_to(cells.sites[int(b)])[0]
+        over = (fields[a].distance_to(edge.surface) + fields[b].distance_to(edge.surface)).min()
+        assert path.length >= distance * (1 - 1e-9)
+        assert distance * (1 - 1e-4) <= length <= over * (1 + 1e-4)
+
+
+def strip(width: float) -> sb.Mesh:
+    vertices, triangles = meshes.grid(20, 3)
+    return sb.Mesh(vertices * (19.0, 2 * width, 1.0), triangles)
+
+
+def test_repair_of_a_strip_ends() -> None:
+    """Cells must be as narrow as it is: a wide one is mended, for a narrow one so many would be needed that it is told."""
+    mesh = strip(0.1)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh), sb.sample(mesh, 12, seed=1))
+    dual = cells.dual()
+    check_triangulation(mesh, dual)
+    assert len(np.unique(dual.vertices, axis=0)) == len(dual.vertices) == len(np.unique(dual.triangles))
+    for width in (1e-3, 1e-5):
+        mesh = strip(width)
+        cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh), sb.sample(mesh, 12, seed=1))
+        with pytest.raises(
+            sb.InputError, match=r"no dual mesh after \d+ more sites, of at most 1120: cell .*subdivide"
+        ):
+            cells.dual()
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_disk_with_too_few_cells_for_a_triangle(count: int) -> None:
+    mesh = sb.Mesh(*meshes.grid(9, 9))
+    graph = sb.SaddleVertexGraph(mesh)
+    cells = sb.geodesic_voronoi(graph, np.array([20, 60][:count]))
+    dual = cells.dual("strict")
+    assert len(dual.triangles) == 0
+    assert [issue.kind for issue in dual.issues] == ["few_corners"] * count
+    check_triangulation(mesh, cells.dual())
+    assert sb.centroidal_voronoi(graph, count=count, closed_ball=True, max_iterations=5).issues
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-80, 1e78, 1e300])
+def test_quality_at_any_size(scale: float) -> None:
+    vertices, triangles = noisy_torus()
+    at_one, at_scale = (sb.triangle_quality(vertices * s, triangles) for s in (1.0, scale))
+    np.testing.assert_allclose(at_scale.quality, at_one.quality, rtol=1e-10)
+    np.testing.assert_allclose(at_scale.least_angle, at_one.least_angle, rtol=1e-10)
+
+
 def test_double_edges_go_both_ways_round() -> None:
     """Sites above and below one another on a tube meet on its outside and on its inside."""
     mesh = sb.Mesh(*meshes.torus(48, 12))

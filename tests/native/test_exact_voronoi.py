@@ -33,14 +33,15 @@ def boundaries(cells: sb.GeodesicVoronoi) -> tuple[np.ndarray, np.ndarray]:
 
 
 def check_bisectors(mesh: sb.Mesh, cells: sb.GeodesicVoronoi, chart: Chart, distance: Distance) -> np.ndarray:
-    """Boundaries are as far from both sites, and no farther than from any other: 1e-6. Returns them in the chart."""
+    """Boundaries are as far from both sites, and no farther than from any other. Returns them in the chart."""
     check(mesh, cells)
+    within = 1e-5 * np.sqrt(mesh.area / len(cells.sites))
     places, sides = boundaries(cells)
     charted = chart(places)
     table = np.array([distance(site, charted) for site in chart(cells.sites.positions(mesh))])
     rows = np.arange(len(places))
     for side in (0, 1):
-        np.testing.assert_allclose(table[sides[:, side], rows], table.min(axis=0), rtol=0, atol=1e-6)
+        np.testing.assert_allclose(table[sides[:, side], rows], table.min(axis=0), rtol=0, atol=within)
     return charted
 
 
@@ -52,7 +53,7 @@ def test_no_other_site_is_nearer(case: meshes.Case) -> None:
     cells = exact_cells(case.mesh, random_points(case.mesh, min(7, len(case.triangles)), seed=6))
     check(case.mesh, cells)
     for by_area in (True, False):
-        assert lag(case.mesh, cells, *points_of_cells(cells, 4000, 1, by_area)).max() <= 1e-7
+        assert lag(case.mesh, cells, *points_of_cells(cells, 4000, 1, by_area)).max() <= 1e-5
 
 
 @pytest.mark.parametrize("arrays", [meshes.tetrahedron(), meshes.cube(), meshes.grid(5, 5, 0.3)])
@@ -62,7 +63,7 @@ def test_more_sites_than_triangles(arrays: meshes.Arrays) -> None:
     check(mesh, cells)
     assert (cells.areas > 0).all()
     for by_area in (True, False):
-        assert lag(mesh, cells, *points_of_cells(cells, 4000, 1, by_area)).max() <= 1e-7
+        assert lag(mesh, cells, *points_of_cells(cells, 4000, 1, by_area)).max() <= 1e-5
 
 
 def sees(place: np.ndarray, others: np.ndarray, low: float, high: float) -> np.ndarray:
@@ -102,7 +103,7 @@ def test_hyperbolas_behind_an_obstacle() -> None:
     places = check_bisectors(mesh, cells, lambda xyz: xyz[:, :2], distance)
     a, b = cells.sites.positions(mesh)[:2, :2]
     behind = sees(b, places, low, high) & ~sees(a, places, low, high)
-    on_both = np.abs(distance(a, places) - distance(b, places)) < 1e-6
+    on_both = np.abs(distance(a, places) - distance(b, places)) < 1e-5
     assert (behind & on_both).sum() > 20
     bent = places[behind & on_both]
     assert np.linalg.svd(bent - bent.mean(axis=0))[1][1] > 1e-3  # no straight line
@@ -132,7 +133,7 @@ def test_the_tube(turn: float) -> None:
     if turn == 0:
         assert cells.edge_closed.tolist() == [True]
         heights = cells.edge_points[:, 2]
-        np.testing.assert_allclose(heights, cells.sites.positions(mesh)[:, 2].mean(), atol=1e-6)
+        np.testing.assert_allclose(heights, cells.sites.positions(mesh)[:, 2].mean(), atol=1e-5)
 
 
 def fan(sides: int, total: float) -> meshes.Arrays:
@@ -191,8 +192,8 @@ def test_mirrored_sites_on_a_sphere() -> None:
     check(mesh, cells)
     assert cells.edge_closed.tolist() == [True]
     places, _ = boundaries(cells)
-    np.testing.assert_allclose(places[:, 0], 0, atol=1e-6)
-    np.testing.assert_allclose(cells.areas, mesh.area / 2, rtol=1e-6)
+    np.testing.assert_allclose(places[:, 0], 0, atol=1e-5)
+    np.testing.assert_allclose(cells.areas, mesh.area / 2, rtol=1e-5)
 
 
 def corner_points(mesh: sb.Mesh, vertices: list[int]) -> tuple[np.ndarray, np.ndarray]:
@@ -210,6 +211,89 @@ def test_the_graph_comes_near() -> None:
     np.testing.assert_allclose(near.vertex_distance, exact.vertex_distance, rtol=0.01, atol=1e-9)
     pairs = [sorted(map(tuple, np.sort(cells.edge_cells, axis=1))) for cells in (near, exact)]
     assert pairs[0] == pairs[1]
+
+
+def rough_torus(around: int, across: int, noise: float, seed: int = 0) -> sb.Mesh:
+    vertices, triangles = meshes.torus(around, across)
+    return sb.Mesh(vertices + noise * np.random.default_rng(seed).normal(size=vertices.shape), triangles)
+
+
+def test_bent_bisectors_have_some_points_a_face() -> None:
+    """Behind saddle vertices nearly all are hyperbolas; each face is crossed by one piece of some."""
+    mesh = rough_torus(40, 20, 0.02)
+    cells = exact_cells(mesh, random_points(mesh, 6, seed=1))
+    crossed = sum(1 + np.count_nonzero(np.diff(edge.surface.faces)) for edge in cells.edges)
+    assert len(cells.edge_points) < 40 * crossed
+
+
+def characteristics(split: sb.SplitMesh, count: int) -> list[int]:
+    """Of each cell by its triangles: vertices - edges + triangles."""
+    result = []
+    for cell in range(count):
+        t = split.triangles[split.triangle_cell == cell]
+        edges = np.unique(np.sort(t[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+        result.append(len(np.unique(t)) - len(edges) + len(t))
+    return result
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_divided_faces_leave_cells_what_they_are(seed: int) -> None:
+    vertices, triangles = meshes.icosphere(2)
+    mesh = sb.Mesh(vertices * (1 + 0.03 * np.random.default_rng(seed).normal(size=(len(vertices), 1))), triangles)
+    relaxed = sb.centroidal_voronoi(sb.SaddleVertexGraph(mesh, k=40), count=16, max_iterations=20, seed=seed)
+    cells = exact_cells(mesh, relaxed.sites)
+    assert characteristics(cells.split(), 16) == [1] * 16
+    assert cells.dual("strict").issues == []
+    assert cells.dual("repair").added == 0
+    few = exact_cells(rough_torus(16, 8, 0.02, seed), random_points(rough_torus(16, 8, 0.02, seed), 5, seed))
+    told = {issue.cell for issue in few.dual("strict").issues if issue.kind == "not_a_disk"}
+    assert told == {cell for cell, c in enumerate(characteristics(few.split(), 5)) if c != 1}
+
+
+def test_sites_at_one_place_are_one() -> None:
+    """Told in several faces, at a vertex, on an edge, inside: the first has the cell."""
+    mesh = sb.Mesh(*meshes.tetrahedron())
+    faces = [3, 3, 3, *np.flatnonzero((mesh.triangles == 0).any(axis=1))[:2]]
+    inside, other = (0.52, 0.46, 0.02), (0.23, 0.19, 0.58)
+    at_vertex = [np.eye(3)[list(mesh.triangles[face]).index(0)] for face in faces[3:]]
+    sites = sb.SurfacePoints(np.array(faces, dtype=np.int32), np.array([inside, other, inside, *at_vertex]))
+    cells = exact_cells(mesh, sites)
+    check(mesh, cells)
+    firsts = [0, 1, 3]
+    alone = exact_cells(mesh, sb.SurfacePoints(sites.faces[firsts], sites.barycentric[firsts]))
+    np.testing.assert_allclose(cells.areas, [*alone.areas[:2], 0, alone.areas[2], 0], rtol=1e-4)
+    assert cells.areas[2] == cells.areas[4] == 0
+    np.testing.assert_array_equal(cells.vertex_cell, np.array(firsts)[alone.vertex_cell])
+    np.testing.assert_array_equal(cells.locate(sites)[0], [0, 1, 0, 3, 3])
+    np.testing.assert_allclose(cells.locate(sites)[1], 0, atol=1e-9)
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-5, 1e-7, 1e-9])
+def test_sites_beside_each_other_have_half_each(gap: float) -> None:
+    """In a square: what lies on either side of the straight line between them."""
+    mesh = sb.Mesh(*meshes.grid(7, 7))
+    middle, turn = np.array([0.45, 0.53]), 0.3
+    step = gap / 2 * np.array([np.cos(turn), np.sin(turn)])
+    cells = exact_cells(mesh, sb.project(mesh, [[*(middle - step), 0], [*(middle + step), 0]]))
+    check(mesh, cells)
+    ends = middle[0] - np.tan(turn) * (np.array([0, 1]) - middle[1])  # of the line, below and above
+    np.testing.assert_allclose(cells.areas, [ends.mean(), 1 - ends.mean()], rtol=0, atol=1e-6)
+    assert len(cells.edge_points) < 5000
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-8, 1e-13])
+def test_near_sites_on_a_rough_surface(gap: float) -> None:
+    mesh = rough_torus(16, 8, 0.02)
+    points = random_points(mesh, 4, seed=2)
+    beside = points.barycentric[0] + gap * np.array([1, -0.7, -0.3]) * (1 if points.barycentric[0, 0] < 0.5 else -1)
+    sites = sb.SurfacePoints(
+        np.append(points.faces, points.faces[0]), np.concatenate([points.barycentric, beside[None]])
+    )
+    cells = exact_cells(mesh, sites)
+    check(mesh, cells)
+    alone = exact_cells(mesh, points)
+    assert cells.areas[0] + cells.areas[4] == pytest.approx(alone.areas[0], rel=100 * gap + 1e-4)
+    assert len(cells.edge_points) < 3 * len(alone.edge_points)
 
 
 def test_progress_rises_and_cancel_is_quick() -> None:

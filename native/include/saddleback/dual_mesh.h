@@ -24,7 +24,7 @@ struct DualIssue {
     closed_boundary,    ///< two cells meet along a closed curve: no triangle there
     double_boundary,    ///< two cells meet along several curves: a double edge
     cell_meets_itself,  ///< a cell is more than one of those around a branch point
-    few_corners,        ///< a cell inside the surface with fewer than three corners
+    few_corners,        ///< a cell with fewer than three corners, ends at the mesh's boundary counted: no triangle
   };
   Kind kind;
   Index cell, other;   ///< `other`: k_none where one cell is concerned
@@ -40,19 +40,22 @@ struct DualMesh {
   std::vector<Vec3> vertices;               ///< of the sites, on the surface
   std::vector<Triangle> triangles;          ///< one for each branch point, k - 2 where k cells meet; counter-clockwise
   std::vector<std::array<Index, 2>> edges;  ///< one for each open boundary between two cells
-  std::vector<double> edge_lengths;         ///< of the geodesic from site to site across that boundary
-  std::vector<DualIssue> issues;            ///< of these sites: none after repair, unless it had to stop
-  Index added = 0;                          ///< sites that repair added; they come last
-  Index euler_characteristic = 0;           ///< sites with a cell - edges (and diagonals of fans) + triangles
+  /// Of the straightest geodesic from site to site across that boundary; where none can be aimed, vertices being in the
+  /// way, of the shortest way over the boundary, as the cells' distances say. As `dual_edge_paths` within the accuracy
+  /// of those.
+  std::vector<double> edge_lengths;
+  std::vector<DualIssue> issues;   ///< of these sites: none after repair, unless it had to stop
+  Index added = 0;                 ///< sites that repair added; they come last
+  Index euler_characteristic = 0;  ///< sites with a cell - edges (and diagonals of fans) + triangles
 };
 
-/// The dual of given cells. O(cells + boundaries).
+/// The dual of given cells. O(cells + boundaries + faces crossed by its edges).
 DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells);
 
 /// The dual by a policy. Repair puts a site where a violation is worst, lets the new sites find their middles (those on
 /// the mesh's boundary stay), and looks again. \throw InputError when violations exist and the policy is to fail, or
-/// when no number of sites mends them (the mesh is too coarse for what lies between the cells: subdivide it);
-/// Cancelled.
+/// when ten times as many sites and 1,000 more do not mend them (the mesh is too coarse for what lies between the
+/// cells: subdivide it; or a strip is far narrower than the cells along it); Cancelled.
 DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, DualPolicy policy, int threads = 0,
                    Job* job = nullptr);
 

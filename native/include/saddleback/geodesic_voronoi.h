@@ -70,6 +70,7 @@ struct GeodesicVoronoi {
   std::vector<Claim> claims;                      ///< on the shared faces, by face and cell
   std::vector<Index> face_claims;                 ///< (F + 1,) those on face f are [face_claims[f], face_claims[f + 1])
   std::shared_ptr<const ExactField> exact_field;  ///< of exact cells, in place of claims
+  std::vector<Index> exact_sites;                 ///< the sites that are its sources: one of each place
 
   /// Cuts the mesh along the boundaries. O(V + F).
   SplitMesh split(const Mesh& mesh) const;
@@ -94,8 +95,9 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
                                  const GeodesicVoronoiOptions& options = {}, Job* job = nullptr);
 
 /// The same by exact distances, as a reference: no graph, and slow. Bisectors are divided so finely that at no point of
-/// a cell another site is nearer by more than 1e-7 of the size of a cell (the square root of the area per site);
-/// `locate` is exact up to rounding. Two ways to a site that are equally long may be told apart by rounding. \throw as
+/// a cell another site is nearer by more than 1e-5 of the size of a cell (the square root of the area per site);
+/// `vertex_cell` and `locate` are exact up to rounding. Two ways to a site that are equally long may be told apart by
+/// rounding. Sites within 1e-10 of that size of each other are one: the first of them has the cell. \throw as
 /// geodesic_voronoi. About O(V^1.5 + points) time.
 GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job = nullptr);
 

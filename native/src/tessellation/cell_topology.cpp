@@ -20,39 +20,42 @@ SurfacePoint middle(const GeodesicVoronoi& cells, Index polyline) {
   return cells.points[cells.edge_points[begin + (end - begin) / 2]];
 }
 
-/// Twice the edges of each cell: an edge inside a cell is met from both sides, one on its border from one.
+/// Twice the edges of each cell: an edge inside a cell is met from both sides; one on its border from one, and counts
+/// once more. Faces and pieces may be divided inside a cell, too.
 void count_edges(const Mesh& mesh, const GeodesicVoronoi& cells, std::vector<Index>& twice) {
+  const auto is_border = [&](Index face, int side) { return mesh.twin(3 * face + side) == k_none; };
   for (Index face = 0; face < mesh.face_count(); ++face) {
     if (cells.face_cell[face] == k_none) continue;
-    for (Index h = 3 * face; h < 3 * face + 3; ++h) twice[cells.face_cell[face]] += mesh.twin(h) == k_none ? 2 : 1;
+    for (int side = 0; side < 3; ++side) twice[cells.face_cell[face]] += is_border(face, side) ? 2 : 1;
   }
   for (const GeodesicVoronoi::Piece& piece : cells.pieces) {
-    for (Index i = 0; i < piece.count; ++i) {
-      const Vec3 &a = cells.piece_barycentric[piece.first + i],
-                 &b = cells.piece_barycentric[piece.first + (i + 1) % piece.count];
-      int side = 0;  // of the face on which both ends lie
-      while (side < 3 && !(a[(side + 2) % 3] == 0 && b[(side + 2) % 3] == 0)) ++side;
-      const bool inside_cell = side < 3 && mesh.twin(3 * piece.face + side) != k_none;
-      twice[piece.cell] += inside_cell ? 1 : 2;
+    twice[piece.cell] += piece.count;
+    for (int side = 0; side < 3; ++side) {
+      if (!is_border(piece.face, side)) continue;
+      const auto is_on_side = [&](Index i) { return cells.piece_barycentric[piece.first + i][(side + 2) % 3] == 0; };
+      for (Index i = 0; i < piece.count; ++i)
+        if (is_on_side(i) && is_on_side((i + 1) % piece.count)) ++twice[piece.cell];
     }
   }
+  for (Index polyline = 0; polyline < polyline_count(cells); ++polyline)
+    for (const Index cell : cells.edge_cells[polyline])
+      twice[cell] += cells.edge_offsets[polyline + 1] - cells.edge_offsets[polyline] - 1;
 }
 
-/// Mesh vertices inside cells and, on their borders, a vertex for each stretch of a cell around a point.
+/// Vertices inside cells, of the mesh and where its faces are divided, and, on the cells' borders, a vertex for each
+/// stretch of a cell around a point.
 void count_vertices(const Mesh& mesh, const GeodesicVoronoi& cells, const PointStars& stars,
                     std::vector<Index>& count) {
-  std::vector<Index> cell_of(mesh.vertex_count(), k_none);
+  std::vector<Index> cell_of(mesh.vertex_count() + cells.points.size(), k_none);
   for (Index face = 0; face < mesh.face_count(); ++face) {
     if (cells.face_cell[face] == k_none) continue;
     for (const Index v : mesh.triangles()[face]) cell_of[v] = cells.face_cell[face];
   }
-  for (const GeodesicVoronoi::Piece& piece : cells.pieces) {
-    for (Index i = 0; i < piece.count; ++i) {
-      const Index v = cells.piece_vertices[piece.first + i];
-      if (v < mesh.vertex_count()) cell_of[v] = piece.cell;
-    }
-  }
-  for (const Index cell : cell_of) ++count[cell];
+  for (const GeodesicVoronoi::Piece& piece : cells.pieces)
+    for (Index i = piece.first; i < piece.first + piece.count; ++i) cell_of[cells.piece_vertices[i]] = piece.cell;
+  for (const Index point : cells.edge_points) cell_of[mesh.vertex_count() + point] = k_none;
+  for (const Index cell : cell_of)
+    if (cell != k_none) ++count[cell];
   for (Index polyline = 0; polyline < polyline_count(cells); ++polyline) {
     const Index points = cells.edge_offsets[polyline + 1] - cells.edge_offsets[polyline];
     const Index inner = cells.edge_closed[polyline] ? points - 1 : points - 2;
@@ -71,7 +74,8 @@ void count_vertices(const Mesh& mesh, const GeodesicVoronoi& cells, const PointS
 
 class IssueFinder {
  public:
-  IssueFinder(const Mesh& mesh, const GeodesicVoronoi& cells) : mesh_(mesh), cells_(cells), stars_(cells) {
+  IssueFinder(const Mesh& mesh, const GeodesicVoronoi& cells)
+      : mesh_(mesh), cells_(cells), stars_(cells), characteristic_(cell_characteristics(mesh, cells)) {
     find_far_places();
     look_at_cells();
     look_at_boundaries();
@@ -109,7 +113,6 @@ class IssueFinder {
   }
 
   void look_at_cells() {
-    const std::vector<Index> characteristic = cell_characteristics(mesh_, cells_);
     std::vector<Index> arcs(cells_.sites.size(), 0);  // at the mesh's boundary: ends on it, two an arc
     for (Index point = 0; point < static_cast<Index>(cells_.points.size()); ++point) {
       const auto rays = stars_.rays(point);
@@ -120,7 +123,7 @@ class IssueFinder {
     const std::vector<std::optional<SurfacePoint>> on_border = places_on_borders(mesh_, cells_, stars_);
     for (Index cell = 0; cell < static_cast<Index>(cells_.sites.size()); ++cell) {
       if (cells_.areas[cell] == 0) continue;  // coincides with another site
-      if (characteristic[cell] != 1)
+      if (characteristic_[cell] != 1)
         add(Kind::not_a_disk, cell, k_none, on_border[cell].value_or(far_[cell]));
       else if (arcs[cell] > 2)
         add(Kind::two_borders, cell, k_none, on_border[cell].value_or(far_[cell]));
@@ -157,27 +160,28 @@ class IssueFinder {
     }
   }
 
-  /// A disk inside the surface needs three corners; at the mesh's boundary its ends there count, too.
+  /// A cell needs three corners to have a triangle; ends at the mesh's boundary are some. A cell without any is told of
+  /// by what else is wrong, but for one that has all of a disk.
   void look_at_corners() {
     std::vector<Index> corners(cells_.sites.size(), 0);
-    std::vector<std::uint8_t> at_border(cells_.sites.size(), 0);
+    std::vector<std::uint8_t> has_border(cells_.sites.size(), 0);
+    for (const auto& sides : cells_.edge_cells)
+      for (const Index cell : sides) has_border[cell] = 1;
     for (Index point = 0; point < static_cast<Index>(cells_.points.size()); ++point) {
       const auto rays = stars_.rays(point);
-      for (const PointStars::Ray& ray : rays) {
-        ++corners[ray.left];
-        if (rays.size() == 1) at_border[ray.left] = at_border[ray.right] = 1;
-      }
+      for (const PointStars::Ray& ray : rays) ++corners[ray.left];
+      if (rays.size() == 1) ++corners[rays[0].right];
     }
     for (Index cell = 0; cell < static_cast<Index>(cells_.sites.size()); ++cell) {
-      if (corners[cell] > 0 && corners[cell] < 3 && !at_border[cell]) {
-        add(Kind::few_corners, cell, k_none, far_[cell]);
-      }
+      const bool has_all = !has_border[cell] && cells_.areas[cell] > 0 && characteristic_[cell] == 1;
+      if (has_all || (corners[cell] > 0 && corners[cell] < 3)) add(Kind::few_corners, cell, k_none, far_[cell]);
     }
   }
 
   const Mesh& mesh_;
   const GeodesicVoronoi& cells_;
   const PointStars stars_;
+  const std::vector<Index> characteristic_;
   SurfacePoints far_;
   std::vector<DualIssue> issues_;
 };

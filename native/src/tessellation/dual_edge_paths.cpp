@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "saddleback/dual_mesh.h"
 #include "saddleback/error.h"
@@ -11,6 +12,7 @@
 #include "saddleback/surface_curve.h"
 
 #include "support/parallel.h"
+#include "tessellation/dual_edge_lengths.h"
 
 namespace saddleback {
 namespace {
@@ -18,16 +20,19 @@ namespace {
 constexpr double k_hit = 1e-9;  // relative to the length: a geodesic this near to its aim has met it
 constexpr int k_most_shots = 20;
 
-/// Where a dual edge crosses the boundary, and in which direction of the face its left site lies how far.
+/// Where a dual edge crosses the boundary, how far its sites are from there, and in which direction of the face the
+/// left one lies.
 struct Crossing {
   SurfacePoint point;
-  double angle = 0, distance = 0;
+  double distance = 0, angle = 0;
+  double height = 0, turn = 0;  ///< of the left site above the boundary's bit; from the crossing to the image beyond it
+  bool is_aimed = false;        ///< some bit is long enough to tell a direction
 };
 
-/// On the bit of a boundary in whose face the images' foot lies, or lies nearest to.
+/// Where the boundary is nearest to its sites.
 Crossing crossing_of(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline) {
-  double least_miss = std::numeric_limits<double>::infinity();
-  Crossing best;
+  const Index first = cells.edge_points[cells.edge_offsets[polyline]];
+  Crossing best{.point = cells.points[first], .distance = cells.point_distance[first]};
   for (Index i = cells.edge_offsets[polyline]; i + 1 < cells.edge_offsets[polyline + 1]; ++i) {
     const Index a = cells.edge_points[i], b = cells.edge_points[i + 1];
     const Index face = shared_face(mesh, cells.points[a], cells.points[b]);
@@ -38,41 +43,54 @@ Crossing crossing_of(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyl
     const double length = step.norm(), from_a = cells.point_distance[a], from_b = cells.point_distance[b];
     if (!(length > 1e-6 * (from_a + from_b))) continue;  // too short to tell a direction
     const double foot = (from_a * from_a - from_b * from_b + length * length) / (2 * length);
-    const double miss = std::max({0.0, -foot, foot - length});
-    if (miss >= least_miss) continue;
-    least_miss = miss;
     const Vec2 along = step / length, to_left(-along.y(), along.x());
     const double on_bit = std::clamp(foot, 0.0, length);
     const double height = std::sqrt(std::max(0.0, from_a * from_a - foot * foot));
     const Vec2 to_site = (foot - on_bit) * along + height * to_left;
-    best = {{face, normalised_barycentric(chart.to_barycentric(begin + on_bit * along))},
-            std::atan2(to_site.y(), to_site.x()),
-            to_site.norm()};
+    if (best.is_aimed && to_site.norm() >= best.distance) continue;
+    best = {.point = {face, normalised_barycentric(chart.to_barycentric(begin + on_bit * along))},
+            .distance = to_site.norm(),
+            .angle = std::atan2(to_site.y(), to_site.x()),
+            .height = height,
+            .turn = std::atan2(foot - on_bit, height),
+            .is_aimed = true};
   }
   return best;
 }
 
-/// The target as seen from where a geodesic ended, in the plane of that face: how far ahead, and how far to the left.
-Vec2 miss_of(const Mesh& mesh, const TraceEnd& end, const SurfacePoint& target) {
+/// The target as seen from where a geodesic ended.
+struct Miss {
+  double distance;     ///< through space: beyond an edge the target lies above or below the plane of the face
+  double ahead, left;  ///< in that plane
+};
+
+Miss miss_of(const Mesh& mesh, const TraceEnd& end, const SurfacePoint& target) {
   const Vec3 step = position(mesh, target) - position(mesh, end.point);
   const Vec3 ahead = direction_in_space(mesh, end.point.face, end.angle);
   const Vec3 left = direction_in_space(mesh, end.point.face, end.angle + M_PI / 2);
-  return {step.dot(ahead), step.dot(left)};
+  return {step.norm(), step.dot(ahead), step.dot(left)};
 }
 
 /// Aims a straightest geodesic until it meets the target; false where none near the first aim does.
 bool aim(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& target, double& angle, double& length) {
   double before = std::numeric_limits<double>::infinity();
   for (int shot = 0; shot < k_most_shots; ++shot) {
-    const Vec2 miss = miss_of(mesh, trace_end(mesh, from, angle, length), target);
-    if (miss.norm() <= k_hit * length) return true;
-    if (!(miss.norm() < before)) return false;
-    before = miss.norm();
-    angle += std::atan2(miss.y(), length + miss.x());
-    length += miss.x();
+    const Miss miss = miss_of(mesh, trace_end(mesh, from, angle, length), target);
+    if (miss.distance <= k_hit * length) return true;
+    if (!(miss.distance < before)) return false;
+    before = miss.distance;
+    angle += std::atan2(miss.left, length + miss.ahead);
+    length += miss.ahead;
     if (!(length > 0)) return false;
   }
   return false;
+}
+
+/// As long as its polyline is.
+GeodesicPath measured(GeodesicPath path) {
+  path.length = 0;
+  for (std::size_t i = 1; i < path.points.size(); ++i) path.length += (path.points[i] - path.points[i - 1]).norm();
+  return path;
 }
 
 GeodesicPath reversed(GeodesicPath path) {
@@ -88,44 +106,84 @@ GeodesicPath over_crossing(const SaddleVertexGraph& graph, const SurfacePoint& l
   const GeodesicPath rest = reversed(shortest_path(graph, right, middle, {.shorten = true, .threads = 1}));
   path.points.insert(path.points.end(), rest.points.begin() + 1, rest.points.end());
   path.surface.insert(path.surface.end(), rest.surface.begin() + 1, rest.surface.end());
-  path.length += rest.length;
-  return path;
+  return measured(std::move(path));
+}
+
+/// A dual edge: the straightest geodesic from site to site, or over the boundary where none is found.
+struct Across {
+  Crossing crossing;
+  bool is_straight;
+  SurfacePoint left;  ///< the left site, where it is straight in the face into which that leaves
+  double angle, length;
+};
+
+Across look_across(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline) {
+  const SurfacePoint &left = cells.sites[cells.edge_cells[polyline][0]],
+                     &right = cells.sites[cells.edge_cells[polyline][1]];
+  const Crossing crossing = crossing_of(mesh, cells, polyline);
+  const double chord = (position(mesh, left) - position(mesh, right)).norm();
+  const Across across{crossing, false, left, 0, std::max(2 * crossing.distance, chord)};
+  double back = crossing.angle, half = crossing.distance;
+  if (!crossing.is_aimed || vertex_at(mesh, crossing.point) != k_none || !aim(mesh, crossing.point, left, back, half))
+    return across;
+  const TraceEnd at_left = trace_end(mesh, crossing.point, back, half);
+  const std::optional<Vec3> place = barycentric_in(mesh, left, at_left.point.face);
+  if (!place) return across;
+  const SurfacePoint from{at_left.point.face, *place};
+  // Straight to the right site's image, which passes beside a short boundary; else over the crossing.
+  double angle = at_left.angle + M_PI + crossing.turn, length = 2 * crossing.height;
+  bool is_met = length > 0 && aim(mesh, from, right, angle, length);
+  if (!is_met && crossing.turn != 0) {
+    angle = at_left.angle + M_PI;
+    length = 2 * half;
+    is_met = aim(mesh, from, right, angle, length);
+  }
+  // A straightest way round the wrong side of a vertex is not the shortest.
+  if (!is_met || length > across.length * (1 + k_hit)) return across;
+  return {crossing, true, from, angle, length};
 }
 
 GeodesicPath path_across(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, Index polyline) {
   const Mesh& mesh = graph.mesh();
   const SurfacePoint &left = cells.sites[cells.edge_cells[polyline][0]],
                      &right = cells.sites[cells.edge_cells[polyline][1]];
-  const Crossing crossing = crossing_of(mesh, cells, polyline);
-  if (!(crossing.distance > 0)) {
-    return over_crossing(graph, left, cells.points[cells.edge_points[cells.edge_offsets[polyline]]], right);
-  }
-  double back = crossing.angle, half = crossing.distance;
-  if (vertex_at(mesh, crossing.point) == k_none && aim(mesh, crossing.point, left, back, half)) {
-    const TraceEnd at_left = trace_end(mesh, crossing.point, back, half);
-    const Vec3 out = -direction_in_space(mesh, at_left.point.face, at_left.angle);
-    double angle = start_angle(mesh, left, out), length = 2 * half;
-    if (aim(mesh, left, right, angle, length)) {
-      GeodesicPath path = trace(mesh, left, angle, length).path;
-      const std::size_t last = path.surface.size() - 1;
-      if (last > 0 && shared_face(mesh, path.surface[last - 1], right) != k_none) {
-        path.surface[last] = right;
-        path.points[last] = position(mesh, right);
-        return path;
-      }
+  const Across across = look_across(mesh, cells, polyline);
+  if (across.is_straight) {
+    GeodesicPath path = trace(mesh, across.left, across.angle, across.length).path;
+    const std::size_t last = path.surface.size() - 1;
+    if (last > 0 && shared_face(mesh, path.surface[last - 1], right) != k_none) {
+      path.surface[last] = right;
+      path.points[last] = position(mesh, right);
+      return measured(std::move(path));
     }
   }
-  return over_crossing(graph, left, crossing.point, right);
+  return over_crossing(graph, left, across.crossing.point, right);
+}
+
+std::vector<Index> open_boundaries(const GeodesicVoronoi& cells) {
+  std::vector<Index> open;
+  for (Index polyline = 0; polyline < static_cast<Index>(cells.edge_cells.size()); ++polyline)
+    if (!cells.edge_closed[polyline]) open.push_back(polyline);
+  return open;
 }
 
 }  // namespace
 
+std::vector<double> dual_edge_lengths(const Mesh& mesh, const GeodesicVoronoi& cells, int threads,
+                                      const JobStage& stage) {
+  const std::vector<Index> open = open_boundaries(cells);
+  std::vector<double> lengths(open.size());
+  parallel_for(static_cast<Index>(open.size()), threads, 16, [&](Index i, int) {
+    stage.check();
+    lengths[i] = look_across(mesh, cells, open[i]).length;
+  });
+  return lengths;
+}
+
 std::vector<GeodesicPath> dual_edge_paths(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, int threads,
                                           Job* job) {
   const JobStage stage(job, "Tracing dual edges");
-  std::vector<Index> open;
-  for (Index polyline = 0; polyline < static_cast<Index>(cells.edge_cells.size()); ++polyline)
-    if (!cells.edge_closed[polyline]) open.push_back(polyline);
+  const std::vector<Index> open = open_boundaries(cells);
   std::vector<GeodesicPath> paths(open.size());
   parallel_for(static_cast<Index>(open.size()), threads, 16, [&](Index i, int) {
     stage.check();

@@ -1,12 +1,16 @@
 #include "saddleback/dual_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <set>
 
 #include "saddleback/error.h"
 
 #include "tessellation/cell_topology.h"
 #include "tessellation/diagram.h"
+#include "tessellation/dual_edge_lengths.h"
 
 namespace saddleback {
 namespace {
@@ -15,28 +19,12 @@ namespace {
 constexpr int k_repair_rounds = 40;
 // New sites find their middles by a few of Lloyd's steps, but for those on the mesh's boundary.
 constexpr int k_settling_steps = 3;
-
-/// Twice the distance of the site from a bisector: of two mirror images in the plane of one of its straight bits, the
-/// one in which the foot lies, else the one whose end is nearest to it.
-double length_across(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline) {
-  const Index begin = cells.edge_offsets[polyline], end = cells.edge_offsets[polyline + 1];
-  double least_miss = std::numeric_limits<double>::infinity(), height = 0;
-  for (Index i = begin; i + 1 < end; ++i) {
-    const Index a = cells.edge_points[i], b = cells.edge_points[i + 1];
-    const double length = (cells.positions[b] - cells.positions[a]).norm();
-    const double from_a = cells.point_distance[a], from_b = cells.point_distance[b];
-    if (!(length > 1e-6 * (from_a + from_b))) continue;  // too short to tell a direction
-    const double foot = (from_a * from_a - from_b * from_b + length * length) / (2 * length);
-    const double miss = std::max({0.0, -foot, foot - length});
-    if (miss >= least_miss) continue;
-    least_miss = miss;
-    height = std::sqrt(std::max(0.0, from_a * from_a - foot * foot));
-  }
-  if (least_miss == std::numeric_limits<double>::infinity()) height = cells.point_distance[cells.edge_points[begin]];
-  const auto [left, right] = cells.edge_cells[polyline];
-  const double chord = (position(mesh, cells.sites[left]) - position(mesh, cells.sites[right])).norm();
-  return std::max(2 * height, chord);
-}
+// Rounds in which those of the rounds before do so, too. Around narrow handles that opens elsewhere what was mended:
+// from then on they stay where they have been put.
+constexpr int k_settling_rounds = 8;
+// The most sites that are added: for each of the given ones, and for a few of them. A strip that is narrower than its
+// cells by a factor asks for about that factor, and what a hundredth of a cell matters to nobody sees.
+constexpr std::size_t k_most_added_each = 10, k_most_added = 1000;
 
 /// A fan from the corner that leaves the shortest diagonals.
 void add_fan(const std::vector<Index>& around, const std::vector<Vec3>& vertices, std::vector<Triangle>& triangles) {
@@ -62,17 +50,57 @@ std::string first_issues(const std::vector<DualIssue>& issues) {
   return issues.size() > k_named ? text + message("; and ", issues.size() - k_named, " more") : text;
 }
 
+DualMesh dual_of(const Mesh& mesh, const GeodesicVoronoi& cells, int threads, const JobStage& stage) {
+  DualMesh result;
+  result.sites = cells.sites;
+  for (const SurfacePoint& site : cells.sites) result.vertices.push_back(position(mesh, site));
+  const PointStars stars(cells);
+  Index diagonals = 0;
+  for (const Index point : cells.branch_points) {
+    const std::vector<Index> around = cells_around(stars, point);
+    diagonals += std::max<Index>(0, static_cast<Index>(around.size()) - 3);
+    add_fan(around, result.vertices, result.triangles);
+  }
+  for (std::size_t polyline = 0; polyline < cells.edge_cells.size(); ++polyline)
+    if (!cells.edge_closed[polyline]) result.edges.push_back(cells.edge_cells[polyline]);
+  result.edge_lengths = dual_edge_lengths(mesh, cells, threads, stage);
+  result.issues = find_dual_issues(mesh, cells);
+  const auto corners =
+      static_cast<Index>(std::count_if(cells.areas.begin(), cells.areas.end(), [](double area) { return area > 0; }));
+  const auto edges = static_cast<Index>(result.edges.size()) + diagonals;
+  result.euler_characteristic = corners - edges + static_cast<Index>(result.triangles.size());
+  return result;
+}
+
+/// Those of places that are no site yet, each once: two cells may have been told the same corner.
+SurfacePoints new_places(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& places) {
+  const auto key = [&](const SurfacePoint& point) {
+    const Vec3 place = position(mesh, point);
+    return std::array{place.x(), place.y(), place.z()};
+  };
+  std::set<std::array<double, 3>> known;
+  for (const SurfacePoint& site : sites) known.insert(key(site));
+  SurfacePoints result;
+  for (const SurfacePoint& place : places)
+    if (known.insert(key(place)).second) result.push_back(place);
+  return result;
+}
+
 DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, int threads, const JobStage& stage) {
   const Mesh& mesh = graph.mesh();
   GeodesicVoronoi current = cells;
-  const auto kept = static_cast<Index>(cells.sites.size());
+  const std::size_t kept = cells.sites.size(), most = k_most_added + k_most_added_each * kept;
   std::vector<Index> fixed(kept);
-  for (Index i = 0; i < kept; ++i) fixed[i] = i;
+  std::iota(fixed.begin(), fixed.end(), 0);
   for (int round = 0; round < k_repair_rounds; ++round) {
     const std::vector<DualIssue> issues = find_dual_issues(mesh, current);
-    if (issues.empty()) break;
     SurfacePoints sites = current.sites;
-    const SurfacePoints more = places_to_mend(issues, static_cast<Index>(sites.size()));
+    const SurfacePoints more = new_places(mesh, sites, places_to_mend(issues, static_cast<Index>(sites.size())));
+    if (more.empty() || sites.size() + more.size() - kept > most) break;
+    if (round >= k_settling_rounds) {
+      fixed.resize(sites.size());
+      std::iota(fixed.begin(), fixed.end(), 0);
+    }
     for (const SurfacePoint& place : more) {
       if (is_on_boundary(mesh, place)) fixed.push_back(static_cast<Index>(sites.size()));
       sites.push_back(place);
@@ -85,12 +113,13 @@ DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, 
     options.threads = threads;
     current = relax_sites(graph, sites, options, part).cells;
   }
-  DualMesh result = dual_mesh(mesh, current);
+  DualMesh result = dual_of(mesh, current, threads, stage);
+  const std::size_t added = current.sites.size() - kept;
   if (!result.issues.empty()) {
-    throw InputError(message("sites: no dual mesh after ", current.sites.size() - kept, " more sites: ",
+    throw InputError(message("sites: no dual mesh after ", added, " more sites, of at most ", most, ": ",
                              first_issues(result.issues), "; subdivide the mesh or choose more cells"));
   }
-  result.added = static_cast<Index>(current.sites.size()) - kept;
+  result.added = static_cast<Index>(added);
   return result;
 }
 
@@ -132,29 +161,7 @@ std::string to_string(const DualIssue& issue) {
   return {};
 }
 
-DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells) {
-  DualMesh result;
-  result.sites = cells.sites;
-  for (const SurfacePoint& site : cells.sites) result.vertices.push_back(position(mesh, site));
-  const PointStars stars(cells);
-  Index diagonals = 0;
-  for (const Index point : cells.branch_points) {
-    const std::vector<Index> around = cells_around(stars, point);
-    diagonals += std::max<Index>(0, static_cast<Index>(around.size()) - 3);
-    add_fan(around, result.vertices, result.triangles);
-  }
-  for (Index polyline = 0; polyline < static_cast<Index>(cells.edge_cells.size()); ++polyline) {
-    if (cells.edge_closed[polyline]) continue;
-    result.edges.push_back(cells.edge_cells[polyline]);
-    result.edge_lengths.push_back(length_across(mesh, cells, polyline));
-  }
-  result.issues = find_dual_issues(mesh, cells);
-  const auto corners =
-      static_cast<Index>(std::count_if(cells.areas.begin(), cells.areas.end(), [](double area) { return area > 0; }));
-  const auto edges = static_cast<Index>(result.edges.size()) + diagonals;
-  result.euler_characteristic = corners - edges + static_cast<Index>(result.triangles.size());
-  return result;
-}
+DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells) { return dual_of(mesh, cells, 1, JobStage()); }
 
 DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, DualPolicy policy, int threads,
                    Job* job) {
@@ -164,7 +171,7 @@ DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells,
     stage.update(1);
     return result;
   }
-  DualMesh result = dual_mesh(graph.mesh(), cells);
+  DualMesh result = dual_of(graph.mesh(), cells, threads, stage);
   if (policy == DualPolicy::fail && !result.issues.empty()) {
     throw InputError(message("sites: the cells have no triangulation as their dual: ", first_issues(result.issues),
                              "; use more cells, or policy='repair'"));

@@ -9,6 +9,9 @@ namespace saddleback {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
+// Of parts, some for each face and site: a hundred times what usual cells have. Only where rounding decides which site
+// is nearer would there be more, wherever it does.
+constexpr std::size_t k_some_parts = 1 << 17, k_parts_each = 128;
 
 /// Whether another claim is nearer at all corners: then it is in the whole part.
 bool is_beaten(const FaceClaim& claim, const std::vector<FaceClaim>& claims) {
@@ -34,10 +37,12 @@ double distance_at(const FaceRefinement::Part& part, const FaceClaim& claim, con
 
 }  // namespace
 
-ExactParts::ExactParts(const ExactField& field, double tolerance, const JobStage& stage)
-    : field_(field), tolerance_(tolerance), refinement_(field.mesh()) {
+ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites, double tolerance,
+                       const JobStage& stage)
+    : field_(field), sites_(sites), tolerance_(tolerance), refinement_(field.mesh()) {
   look_at_mesh_vertices(stage.part(0, 0.3));
   const Index faces = field.mesh().face_count();
+  const std::size_t most = k_some_parts + k_parts_each * (faces + sites.size());
   std::vector<Index> pending, changed;
   for (Index face = 0; face < faces; ++face) {
     if (face % 256 == 0) stage.update(0.3 + 0.7 * face / faces);
@@ -46,7 +51,7 @@ ExactParts::ExactParts(const ExactField& field, double tolerance, const JobStage
       stage.check();
       const Index part = pending.back();
       pending.pop_back();
-      if (is_right(refinement_.parts()[part])) continue;
+      if (refinement_.parts().size() >= most || is_right(refinement_.parts()[part])) continue;
       changed.clear();
       refinement_.halve(part, changed);
       look_at_added();
@@ -58,9 +63,14 @@ ExactParts::ExactParts(const ExactField& field, double tolerance, const JobStage
   std::ranges::stable_sort(order_, {}, [&](Index part) { return refinement_.parts()[part].face; });
 }
 
+void ExactParts::find_sights(const SurfacePoint& place, Sights& sights) const {
+  field_.sights_at(place, sights);
+  for (ExactField::Sight& sight : sights) sight.source = sites_[sight.source];
+}
+
 void ExactParts::add_sights(const SurfacePoint& place, Sights& sights) const {
   Sights found;
-  field_.sights_at(place, found);
+  find_sights(place, found);
   if (sights.empty()) return sights.swap(found);
   for (const ExactField::Sight& sight : found) {
     const auto known = std::ranges::lower_bound(sights, sight.source, {}, &ExactField::Sight::source);
@@ -124,8 +134,9 @@ void ExactParts::find_claims(const FaceRefinement::Part& part, std::vector<FaceC
   std::ranges::sort(claims, {}, &FaceClaim::site);
 }
 
-/// Looks at the middles of the edges and of the part. Sites that own something there must be right; of others it is
-/// enough that they are behind by more than they are wrong.
+/// Looks at the middles of the edges and of the part, at what the sites' distances are more than the corners say. Among
+/// sites that own something there it must be the same: what it is moves no bisector. Others may be behind by less, but
+/// by no more than half of what they are farther away.
 bool ExactParts::is_right(const FaceRefinement::Part& part) const {
   if (std::ranges::max(part.length) <= tolerance_ / 2) return true;
   std::vector<FaceClaim> claims;
@@ -133,25 +144,25 @@ bool ExactParts::is_right(const FaceRefinement::Part& part) const {
   if (claims.size() == 1) return true;
   std::vector<std::uint8_t> is_rival;
   for (const FaceClaim& claim : claims) is_rival.push_back(!is_beaten(claim, claims));
-  const bool contested = std::ranges::count(is_rival, 1) > 1;
   const std::array<Vec3, 4> samples{Vec3(0.5, 0.5, 0), Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(1, 1, 1) / 3};
   Sights sights;
-  std::vector<double> expected(claims.size());
   for (const Vec3& x : samples) {
-    field_.sights_at({part.face, x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2]}, sights);
-    double first = k_infinity, second = k_infinity;
-    for (std::size_t i = 0; i < claims.size(); ++i) {
-      expected[i] = distance_at(part, claims[i], x);
-      if (expected[i] < first)
-        second = std::exchange(first, expected[i]);
-      else
-        second = std::min(second, expected[i]);
-    }
+    find_sights({part.face, x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2]}, sights);
+    double first = k_infinity, least = k_infinity, most = -k_infinity;
     for (std::size_t i = 0; i < claims.size(); ++i) {
       const ExactField::Sight* const sight = find_sight(sights, claims[i].site);
-      if (!sight) continue;
-      const double gap = is_rival[i] ? (contested ? 0 : second - first) : expected[i] - first;
-      if (std::abs(sight->distance - expected[i]) > std::max(tolerance_, gap / 2)) return false;
+      if (!is_rival[i] || !sight) continue;
+      const double expected = distance_at(part, claims[i], x), more = sight->distance - expected;
+      first = std::min(first, expected);
+      least = std::min(least, more);
+      most = std::max(most, more);
+    }
+    if (most - least > tolerance_) return false;
+    for (std::size_t i = 0; i < claims.size(); ++i) {
+      const ExactField::Sight* const sight = find_sight(sights, claims[i].site);
+      if (is_rival[i] || !sight) continue;
+      const double expected = distance_at(part, claims[i], x), more = sight->distance - expected;
+      if (most - more > std::max(tolerance_, (expected - first) / 2)) return false;
     }
   }
   return true;

@@ -10,11 +10,14 @@ namespace saddleback {
 
 /// Divides faces where several sites are nearest until, in every part, the squared distance of each of them is that of
 /// a point in the part's plane to within a tolerance: behind saddle vertices, where bisectors are hyperbolas, and where
-/// geodesics to a site go round a vertex on two sides.
+/// geodesics to a site go round a vertex on two sides. Between two sites only the difference of their distances counts,
+/// which is as smooth as they are near each other. Parts are divided no further beyond a number that is proportional to
+/// that of faces and sites and that no bisectors of lines and hyperbolas ask for.
 class ExactParts {
  public:
-  /// `tolerance`: of distances, mesh units. The field must outlive the parts. \throw Cancelled.
-  ExactParts(const ExactField& field, double tolerance, const JobStage& stage);
+  /// `sites`: the sites that are the field's sources, in increasing order; cells are numbered by them. `tolerance`: of
+  /// distances, mesh units. All must outlive the parts. \throw Cancelled.
+  ExactParts(const ExactField& field, const std::vector<Index>& sites, double tolerance, const JobStage& stage);
 
   const FaceRefinement& refinement() const { return refinement_; }
   /// By face of the mesh.
@@ -27,11 +30,13 @@ class ExactParts {
   using Sights = std::vector<ExactField::Sight>;
   void look_at_mesh_vertices(const JobStage& stage);
   void look_at_added();
+  void find_sights(const SurfacePoint& place, Sights& sights) const;
   void add_sights(const SurfacePoint& place, Sights& sights) const;
   void set_nearest(Index vertex);
   bool is_right(const FaceRefinement::Part& part) const;
 
   const ExactField& field_;
+  const std::vector<Index>& sites_;
   const double tolerance_;
   FaceRefinement refinement_;
   std::vector<Sights> sights_;  ///< by vertex, each by site

@@ -1,6 +1,10 @@
 // The diagram by exact distances: found on the faces' parts, then told in the mesh's own faces.
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+
+#include "saddleback/surface_curve.h"
 
 #include "tessellation/diagram.h"
 #include "tessellation/exact_claims.h"
@@ -8,8 +12,32 @@
 namespace saddleback {
 namespace {
 
-// Of distances, relative to the size of a cell: where straight bits stand for hyperbolas.
-constexpr double k_tolerance = 3e-8;
+// Of distances, relative to the size of a cell: where straight bits stand for hyperbolas. Bits are as many as its root
+// has digits: some ten a face that a bisector crosses.
+constexpr double k_tolerance = 5e-6;
+// Relative to the size of a cell: rounding of distances, some 1e-14 of it, then moves a bisector by 1e-4 of its
+// distance at most. Of sites that are nearer to each other rounding alone would say which is nearest.
+constexpr double k_same_place = 1e-10;
+
+/// The sites but those that are at the place of an earlier one. O(n log n) but for many beside each other.
+std::vector<Index> sites_of_places(const Mesh& mesh, const SurfacePoints& sites, double limit) {
+  const Vec3 direction = Vec3(0.48, 0.6, 0.64);  // any unit vector; grids are seldom square to this one
+  std::multimap<double, Index> along;
+  std::vector<Index> kept;
+  for (Index site = 0; site < static_cast<Index>(sites.size()); ++site) {
+    const Vec3 place = position(mesh, sites[site]);
+    const double here = direction.dot(place);
+    const bool is_known = std::any_of(along.lower_bound(here - limit), along.upper_bound(here + limit), [&](auto& at) {
+      const SurfacePoint& other = sites[at.second];
+      return (position(mesh, other) - place).norm() <= limit &&
+             shared_face(mesh, sites[site], other, k_barycentric_tolerance) != k_none;
+    });
+    if (is_known) continue;
+    along.emplace(here, site);
+    kept.push_back(site);
+  }
+  return kept;
+}
 
 Mesh mesh_of(const ExactParts& parts, const JobStage& stage) {
   const FaceRefinement& refinement = parts.refinement();
@@ -102,15 +130,19 @@ class InFaces {
 GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job) {
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells by exact distances");
-  auto field = std::make_shared<const ExactField>(mesh, sites, stage.part(0, 0.3));
   const double size = std::sqrt(mesh.area() / static_cast<double>(sites.size()));
-  const ExactParts parts(*field, k_tolerance * size, stage.part(0.3, 0.8));
+  std::vector<Index> kept = sites_of_places(mesh, sites, k_same_place * size);
+  SurfacePoints sources;
+  for (const Index site : kept) sources.push_back(sites[site]);
+  auto field = std::make_shared<const ExactField>(mesh, sources, stage.part(0, 0.3));
+  const ExactParts parts(*field, kept, k_tolerance * size, stage.part(0.3, 0.8));
   const Mesh divided = mesh_of(parts, stage.part(0.8, 0.85));
   const ExactClaims claims(parts, divided, static_cast<Index>(sites.size()));
   GeodesicVoronoi diagram = subdivision(CellComplex(claims, 1, stage.part(0.85, 0.95)), sites, stage);
   InFaces(parts, diagram).tell();
   for (const SurfacePoint& point : diagram.points) diagram.point_distance.push_back(field->nearest_at(point).distance);
   diagram.exact_field = std::move(field);
+  diagram.exact_sites = std::move(kept);
   stage.update(1);
   return diagram;
 }

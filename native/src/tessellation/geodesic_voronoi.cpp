@@ -183,7 +183,7 @@ double way_over_corner(const GeodesicVoronoi& cells, const Mesh& mesh, const Sur
 }  // namespace
 
 Index GeodesicVoronoi::cell_at(const Mesh& mesh, const SurfacePoint& point) const {
-  return exact_field ? exact_field->nearest_at(point).source : claim_at(*this, mesh, point).cell;
+  return exact_field ? exact_sites[exact_field->nearest_at(point).source] : claim_at(*this, mesh, point).cell;
 }
 
 std::vector<CellAt> GeodesicVoronoi::locate(const SaddleVertexGraph& graph, const SurfacePoints& places,
@@ -196,7 +196,7 @@ std::vector<CellAt> GeodesicVoronoi::locate(const SaddleVertexGraph& graph, cons
     for (const SurfacePoint& place : places) {
       stage.check();
       const ExactField::Sight sight = exact_field->nearest_at(place);
-      result.push_back({sight.source, sight.distance});
+      result.push_back({exact_sites[sight.source], sight.distance});
     }
     return result;
   }

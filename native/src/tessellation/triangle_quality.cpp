@@ -21,20 +21,41 @@ void check(std::span<const Vec3> vertices, std::span<const Triangle> triangles) 
   }
 }
 
+int exponent_of(double value) {
+  int exponent = 0;
+  std::frexp(value, &exponent);
+  return exponent;
+}
+
+/// The edges as vectors of lengths about 1, scaled by powers of 2: nothing overflows or underflows, and roundings are
+/// those of any other size.
+std::array<Vec3, 3> scaled_edges(const std::array<Vec3, 3>& corner) {
+  const auto scaled = [](const std::array<Vec3, 3>& vectors) {
+    double most = 0;
+    for (const Vec3& v : vectors) most = std::max(most, v.cwiseAbs().maxCoeff());
+    std::array<Vec3, 3> result;
+    for (int i = 0; i < 3; ++i)
+      result[i] = vectors[i].unaryExpr([exponent = exponent_of(most)](double x) { return std::ldexp(x, -exponent); });
+    return result;
+  };
+  const std::array<Vec3, 3> near = scaled(corner);
+  return scaled({near[1] - near[0], near[2] - near[1], near[0] - near[2]});
+}
+
 void measure(const std::array<Vec3, 3>& corner, TriangleQuality& out) {
-  const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+  const std::array<Vec3, 3> edge = scaled_edges(corner);
   double perimeter = 0, longest = 0, least = M_PI, greatest = 0;
   for (int i = 0; i < 3; ++i) {
-    const Vec3 a = corner[(i + 1) % 3] - corner[i], b = corner[(i + 2) % 3] - corner[i];
+    const Vec3 &a = edge[i], b = -edge[(i + 2) % 3];
     const double length = a.norm(), angle = std::atan2(a.cross(b).norm(), a.dot(b));
     perimeter += length;
     longest = std::max(longest, length);
     least = std::min(least, angle);
     greatest = std::max(greatest, angle);
   }
-  // 6 S / (sqrt(3) (perimeter / 2) h), S being half the normal's length.
+  // 6 S / (sqrt(3) (perimeter / 2) h), S being half the length of the edges' product.
   const double scale = std::sqrt(3.0) * perimeter * longest;
-  out.quality.push_back(scale > 0 ? 6 * normal.norm() / scale : 0);
+  out.quality.push_back(scale > 0 ? 6 * edge[0].cross(edge[2]).norm() / scale : 0);
   out.least_angle.push_back(least);
   out.greatest_angle.push_back(greatest);
 }
