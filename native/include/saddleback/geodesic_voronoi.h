@@ -97,7 +97,8 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
 /// The same by exact distances, as a reference: no graph, and slow. Bisectors are divided so finely that at no point of
 /// a cell another site is nearer by more than 1e-5 of the size of a cell (the square root of the area per site);
 /// `vertex_cell` and `locate` are exact up to rounding. Two ways to a site that are equally long may be told apart by
-/// rounding. Sites within 1e-10 of that size of each other are one: the first of them has the cell. \throw as
+/// rounding. Sites within 1e-10 of the extent of their part of the mesh of each other are one: the first has
+/// the cell. \throw as
 /// geodesic_voronoi. About O(V^1.5 + points) time.
 GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job = nullptr);
 

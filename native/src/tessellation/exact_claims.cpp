@@ -120,15 +120,16 @@ void ExactParts::find_claims(const FaceRefinement::Part& part, std::vector<FaceC
         const ExactField::Sight* const known = find_sight(sights_[part.corner[i]], sight.source);
         distance[i] = known ? known->distance : k_infinity;
       }
-      bool may_own = true;
+      bool may_own = true, is_nearest = false;  // the latter whatever rounding says of the former
       for (int i = 0; i < 3; ++i) {
         const double to_next = part.length[i], to_last = part.length[(i + 2) % 3];
         const double least = std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
         claim.squared_distance[i] = least * least;
         const double lead = least - nearest_[part.corner[i]].distance;
         may_own = may_own && lead <= 2 * std::max(to_next, to_last);
+        is_nearest = is_nearest || nearest_[part.corner[i]].source == claim.site;
       }
-      if (may_own) claims.push_back(claim);
+      if (may_own || is_nearest) claims.push_back(claim);
     }
   }
   std::ranges::sort(claims, {}, &FaceClaim::site);
@@ -170,19 +171,39 @@ bool ExactParts::is_right(const FaceRefinement::Part& part) const {
 
 ExactClaims::ExactClaims(const ExactParts& parts, const Mesh& mesh, Index site_count)
     : FaceClaims(mesh, site_count), parts_(parts) {
-  std::vector<FaceClaim> claims;
+  std::vector<Index> first{0};
+  std::vector<FaceClaim> all, claims;
   for (Index face = 0; face < mesh.face_count(); ++face) {
     const FaceRefinement::Part& part = parts.refinement().parts()[parts.order()[face]];
     parts.find_claims(part, claims);
-    const std::vector<FaceClaim> all = claims;
-    std::erase_if(claims, [&](const FaceClaim& claim) { return is_beaten(claim, all); });
-    if (claims.size() == 1) continue;
-    shared_index_[face] = shared_count();
-    faces_.push_back(face);
     for (FaceClaim& claim : claims) {
       claim.face = face;
-      claims_.push_back(claim);
+      if (!is_beaten(claim, claims)) all.push_back(claim);
     }
+    first.push_back(static_cast<Index>(all.size()));
+  }
+  const auto count = [&](Index face) { return first[face + 1] - first[face]; };
+  // A face that does not know of a site that its neighbour sees on their edge must be divided there all the same.
+  std::vector<std::uint8_t> is_shared(mesh.face_count(), 0);
+  std::vector<EdgeLine> lines;
+  std::vector<EdgePiece> pieces;
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    if (count(face) == 1) continue;
+    is_shared[face] = 1;
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      const Index twin = mesh.twin(h);
+      if (twin == k_none || count(Mesh::face_of(twin)) > 1) continue;
+      lines.clear();
+      for (Index i = first[face]; i < first[face + 1]; ++i) lines.push_back(all[i].line_along(h));
+      lower_envelope(lines, pieces);
+      if (pieces.size() > 1) is_shared[Mesh::face_of(twin)] = 1;
+    }
+  }
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    if (!is_shared[face]) continue;
+    shared_index_[face] = shared_count();
+    faces_.push_back(face);
+    claims_.insert(claims_.end(), all.begin() + first[face], all.begin() + first[face + 1]);
     first_.push_back(claim_count());
   }
 }

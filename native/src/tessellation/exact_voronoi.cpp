@@ -1,5 +1,6 @@
 // The diagram by exact distances: found on the faces' parts, then told in the mesh's own faces.
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,18 +16,29 @@ namespace {
 // Of distances, relative to the size of a cell: where straight bits stand for hyperbolas. Bits are as many as its root
 // has digits: some ten a face that a bisector crosses.
 constexpr double k_tolerance = 5e-6;
-// Relative to the size of a cell: rounding of distances, some 1e-14 of it, then moves a bisector by 1e-4 of its
-// distance at most. Of sites that are nearer to each other rounding alone would say which is nearest.
+// Relative to the extent of the part of the mesh: rounding of distances, some 1e-14 of it, then moves a bisector by
+// 1e-4 of its distance at most. Of sites that are nearer to each other rounding alone would say which is nearest.
 constexpr double k_same_place = 1e-10;
 
+/// Of each component, times the extent in space.
+std::vector<double> limits_of_places(const Mesh& mesh) {
+  std::vector<Eigen::AlignedBox3d> boxes(mesh.component_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) boxes[mesh.component_of(v)].extend(mesh.position(v));
+  std::vector<double> limits;
+  for (const Eigen::AlignedBox3d& box : boxes) limits.push_back(k_same_place * box.diagonal().norm());
+  return limits;
+}
+
 /// The sites but those that are at the place of an earlier one. O(n log n) but for many beside each other.
-std::vector<Index> sites_of_places(const Mesh& mesh, const SurfacePoints& sites, double limit) {
+std::vector<Index> sites_of_places(const Mesh& mesh, const SurfacePoints& sites) {
+  const std::vector<double> limits = limits_of_places(mesh);
   const Vec3 direction = Vec3(0.48, 0.6, 0.64);  // any unit vector; grids are seldom square to this one
   std::multimap<double, Index> along;
   std::vector<Index> kept;
   for (Index site = 0; site < static_cast<Index>(sites.size()); ++site) {
     const Vec3 place = position(mesh, sites[site]);
     const double here = direction.dot(place);
+    const double limit = limits[mesh.component_of(mesh.triangles()[sites[site].face][0])];
     const bool is_known = std::any_of(along.lower_bound(here - limit), along.upper_bound(here + limit), [&](auto& at) {
       const SurfacePoint& other = sites[at.second];
       return (position(mesh, other) - place).norm() <= limit &&
@@ -131,7 +143,7 @@ GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job*
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells by exact distances");
   const double size = std::sqrt(mesh.area() / static_cast<double>(sites.size()));
-  std::vector<Index> kept = sites_of_places(mesh, sites, k_same_place * size);
+  std::vector<Index> kept = sites_of_places(mesh, sites);
   SurfacePoints sources;
   for (const Index site : kept) sources.push_back(sites[site]);
   auto field = std::make_shared<const ExactField>(mesh, sources, stage.part(0, 0.3));
