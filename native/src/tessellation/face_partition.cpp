@@ -211,6 +211,7 @@ void FacePartition::read_side(int side, std::vector<Index>& sites, std::vector<I
         next = other;
       }
     }
+    if (next == k_none) return;  // a side that is not whole agrees with no edge
     if (next != end) breaks.push_back(next);
     vertex = next;
   }
