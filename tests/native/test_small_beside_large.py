@@ -124,7 +124,7 @@ def test_what_no_graph_holds_is_refused() -> None:
         sb.SaddleVertexGraph(mesh)
 
 
-def test_disks_of_needle_rings_take_no_longer_where_there_are_more() -> None:
+def test_disks_of_needle_rings_are_right() -> None:
     """By count a ring's disks are small, and what lies beyond the needles belongs to none."""
     for around in (500, 4000):
         mesh = sb.Mesh(*meshes.cylinder(around, 2, height=50.0))

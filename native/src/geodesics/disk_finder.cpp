@@ -14,8 +14,6 @@ const std::int32_t k_unreached = std::bit_cast<std::int32_t>(k_infinity);
 constexpr float k_as_far = 1 + 1e-5f;
 constexpr float k_longer = 1 + 1e-6f;
 constexpr double k_rounding = 1e-6;
-// Disks' worth of vertices that bends may reach before it is asked what radius the edges allow.
-constexpr std::size_t k_flood = 8;
 // Windows end where a flank serves within this many times the tolerance. Less costs windows and arcs: with 1 a tenth
 // more of both; more lets errors come near the accuracy here and there, with 1.5 to a fiftieth.
 constexpr double k_radius_tolerance = 1.1;
@@ -74,7 +72,6 @@ void DiskFinder::begin(Sources sources) {
   sighting_count_ = 0;
   now_->left_count = now_->right_count = 0;
   limits_.fill(k_infinity);
-  is_dammed_.fill(false);
   generation_ = 0;
 }
 
@@ -394,24 +391,13 @@ void DiskFinder::relax_bends() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < changed_.size(); ++i) {
     const std::int32_t slot = changed_[i];
-    const int lane = slot % k_batch;
-    if (limits_[lane] == k_infinity) {
+    if (limits_[slot % k_batch] == k_infinity) {
       changed_[kept++] = slot;
-      continue;
+    } else {
+      relax_from(slot);
     }
-    if (!is_dammed_[lane] && touched_[lane].size() > k_flood * static_cast<std::size_t>(nearest_before() + 1))
-      dam(lane);
-    relax_from(slot);
   }
   changed_.resize(kept);
-}
-
-/// Where vertices on the far side of needles are among the first that are seen, the radius so far is theirs, and the
-/// whole mesh may lie within it.
-void DiskFinder::dam(int lane) {
-  constexpr float k_roomy = 1 + 1e-4f;  // the disk's own radius comes from its labels, on every device
-  is_dammed_[lane] = true;
-  limits_[lane] = std::min(limits_[lane], k_roomy * radius_by_edges(lane));
 }
 
 void DiskFinder::relax_from(std::int32_t slot) {

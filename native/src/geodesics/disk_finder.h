@@ -119,7 +119,6 @@ class DiskFinder {
   void bound_blind_disks();
   float radius_by_edges(int lane);
   void relax_bends();
-  void dam(int lane);
   bool bends(std::int32_t slot, std::int32_t label) const;
   void relax_from(std::int32_t slot);
   template <class Offer>
@@ -140,9 +139,8 @@ class DiskFinder {
   SightingColumns sightings_;
   int sighting_count_ = 0, generation_ = 0, window_count_ = 0;
   alignas(64) std::array<float, k_batch> limits_{};
-  std::array<double, k_batch> scales_{};   ///< of the lanes' planes, see scale_about
-  std::array<bool, k_batch> is_dammed_{};  ///< whether the limit is no more than what edges allow
-  std::vector<std::int32_t> changed_;      ///< slots whose neighbours may have to be told of their labels
+  std::array<double, k_batch> scales_{};  ///< of the lanes' planes, see scale_about
+  std::vector<std::int32_t> changed_;     ///< slots whose neighbours may have to be told of their labels
   std::vector<float> radii_;
   std::vector<float> by_edges_;  ///< per node, where a disk was bounded by edges; infinite in between
   std::array<std::vector<std::int32_t>, k_batch> chosen_;  ///< with room behind what was chosen
