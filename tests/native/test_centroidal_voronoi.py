@@ -394,8 +394,8 @@ def test_of_several_starts_the_one_with_the_least_energy() -> None:
 
 
 @pytest.mark.xfail(
-    reason="distances to rivals go over arcs since no claim may be shorter than a way, and change in small leaps with the "
-    "sites: annealing gains half of what it did (1.0088 for 1.0080 of the least energy, from 1.0093)"
+    reason="distances to rivals go over arcs since no claim is shorter than a way, and leap a little as sites move: "
+    "annealing gains half of what it did (1.0088 for 1.0080 of the least energy, from 1.0093)"
 )
 def test_annealed_cells_are_more_even_than_relaxed_ones() -> None:
     """At equal numbers of steps, from the same samples: a relaxation ends at the next rest, which luck decides."""

@@ -223,7 +223,7 @@ def strip(width: float) -> sb.Mesh:
 
 
 def test_repair_of_a_strip_ends() -> None:
-    """Cells must be as narrow as it is: a wide one is mended, for a narrow one so many would be needed that it is told."""
+    """Cells must be as narrow as it is: a wide one is mended; a narrow one would need so many that it is told."""
     mesh = strip(0.1)
     cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh), sb.sample(mesh, 12, seed=1))
     dual = cells.dual()

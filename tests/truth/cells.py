@@ -95,14 +95,23 @@ def any_graph(mesh: sb.Mesh) -> tuple[sb.SaddleVertexGraph, float]:
     return sb.SaddleVertexGraph(mesh, accuracy=5e-3), 1e-2
 
 
-@guards("geodesic_voronoi", "GeodesicVoronoi", "SaddleVertexGraph.nearest")
+@guards(
+    "geodesic_voronoi",
+    "GeodesicVoronoi",
+    "SaddleVertexGraph.nearest",
+    unsettled="2 of 475: too short beside parts that were drawn together",
+)
 def cells_of_few_sites(mesh: sb.Mesh, rng: Random) -> None:
     """Cells, graph and brute force over exact fields agree about the vertices."""
     graph, accuracy = any_graph(mesh)
     check_vertices(mesh, graph, random_sites(mesh, rng, 6), accuracy)
 
 
-@guards("GeodesicVoronoi.locate", "GeodesicVoronoi.cells_at")
+@guards(
+    "GeodesicVoronoi.locate",
+    "GeodesicVoronoi.cells_at",
+    unsettled="2 of 475: on folded sheets and terrain, too long or too short",
+)
 def places_in_cells(mesh: sb.Mesh, rng: Random) -> None:
     """`locate` against exact fields, on coarse faces, too."""
     graph, accuracy = any_graph(mesh)

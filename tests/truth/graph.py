@@ -121,7 +121,12 @@ def polyline_length(points: Floats) -> float:
     return float(sum(np.linalg.norm(b - a) for a, b in pairwise(points)))
 
 
-@guards("SaddleVertexGraph.path", "SaddleVertexGraph.paths", "GeodesicPath")
+@guards(
+    "SaddleVertexGraph.path",
+    "SaddleVertexGraph.paths",
+    "GeodesicPath",
+    unsettled="2 of 474: longer than the distance by 3e-6 across parts that were drawn together",
+)
 def path_lengths(mesh: sb.Mesh, rng: Random) -> None:
     """A path leads from end to end over the surface and is as long as its polyline, and as the distance."""
     graph = sb.SaddleVertexGraph(mesh, **random_rule(mesh, rng))

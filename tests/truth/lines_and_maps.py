@@ -129,8 +129,8 @@ def lines_along_fields(mesh: sb.Mesh, rng: Random) -> None:
     length = float(mesh.mean_edge_length * rng.uniform(0.1, 4))
     line = sb.streamline(mesh, field, start, length)
     assert abs(line.length - polyline_length(line.points)) <= 1e-9 * max(length, line.length)
-    assert line.length <= length * (1 + 1e-9)
     rounding = 1e-9 * np.abs(mesh.vertices).max()
+    assert line.length <= length * (1 + 1e-9) + rounding
     np.testing.assert_allclose(line.surface.positions(mesh), line.points, atol=rounding)
 
 

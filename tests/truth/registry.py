@@ -18,13 +18,15 @@ class Check:
 
     `on` says what it is given before a random generator: a good mesh of some 4 to 300 faces (`"mesh"`, an `sb.Mesh`),
     sites of the plane (`"plane"`, an array (n, 2) with n >= 1), or nothing. An `sb.Error` that it lets through is a
-    refusal, not a finding: what must not be refused, it asserts.
+    refusal, not a finding: what must not be refused, it asserts. `unsettled` tells what the check still finds: such a
+    check is no part of `tests/run`, but of every longer search.
     """
 
     name: str
     function: CheckFunction
     guards: tuple[str, ...]
     on: Input
+    unsettled: str = ""
 
     @property
     def summary(self) -> str:
@@ -35,14 +37,14 @@ class Check:
 CHECKS: dict[str, Check] = {}
 
 
-def guards(*entry_points: str, on: Input = "mesh") -> Callable[[CheckFunction], CheckFunction]:
+def guards(*entry_points: str, on: Input = "mesh", unsettled: str = "") -> Callable[[CheckFunction], CheckFunction]:
     """Register a check of these entry points, named as users call them: "exact_distances", "SaddleVertexGraph.path"."""
 
     def register(function: CheckFunction) -> CheckFunction:
         name = f"{function.__module__.rpartition('.')[2]}.{function.__name__}"
         if name in CHECKS and CHECKS[name].function is not function:
             raise ValueError(f"two checks are called {name}")
-        CHECKS[name] = Check(name, function, entry_points, on)
+        CHECKS[name] = Check(name, function, entry_points, on, unsettled)
         return function
 
     return register
