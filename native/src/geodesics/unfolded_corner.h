@@ -5,8 +5,8 @@
 
 namespace saddleback {
 
-/// Beside edges so many times as long as they are themselves, waves of windows take others' places from positions, which
-/// the processor has.
+/// Beside edges so many times as long as they are themselves, waves of windows take others' places from positions,
+/// which the processor has.
 constexpr double k_extreme = 1 << 20;
 
 /// How far along an edge the far corner of its face is: `left` and `right` are the lengths of the sides at the edge's
