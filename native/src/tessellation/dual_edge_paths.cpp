@@ -122,7 +122,7 @@ Across look_across(const Mesh& mesh, const GeodesicVoronoi& cells, Index polylin
                      &right = cells.sites[cells.edge_cells[polyline][1]];
   const Crossing crossing = crossing_of(mesh, cells, polyline);
   const double chord = (position(mesh, left) - position(mesh, right)).norm();
-  const Across across{crossing, false, left, 0, std::max(2 * crossing.distance, chord)};
+  Across across{crossing, false, left, 0, std::max(2 * crossing.distance, chord)};
   double back = crossing.angle, half = crossing.distance;
   if (!crossing.is_aimed || vertex_at(mesh, crossing.point) != k_none || !aim(mesh, crossing.point, left, back, half))
     return across;
