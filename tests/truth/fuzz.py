@@ -10,7 +10,9 @@ from __future__ import annotations
 
 import argparse
 import fnmatch
+import math
 import multiprocessing
+import os
 import sys
 import threading
 import time
@@ -23,6 +25,11 @@ from typing import Any
 
 import numpy as np
 
+try:
+    import resource
+except ImportError:  # Windows
+    resource = None  # type: ignore[assignment]
+
 if __name__ == "__main__":  # as a file, too: the project's root holds the package `tests`
     sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
@@ -31,6 +38,7 @@ from tests import meshes
 from tests.truth import families, shrinking
 from tests.truth.registry import Check, load_checks
 
+MOST_MEMORY = 4 << 30
 LONGEST = 60.0
 """Seconds after which a case counts as hanging; the slowest sanitizer build needs 10."""
 
@@ -83,8 +91,18 @@ def attempt(check: Check, case: Case) -> Outcome:
     return Outcome("fine")
 
 
+def limit_memory() -> None:
+    """Make a case that asks for more than a small machine has a finding, and no harm to others.
+
+    Not under AddressSanitizer, which reserves terabytes.
+    """
+    if resource is not None and "libasan" not in os.environ.get("LD_PRELOAD", ""):
+        resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+
+
 def serve(pipe: Connection) -> None:
     """A worker's life: takes cases, sends outcomes."""
+    limit_memory()
     checks = load_checks()
     while True:
         case = pipe.recv()
@@ -158,6 +176,7 @@ class Run:
     checks: list[Check]
     seed: int
     until: float
+    most_cases: float = math.inf
     next_case: int = 0
     outcomes: Counter[str] = field(default_factory=Counter)
     by_check: dict[str, Counter[str]] = field(default_factory=dict)
@@ -170,6 +189,8 @@ class Run:
             with self.lock:
                 number = self.next_case
                 self.next_case += 1
+            if number >= self.most_cases:
+                break
             check = self.checks[number % len(self.checks)]
             case = random_case(check, self.seed + number)
             outcome = worker.run(case)
@@ -189,9 +210,9 @@ class Run:
         return told(case, case if found >= 3 or hangs else made_small(worker, case), outcome)
 
 
-def run(checks: list[Check], seconds: float, seed: int, workers: int) -> Run:
-    """Random cases of these checks for so long."""
-    state = Run(checks, seed, time.monotonic() + seconds)
+def run(checks: list[Check], seconds: float, seed: int, workers: int, most_cases: float = math.inf) -> Run:
+    """Random cases of these checks for so long, or so many."""
+    state = Run(checks, seed, time.monotonic() + seconds, most_cases)
     threads = [threading.Thread(target=state.work) for _ in range(workers)]
     for thread in threads:
         thread.start()
