@@ -13,22 +13,12 @@ from numpy.typing import NDArray
 from .. import compat
 from ..core.carried import Anchors
 from ..core.results import Indices, Reals
+from ..rollback import ELEMENTS
 from ..shape_nodes import REST_POSITION
 from .groups_in import group_numbers
 from .mesh_in import read_triangles
 from .out_attributes import KINDS, recorded
 
-# Read type -> the element's property, its length and the exact type that Blender copies in one go.
-READ = {
-    "FLOAT": ("value", 1, np.float32),
-    "INT": ("value", 1, np.int32),
-    "INT8": ("value", 1, np.int8),
-    "BOOLEAN": ("value", 1, np.bool_),
-    "FLOAT2": ("vector", 2, np.float32),
-    "FLOAT_VECTOR": ("vector", 3, np.float32),
-    "FLOAT_COLOR": ("color", 4, np.float32),
-    "BYTE_COLOR": ("color", 4, np.float32),
-}
 # What Blender itself keeps as attributes, and what has a place of its own below.
 NOT_CARRIED = ("position", "material_index", "sharp_face", "sharp_edge", "custom_normal", REST_POSITION)
 
@@ -82,9 +72,9 @@ def _attributes(source: bpy.types.Object, mesh: bpy.types.Mesh, anchors: Anchors
     found = {}
     for attribute in mesh.attributes:
         name, kind = attribute.name, attribute.data_type
-        if kind not in READ or attribute.domain == "EDGE" or name in skipped or name.startswith("."):
+        if kind not in ELEMENTS or attribute.domain == "EDGE" or name in skipped or name.startswith("."):
             continue
-        element, width, dtype = READ[kind]
+        element, width, dtype = ELEMENTS[kind]
         values: NDArray[Any] = np.empty(len(attribute.data) * width, dtype)
         attribute.data.foreach_get(element, values)
         values = values if width == 1 else values.reshape(-1, width)
