@@ -206,6 +206,16 @@ def test_images_without_a_clear_mask_are_refused(image, words) -> None:
         sb.Shape.from_mask(image)
 
 
+def test_outlines_that_are_simplified_stop_before_they_touch_a_corner() -> None:
+    """Where a new corner came to lie on another part's, the mask was refused as a shape that meets itself."""
+    corner_to_corner = [[0, 0, 0, 0], [1, 0, 0, 0], [1, 0, 1, 1]]
+    assert len(sb.Shape.from_mask(np.array(corner_to_corner, bool), 8, centred=False).parts) == 2
+    for seed in range(300):
+        mask = np.random.default_rng(seed).random((5, 5)) < 0.4
+        mask[2, 2], mask[0, 0] = True, False
+        assert 1 <= len(sb.Shape.from_mask(mask, 48, centred=False).parts) <= 13
+
+
 def test_a_mask_tells_how_far_it_is_and_can_be_cancelled() -> None:
     mask = np.hypot(*np.mgrid[-50:51, -50:51]) < 40
     job = sb.Job()

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <queue>
 #include <tuple>
 
@@ -171,9 +172,11 @@ class Simplifier {
     --sizes_[corner.loop];
   }
 
-  /// Whether a triangle holds nothing of the loops but the corners named, and no edge touches its side from p to q but
-  /// those that end there or at the corner `at`, which goes.
-  bool is_free(const Vec2 (&triangle)[3], const Vec2& p, const Vec2& q, Index at, Index also) {
+  /// Whether a triangle holds nothing of the loops but the corners `at` and `also`, which go, and `ends`, and no edge
+  /// touches the new side from p to q but those of these corners. By number: another corner may lie where a new one
+  /// would.
+  bool is_free(const Vec2 (&triangle)[3], const Vec2& p, const Vec2& q, Index at, Index also,
+               std::initializer_list<Index> ends) {
     const Vec2 low = triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]);
     const Vec2 high = triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2]);
     const bool flip = turn(triangle[0], triangle[1], triangle[2]) == Sign::negative;
@@ -182,8 +185,9 @@ class Simplifier {
       const Vec2 &s = place(i), &e = place(corners_[i].after);
       if ((s.array() < low.array() && e.array() < low.array()).any()) return true;
       if ((s.array() > high.array() && e.array() > high.array()).any()) return true;
+      const auto is_end = [&](Index k) { return std::find(ends.begin(), ends.end(), k) != ends.end(); };
       const bool goes = i == at || i == also;
-      if (!goes && s != p && s != q) {
+      if (!goes && !is_end(i)) {
         bool inside = true;
         for (int k = 0; k < 3 && inside; ++k) {
           const Sign side = turn(triangle[k], triangle[(k + 1) % 3], s);
@@ -191,8 +195,8 @@ class Simplifier {
         }
         if (inside) return false;
       }
-      const bool ends_here =
-          goes || corners_[i].after == at || corners_[i].after == also || s == p || s == q || e == p || e == q;
+      const Index after = corners_[i].after;
+      const bool ends_here = goes || after == at || after == also || is_end(i) || is_end(after);
       return ends_here || !predicates::segments_touch(s, e, p, q);
     };
     return visit_squares(low, high, [&](const std::vector<Index>& square) {
@@ -203,7 +207,7 @@ class Simplifier {
   void cut(Index b) {
     const Index a = corners_[b].before, c = corners_[b].after;
     const bool is_flat = turn(place(a), place(b), place(c)) == Sign::zero;
-    if (!is_flat && !is_free({place(a), place(b), place(c)}, place(a), place(c), b, b)) return;
+    if (!is_flat && !is_free({place(a), place(b), place(c)}, place(a), place(c), b, b, {a, c})) return;
     remove(b);
     enter(a);
     renew(corners_[a].before);
@@ -215,8 +219,8 @@ class Simplifier {
     const Index a = corners_[b].before, c = corners_[b].after, d = corners_[c].after;
     const Vec2 p = meeting(b);
     if (!p.allFinite() || turn(place(b), p, place(c)) != Sign::positive) return;
-    if (!is_free({place(b), p, place(c)}, place(a), p, b, c)) return;
-    if (!is_free({place(b), p, place(c)}, p, place(d), b, c)) return;
+    if (!is_free({place(b), p, place(c)}, place(a), p, b, c, {a})) return;
+    if (!is_free({place(b), p, place(c)}, p, place(d), b, c, {d})) return;
     corners_[b].place = p;
     remove(c);
     enter(a);
@@ -230,7 +234,7 @@ class Simplifier {
   /// Nothing lies in a hole of three corners whose loop would not have stopped it from getting so small.
   void fill(Index b) {
     const Index a = corners_[b].before, c = corners_[b].after;
-    if (!is_free({place(a), place(b), place(c)}, place(a), place(c), b, b)) return;
+    if (!is_free({place(a), place(b), place(c)}, place(a), place(c), b, b, {a, c})) return;
     for (const Index i : {a, b, c}) corners_[i].is_alive = false;
     alive_ -= 3;
   }
