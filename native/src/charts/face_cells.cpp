@@ -12,10 +12,10 @@
 namespace saddleback::charts {
 namespace {
 
-// Places nearer than this part of their coordinates are one: far below what single precision shows, far above what
-// rounding does to vertices of the diagram. So an edge along a mesh edge lies on it, and what meets there meets in one
-// point.
-constexpr double k_same_place = 0x1p-47;
+// Places nearer than this part of their coordinates are one: the most that rounding does to a bisector, to where it
+// crosses a mesh edge, or to a vertex of the diagram. So an edge along a mesh edge lies on it, and what meets there
+// meets in one point.
+constexpr double k_same_place = 0x1p-51;
 
 /// Points nearer to `mine` than to `other` have a positive value; for the cell beyond it is the same with the other
 /// sign, to the last bit. Zero on the bisector, for both.
