@@ -1,0 +1,227 @@
+"""Truths about ways on surfaces: paths of exact fields, traced lines and their way back, coordinates along curves on
+flat pieces of the plane by Euclid, graphs that went through a file.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+import saddleback as sb
+from tests.truth.distances import Floats, Random, assert_near, is_convex_and_flat, longest_edge
+from tests.truth.lines_and_maps import polyline_length
+from tests.truth.registry import guards
+
+
+def random_points(mesh: sb.Mesh, rng: Random, count: int, faces: np.ndarray | None = None) -> sb.SurfacePoints:
+    """Anywhere, or in some of these faces; also on edges and at vertices."""
+    chosen = rng.choice(np.arange(mesh.face_count) if faces is None else faces, count).astype(np.int32)
+    weights = rng.dirichlet([1.0, 1.0, 1.0], count)
+    weights[rng.random((count, 3)) < 0.15] = 0.0
+    weights[weights.sum(axis=1) == 0] = (1.0, 0.0, 0.0)
+    return sb.SurfacePoints(chosen, weights / weights.sum(axis=1, keepdims=True))
+
+
+def assert_is_way(path: sb.GeodesicPath, mesh: sb.Mesh, start: Floats, end: Floats) -> None:
+    """From end to end over the surface: neighbors share a face, and the length is the polyline's."""
+    rounding = 1e-9 * longest_edge(mesh) + 1e-13 * np.abs(mesh.vertices).max()
+    np.testing.assert_allclose(path.points[[0, -1]], [start, end], atol=rounding)
+    np.testing.assert_allclose(path.surface.positions(mesh), path.points, atol=rounding)
+    along = polyline_length(path.points)
+    assert abs(path.length - along) <= 1e-9 * along + rounding, f"length {path.length}, along it {along}"
+    touched = [
+        set(mesh.triangles[face][weights > 0].tolist())
+        for face, weights in zip(path.surface.faces.tolist(), path.surface.barycentric, strict=True)
+    ]
+    faces = [set(face) for face in mesh.triangles.tolist()]
+    for one, next_one in pairwise(touched):
+        assert any(one | next_one <= face for face in faces), f"no face holds {one} and {next_one}"
+
+
+@guards("ExactField", "ExactField.distance_to", "ExactField.path", "ExactField.paths", "GeodesicPath")
+def paths_of_exact_fields(mesh: sb.Mesh, rng: Random) -> None:
+    """Every path leads from its nearest source over the surface and is as long as the distance, which is that of the
+    field of one source and at most the straight way over the faces' corners.
+    """
+    sources = random_points(mesh, rng, int(rng.integers(1, 4)))
+    field = sb.ExactField(mesh, sources)
+    near = np.flatnonzero(np.isfinite(field.distances))
+    assert (field.nearest >= 0).sum() == len(near)
+    reached = np.flatnonzero(np.isin(mesh.triangles, near).all(axis=1))
+    targets = random_points(mesh, rng, 4, reached)
+    distance, places = field.distance_to(targets), targets.positions(mesh)
+    rounding = 1e-12 * longest_edge(mesh) + 1e-15 * np.abs(mesh.vertices).max()
+    alone = np.array([sb.ExactField(mesh, sources[i]).distance_to(targets) for i in range(len(sources))])
+    assert_near(distance, alone.min(axis=0), mesh, "the least of each source's", 1e-9)
+    for i, path in enumerate(field.paths(targets)):
+        assert abs(path.length - distance[i]) <= 1e-8 * distance[i] + rounding, f"{path.length}, {distance[i]}"
+        starts = [k for k in range(len(sources)) if alone[k, i] <= distance[i] * (1 + 1e-9) + rounding]
+        gaps = np.linalg.norm(sources.positions(mesh)[starts] - path.points[0], axis=1)
+        assert_is_way(path, mesh, sources.positions(mesh)[starts[int(gaps.argmin())]], places[i])
+        assert field.path(targets[i]).points.tobytes() == path.points.tobytes()
+        corners = mesh.triangles[targets.faces[i]]
+        over = field.distances[corners] + np.linalg.norm(mesh.vertices[corners] - places[i], axis=1)
+        excess = distance[i] - over.min()
+        assert excess <= 1e-9 * over.min() + rounding, f"{excess} longer than over a corner, of {distance[i]}"
+
+
+@guards("GeodesicPaths", "SaddleVertexGraph.paths")
+def paths_in_flat_arrays(mesh: sb.Mesh, rng: Random) -> None:
+    """Flat arrays hold what the paths one by one hold; a path begins at the source that is nearest."""
+    graph = sb.SaddleVertexGraph(mesh, threads=1)
+    sources = rng.permutation(mesh.vertex_count)[:2].astype(np.int32)
+    targets = rng.integers(0, mesh.vertex_count, 5).astype(np.int32)
+    distance, nearest = graph.nearest(sources)
+    targets = targets[nearest[targets] >= 0]
+    if len(targets) == 0:
+        return
+    paths = graph.paths(sources, targets, threads=1)
+    assert len(paths) == len(targets) == len(paths.lengths)
+    assert paths.offsets[0] == 0
+    assert paths.offsets[-1] == len(paths.points) == len(paths.surface)
+    assert (paths.sources == nearest[targets]).all()
+    for i, path in enumerate(paths):
+        mine = slice(int(paths.offsets[i]), int(paths.offsets[i + 1]))
+        assert path.points.tobytes() == paths.points[mine].tobytes()
+        assert path.length == paths.lengths[i]
+        assert abs(path.length - distance[targets[i]]) <= 3e-6 * path.length + 1e-12 * longest_edge(mesh)
+        assert_is_way(path, mesh, mesh.vertices[sources[nearest[targets[i]]]], mesh.vertices[targets[i]])
+
+
+@guards("trace", "TracedPath")
+def there_and_back(mesh: sb.Mesh, rng: Random) -> None:
+    """A traced line is as long as asked for unless it meets the border, and its way back leads to its beginning."""
+    faces = np.flatnonzero(mesh.face_areas > 1e-6 * mesh.face_areas.max())
+    start = sb.SurfacePoints(rng.choice(faces, 1).astype(np.int32), rng.dirichlet([3.0, 3.0, 3.0], 1))
+    length = float(mesh.mean_edge_length * rng.uniform(0, 2))
+    line = sb.trace(mesh, start, float(rng.uniform(0, 7)), length)
+    size = longest_edge(mesh)
+    assert_is_way(line, mesh, start.positions(mesh)[0], line.points[-1])
+    assert line.length <= length * (1 + 1e-12)
+    if line.length < length * (1 - 1e-9):
+        assert line.hit_boundary
+        last = line.surface.barycentric[-1]
+        corners = mesh.triangles[line.surface.faces[-1]][last > 1e-9]
+        assert np.isin(corners, mesh.boundary_vertices).all()
+    corners = mesh.vertices[mesh.triangles[line.surface.faces[-1]]]
+    along, normal = corners[1] - corners[0], np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    along, normal = along / np.linalg.norm(along), normal / np.linalg.norm(normal)
+    wanted = np.cos(line.end_angle) * along + np.sin(line.end_angle) * np.cross(normal, along)
+    np.testing.assert_allclose(line.end_direction, wanted, atol=1e-6)
+    if line.surface.barycentric.max(axis=1).max() > 1 - 1e-6 or line.hit_boundary:
+        return  # through a vertex the way back leaves elsewhere
+    back = sb.trace(mesh, line.surface[-1], -line.end_direction, line.length)
+    missed = float(np.linalg.norm(back.points[-1] - line.points[0]))
+    assert missed <= 1e-6 * size, f"back again {missed} beside the start"
+
+
+def to_polyline(point: Floats, line: Floats) -> list[tuple[float, float, float]]:
+    """Distance, arc length and side (positive on the left) of the nearest point of every segment, the nearest first."""
+    found, before = [], 0.0
+    for a, b in pairwise(line):
+        along = b - a
+        length = float(np.hypot(*along))
+        share = min(max(float((point - a) @ along) / length**2, 0.0), 1.0)
+        foot = a + share * along
+        side = along[0] * (point - foot)[1] - along[1] * (point - foot)[0]
+        found.append((float(np.hypot(*(point - foot))), before + share * length, float(side) / length))
+        before += length
+    return sorted(found)
+
+
+@guards("polar_coordinates", "PolarCoordinates")
+def along_a_curve(mesh: sb.Mesh, rng: Random) -> None:
+    """On flat convex pieces of the plane: distance, foot and side of a straight line or a bent one by Euclid."""
+    if not is_convex_and_flat(mesh):
+        return
+    graph = sb.SaddleVertexGraph(mesh, threads=1)
+    ends = random_points(mesh, rng, int(rng.integers(2, 4)))
+    places = ends.positions(mesh)[:, :2]
+    size = longest_edge(mesh)
+    if np.hypot(*np.diff(places, axis=0).T).min() < 1e-3 * size:
+        return
+    ways = [sb.ExactField(mesh, ends[i]).path(ends[i + 1]).surface for i in range(len(ends) - 1)]
+    curve = sb.SurfaceCurve(
+        mesh,
+        sb.SurfacePoints(np.concatenate([w.faces for w in ways]), np.concatenate([w.barycentric for w in ways])),
+    )
+    assert abs(curve.length - polyline_length(places)) <= 1e-9 * curve.length
+    radius = float(rng.choice([np.inf, size * rng.uniform(0.2, 2)]))
+    found = sb.polar_coordinates(graph, curve, radius)
+    faces_up = np.cross(*(mesh.vertices[mesh.triangles[0, i]] - mesh.vertices[mesh.triangles[0, 0]] for i in (1, 2)))[2]
+    feet = [to_polyline(point, places) for point in mesh.vertices[:, :2]]
+    wanted = np.array([foot[0][0] for foot in feet])
+    sure = np.abs(wanted - radius) > 1e-8 * size
+    inside = np.isin(np.arange(mesh.vertex_count), found.vertices)
+    assert (inside == (wanted < radius))[sure].all()
+    for vertex, distance, along in zip(found.vertices, found.distance, found.along, strict=True):
+        near = [f for f in feet[vertex] if f[0] <= wanted[vertex] + 1e-7 * size]
+        assert abs(abs(distance) - wanted[vertex]) <= 1e-8 * size, f"vertex {vertex}: {distance}, {wanted[vertex]}"
+        assert min(abs(along - f[1]) for f in near) <= 1e-3 * size, f"vertex {vertex} is at {along}, by Euclid {near}"
+        if len(places) == 2 and abs(near[0][2]) > 1e-7 * size:
+            assert (distance > 0) == ((near[0][2] > 0) == (faces_up > 0)), f"vertex {vertex} is on the other side"
+
+
+@guards("LogMap", "SaddleVertexGraph.log_map")
+def map_of_a_disk(mesh: sb.Mesh, rng: Random) -> None:
+    """On flat convex pieces of the plane the map about a point is the plane itself, turned to the face's first edge."""
+    if not is_convex_and_flat(mesh):
+        return
+    center = sb.SurfacePoints(rng.integers(0, mesh.face_count, 1).astype(np.int32), rng.dirichlet([1, 1, 1], 1))
+    corners = mesh.vertices[mesh.triangles[center.faces[0]]][:, :2]
+    place, size = center.barycentric[0] @ corners, longest_edge(mesh)
+    if np.cross(corners[1] - corners[0], corners[2] - corners[0]) < 1e-6 * size**2:
+        return  # seen from behind, or a needle whose edges have no direction
+    radius = float(rng.choice([np.inf, size]))
+    found = sb.SaddleVertexGraph(mesh, threads=1).log_map(center, radius)
+    along = (corners[1] - corners[0]) / np.hypot(*(corners[1] - corners[0]))
+    offset = mesh.vertices[:, :2] - place
+    turned = np.column_stack([offset @ along, offset @ np.array([-along[1], along[0]])])
+    wanted = np.hypot(*turned.T)
+    sure = abs(wanted - radius) > 1e-8 * size
+    inside = np.isin(np.arange(mesh.vertex_count), found.vertices)
+    assert (inside == (wanted < radius))[sure].all()
+    assert not found.shadowed.any() or len(mesh.saddle_vertices)
+    np.testing.assert_allclose(found.uv, turned[found.vertices], atol=1e-7 * size)
+    np.testing.assert_allclose(found.distance, wanted[found.vertices], rtol=1e-9, atol=1e-12 * size)
+    around = np.column_stack([np.cos(found.angle), np.sin(found.angle)]) * found.distance[:, None]
+    np.testing.assert_allclose(around, turned[found.vertices], atol=1e-7 * size)
+
+
+@guards("SaddleVertexGraph.save", "SaddleVertexGraph.load")
+def graphs_in_files(mesh: sb.Mesh, rng: Random) -> None:
+    """A graph that was read gives the same bits; one that was damaged, or of another mesh, is refused by a sentence."""
+    graph = sb.SaddleVertexGraph(mesh, threads=1)
+    source = int(rng.integers(mesh.vertex_count))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "graph"
+        graph.save(path)
+        again = sb.SaddleVertexGraph.load(path, mesh)
+        assert again.distances([source]).tobytes() == graph.distances([source]).tobytes()
+        assert (again.arc_count, again.k, again.accuracy) == (graph.arc_count, graph.k, graph.accuracy)
+        content = bytearray(path.read_bytes())
+        moved = mesh.vertices.copy()
+        moved[source] = np.nextafter(moved[source], np.inf)
+        refuses(path, sb.Mesh(moved, mesh.triangles))
+        at = int(rng.integers(len(content)))
+        kind = rng.integers(3)
+        if kind == 0:
+            content[at] ^= 1 << int(rng.integers(8))
+        elif kind == 1:
+            del content[at:]
+        else:
+            content[at:at] = b"x"
+        path.write_bytes(content)
+        refuses(path, mesh)
+
+
+def refuses(path: Path, mesh: sb.Mesh) -> None:
+    try:
+        sb.SaddleVertexGraph.load(path, mesh)
+    except sb.InputError as refusal:
+        assert str(path) in str(refusal), str(refusal)
+        return
+    raise AssertionError("loaded all the same")
