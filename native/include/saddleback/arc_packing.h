@@ -14,16 +14,22 @@ struct ArcPacking {
   int kept_shift = 6;  ///< that brings a double's exponent to the top of the word
   double least = 1, rounder = 1;
 
+  /// Up, so that no distance is shorter than the truth.
   SADDLEBACK_HOST_DEVICE double round(double length) const {
-    // No path is as long as the rounder, whose own last bit is the quantum: the sum has room for no smaller ones.
-    const double rounded = (length + rounder) - rounder;
+    const double rounded = round_up(length, rounder);
     return rounded < least ? least : rounded;
   }
+  /// To a multiple of the last bit of `rounder`, a power of two that is no shorter: their sum has room for no less.
+  SADDLEBACK_HOST_DEVICE static double round_up(double length, double rounder) {
+    const double nearest = (length + rounder) - rounder;
+    return nearest < length ? nearest + rounder * 0x1p-52 : nearest;
+  }
   SADDLEBACK_HOST_DEVICE std::uint64_t pack(std::int32_t target, int sector, double length) const {
-    // Half a unit in the last place that is kept; a carry into the exponent is what rounding up means.
-    const std::uint64_t bits = (bits_of(round(length)) - bias) << kept_shift;
-    const std::uint64_t half = std::uint64_t{1} << (length_shift - 1);
-    return ((bits + half) & length_mask) | directed(target, sector);
+    // What is longer by rounding alone must not go up to the next number: on regular meshes many are equally long.
+    constexpr double k_as_long = 1 - 0x1p-43;
+    const std::uint64_t bits = (bits_of(round(k_as_long * length)) - bias) << kept_shift;
+    // A carry into the exponent is what rounding up means.
+    return ((bits + ~length_mask) & length_mask) | directed(target, sector);
   }
   /// The same arc from its other end, where it leaves in `sector`.
   SADDLEBACK_HOST_DEVICE std::uint64_t reversed(std::int32_t source, int sector, std::uint64_t word) const {

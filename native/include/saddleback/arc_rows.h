@@ -23,11 +23,12 @@ struct PathBounds {
 ///
 /// The direction is the 256th part of the full angle about the vertex in which the arc leaves: enough to find the
 /// arc's faces again, see unfold_arc. The length takes the bits that the target leaves, as a floating-point number with
-/// its own exponent: a relative error of at most 1e-9 for two million vertices, 1.2e-10 for 200,000 and fewer.
+/// its own exponent: a relative error of at most 2e-9 for two million vertices, 2.4e-10 for 200,000 and fewer.
 ///
-/// Lengths are rounded to multiples of a quantum so small a part of the longest path that sums of arcs are exact in
-/// double precision: a path is equally long from both ends and by every method, to the bit. Where edges are shorter
-/// than the 2^-27th part of the longest path, the quantum is smaller, lest they be rounded by more than 6e-8.
+/// Lengths are rounded up, so that no distance is shorter than the truth, to multiples of a quantum so small a part of
+/// the longest path that sums of arcs are exact in double precision: a path is equally long from both ends and by every
+/// method, to the bit. Where edges are shorter than the 2^-27th part of the longest path, the quantum is smaller, lest
+/// they be rounded by more than 1.2e-7.
 /// Sums of arcs so unlike may be rounded then, which shows only between the two ends of a path: the least of the sums
 /// from a source on is the same by every method all the same, since a sum never falls where one of its terms rises.
 class ArcCodec {
@@ -39,11 +40,11 @@ class ArcCodec {
   /// \throw InputError where lengths differ by more than their exponents hold.
   ArcCodec(Index vertex_count, double mean_edge, const PathBounds& bounds);
 
-  /// As `length` will return it, or as an exact multiple of the quantum that is no arc; never zero.
+  /// Up to a multiple of the quantum, of what is no arc; never zero. What an arc's length is stays as it is.
   double round(double length) const {
     // What is long takes the coarser quantum of meshes without short edges: sums of long ones are exact on any mesh.
     constexpr double k_long = 1.0 / (1 << 20);
-    return length < k_long * longest_ ? packing_.round(length) : (length + longest_) - longest_;
+    return length < k_long * longest_ ? packing_.round(length) : ArcPacking::round_up(length, longest_);
   }
   std::uint64_t pack(Index target, int sector, double length) const { return packing_.pack(target, sector, length); }
   const ArcPacking& packing() const { return packing_; }
