@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay  # type: ignore[import-untyped]
 
 import saddleback as sb
 from tests import meshes
@@ -91,3 +92,36 @@ def test_the_plane_beyond_what_a_site_sees(jitter: float) -> None:
     table = np.linalg.norm(mesh.vertices[:, None] - sites.positions(mesh)[None], axis=2)
     np.testing.assert_allclose(cells.vertex_distance, table.min(axis=1), atol=5e-3 * table.max())
     assert (cells.vertex_distance >= table.min(axis=1) * (1 - 1e-9)).all()
+
+
+def plate(kind: str, seed: int) -> sb.Mesh:
+    """Flat and coarse but for small holes or cones: ways on both sides of one fit a plane."""
+    count, size, rng = 12, 0.1, np.random.default_rng(seed)
+    around = np.stack(np.meshgrid(np.arange(10.0), np.arange(10.0)), -1).reshape(-1, 2)
+    inner = ((around > 0) & (around < 9)).all(axis=1)
+    around[inner] += 0.3 * (rng.random((inner.sum(), 2)) - 0.5)
+    cells = rng.choice(81, count, replace=False)
+    centers = np.column_stack([cells % 9, cells // 9]) + 0.5
+    angles = 2 * np.pi * (rng.random((count, 1)) + np.arange(3) / 3)
+    rims = centers[:, None] + size * np.stack([np.cos(angles), np.sin(angles)], -1)
+    places = np.vstack([around, rims.reshape(-1, 2), centers])
+    triangles = Delaunay(places[: 100 + 3 * count]).simplices
+    rim = np.where(triangles < 100, -1, (triangles - 100) // 3)
+    open_ = (rim[:, 0] >= 0) & (rim == rim[:, :1]).all(axis=1)
+    height = np.append(np.zeros(100 + 3 * count), np.full(count, 0.3))
+    if kind == "cones":
+        tips, corners = 100 + 3 * count + rim[open_, 0], triangles[open_]
+        sides = [np.column_stack([corners[:, i], corners[:, (i + 1) % 3], tips]) for i in range(3)]
+        return sb.repair(np.column_stack([places, height]), np.vstack([triangles[~open_], *sides]))[0]
+    return sb.repair(np.column_stack([places, height]), triangles[~open_])[0]
+
+
+@pytest.mark.parametrize("kind", ["holes", "cones"])
+@pytest.mark.parametrize("seed", range(4))
+def test_no_distance_leads_through_what_is_no_surface(kind: str, seed: int) -> None:
+    mesh = plate(kind, seed)
+    sites = sb.sample(mesh, 2, seed=seed)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, threads=1), sites, threads=1)
+    table = np.array([sb.exact_distances(mesh, sites[i : i + 1]) for i in range(2)])
+    exact = table[cells.vertex_cell, np.arange(mesh.vertex_count)]
+    assert (cells.vertex_distance >= exact * (1 - 1e-12)).all()

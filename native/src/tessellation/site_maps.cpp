@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "geodesics/face_strip.h"
 #include "geodesics/planar.h"
 #include "support/parallel.h"
 #include "tessellation/seen_between.h"
@@ -77,6 +78,42 @@ double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
   return 0;
 }
 
+/// Whether a mesh is a flat disk, however it is rolled: whatever fits a plane there is in it.
+bool is_flat_disk(const Mesh& mesh) {
+  constexpr double k_flat = 1e-12;  // radians, of roundings of a vertex's angles
+  if (mesh.component_count() > 1 || mesh.genus() > 0 || mesh.boundary_loops().size() != 1) return false;
+  for (Index v = 0; v < mesh.vertex_count(); ++v)
+    if (!mesh.is_boundary(v) && std::abs(mesh.total_angle(v) - 2 * M_PI) > k_flat) return false;
+  return true;
+}
+
+/// How long the straight line is that leads from `corner`, opposite a half-edge, across it to `end`, which is expected
+/// at `goal`; all in the frame of the half-edge. None where something else is there, or nothing. O(faces crossed).
+std::optional<double> line_across(const Unfolding& unfolding, Index halfedge, const Vec2& corner, const Vec2& goal,
+                                  const LegEnd& end) {
+  constexpr double k_same_place = 1e-9;  // of the length
+  const Mesh& mesh = unfolding.mesh();
+  const double tolerance = k_same_place * (goal - corner).norm();
+  Vec2 from(mesh.length(halfedge), 0), to = Vec2::Zero();
+  Index h = mesh.twin(halfedge);
+  for (Index faces = mesh.face_count(); h != k_none && faces > 0; --faces) {
+    const Vec2 along = (to - from) / mesh.length(h);
+    const Vec2& offset = unfolding.apex(h);
+    const Vec2 apex = from + offset.x() * along + offset.y() * Vec2(-along.y(), along.x());
+    if (end.is_vertex() ? mesh.apex(h) == end.vertex : Mesh::face_of(h) == end.point.face) {
+      const Vec3& b = end.point.barycentric;
+      const Vec2 place =
+          end.is_vertex() ? apex : b[h % 3] * from + b[Mesh::next(h) % 3] * to + b[Mesh::prev(h) % 3] * apex;
+      if ((place - goal).norm() <= tolerance) return (place - corner).norm();
+    }
+    const bool is_left = cross(goal - corner, apex - corner) > 0;
+    h = mesh.twin(is_left ? Mesh::next(h) : Mesh::prev(h));
+    (is_left ? from : to) = apex;
+    if (cross(to - from, goal - from) < -tolerance * (to - from).norm()) break;  // the line ended before
+  }
+  return {};
+}
+
 }  // namespace
 
 SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, int cuda_device)
@@ -85,6 +122,7 @@ SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, int
       rings_(rings),
       cuda_device_(cuda_device),
       slack_(std::max(2 * graph.accuracy(), k_least_slack)),
+      is_flat_disk_(is_flat_disk(graph.mesh())),
       places_(graph.mesh().vertex_count()) {}
 
 void SiteMaps::Scratch::forget() {
@@ -369,7 +407,10 @@ bool SiteMaps::place_own(Index node, Index site, Place& place) const {
     if (distance < least || distance >= shortest * (1 - k_arc_rounding)) continue;
     place = place_by(sight, wedge, from, to);
     if (distance <= most) {
-      if (!sight.is_flat) place.distance = distance_[node];
+      const std::optional<double> straight =
+          sight.is_flat ? line_to_anchor(wedge, sight, place.anchor, site) : std::nullopt;
+      if (straight) place.at *= *straight / place.at.norm();
+      place.distance = straight ? std::min(to_anchor + *straight, distance_[node]) : distance_[node];
       return true;
     }
     shortest = distance;
@@ -380,6 +421,14 @@ bool SiteMaps::place_own(Index node, Index site, Place& place) const {
   place.at *= straight / place.at.norm();
   place.distance = distance_[node];
   return true;
+}
+
+/// Ways on both sides of a hole, or of a bump, fit a plane as well as those around nothing do: what tells is the line.
+std::optional<double> SiteMaps::line_to_anchor(const Wedge& wedge, const Sight& sight, Index anchor, Index site) const {
+  if (is_flat_disk_) return sight.distance;
+  const Index node = anchor != k_none ? anchor : fans_[site].centre;
+  const LegEnd end = node != k_none ? leg_end(mesh_, graph_.vertex_of(node)) : leg_end(mesh_, sites_[site]);
+  return line_across(graph_.unfolding(), rings_.halfedge(wedge.side), wedge.apex, sight.anchor, end);
 }
 
 /// An end of an edge as the site sees it; the site's own or, where `deep`, any that can be placed beside its own. Null

@@ -193,6 +193,7 @@ class SiteMaps {
   const Place* end_of_edge(Index node, Index site, Scratch* deep, Place& place) const;
   static bool see(const Wedge& wedge, const Place& from, const Place& to, Sight& sight);
   Place place_by(const Sight& sight, const Wedge& wedge, const Place& from, const Place& to) const;
+  std::optional<double> line_to_anchor(const Wedge& wedge, const Sight& sight, Index anchor, Index site) const;
   double direction_back(Index node, Scratch& scratch) const;
   double direction_back_to(Index site, Index seen) const;
   bool place_near(Index node, Index site, Scratch& scratch, SiteVector& vector) const;
@@ -212,6 +213,7 @@ class SiteMaps {
   const VertexRings& rings_;
   const int cuda_device_;
   double slack_;  ///< how far below the graph's a distance may be, relative
+  const bool is_flat_disk_;
   SurfacePoints sites_;
   std::vector<Index> order_;
   std::vector<Fan> fans_;
