@@ -151,6 +151,18 @@ def test_points_in_one_face_and_on_its_border() -> None:
         assert graph.distance(one(inside, i), one(inside, i)) == 0
 
 
+@pytest.mark.parametrize("jitter", [0.0, 0.2])
+def test_exact_graphs_from_points_on_edges(jitter: float) -> None:
+    """Windows across the edge that the source lies on were dropped as narrow ones: 40 % too long."""
+    mesh = sb.Mesh(*meshes.grid(5, 5, jitter))
+    graph = sb.SaddleVertexGraph(mesh, exact=True)
+    for face in range(mesh.face_count):
+        for weights in ((0, 0.5, 0.5), (0.25, 0.75, 0), (0.3, 0, 0.7)):
+            point = sb.SurfacePoints([face], [weights])
+            straight = np.linalg.norm(mesh.vertices - point.positions(mesh), axis=1)
+            np.testing.assert_allclose(graph.distances(point), straight, rtol=1e-7, atol=1e-12)
+
+
 def test_other_components_are_infinitely_far() -> None:
     mesh = sb.Mesh(*meshes.two_components())
     graph = sb.SaddleVertexGraph(mesh, k=20)
