@@ -108,6 +108,28 @@ def test_cone(source: int) -> None:
         np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
 
 
+@pytest.mark.parametrize("length", [1.0, 1e3, 1e7])
+def test_a_spike_of_needles(length: float) -> None:
+    """Rays that miss the tip would go round it pi / (its angle) times, crossing every needle each time."""
+    count = 12
+    turn = 2 * np.pi * np.arange(count) / count
+    ring = np.column_stack([np.cos(turn), np.sin(turn), 0.5 * np.cos(turn)])
+    vertices = np.vstack([ring, 3 * ring, [[0, 0, length]]])
+    following = [(i + 1) % count for i in range(count)]
+    plate = [[i, count + i, count + j] for i, j in enumerate(following)]
+    plate += [[i, count + j, j] for i, j in enumerate(following)]
+    needles = [[2 * count, i, j] for i, j in enumerate(following)]
+    field = sb.ExactField(sb.Mesh(vertices, plate + needles), [count])
+    edge, on_plate = np.linalg.norm(vertices[-1] - ring, axis=1), np.linalg.norm(vertices[count] - ring[0])
+    assert_exact(field.distances[[0, -1]], np.array([on_plate, on_plate + edge[0]]))
+    up = np.array([0.1, 0.3, 0.9])
+    for i in range(count):
+        places = sb.SurfacePoints([2 * count + i] * 3, np.column_stack([up, 1 - up, 0 * up]))
+        found, to_tip = field.distance_to(places), (1 - up) * edge[i]
+        assert (found >= (field.distances[-1] - to_tip) * (1 - 1e-12)).all()
+        assert (found <= (field.distances[i] + edge[i] - to_tip) * (1 + 1e-12)).all()
+
+
 @pytest.mark.parametrize("level", [0, 1, 3])
 def test_cube_from_a_corner(level: int) -> None:
     vertices, triangles = meshes.cube()

@@ -22,6 +22,8 @@
 //    longer by a^2 / 2 of the way, or by no more than the gap where the vertex is next to v.
 //  - "One angle, one split" holds for rays that differ; two that are one but for rounding hide nothing.
 //  - What is left is looked for (see relight).
+// (5) Rays that have gone all round a tip, a vertex of a small angle, are dropped: needles to one apex would send them
+// round it for ever.
 
 #include "geodesics/exact_propagation.h"
 
@@ -274,6 +276,17 @@ inline bool ExactPropagation::is_beaten_by_corners(const Window& w) const {
          is_less(at_to + (frame.length - w.b0), squared(w.b0 - w.sx, w.sy));
 }
 
+/// Whether the rays have gone all round a tip that they end at: they cross its edges twice, which no shortest path
+/// does. Else they would do so pi / angle times.
+inline bool ExactPropagation::circles_tip(const Window& w) const {
+  const EdgeFrame& frame = surface_.frame(w.halfedge);
+  constexpr double k_turn = 1 + 1e-6;
+  const auto circles = [&](Index tip, double ahead) {
+    return -w.sy > k_turn * surface_.tangent_of_tip(tip) * std::max(ahead, 0.0);
+  };
+  return (w.b1 == frame.length && circles(frame.to, frame.length - w.sx)) || (w.b0 == 0 && circles(frame.from, w.sx));
+}
+
 /// Most windows that sources beat are beaten by corners as well, which is told sooner.
 void ExactPropagation::pass_sources(const Window& window) {
   if (is_beaten_by_corners(window)) return;
@@ -308,7 +321,7 @@ void ExactPropagation::propagate(const Window& window) {
   // Distances of the corners, from the root's on.
   const double at_from = distances_[frame.from] * (1 + k_slack) - sigma;
   const double at_to = distances_[frame.to] * (1 + k_slack) - sigma;
-  if (is_beaten_by_corners(window)) return;
+  if (is_beaten_by_corners(window) || (surface_.has_tips() && circles_tip(window))) return;
   const double ox = ax - sx, oy = ay - sy;
   const double split = sx - ox * (sy / oy);  // where the ray to the apex crosses the half-edge
   // Nearly always told by this bound of the product of the two rays.

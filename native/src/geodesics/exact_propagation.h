@@ -70,6 +70,7 @@ class ExactPropagation {
   void pass_sources(const Window& window);
   Window left_by_sources(Window window) const;
   bool is_beaten_by_corners(const Window& window) const;
+  bool circles_tip(const Window& window) const;
   void propagate(const Window& window);
   void bend(Index vertex);
   void light_opposite(Index vertex, Index out, double begin, double end);

@@ -1,6 +1,8 @@
 #include "geodesics/exact_surface.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "geodesics/unfolding.h"
@@ -56,6 +58,7 @@ ExactSurface::ExactSurface(const Mesh& mesh, const SurfacePoints& sources, const
 
 std::size_t ExactSurface::nbytes() const {
   return frames_.size() * sizeof(EdgeFrame) + beside_.size() * sizeof(SourceBeside) + bends_.size() +
+         tip_tangents_.size() * sizeof(double) +
          (vertex_of_.size() + face_of_.size() + mesh_vertex_.size() + mesh_face_.size() + first_beside_.size()) *
              sizeof(Index);
 }
@@ -122,6 +125,9 @@ void ExactSurface::lay_out(const JobStage& stage) {
     const bool bends =
         mesh.is_boundary(original) || mesh.total_angle(original) > 2 * std::numbers::pi + k_flat_tolerance;
     bends_[v] = bends ? Bends::at_pi : Bends::never;
+    if (mesh.is_boundary(original) || mesh.total_angle(original) >= std::numbers::pi / 2) continue;
+    tip_tangents_.resize(vertex_count(), std::numeric_limits<double>::infinity());
+    tip_tangents_[v] = std::tan(mesh.total_angle(original));
   }
 }
 

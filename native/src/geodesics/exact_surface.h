@@ -70,6 +70,11 @@ class ExactSurface {
   /// would.
   bool is_beside_source(Index vertex) const { return bends_[vertex] == Bends::all_round; }
 
+  /// Whether the angle of some vertex is less than a right one.
+  bool has_tips() const { return !tip_tangents_.empty(); }
+  /// Of a vertex's total angle; infinity where that is not less than a right one. Only where there are tips.
+  double tangent_of_tip(Index vertex) const { return tip_tangents_[vertex]; }
+
   /// Whether it is on a component with a source.
   bool holds(Index mesh_face) const { return face_of_[mesh_face] != k_none; }
 
@@ -92,6 +97,7 @@ class ExactSurface {
   std::vector<Index> vertex_of_, face_of_, mesh_vertex_, mesh_face_;
   std::vector<EdgeFrame> frames_;
   std::vector<Bends> bends_;
+  std::vector<double> tip_tangents_;
   std::vector<SourceInFace> in_faces_;
   std::vector<SourceBeside> beside_;
   std::vector<Index> first_beside_;  ///< of each half-edge; empty where all sources are vertices

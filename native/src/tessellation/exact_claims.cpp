@@ -124,10 +124,15 @@ void ExactParts::find_claims(const FaceRefinement::Part& part, std::vector<FaceC
       for (int i = 0; i < 3; ++i) {
         const double to_next = part.length[i], to_last = part.length[(i + 2) % 3];
         const double least = std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
-        claim.squared_distance[i] = least * least;
-        const double lead = least - nearest_[part.corner[i]].distance;
+        const ExactField::Sight& nearest = nearest_[part.corner[i]];
+        const double lead = least - nearest.distance;
         may_own = may_own && lead <= 2 * std::max(to_next, to_last);
-        is_nearest = is_nearest || nearest_[part.corner[i]].source == claim.site;
+        // Whatever rounding says of ties, all parts about a vertex agree on whose it is.
+        const double of_nearest = nearest.distance * nearest.distance;
+        claim.squared_distance[i] = nearest.source == claim.site
+                                        ? of_nearest
+                                        : std::max(least * least, std::nextafter(of_nearest, k_infinity));
+        is_nearest = is_nearest || nearest.source == claim.site;
       }
       if (may_own || is_nearest) claims.push_back(claim);
     }
