@@ -306,3 +306,21 @@ def test_no_site_on_a_part() -> None:
     mesh = sb.Mesh(*meshes.two_components())
     with pytest.raises(sb.InputError, match="no site"):
         exact_cells(mesh, random_points(mesh, 1))
+
+
+def test_all_parts_about_a_vertex_agree_whose_it_is() -> None:
+    """Where rounding decides between two sites, the boundary led through vertices, which crashed."""
+    width, height = 6e-7, 0.4
+    vertices = np.array([[0, 0, 0], [width, 0, 0], [0, height, 0], [width, height, 0]]) + [1.06, 1, 0]
+    mesh = sb.Mesh(vertices, [[0, 1, 3], [0, 3, 2]])
+    rng = np.random.default_rng(2)
+    for _ in range(20):
+        twin = np.array([0.505, 0.4723, 0.0227]) + rng.normal(size=3) * 1e-9
+        places = [[0.07, 0.75, 0.18], [0.93, 0.05, 0.02], [0.505, 0.4723, 0.0227], twin]
+        sites = sb.SurfacePoints([1, 0, 0, 0], [np.array(b) / np.sum(b) for b in places])
+        cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3), sites, exact=True)
+        assert cells.areas.sum() == pytest.approx(width * height, rel=1e-9)
+        split = cells.split()
+        a, b, c = (split.vertices[split.triangles[:, i]] for i in range(3))
+        parts = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        assert parts.sum() == pytest.approx(width * height, rel=1e-6)
