@@ -129,9 +129,8 @@ void ExactParts::find_claims(const FaceRefinement::Part& part, std::vector<FaceC
         may_own = may_own && lead <= 2 * std::max(to_next, to_last);
         // Whatever rounding says of ties, all parts about a vertex agree on whose it is.
         const double of_nearest = nearest.distance * nearest.distance;
-        claim.squared_distance[i] = nearest.source == claim.site
-                                        ? of_nearest
-                                        : std::max(least * least, std::nextafter(of_nearest, k_infinity));
+        claim.squared_distance[i] =
+            nearest.source == claim.site ? of_nearest : std::max(least * least, std::nextafter(of_nearest, k_infinity));
         is_nearest = is_nearest || nearest.source == claim.site;
       }
       if (may_own || is_nearest) claims.push_back(claim);

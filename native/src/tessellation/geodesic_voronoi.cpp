@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "saddleback/error.h"
 
@@ -57,6 +58,8 @@ std::vector<Segment> find_segments(const CellComplex& complex) {
       if (a.from > a.to) continue;
       for (const Side& b : sides) {
         if (b.from != a.to || b.to != a.from || b.site == a.site) continue;
+        if (a.from < first_point)  // rather than write to where no point is
+          throw std::logic_error(message("cells ", a.site, " and ", b.site, " meet in vertex ", a.from));
         segments.push_back({a.from - first_point, a.to - first_point, a.site, b.site});
       }
     }
