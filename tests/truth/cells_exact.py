@@ -90,7 +90,7 @@ def check_split_is_the_surface(mesh: sb.Mesh, rng: Random) -> None:
             assert characteristic(split.triangles[split.triangle_cell == issue.cell]) != 1, f"cell {issue.cell}"
 
 
-@guards("GeodesicVoronoi.dual", "GeodesicVoronoi.dual_paths", unsettled="1 of 700: on a graded disk")
+@guards("GeodesicVoronoi.dual", "GeodesicVoronoi.dual_paths")
 def check_dual_edges_are_ways(mesh: sb.Mesh, rng: Random) -> None:
     """Dual paths are as long as their polylines; no dual edge is shorter than the exact distance of its sites."""
     cells = exact_cells(mesh, random_sites(mesh, rng))
@@ -120,7 +120,7 @@ def polygon_area(polygon: Floats) -> float:
     return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2)
 
 
-@guards("geodesic_voronoi", on="nothing", unsettled="3 of 475: areas off by more than 1e-5 of the square")
+@guards("geodesic_voronoi", on="nothing")
 def check_plane_cells(rng: Random) -> None:
     """Cells on a flat square of any triangles are those of the plane, each clipped from the square by lines."""
     size = int(rng.integers(2, 7))

@@ -53,10 +53,20 @@ class ExactField {
   };
   /// The nearest source of a point and its distance; k_none and infinity where none reaches. O(windows about its face).
   Sight nearest_at(const SurfacePoint& point) const;
-  /// The sources whose windows reach a point's face, by number, with the lengths of the shortest ways to the point
-  /// that those windows know: of the nearest source its distance, of others no less than that. O(windows about its
-  /// face).
-  void sights_at(const SurfacePoint& point, std::vector<Sight>& sights) const;
+  /// A way to a point: to a root, a source or a vertex, and from there straight as seen in the plane of the point's
+  /// face, or bent where less is seen of the root.
+  struct Way {
+    Index source;
+    double distance;
+    double before;  ///< of the root from the source
+    Vec2 image;     ///< of the root
+    double straight_to(const Vec2& place) const { return before + (place - image).norm(); }
+  };
+  /// The sources that reach a point's face, by number, each with the shortest way that is known there: of the nearest
+  /// source its distance, of others no less than that. O(windows about its face).
+  void ways_at(const SurfacePoint& point, std::vector<Way>& ways) const;
+  /// In the plane of its face, which some source must reach.
+  Vec2 place_of(const SurfacePoint& point) const;
 
   /// The shortest path from the nearest source to a point: straight in faces, bent only at saddle and boundary
   /// vertices, as long as the distance. O(faces crossed). \throw InputError for a point off the mesh or that no source

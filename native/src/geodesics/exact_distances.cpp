@@ -129,19 +129,22 @@ ExactField::Sight ExactField::nearest_at(const SurfacePoint& point) const {
   return {parts_->propagation.owner(approach.root), approach.distance};
 }
 
-void ExactField::sights_at(const SurfacePoint& point, std::vector<Sight>& sights) const {
-  sights.clear();
-  parts_->tracer.visit_ways(point, [&](double distance, Index root) {
+void ExactField::ways_at(const SurfacePoint& point, std::vector<Way>& ways) const {
+  ways.clear();
+  parts_->tracer.visit_ways(point, [&](double distance, Index root, const Vec2& image) {
     if (!std::isfinite(distance)) return;
     const Index source = parts_->propagation.owner(root);
-    const auto known = std::ranges::find(sights, source, &Sight::source);
-    if (known == sights.end())
-      sights.push_back({source, distance});
-    else
-      known->distance = std::min(known->distance, distance);
+    const double before = root < parts_->surface.vertex_count() ? parts_->propagation.distance(root) : 0;
+    const auto known = std::ranges::find(ways, source, &Way::source);
+    if (known == ways.end())
+      ways.push_back({source, distance, before, image});
+    else if (distance < known->distance)
+      *known = {source, distance, before, image};
   });
-  std::ranges::sort(sights, {}, &Sight::source);
+  std::ranges::sort(ways, {}, &Way::source);
 }
+
+Vec2 ExactField::place_of(const SurfacePoint& point) const { return parts_->tracer.place_of(point); }
 
 GeodesicPath ExactField::path(const SurfacePoint& target) const { return std::move(paths({target}).front()); }
 

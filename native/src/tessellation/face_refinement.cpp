@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
+
+#include "mesh/face_shape.h"
 
 namespace saddleback {
 
 FaceRefinement::FaceRefinement(const Mesh& mesh) : mesh_(&mesh) {
   for (Index face = 0; face < mesh.face_count(); ++face) {
-    Part part{face, mesh.triangles()[face], {Vec3::Unit(0), Vec3::Unit(1), Vec3::Unit(2)}, {}, {}};
+    Part part{face, mesh.triangles()[face], {Vec3::Unit(0), Vec3::Unit(1), Vec3::Unit(2)}, {},
+              {},   mesh.face_area(face)};
     for (int i = 0; i < 3; ++i) {
       const Index twin = mesh.twin(3 * face + i);
       part.beyond[i] = twin == k_none ? k_none : Mesh::face_of(twin);
@@ -32,6 +36,19 @@ int FaceRefinement::longest_edge(const Part& part) const {
 int FaceRefinement::edge_towards(Index part, Index other) const {
   const auto& beyond = parts_[part].beyond;
   return static_cast<int>(std::find(beyond.begin(), beyond.end(), other) - beyond.begin());
+}
+
+bool FaceRefinement::can_halve(Index part) const {
+  constexpr double k_least_height = 16 * k_degenerate_height;
+  for (Index before = k_none; part != k_none;) {
+    const Part& here = parts_[part];
+    const double longest = std::ranges::max(here.length);
+    if (2 * here.area <= k_least_height * longest * longest) return false;
+    const Index next = here.beyond[longest_edge(here)];
+    if (next == before) break;
+    before = std::exchange(part, next);
+  }
+  return true;
 }
 
 void FaceRefinement::halve(Index part, std::vector<Index>& changed) {
@@ -77,12 +94,14 @@ Index FaceRefinement::cut(Index index, int edge, Index middle) {
                    {whole.corner[a], middle, whole.corner[c]},
                    {whole.place[a], place, whole.place[c]},
                    {k_none, second, whole.beyond[c]},
-                   {half, across, left}};
+                   {half, across, left},
+                   whole.area / 2};
   parts_.push_back({whole.face,
                     {middle, whole.corner[b], whole.corner[c]},
                     {place, whole.place[b], whole.place[c]},
                     {k_none, whole.beyond[b], index},
-                    {half, right, across}});
+                    {half, right, across},
+                    whole.area / 2});
   if (whole.beyond[b] != k_none) parts_[whole.beyond[b]].beyond[edge_towards(whole.beyond[b], index)] = second;
   return second;
 }

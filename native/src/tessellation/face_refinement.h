@@ -20,6 +20,7 @@ class FaceRefinement {
     std::array<Vec3, 3> place;     ///< of the corners, barycentric in the face
     std::array<Index, 3> beyond;   ///< the part across the edge from corner i to i + 1, k_none at the boundary
     std::array<double, 3> length;  ///< of that edge
+    double area;
   };
 
   /// Begins with one part a face. The mesh must outlive it.
@@ -35,6 +36,8 @@ class FaceRefinement {
   };
   const std::vector<Added>& added() const { return added_; }
 
+  /// False where a part that would be halved, too, is so thin that its halves might have no area.
+  bool can_halve(Index part) const;
   /// Halves a part and appends every part that changed, new ones too, to `changed`.
   void halve(Index part, std::vector<Index>& changed);
 
