@@ -281,39 +281,50 @@ bool GapSearch::is_beyond_border(const CellView& view, const Copy& copy, const M
   return false;
 }
 
-/// Whether what the flat planes foresee holds: the point is traced over the surface.
+/// Where a point of the copy at the cell's centre lies in the plane of another: it is traced over the surface.
+bool GapSearch::trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const {
+  const double length = point.norm() * copy.placement.scale;
+  const double angle = copy.placement.angle + std::atan2(point.y(), point.x());
+  const TraceEnd end = trace_end(*mesh_, view.centre, angle_about(*mesh_, view.centre, angle), length);
+  if (end.hit_boundary) return false;
+  const Vec2 in_face = rules_->flat().place(end.point);
+  return laying_->settled().visit(end.point.face, {end.point.barycentric[1], end.point.barycentric[2]}, copy.radius(),
+                                  [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
+                                    if (number != other) return false;
+                                    place = origin + turn * in_face;
+                                    return true;
+                                  });
+}
+
+/// Whether what the flat planes foresee holds: first of the whole disk, whose width the surface may bend, then of the
+/// point of it alone that is deepest in both.
 bool GapSearch::is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Encounter& found,
                            const Pose& pose, Index other) const {
   const Copy& there = laying_->settled().copies()[other];
-  const double length = found.point.norm() * copy.placement.scale;
-  Vec2 place = pose.at;
-  if (length > 0) {
-    const double angle = copy.placement.angle + std::atan2(found.point.y(), found.point.x());
-    const TraceEnd end = trace_end(*mesh_, view.centre, angle_about(*mesh_, view.centre, angle), length);
-    if (end.hit_boundary) return false;
-    const Vec2 in_face = rules_->flat().place(end.point);
-    const bool is_known =
-        laying_->settled().visit(end.point.face, {end.point.barycentric[1], end.point.barycentric[2]}, copy.radius(),
-                                 [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
-                                   if (number != other) return false;
-                                   place = origin + turn * in_face;
-                                   return true;
-                                 });
-    if (!is_known) return false;
-  }
-  const double drift = (place - pose(found.point)).norm();
-  const double bending = length > 0 ? std::min(0.5, k_bending * drift / length) : 0;
-  double distance, moved;
-  if (found.is_of_other) {
-    const Vec2 own = found.point + pose.turn.inverse() * (found.other_point - place);
-    distance = copy.placement.scale * copy.body->distance.exact(own);
-    moved = motion.of(own);
-  } else {
-    distance = there.placement.scale * there.body->distance.exact(place / there.placement.scale);
-    moved = motion.of(found.point);
-  }
+  const double scale = copy.placement.scale, other_scale = there.placement.scale;
   const double rounded = k_rounding * (copy.radius() + there.radius());
-  return found.radius * (1 - bending) - distance - moved * (1 + bending) > rounded;
+  const auto bending = [&](const Vec2& point, const Vec2& place) {
+    const double length = point.norm() * scale;
+    return length > 0 ? std::min(0.5, k_bending * (place - pose(point)).norm() / length) : 0;
+  };
+  Vec2 place = pose.at;
+  if (found.point != Vec2::Zero() && !trace_to(view, copy, found.point, other, place)) return false;
+  const Eigen::Matrix2d back = pose.turn.inverse();
+  const Vec2 own = found.is_of_other ? Vec2(found.point + back * (found.other_point - place)) : found.point;
+  const double distance = found.is_of_other ? scale * copy.body->distance.exact(own)
+                                            : other_scale * there.body->distance.exact(place / other_scale);
+  const double bent = bending(found.point, place), overlap = found.radius - distance;
+  if (found.radius * (1 - bent) - distance - motion.of(own) * (1 + bent) > rounded) return true;
+  if (overlap - motion.of(own) <= rounded || found.radius == 0) return false;
+  // Most of the overlap is on the other's side, where moving matters.
+  const Vec2 deepest = found.is_of_other
+                           ? Vec2(own + std::max(0.0, distance + 0.1 * overlap) / scale *
+                                            copy.body->distance.way_in(own))
+                           : Vec2(own + std::max(0.0, distance + 0.9 * overlap) *
+                                            (back * there.body->distance.way_in(place / other_scale)));
+  if (!trace_to(view, copy, deepest, other, place)) return false;
+  const double depth = -other_scale * there.body->distance.exact(place / other_scale);
+  return depth - motion.of(deepest) * (1 + bending(deepest, place)) > rounded;
 }
 
 /// Those that the smallest copies may meet, the nearest first.

@@ -65,6 +65,7 @@ class GapSearch {
   void throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const;
   std::uint64_t centrally_covered(const CellView& view, std::uint64_t kinds, const Neighbours& near) const;
   bool is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbours& near) const;
+  bool trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const;
   bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Encounter& found,
                   const Pose& pose, Index other) const;
   bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const;

@@ -16,6 +16,13 @@ class SignedDistance {
   /// O(corners).
   double exact(const Vec2& point) const;
 
+  /// The direction in which the distance falls fastest. O(corners).
+  Vec2 way_in(const Vec2& point) const {
+    const double step = 1e-4 * reach_;
+    const Vec2 right(step, 0), up(0, step);
+    return Vec2(exact(point - right) - exact(point + right), exact(point - up) - exact(point + up)).stableNormalized();
+  }
+
   /// Not below the exact value, and above by at most `slack`; infinite beyond the grid. O(1).
   double upper(const Vec2& point) const {
     const double x = (point.x() + reach_) * per_unit_, y = (point.y() + reach_) * per_unit_;
