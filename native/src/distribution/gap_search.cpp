@@ -47,6 +47,8 @@ constexpr double k_dart_area = 0.05, k_free_area = 0.006;  ///< the second where
 /// Disks looked at before all of them are: the largest, which tell most cells.
 constexpr std::size_t k_first_disks = 6;
 
+bool is_odd(Outcome outcome) { return outcome == Outcome::fold || outcome == Outcome::stretched; }
+
 Eigen::Matrix2d turn_of(const Copy& copy) {
   const double c = copy.placement.scale * std::cos(copy.placement.angle),
                s = copy.placement.scale * std::sin(copy.placement.angle);
@@ -245,14 +247,16 @@ void GapSearch::throw_dart(const OpenCell& open, const CellView& view, Index num
   const double radius = view.size * rules_->smallest_factor() * rules_->shape_radius(rules_->kinds()[kind]);
   const double area = mesh_->face_area(open.cell.face) * open.cell.unit() * open.cell.unit();
   const double least = look.free ? k_free_area : k_dart_area;
-  const bool may_be_lost = options_->maximal && view.radius < least_stuck();
-  const bool is_suspected = may_be_lost && 2 * view.radius < least_stuck() && suspected_[open.cell.face];
+  const bool may_be_lost = options_->maximal && view.radius < least_stuck_;
+  const bool is_suspected = may_be_lost && 2 * view.radius < least_stuck_ && suspected_[open.cell.face];
   const bool is_thinned = (!look.free && !is_suspected) || !options_->maximal;
   if (is_thinned && area < uniform(key, 5) * least * radius * radius) return;
   if (look.free || is_suspected) {
     // The first cells that may be given up learn whether they have to be: their parts would ask one by one.
-    const bool is_probe = is_suspected || (may_be_lost && 2 * view.radius >= least_stuck());
+    const bool is_probe = is_suspected || (may_be_lost && 2 * view.radius >= least_stuck_);
     const double scale = view.size * rules_->smallest_factor();
+    look.is_central = true;
+    if (open.tried.kind == kind) return;
     look.has_dart = true;
     look.dart = {order(view.centre, key), kind, number, view.centre, scale, false, is_probe};
     return;
@@ -317,11 +321,10 @@ bool GapSearch::is_certain(const CellView& view, const Copy& copy, const Motion&
   if (found.radius * (1 - bent) - distance - motion.of(own) * (1 + bent) > rounded) return true;
   if (overlap - motion.of(own) <= rounded || found.radius == 0) return false;
   // Most of the overlap is on the other's side, where moving matters.
-  const Vec2 deepest = found.is_of_other
-                           ? Vec2(own + std::max(0.0, distance + 0.1 * overlap) / scale *
-                                            copy.body->distance.way_in(own))
-                           : Vec2(own + std::max(0.0, distance + 0.9 * overlap) *
-                                            (back * there.body->distance.way_in(place / other_scale)));
+  const Vec2 deepest =
+      found.is_of_other ? Vec2(own + std::max(0.0, distance + 0.1 * overlap) / scale * copy.body->distance.way_in(own))
+                        : Vec2(own + std::max(0.0, distance + 0.9 * overlap) *
+                                         (back * there.body->distance.way_in(place / other_scale)));
   if (!trace_to(view, copy, deepest, other, place)) return false;
   const double depth = -other_scale * there.body->distance.exact(place / other_scale);
   return depth - motion.of(deepest) * (1 + bending(deepest, place)) > rounded;
@@ -403,13 +406,20 @@ void GapSearch::look(const OpenCell& open, Index number, Neighbours& near, Look&
       else
         look.open |= std::uint64_t{1} << kind;
       if (!is_covered(view, copy, {}, near)) look.free |= std::uint64_t{1} << kind;
-    } else if (is_covered(view, copy, {}, near)) {
+    } else if (open.tried.is(kind, Outcome::collision) || is_covered(view, copy, {}, near)) {
       ++look.leaves;
     } else {
       look.asked |= std::uint64_t{1} << kind;
     }
   }
   if (look.open) throw_dart(open, view, number, look);
+}
+
+/// Where shapes cannot be laid on much of the surface, the rims of such places are found less finely.
+void GapSearch::find_least_stuck() {
+  constexpr double k_fine = 4, k_coarse = 8, k_much = 0.005;
+  const double least = options_->tolerance * (rules_->smallest_radius() + 0.5 * options_->gap);
+  least_stuck_ = least * (certificate_.uncertified_area > k_much * mesh_->area() ? k_coarse : k_fine);
 }
 
 /// The face and those about it.
@@ -431,6 +441,7 @@ void GapSearch::lose(const Cell& cell) {
 
 void GapSearch::round(const JobStage& stage) {
   weigh_kinds();
+  find_least_stuck();
   std::vector<Look> looks(open_.size());
   const JobStage looking = stage.part(0, 0.5);
   std::vector<Neighbours> near(static_cast<std::size_t>(thread_count(options_->threads)));
@@ -461,27 +472,31 @@ void GapSearch::round(const JobStage& stage) {
     const Candidate& candidate = candidates[k];
     const Outcome outcome = outcomes[k];
     laid_in_round_ += outcome == Outcome::laid ? 1 : 0;
-    const bool is_odd = outcome == Outcome::fold || outcome == Outcome::stretched;
-    if (is_odd && options_->maximal) suspect(candidate.centre.face);
+    if (is_odd(outcome) && options_->maximal) suspect(candidate.centre.face);
     if (!candidate.is_thorough) {
-      is_stuck[candidate.cell] = is_odd;
+      // Other collisions may only be foreseen.
+      const bool is_mapped = candidate.is_probe || is_odd(outcome);
+      if (looks[candidate.cell].is_central && is_mapped) open_[candidate.cell].tried = {candidate.kind, outcome};
+      is_stuck[candidate.cell] = is_odd(outcome);
     } else if (outcome == Outcome::laid || outcome == Outcome::not_wanted) {
       looks[candidate.cell].open |= std::uint64_t{1} << candidate.kind;  // the next round finds it covered
     } else {
       ++certificate_.leaves;
-      if (is_odd) lose(open_[candidate.cell].cell);
+      if (is_odd(outcome)) lose(open_[candidate.cell].cell);
     }
   }
   std::vector<OpenCell> next;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     if (i % 4096 == 0) stage.check();
     if (!looks[i].open) continue;
-    const CellView view = rules_->view(open_[i].cell);
-    if (is_stuck[i] && view.radius < least_stuck()) {
+    const bool is_known_stuck = looks[i].is_central && is_odd(open_[i].tried.outcome);
+    if ((is_stuck[i] || is_known_stuck) && rules_->view(open_[i].cell).radius < least_stuck_) {
       lose(open_[i].cell);
       continue;
     }
-    for (const Cell& child : open_[i].cell.children()) next.push_back({child, looks[i].open});
+    const std::array<Cell, 4> parts = open_[i].cell.children();
+    for (const Cell& part : parts) next.push_back({part, looks[i].open});
+    next.back().tried = open_[i].tried;  // the middle one has the same centre
   }
   open_ = std::move(next);
   ++rounds_;

@@ -18,10 +18,17 @@ class GapSearch {
   const Certificate& certificate() const { return certificate_; }
 
  private:
+  /// What became of the smallest copy of a kind at some place; collisions and folds stay.
+  struct Tried {
+    Index kind = k_none;
+    Outcome outcome = Outcome::not_wanted;
+    bool is(Index what, Outcome is_so) const { return kind == what && outcome == is_so; }
+  };
   /// A cell and the kinds that may still fit somewhere in it, by bits.
   struct OpenCell {
     Cell cell;
     std::uint64_t kinds;
+    Tried tried = {};  ///< at the cell's centre, as a part of another cell
   };
   /// What came of looking at a cell.
   struct Look {
@@ -29,8 +36,8 @@ class GapSearch {
     std::uint64_t free = 0;   ///< those of them of which a copy at the centre seems to have room
     std::uint64_t asked = 0;  ///< kinds of which a copy at the centre is to be tried
     std::int64_t tests = 0, leaves = 0;
-    bool is_lost = false;  ///< some kind cannot be told
-    bool has_dart = false;
+    bool is_lost = false;                       ///< some kind cannot be told
+    bool has_dart = false, is_central = false;  ///< the dart is wanted at the centre
     Candidate dart;
   };
   /// A copy that one in the cell might meet, and how the cell's face lies in its plane.
@@ -74,8 +81,7 @@ class GapSearch {
     const double radius = rules_->smallest_factor() * view.size * rules_->shape_radius(kind);
     return options_->tolerance * (radius + 0.5 * options_->gap);
   }
-  /// Cells so small are given up where shapes cannot be laid.
-  double least_stuck() const { return 8 * options_->tolerance * (rules_->smallest_radius() + 0.5 * options_->gap); }
+  void find_least_stuck();
   void lose(const Cell& cell);
 
   const Mesh* mesh_;
@@ -93,6 +99,7 @@ class GapSearch {
   std::vector<double> kind_weights_;     ///< sums, by which kinds are drawn
   Certificate certificate_;
   std::int64_t laid_in_round_ = 0;
+  double least_stuck_ = 0;  ///< cells so small are given up where shapes cannot be laid
   int rounds_ = 0;
 };
 
