@@ -415,11 +415,17 @@ void GapSearch::look(const OpenCell& open, Index number, Neighbours& near, Look&
   if (look.open) throw_dart(open, view, number, look);
 }
 
-/// Where shapes cannot be laid on much of the surface, the rims of such places are found less finely.
+/// Where many drops fell on places where shapes cannot be laid, the rims of such places are found less finely.
 void GapSearch::find_least_stuck() {
-  constexpr double k_fine = 4, k_coarse = 8, k_much = 0.005;
+  constexpr double k_fine = 4, k_coarse = 8, k_much = 0.02;
+  const auto rejected = laying_->rejections();
+  const auto number = [](Outcome outcome) {
+    return static_cast<std::size_t>(outcome) - static_cast<std::size_t>(Outcome::collision);
+  };
+  const std::int64_t odd = rejected[number(Outcome::fold)] + rejected[number(Outcome::stretched)];
+  const std::int64_t all = std::accumulate(rejected.begin(), rejected.end(), std::int64_t{0});
   const double least = options_->tolerance * (rules_->smallest_radius() + 0.5 * options_->gap);
-  least_stuck_ = least * (certificate_.uncertified_area > k_much * mesh_->area() ? k_coarse : k_fine);
+  least_stuck_ = least * (static_cast<double>(odd) > k_much * static_cast<double>(all) ? k_coarse : k_fine);
 }
 
 /// The face and those about it.
@@ -441,7 +447,6 @@ void GapSearch::lose(const Cell& cell) {
 
 void GapSearch::round(const JobStage& stage) {
   weigh_kinds();
-  find_least_stuck();
   std::vector<Look> looks(open_.size());
   const JobStage looking = stage.part(0, 0.5);
   std::vector<Neighbours> near(static_cast<std::size_t>(thread_count(options_->threads)));
@@ -518,6 +523,7 @@ DistributionStop GapSearch::run(const JobStage& stage) {
   constexpr double k_rain = 0.4;  // of the work, where cells are searched after it
   const DistributionStop rained = rain(stage.part(0, searches() ? k_rain : 1));
   if (rained == DistributionStop::counts || !searches() || laying_->is_hopeless()) return rained;
+  find_least_stuck();
   const auto share = [&] { return k_rain + (1 - k_rain) * next_face_ / mesh_->face_count(); };
   while (next_face_ < mesh_->face_count() && laying_->is_any_wanted()) {
     const double begin = share();
