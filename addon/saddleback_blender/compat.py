@@ -319,3 +319,12 @@ def move_modifier_first(item: bpy.types.Object, modifier: bpy.types.Modifier) ->
         return
     with bpy.context.temp_override(object=item):
         bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=0)
+
+
+def interpolate_corner(loop: Any, face: Any) -> None:
+    """Gives a BMesh corner what the face has at its place; the data of its vertex stays."""
+    arguments = face, False, False
+    try:
+        loop.copy_from_face_interp(*arguments)
+    except TypeError:  # Blender 3 wants all of them in one tuple
+        loop.copy_from_face_interp(arguments)

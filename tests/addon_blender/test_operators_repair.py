@@ -6,6 +6,7 @@ import pytest
 from scenes import add_object, fingerprint, grid, grid_arrays, positions, sphere
 
 import saddleback as sb
+from saddleback_blender import jobs
 
 
 def is_good(item):
@@ -191,6 +192,76 @@ def test_loose_parts_and_shape_keys_stay():
     assert len(item.data.vertices) == 17 and len(item.data.polygons) == 9
     assert [key.name for key in item.data.shape_keys.key_blocks] == ["Basis", "Up"]
     assert item.data.shape_keys.key_blocks["Up"].data[4].co.z == 2.0
+
+
+def holed(n, missing):
+    """A grid without some of its quads, painted."""
+    vertices, faces = grid_arrays(n)
+    item = add_object("Holed", vertices, np.delete(faces, missing, axis=0))
+    paint(item)
+    return item
+
+
+def border_count(item):
+    edges = np.sort([tuple(edge) for polygon in item.data.polygons for edge in polygon.edge_keys], axis=1)
+    return int((np.unique(edges, axis=0, return_counts=True)[1] == 1).sum())
+
+
+def test_holes_are_filled_with_faces_that_are_painted_as_those_about_them():
+    item = holed(8, [18, 19, 45])
+    bpy.ops.saddleback.repair()
+    assert "nothing to repair" in jobs.state.line and len(item.data.polygons) == 61
+    bpy.ops.saddleback.repair(fill_holes=4)
+    assert "1 hole filled" in jobs.state.line and len(item.data.polygons) == 63
+    assert any("2 holes are left open" in line for line in jobs.state.figures)
+    bpy.ops.saddleback.repair(fill_holes=6)
+    assert "1 hole filled" in jobs.state.line and is_good(item)
+    assert len(item.data.polygons) == 67 and border_count(item) == 32
+    assert sum(len(polygon.vertices) == 4 for polygon in item.data.polygons) == 61  # the others stay as they are
+    assert sum(polygon.area for polygon in item.data.polygons) == pytest.approx(1.0)
+    assert all(polygon.normal.z > 0.99 for polygon in item.data.polygons)
+    check_paint(item)
+    before = fingerprint()
+    bpy.ops.saddleback.repair(fill_holes=6)
+    assert "nothing to repair" in jobs.state.line and fingerprint() == before
+
+
+def test_a_hole_of_a_mirrored_object_is_filled_the_right_way_round():
+    item = holed(6, [14])
+    item.scale.x = -1
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.repair(fill_holes=4)
+    assert border_count(item) == 24 and all(polygon.normal.z > 0.99 for polygon in item.data.polygons)
+    check_paint(item)
+
+
+def test_cracks_are_told_and_closed():
+    vertices, faces = grid_arrays(4)
+    near = vertices + [1 + 1e-6, 0, 0]
+    item = add_object("Crack", np.concatenate([vertices, near]), np.concatenate([faces, faces + 25]))
+    bpy.ops.saddleback.repair()
+    assert "nothing to repair" in jobs.state.line and len(item.data.vertices) == 50
+    assert any("10 border vertices lie close" in line and "Close Cracks" in line for line in jobs.state.figures)
+    bpy.ops.saddleback.repair(close_cracks=True)
+    assert "5 vertices welded" in jobs.state.line and not jobs.state.figures
+    assert is_good(item) and len(item.data.vertices) == 45 and border_count(item) == 24
+    assert all(len(polygon.vertices) == 4 for polygon in item.data.polygons)
+
+
+def test_t_junctions_are_closed_and_the_paint_stays():
+    vertices, faces = grid_arrays(2)
+    side = np.array([[1, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0.0]])
+    item = add_object("Crossing", np.concatenate([vertices, side]), [*faces.tolist(), [9, 10, 11, 12]])
+    paint(item)
+    bpy.ops.saddleback.repair()
+    assert any("amid the edge" in line for line in jobs.state.figures)
+    bpy.ops.saddleback.repair(close_cracks=True)
+    assert is_good(item) and border_count(item) == 9 and not jobs.state.figures
+    layer = item.data.uv_layers["Map"].data
+    for loop in item.data.loops:
+        place = item.data.vertices[loop.vertex_index].co
+        assert tuple(layer[loop.index].uv) == pytest.approx(tuple(place[:2]), abs=1e-6)
+    assert {polygon.material_index for polygon in item.data.polygons if polygon.center.x > 1} == {0}  # as the quad was
 
 
 def test_the_repair_is_one_undo_step():

@@ -6,6 +6,8 @@ makes; it costs some seconds a million vertices, which only meshes that need it 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bmesh
 import bpy
 import numpy as np
@@ -64,11 +66,17 @@ def _rebuild(changed: bmesh.types.BMesh, plan: RepairPlan, places: Reals, moved:
     for polygon, parts in plan.replaced.items():
         face = faces[polygon]
         condemned.add(face)
-        loops = {loop.vert: loop for loop in face.loops}
+        loops: dict[bmesh.types.BMVert, bmesh.types.BMLoop | None] = {loop.vert: loop for loop in face.loops}
+        # A corner that the face has not is on its side, or was welded to one of its own: its data lies between theirs.
+        other = None if face.calc_area() > 0 else face.loops[0]
         for part in parts:
             origins = [old[plan.vertex_origin[vertex]] for vertex in triangles[part]]
-            lenders = [loops.get(vertex, face.loops[0]) for vertex in origins]
+            lenders = [loops.get(vertex, other) for vertex in origins]
             made.add(_remake(changed, face, [vertices[vertex] for vertex in triangles[part]], lenders))
+    for part, polygon in plan.filled.items():
+        origins = [old[plan.vertex_origin[vertex]] for vertex in triangles[part]]
+        lenders = [_lender(faces[polygon], origin) for origin in origins]
+        made.add(_remake(changed, faces[polygon], [vertices[vertex] for vertex in triangles[part]], lenders))
     bmesh.ops.delete(changed, geom=list(condemned - made), context="FACES_ONLY")
     freed = [edge for edge in changed.edges if edge.is_wire and edge not in wires]
     bmesh.ops.delete(changed, geom=freed, context="EDGES")
@@ -89,13 +97,22 @@ def _new_vertices(
     return vertices
 
 
+def _lender(face: bmesh.types.BMFace, vertex: bmesh.types.BMVert) -> bmesh.types.BMLoop:
+    """The face's corner at the vertex, or another face's, or else any corner of the face."""
+    corners = [loop for loop in vertex.link_loops if loop.face == face] or list(vertex.link_loops)
+    return corners[0] if corners else face.loops[0]
+
+
 def _remake(
     changed: bmesh.types.BMesh,
     face: bmesh.types.BMFace,
     vertices: list[bmesh.types.BMVert],
-    lenders: list[bmesh.types.BMLoop],
+    lenders: Sequence[bmesh.types.BMLoop | None],
 ) -> bmesh.types.BMFace:
-    """A face of these vertices with the data of `face`, of the lending corners and of the edges between them."""
+    """A face of these vertices with the data of `face`, of the lending corners and of the edges between them.
+
+    A corner without a lender gets what `face` has at its place.
+    """
     new = changed.faces.get(vertices)
     if new is None:
         new = changed.faces.new(vertices, face)
@@ -104,12 +121,17 @@ def _remake(
     between = {frozenset(edge.verts): edge for edge in face.edges}
     lender_of = dict(zip(vertices, lenders, strict=True))
     for loop in new.loops:
-        edge = between.get(frozenset((lender_of[loop.vert].vert, lender_of[loop.link_loop_next.vert].vert)))
+        ends = lender_of[loop.vert], lender_of[loop.link_loop_next.vert]
+        edge = between.get(frozenset(end.vert for end in ends if end is not None))
         if edge is not None and edge != loop.edge and len(loop.edge.link_faces) == 1:
             loop.edge.seam, loop.edge.smooth = edge.seam, edge.smooth  # flags, which copy_from leaves out
             loop.edge.copy_from(edge)
     for loop in list(new.loops):
-        loop.copy_from(lender_of[loop.vert])  # last: from Blender 4 on it makes `loop` unusable
+        lender = lender_of[loop.vert]  # last: from Blender 4 on copying makes `loop` unusable
+        if lender is None:
+            compat.interpolate_corner(loop, face)
+        else:
+            loop.copy_from(lender)
     return new
 
 

@@ -27,6 +27,7 @@ class RepairPlan:
     kept: dict[int, tuple[Indices, bool]]  # polygon -> new vertex of each corner, and whether it turns round
     replaced: dict[int, list[int]]  # polygon -> new triangles in its place
     dropped: list[int]  # polygons of which nothing is left
+    filled: dict[int, int]  # new triangle that fills a hole -> the polygon beside it that gives its data
     changes_nothing: bool  # the new triangles are the old ones, perhaps of vertices numbered otherwise
 
 
@@ -38,8 +39,11 @@ def plan_repair(
     new_triangles: Indices,
     vertex_map: Indices,
     face_map: Indices,
+    filled: Indices,
 ) -> RepairPlan:
-    """`polygon_corners`: old vertices around each polygon. The rest as given to and got from the library's repair.
+    """`polygon_corners`: old vertices around each polygon; `filled`: new triangles in holes, which no old one is.
+
+    The rest as given to and got from the library's repair.
 
     O(F) in numpy, plus plain Python for each polygon that does not stay exactly as it is; those are in no list.
     """
@@ -65,9 +69,15 @@ def plan_repair(
             kept[polygon] = around, bool(turned[members[0]])
         else:
             replaced[polygon] = [int(face) for face in survivors if face >= 0]
-    _give_parts(new_triangles, claimed, triangle_polygon, replaced)
-    nothing = bool(matches.all() and not turned.any()) and _is_renumbering(triangles, corner_vertex, len(new_vertices))
-    return RepairPlan(_fill_origins(origin, root, new_triangles), origin < 0, kept, replaced, dropped, nothing)
+    _give_parts(new_triangles, claimed, triangle_polygon, replaced, filled)
+    home = np.full(len(new_triangles), -1, np.int32)
+    home[claimed[claimed >= 0]] = triangle_polygon[claimed >= 0]
+    for polygon, faces in replaced.items():
+        home[faces] = polygon
+    nothing = bool(matches.all() and not turned.any()) and not len(filled)
+    nothing = nothing and _is_renumbering(triangles, corner_vertex, len(new_vertices))
+    lenders = _lenders(new_triangles, filled, home)
+    return RepairPlan(_fill_origins(origin, root, new_triangles), origin < 0, kept, replaced, dropped, lenders, nothing)
 
 
 def _is_renumbering(triangles: Indices, corner_vertex: Indices, new_count: int) -> bool:
@@ -141,18 +151,22 @@ def _corners_of(corners: Indices, members: Indices, new_corners: Indices) -> Ind
 
 
 def _give_parts(
-    new_triangles: Indices, claimed: Indices, triangle_polygon: Indices, replaced: dict[int, list[int]]
+    new_triangles: Indices,
+    claimed: Indices,
+    triangle_polygon: Indices,
+    replaced: dict[int, list[int]],
+    filled: Indices,
 ) -> None:
     """Gives each new triangle that no old one claims (a further part of a divided one) to the polygon beside it."""
     unclaimed = np.ones(len(new_triangles), bool)
     unclaimed[claimed[claimed >= 0]] = False
+    unclaimed[filled] = False
     parts = np.nonzero(unclaimed)[0].tolist()
     home_of_edge: dict[frozenset[int], int] = {}
 
     def settle(face: int, polygon: int) -> None:
-        a, b, c = new_triangles[face].tolist()
-        for edge in ((a, b), (b, c), (c, a)):
-            home_of_edge[frozenset(edge)] = polygon
+        for edge in _edges(new_triangles[face]):
+            home_of_edge[edge] = polygon
 
     for polygon, faces in replaced.items() if parts else ():
         for face in faces:
@@ -160,8 +174,7 @@ def _give_parts(
     while parts:
         waiting = []
         for face in parts:
-            a, b, c = new_triangles[face].tolist()
-            homes = [home_of_edge[edge] for edge in map(frozenset, ((a, b), (b, c), (c, a))) if edge in home_of_edge]
+            homes = [home_of_edge[edge] for edge in _edges(new_triangles[face]) if edge in home_of_edge]
             if homes:
                 replaced[homes[0]].append(face)
                 settle(face, homes[0])
@@ -173,6 +186,36 @@ def _give_parts(
             replaced.setdefault(int(triangle_polygon[0]), []).extend(waiting)
             return
         parts = waiting
+
+
+def _lenders(new_triangles: Indices, filled: Indices, home: Indices) -> dict[int, int]:
+    """For each triangle in a hole the polygon beside it, or beside the nearest of its hole that has one there.
+
+    `home`: the polygon of every other new triangle.
+    """
+    rim = np.zeros(int(new_triangles.max(initial=-1)) + 1, bool)
+    rim[new_triangles[filled]] = True
+    waiting: dict[frozenset[int], list[int]] = {}  # edge -> triangles of the hole
+    for face in filled.tolist():
+        for edge in _edges(new_triangles[face]):
+            waiting.setdefault(edge, []).append(face)
+    lenders: dict[int, int] = {}
+    beside = np.nonzero((home >= 0) & (rim[new_triangles].sum(axis=1) >= 2))[0]
+    found = [(edge, int(home[face])) for face in beside.tolist() for edge in _edges(new_triangles[face])]
+    while found:
+        further = []
+        for edge, polygon in found:
+            for face in waiting.pop(edge, ()):
+                if face not in lenders:
+                    lenders[face] = polygon
+                    further += [(other, polygon) for other in _edges(new_triangles[face])]
+        found = further
+    return lenders
+
+
+def _edges(triangle: Indices) -> tuple[frozenset[int], ...]:
+    a, b, c = triangle.tolist()
+    return frozenset((a, b)), frozenset((b, c)), frozenset((c, a))
 
 
 def _fill_origins(origin: Indices, root: Indices, new_triangles: Indices) -> Indices:

@@ -303,6 +303,8 @@ class RepairResult:
     face_map: Indices  # (old F,) new triangle, the first part if it was divided, -1 = gone
     changes: dict[str, int]  # by kind; empty when there was nothing to repair
     text: str  # the changes for a person to read
+    filled: Indices  # new triangles that fill holes
+    advice: tuple[str, ...]  # what the settings would mend that is left, one sentence each
 
 
 def _nbytes(result: object) -> int:

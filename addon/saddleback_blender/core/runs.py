@@ -22,7 +22,7 @@ from .level_lines import LevelLines, isoline_levels, level_lines
 from .normals import normals_at
 from .progress import Progress
 from .requests import DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
-from .results import CellsResult, DistanceResult, Dual, Indices, LampShell, Reals, RepairResult
+from .results import CellsResult, DistanceResult, Dual, Indices, LampShell, Reals
 from .rib_surface import rib_surface
 from .settings import DistanceSettings
 from .shell_solid import thicken
@@ -158,14 +158,6 @@ def _isolines(surface: Surface, values: Reals, settings: DistanceSettings, progr
     levels = isoline_levels(settings, farthest, surface.name)
     with progress.stage(0.98, "following the isolines"):
         return level_lines(surface.vertices, surface.triangles, values, levels)
-
-
-def repair(surface: Surface, weld_distance: float, progress: Progress) -> RepairResult:
-    """The library's repair of any surface. Raises its MeshError if nothing is left."""
-    with progress.stage(0.98, "repairing the mesh") as job:
-        mesh, report = native.load().repair(surface.vertices, surface.triangles, weld_distance=weld_distance, job=job)
-    changes = {str(kind): int(count) for kind, count in report.changes.items() if count}
-    return RepairResult(mesh.vertices, mesh.triangles, report.vertex_map, report.face_map, changes, str(report))
 
 
 @dataclass(frozen=True)

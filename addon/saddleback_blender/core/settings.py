@@ -208,3 +208,5 @@ class RepairSettings:
     """All properties of `saddleback.repair`."""
 
     weld_distance: float = 0.0  # world units; 0 welds vertices at the very same place only
+    close_cracks: bool = False  # borders that nearly meet are joined; without a weld distance by the one that is told
+    fill_holes: int = 0  # holes of up to so many edges are filled

@@ -12,9 +12,9 @@ from .. import jobs
 from ..bridge.mesh_in import from_world, read_surface, read_triangle_polygons
 from ..bridge.repair_mesh import apply_repair, polygon_corners
 from ..bridge.source import check_own_mesh, shared_mesh_warning
-from ..core import runs
 from ..core.progress import Progress
 from ..core.repair_plan import plan_repair
+from ..core.repair_runs import repair
 from ..core.results import RepairResult
 from ..core.settings import RepairSettings
 from ..props import keep_settings, settings_of
@@ -28,8 +28,8 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
     bl_idname = "saddleback.repair"
     bl_label = "Repair"
     bl_description = (
-        "Weld, split, orient and drop what keeps the active object's mesh from being a surface; groups, UVs, colors "
-        "and materials stay"
+        "Weld, split, orient and drop what keeps the active object's mesh from being a surface, close its cracks and "
+        "fill its holes; groups, UVs, colors and materials stay"
     )
     bl_options = {"REGISTER", "UNDO"}
     __annotations__ = dict(REPAIR)
@@ -40,7 +40,7 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
         """Reads the mesh as it is, bad numbers included."""
         check_own_mesh(source)
         surface = read_surface(source, source.data, check=False)
-        return partial(runs.repair, surface, settings_of(self, RepairSettings).weld_distance)
+        return partial(repair, surface, settings_of(self, RepairSettings))
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: RepairResult) -> str:
         """Changes the mesh in place, or nothing where nothing is wrong."""
@@ -57,6 +57,12 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {result.text}"
+
+    def notes(self, result: RepairResult) -> list[str]:
+        """What is left, and which setting would mend it."""
+        return list(result.advice)
+
+    figures = notes
 
 
 def _has_modifiers(source: bpy.types.Object) -> bool:
@@ -76,6 +82,7 @@ def _apply(source: bpy.types.Object, result: RepairResult) -> bool:
         result.triangles,
         surface.spread(result.vertex_map, -1),
         result.face_map,
+        result.filled,
     )
     if plan.changes_nothing:
         return False

@@ -490,7 +490,10 @@ class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
         """Draws the panel."""
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.repair", "TOOL_SETTINGS")
-        layout.prop(active_object(context).saddleback.repair, "weld_distance")
+        settings = active_object(context).saddleback.repair
+        layout.prop(settings, "weld_distance")
+        layout.prop(settings, "close_cracks")
+        layout.prop(settings, "fill_holes")
 
 
 @functools.cache
