@@ -1,0 +1,188 @@
+"""Truths about the parts that cells come in: boundaries, split meshes, duals and their faults, by recount."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+
+import saddleback as sb
+from tests import meshes
+from tests.truth.cells_exact import edges_of, exact_cells
+from tests.truth.distances import Floats, Random, longest_edge
+from tests.truth.plane import box_about, exact, some_of, squared
+from tests.truth.registry import guards
+
+
+def is_usual(mesh: sb.Mesh) -> bool:
+    return bool(mesh.edge_lengths.min() > 1e-4 * longest_edge(mesh))
+
+
+def far_sites(mesh: sb.Mesh, rng: Random) -> sb.SurfacePoints:
+    """Sites that do not coincide."""
+    return sb.sample(mesh, mesh.component_count + int(rng.integers(0, 6)), seed=int(rng.integers(1 << 30)),
+                     one_per_component=True)  # fmt: skip
+
+
+@guards("VoronoiEdge", "GeodesicVoronoi")
+def boundaries_are_midway(mesh: sb.Mesh, rng: Random) -> None:
+    """Points of boundaries between exact cells are as far from one site as from the other, one by one the same as in
+    the flat arrays; loops close, others end at branch points or at the border.
+    """
+    if not is_usual(mesh):
+        return
+    sites = far_sites(mesh, rng)
+    cells = exact_cells(mesh, sites)
+    fields = [sb.ExactField(mesh, sites[i]) for i in range(len(sites))]
+    edges, size = cells.edges, longest_edge(mesh)
+    assert len(edges) == len(cells.edge_cells) == len(cells.edge_offsets) - 1
+    branches = cells.branch_points.positions(mesh)
+    for k, edge in enumerate(edges):
+        mine = slice(int(cells.edge_offsets[k]), int(cells.edge_offsets[k + 1]))
+        assert edge.points.tobytes() == cells.edge_points[mine].tobytes()
+        assert edge.cells == tuple(cells.edge_cells[k])
+        assert edge.closed == cells.edge_closed[k]
+        np.testing.assert_allclose(edge.surface.positions(mesh), edge.points, atol=1e-9 * size + 1e-13)
+        left, right = (fields[i].distance_to(edge.surface) for i in edge.cells)
+        assert abs(left - right).max() <= 1e-3 * size, f"{abs(left - right).max()} nearer to one of {edge.cells}"
+        if edge.closed:
+            np.testing.assert_allclose(edge.points[0], edge.points[-1], atol=1e-9 * size)
+            continue
+        for end in (0, -1):
+            corners = mesh.triangles[edge.surface.faces[end]][edge.surface.barycentric[end] > 1e-9]
+            on_border = np.isin(corners, mesh.boundary_vertices).all() and len(corners) < 3
+            to_branch = np.linalg.norm(branches - edge.points[end], axis=1).min(initial=np.inf)
+            assert on_border or to_branch <= 1e-6 * size, f"boundary {k} ends in the middle of nowhere"
+
+
+def faces_at(mesh: sb.Mesh, point: Floats) -> int:
+    """How many faces there are within a thousandth of an edge."""
+    slack = 1e-3 * longest_edge(mesh)
+    a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+    normal = np.cross(b - a, c - a)
+    square = (normal * normal).sum(axis=1)
+    near = abs(((point - a) * normal).sum(axis=1)) <= slack * np.sqrt(square)
+    for p, q in ((a, b), (b, c), (c, a)):
+        near &= (np.cross(q - p, point - p) * normal).sum(axis=1) >= -1e-3 * square
+    return int(near.sum())
+
+
+def assert_is_split(mesh: sb.Mesh, split: sb.SplitMesh, areas: Floats) -> None:
+    """A split mesh has the mesh's vertices where they were, and triangles of the cells' areas within its faces."""
+    of_mesh = split.vertex_origin >= 0
+    kept = split.vertex_origin[of_mesh]
+    assert set(kept.tolist()) == set(range(mesh.vertex_count))
+    assert (split.vertices[of_mesh] == mesh.vertices[kept]).all()
+    a, b, c = (split.vertices[split.triangles[:, i]] for i in range(3))
+    sizes = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    assert abs(sizes.sum() - mesh.area) <= 1e-9 * mesh.area
+    np.testing.assert_allclose(
+        np.bincount(split.triangle_cell, sizes, minlength=len(areas)), areas, atol=1e-7 * mesh.area
+    )
+
+
+@guards("SplitMesh", "GeodesicVoronoi.split")
+def split_triangles_are_nearest(mesh: sb.Mesh, rng: Random) -> None:
+    """The middle of every triangle of a split mesh is nowhere nearer to another site than to its own."""
+    if not is_usual(mesh):
+        return
+    sites = far_sites(mesh, rng)
+    cells = exact_cells(mesh, sites)
+    split = cells.split()
+    assert_is_split(mesh, split, cells.areas)
+    some = rng.permutation(len(split.triangles))[:60]
+    middles = split.vertices[split.triangles[some]].mean(axis=1)
+    alone = np.array([faces_at(mesh, middle) == 1 for middle in middles])  # not on a sheet that lies on another
+    some, middles = some[alone], middles[alone]
+    if len(some) == 0:
+        return
+    places = sb.project(mesh, middles)
+    there = np.linalg.norm(places.positions(mesh) - middles, axis=1)
+    table = np.array([sb.ExactField(mesh, sites[i]).distance_to(places) for i in range(len(sites))])
+    behind = table[split.triangle_cell[some], np.arange(len(some))] - table.min(axis=0)
+    assert behind.max() <= 1e-3 * longest_edge(mesh) + 2 * there.max(), f"{behind.max()} nearer to another site"
+
+
+KINDS = {"not_a_disk", "two_borders", "closed_boundary", "double_boundary", "cell_meets_itself", "few_corners"}
+
+
+@guards("DualMesh", "DualIssue", "GeodesicVoronoi.dual")
+def duals_by_count(mesh: sb.Mesh, rng: Random) -> None:
+    """A dual has an edge for each boundary and is a triangulation of the surface unless issues tell why not: cells that
+    meet twice, or themselves, or in a loop, are counted from the boundaries.
+    """
+    if not is_usual(mesh):
+        return
+    cells = exact_cells(mesh, far_sites(mesh, rng))
+    dual = cells.dual("strict")
+    vertices, triangles, issues = dual
+    assert vertices is not triangles
+    assert dual.added == 0
+    assert (dual.sites.barycentric == cells.sites.barycentric).all()
+    np.testing.assert_allclose(vertices, cells.sites.positions(mesh), atol=1e-12 * np.abs(mesh.vertices).max())
+    assert dual.euler_characteristic == len(vertices) - len(dual.edges) + len(triangles)
+    met = Counter((min(a, b), max(a, b)) for a, b in cells.edge_cells.tolist())  # by pairs
+    open_ones = cells.edge_cells[~cells.edge_closed].tolist()  # of loops tells an issue
+    assert Counter(map(tuple, map(sorted, dual.edges.tolist()))) == Counter(map(tuple, map(sorted, open_ones)))
+    told = Counter(issue.kind for issue in issues)
+    assert set(told) <= KINDS
+    for issue in issues:
+        assert 0 <= issue.cell < len(vertices)
+        assert issue.other is None or (0 <= issue.other < len(vertices) and issue.other != issue.cell)
+        assert len(issue.place) == 1
+        assert 0 <= issue.place.faces[0] < mesh.face_count
+    twice = {pair for pair, count in met.items() if count > 1 and pair[0] != pair[1]}
+    named = {(min(i.cell, i.other), max(i.cell, i.other)) for i in issues if i.other is not None}
+    assert twice <= named, f"cells that meet twice: {twice}, named {named}"
+    own = {a for a, b in met if a == b}
+    assert own <= {issue.cell for issue in issues}, f"cells that meet themselves: {own}"
+    if cells.edge_closed.any() or (mesh.is_closed and len(vertices) < 4):
+        assert issues
+    if not issues:
+        counts = edges_of(triangles)
+        assert max(counts.values(), default=2) <= 2
+        assert set(counts) <= set(met)
+        chi = mesh.vertex_count - mesh.edge_count + mesh.face_count
+        assert dual.euler_characteristic == chi, f"{dual.euler_characteristic}, not {chi}"
+
+
+@guards("DualMesh", "GeodesicVoronoi.dual", on="nothing")
+def mended_duals(rng: Random) -> None:
+    """Repair adds sites until a torus is triangulated: every edge between two triangles, Euler characteristic 0."""
+    around, tube = int(rng.integers(8, 20)), int(rng.integers(5, 9))
+    mesh = sb.Mesh(*meshes.torus(around, tube, 1.0, float(rng.uniform(0.2, 0.5))))
+    sites = sb.sample(mesh, int(rng.integers(1, 12)), seed=int(rng.integers(1000)))
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, threads=1), sites, threads=1)
+    dual = cells.dual(threads=1)
+    assert dual.added == len(dual.vertices) - len(sites)
+    assert not dual.issues
+    assert set(edges_of(dual.triangles).values()) == {2}
+    assert dual.euler_characteristic == 0
+    assert (dual.sites.faces[: len(sites)] == sites.faces).all()
+
+
+@guards("LiftedVoronoi", "LiftedVoronoi.locate", "LiftedVoronoi.split", on="plane")
+def lifted_parts(sites: Floats, rng: Random) -> None:
+    """On a flat mesh: the nearest site of its points in fractions, and triangles of the right areas."""
+    sites = some_of(sites, rng, 10)
+    corner, side = box_about(sites, rng)
+    if side < 1e-6 * max(np.abs(sites).max(), np.abs(corner).max()):
+        return  # what lies where is a matter of rounding
+    vertices, triangles = meshes.grid(
+        int(rng.integers(2, 6)), int(rng.integers(2, 6)), jitter=0.2, seed=int(rng.integers(99))
+    )
+    uv = corner + side * vertices[:, :2]
+    mesh = sb.Mesh(np.column_stack([uv, np.zeros(len(uv))]), triangles)
+    lifted = sb.Chart(mesh, uv).lift(sb.voronoi_2d(sites, threads=1), threads=1)
+    points = sb.sample(mesh, 12, seed=int(rng.integers(1 << 30)))
+    size = max(np.abs(uv).max(), np.abs(sites).max())
+    for place, found in zip(exact(points.positions(mesh)[:, :2]), lifted.locate(points).tolist(), strict=True):
+        distances = [float(squared(place, site)) ** 0.5 for site in exact(sites)]
+        assert distances[found] <= min(distances) + 1e-14 * size, f"{found} for {int(np.argmin(distances))}"
+    split = lifted.split()
+    assert_is_split(mesh, split, lifted.areas)
+    whole = np.flatnonzero(lifted.face_cell >= 0)
+    middles = mesh.vertices[mesh.triangles[whole]].mean(axis=1)[:, :2]
+    nearest = np.linalg.norm(middles[:, None] - sites, axis=2)
+    behind = nearest[np.arange(len(whole)), lifted.face_cell[whole]] - nearest.min(axis=1)
+    assert behind.max(initial=0) <= 1e-14 * size
