@@ -47,7 +47,7 @@ def strip() -> meshes.Arrays:
 
 SOLVABLE = [
     ("balls on a string", balls_on_a_string(), 60, 0),
-    ("double strip", strip(), 40, 5),
+    ("double strip", strip(), 40, 0),
     ("needle", needle(), 60, 0),
     ("needle", needle(), 120, 1),
     ("thin tube", meshes.cylinder(32, 60, 0.2, 3.0), 16, 0),  # closed bisectors, with a border

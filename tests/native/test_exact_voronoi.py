@@ -372,3 +372,18 @@ def test_all_parts_about_a_vertex_agree_whose_it_is() -> None:
         a, b, c = (split.vertices[split.triangles[:, i]] for i in range(3))
         parts = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
         assert parts.sum() == pytest.approx(width * height, rel=1e-6)
+
+
+@pytest.mark.parametrize("width", [8.475040635358044e-06, 1e-4, 1e-2])
+def test_a_strip_stays_whole(width: float) -> None:
+    """A part that knows one site only is divided where its neighbor sees a second one on their edge."""
+    x, y = np.meshgrid(np.arange(3) * width, np.arange(3) / 2)
+    triangles = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [3, 4, 7], [3, 7, 6], [4, 5, 8], [4, 8, 7]]
+    mesh = sb.Mesh(np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()]), triangles)
+    random = np.random.default_rng(5)
+    for _ in range(10):
+        faces, weights = random.integers(8, size=6), random.dirichlet([1.0, 1.0, 1.0], 6)
+        twin = weights[5] + 1e-12 * (1 / 3 - weights[5])
+        sites = sb.SurfacePoints(np.append(faces, faces[5]).astype(np.int32), np.vstack([weights, twin]))
+        cells = exact_cells(mesh, sites)
+        check(mesh, cells)

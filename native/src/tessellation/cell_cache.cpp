@@ -51,14 +51,15 @@ void CellCache::put(Cells which, std::unique_ptr<Content> content) {
   contents_[static_cast<std::size_t>(which)].swap(content);
 }
 
-KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads, int cuda_device)
+KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, CellLengths lengths,
+                       int threads, int cuda_device)
     : graph_(graph),
       density_(density.begin(), density.end()),
       threads_(thread_count(threads)),
       cuda_device_(cuda_device),
       rings_(graph, threads),
       integrals_(graph, rings_, density_, threads),
-      claims_(graph, rings_, threads, cuda_device) {}
+      claims_(graph, rings_, lengths, threads, cuda_device) {}
 
 bool KnownCells::fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads,
                       int cuda_device) const {
@@ -100,7 +101,9 @@ BorrowedCells::BorrowedCells(CellCache* cache, CellCache::Cells which, const Sad
       content && content->cells->fits(graph, density, threads, cuda_device))
     cells_ = std::move(content->cells);
   else
-    cells_ = std::make_unique<KnownCells>(graph, density, threads, cuda_device);
+    cells_ = std::make_unique<KnownCells>(
+        graph, density, which == CellCache::Cells::relaxed ? CellLengths::smooth : CellLengths::of_ways, threads,
+        cuda_device);
 }
 
 BorrowedCells::~BorrowedCells() {

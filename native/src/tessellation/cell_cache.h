@@ -15,8 +15,9 @@ namespace saddleback {
 /// sites move.
 class KnownCells {
  public:
-  /// The graph must outlive it. `cuda_device` as for SiteMaps.
-  KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, int threads, int cuda_device);
+  /// The graph must outlive it. `lengths`, `cuda_device` as for SiteMaps.
+  KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, CellLengths lengths, int threads,
+             int cuda_device);
 
   bool fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads, int cuda_device) const;
   const CellClaims& claims() const { return claims_; }

@@ -93,7 +93,7 @@ struct alignas(k_apart) CellClaims::Worker {
 /// The first face that lays them decides, for all.
 class CellClaims::Laid {
  public:
-  explicit Laid(const SiteMaps& maps) : maps_(maps) {}
+  Laid(const SiteMaps& maps, const JobStage& stage) : maps_(maps), stage_(stage) {}
   const PackedVec2* find(Index site, Index node) const {
     const auto found = corners_.find(pair_key(site, node));
     return found != corners_.end() ? &found->second : nullptr;
@@ -119,6 +119,7 @@ class CellClaims::Laid {
     std::unordered_map<Index, PackedVec2> reached;
   };
   const SiteMaps& maps_;
+  const JobStage& stage_;
   std::unordered_map<std::uint64_t, PackedVec2> corners_;
   std::unordered_map<Index, Search> searches_;  ///< by site
 };
@@ -132,6 +133,7 @@ PackedVec2 CellClaims::Laid::along_arcs(Index site, Index node) {
     });
   const ArcRows& arcs = maps_.graph().arcs();
   while (!search.reached.contains(node)) {
+    if (search.reached.size() % 64 == 0) stage_.check();
     const Search::Step step = search.queue.top();
     search.queue.pop();
     if (!search.reached.try_emplace(step.node, step.distance * step.towards).second) continue;
@@ -142,8 +144,9 @@ PackedVec2 CellClaims::Laid::along_arcs(Index site, Index node) {
   return search.reached.at(node);
 }
 
-CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads, int cuda_device)
-    : graph_(graph), rings_(rings), threads_(threads), maps_(graph, rings, cuda_device) {
+CellClaims::CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, CellLengths lengths, int threads,
+                       int cuda_device)
+    : graph_(graph), rings_(rings), threads_(threads), maps_(graph, rings, lengths, cuda_device) {
   for (int thread = 0; thread < thread_count(threads); ++thread) workers_.emplace_back(maps_);
 }
 
@@ -434,11 +437,14 @@ bool CellClaims::make_claim(Index face, Index site, const Laid& laid, Worker& wo
 
 /// Completes a claim: by what is seen across the side, else along arcs.
 void CellClaims::lay_corners(Index side, Laid& laid, CellClaim& claim) const {
+  constexpr double k_bent = 3e-2;  // how much ways may differ from what is seen where lengths are smooth
   const auto& nodes = rings_.face(claim.face).nodes;
   const auto lay = [&](int corner, const std::optional<PackedVec2>& seen) {
     if (!is_unknown(claim.corner[corner])) return;
     const Index node = nodes[corner];
-    claim.corner[corner] = laid.lay(claim.site, node, seen ? *seen : laid.along_arcs(claim.site, node));
+    PackedVec2 place = seen && !maps_.is_smooth() ? *seen : laid.along_arcs(claim.site, node);
+    if (seen && std::abs(seen->norm() - place.norm()) <= k_bent * place.norm()) place = *seen;
+    claim.corner[corner] = laid.lay(claim.site, node, place);
   };
   const int apex = side == k_none ? 2 : Mesh::prev(side) % 3, start = Mesh::next(apex), end = Mesh::prev(apex);
   lay(start, {});
@@ -447,8 +453,9 @@ void CellClaims::lay_corners(Index side, Laid& laid, CellClaim& claim) const {
       side == k_none ? std::nullopt : maps_.seen_beyond(rings_.halfedge(side), claim.corner[start], claim.corner[end]));
 }
 
-/// No site is nearer to a vertex than that of its label: which one is, the graph says.
+/// No site is nearer to a vertex than that of its label: which one is, the graph says, unless lengths are smooth.
 void CellClaims::yield_to_labels(CellClaim& claim) {
+  if (maps_.is_smooth()) return;
   constexpr double k_farther = 1 + 4 * std::numeric_limits<double>::epsilon();
   const auto& nodes = rings_.face(claim.face).nodes;
   for (int i = 0; i < 3; ++i) {
@@ -527,7 +534,7 @@ void CellClaims::spread(const SurfacePoints& sites, const JobStage& stage) {
   forget_late();
   for (Worker& worker : workers_) worker.forget();
   find_wishes_of_sites(sites);
-  Laid laid(maps_);
+  Laid laid(maps_, stage);
   std::vector<Index> changed;  // empty: all shared faces
   while (true) {
     const auto count = static_cast<Index>(changed.empty() ? rows_.size() : changed.size());

@@ -85,8 +85,9 @@ class FaceClaims {
 class CellClaims {
  public:
   /// Nothing is claimed before `find`. Both must outlive the claims.
-  /// `cuda_device` as for SiteMaps.
-  CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, int threads, int cuda_device);
+  /// `lengths`, `cuda_device` as for SiteMaps.
+  CellClaims(const SaddleVertexGraph& graph, const VertexRings& rings, CellLengths lengths, int threads,
+             int cuda_device);
   ~CellClaims();
 
   /// The sites must have passed check_sites. \throw Cancelled, and then holds nothing of use.

@@ -231,10 +231,8 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   const JobStage last = options.return_when_cancelled ? JobStage() : stage;
   result.sites = best.sites;
   result.held.assign(options.held.begin(), options.held.end());
-  if (final_cells == FinalCells::found) {
-    const ClaimsOfCells claims(relaxation.cells(last));
-    result.cells = make_diagram(CellComplex(claims, options.threads, last), best.sites, last);
-  }
+  if (final_cells == FinalCells::found)
+    result.cells = find_cells(graph, best.sites, options.threads, options.cuda_device, last);
   result.normalised_energy = normalised_energy(graph.mesh(), options.density, best.energy, sites.size());
   if (!options.return_when_cancelled) stage.update(1);
   return result;

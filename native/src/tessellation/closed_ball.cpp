@@ -34,9 +34,9 @@ struct Places {
   std::vector<double> along;
 };
 
-GeodesicVoronoi look_at_cells(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage) {
-  const ClaimsOfCells claims(relaxation.cells(stage));
-  return make_diagram(CellComplex(claims, options.threads, stage), relaxation.state().sites, stage);
+GeodesicVoronoi look_at_cells(const Relaxation& relaxation, const CentroidalVoronoiOptions& options,
+                              const JobStage& stage) {
+  return find_cells(relaxation.graph(), relaxation.state().sites, options.threads, options.cuda_device, stage);
 }
 
 void mark(const std::vector<DualIssue>& issues, std::vector<std::uint8_t>& marked) {

@@ -206,6 +206,7 @@ std::vector<CellAt> GeodesicVoronoi::locate(const SaddleVertexGraph& graph, cons
   std::vector<Index> rivals;  // whose site may be seen straight from a place
   std::vector<double> known;
   for (const SurfacePoint& place : places) {
+    if (result.size() % 256 == 0) stage.check();
     result.push_back({claim_at(*this, mesh, place).cell, 0});
     known.push_back(way_over_corner(*this, mesh, place));
     rivals.push_back(result.back().cell);
@@ -234,7 +235,7 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
 GeodesicVoronoi find_cells(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, int cuda_device,
                            const JobStage& stage) {
   const VertexRings rings(graph, threads);
-  CellClaims cells(graph, rings, threads, cuda_device);
+  CellClaims cells(graph, rings, CellLengths::of_ways, threads, cuda_device);
   cells.find(sites, stage.part(0.05, 0.7));
   const ClaimsOfCells claims(cells);
   GeodesicVoronoi result = make_diagram(CellComplex(claims, threads, stage.part(0.7, 0.9)), sites, stage);

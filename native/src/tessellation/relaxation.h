@@ -25,6 +25,7 @@ class Relaxation {
  public:
   Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& sites, const CentroidalVoronoiOptions& options,
              const JobStage& stage);
+  const SaddleVertexGraph& graph() const { return graph_; }
   const Mesh& mesh() const { return graph_.mesh(); }
   const RelaxationState& state() const { return state_; }
   /// Neither fixed nor held on a curve.

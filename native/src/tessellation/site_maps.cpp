@@ -116,10 +116,11 @@ std::optional<double> line_across(const Unfolding& unfolding, Index halfedge, co
 
 }  // namespace
 
-SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, int cuda_device)
+SiteMaps::SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, CellLengths lengths, int cuda_device)
     : graph_(graph),
       mesh_(graph.mesh()),
       rings_(rings),
+      lengths_(lengths),
       cuda_device_(cuda_device),
       slack_(std::max(2 * graph.accuracy(), k_least_slack)),
       is_flat_disk_(is_flat_disk(graph.mesh())),
@@ -482,7 +483,12 @@ bool SiteMaps::place_beside(Index node, Index site, Scratch* deep, Place& place)
 SiteVector SiteMaps::vector_of(const Place& place) const {
   if (place.found_by == k_straight || place.found_by == k_centre) return {place.at, place.distance};
   const Vec2 towards = place.anchor == k_none ? place.at : Vec2(vector_of(places_[place.anchor]).log);
-  return {place.distance * towards.normalized(), place.distance};
+  double length = place.distance;
+  if (is_smooth()) {
+    const double in_plane = anchor_distance(place) + place.at.norm();
+    if (std::abs(in_plane - length) <= slack_ * length) length = in_plane;
+  }
+  return {length * towards.normalized(), length};
 }
 
 bool SiteMaps::find(Index site, Index node, Scratch& scratch, SiteVector& vector) const {
@@ -546,12 +552,12 @@ bool SiteMaps::in_own_face(Index node, Index site, SiteVector& vector) const {
 }
 
 std::optional<PackedVec2> SiteMaps::seen_beyond(Index halfedge, const PackedVec2& from, const PackedVec2& to) const {
-  if (!fits(from, to, mesh_.length(halfedge))) return {};
+  if (!is_smooth() && !fits(from, to, mesh_.length(halfedge))) return {};
   const Vec2 along = (to - from).normalized();
   const Vec2& apex = graph_.unfolding().apex(halfedge);
   const Vec2 place = from + apex.x() * along + apex.y() * Vec2(-along.y(), along.x());
   const bool crosses = cross(Vec2(to), Vec2(from)) > 0 && cross(Vec2(to), place) >= 0 && cross(place, Vec2(from)) >= 0;
-  return crosses ? std::optional<PackedVec2>(place) : std::nullopt;
+  return crosses || is_smooth() ? std::optional<PackedVec2>(place) : std::nullopt;
 }
 
 /// Gives a place the length of the shortest way over a graph neighbour that the site owns or, where it owns hardly one,

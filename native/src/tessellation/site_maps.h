@@ -22,6 +22,11 @@ struct SiteVector {
   double distance = 0;
 };
 
+/// What a site's distances to vertices are that it does not see: lengths of ways in the graph, which are never too
+/// short but leap a little where sites move; or, for a relaxation, lengths in its own plane, which do not leap and
+/// differ from those by less than the graph's error, on either side.
+enum class CellLengths { of_ways, smooth };
+
 /// Labels every vertex with its nearest site by the graph and places it in that site's tangent plane.
 ///
 /// A path in the graph may bend at a vertex where a shortest path would not (an angle below pi on one side). Vertices
@@ -45,7 +50,8 @@ class SiteMaps {
  public:
   /// Nothing is known before label_nodes. Both must outlive the maps. A CUDA device, unless it is below 0, finds the
   /// labels where all are made anew.
-  SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, int cuda_device);
+  SiteMaps(const SaddleVertexGraph& graph, const VertexRings& rings, CellLengths lengths, int cuda_device);
+  bool is_smooth() const { return lengths_ == CellLengths::smooth; }
 
   /// Begins with new sites. `reaches`: for each site how far it is asked for arcs of its own, which are most of the
   /// work where cells are small, or somewhat farther; empty: without end. What lies beyond is placed as what is hidden
@@ -134,7 +140,8 @@ class SiteMaps {
   /// node of its label.
   bool find(Index site, Index node, Scratch& scratch, SiteVector& vector) const;
   /// Beyond an edge whose ends are known, the third corner of the half-edge's face laid in the plane, if it is seen
-  /// there in truth: the site and the ends make a flat triangle, and the way to the corner crosses the edge.
+  /// there in truth: the site and the ends make a flat triangle, and the way to the corner crosses the edge. Where
+  /// lengths are smooth, wherever the ends are.
   std::optional<PackedVec2> seen_beyond(Index halfedge, const PackedVec2& from, const PackedVec2& to) const;
   /// Calls visit(node, PackedVec2) for what a site sees straight: no longer than it is, and nothing that is hidden.
   template <class Visit>
@@ -211,6 +218,7 @@ class SiteMaps {
   const SaddleVertexGraph& graph_;
   const Mesh& mesh_;
   const VertexRings& rings_;
+  const CellLengths lengths_;
   const int cuda_device_;
   double slack_;  ///< how far below the graph's a distance may be, relative
   const bool is_flat_disk_;
