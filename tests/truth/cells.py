@@ -19,6 +19,7 @@ if __name__ == "__main__":  # as a file, too: the project's root holds the packa
 
 import saddleback as sb
 from tests import meshes
+from tests.truth.graph import shortness
 from tests.truth.registry import guards
 
 Floats = NDArray[np.float64]
@@ -28,8 +29,6 @@ ROUNDING = 1e-9
 """Of arcs, relative, and of ties."""
 AS_LONG = 2e-9
 """Ways of a graph that differ by no more are equally long to its cells."""
-SHORT = 1e-12
-"""What a distance may fall short of the truth by, relative: arcs are rounded up."""
 
 
 def random_sites(mesh: sb.Mesh, rng: Random, most: int = 30) -> sb.SurfacePoints:
@@ -75,8 +74,8 @@ def check_vertices(mesh: sb.Mesh, graph: sb.SaddleVertexGraph, sites: sb.Surface
     other = cells.vertex_cell != nearest
     assert (abs(of_label - of_graph)[other] <= ROUNDING * scale).all(), f"{other.sum()} labels are not the graph's"
     assert (of_label <= (1 + accuracy) * least + ROUNDING * scale).all(), "vertices in another cell than the nearest's"
-    assert (distance >= least * (1 - SHORT) - 1e-15 * scale).all(), "the graph's distances are too short"
-    assert (cells.vertex_distance >= least * (1 - SHORT) - 1e-15 * scale).all(), "distances too short"
+    assert (distance >= least * (1 - shortness(mesh)) - 1e-15 * scale).all(), "the graph's distances are too short"
+    assert (cells.vertex_distance >= least * (1 - shortness(mesh)) - 1e-15 * scale).all(), "distances too short"
     assert (cells.vertex_distance <= distance * (1 + AS_LONG)).all(), "longer than the graph's"
     assert abs(cells.areas.sum() - mesh.area) <= 1e-9 * mesh.area
     assert (cells.areas >= 0).all()
@@ -91,7 +90,7 @@ def check_points(mesh: sb.Mesh, graph: sb.SaddleVertexGraph, sites: sb.SurfacePo
     fields = [sb.ExactField(mesh, sites[i : i + 1]) for i in range(len(sites))]
     least = np.min([field.distance_to(points) for field in fields], axis=0)
     scale = float(least.max())
-    assert (distance >= least * (1 - SHORT) - 1e-15 * scale).all(), "distances too short"
+    assert (distance >= least * (1 - shortness(mesh)) - 1e-15 * scale).all(), "distances too short"
     assert (distance <= (1 + accuracy) * least + ROUNDING * scale).all(), "distances too long"
 
 

@@ -21,7 +21,13 @@ Random = np.random.Generator
 
 # Of distances: arcs keep 22 bits of their lengths or more, and are rounded up.
 ROUNDING = 2.5e-7
-SHORT = 1e-12
+
+
+def shortness(mesh: sb.Mesh) -> float:
+    """What a distance may fall short of the truth by, relative: what lies behind a short edge is placed by it."""
+    ends = mesh.vertices[mesh.edges]
+    shortest = float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).min())
+    return 1e-12 + 1e-16 * float(np.ptp(mesh.vertices, axis=0).max()) / shortest
 
 
 def random_rule(mesh: sb.Mesh, rng: Random) -> dict[str, Any]:
@@ -81,7 +87,7 @@ def flat_distances(mesh: sb.Mesh, rng: Random) -> None:
     for source in rng.integers(0, len(mesh.vertices), 3).tolist():
         right = np.linalg.norm(mesh.vertices - mesh.vertices[source], axis=1)
         found = graph.distances(source)
-        least = np.flatnonzero(found < right * (1 - SHORT))
+        least = np.flatnonzero(found < right * (1 - shortness(mesh)))
         assert not len(least), f"{rule} {source} to {least[0]}: {found[least[0]]:.17g} below {right[least[0]]:.17g}"
         most = np.flatnonzero(found > right * (1 + promised(rule)) * (1 + ROUNDING))
         assert not len(most), f"{rule} {source} to {most[0]}: {found[most[0]]:.17g} for {right[most[0]]:.17g}"
@@ -96,7 +102,7 @@ def metric(mesh: sb.Mesh, rng: Random) -> None:
     bird = np.linalg.norm(mesh.vertices - mesh.vertices[source], axis=1)
     assert (np.isfinite(found) == np.isfinite(along)).all()
     reached = np.isfinite(along)
-    assert (found[reached] >= bird[reached] * (1 - SHORT)).all()
+    assert (found[reached] >= bird[reached] * (1 - shortness(mesh))).all()
     assert (found[reached] <= along[reached] * (1 + ROUNDING)).all()
     for target in rng.integers(0, len(mesh.vertices), 3).tolist():
         assert graph.distance(source, target) == found[target]
@@ -122,12 +128,7 @@ def polyline_length(points: Floats) -> float:
     return float(sum(np.linalg.norm(b - a) for a, b in pairwise(points)))
 
 
-@guards(
-    "SaddleVertexGraph.path",
-    "SaddleVertexGraph.paths",
-    "GeodesicPath",
-    unsettled="2 of 474: longer than the distance by 3e-6 across parts that were drawn together",
-)
+@guards("SaddleVertexGraph.path", "SaddleVertexGraph.paths", "GeodesicPath")
 def path_lengths(mesh: sb.Mesh, rng: Random) -> None:
     """A path leads from end to end over the surface and is as long as its polyline, and as the distance."""
     graph = sb.SaddleVertexGraph(mesh, **random_rule(mesh, rng))

@@ -13,6 +13,8 @@ constexpr double k_on_border = 1e-9, k_on_rough_border = 1e-5;
 
 // Of the longest length: what rounding makes of one place.
 constexpr double k_same_place = 1e-11;
+// In a region that is millions of times smaller than its distance the ways in all directions have no end.
+constexpr Index k_most_faces = 1 << 16;
 
 bool same_length(double found, const ArcHint& hint) {
   return std::abs(found - hint.length) <= hint.tolerance * hint.length;
@@ -131,11 +133,13 @@ bool ArcUnfolder::was_followed(const Window& window, double farthest) {
 bool ArcUnfolder::search(const ArcHint& hint, double base_angle, UnfoldedArc& arc) {
   const double farthest = hint.length * (1 + hint.tolerance);
   rays_.clear();
+  Index faces_left = std::max(k_most_faces, mesh_.face_count());
   while (!stack_.empty()) {
     Window window = stack_.back();
     stack_.pop_back();
     trail_.resize(window.depth);
     for (bool goes_on = true; goes_on;) {
+      if (--faces_left < 0) return false;
       const Index h = window.entered;
       const Vec2 edge = window.to - window.from;
       const double squared = edge.squaredNorm();  // the mesh knows the length, but memory is slower than a root
@@ -166,11 +170,10 @@ bool ArcUnfolder::search(const ArcHint& hint, double base_angle, UnfoldedArc& ar
 }
 
 bool ArcUnfolder::finish(const Window& last, const Vec2& target, double base_angle, UnfoldedArc& arc) {
+  Vec2 at = Vec2::Zero();
   for (const Crossed& edge : trail_) {
-    const double to = cross(edge.to, target), from = cross(target, edge.from);
     arc.entered.push_back(edge.entered);
-    // The areas of the triangles on either side of the ray divide the half-edge as the ray does.
-    arc.crossings.push_back(to + from > 0 ? std::clamp(from / (to + from), 0.0, 1.0) : 0.5);
+    arc.crossings.push_back(crossed_share(edge.from, edge.to, target, at));
   }
   arc.length = target.norm();
   if (!with_angles_) return true;

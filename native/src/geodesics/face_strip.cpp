@@ -8,10 +8,10 @@
 
 #include "saddleback/surface_curve.h"
 
+#include "geodesics/planar.h"
+
 namespace saddleback {
 namespace {
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Ends of a half-edge in the plane.
 struct Placed {
@@ -100,10 +100,8 @@ void lay_out(const Unfolding& unfolding, const LegEnd& begin, const LegEnd& end,
       continue;
     }
     const Vec2 target = end_of(mesh, end, entered[i], place, apex);
-    for (const Placed& portal : portals) {
-      const double to = cross(portal.to, target), from = cross(target, portal.from);
-      leg.crossings.push_back(to + from != 0 ? std::clamp(from / (to + from), 0.0, 1.0) : 0.5);
-    }
+    Vec2 at = Vec2::Zero();
+    for (const Placed& portal : portals) leg.crossings.push_back(crossed_share(portal.from, portal.to, target, at));
     leg.length = target.norm();
     if (begin.is_vertex()) {
       const Index h = Mesh::prev(mesh.twin(entered[0]));
