@@ -95,6 +95,41 @@ def test_nothing_collides_on_a_plane_and_nothing_more_fits(shape, mode, turning)
         assert any(extra.overlaps(copies[i]) for i in near)
 
 
+def test_nothing_more_fits_on_a_rough_surface() -> None:
+    """Copies at random places, larger by more than the tolerance, are laid among those that lie about them."""
+    vertices, triangles = meshes.icosphere(4)
+    vertices *= 1 + 0.08 * np.prod(np.sin(7 * vertices + 1), axis=1, keepdims=True)
+    mesh = sb.Mesh(vertices, triangles)
+    field = sb.direction_field(mesh, 1)
+    size = 0.15
+    result = sb.distribute(mesh, STAR, field=field, size=size, maximal=True)
+    assert result.stop_reason == "full" and result.certificate.uncertified_area < 0.05 * mesh.area
+    points = sb.sample(mesh, 300, seed=3)
+    corners, ahead, places = (
+        mesh.vertices[mesh.triangles[points.faces]],
+        field.directions(points),
+        points.positions(mesh),
+    )
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    across = np.cross(np.cross(first, second), first)
+    across /= np.linalg.norm(np.cross(first, second), axis=1)[:, None]
+    angles = np.arctan2((across * ahead).sum(axis=1), (first * ahead).sum(axis=1))
+    laid, tried = result.placements, 0
+    centres = laid.centre.positions(mesh)
+    for i, place in enumerate(places):
+        near = np.flatnonzero(np.linalg.norm(centres - place, axis=1) < 2.2 * size)
+        faces = np.append(laid.centre.faces[near], points.faces[i])
+        weights = np.vstack([laid.centre.barycentric[near], points.barycentric[i]])
+        scale = np.append(laid.scale[near], 1.06 * size)
+        turned = np.append(laid.angle[near], angles[i])
+        nothing = np.zeros(len(faces), int)
+        among = sb.Placements(nothing, sb.SurfacePoints(faces, weights), turned, scale, nothing.astype(bool))
+        mapped = sb.map_shapes(mesh, [STAR], among)
+        tried += not mapped.failures
+        assert mapped.failures or not sb.check_distribution(mesh, mapped, samples=1).ok, i
+    assert tried > 200
+
+
 def distance(one: sb.Shape, other: sb.Shape) -> float:
     """Of two polygons that do not overlap: of every corner of each to every edge of the other."""
     least = np.inf
