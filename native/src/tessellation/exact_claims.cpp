@@ -36,7 +36,9 @@ auto find_source(List& list, Index source) {
 }
 
 /// Where a part is looked at, barycentric: the middles of its edges and of itself.
-const std::array<Vec3, 4> k_samples{Vec3(0.5, 0.5, 0), Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(1, 1, 1) / 3};
+std::array<Vec3, 4> samples_of_part() {
+  return {Vec3(0.5, 0.5, 0), Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(1, 1, 1) / 3};
+}
 
 SurfacePoint point_in(const FaceRefinement::Part& part, const Vec3& x) {
   return {part.face, x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2]};
@@ -203,7 +205,8 @@ bool ExactParts::is_right(const FaceRefinement::Part& part) {
   std::vector<FaceClaim> claims;
   find_claims(part, claims);
   if (claims.size() == 1) return true;
-  for (std::size_t i = 0; i < k_samples.size(); ++i) find_ways(point_in(part, k_samples[i]), at_samples_[i]);
+  const std::array<Vec3, 4> samples = samples_of_part();
+  for (std::size_t i = 0; i < samples.size(); ++i) find_ways(point_in(part, samples[i]), at_samples_[i]);
   const auto is_rival = [&](const Way& way) {
     const auto claim = std::ranges::find(claims, way.source, &FaceClaim::site);
     return claim != claims.end() && !is_beaten(*claim, claims);
@@ -223,8 +226,9 @@ bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCl
                       double tolerance) const {
   std::vector<std::uint8_t> is_rival;
   for (const FaceClaim& claim : claims) is_rival.push_back(!is_beaten(claim, claims));
-  for (std::size_t s = 0; s < k_samples.size(); ++s) {
-    const Vec3& x = k_samples[s];
+  const std::array<Vec3, 4> samples = samples_of_part();
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const Vec3& x = samples[s];
     double first = k_infinity, least = k_infinity, most = -k_infinity;
     for (std::size_t i = 0; i < claims.size(); ++i) {
       const Way* const way = find_source(straight ? *straight : at_samples_[s], claims[i].site);
@@ -284,7 +288,7 @@ bool ExactParts::straighten(const FaceRefinement::Part& part, const std::vector<
     const auto claim = std::ranges::find(claims, way.source, &FaceClaim::site);
     return is_beaten(*claim, claims);
   });
-  if (!explain(part, ways, k_samples)) return false;
+  if (!explain(part, ways, samples_of_part())) return false;
   std::array<Distances, 3> told;
   for (int i = 0; i < 3; ++i) {
     told[i] = distances_[part.corner[i]];
