@@ -59,12 +59,6 @@ double end_angle(const FanMesh& mesh, const SightingRows& rows, std::int32_t i) 
   return mesh.apex_direction(rows.edge[i] / k_batch) + std::max(angle, 0.0);
 }
 
-/// The exact graph's fans are no wider than rows of arcs need be: 32 vertices at least, twice as many as a vertex sees.
-Index exact_width(const SaddleVertexGraph& graph) {
-  constexpr Index k_at_least = 32;
-  return std::min(std::max(k_at_least, static_cast<Index>(2 * graph.mean_degree())), graph.mesh().vertex_count());
-}
-
 /// The points that are no vertices, in the order in which nodes lie in memory.
 std::vector<Index> inside_in_order(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points) {
   std::vector<std::pair<Index, Index>> entries;
@@ -134,7 +128,7 @@ void DirectFanFinder::see_each_exactly(const SaddleVertexGraph& graph, std::span
   for (std::size_t i = 0; i < points.size(); ++i) {
     stage.check();
     const bool is_inside = !is_vertex(graph.mesh(), points[i]);
-    if (is_inside) propagator_->from_point(points[i], exact_width(graph), row_, stage);
+    if (is_inside) propagator_->from_point(points[i], graph.mesh().vertex_count(), row_, stage);
     each(i, is_inside ? 0 : -1);
   }
 }
