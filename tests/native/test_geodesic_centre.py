@@ -8,6 +8,7 @@ import pytest
 import saddleback as sb
 from tests import meshes
 from tests.native.exact import random_points
+from tests.truth import families
 
 
 def test_in_the_plane_it_is_the_mean() -> None:
@@ -113,3 +114,13 @@ def test_points_on_separate_parts() -> None:
         sb.geodesic_centre(graph, [0, len(mesh.vertices) - 1])
     with pytest.raises(sb.InputError, match="density"):
         sb.geodesic_voronoi(graph, [0, len(mesh.vertices) - 1]).centres(density=np.zeros(len(mesh.vertices)))
+
+
+def test_centres_among_twins_come_to_an_end() -> None:
+    """Rounding shortened ways about a sliver again and again, for ever."""
+    family, arrays = families.random_mesh(np.random.default_rng([2363, 1]))
+    assert family == "near_coincident"
+    mesh = sb.Mesh(*arrays)
+    sites = sb.sample(mesh, 4, seed=46711751)
+    cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh), sites)
+    assert np.isfinite(cells.centres().positions(mesh)).all()

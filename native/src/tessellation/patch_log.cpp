@@ -17,6 +17,8 @@ constexpr double k_far = std::numeric_limits<double>::infinity();
 constexpr double k_on_edge = 1e-9;
 // A vertex that is placed already is placed again when another way is shorter by more than rounding.
 constexpr double k_rounding = 1e-12;
+// Vertices are visited once or twice each. Among needles rounding can shorten ways round and round, without end.
+constexpr Index k_most_visits = 50;
 // Odd, so that vertices next to each other in number fall into slots of their own.
 constexpr std::uint32_t k_spread = 2654435761U;
 
@@ -99,7 +101,8 @@ bool PatchLog::run(const SurfacePoint& centre) {
     start_at_vertex(vertex);
   else
     start_in_face(centre, local);
-  while (!heap_.empty()) {
+  const Index most_visits = k_most_visits * static_cast<Index>(vertices_.size());
+  while (!heap_.empty() && visits_ < most_visits) {
     std::pop_heap(heap_.begin(), heap_.end());
     const auto [nearest, vertex] = heap_.back();
     heap_.pop_back();
