@@ -46,9 +46,11 @@ Args:
     count: number of points, at least 1.
     density: (V,) wanted points per area, >= 0; only ratios matter; linear over each face. None: the same everywhere.
     one_per_component: every connected component gets a point, by area where its density is zero.
+    job: a Job that tells how far it is and may stop it.
 
 Raises:
     InputError: count too small, density of the wrong length, not finite, negative or zero everywhere.
+    Cancelled: the job was.
 )";
 
 constexpr const char* k_trace_doc = R"(Walks straight on over the surface: the exponential map.
@@ -160,10 +162,13 @@ SurfacePoints project_onto(const py::object& mesh_object, const py::object& xyz,
 }
 
 SurfacePoints sample_on(const py::object& mesh_object, const py::object& count, const py::object& density,
-                        const py::object& seed, bool one_per_component) {
+                        const py::object& seed, bool one_per_component, const py::object& job) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
-  SampleOptions options{
-      .count = as_integer(count, "count"), .seed = as_seed(seed, "seed"), .one_per_component = one_per_component};
+  const JobIn token(job);
+  SampleOptions options{.count = as_integer(count, "count"),
+                        .seed = as_seed(seed, "seed"),
+                        .one_per_component = one_per_component,
+                        .job = token};
   ArrayIn<double> weights;
   if (!density.is_none()) {
     weights = as_reals(density, "density", mesh.vertex_count());
@@ -188,7 +193,7 @@ void bind_points(py::module_& m) {
   m.def("project", &project_onto, py::arg("mesh"), py::arg("xyz"), py::kw_only(), py::arg("threads") = 0,
         py::arg("job") = py::none(), k_project_doc);
   m.def("sample", &sample_on, py::arg("mesh"), py::arg("count"), py::arg("density") = py::none(), py::arg("seed") = 0,
-        py::kw_only(), py::arg("one_per_component") = false, k_sample_doc);
+        py::kw_only(), py::arg("one_per_component") = false, py::arg("job") = py::none(), k_sample_doc);
 }
 
 void bind_paths(py::module_& m) {

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree  # type: ignore[import-untyped]
 
 import saddleback as sb
 from tests import meshes
+from tests.native.cancelling import check_progress_and_cancel
 
 Floats = NDArray[np.float64]
 
@@ -188,3 +189,8 @@ def test_bad_input_is_named(arguments: dict[str, object], sentence: str) -> None
 def test_fewer_points_than_components_is_named() -> None:
     with pytest.raises(sb.InputError, match="count is 9, fewer than the 10 connected components"):
         sb.sample(many_parts(), 9, one_per_component=True)
+
+
+def test_progress_rises_and_cancel_is_quick() -> None:
+    mesh = sb.Mesh(*meshes.icosphere(4))
+    check_progress_and_cancel(lambda job: sb.sample(mesh, 20_000_000, job=job), 0.3)

@@ -130,6 +130,7 @@ def sample(
     seed: SupportsIndex = 0,
     *,
     one_per_component: bool = False,
+    job: Job | None = None,
 ) -> SurfacePoints: ...
 
 @final

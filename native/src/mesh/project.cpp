@@ -28,7 +28,7 @@ namespace saddleback {
 namespace {
 
 constexpr Index k_leaf_size = 4;
-constexpr Index k_chunk = 1024;  ///< queries between two looks at the job
+constexpr Index k_chunk = 1024;  ///< queries
 
 /// Beyond this a query's squared distance would overflow; it is pulled in along its line from the origin, which changes
 /// nothing that double coordinates could tell (meshes end at 1e60).
@@ -253,6 +253,7 @@ SurfacePoints project(const Mesh& mesh, std::span<const double> xyz, const Proje
     const Index end = std::min(count, (chunk + 1) * k_chunk);
     Index last = k_none;
     for (Index k = chunk * k_chunk; k < end; ++k) {
+      stage.check();  // of a sphere's center all faces are as near, and a query takes a while
       const Index i = order[k];
       result[i] = surface.nearest(query(i), last);
       last = result[i].face;

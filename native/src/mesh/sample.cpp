@@ -22,6 +22,8 @@
 namespace saddleback {
 namespace {
 
+constexpr std::size_t k_chunk = 1 << 12;  ///< points or faces between two looks at the job
+
 /// The share of a linear function's mass that lies in [0, x] of [0, 1] is u: x. The function goes from a to b.
 double inverse_linear(double a, double b, double u) {
   if (a + b <= 0) return u;
@@ -56,8 +58,8 @@ Vec3 to_triangle(const Vec3& f, double u, double v) {
 
 class Sampler {
  public:
-  Sampler(const Mesh& mesh, std::span<const double> density, std::uint64_t seed)
-      : mesh_(mesh), density_(density), seed_(seed) {
+  Sampler(const Mesh& mesh, std::span<const double> density, const SampleOptions& options, const JobStage& stage)
+      : mesh_(mesh), density_(density), seed_(options.seed), total_(options.count), stage_(stage) {
     // Ratios matter, so the largest is made 1: masses neither overflow nor vanish.
     if (!density.empty()) largest_ = *std::max_element(density.begin(), density.end());
   }
@@ -101,6 +103,7 @@ class Sampler {
     const double shift_u = uniform(key, 0), shift_v = uniform(key, 1);
     const Vec3 f = corners(face);
     for (Index i = 0; i < count; ++i) {
+      if (points.size() % k_chunk == 0) stage_.update(static_cast<double>(points.size()) / total_);
       const double v = shift_v + i * k_golden;
       points.push_back({face, to_triangle(f, (i + shift_u) / count, v - std::floor(v))});
     }
@@ -109,6 +112,8 @@ class Sampler {
   const Mesh& mesh_;
   std::span<const double> density_;
   std::uint64_t seed_;
+  Index total_;
+  const JobStage& stage_;
   double largest_ = 1;
 };
 
@@ -134,11 +139,14 @@ void check(const Mesh& mesh, const SampleOptions& options) {
 }
 
 /// Faces along a Hilbert curve through their centres.
-std::vector<Index> ordered_faces(const Mesh& mesh) {
+std::vector<Index> ordered_faces(const Mesh& mesh, const JobStage& stage) {
   const HilbertCurve curve(mesh.positions());
   std::vector<std::uint64_t> keys(static_cast<std::size_t>(mesh.face_count()));
-  for (Index f = 0; f < mesh.face_count(); ++f) keys[f] = curve.key(position(mesh, {f, Vec3::Constant(1.0 / 3)}));
-  return order_of(keys);
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (f % k_chunk == 0) stage.check();
+    keys[f] = curve.key(position(mesh, {f, Vec3::Constant(1.0 / 3)}));
+  }
+  return order_of(keys, 1, stage);
 }
 
 /// Whole numbers of at least 1 that sum to count, as near to proportion as that allows (largest remainders).
@@ -171,11 +179,12 @@ std::vector<Index> shares(const std::vector<double>& masses, Index count) {
   return result;
 }
 
-SurfacePoints sample_components(const Mesh& mesh, const SampleOptions& options, const std::vector<Index>& faces) {
+SurfacePoints sample_components(const Mesh& mesh, const SampleOptions& options, const std::vector<Index>& faces,
+                                const JobStage& stage) {
   const auto component_of = [&](Index face) { return mesh.component_of(mesh.triangles()[face][0]); };
   std::vector<std::vector<Index>> parts(static_cast<std::size_t>(mesh.component_count()));
   for (const Index face : faces) parts[component_of(face)].push_back(face);
-  const Sampler painted(mesh, options.density, options.seed), plain(mesh, {}, options.seed);
+  const Sampler painted(mesh, options.density, options, stage), plain(mesh, {}, options, stage);
   std::vector<double> masses(parts.size(), 0.0);
   for (std::size_t c = 0; c < parts.size(); ++c)
     for (const Index face : parts[c]) masses[c] += painted.mass(face);
@@ -190,11 +199,12 @@ SurfacePoints sample_components(const Mesh& mesh, const SampleOptions& options, 
 
 SurfacePoints sample(const Mesh& mesh, const SampleOptions& options) {
   check(mesh, options);
-  const std::vector<Index> faces = ordered_faces(mesh);
-  if (options.one_per_component && mesh.component_count() > 1) return sample_components(mesh, options, faces);
+  const JobStage whole(options.job, "Sampling"), stage = whole.part(0.2, 1);
+  const std::vector<Index> faces = ordered_faces(mesh, whole);
+  if (options.one_per_component && mesh.component_count() > 1) return sample_components(mesh, options, faces, stage);
   SurfacePoints points;
   points.reserve(static_cast<std::size_t>(options.count));
-  Sampler(mesh, options.density, options.seed).add(faces, options.count, points);
+  Sampler(mesh, options.density, options, stage).add(faces, options.count, points);
   return points;
 }
 
