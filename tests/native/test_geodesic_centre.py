@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
 import saddleback as sb
 from tests import meshes
@@ -124,3 +125,23 @@ def test_centres_among_twins_come_to_an_end() -> None:
     sites = sb.sample(mesh, 4, seed=46711751)
     cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh), sites)
     assert np.isfinite(cells.centres().positions(mesh)).all()
+
+
+@pytest.mark.parametrize("gap", [1e-5, 1e-7, 1e-9])
+def test_cells_about_twins(gap: float) -> None:
+    """Vertices that lie side by side do not make each other nearer for ever."""
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        points = rng.random((int(rng.integers(5, 25)), 2))
+        twins = np.clip(points + gap * rng.normal(size=points.shape), 0, 1)
+        flat = Delaunay(np.vstack([points, twins, [(0, 0), (1, 0), (0, 1), (1, 1)]]))
+        mesh, _ = sb.repair(np.column_stack([flat.points, np.zeros(len(flat.points))]), flat.simplices)
+        sites = sb.sample(mesh, int(rng.integers(1, 6)), seed=seed)
+        cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3, threads=1), sites, exact=True)
+        centers = cells.centres(threads=1)
+        split = cells.split()
+        corners = split.vertices[split.triangles]
+        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+        moments = [np.bincount(split.triangle_cell, areas * corners.mean(axis=1)[:, i], len(sites)) for i in range(2)]
+        missed = centers.positions(mesh)[:, :2] - np.column_stack(moments) / cells.areas[:, None]
+        assert (np.hypot(*missed.T) <= 0.05 * np.sqrt(cells.areas)).all()

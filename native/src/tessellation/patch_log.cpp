@@ -15,10 +15,10 @@ namespace {
 constexpr double k_far = std::numeric_limits<double>::infinity();
 // Barycentric: nearer to an edge a point is seen end-on from beyond it.
 constexpr double k_on_edge = 1e-9;
-// A vertex that is placed already is placed again when another way is shorter by more than rounding.
-constexpr double k_rounding = 1e-12;
-// Vertices are visited once or twice each. Among needles rounding can shorten ways round and round, without end.
-constexpr Index k_most_visits = 50;
+// A vertex that is placed already is placed again when another way is shorter by more than rounding. That is more where
+// an edge is short beside its distance, and makes vertices beside it nearer in turn without end: from the eighth time
+// on each has to gain twice as much as the last.
+constexpr double k_rounding = 1e-12, k_first_gain = k_rounding / 256;
 // Odd, so that vertices next to each other in number fall into slots of their own.
 constexpr std::uint32_t k_spread = 2654435761U;
 
@@ -90,6 +90,7 @@ bool PatchLog::run(const SurfacePoint& centre) {
   if (local == k_none) return false;
   places_.assign(vertices_.size(), Vec2::Zero());
   distances_.assign(vertices_.size(), k_far);
+  gains_.assign(vertices_.size(), k_first_gain);
   changed_.assign(vertices_.size(), 0);
   visited_.assign(vertices_.size(), 0);
   visits_ = 0;
@@ -101,8 +102,7 @@ bool PatchLog::run(const SurfacePoint& centre) {
     start_at_vertex(vertex);
   else
     start_in_face(centre, local);
-  const Index most_visits = k_most_visits * static_cast<Index>(vertices_.size());
-  while (!heap_.empty() && visits_ < most_visits) {
+  while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end());
     const auto [nearest, vertex] = heap_.back();
     heap_.pop_back();
@@ -153,7 +153,7 @@ void PatchLog::start_at_vertex(Index vertex) {
 
 /// Than the vertex is by the ways so far, by more than rounding.
 bool PatchLog::is_nearer(Index vertex, double distance) const {
-  return distance < (1 - k_rounding) * distances_[vertex];
+  return distance < (1 - std::max(k_rounding, gains_[vertex])) * distances_[vertex];
 }
 
 void PatchLog::begin_with(Index vertex, const Vec2& place, double distance) {
@@ -165,6 +165,7 @@ void PatchLog::offer(const Way& way, const Vec2& place, double distance) {
   last_way_[vertex] = static_cast<Index>(ways_.size());
   ways_.push_back(way);
   distances_[vertex] = distance;
+  gains_[vertex] *= 2;
   places_[vertex] = place;
   changed_[vertex] = visits_;
   heap_.push_back({distance, vertex});

@@ -71,6 +71,7 @@ class PatchLog {
   std::vector<EdgeShape> edges_;               ///< by face and edge
   std::vector<Vec2> places_;
   std::vector<double> distances_;
+  std::vector<double> gains_;             ///< by how large a share a way must be shorter to count
   Index visits_ = 0;                      ///< so far, of vertices taken from the heap
   std::vector<Index> changed_, visited_;  ///< at which visit a vertex was last placed, and visited
   std::vector<Reached> heap_;
