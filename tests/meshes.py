@@ -66,6 +66,16 @@ def grid(columns: int = 12, rows: int = 12, jitter: float = 0.0, seed: int = 0) 
     return vertices, _grid_triangles(columns, rows)
 
 
+def spike_on_a_plate(height: float, count: int = 12) -> Arrays:
+    """Needles from a bent ring (vertices 0 to count - 1) within a plate to a tip (the last vertex)."""
+    turn = 2 * np.pi * np.arange(count) / count
+    ring = np.column_stack([np.cos(turn), np.sin(turn), 0.5 * np.cos(turn)])
+    sides = [(i, (i + 1) % count) for i in range(count)]
+    plate = [[i, count + i, count + j] for i, j in sides] + [[i, count + j, j] for i, j in sides]
+    needles = [[2 * count, i, j] for i, j in sides]
+    return np.vstack([ring, 3 * ring, [[0, 0, height]]]), np.array(plate + needles)
+
+
 def spikes(size: int = 60, height: float = 10.0, seed: int = 1) -> Arrays:
     """A grid whose vertices are so high and low that hardly any see each other along the surface."""
     vertices, triangles = grid(size, size)

@@ -112,14 +112,9 @@ def test_cone(source: int) -> None:
 def test_a_spike_of_needles(length: float) -> None:
     """Rays that miss the tip would go round it pi / (its angle) times, crossing every needle each time."""
     count = 12
-    turn = 2 * np.pi * np.arange(count) / count
-    ring = np.column_stack([np.cos(turn), np.sin(turn), 0.5 * np.cos(turn)])
-    vertices = np.vstack([ring, 3 * ring, [[0, 0, length]]])
-    following = [(i + 1) % count for i in range(count)]
-    plate = [[i, count + i, count + j] for i, j in enumerate(following)]
-    plate += [[i, count + j, j] for i, j in enumerate(following)]
-    needles = [[2 * count, i, j] for i, j in enumerate(following)]
-    field = sb.ExactField(sb.Mesh(vertices, plate + needles), [count])
+    mesh = sb.Mesh(*meshes.spike_on_a_plate(length, count))
+    vertices, ring = mesh.vertices, mesh.vertices[:count]
+    field = sb.ExactField(mesh, [count])
     edge, on_plate = np.linalg.norm(vertices[-1] - ring, axis=1), np.linalg.norm(vertices[count] - ring[0])
     assert_exact(field.distances[[0, -1]], np.array([on_plate, on_plate + edge[0]]))
     up = np.array([0.1, 0.3, 0.9])

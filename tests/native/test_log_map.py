@@ -333,3 +333,19 @@ def test_bad_vectors_are_named(arguments: tuple[int, list[list[float]]], sentenc
 def test_progress_rises_and_cancel_is_quick(radius: float) -> None:
     graph = graph_of(sb.Mesh(*meshes.icosphere(6)))
     check_progress_and_cancel(lambda job: graph.log_map(0, radius, job=job), 0.3)
+
+
+@pytest.mark.parametrize("height", [1.0, 1e3, 1e7])
+def test_round_a_tip_of_needles(height: float) -> None:
+    """Rays go round the tip once, not pi / (its angle) times; a curve's from both of its sides do as well."""
+    mesh = sb.Mesh(*meshes.spike_on_a_plate(height))
+    graph = graph_of(mesh)
+    exact = sb.exact_distances(mesh, [12])
+    found = graph.log_map(12, 3 * height + 10)
+    assert found.vertices.tolist() == list(range(mesh.vertex_count))
+    np.testing.assert_allclose(found.distance, exact, rtol=1e-12)
+    curve = sb.SurfacePoints([24, 24], [[0.9, 0.05, 0.05], [0.1, 0.5, 0.4]])
+    beside = sb.polar_coordinates(graph, curve, 3 * height + 10)
+    ends = np.min([sb.exact_distances(mesh, curve[i]) for i in range(2)], axis=0)
+    assert beside.vertices.tolist() == list(range(mesh.vertex_count))
+    assert (beside.distance <= ends * (1 + 1e-12)).all()

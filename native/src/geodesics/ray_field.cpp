@@ -129,7 +129,13 @@ RayField::RayField(const Unfolding& unfolding)
       vertices_(mesh_.vertex_count(), VertexState{}),
       occupants_(mesh_.halfedge_count(), Occupant{}),
       barriers_(unfolding),
-      queue_(common_length(mesh_) / k_buckets_per_edge) {}
+      queue_(common_length(mesh_) / k_buckets_per_edge) {
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (mesh_.is_boundary(v) || mesh_.total_angle(v) >= k_pi / 2) continue;
+    tip_tangents_.resize(mesh_.vertex_count(), k_infinity);
+    tip_tangents_[v] = std::tan(mesh_.total_angle(v));
+  }
+}
 
 void RayField::begin(const WatchedPlaces* places) {
   ++epoch_;
@@ -306,6 +312,19 @@ void RayField::shine_from(Index vertex, double begin, double end) {
   } while (h != k_none && h != first);
 }
 
+/// Whether the rays have gone all round a tip that they end at: see ExactPropagation::circles_tip.
+template <class Front>
+bool RayField::circles_tip(const RayWindow& w) const {
+  const double length = mesh_.length(w.halfedge);
+  constexpr double k_turn = 1 + 1e-6;
+  const auto circles = [&](Index tip, const Vec2& ray, double ahead) {
+    return ray.y() > k_turn * tip_tangents_[tip] * std::max(ahead, 0.0);
+  };
+  const Vec2 to_end = Front::ray(w, Vec2(length, 0)), to_start = Front::ray(w, Vec2(0, 0));
+  return (w.b1 == length && circles(mesh_.to(w.halfedge), to_end, to_end.x())) ||
+         (w.b0 == 0 && circles(mesh_.from(w.halfedge), to_start, -to_start.x()));
+}
+
 template <class Front>
 void RayField::propagate(const RayWindow& window) {
   const Index h = window.halfedge;
@@ -315,6 +334,7 @@ void RayField::propagate(const RayWindow& window) {
   if (Front::is_less(at_from + window.b1, window, window.b1) ||
       Front::is_less(at_to + (base - window.b0), window, window.b0))
     return;
+  if (!tip_tangents_.empty() && circles_tip<Front>(window)) return;
   const Vec2 ray = Front::ray(window, apex);
   if (ray.y() <= 0) return;  // grazes the edge: only rounding brings it here
   if (!places_.empty()) reach_places(window);

@@ -93,6 +93,8 @@ class RayField {
   double angle_back(Index vertex) const;
   void shine_from(Index vertex, double begin, double end);
   template <class Front>
+  bool circles_tip(const RayWindow& window) const;
+  template <class Front>
   void propagate(const RayWindow& window);
   template <class Front>
   void reach_apex(const RayWindow& window, const Vec2& ray, double split, double reach);
@@ -108,6 +110,7 @@ class RayField {
   std::vector<double> distances_;  ///< of the vertices' labels, once more: filters need little else
   std::vector<VertexState> vertices_;
   std::vector<Occupant> occupants_;
+  std::vector<double> tip_tangents_;  ///< as ExactSurface has them
   RayBarriers barriers_;
   BlockQueue<RayWindow> queue_;  ///< a window on half-edge ~v stands for vertex v, its distance being the offset
   std::vector<Index> due_;       ///< vertices of the current bucket
