@@ -6,9 +6,9 @@
 #include <pybind11/stl.h>
 #include <span>
 
-#include "saddleback/dual_mesh.h"
 #include "saddleback/triangle_quality.h"
 
+#include "dual.h"
 #include "points.h"
 
 namespace saddleback::bindings {
@@ -56,35 +56,45 @@ void bind_issue(py::module_& m) {
       .def("__str__", [](const DualIssue& issue) { return to_string(issue); });
 }
 
+py::array edge_lengths(const py::object& self) {
+  auto& dual = py::cast<Dual&>(self);
+  if (!dual.edge_lengths) {
+    const JobIn token{py::none()};
+    std::vector<double> lengths = without_gil([&] { return dual_edge_lengths(*dual.mesh, *dual.cells, 0, token); });
+    if (!dual.edge_lengths) dual.edge_lengths = std::move(lengths);  // another thread may have been sooner
+  }
+  return view_of(std::span<const double>(*dual.edge_lengths), self);
+}
+
 void bind_dual(py::module_& m) {
-  py::class_<DualMesh>(m, "DualMesh", py::module_local(),
-                       "The triangulation of the sites that is dual to cells; made by `GeodesicVoronoi.dual`. Unpacks "
-                       "into vertices, triangles and issues.")
+  py::class_<Dual>(m, "DualMesh", py::module_local(),
+                   "The triangulation of the sites that is dual to cells; made by `GeodesicVoronoi.dual`. Unpacks "
+                   "into vertices, triangles and issues.")
       .def_property_readonly(
-          "sites", [](const DualMesh& d) { return d.sites; }, "SurfacePoints (n): those that repair added come last.")
-      .def_property_readonly("vertices", &member_array<&DualMesh::vertices, DualMesh>,
+          "sites", [](const Dual& d) { return d.sites; }, "SurfacePoints (n): those that repair added come last.")
+      .def_property_readonly("vertices", &member_array<&DualMesh::vertices, Dual>,
                              "(n, 3) float64: the sites' positions, on the surface.")
-      .def_property_readonly("triangles", &member_array<&DualMesh::triangles, DualMesh>,
+      .def_property_readonly("triangles", &member_array<&DualMesh::triangles, Dual>,
                              "(t, 3) int32: one for each branch point, counter-clockwise.")
       .def_property_readonly(
           "edges",
           [](const py::object& self) {
-            return view_of_rows<Index>(std::span<const std::array<Index, 2>>(py::cast<const DualMesh&>(self).edges),
-                                       self);
+            return view_of_rows<Index>(std::span<const std::array<Index, 2>>(py::cast<const Dual&>(self).edges), self);
           },
           "(e, 2) int32: the sites on both sides of each boundary between cells.")
-      .def_property_readonly("edge_lengths", &member_array<&DualMesh::edge_lengths, DualMesh>,
+      .def_property_readonly("edge_lengths", &edge_lengths,
                              "(e,) float64, mesh units: of the straightest geodesic from site to site across that "
                              "boundary; where vertices are in its way, of the shortest way over the boundary, as the "
-                             "cells' distances say. As `GeodesicVoronoi.dual_paths` within the accuracy of those.")
-      .def_readonly("issues", &DualMesh::issues, "List of DualIssue; empty: a triangulation of the surface.")
-      .def_readonly("added", &DualMesh::added, "How many sites repair added.")
-      .def_readonly("euler_characteristic", &DualMesh::euler_characteristic, "Vertices - edges + triangles.")
+                             "cells' distances say. As `GeodesicVoronoi.dual_paths` within the accuracy of those. "
+                             "Found when first asked for, O(faces crossed) each.")
+      .def_readonly("issues", &Dual::issues, "List of DualIssue; empty: a triangulation of the surface.")
+      .def_readonly("added", &Dual::added, "How many sites repair added.")
+      .def_readonly("euler_characteristic", &Dual::euler_characteristic, "Vertices - edges + triangles.")
       .def("__iter__",
            [](const py::object& self) {
              return py::iter(py::make_tuple(self.attr("vertices"), self.attr("triangles"), self.attr("issues")));
            })
-      .def("__repr__", [](const DualMesh& d) {
+      .def("__repr__", [](const Dual& d) {
         return message("<saddleback.DualMesh of ", d.vertices.size(), " vertices, ", d.triangles.size(), " triangles, ",
                        d.issues.size(), " issues>");
       });

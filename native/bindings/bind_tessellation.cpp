@@ -2,11 +2,11 @@
 
 #include <span>
 
-#include "saddleback/dual_mesh.h"
 #include "saddleback/geodesic_centre.h"
 
 #include "cells.h"
 #include "devices.h"
+#include "dual.h"
 #include "points.h"
 
 namespace saddleback::bindings {
@@ -65,12 +65,15 @@ DualPolicy as_policy(const std::string& name) {
   throw InputError(message("policy: wanted 'strict', 'repair' or 'fail', got '", name, "'"));
 }
 
-DualMesh dual(const Cells& cells, const std::string& policy, const py::object& threads, const py::object& job) {
+Dual dual(const py::object& self, const std::string& policy, const py::object& threads, const py::object& job) {
+  const auto& cells = py::cast<const Cells&>(self);
   const auto& graph = py::cast<const SaddleVertexGraph&>(cells.graph);
   const DualPolicy chosen = as_policy(policy);
   const int count = as_integer(threads, "threads");
   const JobIn token(job);
-  return without_gil([&] { return dual_mesh(graph, cells.diagram, chosen, count, token); });
+  DualMesh mesh = without_gil([&] { return dual_mesh(graph, cells.diagram, chosen, count, token); });
+  const GeodesicVoronoi* const diagram = mesh.repaired ? mesh.repaired.get() : &cells.diagram;
+  return {std::move(mesh), self, &graph.mesh(), diagram, std::nullopt};
 }
 
 py::tuple locate(const Cells& cells, const py::object& points, const py::object& job) {

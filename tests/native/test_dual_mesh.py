@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 import numpy as np
 import pytest
 from scipy.spatial import Delaunay  # type: ignore[import-untyped]
@@ -334,3 +336,17 @@ def test_bridges_as_narrow_as_a_face_are_parted_by_sites_on_their_borders() -> N
     check_triangulation(mesh, dual)
     assert dual.added < 400  # 761 where they are far from the sites and settle
     np.testing.assert_array_equal(dual.vertices[:100], cells.sites.positions(mesh))
+
+
+def test_lengths_outlive_the_cells() -> None:
+    """Lengths are found when asked for: of the repaired cells, whatever has been forgotten meanwhile."""
+    mesh = sb.Mesh(*meshes.torus(60, 24))
+    cells = relaxed_cells(mesh, 6)
+    kept, strict = cells.dual(threads=1), cells.dual("strict", threads=1)
+    assert kept.added > 0
+    again = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=60), kept.sites).dual("strict")
+    del cells
+    gc.collect()
+    assert len(strict.edge_lengths) == len(strict.edges)
+    np.testing.assert_allclose(kept.edge_lengths, again.edge_lengths, rtol=1e-9)
+    assert kept.edge_lengths.ctypes.data == kept.edge_lengths.ctypes.data  # found once

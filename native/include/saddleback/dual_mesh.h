@@ -1,6 +1,7 @@
 #pragma once
 // The dual of geodesic Voronoi cells: the intrinsic Delaunay triangulation of the sites.
 
+#include <memory>
 #include <string>
 
 #include "saddleback/geodesic_voronoi.h"
@@ -40,16 +41,13 @@ struct DualMesh {
   std::vector<Vec3> vertices;               ///< of the sites, on the surface
   std::vector<Triangle> triangles;          ///< one for each branch point, k - 2 where k cells meet; counter-clockwise
   std::vector<std::array<Index, 2>> edges;  ///< one for each open boundary between two cells
-  /// Of the straightest geodesic from site to site across that boundary; where none can be aimed, vertices being in the
-  /// way, of the shortest way over the boundary, as the cells' distances say. As `dual_edge_paths` within the accuracy
-  /// of those.
-  std::vector<double> edge_lengths;
-  std::vector<DualIssue> issues;   ///< of these sites: none after repair, unless it had to stop
-  Index added = 0;                 ///< sites that repair added; they come last
-  Index euler_characteristic = 0;  ///< sites with a cell - edges (and diagonals of fans) + triangles
+  std::vector<DualIssue> issues;            ///< of these sites: none after repair, unless it had to stop
+  Index added = 0;                          ///< sites that repair added; they come last
+  Index euler_characteristic = 0;           ///< sites with a cell - edges (and diagonals of fans) + triangles
+  std::shared_ptr<const GeodesicVoronoi> repaired;  ///< the cells of these sites, where repair was asked for
 };
 
-/// The dual of given cells. O(cells + boundaries + faces crossed by its edges).
+/// The dual of given cells. O(cells + boundaries).
 DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells);
 
 /// The dual by a policy. Repair puts a site where a violation is worst, lets the new sites find their middles (those on
@@ -58,6 +56,12 @@ DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells);
 /// cells: subdivide it; or a strip is far narrower than the cells along it); Cancelled.
 DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, DualPolicy policy, int threads = 0,
                    Job* job = nullptr);
+
+/// How long the edges of `dual_mesh(mesh, cells)` are, in its order: the straightest geodesic from site to site across
+/// the boundary; where none can be aimed, vertices being in the way, the shortest way over the boundary, as the cells'
+/// distances say. As `dual_edge_paths` within the accuracy of those. \throw Cancelled. O(faces crossed) each.
+std::vector<double> dual_edge_lengths(const Mesh& mesh, const GeodesicVoronoi& cells, int threads = 0,
+                                      Job* job = nullptr);
 
 /// The edges of `dual_mesh(mesh, cells)`, in its order, as paths on the surface: from the left cell's site to the right
 /// one's across the boundary between the two, straightest where such a geodesic can be aimed, else the graph's shortest

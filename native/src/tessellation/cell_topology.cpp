@@ -74,13 +74,14 @@ void count_vertices(const Mesh& mesh, const GeodesicVoronoi& cells, const PointS
 
 class IssueFinder {
  public:
-  IssueFinder(const Mesh& mesh, const GeodesicVoronoi& cells)
+  IssueFinder(const Mesh& mesh, const GeodesicVoronoi& cells, const JobStage& stage)
       : mesh_(mesh), cells_(cells), stars_(cells), characteristic_(cell_characteristics(mesh, cells)) {
-    find_far_places();
-    look_at_cells();
-    look_at_boundaries();
-    look_at_branch_points();
-    look_at_corners();
+    for (const auto step :
+         {&IssueFinder::find_far_places, &IssueFinder::look_at_cells, &IssueFinder::look_at_boundaries,
+          &IssueFinder::look_at_branch_points, &IssueFinder::look_at_corners}) {
+      stage.check();
+      (this->*step)();
+    }
   }
   std::vector<DualIssue> take() { return std::move(issues_); }
 
@@ -234,8 +235,8 @@ std::vector<Index> cell_characteristics(const Mesh& mesh, const GeodesicVoronoi&
   return result;
 }
 
-std::vector<DualIssue> find_dual_issues(const Mesh& mesh, const GeodesicVoronoi& cells) {
-  return IssueFinder(mesh, cells).take();
+std::vector<DualIssue> find_dual_issues(const Mesh& mesh, const GeodesicVoronoi& cells, const JobStage& stage) {
+  return IssueFinder(mesh, cells, stage).take();
 }
 
 SurfacePoints places_to_mend(const std::vector<DualIssue>& issues, Index cell_count) {

@@ -33,7 +33,7 @@ std::vector<Index> cells_around(const PointStars& stars, Index branch_point);
 std::vector<Index> cell_characteristics(const Mesh& mesh, const GeodesicVoronoi& cells);
 
 /// Every violation of the closed-ball property, by kind and cell. O(V + F).
-std::vector<DualIssue> find_dual_issues(const Mesh& mesh, const GeodesicVoronoi& cells);
+std::vector<DualIssue> find_dual_issues(const Mesh& mesh, const GeodesicVoronoi& cells, const JobStage& stage = {});
 
 /// One place for each cell concerned: neighbours' complaints have often one cause.
 SurfacePoints places_to_mend(const std::vector<DualIssue>& issues, Index cell_count);

@@ -73,7 +73,7 @@ Exchange exchange(Relaxation& relaxation, const CentroidalVoronoiOptions& option
     const double part = 1.0 / (k_most_rounds + 1);
     const JobStage here = stage.part(round * part, (round + 1) * part, message("Moving sites, round ", round + 1));
     const GeodesicVoronoi cells = look_at_cells(relaxation, options, here.part(0, 0.1));
-    const std::vector<DualIssue> issues = find_dual_issues(mesh, cells);
+    const std::vector<DualIssue> issues = find_dual_issues(mesh, cells, here);
     if (issues.empty()) return {static_cast<Index>(std::ranges::count(is_moved, 1)), {}};
     if (round == 0) first = issues;
     vain = issues.size() < fewest ? 0 : vain + 1;
@@ -117,7 +117,7 @@ void relax_closed(Relaxation& relaxation, const CentroidalVoronoiOptions& option
         break;
       }
       const GeodesicVoronoi cells = look_at_cells(relaxation, options, looking);
-      const std::vector<DualIssue> issues = find_dual_issues(relaxation.mesh(), cells);
+      const std::vector<DualIssue> issues = find_dual_issues(relaxation.mesh(), cells, looking);
       if (issues.empty()) {
         log = std::move(longer);
         whole = Places(relaxation);

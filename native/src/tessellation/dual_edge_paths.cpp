@@ -12,7 +12,6 @@
 #include "saddleback/surface_curve.h"
 
 #include "support/parallel.h"
-#include "tessellation/dual_edge_lengths.h"
 
 namespace saddleback {
 namespace {
@@ -169,14 +168,15 @@ std::vector<Index> open_boundaries(const GeodesicVoronoi& cells) {
 
 }  // namespace
 
-std::vector<double> dual_edge_lengths(const Mesh& mesh, const GeodesicVoronoi& cells, int threads,
-                                      const JobStage& stage) {
+std::vector<double> dual_edge_lengths(const Mesh& mesh, const GeodesicVoronoi& cells, int threads, Job* job) {
+  const JobStage stage(job, "Measuring dual edges");
   const std::vector<Index> open = open_boundaries(cells);
   std::vector<double> lengths(open.size());
   parallel_for(static_cast<Index>(open.size()), threads, 16, [&](Index i, int) {
     stage.check();
     lengths[i] = look_across(mesh, cells, open[i]).length;
   });
+  stage.update(1);
   return lengths;
 }
 

@@ -10,7 +10,6 @@
 
 #include "tessellation/cell_topology.h"
 #include "tessellation/diagram.h"
-#include "tessellation/dual_edge_lengths.h"
 
 namespace saddleback {
 namespace {
@@ -50,21 +49,21 @@ std::string first_issues(const std::vector<DualIssue>& issues) {
   return issues.size() > k_named ? text + message("; and ", issues.size() - k_named, " more") : text;
 }
 
-DualMesh dual_of(const Mesh& mesh, const GeodesicVoronoi& cells, int threads, const JobStage& stage) {
+DualMesh dual_of(const Mesh& mesh, const GeodesicVoronoi& cells, const JobStage& stage) {
   DualMesh result;
   result.sites = cells.sites;
   for (const SurfacePoint& site : cells.sites) result.vertices.push_back(position(mesh, site));
   const PointStars stars(cells);
   Index diagonals = 0;
   for (const Index point : cells.branch_points) {
+    stage.check();
     const std::vector<Index> around = cells_around(stars, point);
     diagonals += std::max<Index>(0, static_cast<Index>(around.size()) - 3);
     add_fan(around, result.vertices, result.triangles);
   }
   for (std::size_t polyline = 0; polyline < cells.edge_cells.size(); ++polyline)
     if (!cells.edge_closed[polyline]) result.edges.push_back(cells.edge_cells[polyline]);
-  result.edge_lengths = dual_edge_lengths(mesh, cells, threads, stage);
-  result.issues = find_dual_issues(mesh, cells);
+  result.issues = find_dual_issues(mesh, cells, stage);
   const auto corners =
       static_cast<Index>(std::count_if(cells.areas.begin(), cells.areas.end(), [](double area) { return area > 0; }));
   const auto edges = static_cast<Index>(result.edges.size()) + diagonals;
@@ -93,7 +92,7 @@ DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, 
   std::vector<Index> fixed(kept);
   std::iota(fixed.begin(), fixed.end(), 0);
   for (int round = 0; round < k_repair_rounds; ++round) {
-    const std::vector<DualIssue> issues = find_dual_issues(mesh, current);
+    const std::vector<DualIssue> issues = find_dual_issues(mesh, current, stage);
     SurfacePoints sites = current.sites;
     const SurfacePoints more = new_places(mesh, sites, places_to_mend(issues, static_cast<Index>(sites.size())));
     if (more.empty() || sites.size() + more.size() - kept > most) break;
@@ -113,13 +112,14 @@ DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, 
     options.threads = threads;
     current = relax_sites(graph, sites, options, part).cells;
   }
-  DualMesh result = dual_of(mesh, current, threads, stage);
+  DualMesh result = dual_of(mesh, current, stage);
   const std::size_t added = current.sites.size() - kept;
   if (!result.issues.empty()) {
     throw InputError(message("sites: no dual mesh after ", added, " more sites, of at most ", most, ": ",
                              first_issues(result.issues), "; subdivide the mesh or choose more cells"));
   }
   result.added = static_cast<Index>(added);
+  result.repaired = std::make_shared<const GeodesicVoronoi>(std::move(current));
   return result;
 }
 
@@ -161,7 +161,7 @@ std::string to_string(const DualIssue& issue) {
   return {};
 }
 
-DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells) { return dual_of(mesh, cells, 1, JobStage()); }
+DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells) { return dual_of(mesh, cells, JobStage()); }
 
 DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, DualPolicy policy, int threads,
                    Job* job) {
@@ -171,7 +171,7 @@ DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells,
     stage.update(1);
     return result;
   }
-  DualMesh result = dual_of(graph.mesh(), cells, threads, stage);
+  DualMesh result = dual_of(graph.mesh(), cells, stage);
   if (policy == DualPolicy::fail && !result.issues.empty()) {
     throw InputError(message("sites: the cells have no triangulation as their dual: ", first_issues(result.issues),
                              "; use more cells, or policy='repair'"));
