@@ -101,7 +101,7 @@ def test_looking_only_about_what_moved_changes_nothing(monkeypatch):
     counts: list[int] = []
     few = thicken(ribs, 0.1, too_high, runs.new_progress())
     assert min(counts) < 0.9 * counts[0]
-    monkeypatch.setattr(shell_solid, "near_faces", lambda vertices, faces, moved, extent: np.arange(len(faces)))
+    monkeypatch.setattr(shell_solid, "near_faces", lambda vertices, faces, *_: np.arange(len(faces)))
     all_of_them = thicken(ribs, 0.1, too_high, runs.new_progress())
     assert np.array_equal(few.vertices, all_of_them.vertices) and few.crossing == all_of_them.crossing
 
@@ -113,11 +113,15 @@ def test_near_faces_are_all_whose_boxes_overlap():
     triangles = np.arange(12000, dtype=np.int32).reshape(-1, 3)
     moved = np.zeros(4000, bool)
     moved[random.choice(4000, 20)] = True
-    found = near_faces(vertices, triangles, moved, largest_extent(vertices, triangles))
+    progress = runs.new_progress()
+    found = near_faces(vertices, triangles, moved, largest_extent(vertices, triangles), progress)
     low, high = vertices[triangles].min(axis=1), vertices[triangles].max(axis=1)
     overlap = ((low[:, None] <= high[moved]) & (low[moved] <= high[:, None])).all(axis=2).any(axis=1)
     assert np.isin(np.flatnonzero(overlap), found).all() and (np.diff(found) > 0).all() and len(found) < 1000
-    assert len(near_faces(vertices, triangles, np.zeros(4000, bool), 1.0)) == 0
+    assert len(near_faces(vertices, triangles, np.zeros(4000, bool), 1.0, progress)) == 0
+    progress.cancel()
+    with pytest.raises(sb.Cancelled):
+        near_faces(vertices, triangles, moved, 1.0, progress)
 
 
 def test_what_cannot_be_mended_is_told():

@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from .progress import Progress
 from .results import Indices, Reals
 
 
@@ -19,7 +20,9 @@ def largest_extent(vertices: Reals, triangles: Indices) -> float:
     return float(extent.max())
 
 
-def near_faces(vertices: Reals, triangles: Indices, moved: NDArray[np.bool_], extent: float) -> Indices:
+def near_faces(
+    vertices: Reals, triangles: Indices, moved: NDArray[np.bool_], extent: float, progress: Progress
+) -> Indices:
     """Numbers, rising, of all triangles whose boxes may overlap that of a `moved` one (t,), themselves among them.
 
     `extent` bounds every box's sides. O(t log t).
@@ -31,7 +34,9 @@ def near_faces(vertices: Reals, triangles: Indices, moved: NDArray[np.bool_], ex
     cells -= cells.min(axis=0) - 1
     size = cells.max(axis=0) + 2
     key = (cells[:, 0] * size[1] + cells[:, 1]) * size[2] + cells[:, 2]
+    progress.check()
     steps = [(x * size[1] + y) * size[2] + z for x, y, z in product((-1, 0, 1), repeat=3)]
     wanted = np.unique(np.unique(key[moved])[:, None] + np.array(steps))
+    progress.check()
     place = np.minimum(np.searchsorted(wanted, key), len(wanted) - 1)
     return np.flatnonzero(wanted[place] == key).astype(np.int32)

@@ -52,7 +52,7 @@ def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, p
         solid = np.concatenate([places + offset, places - offset])
         moved = np.asarray(there[faces % count].any(axis=1))
         extent = max(extent, largest_extent(solid, faces[moved]))
-        looked_at = near_faces(solid, faces, moved, extent)
+        looked_at = near_faces(solid, faces, moved, extent, progress)
         end = begin + (END - begin) * (number + 1) / (MOST_TIMES + 1)
         with progress.stage(end, "making the lamp shell") as job:
             crossing = looked_at[np.unique(find_crossings(solid, faces[looked_at], job))]
@@ -62,14 +62,15 @@ def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, p
         is_enough = number == MOST_TIMES or number - least_at == STALLED or looks > MOST_LOOKS * len(faces)
         if not len(crossing) or is_enough:
             break
+        progress.check()
         there = _beside(triangles, np.unique(faces[crossing] % count), count)
         share[there] = np.maximum(THINNER * share[there], LEAST_SHARE)
         if number >= FOLDED_AFTER:
-            _smooth(places, direction, triangles, there)
+            _smooth(places, direction, triangles, there, progress)
     return LampShell(solid, faces, _pieces(triangles, count), float((share < 1.0).mean()), len(crossing))
 
 
-def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[np.bool_]) -> None:
+def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[np.bool_], progress: Progress) -> None:
     """Moves the vertices `there` (n,) to the middle of their neighbours, and turns their directions to what is new."""
     around = there
     for _ in range(3):  # a normal, its mean over neighbours, and whether that is turned away: a ring each
@@ -79,7 +80,7 @@ def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[
     own, moved = there[used], places[used]
     moved[own] = _Neighbours(near, len(used)).mean(moved)[own]
     places[used] = moved
-    direction[used[own]] = _directions(moved, near, 0.0, None)[own]
+    direction[used[own]] = _directions(moved, near, 0.0, progress)[own]
 
 
 def _closed(triangles: Indices, count: int) -> Indices:
@@ -89,17 +90,18 @@ def _closed(triangles: Indices, count: int) -> Indices:
     return np.concatenate([triangles, triangles[:, ::-1] + count, *walls]).astype(np.int32)
 
 
-def _directions(vertices: Reals, triangles: Indices, thickness: float, progress: Progress | None) -> Reals:
+def _directions(vertices: Reals, triangles: Indices, thickness: float, progress: Progress) -> Reals:
     """Unit normals (n, 3), smoothed over about the thickness, but not turned away from a triangle beside them."""
     normals = vertex_normals(vertices, triangles)
+    progress.check()
     start, end = directed_edges(triangles)
     mean_edge = float(np.linalg.norm(vertices[end] - vertices[start], axis=1).mean())
     neighbours = _Neighbours(triangles, len(vertices))
     smooth = normals
     for _ in range(int(np.clip(4 * (thickness / mean_edge) ** 2, 1, MOST_SMOOTHING))):
-        if progress is not None:
-            progress.check()
+        progress.check()
         smooth = _unit(0.2 * smooth + neighbours.mean(smooth), normals)
+    progress.check()
     corners = vertices[triangles]
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     face = _unit(face, face)
