@@ -72,7 +72,10 @@ def distances_of(mesh: sb.Mesh, unit: float, seed: int) -> Answer:
     reach = float(rng.choice([np.inf, 1.5])) * mesh.mean_edge_length
     graph = sb.SaddleVertexGraph(mesh, accuracy=float(rng.choice([2e-2, 1e-3])), threads=1)
     field, log = sb.ExactField(mesh, points[0]), graph.log_map(points[1], reach)
-    line = sb.trace(mesh, points[2], float(rng.uniform(0, 7)), 2 * mesh.mean_edge_length)
+    # As long as suits its part: on a tiny one a line of two of the mesh's mean edges winds round without end.
+    edges = mesh.vertices[mesh.triangles[points.faces[2]]]
+    own = float(np.linalg.norm(edges - np.roll(edges, 1, axis=0), axis=1).max())
+    line = sb.trace(mesh, points[2], float(rng.uniform(0, 7)), 2 * min(mesh.mean_edge_length, 10 * own))
     polar = sb.polar_coordinates(graph, sb.SurfaceCurve(mesh, line.surface), reach)
     near = np.flatnonzero(np.isfinite(field.distances))[:3].astype(np.int32)
     return [
