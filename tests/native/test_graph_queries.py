@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 import saddleback as sb
 from tests import meshes
 from tests.native.exact import random_points
+from tests.truth.families import delaunay, square
 
 Floats = NDArray[np.float64]
 GOOD = meshes.good()
@@ -269,6 +270,46 @@ def test_near_points_see_each_other_however_wide_the_disks(options: dict[str, ob
         exact = sb.ExactField(mesh, one(points, i)).distance_to(points)
         near = exact < 0.2
         np.testing.assert_allclose(graph.distances_to(one(points, i), points)[near], exact[near], rtol=1e-8, atol=1e-12)
+
+
+@pytest.mark.parametrize("width", [1e-1, 1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("seed", range(3))
+def test_points_across_needles_are_as_near_as_they_are(width: float, seed: int) -> None:
+    """On a strip cut into needles points see no vertex that is as near as they are to each other."""
+    vertices, triangles = meshes.grid(12 + 7 * seed, 2 + seed % 2, jitter=0.3, seed=seed)
+    mesh = sb.Mesh(vertices * [width, 1, 1], triangles)
+    graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3)
+    sources, targets = sb.sample(mesh, 4, seed=seed), sb.sample(mesh, 40, seed=seed + 1)
+    right = np.linalg.norm(sources.positions(mesh)[:, None] - targets.positions(mesh), axis=2)
+    for i in range(len(sources)):
+        found = graph.distances_to(sources[i : i + 1], targets)
+        assert (found >= right[i] * (1 - 1e-12)).all()
+        assert (found <= right[i] * (1 + 1e-2)).all()
+        for k in range(5):
+            assert graph.distance(sources[i], targets[k]) == found[k]
+            assert abs(graph.path(sources[i], targets[k], shorten=False).length - found[k]) <= 1e-9 * found[k]
+    np.testing.assert_array_equal(
+        graph.distances_to(sources, targets),
+        np.min([graph.distances_to(sources[i : i + 1], targets) for i in range(len(sources))], axis=0),
+    )
+
+
+@pytest.mark.parametrize("gap", [1e-5, 1e-7, 1e-9])
+def test_points_in_needles_beside_needles_see_across(gap: float) -> None:
+    """In single precision a point of so thin a face is on its long edge, and so is the far corner of the next one."""
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        sites = rng.random((15, 2))
+        twins = sites + gap * rng.normal(size=sites.shape)
+        mesh = sb.Mesh(*delaunay(square(np.clip(np.vstack([sites, twins]), 0, 1))))
+        corner = mesh.vertices[mesh.triangles]
+        shortest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).min(axis=1)
+        needles = np.flatnonzero(shortest < 3 * gap).astype(np.int32)
+        points = sb.SurfacePoints(needles, rng.dirichlet([1, 1, 1], len(needles)))
+        graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3)
+        right = np.linalg.norm(points.positions(mesh)[:, None] - mesh.vertices, axis=2)
+        far = right > 1e-3
+        assert (graph.fields(points)[far] <= right[far] * (1 + 6e-3)).all()
 
 
 def test_many_sources_in_one_face() -> None:

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "geodesics/planar.h"
+
 namespace saddleback {
 namespace {
 
@@ -99,14 +101,14 @@ void DiskFinder::add_point(int lane, const FaceSource& source, double limit) {
     add_link(source.node[i] * k_batch + lane, source.corner[i], source.corner[next], source.edge[next] * k_batch + lane,
              ~0);
     if (source.entered[i] >= 0) {
-      add_window(lane, {source.corner[i], source.corner[next], source.node[i], source.node[next], source.entered[i],
-                        source.edge[i]});
+      add_wide_window(lane, {source.corner[i], source.corner[next], source.node[i], source.node[next],
+                             source.entered[i], source.edge[i]});
     }
   }
 }
 
 /// Corners of the source's own face are sightings as well. `from` is the start of the half-edge opposite, where there
-/// is one.
+/// is one; `root` as of sightings.
 void DiskFinder::add_link(std::int32_t slot, const Vec2& place, const Vec2& from, std::int32_t edge,
                           std::int32_t root) {
   sightings_.reserve(sighting_count_ + 1);
@@ -125,6 +127,31 @@ void DiskFinder::add_link(std::int32_t slot, const Vec2& place, const Vec2& from
   rows.edge[i] = edge;
   rows.root[i] = root;
   lower_labels(i, i + 1);
+}
+
+/// A source in a needle lies on the long edge but for rounding. Where the face behind is a needle, too, its far corner
+/// is on both rays in single precision, and the light would be lost: such faces are passed here.
+void DiskFinder::add_wide_window(int lane, FirstWindow window) {
+  constexpr double k_on_both = 1e-4;  // sines: waves take 1e-6 for nothing, and round theirs
+  constexpr int k_most_faces = 1000;
+  for (int faces = 0; faces < k_most_faces; ++faces) {
+    const EdgeRecord& record = mesh_.records()[window.entered];
+    const Vec2 along = window.right - window.left;
+    const Vec2 apex = window.left + record.a * along + record.b * Vec2(-along.y(), along.x());
+    const double from_right = cross(window.right, apex) / window.right.norm(),
+                 to_left = cross(apex, window.left) / window.left.norm();
+    if (std::max(from_right, to_left) > k_on_both * apex.norm()) break;
+    if (!(apex.dot(window.right) * apex.dot(window.left) < 0)) break;  // the light is narrow, not wide
+    add_link(record.apex * k_batch + lane, apex, window.left, window.entered * k_batch + lane, window.root);
+    const FirstWindow left{apex, window.left, record.apex, window.left_node, record.left, window.root},
+        right{window.right, apex, window.right_node, record.apex, record.right, window.root};
+    const bool is_right_wide = apex.dot(window.left) > 0;
+    const FirstWindow &narrow = is_right_wide ? left : right, &wide = is_right_wide ? right : left;
+    if (narrow.entered >= 0) add_window(lane, narrow);
+    if (wide.entered < 0) return;
+    window = wide;
+  }
+  add_window(lane, window);
 }
 
 void DiskFinder::add_window(int lane, const FirstWindow& window) {

@@ -101,6 +101,7 @@ class DiskFinder {
 
   void clear();
   void add_link(std::int32_t slot, const Vec2& place, const Vec2& from, std::int32_t edge, std::int32_t root);
+  void add_wide_window(int lane, FirstWindow window);
   void add_window(int lane, const FirstWindow& window);
   void advance();
   void fetch_records(const std::int32_t* edges, int count) const;

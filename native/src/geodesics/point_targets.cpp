@@ -1,5 +1,6 @@
 #include "geodesics/point_targets.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
@@ -24,50 +25,72 @@ double over_a_vertex(const PointFan& a, const PointFan& b) {
   return least;
 }
 
+bool is_in_needle(const Mesh& mesh, const SurfacePoint& point) {
+  const Index h = 3 * point.face;
+  return is_needle(mesh.length(h), mesh.length(h + 1), mesh.length(h + 2));
+}
+
+/// Length of the straight line between two points, if it is less than `most`, else infinity; by bounds that grow. The
+/// tighter the bound, the fewer windows: else wide fans would end the search before it has seen the point.
+double straight_length(const SaddleVertexGraph& graph, const SurfacePoint& a, const SurfacePoint& b, double bird,
+                       double most, double upper) {
+  constexpr double k_growth = 4, k_least = 1e-6;
+  thread_local LineOfSight sight;
+  for (double bound = std::max(bird * k_growth, most * k_least);; bound *= k_growth) {
+    bound = std::min(bound, most);
+    const double length = sight.length(graph.unfolding(), a, b, bound);
+    if (length < bound) return length;
+    if (bound >= std::min(most, upper)) return k_infinity;
+  }
+}
+
 }  // namespace
 
 double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, const PointFan& a_fan,
-                     const SurfacePoint& b, const PointFan& b_fan) {
+                     const SurfacePoint& b, const PointFan& b_fan, double upper) {
   if (a_fan.is_vertex || b_fan.is_vertex) return k_infinity;
+  const double bird = (position(graph.mesh(), a) - position(graph.mesh(), b)).norm();
   const double around = over_a_vertex(a_fan, b_fan);
-  if (around == k_infinity) return k_infinity;
-  // The tighter the bound, the fewer windows: without, wide fans would end the search before it has seen the point.
-  thread_local LineOfSight sight;
-  const double length = sight.length(graph.unfolding(), a, b, around);
-  return length < around ? length : k_infinity;
+  if (around < k_infinity) return straight_length(graph, a, b, bird, around, upper);
+  // Points of needles are near each other, and far from all that they see of vertices.
+  const double reach = a_fan.reach + b_fan.reach;
+  if (bird > reach || !(is_in_needle(graph.mesh(), a) || is_in_needle(graph.mesh(), b))) return k_infinity;
+  return straight_length(graph, a, b, bird, reach, upper);
 }
 
 NearbySources::NearbySources(const SaddleVertexGraph& graph, const SurfacePoints& points,
                              std::span<const PointFan> fans)
     : graph_(graph), points_(points), fans_(fans) {
+  Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < points.size(); ++i) {
     positions_.push_back(position(graph.mesh(), points[i]));
     if (fans[i].is_vertex) continue;  // seen by arcs of the target's fan
-    for (const PointFan::Arc& arc : fans[i].arcs) entries_.push_back({arc.vertex, static_cast<Index>(i)});
+    box.extend(positions_.back());
+    reach_ = std::max(reach_, fans[i].reach);
+    entries_.push_back({0, static_cast<Index>(i)});
   }
+  if (!entries_.empty()) box.sizes().maxCoeff(&axis_);
+  for (Entry& entry : entries_) entry.along = positions_[entry.source][axis_];
   std::ranges::sort(entries_);
 }
 
 double NearbySources::least_length(const SurfacePoint& target, const PointFan& fan, double upper, const JobStage& stage,
                                    Index* point) const {
   if (fan.is_vertex) return upper;
-  std::vector<Index> near;
-  for (const PointFan::Arc& arc : fan.arcs) {
-    auto entry = std::ranges::lower_bound(entries_, Entry{arc.vertex, 0});
-    for (; entry != entries_.end() && entry->vertex == arc.vertex; ++entry) near.push_back(entry->source);
-  }
-  std::ranges::sort(near);
-  const auto repeated = std::ranges::unique(near);
-  near.erase(repeated.begin(), repeated.end());
-  // Nearest first as the bird flies: when that is farther than the way known, so are all that follow.
   const Vec3 place = position(graph_.mesh(), target);
+  const double farthest = std::min(upper, fan.reach + reach_) / k_bird;
+  // Nearest first as the bird flies: when that is farther than the way known, so are all that follow.
   std::vector<std::pair<double, Index>> in_order;
-  for (const Index s : near) in_order.emplace_back((positions_[s] - place).norm() * k_bird, s);
+  auto entry = std::ranges::lower_bound(entries_, place[axis_] - farthest, {}, &Entry::along);
+  for (; entry != entries_.end() && entry->along <= place[axis_] + farthest; ++entry) {
+    const double bird = (positions_[entry->source] - place).norm() * k_bird;
+    if (bird <= farthest) in_order.emplace_back(bird, entry->source);
+  }
   std::ranges::sort(in_order);
   for (const auto& [bird, s] : in_order) {
     if (bird >= upper) break;
     stage.check();
-    const double length = direct_length(graph_, points_[s], fans_[s], target, fan);
+    const double length = direct_length(graph_, points_[s], fans_[s], target, fan, upper);
     if (length >= upper) continue;
     upper = length;
     if (point) *point = s;

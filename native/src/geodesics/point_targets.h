@@ -2,6 +2,7 @@
 // From distances at vertices to distances at any point.
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -10,9 +11,11 @@
 namespace saddleback {
 
 /// Length of the straight geodesic between two points that are no vertices, infinity unless they see each other within
-/// their fans and it is shorter than any way over one vertex. Equal to the bit from both ends.
+/// their fans and it is shorter than any way over one vertex of both. Equal to the bit from both ends. What is `upper`
+/// or longer need not be found.
 double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, const PointFan& a_fan,
-                     const SurfacePoint& b, const PointFan& b_fan);
+                     const SurfacePoint& b, const PointFan& b_fan,
+                     double upper = std::numeric_limits<double>::infinity());
 
 /// For each of many targets the sources near enough to be seen.
 class NearbySources {
@@ -26,14 +29,17 @@ class NearbySources {
 
  private:
   struct Entry {
-    Index vertex, source;
+    double along;
+    Index source;
     auto operator<=>(const Entry&) const = default;
   };
   const SaddleVertexGraph& graph_;
   const SurfacePoints& points_;
   std::span<const PointFan> fans_;
   std::vector<Vec3> positions_;
-  std::vector<Entry> entries_;  ///< by vertex
+  std::vector<Entry> entries_;  ///< those that are no vertices, along the axis in which they are spread farthest
+  Eigen::Index axis_ = 0;
+  double reach_ = 0;  ///< of the farthest fan
 };
 
 /// Distances of targets from the nearest of points, whose fans are given, where those of the vertices are known: over
