@@ -63,6 +63,28 @@ def test_points_are_never_nearer_than_they_are(name: str) -> None:
         check_points(mesh, graph, sb.sample(mesh, 1 + 2 * seed, seed=seed), accuracy)
 
 
+@pytest.mark.parametrize("shrunk", [1e-4, 1e-6, 1e-7])
+def test_what_is_hidden_behind_short_edges_is_not_nearer(shrunk: float) -> None:
+    """Around a vertex close to another, what is hidden by less than single precision tells is nearer by 1e-8."""
+    for seed in range(6):
+        rough = rough_torus(13, 8, seed)
+        vertices, triangles = rough.vertices.copy(), rough.triangles
+        centre = vertices[seed].copy()
+        near = np.linalg.norm(vertices - centre, axis=1) < 0.8
+        vertices[near] = centre + shrunk * (vertices[near] - centre)
+        mesh = sb.Mesh(vertices, triangles)
+        graph, accuracy = any_graph(mesh)
+        check_vertices(mesh, graph, sb.sample(mesh, 5, seed=seed), accuracy)
+
+
+def test_points_far_from_the_origin_are_never_nearer_than_they_are() -> None:
+    rough = rough_torus(20, 10, 2)
+    mesh = sb.Mesh(rough.vertices + [5e5, 5e6, 0], rough.triangles)
+    graph, accuracy = any_graph(mesh)
+    for seed in range(6):
+        check_points(mesh, graph, sb.sample(mesh, 2, seed=seed), accuracy)
+
+
 def test_areas_of_few_cells() -> None:
     mesh = rough_torus(60, 30, 1)
     graph = sb.SaddleVertexGraph(mesh)

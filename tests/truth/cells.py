@@ -103,7 +103,7 @@ def any_graph(mesh: sb.Mesh) -> tuple[sb.SaddleVertexGraph, float]:
     "geodesic_voronoi",
     "GeodesicVoronoi",
     "SaddleVertexGraph.nearest",
-    unsettled="2 of 178: too short by 4e-9 beside parts that were drawn together",
+    unsettled="1 of 1100: longer than the graph's by 3e-7 where that is 4e-10 of the surface's size",
 )
 def cells_of_few_sites(mesh: sb.Mesh, rng: Random) -> None:
     """Cells, graph and brute force over exact fields agree about the vertices."""
@@ -114,7 +114,7 @@ def cells_of_few_sites(mesh: sb.Mesh, rng: Random) -> None:
 @guards(
     "GeodesicVoronoi.locate",
     "GeodesicVoronoi.cells_at",
-    unsettled="3 of 178: on needles points do not know how near they are across; by a few roundings of arcs too short",
+    unsettled="1 of 1100: 2 % too long where a site sees straight that claims nothing of the face",
 )
 def places_in_cells(mesh: sb.Mesh, rng: Random) -> None:
     """`locate` against exact fields, on coarse faces, too."""

@@ -176,10 +176,13 @@ CellAt claim_at(const GeodesicVoronoi& cells, const Mesh& mesh, const SurfacePoi
 /// The shortest way to a site that leads straight to a corner of the face; from a vertex, its own.
 double way_over_corner(const GeodesicVoronoi& cells, const Mesh& mesh, const SurfacePoint& point) {
   if (const Index vertex = vertex_at(mesh, point); vertex != k_none) return cells.vertex_distance[vertex];
-  const Vec3 place = position(mesh, point);
+  const FaceChart chart(mesh, point.face);
   double shortest = std::numeric_limits<double>::infinity();
-  for (const Index v : mesh.triangles()[point.face])
-    shortest = std::min(shortest, cells.vertex_distance[v] + (mesh.position(v) - place).norm());
+  for (int i = 0; i < 3; ++i) {
+    Vec2 way = Vec2::Zero();  // from differences, which know no rounding of places far from the origin
+    for (int k = 0; k < 3; ++k) way += point.barycentric[k] * (chart.corner[k] - chart.corner[i]);
+    shortest = std::min(shortest, cells.vertex_distance[mesh.triangles()[point.face][i]] + way.norm());
+  }
   return shortest;
 }
 

@@ -257,7 +257,10 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
     const Index node = fan.nodes[i];
     scratch.table[node] = {scratch.round, static_cast<Index>(i)};
     const double most = distance_[node] * (1 + k_arc_rounding);
-    if (label_[node] == site && fan.rounded[i] <= most) places_[node] = place_straight(fan.places[i]);
+    if (label_[node] != site || fan.rounded[i] > most) continue;
+    const std::optional<Vec2> place =
+        i < fan.arc_count || is_smooth() ? fan.places[i] : seen_truly(site, node, fan.places[i]);
+    if (place) places_[node] = place_straight(*place);
   }
   if (fan.centre != k_none && label_[fan.centre] == site) places_[fan.centre] = {.found_by = k_centre};
   for (auto node = first; node != last; ++node) {
@@ -269,8 +272,29 @@ void SiteMaps::place_cell(Index site, Scratch& scratch) {
       // None is nearer where an arc is shorter than the rounding of the whole path.
       place = previous != k_none ? place_after(*node, previous, scratch) : place_straight(Vec2(distance_[*node], 0));
     }
+    // Beside short edges what an arc is when it is laid out may be longer than the arc.
+    if (place.distance > distance_[*node] * (1 + k_arc_rounding)) place.distance = distance_[*node];
     places_[*node] = place;
   }
+}
+
+/// Where a node lies that the waves see, in single precision, past another vertex: beside short edges what is a little
+/// hidden is nearer by more than rounding. None where the straight line leads elsewhere.
+std::optional<Vec2> SiteMaps::seen_truly(Index site, Index node, const Vec2& place) const {
+  const Index face = sites_[site].face;
+  const FaceChart chart(mesh_, face);
+  const Vec2 centre = chart.to_plane(sites_[site].barycentric);
+  for (int i = 0; i < 3; ++i) {
+    const Vec2 from = chart.corner[i], along = (chart.corner[(i + 1) % 3] - from).normalized();
+    const Vec2 right = from - centre, left = chart.corner[(i + 1) % 3] - centre;
+    if (cross(right, place) < 0 || cross(place, left) < 0) continue;
+    const auto in_frame = [&](const Vec2& at) { return Vec2(along.dot(at - from), cross(along, at - from)); };
+    const LegEnd end = leg_end(mesh_, graph_.vertex_of(node));
+    const std::optional<double> length =
+        line_across(graph_.unfolding(), 3 * face + i, in_frame(centre), in_frame(centre + place), end);
+    if (length) return Vec2(place * (*length / place.norm()));
+  }
+  return {};
 }
 
 /// Which of a site's fan a node is; k_none for none of it.

@@ -188,6 +188,7 @@ class SiteMaps {
   void group_nodes(int threads);
   void group_again(std::span<const Index> moving);
   void order_sites();
+  std::optional<Vec2> seen_truly(Index site, Index node, const Vec2& place) const;
   Index find_in_fan(Index site, Index node) const;
   Index find_seen(Index site, Index node, const Scratch& scratch) const;
   static Place place_straight(const Vec2& place) { return {place, place.norm(), k_none, k_straight}; }
