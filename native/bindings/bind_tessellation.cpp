@@ -249,7 +249,9 @@ Cancelled
 
 Notes
 -----
-A few log maps, O(m sqrt(m) log m) each for m vertices within the spread of the points. H. Karcher: Riemannian center of
+Steps to the mean of the points in the tangent plane, by exact distances, while they lower the sum and are longer than
+1e-9 of the points' spread. Where the sum has a crease, through a saddle vertex, they may end beside its least. A few log
+maps, O(m sqrt(m) log m) each for m vertices within the spread of the points. H. Karcher: Riemannian center of
 mass and mollifier smoothing, 1977.)";
 
 constexpr const char* k_voronoi_doc = R"(Assign every point of the surface to its nearest site.

@@ -140,7 +140,7 @@ def middles(mesh: sb.Mesh, rng: Random) -> None:
         assert sums[0][0] <= 3 * sums[1].min() + 1e-9 * size**2, f"{sums[0][0]}, but {sums[1].min()} at a point"
 
 
-@guards("geodesic_centre", unsettled="70 of 400: points of faces are taken for as far as their corners say")
+@guards("geodesic_centre", unsettled="1 of 721: a sum 4e-6 of itself too large, the cause not known yet")
 def least_sums_of_squares(mesh: sb.Mesh, rng: Random) -> None:
     """No point beside the center has a lesser sum of exact squared distances."""
     size = longest_edge(mesh)

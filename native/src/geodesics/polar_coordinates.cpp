@@ -10,6 +10,7 @@
 
 #include "geodesics/curve_windows.h"
 #include "geodesics/distance_progress.h"
+#include "geodesics/log_about.h"
 #include "geodesics/point_star.h"
 #include "support/parallel.h"
 
@@ -75,14 +76,22 @@ double angle_scale(const Mesh& mesh, const SurfacePoint& point) {
 }
 
 LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, double radius, Job* job) {
-  const Mesh& mesh = graph.mesh();
-  check_surface_point(mesh, centre, "centre");
+  check_surface_point(graph.mesh(), centre, "centre");
   check_radius(radius);
   const JobStage stage(job, "Measuring about the point");
+  PlaceDistances none;
+  LogMap result = log_about(graph, centre, radius, nullptr, none, stage);
+  stage.update(1);
+  return result;
+}
+
+LogMap log_about(const SaddleVertexGraph& graph, const SurfacePoint& centre, double radius, const WatchedPlaces* places,
+                 PlaceDistances& found, const JobStage& stage) {
+  const Mesh& mesh = graph.mesh();
   const WorkClock clock(stage.is_watched());
   const SurfacePoint point = centre_of(centre);
   RayField field(graph.unfolding());
-  field.begin();
+  field.begin(places);
   const PointStar star(graph.unfolding(), point);
   if (star.vertex() != k_none) field.add_source(star.vertex(), {0, 0, 0, false});
   const RayWindow window{Vec2::Zero(), 0, 0, 0, 0, k_none, Rays::from_point, 0, false};
@@ -109,7 +118,7 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, doubl
     result.uv.emplace_back(label.distance * std::cos(angle / scale), label.distance * std::sin(angle / scale));
     result.shadowed.push_back(label.shadowed);
   }
-  stage.update(1);
+  found = field.places();
   return result;
 }
 

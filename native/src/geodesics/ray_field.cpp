@@ -394,7 +394,8 @@ void RayField::reach_places(const RayWindow& window) {
     if (ray.y() <= 0) return;
     const double crossing = place.x() - ray.x() * (place.y() / ray.y());
     if (crossing < window.b0 - tolerance || crossing > window.b1 + tolerance) return;
-    places_.offer(index, window.offset + (is_parallel ? window.source.dot(place) : ray.norm()));
+    const double label = window.value + (window.rays == Rays::from_point ? std::atan2(ray.y(), ray.x()) : 0);
+    places_.offer(index, window.offset + (is_parallel ? window.source.dot(place) : ray.norm()), label);
   });
 }
 
