@@ -51,9 +51,9 @@ def guards(*entry_points: str, on: Input = "mesh", unsettled: str = "") -> Calla
 
 
 def load_checks() -> dict[str, Check]:
-    """Import every module of this folder, which registers its checks."""
+    """Import every module of this folder, which registers its checks: by name, whatever was imported before."""
     package: Any = importlib.import_module("tests.truth")
     for module in pkgutil.iter_modules(package.__path__):
         if not module.name.startswith("test_"):
             importlib.import_module(f"tests.truth.{module.name}")
-    return CHECKS
+    return dict(sorted(CHECKS.items()))

@@ -57,8 +57,8 @@ def page() -> str:
     rows = [
         f"| `{name}` | {', '.join(f'`{check.name}`' for check in found)} |" for name, found in guards_of(checks).items()
     ]
-    lines = [f"- `{name}`: {check.summary}" for name, check in sorted(checks.items())]
-    unsettled = [f"- `{name}`: {check.unsettled}" for name, check in sorted(checks.items()) if check.unsettled]
+    lines = [f"- `{name}`: {check.summary}" for name, check in checks.items()]
+    unsettled = [f"- `{name}`: {check.unsettled}" for name, check in checks.items() if check.unsettled]
     head = [INTRODUCTION + "| entry point | checks |", "|---|---|"]
     return "\n".join([*head, *rows, "", "## The checks", "", *lines, "", UNSETTLED, *unsettled, ""])
 
