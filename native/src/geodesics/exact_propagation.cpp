@@ -33,6 +33,7 @@
 
 #include "geodesics/common_length.h"
 #include "geodesics/exact_windows.h"
+#include "geodesics/tips.h"
 #include "geodesics/window_trim.h"
 
 namespace saddleback {
@@ -276,15 +277,11 @@ inline bool ExactPropagation::is_beaten_by_corners(const Window& w) const {
          is_less(at_to + (frame.length - w.b0), squared(w.b0 - w.sx, w.sy));
 }
 
-/// Whether the rays have gone all round a tip that they end at: they cross its edges twice, which no shortest path
-/// does. Else they would do so pi / angle times.
+/// Whether the rays have gone all round a tip that they end at.
 inline bool ExactPropagation::circles_tip(const Window& w) const {
   const EdgeFrame& frame = surface_.frame(w.halfedge);
-  constexpr double k_turn = 1 + 1e-6;
-  const auto circles = [&](Index tip, double ahead) {
-    return -w.sy > k_turn * surface_.tangent_of_tip(tip) * std::max(ahead, 0.0);
-  };
-  return (w.b1 == frame.length && circles(frame.to, frame.length - w.sx)) || (w.b0 == 0 && circles(frame.from, w.sx));
+  return (w.b1 == frame.length && circles(surface_.tangent_of_tip(frame.to), frame.length - w.sx, -w.sy)) ||
+         (w.b0 == 0 && circles(surface_.tangent_of_tip(frame.from), w.sx, -w.sy));
 }
 
 /// Most windows that sources beat are beaten by corners as well, which is told sooner.

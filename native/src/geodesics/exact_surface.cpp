@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "geodesics/tips.h"
 #include "geodesics/unfolding.h"
 #include "mesh/hilbert.h"
 #include "mesh/key_order.h"
@@ -125,9 +126,10 @@ void ExactSurface::lay_out(const JobStage& stage) {
     const bool bends =
         mesh.is_boundary(original) || mesh.total_angle(original) > 2 * std::numbers::pi + k_flat_tolerance;
     bends_[v] = bends ? Bends::at_pi : Bends::never;
-    if (mesh.is_boundary(original) || mesh.total_angle(original) >= std::numbers::pi / 2) continue;
+    const double tangent = saddleback::tangent_of_tip(mesh, original);
+    if (!std::isfinite(tangent)) continue;
     tip_tangents_.resize(vertex_count(), std::numeric_limits<double>::infinity());
-    tip_tangents_[v] = std::tan(mesh.total_angle(original));
+    tip_tangents_[v] = tangent;
   }
 }
 

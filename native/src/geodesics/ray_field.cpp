@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "geodesics/common_length.h"
+#include "geodesics/tips.h"
 
 namespace saddleback {
 namespace {
@@ -131,9 +132,10 @@ RayField::RayField(const Unfolding& unfolding)
       barriers_(unfolding),
       queue_(common_length(mesh_) / k_buckets_per_edge) {
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    if (mesh_.is_boundary(v) || mesh_.total_angle(v) >= k_pi / 2) continue;
+    const double tangent = tangent_of_tip(mesh_, v);
+    if (!std::isfinite(tangent)) continue;
     tip_tangents_.resize(mesh_.vertex_count(), k_infinity);
-    tip_tangents_[v] = std::tan(mesh_.total_angle(v));
+    tip_tangents_[v] = tangent;
   }
 }
 
@@ -312,17 +314,13 @@ void RayField::shine_from(Index vertex, double begin, double end) {
   } while (h != k_none && h != first);
 }
 
-/// Whether the rays have gone all round a tip that they end at: see ExactPropagation::circles_tip.
+/// Whether the rays have gone all round a tip that they end at: see tips.h.
 template <class Front>
 bool RayField::circles_tip(const RayWindow& w) const {
   const double length = mesh_.length(w.halfedge);
-  constexpr double k_turn = 1 + 1e-6;
-  const auto circles = [&](Index tip, const Vec2& ray, double ahead) {
-    return ray.y() > k_turn * tip_tangents_[tip] * std::max(ahead, 0.0);
-  };
   const Vec2 to_end = Front::ray(w, Vec2(length, 0)), to_start = Front::ray(w, Vec2(0, 0));
-  return (w.b1 == length && circles(mesh_.to(w.halfedge), to_end, to_end.x())) ||
-         (w.b0 == 0 && circles(mesh_.from(w.halfedge), to_start, -to_start.x()));
+  return (w.b1 == length && circles(tip_tangents_[mesh_.to(w.halfedge)], to_end.x(), to_end.y())) ||
+         (w.b0 == 0 && circles(tip_tangents_[mesh_.from(w.halfedge)], -to_start.x(), to_start.y()));
 }
 
 template <class Front>
