@@ -29,7 +29,7 @@ import studio
 import subject as models
 
 WIDTH, HEIGHT, SAMPLES = 1280, 960, 8
-ROLE = "saddleback_role"  # on the add-on's output objects: "edges", "cells", "centres"
+ROLE = "saddleback_role"  # on the add-on's output objects: "edges", "cells", "centers"
 
 
 def say(text: str) -> None:
@@ -68,7 +68,7 @@ def tessellate(subject: bpy.types.Object, paint: models.Paint, count: int) -> No
         "gap": 0.10 * radius,
         "inset": 0.16 * radius,
         "thickness": 0.11 * radius,
-        "make_centres": True,
+        "make_centers": True,
         "instance_object": looks.make_stud(looks.gold()).name,
         "instance_scale": 0.2,
     }
@@ -93,8 +93,8 @@ def output(subject: bpy.types.Object, role: str) -> bpy.types.Object:
 
 
 def dress(subject: bpy.types.Object) -> None:
-    """Materials, and a colour for each cell."""
-    cells, edges, centres = (output(subject, role) for role in ("cells", "edges", "centres"))
+    """Materials, and a color for each cell."""
+    cells, edges, centers = (output(subject, role) for role in ("cells", "edges", "centers"))
     for child in subject.children:
         if ROLE not in child:
             looks.dress_child(child)
@@ -102,10 +102,10 @@ def dress(subject: bpy.types.Object) -> None:
     subject.data.materials.append(looks.grout())
     cells.data.materials[0].user_remap(looks.enamel())
     edges.data.materials[0].user_remap(bpy.data.materials["Gold"])
-    points = models.positions(centres)
-    turn = np.array(centres.matrix_world.to_3x3().normalized())
-    normals = looks.read(centres.data, "saddleback_normal", "POINT", 3) @ turn.T
-    areas = looks.read(centres.data, "saddleback_area", "POINT", 1)
+    points = models.positions(centers)
+    turn = np.array(centers.matrix_world.to_3x3().normalized())
+    normals = looks.read(centers.data, "saddleback_normal", "POINT", 3) @ turn.T
+    areas = looks.read(centers.data, "saddleback_area", "POINT", 1)
     face_cell = looks.read(cells.data, "saddleback_cell", "FACE", 1)
     looks.color_cells(cells, face_cell, points, normals, areas, models.positions(subject))
 

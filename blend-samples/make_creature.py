@@ -98,7 +98,7 @@ def make_eyes(body: bpy.types.Object, collection: bpy.types.Collection) -> None:
     for side, name in ((1, "Eye left"), (-1, "Eye right")):
         mirror = np.array([1, side, 1])
         vertices, quads = lathe(ball, 32)
-        eye = new_object(name, vertices + (shape.EYE_CENTRE + 0.108 * shape.EYE_AXIS) * mirror, quads, collection)
+        eye = new_object(name, vertices + (shape.EYE_CENTER + 0.108 * shape.EYE_AXIS) * mirror, quads, collection)
         eye.parent = body
 
 

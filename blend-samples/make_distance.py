@@ -3,7 +3,7 @@
     blender -b --factory-startup --python blend-samples/make_distance.py -- MODEL OUT.blend [OPTION ...]
     blender -b --factory-startup --python blend-samples/render.py -- OUT.blend OUT.png
 
-Colours and isolines tell the distance along the surface from one tip of the model; tubes are the shortest paths between
+Colors and isolines tell the distance along the surface from one tip of the model; tubes are the shortest paths between
 all its tips. MODEL is a .blend (its active mesh object) or a mesh: .obj .ply .off .stl.
 Options: --tips N, --lines N, --up y|z, --turn DEGREES.
 """

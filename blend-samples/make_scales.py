@@ -53,7 +53,7 @@ def cover(subject: bpy.types.Object, shapes: str, count: int) -> bpy.types.Objec
 
 
 def color(scales: bpy.types.Object, subject: bpy.types.Object) -> None:
-    """Gives every scale one colour by its place."""
+    """Gives every scale one color by its place."""
     mesh = scales.data
     number = looks.read(mesh, "saddleback_shape", "FACE", 1)
     random = looks.read(mesh, "saddleback_random", "FACE", 1)
@@ -63,11 +63,11 @@ def color(scales: bpy.types.Object, subject: bpy.types.Object) -> None:
     mesh.polygons.foreach_get("loop_total", totals)
     owner = np.repeat(number, totals)
     count = np.maximum(np.bincount(owner), 1)
-    centres = np.stack([np.bincount(owner, places[corners, i]) / count for i in range(3)], axis=1)
+    centers = np.stack([np.bincount(owner, places[corners, i]) / count for i in range(3)], axis=1)
     own = np.zeros(len(count))
     own[number] = random
     body = models.positions(subject)
-    colors = palette.scale_colors(centres, own, body.min(axis=0), body.max(axis=0))
+    colors = palette.scale_colors(centers, own, body.min(axis=0), body.max(axis=0))
     rgba = np.concatenate([colors, np.ones((len(colors), 1))], axis=1).astype(np.float32)
     mesh.color_attributes[looks.COLOR].data.foreach_set("color", rgba[owner].ravel())
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "saddleback/error.h"
-#include "saddleback/read_mesh.h"
+#include "saddleback/mesh/read_mesh.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr const char* k_names[] = {"a.obj", "a.off", "a.ply", "a.stl"};

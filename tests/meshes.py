@@ -142,8 +142,8 @@ def graded_disk(finest: float = 1e-6, rings: int = 80, around: int = 20) -> Arra
     radii = np.geomspace(finest, 1, rings)[:, None]
     x, y = (radii * np.cos(angle)).ravel(), (radii * np.sin(angle)).ravel()
     vertices = np.vstack([np.zeros((1, 3)), np.column_stack([x, y, np.zeros(len(x))])])
-    centre = [(0, 1 + i, 1 + (i + 1) % around) for i in range(around)]
-    return vertices, np.concatenate([np.array(centre, dtype=np.int32), _wrap(around, rings)[:, ::-1] + 1]).astype(
+    center = [(0, 1 + i, 1 + (i + 1) % around) for i in range(around)]
+    return vertices, np.concatenate([np.array(center, dtype=np.int32), _wrap(around, rings)[:, ::-1] + 1]).astype(
         np.int32
     )
 
@@ -152,7 +152,7 @@ def holes(size: int = 13) -> Arrays:
     """A flat grid with two square holes."""
     vertices, triangles = grid(size, size)
     middle = vertices[triangles].mean(axis=1)
-    inside = [(np.abs(middle[:, :2] - centre) < 0.14).all(axis=1) for centre in ((0.3, 0.3), (0.7, 0.65))]
+    inside = [(np.abs(middle[:, :2] - center) < 0.14).all(axis=1) for center in ((0.3, 0.3), (0.7, 0.65))]
     return without_unused(vertices, triangles[~(inside[0] | inside[1])])
 
 
@@ -320,7 +320,7 @@ def with_nan() -> Arrays:
 
 
 def collapsed_edge() -> Arrays:
-    """A sphere with two neighbours at one place: two faces without area, two vertices that coincide."""
+    """A sphere with two neighbors at one place: two faces without area, two vertices that coincide."""
     vertices, triangles = icosphere(2)
     vertices[triangles[30, 0]] = vertices[triangles[30, 1]]
     return vertices, triangles

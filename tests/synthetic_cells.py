@@ -95,14 +95,14 @@ def split_cells(vertices: Floats, triangles: Ints, site_vertices: Ints) -> Split
         segments.append(np.column_stack([x, y]))
         beside.append(np.column_stack([corner_label[row, i], corner_label[row, j]]))
     row = np.flatnonzero(kinds == 3)
-    centre = (len(vertices) + len(edges) + np.arange(len(row))).astype(np.int32)
+    center = (len(vertices) + len(edges) + np.arange(len(row))).astype(np.int32)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         p, x, y = triangles[row, i], mid[row, i], mid[row, k]
-        for corners in ((p, x, centre), (p, centre, y)):
+        for corners in ((p, x, center), (p, center, y)):
             pieces.append(np.column_stack(corners))
             cells.append(corner_label[row, i])
-        segments.append(np.column_stack([x, centre]))
+        segments.append(np.column_stack([x, center]))
         beside.append(np.column_stack([corner_label[row, i], corner_label[row, j]]))
     middle = crossing[mid[row] - len(vertices)].mean(axis=1)
     points = np.concatenate([vertices, crossing, middle])

@@ -84,7 +84,7 @@ def read_sculpt_mask(mesh: bpy.types.Mesh) -> NDArray[np.float32] | None:
 
 
 def active_color_name(mesh: bpy.types.Mesh) -> str:
-    """Name of the colour attribute that is painted on, "" where there is none."""
+    """Name of the color attribute that is painted on, "" where there is none."""
     active = mesh.color_attributes.active_color
     return active.name if active is not None else ""
 
@@ -158,7 +158,7 @@ def copy_auto_smooth(source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
 
 
 def show_color(mesh: bpy.types.Mesh, name: str) -> None:
-    """Makes a colour attribute the one that is shown and rendered."""
+    """Makes a color attribute the one that is shown and rendered."""
     index = mesh.color_attributes.find(name)
     mesh.color_attributes.active_color_index = index
     mesh.color_attributes.render_color_index = index

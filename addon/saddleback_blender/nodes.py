@@ -173,7 +173,7 @@ def _new_tubes_group() -> bpy.types.NodeTree:
     to_curve = nodes.new("GeometryNodeMeshToCurve")
     circle = nodes.new("GeometryNodeCurvePrimitiveCircle")
     sweep = nodes.new("GeometryNodeCurveToMesh")
-    neighbours = nodes.new("GeometryNodeInputMeshVertexNeighbors")
+    neighbors = nodes.new("GeometryNodeInputMeshVertexNeighbors")
     is_joint = nodes.new("FunctionNodeCompare")
     is_joint.data_type, is_joint.operation = "INT", "NOT_EQUAL"
     compared = {socket.name: socket for socket in is_joint.inputs if socket.enabled}  # those of whole numbers
@@ -194,7 +194,7 @@ def _new_tubes_group() -> bpy.types.NodeTree:
     link(source.outputs["Radius"], circle.inputs["Radius"])
     link(to_curve.outputs["Curve"], sweep.inputs["Curve"])
     link(circle.outputs["Curve"], sweep.inputs["Profile Curve"])
-    link(neighbours.outputs["Vertex Count"], compared["A"])
+    link(neighbors.outputs["Vertex Count"], compared["A"])
     link(source.outputs["Geometry"], joints.inputs["Mesh"])
     link(is_joint.outputs["Result"], joints.inputs["Selection"])
     link(source.outputs["Resolution"], ball.inputs["Segments"])
@@ -211,7 +211,7 @@ def _new_tubes_group() -> bpy.types.NodeTree:
     link(source.outputs["Material"], painted.inputs["Material"])
     link(painted.outputs["Geometry"], sink.inputs["Geometry"])
     lay_out(
-        source, (to_curve, circle, neighbours, half), (sweep, is_joint, ball), joints, balls, real, joined, smooth,
+        source, (to_curve, circle, neighbors, half), (sweep, is_joint, ball), joints, balls, real, joined, smooth,
         painted, sink,
     )  # fmt: skip
     return group
@@ -297,12 +297,12 @@ def attribute_output(node: Any) -> Any:
 
 
 def cells_material() -> bpy.types.Material:
-    """A plain material that shows the colour of each cell."""
+    """A plain material that shows the color of each cell."""
     return _find_material(CELLS) or _new_painted("Saddleback Cells", CELLS, 0.55)
 
 
 def shapes_material() -> bpy.types.Material:
-    """A plain material that shows the colour of each shape."""
+    """A plain material that shows the color of each shape."""
     return _find_material(SHAPES) or _new_painted("Saddleback Shapes", SHAPES, 0.4)
 
 
@@ -312,7 +312,7 @@ def edges_material() -> bpy.types.Material:
 
 
 def paths_material() -> bpy.types.Material:
-    """A bright plain material for shortest paths, which stands out on every colour of the distance preview."""
+    """A bright plain material for shortest paths, which stands out on every color of the distance preview."""
     return _find_material(PATHS) or _new_colored("Saddleback Paths", PATHS, (0.0, 0.36, 0.55, 1.0), 0.4)
 
 
@@ -327,7 +327,7 @@ def field_materials() -> list[bpy.types.Material]:
 
 
 def _new_painted(name: str, kind: str, roughness: float) -> bpy.types.Material:
-    """Of the colour attribute."""
+    """Of the color attribute."""
     material, shader = new_material(name, kind)
     color = material.node_tree.nodes.new("ShaderNodeVertexColor")
     color.layer_name = COLOR_ATTRIBUTE

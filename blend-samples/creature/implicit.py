@@ -110,10 +110,10 @@ def sample_grid(parts: list[Tube], cell: float) -> tuple[Array, Array]:
     top = np.max([p.high for p in parts], axis=0) - FAR + 4 * cell
     blocks = np.ceil((top - origin) / coarse).astype(int)
     at = np.stack(np.meshgrid(*[np.arange(n) for n in blocks], indexing="ij"), axis=-1).reshape(-1, 3)
-    centre = distance(parts, origin + (at + 0.5) * coarse)
+    center = distance(parts, origin + (at + 0.5) * coarse)
     # A flattened tube's distance can run up to 1.6 times as fast as a true distance.
-    near = np.flatnonzero(np.abs(centre) < 1.6 * 0.9 * coarse)
-    values = np.repeat(centre[:, None], ratio**3, axis=1)
+    near = np.flatnonzero(np.abs(center) < 1.6 * 0.9 * coarse)
+    values = np.repeat(center[:, None], ratio**3, axis=1)
     inner = np.stack(np.meshgrid(*3 * [np.arange(ratio)], indexing="ij"), axis=-1).reshape(-1, 3)
     points = origin + (at[near, None] * ratio + inner) * cell
     values[near] = distance(parts, points.reshape(-1, 3)).reshape(-1, ratio**3)
@@ -124,7 +124,7 @@ def sample_grid(parts: list[Tube], cell: float) -> tuple[Array, Array]:
 def without_pinches(grid: Array) -> Array:
     """The grid with corners filled in wherever surface nets would touch themselves along an edge or at a vertex.
 
-    Along an edge: at a face of the grid whose inside corners are diagonal neighbours. At a vertex: in a cell whose only
+    Along an edge: at a face of the grid whose inside corners are diagonal neighbors. At a vertex: in a cell whose only
     inside corners, or only outside corners, are the two ends of its long diagonal. Corners are only ever filled, never
     emptied, so this ends.
     """

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from implicit import Array
 from numpy.typing import NDArray
-from shape import EYE_AXIS, EYE_CENTRE, MOUTH, TAIL_CENTRE
+from shape import EYE_AXIS, EYE_CENTER, MOUTH, TAIL_CENTER
 
 Ints = NDArray[np.int32]
 
@@ -72,7 +72,7 @@ def distance_to_line(points: Array, line: Array) -> Array:
 
 def eye_coordinates(points: Array) -> tuple[Array, Array]:
     """For the nearer eye: distance from its axis and height along it."""
-    offset = points * [1, 0, 1] + [0, 1, 0] * np.abs(points) - EYE_CENTRE
+    offset = points * [1, 0, 1] + [0, 1, 0] * np.abs(points) - EYE_CENTER
     height = offset @ EYE_AXIS
     return np.linalg.norm(offset - height[:, None] * EYE_AXIS, axis=1), height
 
@@ -101,7 +101,7 @@ def detail(vertices: Array, normals: Array) -> Array:
 
     # Rings along the tail, folds at the throat.
     tail = step(x, -1.0, -1.35)
-    angle = np.arctan2(z - TAIL_CENTRE[2], x - TAIL_CENTRE[0])
+    angle = np.arctan2(z - TAIL_CENTER[2], x - TAIL_CENTER[0])
     move += tail * 0.0035 * np.cos(angle * 22)
     throat = step(z, 0.62, 0.48) * head * step(np.abs(y), 0.03, 0.08)
     move += throat * 0.006 * np.cos((z - 0.35 * x) * 2 * np.pi / 0.055)
@@ -120,7 +120,7 @@ def paint(vertices: Array) -> Array:
     paint += 0.50 * step(from_axis, 0.22, 0.10) * step(along_eye, -0.1, 0.0)
     paint = np.maximum(paint, 0.95 * step(z, 0.22, 0.06) * step(x, -1.18, -1.08))
     paint = np.maximum(paint, 0.10 + 0.35 * step(z, 0.45, 0.2) * step(x, -1.18, -1.08))
-    spiral = np.hypot(x - TAIL_CENTRE[0], z - TAIL_CENTRE[2])
+    spiral = np.hypot(x - TAIL_CENTER[0], z - TAIL_CENTER[2])
     tail = step(x, -0.95, -1.35)
     paint = np.maximum(paint, tail * (0.2 + 0.75 * step(spiral, 0.62, 0.12)))
     return np.clip(paint + 0.03 * noise(vertices * 3, 21), 0.06, 1.0)

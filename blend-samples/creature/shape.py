@@ -1,6 +1,6 @@
 """A chameleon: the solids that it is made of, its painted density, and the places of its eyes.
 
-x points from tail to head, z up; the branch under its feet runs along x. Lengths are in units of about ten centimetres.
+x points from tail to head, z up; the branch under its feet runs along x. Lengths are in units of about ten centimeters.
 """
 
 from __future__ import annotations
@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 from implicit import Array, Tube, catmull_rom, mirrored, tube
 
-EYE_CENTRE = np.array([1.30, 0.262, 0.845])
+EYE_CENTER = np.array([1.30, 0.262, 0.845])
 EYE_AXIS = np.array([0.22, 0.97, 0.06]) / np.linalg.norm([0.22, 0.97, 0.06])
-TAIL_CENTRE = np.array([-1.72, 0.0, -0.15])
+TAIL_CENTER = np.array([-1.72, 0.0, -0.15])
 MOUTH = np.array([(1.80, 0.655), (1.66, 0.625), (1.48, 0.60), (1.30, 0.575), (1.14, 0.60), (1.04, 0.66)])
 BRANCH_HEIGHT = -0.13
 
@@ -21,8 +21,8 @@ def tail_stations() -> list[tuple[float, ...]]:
     angle = np.pi / 2 + turn * 2 * np.pi * 2.0
     away = 0.60 * (1 - 0.86 * turn**0.9)
     radius = 0.100 * (1 - turn) ** 0.75 + 0.030
-    x = TAIL_CENTRE[0] + away * np.cos(angle)
-    z = TAIL_CENTRE[2] + away * np.sin(angle)
+    x = TAIL_CENTER[0] + away * np.cos(angle)
+    z = TAIL_CENTER[2] + away * np.sin(angle)
     return [(*row,) for row in np.stack([x, 0 * x, z, radius, 0.92 * radius], axis=1)]
 
 
@@ -73,8 +73,8 @@ def head() -> list[Tube]:
         (1.02, 0.205, 0.76, 0.045),
         (1.12, 0.195, 0.64, 0.04),
     ]
-    socket = EYE_CENTRE - 0.07 * EYE_AXIS
-    rim = EYE_CENTRE + 0.068 * EYE_AXIS
+    socket = EYE_CENTER - 0.07 * EYE_AXIS
+    rim = EYE_CENTER + 0.068 * EYE_AXIS
     turret = Tube(np.array([[*socket, 0.150, 0.150], [*rim, 0.082, 0.082]]), 0.045)
     nose = tube([(1.66, 0.0, 0.72, 0.05), (1.715, 0.0, 0.80, 0.034), (1.755, 0.0, 0.885, 0.013)], 0.05)
     sides = [tube(brow, 0.045, 40), tube(cheek, 0.05, 24), turret]

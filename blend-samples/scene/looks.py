@@ -1,4 +1,4 @@
-"""Enamel for the cells, gold for the lines and studs, and a colour for every cell."""
+"""Enamel for the cells, gold for the lines and studs, and a color for every cell."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import numpy as np
 import palette
 from studio import principled
 
-COLOR = "saddleback_color"  # the add-on's own colour layer of its cells, written over
+COLOR = "saddleback_color"  # the add-on's own color layer of its cells, written over
 
 
 def enamel() -> bpy.types.Material:
-    """Glazed colour, read from the cells."""
+    """Glazed color, read from the cells."""
     material = principled(
         "Enamel", (0.1, 0.5, 0.4), Roughness=0.32, Clearcoat=0.5, Clearcoat_Roughness=0.12, Specular=0.4
     )
@@ -33,7 +33,7 @@ def grout() -> bpy.types.Material:
 
 
 def horn() -> bpy.types.Material:
-    """Polished scales, each of its own colour."""
+    """Polished scales, each of its own color."""
     material = principled("Horn", (0.4, 0.2, 0.1), Roughness=0.28, Clearcoat=0.6, Clearcoat_Roughness=0.1, Specular=0.5)
     tree = material.node_tree
     color = tree.nodes.new("ShaderNodeAttribute")
@@ -118,13 +118,13 @@ def read(mesh: bpy.types.Mesh, name: str, domain: str, width: int) -> np.ndarray
 def color_cells(
     cells: bpy.types.Object,
     face_cell: np.ndarray,
-    centres: np.ndarray,
+    centers: np.ndarray,
     normals: np.ndarray,
     areas: np.ndarray,
     points: np.ndarray,
 ) -> None:
-    """Gives every face its cell's colour; centres and normals (n, 3), points (m, 3) of the subject, in world space."""
-    colors = palette.cell_colors(centres, normals, areas, points.min(axis=0), points.max(axis=0))
+    """Gives every face its cell's color; centers and normals (n, 3), points (m, 3) of the subject, in world space."""
+    colors = palette.cell_colors(centers, normals, areas, points.min(axis=0), points.max(axis=0))
     rgba = np.concatenate([colors, np.ones((len(colors), 1))], axis=1).astype(np.float32)
     corners = np.empty(len(cells.data.polygons), np.int32)
     cells.data.polygons.foreach_get("loop_total", corners)

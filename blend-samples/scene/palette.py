@@ -1,4 +1,4 @@
-"""Colours that go together: a ramp along the subject, bands across it, and a little life from cell to cell."""
+"""Colors that go together: a ramp along the subject, bands across it, and a little life from cell to cell."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DUSK_BAND = "#2a1038"
 
 
 def linear(codes: list[str]) -> Array:
-    """Linear RGB (n, 3) of colours written #rrggbb."""
+    """Linear RGB (n, 3) of colors written #rrggbb."""
     srgb = np.array([[int(c[i : i + 2], 16) for i in (1, 3, 5)] for c in codes]) / 255
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
@@ -60,10 +60,10 @@ def smoothstep(value: Array, low: float, high: float) -> Array:
     return t * t * (3 - 2 * t)
 
 
-def scale_colors(centres: Array, random: Array, low: Array, high: Array) -> Array:
-    """Linear RGB (n, 3) for scales with these centres and random numbers (n,) in the bounding box low..high."""
+def scale_colors(centers: Array, random: Array, low: Array, high: Array) -> Array:
+    """Linear RGB (n, 3) for scales with these centers and random numbers (n,) in the bounding box low..high."""
     stops, band = to_oklab(linear(DUSK)), to_oklab(linear([DUSK_BAND]))[0]
-    place = (centres - low) / np.maximum(high - low, 1e-12)
+    place = (centers - low) / np.maximum(high - low, 1e-12)
     long = int(np.argmax((high - low)[:2]))
     wobble = 0.02 * np.sin(9 * place[:, 2] + 5 * place[:, 1 - long]) + 0.012 * np.sin(23 * place[:, 2] + 1)
     along = np.clip(place[:, long] + wobble, 0, 1) * (len(stops) - 1)
@@ -74,11 +74,11 @@ def scale_colors(centres: Array, random: Array, low: Array, high: Array) -> Arra
     return from_oklab(lab)
 
 
-def cell_colors(centres: Array, normals: Array, areas: Array, low: Array, high: Array) -> Array:
-    """Linear RGB (n, 3) for cells with these centres, normals and areas in the bounding box low..high."""
+def cell_colors(centers: Array, normals: Array, areas: Array, low: Array, high: Array) -> Array:
+    """Linear RGB (n, 3) for cells with these centers, normals and areas in the bounding box low..high."""
     stops = to_oklab(linear(ALONG))
     band, belly, crest = (to_oklab(linear([c]))[0] for c in (BAND, BELLY, CREST))
-    place = (centres - low) / np.maximum(high - low, 1e-12)
+    place = (centers - low) / np.maximum(high - low, 1e-12)
     long = int(np.argmax((high - low)[:2]))
     wobble = 0.02 * np.sin(9 * place[:, 2] + 5 * place[:, 1 - long]) + 0.012 * np.sin(23 * place[:, 2] + 1)
     along = np.clip(place[:, long] + wobble, 0, 1) * (len(stops) - 1)

@@ -34,7 +34,7 @@ def output(source: bpy.types.Object, role: str) -> bpy.types.Object:
 
 
 def color(code: str) -> tuple[float, float, float]:
-    """A colour by its code, linear."""
+    """A color by its code, linear."""
     red, green, blue = palette.linear([code])[0]
     return float(red), float(green), float(blue)
 
@@ -117,19 +117,19 @@ def stipples(count: int = 6000) -> Items:
     item = panel()
     bpy.ops.saddleback.voronoi_2d(
         sites_source="IMAGE", image_name=image.name, count=count, seed=1, iterations=30, make_edges=False,
-        make_cells=False, make_centres=True,
+        make_cells=False, make_centers=True,
     )  # fmt: skip
-    centres = output(item, "voronoi centres")
+    centers = output(item, "voronoi centers")
     # Every dot of the same size: their number alone makes the tone.
-    size = np.full(len(centres.data.vertices), math.sqrt(0.52 * 2.2 * 1.5 / (math.pi * count)), np.float32)
-    centres.data.attributes["saddleback_size"].data.foreach_set("value", size)
+    size = np.full(len(centers.data.vertices), math.sqrt(0.52 * 2.2 * 1.5 / (math.pi * count)), np.float32)
+    centers.data.attributes["saddleback_size"].data.foreach_set("value", size)
     bpy.context.view_layer.objects.active = item
     bpy.ops.saddleback.voronoi_2d(instance_object=instance.name)
-    centres = output(item, "voronoi centres")
-    centres.data.attributes["saddleback_size"].data.foreach_set("value", size)
-    centres.data.update()
+    centers = output(item, "voronoi centers")
+    centers.data.attributes["saddleback_size"].data.foreach_set("value", size)
+    centers.data.update()
     item.data.materials.append(studio.principled("Paper", color("#f4efe4"), Roughness=0.9, Specular=0.1))
-    return [item, centres]
+    return [item, centers]
 
 
 def lathe(profile: np.ndarray, around: int) -> tuple[np.ndarray, list[tuple[int, ...]], np.ndarray]:
@@ -193,15 +193,15 @@ def sweep(sites: int = 60) -> Items:
     """A circle that grows over a panel, with the beach curve and the edges that it leaves behind."""
     item = panel(2.0, 2.0)
     bpy.ops.saddleback.voronoi_2d(
-        count=sites, seed=9, iterations=2, make_edges=False, make_cells=False, make_centres=True, edge_radius=0.009,
+        count=sites, seed=9, iterations=2, make_edges=False, make_cells=False, make_centers=True, edge_radius=0.009,
         animate=True, frame_start=1, frame_end=120,
     )  # fmt: skip
     instance = dot()
     bpy.context.view_layer.objects.active = item
-    bpy.ops.saddleback.voronoi_2d(make_centres=True, instance_object=instance.name)
-    centres = output(item, "voronoi centres")
-    centres.data.attributes["saddleback_size"].data.foreach_set("value", np.full(sites, 0.016, np.float32))
-    centres.data.update()
+    bpy.ops.saddleback.voronoi_2d(make_centers=True, instance_object=instance.name)
+    centers = output(item, "voronoi centers")
+    centers.data.attributes["saddleback_size"].data.foreach_set("value", np.full(sites, 0.016, np.float32))
+    centers.data.update()
     item.data.materials.append(studio.principled("Paper", color("#f4efe4"), Roughness=0.9, Specular=0.1))
     line = studio.principled("Beach", color("#d8452f"), Roughness=0.5)
     output(item, "beach curve").data.materials[0].user_remap(line)

@@ -36,8 +36,8 @@ def backdrop(low: Vector, high: Vector, size: float) -> bpy.types.Object:
         a = i / 24 * math.pi / 2
         profile.append((back - bend + bend * math.sin(a), floor + bend * (1 - math.cos(a))))
     profile.append((back, floor + 9 * size))
-    centre = (low.x + high.x) / 2
-    vertices = [(centre + s * 14 * size, y, z) for y, z in profile for s in (-1, 1)]
+    center = (low.x + high.x) / 2
+    vertices = [(center + s * 14 * size, y, z) for y, z in profile for s in (-1, 1)]
     faces = [(2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2) for i in range(len(profile) - 1)]
     mesh = bpy.data.meshes.new("Backdrop")
     mesh.from_pydata(vertices, [], faces)
@@ -81,7 +81,7 @@ def add_to(scene: bpy.types.Scene, points: np.ndarray, aspect: float) -> None:
     stage = bpy.data.collections.new("Studio")
     scene.collection.children.link(stage)
     low, high = Vector(points.min(axis=0)), Vector(points.max(axis=0))
-    centre, size = (low + high) / 2, (high - low).length / 2
+    center, size = (low + high) / 2, (high - low).length / 2
     stage.objects.link(backdrop(low, high, size))
     lights = (
         ("Key", (-0.9, -1.7, 2.3), 1.3, 150, (1.0, 0.94, 0.86)),
@@ -90,7 +90,7 @@ def add_to(scene: bpy.types.Scene, points: np.ndarray, aspect: float) -> None:
     )
     for name, where, width, power, color in lights:
         stage.objects.link(
-            area_light(name, centre + size * Vector(where), centre, width * size, power * size**2, color)
+            area_light(name, center + size * Vector(where), center, width * size, power * size**2, color)
         )
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.lens = 75

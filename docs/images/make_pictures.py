@@ -53,7 +53,7 @@ def shoot(body: bpy.types.Object, name: str) -> None:
 def ramp_material(
     name: str, attribute: str, stops: list[tuple[float, str]], scale: float, lines: float = 0.0
 ) -> bpy.types.Material:
-    """Colour by a vertex attribute divided by `scale`; with `lines`, dark isolines at that spacing."""
+    """Color by a vertex attribute divided by `scale`; with `lines`, dark isolines at that spacing."""
     material = studio.principled(name, (0.5, 0.5, 0.5), Roughness=0.5, Specular=0.3)
     tree = material.node_tree
     shader = tree.nodes["Principled BSDF"]
@@ -103,7 +103,7 @@ def clay(body: bpy.types.Object, **settings: object) -> None:
 
 
 def paint(body: bpy.types.Object) -> None:
-    """Picture: what was painted, in weight paint's colours."""
+    """Picture: what was painted, in weight paint's colors."""
     weights = np.zeros(len(body.data.vertices), np.float32)
     group = body.vertex_groups[PAINT].index
     for vertex in body.data.vertices:
@@ -129,16 +129,16 @@ def random(body: bpy.types.Object) -> None:
 
 
 def cells(body: bpy.types.Object) -> None:
-    """Picture: the cells as a mesh, with gap, inset and thickness, in the colours that the add-on gives them."""
+    """Picture: the cells as a mesh, with gap, inset and thickness, in the colors that the add-on gives them."""
     tessellate(make_edges=False, make_cells=True, gap=0.014, inset=0.012, thickness=0.012,
                density_source="VERTEX_GROUP", density_name=PAINT)  # fmt: skip
     body.data.materials.append(looks.grout())
 
 
-def centres(body: bpy.types.Object) -> None:
-    """Picture: an object on every centre, as large as its cell."""
+def centers(body: bpy.types.Object) -> None:
+    """Picture: an object on every center, as large as its cell."""
     stud = looks.make_stud(looks.gold())
-    tessellate(make_edges=False, make_centres=True, instance_object=stud.name, instance_scale=0.75,
+    tessellate(make_edges=False, make_centers=True, instance_object=stud.name, instance_scale=0.75,
                density_source="VERTEX_GROUP", density_name=PAINT)  # fmt: skip
     body.data.materials.append(studio.principled("Clay", (0.10, 0.16, 0.20), Roughness=0.5))
 
@@ -198,7 +198,7 @@ def fields_curvature(body: bpy.types.Object) -> None:
 
 
 def lay(body: bpy.types.Object, shapes: str, **settings: object) -> None:
-    """Shapes along the strokes' field, in the colours that the add-on gives them, on dark skin."""
+    """Shapes along the strokes' field, in the colors that the add-on gives them, on dark skin."""
     bpy.ops.saddleback.direction_field(strokes="COLLECTION", make_arrows=False)
     bpy.ops.saddleback.distribute(shapes=shapes, seed=7, **settings)
     body.data.materials.append(looks.skin())

@@ -1,6 +1,6 @@
 // The predicates, for tests only: they are no part of the Python API.
 
-#include "convert.h"
+#include "convert/convert.h"
 #include "predicates/predicates.h"
 
 namespace saddleback::bindings {

@@ -1,18 +1,19 @@
 // The optional module `_saddleback_cuda`: everything that needs CUDA, and nothing that works without.
 
+#include "saddleback/support/cuda_module.h"
+
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <stdexcept>
 
-#include "saddleback/cuda_devices.h"
-#include "saddleback/cuda_twins.h"
+#include "saddleback/support/cuda_devices.h"
 
-#include "geodesics/device_arcs.h"
-#include "geodesics/device_search.h"
-#include "support/host_pinning.h"
-#include "voronoi2d/device_signs.h"
-#include "voronoi2d/device_voronoi.h"
+#include "geodesics/cuda/device_arcs.h"
+#include "geodesics/cuda/device_search.h"
+#include "support/cuda/host_pinning.h"
+#include "voronoi2d/cuda/device_signs.h"
+#include "voronoi2d/cuda/device_voronoi.h"
 
 namespace py = pybind11;
 
@@ -27,10 +28,10 @@ py::array_t<std::int8_t> plane_signs(const Points& points, int device) {
   const auto fours = static_cast<std::size_t>(points.shape(0));
   py::array_t<std::int8_t> signs({points.shape(0), py::ssize_t{PlaneSigns::k_count}});
   static_assert(sizeof(PlaneSigns) == PlaneSigns::k_count);
-  saddleback::TwinReason reason;
+  saddleback::CudaReason reason;
   if (saddleback::plane_signs_on_device(device, points.data(), fours,
                                         reinterpret_cast<PlaneSigns*>(signs.mutable_data()),
-                                        reason) != saddleback::TwinStatus::done)
+                                        reason) != saddleback::CudaStatus::done)
     throw std::runtime_error(reason.text);
   return signs;
 }
@@ -51,15 +52,15 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
   py::class_<CudaDevices>(module, "CudaDevices", py::module_local())
       .def_readonly("usable", &CudaDevices::usable)
       .def_readonly("reason", &CudaDevices::reason);
-  static const saddleback::CudaTwins twins{.find_arcs = &saddleback::find_arcs_on_device,
-                                           .find_voronoi = &saddleback::find_voronoi_on_device,
-                                           .drop_voronoi = &saddleback::drop_voronoi_on_device,
-                                           .copy_back = &saddleback::copy_back_from_device,
-                                           .pin = &saddleback::pin_host_memory,
-                                           .unpin = &saddleback::unpin_host_memory,
-                                           .put_graph = &saddleback::put_graph_on_device,
-                                           .drop_graph = &saddleback::drop_graph_on_device,
-                                           .search = &saddleback::search_on_device};
+  static const saddleback::CudaModule twins{.find_arcs = &saddleback::find_arcs_on_device,
+                                            .find_voronoi = &saddleback::find_voronoi_on_device,
+                                            .drop_voronoi = &saddleback::drop_voronoi_on_device,
+                                            .copy_back = &saddleback::copy_back_from_device,
+                                            .pin = &saddleback::pin_host_memory,
+                                            .unpin = &saddleback::unpin_host_memory,
+                                            .put_graph = &saddleback::put_graph_on_device,
+                                            .drop_graph = &saddleback::drop_graph_on_device,
+                                            .search = &saddleback::search_on_device};
   module.attr("twins") = py::capsule(&twins);
   module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
   module.def("plane_signs", &plane_signs, py::arg("points"), py::arg("device") = 0,

@@ -5,8 +5,8 @@
 
 #include "saddleback/version_error.h"
 
-#include "convert.h"
-#include "interrupt.h"
+#include "convert/convert.h"
+#include "convert/interrupt.h"
 
 namespace saddleback::bindings {
 

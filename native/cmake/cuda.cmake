@@ -15,16 +15,16 @@ set(CMAKE_CUDA_STANDARD_REQUIRED ON)
 set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
 
 add_library(saddleback_cuda STATIC
-  src/geodesics/device_arcs.cu
-  src/geodesics/device_search.cu
+  src/geodesics/cuda/device_arcs.cu
+  src/geodesics/cuda/device_search.cu
   src/support/cuda_devices.cu
-  src/support/host_pinning.cu
-  src/voronoi2d/device_signs.cu
-  src/voronoi2d/device_voronoi.cu
+  src/support/cuda/host_pinning.cu
+  src/voronoi2d/cuda/device_signs.cu
+  src/voronoi2d/cuda/device_voronoi.cu
 )
 # To the bit what the processor computes: multiplications and additions stay apart there as well.
-set_source_files_properties(src/geodesics/device_arcs.cu src/geodesics/device_search.cu src/voronoi2d/device_signs.cu
-  src/voronoi2d/device_voronoi.cu
+set_source_files_properties(src/geodesics/cuda/device_arcs.cu src/geodesics/cuda/device_search.cu src/voronoi2d/cuda/device_signs.cu
+  src/voronoi2d/cuda/device_voronoi.cu
   PROPERTIES COMPILE_OPTIONS "-fmad=false;-diag-suppress;177")  # 177: names used in braces count as unused
 target_include_directories(saddleback_cuda PUBLIC include PRIVATE src)
 target_compile_definitions(saddleback_cuda PRIVATE SADDLEBACK_CUDA_OLDEST=${SADDLEBACK_CUDA_OLDEST})

@@ -148,14 +148,14 @@ def host():
     return item
 
 
-ALL = {"make_cells": True, "make_centres": True, "make_dual": True, "make_shell": True, "instance_object": "Seed"}
+ALL = {"make_cells": True, "make_centers": True, "make_dual": True, "make_shell": True, "instance_object": "Seed"}
 SHAPES = {"shapes": "STUDS", "field_source": "NONE", "packing": 0.0}
 LINES = {"make_outlines": True}
 EVERY = {"make_instances": True, "make_outlines": True, "make_cut": True, "write_attributes": True}
 RUNS = [
     ("tessellate", {"count": 6}, {"count": 9, **ALL}),
     ("tessellate", {"count": 9, **ALL}, {"count": 6, "make_edges": False, "write_edge_distance": True}),
-    ("tessellate", {"count": 9, "make_centres": True, "instance_object": "Seed"}, {"count": 7, "edge_kind": "CURVE"}),
+    ("tessellate", {"count": 9, "make_centers": True, "instance_object": "Seed"}, {"count": 7, "edge_kind": "CURVE"}),
     ("tessellate", {"count": 6}, {"count": 9, "use_modifiers": True}),
     ("distance", {}, {"make_isolines": True, "make_preview": True}),
     ("distance", {"make_isolines": True, "make_preview": True}, {"make_preview": False}),

@@ -133,14 +133,14 @@ def test_outlines_that_are_none_are_told(shapes):
 @pytest.mark.parametrize("kind", ["ramp", "noise"])
 def test_images_without_a_clear_mask_are_refused(shapes, kind):
     values = np.linspace(0, 1, 64)[None].repeat(64, 0) if kind == "ramp" else np.random.default_rng(1).random((64, 64))
-    image = bpy.data.images.new("Grey", 64, 64)
+    image = bpy.data.images.new("Gray", 64, 64)
     pixels = np.ones((64, 64, 4), np.float32)
     pixels[..., :3] = values[..., None]
     image.pixels.foreach_set(pixels.ravel())
     with pytest.raises(
-        BadInputError, match=r"image 'Grey' makes no shape: no clear mask, 3\d% of it is neither in nor out"
+        BadInputError, match=r"image 'Gray' makes no shape: no clear mask, 3\d% of it is neither in nor out"
     ):
-        read(shapes="IMAGE", shapes_image="Grey")
+        read(shapes="IMAGE", shapes_image="Gray")
 
 
 def test_images_are_shapes_where_they_are_opaque_or_dark(shapes):

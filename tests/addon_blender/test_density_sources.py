@@ -13,7 +13,7 @@ FEW = {"count": 12, "iterations": 2, "k": 30}
 
 
 def add_image(name, values):
-    """A grey image without encoding, the first row below."""
+    """A gray image without encoding, the first row below."""
     rows, columns = values.shape
     image = bpy.data.images.new(name, columns, rows, float_buffer=True)
     pixels = np.repeat(values[:, :, None], 4, axis=2).astype(np.float32)

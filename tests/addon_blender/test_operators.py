@@ -211,7 +211,7 @@ def test_clear_removes_what_was_made_and_nothing_else():
     bpy.context.view_layer.objects.active = item
     item.data.attributes.new("mine", "FLOAT", "POINT")
     objects, attributes = set(bpy.data.objects.keys()), set(item.data.attributes.keys())
-    bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, make_centres=True)
+    bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, make_centers=True)
     select(item, [0])
     bpy.ops.saddleback.distance(distance_attribute="saddleback_far")
     assert set(bpy.data.objects.keys()) > objects
@@ -223,12 +223,12 @@ def test_clear_removes_what_was_made_and_nothing_else():
 
 def test_outputs_are_replaced_and_follow_the_switches():
     sphere()
-    bpy.ops.saddleback.tessellate(**QUICK, make_centres=True)
+    bpy.ops.saddleback.tessellate(**QUICK, make_centers=True)
     names = set(bpy.data.objects.keys())
     assert len(names) == 3
-    bpy.ops.saddleback.tessellate(**QUICK, seed=1, make_centres=True)
+    bpy.ops.saddleback.tessellate(**QUICK, seed=1, make_centers=True)
     assert set(bpy.data.objects.keys()) == names
-    bpy.ops.saddleback.tessellate(**QUICK, make_edges=False, make_centres=False)
+    bpy.ops.saddleback.tessellate(**QUICK, make_edges=False, make_centers=False)
     assert set(bpy.data.objects.keys()) == {"Sphere"}
 
 
@@ -255,7 +255,7 @@ def test_only_what_changed_is_computed():
     builds = cache.shared.builds
     bpy.ops.saddleback.tessellate(**QUICK)
     assert builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1}
-    bpy.ops.saddleback.tessellate(**QUICK, edge_radius=0.1, make_centres=True)  # outputs only
+    bpy.ops.saddleback.tessellate(**QUICK, edge_radius=0.1, make_centers=True)  # outputs only
     assert builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1}
     bpy.ops.saddleback.tessellate(**QUICK, make_cells=True)
     bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, gap=0.01)

@@ -127,8 +127,8 @@ def test_density_is_missing_or_useless():
 
 def test_instance_object_is_missing_or_the_source_itself():
     sphere()
-    refuse("no object 'Gone' to put on the centres", make_centres=True, instance_object="Gone")
-    refuse("'Sphere' cannot be put on its own centres", make_centres=True, instance_object="Sphere")
+    refuse("no object 'Gone' to put on the centers", make_centers=True, instance_object="Gone")
+    refuse("'Sphere' cannot be put on its own centers", make_centers=True, instance_object="Sphere")
 
 
 def test_attribute_names_that_would_overwrite_something():

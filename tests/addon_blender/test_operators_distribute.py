@@ -80,7 +80,7 @@ def test_instances_stand_where_bent_copies_lie():
         assert away.min() < 0.3 * np.linalg.norm(placed[:3, 0])
 
 
-def test_shapes_of_a_collection_keep_materials_scale_and_centre():
+def test_shapes_of_a_collection_keep_materials_scale_and_center():
     item = host()
     cube, plate = add_shapes()
     cube.data.materials.append(bpy.data.materials.new("Red"))

@@ -10,7 +10,7 @@ from scenes import add_object, fingerprint, grid, grid_arrays, positions, select
 from saddleback_blender import jobs, nodes
 from saddleback_blender.bridge.out_collection import find_output, outputs_of
 
-CELLS, EDGES, CENTRES = "voronoi cells", "voronoi edges", "voronoi centres"
+CELLS, EDGES, CENTERS = "voronoi cells", "voronoi edges", "voronoi centers"
 
 
 def faces(item):
@@ -55,7 +55,7 @@ def unwrapped_cylinder(around=32, along=8):
 
 
 def image(name, pixels):
-    """Grey values (rows, columns), the first row below."""
+    """Gray values (rows, columns), the first row below."""
     made = bpy.data.images.new(name, pixels.shape[1], pixels.shape[0], float_buffer=True)
     rgba = np.repeat(pixels[:, :, None], 4, axis=2).astype(np.float32)
     rgba[:, :, 3] = 1
@@ -137,7 +137,7 @@ def test_heavier_sites_have_larger_cells():
     cells, areas = faces(find_output(item, CELLS))
     heavy = np.bincount(cells, areas)
     assert heavy.sum() == pytest.approx(1, rel=1e-5) and heavy[4] > 1.5 * plain[4]
-    mesh = find_output(item, CELLS).data  # neighbours share the points of their curved edges
+    mesh = find_output(item, CELLS).data  # neighbors share the points of their curved edges
     assert len(mesh.vertices) - len(mesh.edges) + len(mesh.polygons) == 1
     values[4] = 0.5  # its disk holds the others
     dots.data.attributes["size"].data.foreach_set("value", values)
@@ -162,13 +162,13 @@ def test_an_image_draws_sites():
     tones[:, 4:] = 0.25  # dark to the right
     tones[:4, :4] = 1.0
     image("Tones", tones)
-    bpy.ops.saddleback.voronoi_2d(sites_source="IMAGE", image_name="Tones", count=300, iterations=5, make_centres=True)
-    sites = world(find_output(item, CENTRES))
+    bpy.ops.saddleback.voronoi_2d(sites_source="IMAGE", image_name="Tones", count=300, iterations=5, make_centers=True)
+    sites = world(find_output(item, CENTERS))
     assert len(sites) == 300 and (sites[:, 0] > 0.49).all()
     bpy.ops.saddleback.voronoi_2d(
-        sites_source="IMAGE", image_name="Tones", count=200, image_invert=True, make_centres=True
+        sites_source="IMAGE", image_name="Tones", count=200, image_invert=True, make_centers=True
     )
-    sites = world(find_output(item, CENTRES))
+    sites = world(find_output(item, CENTERS))
     assert np.count_nonzero(sites[:, 0] < 0.5) / 200 == pytest.approx(0.8, abs=0.1)
 
 
@@ -205,9 +205,9 @@ def test_an_image_on_the_uv_square():
     tones[:, :2] = 0.0  # a quarter of the way around is dark
     image("Stripe", tones)
     bpy.ops.saddleback.voronoi_2d(
-        space="UV", sites_source="IMAGE", image_name="Stripe", count=50, iterations=4, make_centres=True
+        space="UV", sites_source="IMAGE", image_name="Stripe", count=50, iterations=4, make_centers=True
     )
-    sites = world(find_output(item, CENTRES))
+    sites = world(find_output(item, CENTERS))
     assert (sites[:, 0] > -0.05).all() and (sites[:, 1] > -0.05).all()
 
 
@@ -236,11 +236,11 @@ def test_running_again_replaces_and_clear_removes_everything():
     item = grid(n=2)
     before = fingerprint()
     for _ in range(2):
-        bpy.ops.saddleback.voronoi_2d(count=30, make_centres=True, animate=True)
+        bpy.ops.saddleback.voronoi_2d(count=30, make_centers=True, animate=True)
         assert len(outputs_of(item)) == 6
     bpy.ops.saddleback.tessellate(count=5, iterations=0)
     assert len(outputs_of(item)) == 7  # tessellate's edges have a name of their own
-    bpy.ops.saddleback.voronoi_2d(count=30, make_edges=False, make_centres=False, animate=False)
+    bpy.ops.saddleback.voronoi_2d(count=30, make_edges=False, make_centers=False, animate=False)
     assert {output["saddleback_role"] for output in outputs_of(item)} == {"edges", CELLS}
     bpy.ops.saddleback.clear()
     assert not bpy.data.actions and len(bpy.data.objects) == 1 and not bpy.data.node_groups
@@ -289,18 +289,18 @@ def test_the_sweep_plays_back():
     item = grid(n=2, size=2.0)
     bpy.ops.saddleback.voronoi_2d(count=60, animate=True, frame_start=10, frame_end=69)
     circle, beach, edges = (find_output(item, role) for role in ("sweep circle", "beach curve", "growing edges"))
-    centre = np.array([1.0, 1.0, 0.0])
+    center = np.array([1.0, 1.0, 0.0])
     counts, radii = [], []
     for frame in (10, 25, 40, 55, 69, 90):
         places, count = shown(edges, frame)
         counts.append(count)
         bpy.context.scene.frame_set(frame)
         radii.append(circle.matrix_world.to_scale()[0])
-        assert (np.linalg.norm(places - centre, axis=1) <= radii[-1] + 1e-5).all()
+        assert (np.linalg.norm(places - center, axis=1) <= radii[-1] + 1e-5).all()
         ring = shown(beach, frame)[0][:-256]  # the circle itself comes last
         if frame < 69:
             assert len(ring) in (0, 512)
-            assert (np.linalg.norm(ring - centre, axis=1) <= radii[-1] * (1 + 1 / 60) + 1e-5).all()
+            assert (np.linalg.norm(ring - center, axis=1) <= radii[-1] * (1 + 1 / 60) + 1e-5).all()
     assert counts == sorted(counts) and counts[0] < counts[2] < counts[4] == counts[5] == len(edges.data.edges)
     assert np.diff(radii[:4]).std() < 1e-6  # keyframes are joined by straight lines
     whole = find_output(item, EDGES)

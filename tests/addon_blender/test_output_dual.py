@@ -32,8 +32,8 @@ def test_vertices_lie_on_the_surface_and_faces_look_outwards(place):
     assert radius.max() <= 1 + 1e-6 and radius.min() > 0.95  # within the faces of the ball
     np.testing.assert_allclose(np.array(item.matrix_world), np.array(source.matrix_world), atol=1e-5)
     normals = np.array([polygon.normal for polygon in item.data.polygons])
-    centres = np.array([polygon.center for polygon in item.data.polygons])
-    assert (np.einsum("ij,ij->i", normals, centres) > 0).all()
+    centers = np.array([polygon.center for polygon in item.data.polygons])
+    assert (np.einsum("ij,ij->i", normals, centers) > 0).all()
 
 
 def test_groups_maps_and_attributes_come_along():

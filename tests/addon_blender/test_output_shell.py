@@ -120,7 +120,7 @@ def test_pieces_are_told_and_a_surface_without_lines_is_refused(capfd):
         shell_of(lone, rib_width=1e-5)
 
 
-def test_crossings_are_found_and_neighbours_are_none():
+def test_crossings_are_found_and_neighbors_are_none():
     places = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0.2, 0.2, -1), (0.3, 0.2, 1), (0.2, 0.3, 1)], float)
     triangles = np.array([(0, 1, 2), (1, 3, 2), (4, 5, 6)], np.int32)
     assert {tuple(sorted(pair)) for pair in find_crossings(places, triangles).tolist()} == {(0, 2)}

@@ -19,7 +19,7 @@ from scenes import add_object, grid
 from saddleback_blender import compat, nodes
 from saddleback_blender.bridge.out_attributes import clear_attributes, write_vertex_attributes
 from saddleback_blender.bridge.out_cells import vanished_cells, write_cells
-from saddleback_blender.bridge.out_centres import write_centres
+from saddleback_blender.bridge.out_centers import write_centers
 from saddleback_blender.bridge.out_edges import write_edges
 from saddleback_blender.core.cell_colors import cell_colors
 from saddleback_blender.core.errors import BadInputError
@@ -240,7 +240,7 @@ def test_cells_cover_the_surface_with_the_right_side_out(hard):
 
 
 @pytest.mark.parametrize("gap", [0.02, 0.0])
-def test_every_face_of_a_cell_has_its_color_and_neighbours_differ(gap):
+def test_every_face_of_a_cell_has_its_color_and_neighbors_differ(gap):
     source = sphere_source()
     result = result_of(source)
     mesh = write_cells(bpy.context, source, result, TessellateSettings(gap=gap)).data
@@ -311,14 +311,14 @@ def test_swallowed_cells_are_counted_and_an_empty_mesh_is_no_error():
     assert len(item.data.polygons) == 0
 
 
-# --- centres ----------------------------------------------------------------------------------------------------------
+# --- centers ----------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("hard", [False, True])
-def test_centres_carry_cell_area_normal_and_size(hard):
+def test_centers_carry_cell_area_normal_and_size(hard):
     source = sphere_source(place=HARD_PLACE if hard else None)
     result = result_of(source)
-    item = write_centres(bpy.context, source, result, TessellateSettings())
+    item = write_centers(bpy.context, source, result, TessellateSettings())
     bpy.context.view_layer.update()
     mesh = item.data
     assert (len(mesh.vertices), len(mesh.edges), len(item.modifiers)) == (25, 0, 0)
@@ -332,12 +332,12 @@ def test_centres_carry_cell_area_normal_and_size(hard):
 
 
 @pytest.mark.parametrize("hard", [False, True])
-def test_instances_stand_upright_on_every_centre_in_the_size_of_the_cell(hard):
+def test_instances_stand_upright_on_every_center_in_the_size_of_the_cell(hard):
     source = sphere_source(place=HARD_PLACE if hard else None)
     cone = add_object("Cone", [(-1, -1, 0), (1, -1, 0), (0, 1, 0), (0, 0, 2)], [(0, 1, 2), (0, 1, 3)], active=False)
     cone.matrix_world = HARD_PLACE  # its own place and scale do not matter
     result = result_of(source)
-    item = write_centres(bpy.context, source, result, TessellateSettings(instance_object="Cone", instance_scale=0.5))
+    item = write_centers(bpy.context, source, result, TessellateSettings(instance_object="Cone", instance_scale=0.5))
     found = instances_of(item)
     assert len(found) == 25
     size = 0.5 * np.sqrt(result.cell_area / np.pi)
@@ -355,19 +355,19 @@ def test_another_object_takes_the_place_of_the_first_and_none_leaves_points():
     for name in ("One", "Two"):
         add_object(name, [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], active=False)
     for name in ("One", "Two"):
-        item = write_centres(bpy.context, source, result, TessellateSettings(instance_object=name))
+        item = write_centers(bpy.context, source, result, TessellateSettings(instance_object=name))
         assert {instanced.name for _, instanced in instances_of(item)} == {name}
         assert len(item.modifiers) == len(bpy.data.node_groups) == 1
-    item = write_centres(bpy.context, source, result, TessellateSettings())
+    item = write_centers(bpy.context, source, result, TessellateSettings())
     assert (len(item.modifiers), len(bpy.data.node_groups)) == (0, 0)
     assert instances_of(item) == []
 
 
-def test_what_cannot_stand_on_the_centres_is_refused():
+def test_what_cannot_stand_on_the_centers_is_refused():
     source = sphere_source()
     result = result_of(source)
     with pytest.raises(BadInputError, match="no object 'Nobody'"):
-        write_centres(bpy.context, source, result, TessellateSettings(instance_object="Nobody"))
-    item = write_centres(bpy.context, source, result, TessellateSettings())
-    with pytest.raises(BadInputError, match="holds the centres themselves"):
-        write_centres(bpy.context, source, result, TessellateSettings(instance_object=item.name))
+        write_centers(bpy.context, source, result, TessellateSettings(instance_object="Nobody"))
+    item = write_centers(bpy.context, source, result, TessellateSettings())
+    with pytest.raises(BadInputError, match="holds the centers themselves"):
+        write_centers(bpy.context, source, result, TessellateSettings(instance_object=item.name))

@@ -10,7 +10,7 @@ from scenes import add_object, fingerprint
 from saddleback_blender import nodes
 from saddleback_blender.bridge.out_attributes import write_vertex_attributes
 from saddleback_blender.bridge.out_cells import write_cells
-from saddleback_blender.bridge.out_centres import write_centres
+from saddleback_blender.bridge.out_centers import write_centers
 from saddleback_blender.bridge.out_collection import clear_outputs, find_output, outputs_of, remove_output
 from saddleback_blender.bridge.out_edges import write_edges
 from saddleback_blender.core.settings import TessellateSettings
@@ -32,7 +32,7 @@ def write_all(source, count=25, settings=SETTINGS):
     made = [
         write_edges(bpy.context, source, result, settings),
         write_cells(bpy.context, source, result, settings),
-        write_centres(bpy.context, source, result, settings),
+        write_centers(bpy.context, source, result, settings),
     ]
     bpy.context.view_layer.update()
     return made
@@ -55,9 +55,9 @@ def test_a_second_run_replaces_and_piles_nothing_up():
     first = [item.name for item in write_all(source)]
     before = counts()
     second = write_all(source, count=12)
-    assert [item.name for item in second] == first == ["Ball Edges", "Ball Cells", "Ball Centres"]
+    assert [item.name for item in second] == first == ["Ball Edges", "Ball Cells", "Ball Centers"]
     assert counts() == before
-    assert len(find_output(source, "centres").data.vertices) == 12
+    assert len(find_output(source, "centers").data.vertices) == 12
     assert sorted(mesh.name for mesh in bpy.data.meshes) == ["Ball", *sorted(first), "Seed"]
 
 
@@ -93,7 +93,7 @@ def test_two_sources_do_not_fight():
     first, second = write_all(one), write_all(two)
     assert not set(first) & set(second)
     write_all(one, count=8)
-    assert [len(find_output(s, "centres").data.vertices) for s in (one, two)] == [8, 25]
+    assert [len(find_output(s, "centers").data.vertices) for s in (one, two)] == [8, 25]
     clear_outputs(bpy.context, one)
     assert set(outputs_of(two)) == set(second)
 
@@ -143,7 +143,7 @@ def test_renaming_everything_and_reopening_changes_nothing(tmp_path):
     bpy.ops.wm.open_mainfile(filepath=path)
     before = counts()
     source = bpy.data.objects["My Ball"]
-    assert {item.name for item in outputs_of(source)} == {"My edges", "My cells", "My centres"}
+    assert {item.name for item in outputs_of(source)} == {"My edges", "My cells", "My centers"}
     write_all(source, count=11)
     assert sorted(item.name for item in bpy.data.objects) == names
     assert counts() == before
@@ -153,7 +153,7 @@ def test_renaming_everything_and_reopening_changes_nothing(tmp_path):
 
 def test_what_the_artist_added_survives_a_run():
     source = sphere_source()
-    edges, cells, centres = write_all(source)
+    edges, cells, centers = write_all(source)
     gold = bpy.data.materials.new("Gold")
     cells.data.materials[0] = gold
     cells.data.materials.append(bpy.data.materials.new("Second"))
@@ -163,14 +163,14 @@ def test_what_the_artist_added_survives_a_run():
     edges.modifiers.new("Smooth", "SMOOTH")
     shelf = bpy.data.collections.new("Shelf")
     bpy.context.scene.collection.children.link(shelf)
-    shelf.objects.link(centres)
-    bpy.data.collections["Saddleback"].objects.unlink(centres)
+    shelf.objects.link(centers)
+    bpy.data.collections["Saddleback"].objects.unlink(centers)
     write_all(source, count=9)
     assert [material.name for material in cells.data.materials] == ["Gold", "Second"]
     assert cells.modifiers["Bevel"].width == 0.125
     assert cells["price"] == 12 and cells.hide_render
     assert [modifier.name for modifier in edges.modifiers] == ["Saddleback Tubes", "Smooth"]
-    assert list(shelf.objects) == [centres] and centres.users_collection == (shelf,)
+    assert list(shelf.objects) == [centers] and centers.users_collection == (shelf,)
 
 
 def test_an_output_follows_its_source_and_keeps_the_artists_move():
@@ -193,10 +193,10 @@ def test_runs_after_moves_and_scales_of_the_source_fit_exactly():
     for place in (Matrix.Translation((1, 2, 3)), Matrix.Diagonal((3, 1, 0.5, 1)), Matrix.Rotation(1.0, 4, (1, 1, 0))):
         source.matrix_world = place @ source.matrix_world
         bpy.context.view_layer.update()
-        _, _, centres = write_all(source)
+        _, _, centers = write_all(source)
         wanted = result_of(source).sites_position
-        np.testing.assert_allclose(world_positions(centres), wanted, atol=2e-5)
-        assert centres.matrix_world.to_scale()[:] == pytest.approx((1, 1, 1), abs=1e-5)
+        np.testing.assert_allclose(world_positions(centers), wanted, atol=2e-5)
+        assert centers.matrix_world.to_scale()[:] == pytest.approx((1, 1, 1), abs=1e-5)
 
 
 def test_deleting_the_source_leaves_the_outputs_where_they_are():
@@ -254,7 +254,7 @@ def test_one_output_can_be_taken_away_alone():
     write_all(source)
     assert remove_output(source, "cells")
     assert not remove_output(source, "cells")
-    assert sorted(item["saddleback_role"] for item in outputs_of(source)) == ["centres", "edges"]
+    assert sorted(item["saddleback_role"] for item in outputs_of(source)) == ["centers", "edges"]
 
 
 def test_an_output_that_the_artist_deleted_is_made_again():

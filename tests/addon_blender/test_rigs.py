@@ -74,9 +74,9 @@ def test_sites_of_a_hidden_object_are_where_its_parent_and_modifiers_put_them(ho
         assert [one.name for one in shown][1] == "Grid"
         np.testing.assert_allclose(shown[0].matrix_world.translation, (0.25, 0.5, 0), atol=1e-6)
     assert before == {kind: len(getattr(bpy.data, kind)) for kind in ("objects", "meshes")}
-    bpy.ops.saddleback.tessellate(sites_source="OBJECT", sites_object="Dots", iterations=0, make_centres=True)
-    centres = world_of(find_output(item, "centres"))
-    np.testing.assert_allclose(centres, [(0.25, 0.5, 0), (0.5, 0.5, 0), (0.75, 0.5, 0)], atol=1e-5)
+    bpy.ops.saddleback.tessellate(sites_source="OBJECT", sites_object="Dots", iterations=0, make_centers=True)
+    centers = world_of(find_output(item, "centers"))
+    np.testing.assert_allclose(centers, [(0.25, 0.5, 0), (0.5, 0.5, 0), (0.75, 0.5, 0)], atol=1e-5)
 
 
 @pytest.mark.parametrize("how", HOW)
@@ -156,8 +156,8 @@ def test_groups_are_known_by_name_where_nodes_number_them_anew(other_first):
     item.modifiers.new("Join", "NODES").node_group = joining_group(hat, other_first)
     activate(item)
     settings = {"density_source": "VERTEX_GROUP", "density_name": "Density", "use_modifiers": True}
-    bpy.ops.saddleback.tessellate(count=60, make_centres=True, make_dual=True, **settings)
-    height = world_of(find_output(item, "centres"))[:, 2]
+    bpy.ops.saddleback.tessellate(count=60, make_centers=True, make_dual=True, **settings)
+    height = world_of(find_output(item, "centers"))[:, 2]
     height = height[height < 2]
     assert (height > -0.1).all() and len(height) > 50
     with pytest.raises(RuntimeError, match="no vertex group 'Gone'"):
@@ -275,12 +275,12 @@ def test_a_linked_object_is_not_taken_for_a_local_one_of_its_name(tmp_path):
     item = sphere("Body", 2)
     item.saddleback.tessellate.instance_object = linked
     for _ in range(2):
-        bpy.ops.saddleback.tessellate(count=5, make_centres=True)
+        bpy.ops.saddleback.tessellate(count=5, make_centers=True)
         shown = {
             len(i.object.data.vertices) for i in bpy.context.evaluated_depsgraph_get().object_instances if i.is_instance
         }
         assert shown == {16} and item.saddleback.tessellate.instance_object == linked
-    bpy.ops.saddleback.tessellate(count=5, make_centres=True, instance_object="Seed")
+    bpy.ops.saddleback.tessellate(count=5, make_centers=True, instance_object="Seed")
     assert item.saddleback.tessellate.instance_object.library is None
 
 
@@ -317,7 +317,7 @@ def test_an_override_keeps_its_settings_and_outputs(tmp_path):
     activate(body)
     assert body.override_library is not None
     add_object("Seed", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], active=False)
-    bpy.ops.saddleback.tessellate(count=7, make_centres=True, instance_object="Seed")
+    bpy.ops.saddleback.tessellate(count=7, make_centers=True, instance_object="Seed")
     path = str(tmp_path / "shot.blend")
     for count in (7, 7, 9):
         bpy.ops.wm.save_as_mainfile(filepath=path)
@@ -328,7 +328,7 @@ def test_an_override_keeps_its_settings_and_outputs(tmp_path):
         assert body.saddleback.tessellate.instance_object == bpy.data.objects["Seed"]
         bpy.ops.saddleback.tessellate(**({} if count == 7 else {"count": count}))
         names = sorted(item.name for item in bpy.data.objects if "saddleback_role" in item)
-        assert names == ["Body Centres", "Body Edges", "Body Surface"][: 3 if count == 7 else 0] or count == 9
+        assert names == ["Body Centers", "Body Edges", "Body Surface"][: 3 if count == 7 else 0] or count == 9
     assert bpy.ops.saddleback.clear() == {"FINISHED"}
     assert not [item for item in bpy.data.objects if "saddleback_role" in item]
 
@@ -463,11 +463,11 @@ def test_each_part_of_the_surface_is_painted_by_its_tile(tmp_path, is_packed):
         for file in tmp_path.glob("d.*.png"):
             file.unlink()
     activate(item)
-    settings = {"density_source": "IMAGE", "density_image": "Paint", "count": 100, "make_centres": True}
+    settings = {"density_source": "IMAGE", "density_image": "Paint", "count": 100, "make_centers": True}
     images = len(bpy.data.images)
     bpy.ops.saddleback.tessellate(**settings)
     assert len(bpy.data.images) == images
-    right = (world_of(find_output(item, "centres"))[:, 0] > 1).sum()
+    right = (world_of(find_output(item, "centers"))[:, 0] > 1).sum()
     assert right > 85
     layer.data.foreach_set("uv", (places * [1, 0.5] + [0, 2]).astype(np.float32).ravel())
     with pytest.raises(RuntimeError, match="has no tile 10"):

@@ -86,8 +86,8 @@ def test_gap_on_square_cells_leaves_squares() -> None:
     for gap in (0.1, 0.35):
         mesh = build_cell_mesh(vertices, triangles, cell, CellShape(gap=gap))
         # Interpolation rounds each corner over one mesh square at most, of side 1/40.
-        centre = cell_areas(mesh, 9)[4]
-        assert (1 - gap) ** 2 - 4 / 40**2 <= centre <= (1 - gap) ** 2 + 1e-12
+        center = cell_areas(mesh, 9)[4]
+        assert (1 - gap) ** 2 - 4 / 40**2 <= center <= (1 - gap) ** 2 + 1e-12
 
 
 def test_distance_is_the_distance_to_the_own_boundary() -> None:

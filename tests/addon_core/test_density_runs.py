@@ -1,4 +1,4 @@
-"""Densities that are computed: from curvature, from curves, from a few painted places; and colours of images."""
+"""Densities that are computed: from curvature, from curves, from a few painted places; and colors of images."""
 
 import meshes_of_core as shapes
 import numpy as np

@@ -49,7 +49,7 @@ def test_shapes_are_laid_bent_and_framed():
     assert set(bent.polygon_copy) == set(range(60)) and bent.offsets[-1] == len(bent.corners) == len(bent.uv)
     radius = np.linalg.norm(bent.vertices, axis=1)
     assert radius.min() > 0.98 and radius.max() > 1.02
-    # Faces look outwards, and each copy stays about its centre.
+    # Faces look outwards, and each copy stays about its center.
     first = bent.vertices[bent.corners[bent.offsets[:-1]]]
     second, third = (bent.vertices[bent.corners[bent.offsets[:-1] + i]] for i in (1, 2))
     outwards = (np.cross(second - first, third - first) * first).sum(axis=1)

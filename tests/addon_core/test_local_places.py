@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from saddleback_blender.core.centres import euler_to_normal
+from saddleback_blender.core.centers import euler_to_normal
 from saddleback_blender.core.local_places import _axes, local_uv
 
 

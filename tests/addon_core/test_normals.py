@@ -16,8 +16,8 @@ OCTAHEDRON = (
 def test_vertex_and_face_normals_of_an_octahedron():
     vertices, triangles = OCTAHEDRON
     faces = np.arange(8, dtype=np.int32)
-    centres = normals_at(vertices, triangles, faces, np.full((8, 3), 1 / 3))
-    np.testing.assert_allclose(centres, vertices[triangles].sum(axis=1) / np.sqrt(3), atol=1e-12)
+    centers = normals_at(vertices, triangles, faces, np.full((8, 3), 1 / 3))
+    np.testing.assert_allclose(centers, vertices[triangles].sum(axis=1) / np.sqrt(3), atol=1e-12)
     corners = normals_at(vertices, triangles, faces, np.tile([0.0, 1.0, 0.0], (8, 1)))
     np.testing.assert_allclose(corners, vertices[triangles[:, 1]], atol=1e-12)
 

@@ -1,4 +1,4 @@
-"""Line networks, colours and turns: what the output objects are made of."""
+"""Line networks, colors and turns: what the output objects are made of."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from saddleback_blender.core.cell_colors import ALIKE, cell_colors, oklab_to_linear_rgb
-from saddleback_blender.core.centres import cell_size, euler_to_normal
+from saddleback_blender.core.centers import cell_size, euler_to_normal
 from saddleback_blender.core.edge_network import EdgeNetwork, edge_network, long_lines
 from tests import synthetic_cells
 from tests.synthetic_cells import SplitCells, split_cells
@@ -108,15 +108,15 @@ def test_long_lines_are_fewer_and_go_straight_on() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 25, 200])
 def test_colors_are_stable_and_within_the_gamut(count: int) -> None:
-    neighbours = np.random.default_rng(0).integers(0, count, (3 * count, 2)).astype(np.int32)
-    colors = cell_colors(count, neighbours)
+    neighbors = np.random.default_rng(0).integers(0, count, (3 * count, 2)).astype(np.int32)
+    colors = cell_colors(count, neighbors)
     assert colors.shape == (count, 3)
     assert colors.min() >= 0
     assert colors.max() <= 1
-    np.testing.assert_array_equal(colors, cell_colors(count, neighbours))
+    np.testing.assert_array_equal(colors, cell_colors(count, neighbors))
 
 
-def test_neighbours_have_different_colors() -> None:
+def test_neighbors_have_different_colors() -> None:
     cells = voronoi(4, 150)
     colors = cell_colors(150, cells.edge_cells)
     a, b = (colors[cells.edge_cells[:, i]] for i in range(2))

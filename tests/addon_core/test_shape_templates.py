@@ -1,4 +1,4 @@
-"""Shapes that come with the add-on, outlines from loops and masks, colours and turns of copies."""
+"""Shapes that come with the add-on, outlines from loops and masks, colors and turns of copies."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_sizes_make_classes_smaller_whole():
     assert shrunk.scale == pytest.approx(small.scale * small.size) and large.share < small.share
 
 
-def test_a_template_has_radius_one_about_its_centre():
+def test_a_template_has_radius_one_about_its_center():
     template = fitted("Square", [[SQUARE]], np.array([0.5, 0.5]))
     (loop,) = template.parts[0]
     np.testing.assert_allclose(np.linalg.norm(loop, axis=1), 1)

@@ -133,10 +133,10 @@ def test_no_cells_at_all():
 
 
 def test_darkness_is_missing_light():
-    grey = np.array([[[0, 0, 0, 1], [1, 1, 1, 1], [0.5, 0.5, 0.5, 1], [0, 0, 0, 0.25]]], np.float32)
-    np.testing.assert_allclose(darkness(grey, False, False), [[1, 0, 0.5, 0.25]], atol=1e-6)
-    np.testing.assert_allclose(darkness(grey, False, True), [[0, 1, 0.5, 0]], atol=1e-6)
-    assert darkness(grey, True, False)[0, 2] == pytest.approx(1 - 0.2140, abs=1e-3)
+    gray = np.array([[[0, 0, 0, 1], [1, 1, 1, 1], [0.5, 0.5, 0.5, 1], [0, 0, 0, 0.25]]], np.float32)
+    np.testing.assert_allclose(darkness(gray, False, False), [[1, 0, 0.5, 0.25]], atol=1e-6)
+    np.testing.assert_allclose(darkness(gray, False, True), [[0, 1, 0.5, 0]], atol=1e-6)
+    assert darkness(gray, True, False)[0, 2] == pytest.approx(1 - 0.2140, abs=1e-3)
 
 
 def test_large_images_are_averaged():
@@ -161,15 +161,15 @@ def test_the_sweep_uncovers_what_the_circle_has_passed():
     surface = shapes.grid(6)
     result = voronoi_2d(surface, count=80, animate=True, frame_start=1, frame_end=40)
     sweep, sites = result.sweep, result.cells.sites_position
-    centre = sweep.centre
+    center = sweep.center
     nearest = np.linalg.norm(sweep.edge_vertices[:, None] - sites, axis=2).min(axis=1)
-    np.testing.assert_allclose(sweep.edge_radius, nearest + np.linalg.norm(sweep.edge_vertices - centre, axis=1))
+    np.testing.assert_allclose(sweep.edge_radius, nearest + np.linalg.norm(sweep.edge_vertices - center, axis=1))
     assert sweep.rings.shape == (40, 512, 3) and sweep.last_radius == sweep.edge_radius.max()
     for number in (9, 24, 39):
         radius = sweep.last_radius * (number + 1) / 40
         ring = sweep.rings[number]
         near = np.linalg.norm(ring[:, None] - sites, axis=2).min(axis=1)
-        np.testing.assert_allclose(near + np.linalg.norm(ring - centre, axis=1), radius, rtol=1e-9)
+        np.testing.assert_allclose(near + np.linalg.norm(ring - center, axis=1), radius, rtol=1e-9)
     steps = np.linalg.norm(np.diff(sweep.edge_vertices[sweep.edges], axis=1)[:, 0], axis=1)
     assert steps.max() < 1.2 * np.ptp(surface.vertices, axis=0).max() / 150
 
@@ -181,13 +181,13 @@ def test_heavier_sites_are_met_earlier():
     given = {"sites": sites, "weights": weights}
     sweep = voronoi_2d(shapes.grid(6), given=given, sites_source="OBJECT", animate=True, frame_end=30).sweep
     near = (np.linalg.norm(sweep.edge_vertices[:, None] - sites, axis=2) - weights).min(axis=1)
-    passed = near + np.linalg.norm(sweep.edge_vertices - sweep.centre, axis=1)
+    passed = near + np.linalg.norm(sweep.edge_vertices - sweep.center, axis=1)
     # Between the corners of their polylines curved edges lie beside them.
     np.testing.assert_allclose(sweep.edge_radius, passed, atol=2e-3)
     ring = sweep.rings[19]
     near = (np.linalg.norm(ring[:, None] - sites, axis=2) - weights).min(axis=1)
     np.testing.assert_allclose(
-        near + np.linalg.norm(ring - sweep.centre, axis=1), 20 / 30 * sweep.last_radius, rtol=1e-9
+        near + np.linalg.norm(ring - sweep.center, axis=1), 20 / 30 * sweep.last_radius, rtol=1e-9
     )
 
 

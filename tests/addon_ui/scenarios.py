@@ -228,10 +228,10 @@ def divided(screen):
     quads = [(r * 5 + c, r * 5 + c + 1, r * 5 + c + 6, r * 5 + c + 5) for r in range(4) for c in range(4)]
     sheet = add_object("Sheet", np.column_stack([places, np.zeros(25)]), quads)
     settings = sheet.saddleback.voronoi_2d
-    settings.animate = settings.make_centres = True
+    settings.animate = settings.make_centers = True
     choices = [("UV", "IMAGE"), ("DISK", "SELECTED"), ("OUTLINE", "OBJECT"), ("OUTLINE", "COUNT")]
     for settings.space, settings.sites_source in choices:
-        for panel in ("voronoi_2d", "plane_edges", "plane_cells", "plane_centres", "sweep"):
+        for panel in ("voronoi_2d", "plane_edges", "plane_cells", "plane_centers", "sweep"):
             with screen.override():
                 bpy.ops.wm.call_panel(name=f"SADDLEBACK_PT_{panel}", keep_open=False)
             yield 4 * FRAME

@@ -121,7 +121,7 @@ def test_plane_diagrams_are_made_through_the_window(report):
     result = seen(report, "divided")
     assert "'Sheet': 200 cells" in result["line"]
     assert result["roles"] == [
-        "beach curve", "growing edges", "sweep circle", "voronoi cells", "voronoi centres", "voronoi edges",
+        "beach curve", "growing edges", "sweep circle", "voronoi cells", "voronoi centers", "voronoi edges",
     ]  # fmt: skip
 
 

@@ -63,7 +63,7 @@ def closed_forms() -> None:
     mesh, rng = sb.Mesh(*meshes.grid(300, 300)), np.random.default_rng(0)
     for name, sources in (
         ("corner", [0]),
-        ("centre", [150 * 300 + 150]),
+        ("center", [150 * 300 + 150]),
         ("random vertices", rng.integers(len(mesh.vertices), size=3).tolist()),
     ):
         errors = [

@@ -139,10 +139,10 @@ def check_maps() -> None:
     for name, arrays in (("plane", meshes.grid(60, 60, 0.3)), ("plane, needles", meshes.needles())):
         mesh = sb.Mesh(*arrays)
         graph = sb.SaddleVertexGraph(mesh, k=3)
-        centre = sb.SurfacePoints([len(mesh.triangles) // 2], [[0.2, 0.3, 0.5]])
-        flat = (mesh.vertices - centre.positions(mesh))[:, :2]
-        row(f"log map, {name}", f"{plane_error(graph.log_map(centre, np.inf).uv, flat):.1e}", bar)
-        line = sb.trace(mesh, centre, [1.0, 0.0, 0.0], 0.3)
+        center = sb.SurfacePoints([len(mesh.triangles) // 2], [[0.2, 0.3, 0.5]])
+        flat = (mesh.vertices - center.positions(mesh))[:, :2]
+        row(f"log map, {name}", f"{plane_error(graph.log_map(center, np.inf).uv, flat):.1e}", bar)
+        line = sb.trace(mesh, center, [1.0, 0.0, 0.0], 0.3)
         found = sb.polar_coordinates(graph, line, np.inf)
         along = np.clip(flat[:, 0], 0, line.length)
         side = np.hypot(flat[:, 0] - along, flat[:, 1]) * np.sign(flat[:, 1])
@@ -220,18 +220,18 @@ def check_inverse(folder: Path) -> None:
         mesh = sb.read_mesh(folder / f"{name}.ply")
         rng = np.random.default_rng(2)
         worst, count = 0.0, 0
-        for centre in random_points(mesh, 10, seed=3):
-            exact = sb.ExactField(mesh, centre)
+        for center in random_points(mesh, 10, seed=3):
+            exact = sb.ExactField(mesh, center)
             uv = rng.normal(size=(6, 2)) * 4 * mesh.mean_edge_length
-            ends = sb.exp_map(mesh, centre, uv)
+            ends = sb.exp_map(mesh, center, uv)
             for vector, end in zip(uv, ends, strict=True):
                 length = float(np.linalg.norm(vector))
-                if end.faces[0] == centre.faces[0] or abs(exact.distance_to(end)[0] / length - 1) > 1e-9:
+                if end.faces[0] == center.faces[0] or abs(exact.distance_to(end)[0] / length - 1) > 1e-9:
                     continue
                 cut = with_vertex_at(mesh, end)
-                face = int(np.flatnonzero((cut.triangles == mesh.triangles[centre.faces[0]]).all(axis=1))[0])
+                face = int(np.flatnonzero((cut.triangles == mesh.triangles[center.faces[0]]).all(axis=1))[0])
                 found = sb.SaddleVertexGraph(cut, k=3).log_map(
-                    sb.SurfacePoints([face], centre.barycentric), 1.01 * length
+                    sb.SurfacePoints([face], center.barycentric), 1.01 * length
                 )
                 there = found.uv[found.vertices == len(mesh.vertices)][0]
                 worst = max(worst, float(np.linalg.norm(there - vector)) / length)

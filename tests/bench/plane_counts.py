@@ -1,7 +1,7 @@
 """Vertices and edges of plane diagrams by CGAL's count: `python -m tests.bench plane_counts [LARGEST [KIND...]]`; 1e6.
 
 For every kind of sites and 1,000 to LARGEST of them: `voronoi_2d` by as many circles as are good and by a single one,
-and the visible sweep circle from a centre among the sites and from one outside, event by event, where triangles on one
+and the visible sweep circle from a center among the sites and from one outside, event by event, where triangles on one
 circle are taken together by the exact predicate. Needs a compiler and CGAL's headers (Debian: g++, libcgal-dev).
 """
 
@@ -20,9 +20,9 @@ from tests.bench.voronoi_2d import KINDS, build_peers, plane_sites, run_peers
 Counts = list[int]
 
 
-def swept_counts(sites: plane_sites.Points, centre: plane_sites.Points) -> Counts:
+def swept_counts(sites: plane_sites.Points, center: plane_sites.Points) -> Counts:
     """Vertices and edges of one sweep, whose events come in an order that is rounded."""
-    sweep, found = sb.SweepCircle(sites, centre), []
+    sweep, found = sb.SweepCircle(sites, center), []
     while (event := sweep.step()) is not None:
         if event.kind == "vanish":
             found.append(event.sites)
@@ -35,7 +35,7 @@ def swept_counts(sites: plane_sites.Points, centre: plane_sites.Points) -> Count
     a, b = halves[once].T
     signs = predicates.in_circle(*(sites[i] for i in (a, b, opposite[once], opposite[twin[once]])))
     if (signs > 0).any():
-        print(f"  from {centre}: {np.count_nonzero(signs > 0)} edges are not Delaunay's, by rounding", flush=True)
+        print(f"  from {center}: {np.count_nonzero(signs > 0)} edges are not Delaunay's, by rounding", flush=True)
     flat = np.count_nonzero(signs == 0)
     edges = len(key) - np.count_nonzero(key[twin] == twin_key) // 2
     return [len(triangles) - flat, edges - flat]
@@ -43,12 +43,12 @@ def swept_counts(sites: plane_sites.Points, centre: plane_sites.Points) -> Count
 
 def all_counts(sites: plane_sites.Points) -> dict[str, Counts]:
     low, high = sites.min(axis=0), sites.max(axis=0)
-    centres = {"centre inside": low + [0.4, 0.6] * (high - low), "centre outside": low + [3.0, -2.0] * (high - low)}
+    centers = {"center inside": low + [0.4, 0.6] * (high - low), "center outside": low + [3.0, -2.0] * (high - low)}
     result = {}
     for circles in (0, 1):
         diagram = sb.voronoi_2d(sites, circles=circles)
         result[f"circles={circles}"] = [len(diagram.vertices), len(diagram.edges)]
-    return result | {name: swept_counts(sites, centre) for name, centre in centres.items()}
+    return result | {name: swept_counts(sites, center) for name, center in centers.items()}
 
 
 def main(arguments: list[str]) -> int:

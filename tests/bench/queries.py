@@ -72,11 +72,11 @@ def labels(mesh: sb.Mesh, graph: sb.SaddleVertexGraph) -> Iterator[tuple[str, st
         exact, label = algorithm.geodesicDistances(sources)
         ratio = (time.process_time() - start) / seconds
         yield f"nearest of {count}: ms (x pygeodesic)", f"{1e3 * seconds:.2f} ({ratio:.0f})"
-        other, wrong = mislabelled(mesh, sources, graph.nearest(sources)[1], np.array(exact), np.array(label))
+        other, wrong = mislabeled(mesh, sources, graph.nearest(sources)[1], np.array(exact), np.array(label))
         yield "  labels not pygeodesic's, wrong", f"{other}, {wrong}"
 
 
-def mislabelled(
+def mislabeled(
     mesh: sb.Mesh, sources: np.ndarray, found: np.ndarray, exact: np.ndarray, label: np.ndarray
 ) -> tuple[int, int]:
     """Vertices with another label than the exact one, and those of them whose source is farther by over ACCURACY."""

@@ -79,7 +79,7 @@ def ours(mesh: sb.Mesh, cells: int) -> Iterator[str]:
         vertices, triangles, issues = relaxed.cells.dual("strict")
         steps = f"{annealing} + {relaxed.iterations}" if annealing else f"{relaxed.iterations}"
         moved = f", {relaxed.exchanged} moved" if relaxed.exchanged else ""
-        name = f"{method}, {steps} steps, E {relaxed.normalised_energy:.4f}{moved}"
+        name = f"{method}, {steps} steps, E {relaxed.normalized_energy:.4f}{moved}"
         yield row(name, mesh, seconds, annealing + relaxed.iterations + 1, vertices, triangles)
         if issues:
             yield f"  {len(issues)} issues, first: {issues[0]}"

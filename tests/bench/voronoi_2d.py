@@ -2,7 +2,7 @@
 
 Processor nanoseconds per site, medians over fresh sites in every repetition (the same ones again would train the
 branch predictor), beside CGAL's, Boost.Polygon's and SciPy's in the same run; numbers of vertices and edges against
-CGAL's (`plane_counts` does that for all sizes, kinds and centres); then nanoseconds by the kind of sites, and the
+CGAL's (`plane_counts` does that for all sizes, kinds and centers); then nanoseconds by the kind of sites, and the
 growth of memory; then the same for weighted sites beside CGAL's Apollonius graph, hidden sites and all. CGAL
 and Boost need a compiler and their headers (Debian: g++, libcgal-dev); without them their columns stay empty.
 """

@@ -20,12 +20,12 @@ def exact_distances(mesh: sb.Mesh, vertex: int) -> NDArray[np.float64]:
 
 def with_vertex_at(mesh: sb.Mesh, point: sb.SurfacePoints) -> sb.Mesh:
     """The mesh with one face cut in three, so that a surface point becomes the last vertex."""
-    face, centre = int(point.faces[0]), len(mesh.vertices)
+    face, center = int(point.faces[0]), len(mesh.vertices)
     a, b, c = mesh.triangles[face]
     triangles = np.delete(mesh.triangles, face, axis=0)
     return sb.Mesh(
         np.vstack([mesh.vertices, point.positions(mesh)]),
-        np.vstack([triangles, [[a, b, centre], [b, c, centre], [c, a, centre]]]),
+        np.vstack([triangles, [[a, b, center], [b, c, center], [c, a, center]]]),
     )
 
 

@@ -18,8 +18,8 @@ def uniform(n: int, rng: np.random.Generator) -> Points:
 
 
 def clusters(n: int, rng: np.random.Generator) -> Points:
-    centres = rng.random((min(100, n), 2))
-    return centres[rng.integers(len(centres), size=n)] + rng.normal(size=(n, 2)) * 0.003
+    centers = rng.random((min(100, n), 2))
+    return centers[rng.integers(len(centers), size=n)] + rng.normal(size=(n, 2)) * 0.003
 
 
 def circle(n: int, rng: np.random.Generator) -> Points:

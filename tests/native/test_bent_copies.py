@@ -20,7 +20,7 @@ SHAPES = [sb.Shape.disk(24), sb.Shape.star(5), sb.Shape.leaf()]
 
 
 def flat(shape: sb.Shape) -> Solid:
-    """A fan about the centre."""
+    """A fan about the center."""
     outline = shape.loops[0]
     count = len(outline)
     vertices = np.zeros((count + 1, 3))
@@ -153,9 +153,9 @@ def test_a_crease_splits_edges_where_they_cross_it() -> None:
     vertices = np.array([(x, max(y, 0), max(-y, 0)) for y in (-2.0, 0.0, 2.0) for x in (-2.0, 0.0, 2.0)])
     faces = [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (3, 4, 7), (3, 7, 6), (4, 5, 8), (4, 8, 7)]
     mesh = sb.Mesh(vertices, np.array(faces))
-    centre = sb.project(mesh, [[0.1, 0.3, 0.0]])
+    center = sb.project(mesh, [[0.1, 0.3, 0.0]])
     shape = sb.Shape([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-    mapped = sb.map_shapes(mesh, shape, sb.Placements([0], centre, [0.0], [0.9]))
+    mapped = sb.map_shapes(mesh, shape, sb.Placements([0], center, [0.0], [0.9]))
     square = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0.0)]), np.array([(0, 1, 2), (0, 2, 3)])
     bent = mapped.bend([square], 1e-3)
     assert 4 < len(bent.vertices) < 12

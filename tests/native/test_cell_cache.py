@@ -95,7 +95,7 @@ def test_sites_that_hardly_move_rest() -> None:
     steps = np.linalg.norm(free.sites.positions(mesh) - run.sites.positions(mesh), axis=1)
     assert (steps < 2 * least * np.sqrt(run.cells.areas)).all()
     all_move = sb.centroidal_voronoi(graph, sites=sites, max_iterations=40)
-    assert run.normalised_energy == pytest.approx(all_move.normalised_energy, rel=2e-3)
+    assert run.normalized_energy == pytest.approx(all_move.normalized_energy, rel=2e-3)
 
 
 def test_when_all_rest_the_run_ends() -> None:

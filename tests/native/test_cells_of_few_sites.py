@@ -69,9 +69,9 @@ def test_what_is_hidden_behind_short_edges_is_not_nearer(shrunk: float) -> None:
     for seed in range(6):
         rough = rough_torus(13, 8, seed)
         vertices, triangles = rough.vertices.copy(), rough.triangles
-        centre = vertices[seed].copy()
-        near = np.linalg.norm(vertices - centre, axis=1) < 0.8
-        vertices[near] = centre + shrunk * (vertices[near] - centre)
+        center = vertices[seed].copy()
+        near = np.linalg.norm(vertices - center, axis=1) < 0.8
+        vertices[near] = center + shrunk * (vertices[near] - center)
         mesh = sb.Mesh(vertices, triangles)
         graph, accuracy = any_graph(mesh)
         check_vertices(mesh, graph, sb.sample(mesh, 5, seed=seed), accuracy)

@@ -45,8 +45,8 @@ def test_lbfgs_comes_as_far_in_a_third_of_the_steps() -> None:
     slow = sb.centroidal_voronoi(graph, count=120, max_iterations=60, tolerance=0, method="lloyd")
     fast = sb.centroidal_voronoi(graph, count=120, max_iterations=20, tolerance=0, method="lbfgs")
     assert fast.energy[-1] <= slow.energy[-1]
-    assert 1 < fast.normalised_energy < 1.04
-    assert fast.normalised_energy == pytest.approx(
+    assert 1 < fast.normalized_energy < 1.04
+    assert fast.normalized_energy == pytest.approx(
         fast.energy[-1] * 120 / (2 * 5 / (36 * np.sqrt(3)) * mesh.area**2), rel=1e-12
     )
 
@@ -153,11 +153,11 @@ def test_the_energy_is_the_integral_of_the_squared_distance() -> None:
     """One site in the middle of the unit square: 1/6. With density 1 + x: the integral of (1 + x)^2 r^2."""
     mesh = sb.Mesh(*meshes.grid(9, 9))
     graph = sb.SaddleVertexGraph(mesh, k=81)
-    centre = sb.project(mesh, [[0.5, 0.5, 0.0]])
-    plain = sb.centroidal_voronoi(graph, sites=centre, max_iterations=0)
+    center = sb.project(mesh, [[0.5, 0.5, 0.0]])
+    plain = sb.centroidal_voronoi(graph, sites=center, max_iterations=0)
     assert plain.energy.tolist() == pytest.approx([1 / 6], rel=1e-6)
     assert plain.iterations == 0
-    weighted = sb.centroidal_voronoi(graph, sites=centre, density=1 + mesh.vertices[:, 0], max_iterations=0)
+    weighted = sb.centroidal_voronoi(graph, sites=center, density=1 + mesh.vertices[:, 0], max_iterations=0)
     # u = x - 1/2: integral of (3/2 + u)^2 (u^2 + v^2) over the square
     expected = 9 / 4 / 6 + (1 / 80 + 1 / 144)
     assert weighted.energy[0] == pytest.approx(expected, rel=1e-6)
@@ -196,7 +196,7 @@ def test_only_ratios_of_densities_count(unit: float) -> None:
     np.testing.assert_allclose(found.sites.positions(mesh), wanted.sites.positions(mesh), atol=1e-6)
     assert np.isfinite(found.energy).all()
     assert found.energy[-1] < found.energy[0]
-    centers = (wanted.cells.centres(density * u).positions(mesh) for u in (1, unit))
+    centers = (wanted.cells.centers(density * u).positions(mesh) for u in (1, unit))
     np.testing.assert_allclose(*centers, atol=1e-9)
 
 
@@ -414,7 +414,7 @@ def test_annealed_cells_are_more_even_than_relaxed_ones() -> None:
             assert (np.diff(relaxed.energy) <= 0).all()
             dual = relaxed.cells.dual("strict")
             irregular[row, seed] = sb.triangle_quality(dual.vertices, dual.triangles).irregular
-            energy[row, seed] = relaxed.normalised_energy
+            energy[row, seed] = relaxed.normalized_energy
     assert irregular[1].mean() < 0.9 * irregular[0].mean()
     assert energy[1].mean() < energy[0].mean() - 0.0008
     assert energy[1].mean() < 1.0086 < 1.009 < energy[0].mean()

@@ -18,7 +18,7 @@ DISK, STAR, LEAF, NEEDLE = sb.Shape.disk(48), sb.Shape.star(5), sb.Shape.leaf(),
 RING = sb.Shape([DISK.loops[0], 0.6 * DISK.loops[0]])
 SHAPES = [DISK, STAR, LEAF, NEEDLE, RING]
 Floats = NDArray[np.float64]
-Copy = tuple[int, sb.SurfacePoints, float, float]  # shape, centre, angle, scale
+Copy = tuple[int, sb.SurfacePoints, float, float]  # shape, center, angle, scale
 
 
 def surfaces() -> dict[str, sb.Mesh]:
@@ -32,8 +32,8 @@ def surfaces() -> dict[str, sb.Mesh]:
 
 
 def placed(copies: list[Copy]) -> sb.Placements:
-    shape, centres, angle, scale = zip(*copies, strict=True)
-    faces, weights = [c.faces[0] for c in centres], [c.barycentric[0] for c in centres]
+    shape, centers, angle, scale = zip(*copies, strict=True)
+    faces, weights = [c.faces[0] for c in centers], [c.barycentric[0] for c in centers]
     mirrored = np.arange(len(copies)) % 3 == 0
     return sb.Placements(shape, sb.SurfacePoints(faces, weights), angle, scale, mirrored)
 
@@ -65,7 +65,7 @@ def test_nothing_is_found_where_there_is_nothing(name: str) -> None:
     scale = 0.04 * mesh.area**0.5
     rng = np.random.default_rng(1)
     copies: list[Copy] = [
-        (k % len(SHAPES), centre, float(rng.uniform(0, 6)), scale) for k, centre in enumerate(spots(mesh, scale, 2.05))
+        (k % len(SHAPES), center, float(rng.uniform(0, 6)), scale) for k, center in enumerate(spots(mesh, scale, 2.05))
     ]
     # A star in the hole of each ring: it lies in its outline, but not in the shape.
     copies += [(1, c, 0.0, 0.5 * scale) for shape, c, _, _ in copies if shape == 4]
@@ -81,22 +81,22 @@ def test_nothing_is_found_where_there_is_nothing(name: str) -> None:
     )
 
 
-def overlap(mesh: sb.Mesh, centre: sb.SurfacePoints, scale: float, rng: np.random.Generator) -> tuple[Copy, Copy]:
+def overlap(mesh: sb.Mesh, center: sb.SurfacePoints, scale: float, rng: np.random.Generator) -> tuple[Copy, Copy]:
     """A tip that reaches into a disk by 2 % of its radius."""
     angle, kind = float(rng.uniform(0, 6)), int(rng.integers(1, 4))
-    line = sb.trace(mesh, centre, angle, 1.98 * scale)
-    return (kind, centre, angle, scale), (0, line.surface[-1:], line.end_angle + np.pi, scale)
+    line = sb.trace(mesh, center, angle, 1.98 * scale)
+    return (kind, center, angle, scale), (0, line.surface[-1:], line.end_angle + np.pi, scale)
 
 
-def nested(mesh: sb.Mesh, centre: sb.SurfacePoints, scale: float, rng: np.random.Generator) -> tuple[Copy, Copy]:
+def nested(mesh: sb.Mesh, center: sb.SurfacePoints, scale: float, rng: np.random.Generator) -> tuple[Copy, Copy]:
     angle, kind = float(rng.uniform(0, 6)), int(rng.integers(0, 5))
-    line = sb.trace(mesh, centre, angle, 0.5 * scale)
-    return (kind, line.surface[-1:], angle, 0.3 * scale), (0, centre, 0.0, scale)
+    line = sb.trace(mesh, center, angle, 0.5 * scale)
+    return (kind, line.surface[-1:], angle, 0.3 * scale), (0, center, 0.0, scale)
 
 
-def crossed(mesh: sb.Mesh, centre: sb.SurfacePoints, scale: float, rng: np.random.Generator) -> tuple[Copy, Copy]:
+def crossed(mesh: sb.Mesh, center: sb.SurfacePoints, scale: float, rng: np.random.Generator) -> tuple[Copy, Copy]:
     angle = float(rng.uniform(0, 6))
-    return (3, centre, angle, scale), (int(rng.integers(1, 4)), centre, angle + float(rng.uniform(0.5, 2.5)), scale)
+    return (3, center, angle, scale), (int(rng.integers(1, 4)), center, angle + float(rng.uniform(0.5, 2.5)), scale)
 
 
 @pytest.mark.parametrize("name", ["plane", "coarse plane", "cylinder", "sphere", "torus"])
@@ -105,7 +105,7 @@ def test_every_planted_collision_is_found(name: str) -> None:
     scale = 0.016 * mesh.area**0.5
     rng = np.random.default_rng(7)
     plants = (overlap, nested, crossed)
-    pairs = [plants[k % 3](mesh, centre, scale, rng) for k, centre in enumerate(spots(mesh, scale, 6.2)[:42])]
+    pairs = [plants[k % 3](mesh, center, scale, rng) for k, center in enumerate(spots(mesh, scale, 6.2)[:42])]
     copies = [copy for pair in pairs for copy in pair]
     assert len(pairs) == 42
     report = sb.check_distribution(mesh, sb.map_shapes(mesh, SHAPES, placed(copies)), samples=300_000)
@@ -128,10 +128,10 @@ def test_every_pair_pushed_together_by_two_percent_is_found(name: str) -> None:
     """
     mesh, rng = surfaces()[name], np.random.default_rng(11)
     scale = 0.008 * mesh.area**0.5
-    centres = spots(mesh, scale, 6.3)
+    centers = spots(mesh, scale, 6.3)
     kinds = ["overlap", "nesting", "overlap", "crossing"] * 25
     pairs: list[tuple[Copy, Copy]] = []
-    for kind, near, centre in zip(kinds * 2, [True] * 100 + [False] * 100, centres, strict=False):
+    for kind, near, center in zip(kinds * 2, [True] * 100 + [False] * 100, centers, strict=False):
         one, other = (3, 3) if kind == "crossing" else (0, 2) if kind == "nesting" else rng.integers(0, 4, 2).tolist()
         small = scale * float(rng.uniform(0.1, 0.4) if kind == "nesting" else rng.uniform(0.5, 1))
         angle, turn, towards = rng.uniform(0, 2 * np.pi, 3)
@@ -142,10 +142,10 @@ def test_every_pair_pushed_together_by_two_percent_is_found(name: str) -> None:
         if near and kind != "overlap":
             distance = rng.uniform(0, 0.5) * scale if kind == "nesting" else 0.0
             turn = angle - towards + (np.pi / 2 if kind == "crossing" else 0.3)  # needles across each other
-        line = sb.trace(mesh, centre, float(towards), max(distance, 1e-9 * scale))
+        line = sb.trace(mesh, center, float(towards), max(distance, 1e-9 * scale))
         pairs.append(
             (
-                (one, centre, float(angle), scale),
+                (one, center, float(angle), scale),
                 (other, line.surface[-1:], float(line.end_angle + np.pi - turn), small),
             )
         )
@@ -254,11 +254,11 @@ def test_a_distribution_is_anything_with_placements_and_shapes() -> None:
             self.placements = placements
 
     mesh = sb.Mesh(*meshes.icosphere(3))
-    centre = sb.SurfacePoints([3], [[0.3, 0.3, 0.4]])
-    report = sb.check_distribution(mesh, Distribution(placed([(0, centre, 0.0, 0.2), (1, centre, 0.0, 0.2)])))
+    center = sb.SurfacePoints([3], [[0.3, 0.3, 0.4]])
+    report = sb.check_distribution(mesh, Distribution(placed([(0, center, 0.0, 0.2), (1, center, 0.0, 0.2)])))
     assert not report.ok
     with pytest.raises(sb.InputError, match="wanted a MappedShapes or a distribution"):
-        sb.check_distribution(mesh, centre)
+        sb.check_distribution(mesh, center)
 
 
 def test_the_same_for_any_number_of_threads() -> None:
@@ -296,7 +296,7 @@ def test_as_a_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
         shapes, placements = sb.read_placements(file, mesh)
         assert [shape.loops[-1].tolist() for shape in shapes] == [shape.loops[-1].tolist() for shape in SHAPES]
         assert placements.angle.tolist() == [0.1, 0.3] and placements.mirrored.tolist() == [True, False]
-        assert placements.centre.barycentric.tolist() == [[0.3, 0.3, 0.4]] * 2
+        assert placements.center.barycentric.tolist() == [[0.3, 0.3, 0.4]] * 2
     assert check.main([str(mesh_file), str(good), "--samples", "1000"]) == 0
     assert "2 shapes" in capsys.readouterr().out
     assert check.main([str(mesh_file), str(bad), "--samples", "1000"]) == 1

@@ -159,7 +159,7 @@ def contains(corners: Floats, place: Floats) -> bool:
 
 
 def test_an_offset_of_maps_changes_nothing() -> None:
-    """Coordinates in metres as surveys give them, here multiples of 2^-20 so that moving them is exact."""
+    """Coordinates in meters as surveys give them, here multiples of 2^-20 so that moving them is exact."""
     rng = np.random.default_rng(5)
     vertices, triangles = meshes.grid(15, 15, 0.3)
     vertices = np.round(vertices * (100, 100, 0) * 2**20) / 2**20
@@ -207,8 +207,8 @@ def test_across_a_border_a_curve_stops() -> None:
 def test_a_curve_goes_on_past_a_corner_that_it_touches() -> None:
     """A square without one quarter: the diagonal touches its inner corner."""
     vertices, triangles = meshes.grid(3, 3)
-    centres = vertices[triangles].mean(axis=1)
-    mesh = sb.Mesh(*meshes.without_unused(vertices, triangles[(centres[:, :2] < 0.5).any(axis=1)]))
+    centers = vertices[triangles].mean(axis=1)
+    mesh = sb.Mesh(*meshes.without_unused(vertices, triangles[(centers[:, :2] < 0.5).any(axis=1)]))
     at = {tuple(place): i for i, place in enumerate(mesh.vertices[:, :2].tolist())}
     path = sb.trace(mesh, at[1.0, 0.0], (-1.0, 1.0, 0), np.sqrt(2))
     assert not path.hit_boundary
@@ -230,9 +230,9 @@ def test_exp_undoes_log_from_the_border(jitter: float) -> None:
     mesh = sb.Mesh(*meshes.grid(9, 7, jitter))
     graph = sb.SaddleVertexGraph(mesh)
     border = np.unique(np.concatenate(mesh.boundary_loops))
-    for centre in border:
-        found = graph.log_map(int(centre), np.inf)
+    for center in border:
+        found = graph.log_map(int(center), np.inf)
         assert len(found.vertices) == len(mesh.vertices)
-        ends = sb.exp_map(mesh, int(centre), found.uv).positions(mesh)
+        ends = sb.exp_map(mesh, int(center), found.uv).positions(mesh)
         np.testing.assert_allclose(ends, mesh.vertices[found.vertices], atol=1e-9)
     assert {0, 8} <= set(border.tolist())

@@ -164,7 +164,7 @@ def test_the_paint_is_followed_all_the_same() -> None:
     above = [int((made.sites.positions(mesh)[:, 2] > 0).sum()) for made in (plain, closed)]
     assert above[0] == pytest.approx(96, abs=4)
     assert abs(above[1] - above[0]) <= closed.exchanged
-    assert closed.normalised_energy < 1.15 * plain.normalised_energy
+    assert closed.normalized_energy < 1.15 * plain.normalized_energy
 
 
 def test_of_several_starts_one_without_faults_is_taken() -> None:

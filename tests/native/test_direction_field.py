@@ -22,10 +22,10 @@ SYMMETRIES = (1, 2, 4)
 def random_indices(mesh: sb.Mesh, symmetry: int, total: int, rng: np.random.Generator) -> dict[int, float]:
     """Singularities of single units whose indices sum to `total`, none next to another."""
     inner = rng.permutation(np.setdiff1d(np.arange(mesh.vertex_count), mesh.boundary_vertices))
-    neighbours: dict[int, set[int]] = {}
+    neighbors: dict[int, set[int]] = {}
     for a, b in mesh.edges.tolist():
-        neighbours.setdefault(a, set()).add(b)
-        neighbours.setdefault(b, set()).add(a)
+        neighbors.setdefault(a, set()).add(b)
+        neighbors.setdefault(b, set()).add(a)
     pairs = int(rng.integers(0, 4))
     units = [np.sign(total)] * abs(symmetry * total) + [1, -1] * pairs
     result: dict[int, float] = {}
@@ -34,9 +34,9 @@ def random_indices(mesh: sb.Mesh, symmetry: int, total: int, rng: np.random.Gene
         if len(result) == len(units):
             break
         # A vertex of few faces or much curvature cannot turn a unit more between faces that large.
-        if vertex in taken or len(neighbours[vertex]) < 5:
+        if vertex in taken or len(neighbors[vertex]) < 5:
             continue
-        taken |= {vertex} | neighbours[vertex]
+        taken |= {vertex} | neighbors[vertex]
         result[vertex] = float(units[len(result)]) / symmetry
     assert len(result) == len(units)
     return result
@@ -327,11 +327,11 @@ def test_the_field_is_continuous_across_edges(share: float) -> None:
     assert np.abs(np.angle(np.exp(1j * step))).max() < 1e-9
 
 
-def test_the_field_at_the_centre_of_a_face_is_its_vector() -> None:
+def test_the_field_at_the_center_of_a_face_is_its_vector() -> None:
     mesh = sb.Mesh(*meshes.icosphere(2))
     field = sb.direction_field(mesh, 2, {0: 1, 7: 1})
-    centres = sb.SurfacePoints(np.arange(mesh.face_count), np.full((mesh.face_count, 3), 1 / 3))
-    np.testing.assert_allclose(field.directions(centres), field.vectors, atol=1e-12)
+    centers = sb.SurfacePoints(np.arange(mesh.face_count), np.full((mesh.face_count, 3), 1 / 3))
+    np.testing.assert_allclose(field.directions(centers), field.vectors, atol=1e-12)
 
 
 def test_turned_fields() -> None:

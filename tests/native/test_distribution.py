@@ -32,8 +32,8 @@ def ring() -> tuple[sb.Mesh, sb.DirectionField]:
 def laid_flat(result: sb.Distribution, scale: float = 1.0) -> list[sb.Shape]:
     """The copies of a distribution on a plane, as shapes of that plane."""
     mesh, placements = result.mesh, result.placements
-    places = placements.centre.positions(mesh)[:, :2]
-    corners = mesh.vertices[mesh.triangles[placements.centre.faces]]
+    places = placements.center.positions(mesh)[:, :2]
+    corners = mesh.vertices[mesh.triangles[placements.center.faces]]
     edge = corners[:, 1] - corners[:, 0]
     angles = placements.angle + np.arctan2(edge[:, 1], edge[:, 0])
     shapes = [result.shapes[i].mirrored() if m else result.shapes[i] for i, m in zip(*_kinds(placements), strict=True)]
@@ -61,8 +61,8 @@ def same(a: sb.Distribution, b: sb.Distribution) -> bool:
     p, q = a.placements, b.placements
     return (
         np.array_equal(p.shape, q.shape)
-        and np.array_equal(p.centre.faces, q.centre.faces)
-        and np.array_equal(p.centre.barycentric, q.centre.barycentric)
+        and np.array_equal(p.center.faces, q.center.faces)
+        and np.array_equal(p.center.barycentric, q.center.barycentric)
         and np.array_equal(p.angle, q.angle)
         and np.array_equal(p.scale, q.scale)
         and np.array_equal(p.mirrored, q.mirrored)
@@ -84,14 +84,14 @@ def test_nothing_collides_on_a_plane_and_nothing_more_fits(shape, mode, turning)
     rng = np.random.default_rng(1)
     places = rng.uniform(0.0, 1.0, (700, 2))
     ahead = field.directions(sb.project(mesh, np.column_stack([places, np.zeros(len(places))])))
-    centres = result.placements.centre.positions(mesh)[:, :2]
+    centers = result.placements.center.positions(mesh)[:, :2]
     for place, direction in zip(places, ahead, strict=True):
         if turning and np.linalg.norm(place - [0.5, 0.5]) < 0.05:
             continue  # about the singularity the certificate says nothing
         extra = shape.moved(0.07, np.arctan2(direction[1], direction[0]), place)
         if (np.abs(np.concatenate(extra.loops) - 0.5) > 0.5).any():
             continue
-        near = np.flatnonzero(np.linalg.norm(centres - place, axis=1) < 0.14)
+        near = np.flatnonzero(np.linalg.norm(centers - place, axis=1) < 0.14)
         assert any(extra.overlaps(copies[i]) for i in near)
 
 
@@ -115,11 +115,11 @@ def test_nothing_more_fits_on_a_rough_surface() -> None:
     across /= np.linalg.norm(np.cross(first, second), axis=1)[:, None]
     angles = np.arctan2((across * ahead).sum(axis=1), (first * ahead).sum(axis=1))
     laid, tried = result.placements, 0
-    centres = laid.centre.positions(mesh)
+    centers = laid.center.positions(mesh)
     for i, place in enumerate(places):
-        near = np.flatnonzero(np.linalg.norm(centres - place, axis=1) < 2.2 * size)
-        faces = np.append(laid.centre.faces[near], points.faces[i])
-        weights = np.vstack([laid.centre.barycentric[near], points.barycentric[i]])
+        near = np.flatnonzero(np.linalg.norm(centers - place, axis=1) < 2.2 * size)
+        faces = np.append(laid.center.faces[near], points.faces[i])
+        weights = np.vstack([laid.center.barycentric[near], points.barycentric[i]])
         scale = np.append(laid.scale[near], 1.06 * size)
         turned = np.append(laid.angle[near], angles[i])
         nothing = np.zeros(len(faces), int)
@@ -324,13 +324,13 @@ def opposite_turns(mesh: sb.Mesh, size: float) -> np.ndarray:
 def test_copies_point_along_the_field() -> None:
     mesh, field = ring()
     placements = sb.distribute(mesh, CRESCENT, field=field, size=0.1).placements
-    corners = mesh.vertices[mesh.triangles[placements.centre.faces]]
+    corners = mesh.vertices[mesh.triangles[placements.center.faces]]
     x = corners[:, 1] - corners[:, 0]
     x /= np.linalg.norm(x, axis=1)[:, None]
     normal = np.cross(x, corners[:, 2] - corners[:, 0])
     y = np.cross(normal / np.linalg.norm(normal, axis=1)[:, None], x)
     axis = x * np.cos(placements.angle)[:, None] + y * np.sin(placements.angle)[:, None]
-    along = (axis * field.directions(placements.centre)).sum(axis=1)
+    along = (axis * field.directions(placements.center)).sum(axis=1)
     assert np.abs(along) == pytest.approx(1, abs=1e-9)
     assert 0.2 < (along > 0).mean() < 0.8  # lines have two ends, the crescent one
 
@@ -356,10 +356,10 @@ def test_a_gap_is_kept() -> None:
 
 def test_forbidden_faces_and_rims_are_kept_free() -> None:
     mesh, field = plane()
-    centres = mesh.vertices[mesh.triangles].mean(axis=1)
-    forbidden = np.hypot(centres[:, 0] - 0.4, centres[:, 1] - 0.5) < 0.25
+    centers = mesh.vertices[mesh.triangles].mean(axis=1)
+    forbidden = np.hypot(centers[:, 0] - 0.4, centers[:, 1] - 0.5) < 0.25
     result = sb.distribute(mesh, DISK, field=field, size=0.06, forbidden=forbidden, maximal=True)
-    places = result.placements.centre.positions(mesh)[:, :2]
+    places = result.placements.center.positions(mesh)[:, :2]
     assert (np.hypot(places[:, 0] - 0.4, places[:, 1] - 0.5) > 0.25 + 0.02).all()
     assert (np.abs(places - 0.5) <= 0.44).all() and len(result) > 20
     assert result.rejections["boundary"] + result.rejections["forbidden"] > 0
@@ -382,7 +382,7 @@ def test_small_ones_lie_in_holes_of_large_ones() -> None:
     copies = laid_flat(result)
     assert collisions(copies) == 0
     kinds = result.placements.shape
-    middles = result.placements.centre.positions(mesh)[:, :2]
+    middles = result.placements.center.positions(mesh)[:, :2]
     inside = sum(
         (np.abs(middles[kinds == 1] - middle).max(axis=1) < 0.7 * 0.25 / np.sqrt(2)).sum()
         for middle in middles[kinds == 0]
@@ -394,7 +394,7 @@ def test_sizes_follow_a_field_of_sizes() -> None:
     mesh, field = plane()
     size = 0.02 + 0.06 * mesh.vertices[:, 0]
     result = sb.distribute(mesh, STAR, field=field, size=size, maximal=True, tolerance=0.05)
-    places = result.placements.centre.positions(mesh)
+    places = result.placements.center.positions(mesh)
     assert result.placements.scale == pytest.approx(0.02 + 0.06 * places[:, 0])
     assert collisions(laid_flat(result)) == 0
     left, right = (places[:, 0] < 0.3).sum(), (places[:, 0] > 0.7).sum()
@@ -406,20 +406,20 @@ def test_numbers_follow_a_density() -> None:
     density = 1 + 7 * mesh.vertices[:, 0]
     result = sb.distribute(mesh, [STAR, DISK], [450, 150], field, density, size=0.007)
     assert np.bincount(result.placements.shape).tolist() == [450, 150]
-    x = result.placements.centre.positions(mesh)[:, 0]
+    x = result.placements.center.positions(mesh)[:, 0]
     found = np.histogram(x, 10, (0, 1))[0]
     edges = np.linspace(0, 1, 11)
     wanted = np.diff(edges + 3.5 * edges**2) / 4.5 * 600
     assert np.abs(found - wanted).max() < 10
     quiet = sb.distribute(mesh, DISK, 100, field, np.where(mesh.vertices[:, 0] < 0.5, 0.0, 1.0), size=0.01)
-    assert (quiet.placements.centre.positions(mesh)[:, 0] > 0.45).all()
+    assert (quiet.placements.center.positions(mesh)[:, 0] > 0.45).all()
 
 
 def test_coverage_follows_a_ramp() -> None:
     mesh, field = plane()
     result = sb.distribute(mesh, sb.Shape.disk(12), 1150, field, 1 + 7 * mesh.vertices[:, 0], size=0.007)
     assert len(result) == 1150
-    x, y = result.placements.centre.positions(mesh)[:, :2].T
+    x, y = result.placements.center.positions(mesh)[:, :2].T
     angle, radius = np.arange(12) * np.pi / 6, 0.006
     x = x[:, None] + radius * np.cos(angle)
     y = y[:, None] + radius * np.sin(angle)
@@ -436,9 +436,9 @@ def test_sheets_that_lie_close_do_not_know_each_other() -> None:
     options = {"size": 0.08, "maximal": True, "tolerance": 0.05, "seed": 4}
     one = sb.distribute(alone, STAR, field=sb.direction_field(alone, 1, {}), **options).placements
     two = sb.distribute(both, STAR, field=sb.direction_field(both, 1, {}), **options).placements
-    upper = two.centre.faces < len(triangles)
-    assert np.array_equal(one.centre.faces, two.centre.faces[upper])
-    assert np.array_equal(one.centre.barycentric, two.centre.barycentric[upper]) and (~upper).sum() > 20
+    upper = two.center.faces < len(triangles)
+    assert np.array_equal(one.center.faces, two.center.faces[upper])
+    assert np.array_equal(one.center.barycentric, two.center.barycentric[upper]) and (~upper).sum() > 20
 
 
 def test_triangulations_of_one_surface_agree() -> None:
@@ -589,5 +589,5 @@ def test_only_ratios_of_densities_count(unit: float) -> None:
     density[density < 0.1] = 0
     wanted, found = (sb.distribute(mesh, STAR, 30, density=density * u, size=0.1) for u in (1.0, unit))
     np.testing.assert_allclose(
-        found.placements.centre.positions(mesh), wanted.placements.centre.positions(mesh), atol=1e-9
+        found.placements.center.positions(mesh), wanted.placements.center.positions(mesh), atol=1e-9
     )

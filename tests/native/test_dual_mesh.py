@@ -82,7 +82,7 @@ def test_in_the_plane_it_is_delaunays_triangulation() -> None:
     delaunay = Delaunay(points)
     inside = {
         tuple(sorted(t))
-        for t, x in zip(delaunay.simplices.tolist(), circumcentres(points[delaunay.simplices]), strict=True)
+        for t, x in zip(delaunay.simplices.tolist(), circumcenters(points[delaunay.simplices]), strict=True)
         if (x > 0.001).all() and (x < 0.999).all()
     }
     assert len(inside) > 80
@@ -93,7 +93,7 @@ def test_in_the_plane_it_is_delaunays_triangulation() -> None:
     np.testing.assert_allclose(dual.edge_lengths, chords, rtol=1e-5)
 
 
-def circumcentres(corners: np.ndarray) -> np.ndarray:
+def circumcenters(corners: np.ndarray) -> np.ndarray:
     a, b, c = (corners[:, i] for i in range(3))
     d = 2 * np.linalg.det(np.stack([b - a, c - a], axis=1))
     b2, c2 = ((b - a) ** 2).sum(axis=1), ((c - a) ** 2).sum(axis=1)

@@ -44,10 +44,10 @@ def test_the_plane_has_euclidean_cells(jitter: float) -> None:
     sites = random_points(mesh, 30, seed=5)
     cells = sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=225), sites)
     check(mesh, cells)
-    centres = sites.positions(mesh)
+    centers = sites.positions(mesh)
 
     def distances(points: np.ndarray) -> np.ndarray:
-        return np.linalg.norm(points[:, None] - centres[None], axis=2)
+        return np.linalg.norm(points[:, None] - centers[None], axis=2)
 
     from_vertices = distances(mesh.vertices)
     assert np.array_equal(cells.vertex_cell, from_vertices.argmin(axis=1))
@@ -63,10 +63,10 @@ def test_the_plane_has_euclidean_cells(jitter: float) -> None:
 def test_the_left_cell_lies_on_the_left() -> None:
     mesh = sb.Mesh(*meshes.grid(15, 15))
     sites = random_points(mesh, 12, seed=2)
-    centres = sites.positions(mesh)
+    centers = sites.positions(mesh)
     for edge in sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=225), sites).edges:
         along = edge.points[-1] - edge.points[0]
-        to_left = centres[edge.cells[0]] - centres[edge.cells[1]]
+        to_left = centers[edge.cells[0]] - centers[edge.cells[1]]
         assert along[0] * to_left[1] - along[1] * to_left[0] > 0
 
 

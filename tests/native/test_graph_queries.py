@@ -223,9 +223,9 @@ def test_any_point_to_any_point_on_a_locally_refined_mesh() -> None:
     vertices, triangles = meshes.icosphere(3)
     x, y, z = vertices.T
     vertices = vertices * (1 + 0.15 * np.sin(5 * x) * np.sin(4 * y) * np.sin(3 * z))[:, None]
-    centre = vertices[7]
+    center = vertices[7]
     for level in range(5):
-        near = np.linalg.norm(vertices - centre, axis=1) < 0.8 / 1.7**level
+        near = np.linalg.norm(vertices - center, axis=1) < 0.8 / 1.7**level
         vertices, triangles = meshes.refined(vertices, triangles, near)
     mesh = sb.Mesh(vertices, triangles)
     graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3)

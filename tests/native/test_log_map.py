@@ -52,10 +52,10 @@ def assert_same_up_to_a_turn(found: Floats, expected: Floats, tolerance: float) 
 )
 def test_of_the_plane_is_the_plane(arrays: meshes.Arrays) -> None:
     mesh = sb.Mesh(*arrays)
-    for centre in points_of(mesh):
-        found = graph_of(mesh).log_map(centre, np.inf)
+    for center in points_of(mesh):
+        found = graph_of(mesh).log_map(center, np.inf)
         assert len(found) == len(mesh.vertices)
-        plane = (mesh.vertices - position_of(mesh, centre))[:, :2]
+        plane = (mesh.vertices - position_of(mesh, center))[:, :2]
         assert_same_up_to_a_turn(found.uv, plane, 1e-11 * np.abs(plane).max())
         assert not found.shadowed[np.isin(found.vertices, np.setdiff1d(found.vertices, mesh.boundary_loops[0]))].any()
 
@@ -141,23 +141,23 @@ def test_of_a_sphere_converges_to_great_circles() -> None:
 def test_exp_of_log_is_the_vertex(case: meshes.Case) -> None:
     """But for ways that touch the boundary or a saddle vertex: straightest curves do not go on there as they do."""
     mesh = case.mesh
-    for centre in points_of(mesh):
-        found = graph_of(mesh).log_map(centre, np.inf)
-        ends = sb.exp_map(mesh, centre, found.uv)
+    for center in points_of(mesh):
+        found = graph_of(mesh).log_map(center, np.inf)
+        ends = sb.exp_map(mesh, center, found.uv)
         gap = np.linalg.norm(ends.positions(mesh) - mesh.vertices[found.vertices], axis=1)
-        straight = ~found.shadowed & ~touches(mesh, found, centre)
+        straight = ~found.shadowed & ~touches(mesh, found, center)
         assert straight.any()
         assert gap[straight].max() <= 1e-9 * max(1.0, float(found.distance.max()))
         for i in np.flatnonzero(straight)[:10]:
-            path = sb.trace(mesh, centre, float(found.angle[i]), float(found.distance[i]))
+            path = sb.trace(mesh, center, float(found.angle[i]), float(found.distance[i]))
             np.testing.assert_allclose(path.points[-1], mesh.vertices[found.vertices[i]], atol=1e-9)
 
 
-def touches(mesh: sb.Mesh, found: sb.LogMap, centre: int | sb.SurfacePoints) -> NDArray[np.bool_]:
+def touches(mesh: sb.Mesh, found: sb.LogMap, center: int | sb.SurfacePoints) -> NDArray[np.bool_]:
     saddles = set(mesh.saddle_vertices.tolist())
     result = []
     for angle, distance in zip(found.angle.tolist(), found.distance.tolist(), strict=True):
-        path = sb.trace(mesh, centre, angle, distance)
+        path = sb.trace(mesh, center, angle, distance)
         held = path.surface.barycentric[1:-1].max(axis=1) == 1
         corners = path.surface.barycentric[1:-1].argmax(axis=1)
         passed = mesh.triangles[path.surface.faces[1:-1], corners][held]
@@ -170,19 +170,19 @@ def test_log_of_exp_is_the_vector(case: meshes.Case) -> None:
     """Inside the injectivity radius, which is told by another way: the curve is as long as the distance."""
     mesh, rng = case.mesh, np.random.default_rng(3)
     checked = 0
-    for centre in points_of(mesh):
+    for center in points_of(mesh):
         uv = rng.normal(size=(12, 2)) * 2 * mesh.mean_edge_length
-        ends = sb.exp_map(mesh, centre, uv)
+        ends = sb.exp_map(mesh, center, uv)
         for i in range(len(uv)):
             end = ends[i : i + 1]
             length = float(np.linalg.norm(uv[i]))
-            sources = [centre] if isinstance(centre, int) else centre
+            sources = [center] if isinstance(center, int) else center
             if abs(sb.ExactField(mesh, sources).distance_to(end)[0] - length) > 1e-9 or end.barycentric.min() < 1e-6:
                 continue
-            if not isinstance(centre, int) and end.faces[0] == centre.faces[0]:
-                continue  # the cut removes the centre's face
+            if not isinstance(center, int) and end.faces[0] == center.faces[0]:
+                continue  # the cut removes the center's face
             refined = with_vertex_at(mesh, end)
-            same = centre if isinstance(centre, int) else moved(mesh, refined, centre)
+            same = center if isinstance(center, int) else moved(mesh, refined, center)
             found = graph_of(refined).log_map(same, 1.01 * length)
             there = found.uv[found.vertices == len(mesh.vertices)][0]
             if isinstance(same, int):  # the cut may have changed the vertex's first edge
@@ -221,10 +221,10 @@ def boundary_of(mesh: sb.Mesh) -> set[int]:
 @pytest.mark.parametrize("case", meshes.good(), ids=str)
 def test_distances_are_exact_and_cut_at_the_radius(case: meshes.Case) -> None:
     mesh = case.mesh
-    for centre in [0, *points_of(mesh)]:
-        exact = sb.exact_distances(mesh, [centre] if isinstance(centre, int) else centre)
+    for center in [0, *points_of(mesh)]:
+        exact = sb.exact_distances(mesh, [center] if isinstance(center, int) else center)
         for radius in (np.inf, 1e9, float(np.median(exact[np.isfinite(exact)])) * (1 + 1e-9), 1e-9):
-            found = graph_of(mesh).log_map(centre, radius)
+            found = graph_of(mesh).log_map(center, radius)
             inside = np.flatnonzero(exact <= min(radius, 1e300))
             assert np.array_equal(found.vertices, inside)
             np.testing.assert_allclose(found.distance, exact[inside], rtol=1e-11, atol=1e-15)
@@ -241,11 +241,11 @@ def test_behind_a_saddle_vertex_all_lies_in_its_direction() -> None:
 
 def test_on_the_boundary_angles_fill_what_surface_there_is() -> None:
     mesh = sb.Mesh(*meshes.grid(9, 9))
-    for centre, span in ((0, np.pi / 2), (4, np.pi), (sb.SurfacePoints([0], [[0.5, 0.5, 0]]), np.pi)):
-        found = graph_of(mesh).log_map(centre, np.inf)
+    for center, span in ((0, np.pi / 2), (4, np.pi), (sb.SurfacePoints([0], [[0.5, 0.5, 0]]), np.pi)):
+        found = graph_of(mesh).log_map(center, np.inf)
         away = found.distance > 0
         assert np.ptp(found.angle[away]) == pytest.approx(span, abs=1e-12)
-        plane = (mesh.vertices - position_of(mesh, centre))[:, :2]
+        plane = (mesh.vertices - position_of(mesh, center))[:, :2]
         assert_same_up_to_a_turn(found.uv, plane, 1e-13)
 
 
@@ -292,29 +292,29 @@ def test_the_exponential_map_is_the_same_for_any_number_of_threads() -> None:
 
 
 @pytest.mark.parametrize(
-    ("centre", "radius", "sentence"),
+    ("center", "radius", "sentence"),
     [
-        (500, 1.0, "centre: vertex 500 at"),
-        (-1, 1.0, "centre: vertex -1 at"),
-        ([0, 1], 1.0, "centre: wanted one point, got 2"),
-        (sb.SurfacePoints([900], [[1, 0, 0]]), 1.0, "centre: point 0 has face 900"),
-        (0.5, 1.0, "centre"),
+        (500, 1.0, "center: vertex 500 at"),
+        (-1, 1.0, "center: vertex -1 at"),
+        ([0, 1], 1.0, "center: wanted one point, got 2"),
+        (sb.SurfacePoints([900], [[1, 0, 0]]), 1.0, "center: point 0 has face 900"),
+        (0.5, 1.0, "center"),
         (0, 0.0, "radius: wanted a distance above 0, got 0"),
         (0, -1.0, "radius: wanted a distance above 0, got -1"),
         (0, float("nan"), "radius: wanted a distance above 0, got nan"),
         (0, "far", "radius"),
     ],
 )
-def test_bad_input_is_named(centre: object, radius: object, sentence: str) -> None:
+def test_bad_input_is_named(center: object, radius: object, sentence: str) -> None:
     graph = graph_of(sb.Mesh(*meshes.grid()))
     with pytest.raises(sb.InputError, match=sentence):
-        graph.log_map(centre, radius)  # type: ignore[arg-type]
+        graph.log_map(center, radius)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ((500, [[0, 0]]), "centre: vertex 500 at"),
+        ((500, [[0, 0]]), "center: vertex 500 at"),
         ((0, [[0, 0, 0]]), "uv"),
         ((0, [[0, 0], [np.nan, 0]]), r"uv: vector 1 is \(nan, 0\), which is not finite"),
         ((0, [[0, 0], [0, np.inf]]), r"uv: vector 1 is \(0, inf\)"),

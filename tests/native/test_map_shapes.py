@@ -28,8 +28,8 @@ def scattered(mesh: sb.Mesh, count: int, scale: float, seed: int = 0) -> sb.Plac
     return sb.Placements(shape, sb.sample(mesh, count, seed=seed), turn, np.full(count, scale), flip)
 
 
-def one(centre: sb.SurfacePoints, angle: float = 0.0, scale: float = 1.0, mirrored: bool = False) -> sb.Placements:
-    return sb.Placements([0], centre, [angle], [scale], [mirrored])
+def one(center: sb.SurfacePoints, angle: float = 0.0, scale: float = 1.0, mirrored: bool = False) -> sb.Placements:
+    return sb.Placements([0], center, [angle], [scale], [mirrored])
 
 
 def triangle_areas(vertices: Floats, triangles: NDArray[np.int32]) -> Floats:
@@ -47,12 +47,12 @@ def laid(mapped: sb.MappedShapes) -> list[int]:
 
 def in_plane(mesh: sb.Mesh, points: Floats, placements: sb.Placements, i: int = 0) -> Floats:
     """Points of a shape's plane on a mesh in the plane z = 0, by the definition of a placement."""
-    centre, angle = placements.centre[i : i + 1], float(placements.angle[i])
-    a, b = mesh.vertices[mesh.triangles[centre.faces[0], :2]]
+    center, angle = placements.center[i : i + 1], float(placements.angle[i])
+    a, b = mesh.vertices[mesh.triangles[center.faces[0], :2]]
     angle += np.arctan2(*(b - a)[[1, 0]])
     flipped = points * [1, -1 if placements.mirrored[i] else 1]
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    return np.asarray(centre.positions(mesh)[0, :2] + float(placements.scale[i]) * flipped @ turn)
+    return np.asarray(center.positions(mesh)[0, :2] + float(placements.scale[i]) * flipped @ turn)
 
 
 @pytest.mark.parametrize("jitter", [0.0, 0.35])
@@ -84,7 +84,7 @@ def test_a_cylinder_unrolls() -> None:
         assert triangle_areas(patch.vertices, patch.triangles).sum() == pytest.approx(shape_area(mapped, i), rel=1e-9)
 
 
-def test_centres_at_vertices_and_on_edges_of_a_regular_grid() -> None:
+def test_centers_at_vertices_and_on_edges_of_a_regular_grid() -> None:
     """Every corner of the square lies on an edge or at a vertex: no decision may fall between two stools."""
     mesh = sb.Mesh(*meshes.grid(9, 9))
     square = sb.Shape([(-2, -2), (2, -2), (2, 2), (-2, 2)])
@@ -125,13 +125,13 @@ def test_the_map_is_the_exponential_map() -> None:
     errors = []
     for level in (3, 4, 5):
         mesh = sb.Mesh(*meshes.icosphere(level))
-        centre = sb.SurfacePoints([11], [[0.2, 0.3, 0.5]])
-        mapped = sb.map_shapes(mesh, sb.Shape.disk(40), one(centre, 0.3, 0.7))
+        center = sb.SurfacePoints([11], [[0.2, 0.3, 0.5]])
+        mapped = sb.map_shapes(mesh, sb.Shape.disk(40), one(center, 0.3, 0.7))
         points = sb.Shape.disk(40).loops[0] * np.linspace(0.2, 1, 40)[:, None]
         bent = mapped.conform(points, 0).points
         angles = np.arctan2(points[:, 1], points[:, 0]) + 0.3
         lengths = 0.7 * np.linalg.norm(points, axis=1)
-        exact = [sb.trace(mesh, centre, float(a), float(r)).points[-1] for a, r in zip(angles, lengths, strict=True)]
+        exact = [sb.trace(mesh, center, float(a), float(r)).points[-1] for a, r in zip(angles, lengths, strict=True)]
         errors.append(np.abs(bent - exact).max())
         smallest, largest = mapped.stretch[0]
         assert smallest == pytest.approx(np.sin(0.7) / 0.7, abs=0.25 / 2 ** (level - 1)) and largest < 1.05
@@ -146,13 +146,13 @@ def test_along_a_field_shapes_bend() -> None:
     around /= np.linalg.norm(around, axis=1)[:, None]
     field = sb.DirectionField.from_vectors(mesh, around, 1)
     start = np.array([0.8, 0.53, 0.0])
-    centre = sb.project(mesh, start[None])
-    edge = np.diff(mesh.vertices[mesh.triangles[centre.faces[0], :2]], axis=0)[0]
+    center = sb.project(mesh, start[None])
+    edge = np.diff(mesh.vertices[mesh.triangles[center.faces[0], :2]], axis=0)[0]
     direction = np.cross([0, 0, 1.0], start - [0.5, 0.5, 0])
     angle = np.arctan2(direction[1], direction[0]) - np.arctan2(edge[1], edge[0])
     strap = sb.Shape([(-2, -0.3), (2, -0.3), (2, 0.3), (-2, 0.3)])
     for mirrored in (False, True):
-        mapped = sb.map_shapes(mesh, strap, one(centre, float(angle), 0.2, mirrored), field)
+        mapped = sb.map_shapes(mesh, strap, one(center, float(angle), 0.2, mirrored), field)
         assert mapped.failures == {}
         points = np.column_stack([np.linspace(-1.9, 1.9, 25), np.linspace(-0.25, 0.25, 25)])
         bent = mapped.conform(points, 0).points[:, :2] - 0.5
@@ -163,7 +163,7 @@ def test_along_a_field_shapes_bend() -> None:
         assert np.abs(turned - 0.2 * points[:, 0] / radius).max() < 0.013
         smallest, largest = mapped.stretch[0]
         assert 0.7 < smallest < 0.82 and 1.18 < largest < 1.3  # 1 - y / radius: 0.8 to 1.2
-    straight = sb.map_shapes(mesh, strap, one(centre, float(angle), 0.2))
+    straight = sb.map_shapes(mesh, strap, one(center, float(angle), 0.2))
     assert np.abs(np.linalg.norm(straight.conform([(1.9, 0.0)], 0).points[0, :2] - 0.5) - radius) > 0.1
 
 
@@ -173,8 +173,8 @@ def test_why_shapes_cannot_be_laid() -> None:
     tube, plane = sb.Mesh(*meshes.cylinder(40, 60, 0.2, 6.0)), sb.Mesh(*meshes.grid())
     assert sb.map_shapes(plane, disk, one(sb.SurfacePoints([0], [[1, 0, 0]]), scale=0.1)).failures == {0: "boundary"}
     for mesh, scale in ((tube, 0.8), (sphere, 3.5)):
-        centre = sb.project(mesh, mesh.vertices[[len(mesh.vertices) // 2]])
-        reason = sb.map_shapes(mesh, disk, one(centre, scale=scale)).failures[0]
+        center = sb.project(mesh, mesh.vertices[[len(mesh.vertices) // 2]])
+        reason = sb.map_shapes(mesh, disk, one(center, scale=scale)).failures[0]
         assert reason in ("fold", "stretched")
     tip = int(cone.vertices[:, 2].argmax())
     face = int(np.flatnonzero((cone.triangles == tip).any(axis=1))[0])
@@ -193,11 +193,11 @@ def apart(mesh: sb.Mesh, count: int, scale: float) -> sb.Placements:
     for i, position in enumerate(positions):
         if all(np.linalg.norm(position - positions[j]) > 2.9 * scale for j in kept) and len(kept) < count:
             kept.append(i)
-    centre = sb.SurfacePoints(points.faces[kept], points.barycentric[kept])
+    center = sb.SurfacePoints(points.faces[kept], points.barycentric[kept])
     rng = np.random.default_rng(0)
     order = np.arange(len(kept))
     turn, size = rng.uniform(0, 6, len(kept)), np.full(len(kept), scale)
-    return sb.Placements(order % len(SHAPES), centre, turn, size, order % 2 == 0)
+    return sb.Placements(order % len(SHAPES), center, turn, size, order % 2 == 0)
 
 
 @pytest.mark.parametrize("level", [1, 3])
@@ -272,17 +272,17 @@ def test_objects_and_frames_follow_the_surface() -> None:
         assert np.linalg.norm(bent.points, axis=1) == pytest.approx(1 + bent.heights, abs=0.003)
         assert np.allclose(bent.positions(mesh), bent.points, atol=1e-12)
         assert np.abs(bent.positions(grown)[0] - bent.points[0] * [1, 1, 2]).max() < 1e-9
-    centres, turns, scales = mapped.frames()
-    assert np.allclose(centres, placements.centre.positions(mesh)) and np.allclose(np.linalg.norm(turns, axis=1), 1)
+    centers, turns, scales = mapped.frames()
+    assert np.allclose(centers, placements.center.positions(mesh)) and np.allclose(np.linalg.norm(turns, axis=1), 1)
     w, x, y, z = turns.T
     up = np.column_stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
     ahead = np.column_stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
-    assert (up * centres).sum(axis=1).min() > 0.99
+    assert (up * centers).sum(axis=1).min() > 0.99
     assert np.array_equal(np.sign(scales[:, 1]) < 0, placements.mirrored)
     for i in range(20):
-        step = sb.trace(mesh, placements.centre[i], float(placements.angle[i]), 0.01).points[-1] - centres[i]
+        step = sb.trace(mesh, placements.center[i], float(placements.angle[i]), 0.01).points[-1] - centers[i]
         assert step @ ahead[i] > 0.0099
-    assert np.allclose(mapped.frames(grown)[0], placements.centre.positions(grown))
+    assert np.allclose(mapped.frames(grown)[0], placements.center.positions(grown))
 
 
 def test_any_number_of_threads() -> None:

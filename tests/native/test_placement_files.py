@@ -25,8 +25,8 @@ def field(mesh):
 
 @pytest.fixture
 def laid(mesh):
-    centre = sb.SurfacePoints([3, 70, 5], [[0.2, 0.3, 0.5]] * 3)
-    return sb.Placements([0, 1, 0], centre, [0.1, -0.2, 7.5], [1, 2.5, 0.1], [True, False, False])
+    center = sb.SurfacePoints([3, 70, 5], [[0.2, 0.3, 0.5]] * 3)
+    return sb.Placements([0, 1, 0], center, [0.1, -0.2, 7.5], [1, 2.5, 0.1], [True, False, False])
 
 
 SHAPES = [sb.Shape.star(), sb.Shape.disk(7)]
@@ -45,7 +45,7 @@ def test_what_was_written_is_read(tmp_path, mesh, laid, field):
     ]
     for name in ("shape", "angle", "scale", "mirrored"):
         assert np.array_equal(getattr(read, name), getattr(laid, name))
-    assert np.array_equal(read.centre.barycentric, laid.centre.barycentric)
+    assert np.array_equal(read.center.barycentric, laid.center.barycentric)
     assert np.array_equal(sb.read_placement_field(path, mesh).turns, field.turns)
 
 

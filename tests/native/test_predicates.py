@@ -58,7 +58,7 @@ def test_whole_multiples_of_a_small_step_are_collinear(step, m, n):
     assert predicates.collinear_3d([a], [b], [c])[0] == 1
 
 
-def test_grid_of_neighbouring_doubles_about_a_line():
+def test_grid_of_neighboring_doubles_about_a_line():
     """Shewchuk's picture: points near (0.5, 0.5) against the line through (12, 12) and (24, 24)."""
     i, j = (k.ravel() for k in np.meshgrid(np.arange(32), np.arange(32)))
     near = np.column_stack([0.5 + i * 2.0**-53, 0.5 + j * 2.0**-53])
@@ -69,7 +69,7 @@ def test_grid_of_neighbouring_doubles_about_a_line():
     assert (found == 0).any()
 
 
-def test_grid_of_neighbouring_doubles_about_a_circle():
+def test_grid_of_neighboring_doubles_about_a_circle():
     i, j = (k.ravel() for k in np.meshgrid(np.arange(-8, 8), np.arange(-8, 8)))
     near = np.column_stack([1.0 + i * 2.0**-52, j * 2.0**-52])
     a, b, c = (np.broadcast_to(p, near.shape) for p in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)))

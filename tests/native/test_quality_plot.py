@@ -50,7 +50,7 @@ def test_series_share_a_scale_and_are_named() -> None:
         heights = [steps_of(path).max() for path in panel]
         assert max(heights) == pytest.approx(1, abs=1e-3)
         assert min(heights) < 1 - 1e-3
-    # What lies beyond an axis counts with its end: corners of the grid with two neighbours.
+    # What lies beyond an axis counts with its end: corners of the grid with two neighbors.
     assert steps_of(curves(text)[2][1])[0] > 0
 
 

@@ -19,11 +19,11 @@ def middles(rows: int, columns: int, low=(0, 0), high=(1, 1)) -> np.ndarray:
     return np.stack(np.meshgrid(x, y), axis=-1)
 
 
-def test_one_site_goes_to_the_centre_of_mass():
+def test_one_site_goes_to_the_center_of_mass():
     density = np.random.default_rng(0).random((7, 5))
-    centre = np.average(middles(7, 5).reshape(-1, 2), axis=0, weights=density.ravel() ** 2)
+    center = np.average(middles(7, 5).reshape(-1, 2), axis=0, weights=density.ravel() ** 2)
     done = sb.relax_2d([(0.9, 0.1)], SQUARE, density)
-    np.testing.assert_allclose(done.sites, [centre], atol=1e-14)
+    np.testing.assert_allclose(done.sites, [center], atol=1e-14)
     assert done.converged and done.iterations == 2 and done.stop_reason == "tolerance"
 
 

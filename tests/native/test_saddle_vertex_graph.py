@@ -140,7 +140,7 @@ def test_an_exact_graph_beyond_the_memory_is_refused() -> None:
 
 
 def test_disks_end_where_few_vertices_are_in_sight() -> None:
-    """Spikes hide all but some thirty neighbours: bounds by edges end what is in sight but not by a shortest way."""
+    """Spikes hide all but some thirty neighbors: bounds by edges end what is in sight but not by a shortest way."""
     vertices, triangles = meshes.spikes()
     mesh = sb.Mesh(vertices, triangles)
     graph, all_in_sight = sb.SaddleVertexGraph(mesh, k=200), sb.SaddleVertexGraph(mesh, exact=True)

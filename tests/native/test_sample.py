@@ -51,10 +51,10 @@ def test_within_a_face_the_points_follow_the_linear_density() -> None:
     expected: dict[tuple[int, int, bool], float] = {}
     for i in range(8):
         for j in range(8 - i):
-            for flag, centre in ((False, (i + 1 / 3, j + 1 / 3)), (True, (i + 2 / 3, j + 2 / 3))):
+            for flag, center in ((False, (i + 1 / 3, j + 1 / 3)), (True, (i + 2 / 3, j + 2 / 3))):
                 if flag and i + j == 7:
                     continue
-                u, w = centre[0] / 8, centre[1] / 8
+                u, w = center[0] / 8, center[1] / 8
                 expected[i, j, flag] = 5 * (1 - u - w) + 0 * u + 1 * w
     keys = list(expected)
     index = {key: n for n, key in enumerate(keys)}

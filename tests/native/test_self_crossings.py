@@ -55,7 +55,7 @@ def test_as_fractions_tell(grain: int) -> None:
     assert expected
 
 
-def test_a_needle_that_pricks_its_neighbour_by_a_millionth() -> None:
+def test_a_needle_that_pricks_its_neighbor_by_a_millionth() -> None:
     vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0.5], [0.3, 0.3, -1e-6], [1, 1, 0.51]])
     triangles = np.array([[0, 1, 2], [3, 4, 5]], np.int32)
     assert sb.self_crossings(vertices, triangles).tolist() == [[0, 1]]

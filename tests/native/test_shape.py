@@ -51,7 +51,7 @@ def signed_area(loop: np.ndarray) -> float:
 def test_presets_have_radius_one(name) -> None:
     shape = PRESETS[name]
     assert shape.circumradius == pytest.approx(1, abs=1e-12)
-    assert shape.centred().circumradius == pytest.approx(1, abs=1e-9)
+    assert shape.centered().circumradius == pytest.approx(1, abs=1e-9)
     assert shape.has_half_turn == (name in ("disk", "needle", "leaf"))
     assert sb.Shape(*shape.parts).area == shape.area == pytest.approx(shape.mirrored().area)
 
@@ -81,10 +81,10 @@ def test_half_turns_are_found_at_any_angle_and_only_about_the_origin() -> None:
     assert sb.Shape(SQUARE + [5, 0], SQUARE - [5, 0]).has_half_turn
 
 
-def test_centred_is_the_smallest_circle() -> None:
-    shape = sb.Shape([[10, 10], [14, 10], [14, 13]]).centred(2.5)
+def test_centered_is_the_smallest_circle() -> None:
+    shape = sb.Shape([[10, 10], [14, 10], [14, 13]]).centered(2.5)
     assert np.linalg.norm(shape.loops[0], axis=1) == pytest.approx([2.5, 2.5, 2.5])
-    blunt = sb.Shape([[0, 0], [10, 0], [5, 1]]).centred(1)
+    blunt = sb.Shape([[0, 0], [10, 0], [5, 1]]).centered(1)
     assert blunt.loops[0][0] == pytest.approx([-1, 0])
 
 
@@ -130,7 +130,7 @@ def test_what_makes_no_shape_is_refused(case) -> None:
         lambda: sb.Shape.leaf(1.0),
         lambda: sb.Shape.drop(0.0),
         lambda: sb.Shape.crescent(0.3, 0.1),
-        lambda: sb.Shape.disk().centred(-1),
+        lambda: sb.Shape.disk().centered(-1),
     ],
 )
 def test_presets_out_of_range_are_refused(call) -> None:
@@ -156,7 +156,7 @@ def test_a_mask_of_a_square_becomes_a_square() -> None:
     mask[10:30, 20:40] = True
     shape = sb.Shape.from_mask(mask)
     assert len(shape.loops) == 1 and len(shape.loops[0]) <= 8 and shape.circumradius == pytest.approx(1)
-    pixels = sb.Shape.from_mask(mask, centred=False)
+    pixels = sb.Shape.from_mask(mask, centered=False)
     low, high = pixels.loops[0].min(axis=0), pixels.loops[0].max(axis=0)
     assert low == pytest.approx([19.5, -29.5]) and high == pytest.approx([39.5, -9.5])
 
@@ -166,7 +166,7 @@ def test_a_mask_of_a_square_becomes_a_square() -> None:
 def test_a_mask_is_covered_and_not_by_much(seed, corners) -> None:
     image = blob(seed, 90)
     try:
-        shape = sb.Shape.from_mask(image, corners, centred=False)
+        shape = sb.Shape.from_mask(image, corners, centered=False)
     except sb.InputError as error:
         assert corners == 48 and "no clear mask" in str(error)
         return
@@ -209,11 +209,11 @@ def test_images_without_a_clear_mask_are_refused(image, words) -> None:
 def test_outlines_that_are_simplified_stop_before_they_touch_a_corner() -> None:
     """Where a new corner came to lie on another part's, the mask was refused as a shape that meets itself."""
     corner_to_corner = [[0, 0, 0, 0], [1, 0, 0, 0], [1, 0, 1, 1]]
-    assert len(sb.Shape.from_mask(np.array(corner_to_corner, bool), 8, centred=False).parts) == 2
+    assert len(sb.Shape.from_mask(np.array(corner_to_corner, bool), 8, centered=False).parts) == 2
     for seed in range(300):
         mask = np.random.default_rng(seed).random((5, 5)) < 0.4
         mask[2, 2], mask[0, 0] = True, False
-        assert 1 <= len(sb.Shape.from_mask(mask, 48, centred=False).parts) <= 13
+        assert 1 <= len(sb.Shape.from_mask(mask, 48, centered=False).parts) <= 13
 
 
 def test_a_mask_tells_how_far_it_is_and_can_be_cancelled() -> None:
@@ -240,7 +240,7 @@ def test_placements_keep_what_they_are_given() -> None:
     placements = sb.Placements([0, 1], points, [0.1, 0.2], [1.0, 2.0], [True, False])
     assert len(placements) == 2 and placements.mirrored.tolist() == [True, False]
     assert placements.shape.tolist() == [0, 1] and placements.angle.tolist() == [0.1, 0.2]
-    assert (placements.centre.faces == points.faces).all() and placements.scale.tolist() == [1, 2]
+    assert (placements.center.faces == points.faces).all() and placements.scale.tolist() == [1, 2]
     assert not sb.Placements([0, 1], points, [0, 0], [1, 1]).mirrored.any()
 
 

@@ -17,9 +17,9 @@ def circles_of_latitude(level: int) -> tuple[sb.Mesh, sb.DirectionField]:
     mesh = sb.Mesh(*meshes.icosphere(level))
     poles = mesh.vertices[:, 2].argsort()[[0, -1]]
     field = sb.direction_field(mesh, 1, {int(v): 1 for v in poles})
-    centre = mesh.vertices[mesh.triangles[0]].mean(axis=0)
-    east = np.cross([0, 0, 1.0], centre)
-    angle = np.arctan2(np.cross(field.vectors[0], east) @ centre / np.linalg.norm(centre), field.vectors[0] @ east)
+    center = mesh.vertices[mesh.triangles[0]].mean(axis=0)
+    east = np.cross([0, 0, 1.0], center)
+    angle = np.arctan2(np.cross(field.vectors[0], east) @ center / np.linalg.norm(center), field.vectors[0] @ east)
     return mesh, field.turned(float(angle))
 
 

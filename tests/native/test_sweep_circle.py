@@ -16,14 +16,14 @@ def run(sweep):
     return events
 
 
-CENTRES = {"inside": [0.4, 0.6], "outside": [3.0, -2.0], "far": [500.0, 40.0], "on a site": None}
+CENTERS = {"inside": [0.4, 0.6], "outside": [3.0, -2.0], "far": [500.0, 40.0], "on a site": None}
 
 
-@pytest.mark.parametrize("centre", CENTRES)
+@pytest.mark.parametrize("center", CENTERS)
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 10, 300])
-def test_the_triangles_do_not_depend_on_the_centre(n, centre):
+def test_the_triangles_do_not_depend_on_the_center(n, center):
     sites = plane_sites.uniform(n, np.random.default_rng(n))
-    place = sites[0] if CENTRES[centre] is None else CENTRES[centre]
+    place = sites[0] if CENTERS[center] is None else CENTERS[center]
     events = run(sb.SweepCircle(sites, place))
     assert [event.kind for event in events].count("touch") == n
     found = {frozenset(event.sites.tolist()) for event in events if event.kind == "vanish"}
@@ -32,13 +32,13 @@ def test_the_triangles_do_not_depend_on_the_centre(n, centre):
 
 def test_events_come_in_the_order_of_their_radius():
     sites = plane_sites.uniform(200, np.random.default_rng(1))
-    centre = np.array([0.5, 0.5])
-    sweep = sb.SweepCircle(sites, centre)
+    center = np.array([0.5, 0.5])
+    sweep = sb.SweepCircle(sites, center)
     last = 0.0
     while (event := sweep.step()) is not None:
         assert event.radius == sweep.radius >= last
         last = event.radius
-        to_point = np.linalg.norm(event.point - centre)
+        to_point = np.linalg.norm(event.point - center)
         to_site = np.linalg.norm(event.point - sites[event.sites], axis=1)
         assert np.allclose(to_point + to_site, event.radius, rtol=1e-9)  # 0 for the site touched
 
@@ -49,9 +49,9 @@ def test_the_beach_curve_is_equally_far_from_the_sites_and_the_circle(radius):
     sweep = sb.SweepCircle(sites, [0.5, 0.4])
     sweep.grow(radius)
     curve = sweep.beach_curve(360)
-    from_centre = np.linalg.norm(curve - sweep.centre, axis=1)
+    from_center = np.linalg.norm(curve - sweep.center, axis=1)
     to_sites = np.linalg.norm(curve[:, None] - sites, axis=2)
-    assert np.allclose(to_sites.min(axis=1), radius - from_centre, atol=1e-12)
+    assert np.allclose(to_sites.min(axis=1), radius - from_center, atol=1e-12)
     covered = sum(end - begin for _, begin, end in sweep.arcs)
     assert covered == pytest.approx(2 * np.pi)
     for site, begin, end in sweep.arcs:
@@ -70,8 +70,8 @@ def test_edges_grow_along_the_beach_curve():
         to_sites = np.linalg.norm(ends[:, :, None] - sites[pairs][:, None], axis=3)
         assert np.allclose(to_sites[..., 0], to_sites[..., 1])
         tips, tip_distance = ends[~finished, 1], to_sites[~finished, 1, 0]
-        assert np.allclose(np.linalg.norm(tips - sweep.centre, axis=1) + tip_distance, radius)
-        assert (np.linalg.norm(ends[finished] - sweep.centre, axis=2) <= radius).all()
+        assert np.allclose(np.linalg.norm(tips - sweep.center, axis=1) + tip_distance, radius)
+        assert (np.linalg.norm(ends[finished] - sweep.center, axis=2) <= radius).all()
 
 
 def test_a_finished_sweep_has_the_diagrams_edges():
@@ -83,7 +83,7 @@ def test_a_finished_sweep_has_the_diagrams_edges():
 
 
 @pytest.mark.parametrize("corners", [2, 3, 4, 12])
-def test_several_nearest_sites_meet_in_the_centre(corners):
+def test_several_nearest_sites_meet_in_the_center(corners):
     directions = [
         (3, 4),
         (-3, -4),
@@ -119,12 +119,12 @@ def test_nothing_happens_without_sites():
 
 
 @pytest.mark.parametrize(
-    ("sites", "centre", "text"),
-    [([[0, np.nan]], [0, 0], "site 0"), ([[0, 0]], [np.inf, 0], "centre"), ([[0, 0]], [1, 2, 3], "centre")],
+    ("sites", "center", "text"),
+    [([[0, np.nan]], [0, 0], "site 0"), ([[0, 0]], [np.inf, 0], "center"), ([[0, 0]], [1, 2, 3], "center")],
 )
-def test_bad_sweeps_are_named(sites, centre, text):
+def test_bad_sweeps_are_named(sites, center, text):
     with pytest.raises(sb.InputError, match=text):
-        sb.SweepCircle(sites, centre)
+        sb.SweepCircle(sites, center)
 
 
 def test_bad_radius_is_named():

@@ -23,23 +23,23 @@ def disks(n, seed):
     return KINDS["random_disks"](n, np.random.default_rng(seed))
 
 
-@pytest.mark.parametrize("centre", [[0.4, 0.6], [3.0, -2.0], [500.0, 40.0], None])
+@pytest.mark.parametrize("center", [[0.4, 0.6], [3.0, -2.0], [500.0, 40.0], None])
 @pytest.mark.parametrize("n", [1, 2, 3, 10, 200])
-def test_events_come_by_radius_for_every_cell_and_vertex(n, centre):
+def test_events_come_by_radius_for_every_cell_and_vertex(n, center):
     sites, weights = disks(n, n)
-    centre = sites[0] if centre is None else np.array(centre)
-    diagram, sweep = sb.voronoi_2d(sites, weights), sb.SweepCircle(sites, centre, weights)
+    center = sites[0] if center is None else np.array(center)
+    diagram, sweep = sb.voronoi_2d(sites, weights), sb.SweepCircle(sites, center, weights)
     last, touched, vertices = sweep.radius, [], []
     while (event := sweep.step()) is not None:
         assert event.radius == sweep.radius >= last
         last = event.radius
         if event.kind == "touch":
             touched += event.sites.tolist()
-            assert event.radius == pytest.approx(np.linalg.norm(event.point - centre) - weights[event.sites[0]])
+            assert event.radius == pytest.approx(np.linalg.norm(event.point - center) - weights[event.sites[0]])
         else:
             vertices.append(event.point)
             distances = np.linalg.norm(event.point - sites[event.sites], axis=1) - weights[event.sites]
-            assert np.allclose(np.linalg.norm(event.point - centre) + distances, event.radius, rtol=1e-9)
+            assert np.allclose(np.linalg.norm(event.point - center) + distances, event.radius, rtol=1e-9)
     assert sorted(touched) == np.setdiff1d(np.arange(n), diagram.hidden).tolist()
     assert len(vertices) == len(diagram.vertices)
 
@@ -50,9 +50,9 @@ def test_the_beach_curve_is_equally_far_from_the_sites_and_the_circle(radius):
     sweep = sb.SweepCircle(sites, [0.5, 0.4], weights)
     sweep.grow(radius)
     curve = sweep.beach_curve(360)
-    from_centre = np.linalg.norm(curve - sweep.centre, axis=1)
+    from_center = np.linalg.norm(curve - sweep.center, axis=1)
     distances = weighted_distances(curve, sites, weights)
-    assert np.allclose(distances.min(axis=1), radius - from_centre, atol=1e-12)
+    assert np.allclose(distances.min(axis=1), radius - from_center, atol=1e-12)
     arcs = sweep.arcs
     assert sum(end - begin for _, begin, end in arcs) == pytest.approx(2 * np.pi)
     assert all(first[2] == pytest.approx(then[1]) for first, then in pairwise(arcs))
@@ -71,7 +71,7 @@ def test_edges_grow_along_the_beach_curve():
         grown += np.count_nonzero(~finished)
         distances = np.linalg.norm(ends[:, :, None] - sites[pairs][:, None], axis=3) - weights[pairs][:, None]
         assert np.allclose(distances[..., 0], distances[..., 1])
-        reached = np.linalg.norm(ends - sweep.centre, axis=2) + distances[..., 0]
+        reached = np.linalg.norm(ends - sweep.center, axis=2) + distances[..., 0]
         assert np.allclose(reached[~finished, 1], radius)
         assert (reached <= radius + 1e-12).all()
         lines = sweep.edge_polylines(1e-4)
@@ -82,9 +82,9 @@ def test_edges_grow_along_the_beach_curve():
     assert grown > 50
 
 
-def expect_a_finished_sweep(sites, centre, weights):
+def expect_a_finished_sweep(sites, center, weights):
     """After the last event there are the diagram's edges, to the bit where they end, those with two ends finished."""
-    diagram, sweep = sb.voronoi_2d(sites, weights), sb.SweepCircle(sites, centre, weights)
+    diagram, sweep = sb.voronoi_2d(sites, weights), sb.SweepCircle(sites, center, weights)
     run(sweep)
     ends, pairs, finished = sweep.edges
     closed = (diagram.edges >= 0).all(axis=1)
@@ -99,8 +99,8 @@ def expect_a_finished_sweep(sites, centre, weights):
 def test_a_finished_sweep_has_the_diagrams_edges(n):
     for seed in range(40 if n < 80 else 2):
         sites, weights = disks(n, seed)
-        centre = np.random.default_rng(seed).normal(size=2) * (0.5, 3)[seed % 2]
-        expect_a_finished_sweep(sites, centre, weights)
+        center = np.random.default_rng(seed).normal(size=2) * (0.5, 3)[seed % 2]
+        expect_a_finished_sweep(sites, center, weights)
     expect_a_finished_sweep([[0.87, 0.47], [0.91, 0.77], [0.92, 0.13]], [-2.53, 2.06], [-0.04, -0.04, 0.12])
 
 
@@ -114,7 +114,7 @@ def test_equal_weights_only_shift_the_radius():
     assert [len(line) for line in plain.edge_polylines(0.1)] == [2] * len(plain.edges[0])
 
 
-def test_a_disk_about_the_centre_is_touched_before_the_radius_is_0():
+def test_a_disk_about_the_center_is_touched_before_the_radius_is_0():
     sweep = sb.SweepCircle([[0, 0], [4, 0]], [0.5, 0], [1, 0])
     assert sweep.radius == -0.5
     assert [event.radius for event in run(sweep)] == [-0.5, 3.5]
@@ -123,10 +123,10 @@ def test_a_disk_about_the_centre_is_touched_before_the_radius_is_0():
 @pytest.mark.parametrize("with_weights", [False, True])
 def test_several_circles_close_their_own_cells(with_weights):
     sites, weights = disks(150, 6) if with_weights else (plane_sites.uniform(150, np.random.default_rng(6)), None)
-    centres = np.array([[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75], [0.5, 0.5]])
+    centers = np.array([[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75], [0.5, 0.5]])
     diagram = sb.voronoi_2d(sites, weights)
-    sweep = sb.SweepCircles(sites, centres, weights)
-    owner = np.linalg.norm(sites[:, None] - centres, axis=2).argmin(axis=1)
+    sweep = sb.SweepCircles(sites, centers, weights)
+    owner = np.linalg.norm(sites[:, None] - centers, axis=2).argmin(axis=1)
     found = {circle: set() for circle in range(5)}
     last = -np.inf
     while (step := sweep.step()) is not None:
@@ -152,8 +152,8 @@ def test_circles_grow_together():
     sweep = sb.SweepCircles(sites, [[0.2, 0.2], [0.8, 0.8]], weights)
     sweep.grow(0.3)
     assert sweep.radii.tolist() == [0.3, 0.3]
-    for circle, centre in enumerate(sweep.centres):
-        alone = sb.SweepCircle(sites, centre, weights)
+    for circle, center in enumerate(sweep.centers):
+        alone = sb.SweepCircle(sites, center, weights)
         alone.grow(0.3)
         assert np.array_equal(alone.beach_curve(30), sweep.beach_curve(circle, 30))
 
@@ -163,8 +163,8 @@ def test_circles_grow_together():
     [
         (lambda: sb.SweepCircle([[0, 0], [1, 0]], [0, 0], [1]), "weights"),
         (lambda: sb.SweepCircle([[0, 0], [1, 0]], [0, 0], [1, np.nan]), "weight 1"),
-        (lambda: sb.SweepCircles([[0, 0]], np.zeros((0, 2))), "centres"),
-        (lambda: sb.SweepCircles([[0, 0]], [[0, np.inf]]), "centre"),
+        (lambda: sb.SweepCircles([[0, 0]], np.zeros((0, 2))), "centers"),
+        (lambda: sb.SweepCircles([[0, 0]], [[0, np.inf]]), "center"),
         (lambda: sb.SweepCircles([[0, 0]], [[0, 0]]).edges(1), "circle"),
         (lambda: sb.SweepCircles([[0, 0]], [[0, 0]]).beach_curve(0, 0), "samples"),
         (lambda: sb.SweepCircles([[0, 0]], [[0, 0]]).edge_polylines(0, 0), "tolerance"),

@@ -270,14 +270,14 @@ def test_millions_of_sites_on_one_line_stop_within_a_moment():
     check_progress_and_cancel(lambda job: sb.voronoi_2d(sites, threads=1, job=job), 0.7)
 
 
-def circle_and_centre(n: int) -> plane_sites.Points:
+def circle_and_center(n: int) -> plane_sites.Points:
     return np.vstack([plane_sites.circle(n - 1, np.random.default_rng(n)), [[0, 0]]])
 
 
 @pytest.mark.parametrize(
     ("curve", "fraction"),
-    [(parabola, 0.6), (circle_and_centre, 0.6), (circle_and_centre, 0.75)],
-    ids=["parabola, joining halves", "circle and centre, joining halves", "circle and centre, the widest cell"],
+    [(parabola, 0.6), (circle_and_center, 0.6), (circle_and_center, 0.75)],
+    ids=["parabola, joining halves", "circle and center, joining halves", "circle and center, the widest cell"],
 )
 def test_millions_of_sites_along_curves_stop_at_once(curve, fraction):
     """One join takes them half a second, and so does one cell."""

@@ -181,11 +181,11 @@ def moebius(rng: Random) -> Arrays:
 def shrunk_region(rng: Random) -> Arrays:
     """A mesh a part of which is drawn together to 1e-1 to 1e-10 of its size."""
     vertices, triangles = rng.choice([sphere, torus, terrain])(rng)  # type: ignore[arg-type]
-    centre = vertices[rng.integers(len(vertices))]
-    offset = vertices - centre
+    center = vertices[rng.integers(len(vertices))]
+    offset = vertices - center
     reach = np.linalg.norm(offset, axis=1)
     near = reach < rng.uniform(0.2, 0.6) * reach.max()
-    vertices[near] = centre + offset[near] * small_number(rng, 1e-1, 1e-10)
+    vertices[near] = center + offset[near] * small_number(rng, 1e-1, 1e-10)
     return vertices, triangles
 
 

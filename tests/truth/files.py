@@ -179,9 +179,9 @@ def check_placement_files(rng: np.random.Generator) -> None:
     """Placements come back to the bit; a damaged file is refused by one sentence that names it, or makes sense."""
     mesh = sb.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
     count = int(rng.integers(1, 5))
-    centre = sb.SurfacePoints(rng.integers(0, 4, count), rng.dirichlet([1, 1, 1], count))
+    center = sb.SurfacePoints(rng.integers(0, 4, count), rng.dirichlet([1, 1, 1], count))
     laid = sb.Placements(
-        rng.integers(0, 2, count), centre, rng.normal(size=count), rng.uniform(0.1, 9, count), rng.random(count) < 0.5
+        rng.integers(0, 2, count), center, rng.normal(size=count), rng.uniform(0.1, 9, count), rng.random(count) < 0.5
     )
     shapes = [sb.Shape.star(), sb.Shape.disk(5)]
     field = sb.direction_field(mesh, symmetry=1) if rng.random() < 0.5 else None
@@ -191,12 +191,12 @@ def check_placement_files(rng: np.random.Generator) -> None:
         read = sb.read_placements(path, mesh)[1]
         for name in ("shape", "angle", "scale", "mirrored"):
             assert np.array_equal(getattr(read, name), getattr(laid, name)), name
-        assert np.array_equal(read.centre.barycentric, centre.barycentric)
+        assert np.array_equal(read.center.barycentric, center.barycentric)
         path.write_text(json.dumps(damaged(json.loads(path.read_text()), rng)))
         try:
             found, read = sb.read_placements(path, mesh)
             assert set(read.shape.tolist()) <= set(range(len(found)))
-            assert set(read.centre.faces.tolist()) <= set(range(4))
+            assert set(read.center.faces.tolist()) <= set(range(4))
             sb.read_placement_field(path, mesh)
         except sb.InputError as error:
             assert str(error).startswith(f"{path}: "), str(error)

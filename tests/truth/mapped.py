@@ -56,8 +56,8 @@ def placement_arrays(rng: Random) -> None:
     assert len(laid) == n
     for name, wanted in zip(("shape", "angle", "scale", "mirrored"), given, strict=True):
         assert (getattr(laid, name) == wanted).all()
-    assert (laid.centre.faces == centers.faces).all()
-    assert (laid.centre.barycentric == centers.barycentric).all()
+    assert (laid.center.faces == centers.faces).all()
+    assert (laid.center.barycentric == centers.barycentric).all()
     assert not sb.Placements(shape, centers, angle, scale).mirrored.any()
     at = int(rng.integers(n))
     bad = [array.astype(float) for array in (shape, angle, scale)]
@@ -252,7 +252,7 @@ def frames_stand(rng: Random) -> None:
         return
     mapped = layout.mapped()
     points, quaternions, scales = mapped.frames()
-    np.testing.assert_allclose(points, mapped.placements.centre.positions(layout.surface.mesh), atol=1e-12)
+    np.testing.assert_allclose(points, mapped.placements.center.positions(layout.surface.mesh), atol=1e-12)
     np.testing.assert_allclose(np.linalg.norm(quaternions, axis=1), 1, atol=1e-12)
     moved_points, moved, _ = mapped.frames(sb.Mesh(layout.surface.mesh.vertices + 2, layout.surface.mesh.triangles))
     np.testing.assert_allclose(moved_points, points + 2, atol=1e-12)
@@ -262,7 +262,7 @@ def frames_stand(rng: Random) -> None:
         w, x, y, z = quaternions[i]
         along = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
         up = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
-        face = layout.surface.mesh.triangles[mapped.placements.centre.faces[i]]
+        face = layout.surface.mesh.triangles[mapped.placements.center.faces[i]]
         a, b, c = layout.surface.mesh.vertices[face]
         assert up @ np.cross(b - a, c - a) > 0
         if np.ptp(layout.surface.mesh.vertices[:, 2]) == 0:
@@ -273,8 +273,8 @@ def frames_stand(rng: Random) -> None:
 def poses_of(surface: Unrolled, shapes: list[sb.Shape], placements: sb.Placements) -> Layout:
     """Placements as poses in the plane."""
     layout = Layout(surface, shapes)
-    centers = on_sheet(surface, placements.centre)
-    first = surface.plane[surface.mesh.triangles[placements.centre.faces, :2]]
+    centers = on_sheet(surface, placements.center)
+    first = surface.plane[surface.mesh.triangles[placements.center.faces, :2]]
     along = first[:, 1] - first[:, 0]
     angles = placements.angle + np.arctan2(along[:, 1], along[:, 0])
     for i in range(len(placements)):

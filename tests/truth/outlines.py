@@ -126,9 +126,9 @@ def distance_to_side(p: Floats, a: Floats, b: Floats) -> float:
     return float(np.hypot(*(a + share * (b - a) - p)))
 
 
-@guards("Shape.moved", "Shape.mirrored", "Shape.centred", on="nothing")
+@guards("Shape.moved", "Shape.mirrored", "Shape.centered", on="nothing")
 def moves(rng: Random) -> None:
-    """Moved corner by corner; of a centred shape the farthest corners leave no half of the circle empty."""
+    """Moved corner by corner; of a centered shape the farthest corners leave no half of the circle empty."""
     shape = random_shape(rng)
     scale, angle, shift = float(np.exp(rng.normal())), float(rng.uniform(-7, 7)), rng.normal(size=2)
     turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
@@ -142,10 +142,10 @@ def moves(rng: Random) -> None:
         assert nearest.max() <= 1e-14 * (scale + 3)
     assert abs(moved.mirrored().area - moved.area) <= 1e-12 * moved.circumradius**2
     radius = float(np.exp(rng.normal()))
-    centred = np.vstack(moved.centred(radius).loops)
-    distances = np.hypot(*centred.T)
+    centered = np.vstack(moved.centered(radius).loops)
+    distances = np.hypot(*centered.T)
     assert abs(distances.max() - radius) <= 1e-9 * radius
-    ends = np.sort(np.arctan2(*centred[distances > radius * (1 - 1e-7)].T[::-1]))
+    ends = np.sort(np.arctan2(*centered[distances > radius * (1 - 1e-7)].T[::-1]))
     assert np.diff(np.append(ends, ends[0] + 2 * np.pi)).max() <= np.pi + 1e-3, "a smaller circle holds it"
 
 
@@ -170,7 +170,7 @@ def masks(rng: Random) -> None:
     image[rows // 2, columns // 2] = True
     most = int(rng.choice([12, 24, 64, 1000]))
     try:
-        shape = sb.Shape.from_mask(image, most, centred=False)
+        shape = sb.Shape.from_mask(image, most, centered=False)
     except sb.InputError as refusal:
         assert "are too few" in str(refusal), str(refusal)
         return

@@ -104,7 +104,7 @@ def even_cells(mesh: sb.Mesh, rng: Random) -> None:
     assert (cells.vertex_cell == relaxed.cells.vertex_cell).all()
     np.testing.assert_allclose(cells.areas, relaxed.cells.areas, atol=1e-9 * mesh.area)
     hexagons = HEXAGON * mesh.area**2 / count
-    np.testing.assert_allclose(relaxed.normalised_energy, relaxed.energy[-1] / hexagons, rtol=1e-6)
+    np.testing.assert_allclose(relaxed.normalized_energy, relaxed.energy[-1] / hexagons, rtol=1e-6)
     if not is_convex_and_flat(mesh):
         return
     rim = mesh.vertices[mesh.boundary_loops[0], :2]
@@ -120,14 +120,14 @@ def points_of_a_part(mesh: sb.Mesh, rng: Random) -> tuple[sb.SurfacePoints, Floa
     return sb.SurfacePoints(faces, rng.dirichlet([1, 1, 1], len(faces))), rng.uniform(0.1, 2, len(faces))
 
 
-@guards("geodesic_centre")
+@guards("geodesic_center")
 def middles(mesh: sb.Mesh, rng: Random) -> None:
     """On flat convex pieces of the plane the weighted mean; elsewhere no worse than three times the best of the points
     themselves.
     """
     graph = sb.SaddleVertexGraph(mesh, exact=True, threads=1)
     points, weights = points_of_a_part(mesh, rng)
-    found = sb.geodesic_centre(graph, points, weights)
+    found = sb.geodesic_center(graph, points, weights)
     assert len(found) == 1
     size = longest_edge(mesh)
     if is_convex_and_flat(mesh):
@@ -140,7 +140,7 @@ def middles(mesh: sb.Mesh, rng: Random) -> None:
         assert sums[0][0] <= 3 * sums[1].min() + 1e-9 * size**2, f"{sums[0][0]}, but {sums[1].min()} at a point"
 
 
-@guards("geodesic_centre", unsettled="1 of 721: a sum 4e-6 of itself too large, the cause not known yet")
+@guards("geodesic_center", unsettled="1 of 721: a sum 4e-6 of itself too large, the cause not known yet")
 def least_sums_of_squares(mesh: sb.Mesh, rng: Random) -> None:
     """No point beside the center has a lesser sum of exact squared distances."""
     size = longest_edge(mesh)
@@ -148,7 +148,7 @@ def least_sums_of_squares(mesh: sb.Mesh, rng: Random) -> None:
         return  # exact fields take long
     graph = sb.SaddleVertexGraph(mesh, exact=True, threads=1)
     points, weights = points_of_a_part(mesh, rng)
-    found = sb.geodesic_centre(graph, points, weights)
+    found = sb.geodesic_center(graph, points, weights)
     fields = [sb.ExactField(mesh, points[i]) for i in range(len(points))]
     step = 1e-3  # so that a mean twice as far away would be seen
     beside = (1 - step) * found.barycentric + step * rng.dirichlet([1, 1, 1], 20)
@@ -173,7 +173,7 @@ def exact_plane_cells(mesh: sb.Mesh, rng: Random) -> tuple[sb.GeodesicVoronoi, F
     return cells, places, [polygon for (polygon,) in cells_within(places, [rim])]
 
 
-@guards("GeodesicVoronoi.centres", unsettled="1 of 400: a quarter of a disk beside, among faces of 1e-8 of it")
+@guards("GeodesicVoronoi.centers", unsettled="1 of 400: a quarter of a disk beside, among faces of 1e-8 of it")
 def centers_of_the_plane(mesh: sb.Mesh, rng: Random) -> None:
     """On flat convex pieces of the plane: centers of mass against polygons in fractions, to a fiftieth of the cell.
 
@@ -183,13 +183,13 @@ def centers_of_the_plane(mesh: sb.Mesh, rng: Random) -> None:
     if found is None:
         return
     cells, places, polygons = found
-    for i, center in enumerate(cells.centres(threads=1).positions(mesh)[:, :2]):
+    for i, center in enumerate(cells.centers(threads=1).positions(mesh)[:, :2]):
         area, first, _ = moments(polygons[i], places[i])
         missed = float(np.hypot(*(places[i] + first / area - center)))
         assert missed <= 0.02 * area**0.5, f"center {i} is {missed} off"
 
 
-@guards("GeodesicVoronoi.corners", "GeodesicVoronoi.centres")
+@guards("GeodesicVoronoi.corners", "GeodesicVoronoi.centers")
 def corners_of_the_plane(mesh: sb.Mesh, rng: Random) -> None:
     """On flat convex pieces of the plane: corners of exact cells against polygons in fractions; centers lie in their
     cells.
@@ -198,7 +198,7 @@ def corners_of_the_plane(mesh: sb.Mesh, rng: Random) -> None:
     if found is None:
         return
     (cells, places, polygons), size = found, longest_edge(mesh)
-    centers = cells.centres(threads=1).positions(mesh)[:, :2]
+    centers = cells.centers(threads=1).positions(mesh)[:, :2]
     # Corners of the domain are none of a cell, unless a boundary between cells ends there.
     for i, polygon in enumerate(polygons):
         wanted = rounded(polygon)

@@ -41,9 +41,9 @@ def junk_is_repaired_for_good(rng: Random) -> None:
     assert again.triangles.tobytes() == mesh.triangles.tobytes()
 
 
-def ball(centre: Floats, radius: float, rng: Random) -> Arrays:
+def ball(center: Floats, radius: float, rng: Random) -> Arrays:
     vertices, triangles = meshes.icosphere(int(rng.integers(0, 3)), radius)
-    return vertices + centre, triangles
+    return vertices + center, triangles
 
 
 @guards("repair", on="nothing")
@@ -132,8 +132,8 @@ def holes_are_filled(rng: Random) -> None:
     """A star of faces taken out of a rough sphere is closed again, by no more area than any triangulation's."""
     vertices, triangles = meshes.icosphere(2)
     vertices = vertices * (1 + 0.1 * rng.random((len(vertices), 1)))
-    centre = int(rng.integers(len(vertices)))
-    star = (triangles == centre).any(axis=1)
+    center = int(rng.integers(len(vertices)))
+    star = (triangles == center).any(axis=1)
     arrays = meshes.without_unused(vertices, triangles[~star])
     mesh, report = sb.repair(*arrays, fill_holes=12)
     assert report.changes == {"holes_filled": 1}

@@ -184,7 +184,7 @@ def circles_that_grow_together(sites: Floats, rng: Random) -> None:
     centers = np.array([random_center(sites, rng) for _ in range(int(rng.integers(1, 4)))])
     sweeps, points = sb.SweepCircles(sites, centers), exact(sites)
     truth = voronoi_vertices(sites)
-    assert (sweeps.centres == centers).all()
+    assert (sweeps.centers == centers).all()
     last, seen = -np.inf, set()
     while step := sweeps.step():
         circle, event = step

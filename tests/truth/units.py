@@ -106,12 +106,12 @@ def cells_of(mesh: sb.Mesh, unit: float, seed: int) -> Answer:
         *points_of(mesh, sites), (cells.vertex_cell, 0), (cells.vertex_distance, 1), (cells.areas, 2),
         (cells.edge_points, 1), (cells.edge_cells, 0),
         *areas_of(split.vertices, split.triangles, split.triangle_cell), (dual.edge_lengths, 1),
-        *points_of(mesh, cells.centres(threads=1)), *points_of(mesh, relaxed.sites), (relaxed.energy, 4),
-        *points_of(mesh, sb.geodesic_centre(graph, sites[:1])),
+        *points_of(mesh, cells.centers(threads=1)), *points_of(mesh, relaxed.sites), (relaxed.energy, 4),
+        *points_of(mesh, sb.geodesic_center(graph, sites[:1])),
     ]  # fmt: skip
 
 
-@guards("geodesic_voronoi", "GeodesicVoronoi", "centroidal_voronoi", "geodesic_centre", "sample", "SplitMesh")
+@guards("geodesic_voronoi", "GeodesicVoronoi", "centroidal_voronoi", "geodesic_center", "sample", "SplitMesh")
 def units_of_cells(mesh: sb.Mesh, rng: Random) -> None:
     """Cells, their boundaries, centers, duals, and even ones."""
     unit, seed = random_unit(rng), int(rng.integers(1 << 30))
@@ -235,7 +235,7 @@ def shapes_of(
 ) -> Answer:
     there = sb.Mesh(u * mesh.vertices, mesh.triangles)
     poses = sb.Placements(
-        placements.shape, placements.centre, placements.angle, u * placements.scale, placements.mirrored
+        placements.shape, placements.center, placements.angle, u * placements.scale, placements.mirrored
     )
     laid = sb.map_shapes(there, shapes, poses, threads=1)
     cut, report = laid.cut(), sb.check_distribution(there, laid, samples=200, threads=1)
@@ -247,7 +247,7 @@ def shapes_of(
         (cut.vertices, 1), *areas_of(cut.vertices, cut.triangles, cut.triangle_shape), (report.ok, 0),
         (report.coverage, 0), (about.placement, 0), (about.distance, 1), (about.uv, 0), (bent.vertices, 1),
         (bent.deviations, 0), (laid.frames()[0], 1), (laid.frames()[1], 0), (copies.placements.shape, 0),
-        (copies.placements.angle, 0), (copies.placements.scale, 1), *points_of(there, copies.placements.centre),
+        (copies.placements.angle, 0), (copies.placements.scale, 1), *points_of(there, copies.placements.center),
         (proof.tolerance, 1), (proof.uncertified_area, 2), (proof.cells, 0),
     ]  # fmt: skip
 
@@ -258,7 +258,7 @@ def shapes_in_the_plane(shape: sb.Shape, other: sb.Shape, u: float) -> Answer:
     return [
         (one.area, 2), (one.circumradius, 1), (one.inradius, 1), (table.distance(1.0, 2.0), 1),
         (table.distance(3.0, 1.0, 0.5, 2.0), 1), (one.overlaps(other.moved(u, 0.5, (0.9 * u, 0))), 0),
-        (one.contains([[0.1 * u, 0.2 * u], [0.9 * u, 0]]), 0), (np.vstack(one.centred(u).loops), 1),
+        (one.contains([[0.1 * u, 0.2 * u], [0.9 * u, 0]]), 0), (np.vstack(one.centered(u).loops), 1),
     ]  # fmt: skip
 
 

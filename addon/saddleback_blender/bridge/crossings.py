@@ -11,7 +11,7 @@ from ..core.results import Indices, Reals
 
 
 def find_crossings(vertices: Reals, triangles: Indices, job: Any = None) -> Indices:
-    """Pairs (k, 2) of triangles that pass through each other, neighbours along an edge left out. O(m log m).
+    """Pairs (k, 2) of triangles that pass through each other, neighbors along an edge left out. O(m log m).
 
     Coordinates are rounded to single precision, whichever of the mesh's triangles are given.
     """

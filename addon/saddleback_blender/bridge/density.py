@@ -137,7 +137,7 @@ def read_attribute(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str) ->
 def read_color(
     source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, channel: str
 ) -> tuple[NDArray[np.float64], str]:
-    """(V,) one channel of a colour attribute, in linear space, and its name for messages."""
+    """(V,) one channel of a color attribute, in linear space, and its name for messages."""
     name = name or compat.active_color_name(mesh)
     attribute = mesh.color_attributes.get(name)
     if attribute is None:

@@ -15,7 +15,7 @@ MANY = {"TILED": "in UDIM tiles", "SEQUENCE": "a sequence", "MOVIE": "a movie"}
 
 
 def read_pixels(source: bpy.types.Object, image: bpy.types.Image) -> tuple[NDArray[np.float32], bool]:
-    """(rows, columns, 4), the first row below, and whether the colours are sRGB instead of linear.
+    """(rows, columns, 4), the first row below, and whether the colors are sRGB instead of linear.
 
     Raises BadInputError for an image of several pictures.
     """
@@ -83,7 +83,7 @@ def _pixels(source: bpy.types.Object, image: bpy.types.Image) -> tuple[NDArray[n
 
 
 def _rgba(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Four channels from one (grey), three or four."""
+    """Four channels from one (gray), three or four."""
     channels = pixels.shape[2]
     if channels == 4:
         return pixels

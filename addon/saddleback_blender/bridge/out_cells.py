@@ -1,4 +1,4 @@
-"""The cells as a mesh object: a cell number and a colour on every face."""
+"""The cells as a mesh object: a cell number and a color on every face."""
 
 from __future__ import annotations
 
@@ -57,15 +57,15 @@ def write_polygons(
     source: bpy.types.Object,
     cells: CellPolygons,
     count: int,
-    neighbours: Indices,
+    neighbors: Indices,
     vanished: int,
     role: str,
 ) -> bpy.types.Object:
-    """Makes or replaces the source's cells object from polygons; `neighbours` (e, 2) get colours unlike each other."""
+    """Makes or replaces the source's cells object from polygons; `neighbors` (e, 2) get colors unlike each other."""
     place = level_place(source)
     mesh = _new_mesh(to_place(place, cells.vertices))
     compat.write_polygons(mesh, cells.corners, cells.offsets)
-    colors = cell_colors(count, neighbours)
+    colors = cell_colors(count, neighbors)
     compat.shade_flat(mesh)
     mesh.update(calc_edges=True)
     set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.polygon_cell)
@@ -116,9 +116,9 @@ def _shown(
 
 
 def _write_colors(mesh: bpy.types.Mesh, colors: np.ndarray, corner_cell: np.ndarray) -> None:
-    """Of corners, as scripts find them whether cells share vertices or not; Blender does not show colours of faces.
+    """Of corners, as scripts find them whether cells share vertices or not; Blender does not show colors of faces.
 
-    Blender keeps them as sRGB: given so, a colour is converted once a cell, not once a corner.
+    Blender keeps them as sRGB: given so, a color is converted once a cell, not once a corner.
     """
     color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
     rgba = np.column_stack([linear_to_srgb(colors), np.ones(len(colors))]).astype(np.float32)

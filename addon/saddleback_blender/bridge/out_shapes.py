@@ -67,7 +67,7 @@ def write_bent(
 ) -> bpy.types.Object:
     """Makes or replaces the source's shapes object: all bent copies as one mesh, which may follow the source.
 
-    Faces know their shape, its class and a random number of its own; corners have UV places and a colour.
+    Faces know their shape, its class and a random number of its own; corners have UV places and a color.
     """
     bent = result.bent
     assert bent is not None

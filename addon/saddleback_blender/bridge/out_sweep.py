@@ -22,7 +22,7 @@ def write_sweep(
 ) -> bpy.types.Object:
     """Makes the source's sweep anew; returns the circle."""
     remove_sweep(source)
-    place = Matrix.Translation(sweep.centre) @ Matrix(sweep.axes.tolist()).transposed().to_4x4()
+    place = Matrix.Translation(sweep.center) @ Matrix(sweep.axes.tolist()).transposed().to_4x4()
     circle = replace_object(context, source, CIRCLE_ROLE, _circle(), place)
     circle.hide_render = True
     _animate(circle, sweep, settings)

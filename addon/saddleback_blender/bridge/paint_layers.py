@@ -26,7 +26,7 @@ def prepare_weights(source: bpy.types.Object, name: str) -> bpy.types.VertexGrou
 
 
 def prepare_colors(source: bpy.types.Object, name: str) -> bpy.types.Attribute:
-    """The colour attribute of this name, made black where there is none, and active."""
+    """The color attribute of this name, made black where there is none, and active."""
     mesh = source.data
     attribute = mesh.color_attributes.get(name)
     if attribute is None:

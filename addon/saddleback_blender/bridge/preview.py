@@ -1,4 +1,4 @@
-"""A look at distances: a material of colours and lines on the object, without touching the artist's own materials.
+"""A look at distances: a material of colors and lines on the object, without touching the artist's own materials.
 
 Each material slot of the object is linked to the object instead of the mesh and shows the preview; the mesh keeps its
 materials. Taking the preview away links the slots back.
@@ -33,7 +33,7 @@ RAMP = (
 
 
 def show_preview(item: bpy.types.Object, attribute: str, farthest: float, spacing: float) -> bpy.types.Material:
-    """Shows the attribute from 0 to `farthest` in colours, with a line every `spacing` (0: none) mesh units."""
+    """Shows the attribute from 0 to `farthest` in colors, with a line every `spacing` (0: none) mesh units."""
     _remember(item)
     material = _own_material(item)
     if material is None:
@@ -122,7 +122,7 @@ def _set(material: bpy.types.Material, attribute: str, farthest: float, spacing:
 
 
 def _new_material() -> bpy.types.Material:
-    """Distance / farthest -> ramp -> colour, darkened where distance / spacing is near a whole number."""
+    """Distance / farthest -> ramp -> color, darkened where distance / spacing is near a whole number."""
     material, shader = nodes.new_material("Saddleback Distance", KIND)
     material.diffuse_color = (*RAMP[1][1], 1.0)
     tree, link = material.node_tree.nodes, material.node_tree.links.new

@@ -1,6 +1,6 @@
 """Brings a repaired surface back into the Blender mesh it came from, with as much of the artist's data as can be kept.
 
-BMesh carries every layer there is (groups, UVs, colours, creases, shape keys) through the few changes that a repair
+BMesh carries every layer there is (groups, UVs, colors, creases, shape keys) through the few changes that a repair
 makes; it costs some seconds a million vertices, which only meshes that need it pay.
 """
 

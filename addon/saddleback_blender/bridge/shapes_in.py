@@ -93,10 +93,10 @@ def _template(context: bpy.types.Context, source: bpy.types.Object, item: bpy.ty
         native.load().Shape(*[list(part) for part in parts])
     except native.load().InputError as error:
         raise BadInputError(f"'{source.name}': '{item.name}' is no shape: {outline_refusal(str(error))}") from error
-    return fitted(item.name, parts, _centre(parts), solid)
+    return fitted(item.name, parts, _center(parts), solid)
 
 
-def _centre(parts: Parts) -> Reals:
+def _center(parts: Parts) -> Reals:
     """The origin where it is within the outlines' box, else the middle of that."""
     corners = np.concatenate([loop for part in parts for loop in part])
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -188,10 +188,10 @@ def _of_image(source: bpy.types.Object, image: bpy.types.Image) -> ShapeTemplate
         raise BadInputError(
             f"'{source.name}': image '{image.name}' makes no shape: {outline_refusal(str(error))}"
         ) from error
-    return fitted(image.name, parts, _centre_of_box(parts))
+    return fitted(image.name, parts, _center_of_box(parts))
 
 
-def _centre_of_box(parts: Sequence[Sequence[Reals]]) -> Reals:
+def _center_of_box(parts: Sequence[Sequence[Reals]]) -> Reals:
     corners = np.concatenate([loop for part in parts for loop in part])
     middle: Reals = (corners.min(axis=0) + corners.max(axis=0)) / 2
     return middle

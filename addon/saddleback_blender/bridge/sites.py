@@ -1,4 +1,4 @@
-"""Where cells are centred, and distances and paths begin: vertices chosen or painted, objects, curves, the cursor."""
+"""Where cells are centered, and distances and paths begin: vertices chosen or painted, objects, curves, the cursor."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A pleasant colour for every cell, the same every time, unlike those of its neighbours.
+"""A pleasant color for every cell, the same every time, unlike those of its neighbors.
 
-Colours are drawn in Oklab, where equal steps look equal (B. Ottosson, "A perceptual color space for image processing",
+Colors are drawn in Oklab, where equal steps look equal (B. Ottosson, "A perceptual color space for image processing",
 2020): a middling lightness and chroma, any hue.
 """
 
@@ -13,16 +13,16 @@ from .results import Indices, Reals
 
 LIGHTNESS = (0.60, 0.84)
 CHROMA = (0.07, 0.13)
-# Neighbours nearer than this in Oklab draw again; about a third of the hue circle's diameter.
+# Neighbors nearer than this in Oklab draw again; about a third of the hue circle's diameter.
 ALIKE = 0.09
 MAX_DRAWS = 24
 
 
-def cell_colors(count: int, neighbours: Indices) -> Reals:
-    """Linear RGB (count, 3) in [0, 1] for cells whose neighbouring pairs are (e, 2). O(count + e)."""
+def cell_colors(count: int, neighbors: Indices) -> Reals:
+    """Linear RGB (count, 3) in [0, 1] for cells whose neighboring pairs are (e, 2). O(count + e)."""
     draw = np.zeros(count, dtype=np.uint64)
     lab = _draw(np.arange(count, dtype=np.uint64), draw)
-    pairs = np.sort(neighbours[(neighbours >= 0).all(axis=1)], axis=1)
+    pairs = np.sort(neighbors[(neighbors >= 0).all(axis=1)], axis=1)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
     for _ in range(MAX_DRAWS):
         alike = np.linalg.norm(lab[pairs[:, 0]] - lab[pairs[:, 1]], axis=1) < ALIKE

@@ -18,7 +18,7 @@ MOST_TRIES = 200
 def darkness(pixels: NDArray[np.float32], is_encoded: bool, invert: bool) -> Reals:
     """(rows, columns, 4) -> (rows, columns) the share of light that is missing; transparent counts as white.
 
-    `is_encoded`: the colours are sRGB as in 8-bit images, not linear. The first row stays the first.
+    `is_encoded`: the colors are sRGB as in 8-bit images, not linear. The first row stays the first.
     """
     colors = shrunk(np.clip(pixels.astype(np.float64), 0.0, 1.0))
     if is_encoded:

@@ -15,7 +15,7 @@ class DensityError(ValueError):
 
 
 def channel(colors: NDArray[np.floating], name: str) -> Reals:
-    """(n, 4) linear colours -> (n,) the channel LUMINANCE, R, G, B or A."""
+    """(n, 4) linear colors -> (n,) the channel LUMINANCE, R, G, B or A."""
     if name == "LUMINANCE":
         luminance: Reals = colors[:, :3].astype(np.float64) @ REC_709
         return luminance
@@ -41,7 +41,7 @@ def average_to_vertices(
 def shape(values: NDArray[np.floating], invert: bool, contrast: float, upper: float | None) -> Reals:
     """Painted values -> density: inverted within 0 to `upper`, then raised to the power `contrast`.
 
-    `upper` is the most that can be painted (1 for weights, masks and colours), None to take the largest value there is.
+    `upper` is the most that can be painted (1 for weights, masks and colors), None to take the largest value there is.
     Raises DensityError for values that are negative, not finite, or zero everywhere.
     """
     density = values.astype(np.float64)

@@ -68,15 +68,15 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
     placements = result.placements
     points, rotations, scales = mapped.frames()
     counts = np.bincount(placements.shape, minlength=len(laid.templates)).astype(np.int32)
-    corners = np.asarray(mesh.triangles)[placements.centre.faces]
+    corners = np.asarray(mesh.triangles)[placements.center.faces]
     return DistributeResult(
         placed=PlacedShapes(
             shape=np.ascontiguousarray(placements.shape, np.int32),
             points=points,
             rotations=rotations,
             scales=scales,
-            faces=placements.centre.faces,
-            barycentric=placements.centre.barycentric,
+            faces=placements.center.faces,
+            barycentric=placements.center.barycentric,
             corners=corners if surface.used is None else surface.used[corners],
             corner_points=surface.vertices[corners],
         ),

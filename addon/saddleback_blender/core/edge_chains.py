@@ -10,7 +10,7 @@ from .results import Indices
 def chains(count: int, edges: Indices) -> list[tuple[list[int], bool]]:
     """Vertices of each line of two or more, and whether it is closed, for edges (n, 2) between `count` vertices.
 
-    A line runs from its end of lower number, a closed one from its lowest vertex to the lower of that one's neighbours.
+    A line runs from its end of lower number, a closed one from its lowest vertex to the lower of that one's neighbors.
     Where more than two edges meet lines end.
     """
     around: list[list[int]] = [[] for _ in range(count)]

@@ -16,7 +16,7 @@ from .surface_walk import joined
 
 STEPS_PER_EDGE = 2.0  # places along a line, to the mean edge of the mesh
 REACH = 0.05  # of the surface's extent: the farthest that a line may be from it
-# A hand trembles by a pixel or two: each place becomes the mean of its neighbours so often.
+# A hand trembles by a pixel or two: each place becomes the mean of its neighbors so often.
 SMOOTHING_ROUNDS = 4
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from .plane_frame import PlaneFrame
 from .results import FlatCells, Indices, Reals
 
-# Corners nearer than this part of the extent are one: neighbours at the border compute theirs each for themselves.
+# Corners nearer than this part of the extent are one: neighbors at the border compute theirs each for themselves.
 SAME_CORNER = 2.0**-30
 
 

@@ -50,16 +50,16 @@ def _slope(foot: Reals, top: Reals | None, shape: CellShape) -> tuple[Reals, Rea
     None where the foot is not seen whole from the middle of the top.
     """
     if top is None:
-        centre = _centre(foot)
+        center = _center(foot)
         sides = np.roll(foot, -1, axis=0) - foot
-        away = (sides[:, 0] * (centre - foot)[:, 1] - sides[:, 1] * (centre - foot)[:, 0]) / np.hypot(*sides.T)
-        top = centre[None]
+        away = (sides[:, 0] * (center - foot)[:, 1] - sides[:, 1] * (center - foot)[:, 0]) / np.hypot(*sides.T)
+        top = center[None]
         heights = np.array([shape.thickness * min(1.0, max(0.0, float(away.min()) / shape.inset))])
         number = np.arange(len(foot), dtype=np.int32)
         triangles = np.column_stack([number, np.roll(number, -1), np.full(len(foot), len(foot), np.int32)])
     else:
         heights = np.full(len(top), shape.thickness)
-        triangles = _zipped(foot, top, _centre(top))
+        triangles = _zipped(foot, top, _center(top))
     corners = np.concatenate([foot, top])[triangles]
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     turn = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
@@ -68,9 +68,9 @@ def _slope(foot: Reals, top: Reals | None, shape: CellShape) -> tuple[Reals, Rea
     return top, heights, triangles
 
 
-def _zipped(foot: Reals, top: Reals, centre: Reals) -> Indices:
+def _zipped(foot: Reals, top: Reals, center: Reals) -> Indices:
     """Triangles between two loops about a point, in the order of their corners' directions from there."""
-    outer, inner = _by_direction(foot, centre), _by_direction(top, centre)
+    outer, inner = _by_direction(foot, center), _by_direction(top, center)
     n, m = len(foot), len(top)
     triangles = []
     i = j = 0
@@ -87,20 +87,20 @@ def _zipped(foot: Reals, top: Reals, centre: Reals) -> Indices:
     return np.array(triangles, np.int32)
 
 
-def _by_direction(loop: Reals, centre: Reals) -> tuple[list[int], list[float]]:
+def _by_direction(loop: Reals, center: Reals) -> tuple[list[int], list[float]]:
     """Numbers of the corners and their angles, beginning with the least."""
-    angle = np.arctan2(*(loop - centre).T[::-1])
+    angle = np.arctan2(*(loop - center).T[::-1])
     order = np.roll(np.arange(len(loop)), -int(angle.argmin()))
     return order.tolist(), angle[order].tolist()
 
 
-def _centre(loop: Reals) -> Reals:
-    """Centre of mass of a polygon."""
+def _center(loop: Reals) -> Reals:
+    """Center of mass of a polygon."""
     from_first = loop - loop[0]
     onward = np.roll(from_first, -1, axis=0)
     cross = from_first[:, 0] * onward[:, 1] - from_first[:, 1] * onward[:, 0]
-    centre: Reals = loop[0] + (cross[:, None] * (from_first + onward)).sum(axis=0) / (3 * cross.sum())
-    return centre
+    center: Reals = loop[0] + (cross[:, None] * (from_first + onward)).sum(axis=0) / (3 * cross.sum())
+    return center
 
 
 class _Polygons:

@@ -21,7 +21,7 @@ MESH_BYTES_PER_VERTEX, MESH_BYTES_PER_FACE = 48, 84
 
 @dataclass(frozen=True)
 class GraphChoice:
-    """Which graph of a surface: by the error accepted or, where k is not 0, by the vertices in a neighbourhood."""
+    """Which graph of a surface: by the error accepted or, where k is not 0, by the vertices in a neighborhood."""
 
     quality: str
     k: int
@@ -33,7 +33,7 @@ class GraphChoice:
 
     def options(self, surface: Surface) -> dict[str, Any]:
         """What the library is asked for."""
-        if self.k > 0:  # a neighbourhood cannot hold more than the whole surface
+        if self.k > 0:  # a neighborhood cannot hold more than the whole surface
             return {"k": min(self.k, len(surface.vertices))}
         return {"accuracy": ACCURACY[self.quality]}
 

@@ -1,4 +1,4 @@
-"""Colours of an image at places of its square."""
+"""Colors of an image at places of its square."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def to_linear(encoded: Reals) -> Reals:
 
 
 def colors_at(pixels: NDArray[np.float32], places: Reals, is_encoded: bool) -> Reals:
-    """Linear colours (n, 4) of pixels (rows, columns, 4), the first row below, at places (n, 2) of the unit square.
+    """Linear colors (n, 4) of pixels (rows, columns, 4), the first row below, at places (n, 2) of the unit square.
 
     Mixed from the four pixels about each place; beyond the square the image repeats.
     """
@@ -32,7 +32,7 @@ def colors_at(pixels: NDArray[np.float32], places: Reals, is_encoded: bool) -> R
 
 
 def _linear(colors: NDArray[np.float32], is_encoded: bool) -> Reals:
-    """The same colours, of which only alpha is never encoded."""
+    """The same colors, of which only alpha is never encoded."""
     linear = colors.astype(np.float64)
     if is_encoded:
         linear[:, :3] = to_linear(linear[:, :3])

@@ -126,16 +126,16 @@ def open_chords(fields: Floats, triangles: Ints, line: Ints) -> Cut:
     chord[rows, sides] = ~is_line
     enclosed = np.bincount(rows[is_line], minlength=len(triangles)) == 3
     cut = split_edges(fields, triangles, chord)
-    return _split_at_centre(cut, enclosed[cut.parent])
+    return _split_at_center(cut, enclosed[cut.parent])
 
 
-def _split_at_centre(cut: Cut, chosen: Bools) -> Cut:
-    """Split the chosen triangles into three at their centre."""
+def _split_at_center(cut: Cut, chosen: Bools) -> Cut:
+    """Split the chosen triangles into three at their center."""
     if not chosen.any():
         return cut
     corners, parent = cut.triangles[chosen], cut.parent[chosen]
-    centre = (len(cut.fields) + np.arange(len(corners))).astype(np.int32)
-    thirds = [np.stack([corners[:, i], corners[:, (i + 1) % 3], centre], axis=1) for i in range(3)]
+    center = (len(cut.fields) + np.arange(len(corners))).astype(np.int32)
+    thirds = [np.stack([corners[:, i], corners[:, (i + 1) % 3], center], axis=1) for i in range(3)]
     triangles = np.concatenate([cut.triangles[~chosen], *thirds])
     return Cut(
         np.concatenate([cut.fields, cut.fields[corners].mean(axis=1)]),

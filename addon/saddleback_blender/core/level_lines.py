@@ -19,7 +19,7 @@ from .settings import DistanceSettings
 Reals = NDArray[np.float64]
 Indices = NDArray[np.int32]
 
-MOST_LEVELS = 2000  # more lines than that are a grey surface, and would fill the memory
+MOST_LEVELS = 2000  # more lines than that are a gray surface, and would fill the memory
 
 
 @dataclass(frozen=True)

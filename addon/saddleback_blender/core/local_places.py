@@ -11,7 +11,7 @@ def local_uv(positions: Reals, triangles: Indices, triangle_cell: Indices, sites
     """(3 m, 2) places of the corners of triangles (m, 3): the site at (0.5, 0.5), the farthest corner at 0.5 from it.
 
     Seen straight along the site's normal (n, 3), in the directions that X and Y have after the shortest turn from Z to
-    the normal, as instances on the centres have them. O(m).
+    the normal, as instances on the centers have them. O(m).
     """
     cell = np.repeat(triangle_cell, 3)
     across, up = _axes(normals)

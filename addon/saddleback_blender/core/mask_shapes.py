@@ -12,7 +12,7 @@ from .shape_templates import Parts
 PIXELS = 256  # along the longer side of what is drawn
 MARGIN = 2  # empty pixels all around
 MOST_CORNERS = 96
-MOST_GREY = 1 / 3  # of an image; a drawing has it along its lines, a photograph or a ramp everywhere
+MOST_GRAY = 1 / 3  # of an image; a drawing has it along its lines, a photograph or a ramp everywhere
 LEAST_AREA = 1e-6  # of the square of the longer side: what covers less stands upright
 
 
@@ -21,7 +21,7 @@ def parts_of_mask(mask: Reals) -> Parts:
 
     Raises the library's InputError where there is nothing clear to see.
     """
-    shape = native.load().Shape.from_mask(mask, max_corners=MOST_CORNERS, centred=False)
+    shape = native.load().Shape.from_mask(mask, max_corners=MOST_CORNERS, centered=False)
     return tuple(tuple(np.asarray(loop) for loop in part) for part in shape.parts)
 
 
@@ -70,10 +70,10 @@ def parts_of_image(mask: Reals) -> Parts:
 
     Raises the library's InputError where there is nothing clear to see.
     """
-    grey = ((mask > 0.25) & (mask < 0.75)).mean()
-    if grey > MOST_GREY:
+    gray = ((mask > 0.25) & (mask < 0.75)).mean()
+    if gray > MOST_GRAY:
         raise native.load().InputError(
-            f"image: no clear mask, {grey:.0%} of it is neither in nor out; give it transparency or more contrast"
+            f"image: no clear mask, {gray:.0%} of it is neither in nor out; give it transparency or more contrast"
         )
     rows, columns = mask.shape
     block = max(1, -(-max(rows, columns) // PIXELS))

@@ -29,7 +29,7 @@ def near_faces(
     """
     if not extent or not moved.any():
         return np.flatnonzero(moved).astype(np.int32)
-    # Where boxes overlap, first corners are apart by two sides at most along each axis: neighbours in this grid.
+    # Where boxes overlap, first corners are apart by two sides at most along each axis: neighbors in this grid.
     cells = np.floor(vertices[triangles[:, 0]] / (2.0 * extent)).astype(np.int64)
     cells -= cells.min(axis=0) - 1
     size = cells.max(axis=0) + 2

@@ -20,7 +20,7 @@ Cell = tuple[int, int, int]
 Place = tuple[float, float, float]
 EVERY_WAY: Place = (0.0, 0.0, 0.0)  # the axis of points that have none
 HALF_RIGHT = 0.5**0.5  # cosine
-NEIGHBOURS: tuple[Cell, ...] = tuple((i, j, k) for i, j, k in product((-1, 0, 1), repeat=3))
+NEIGHBORS: tuple[Cell, ...] = tuple((i, j, k) for i, j, k in product((-1, 0, 1), repeat=3))
 
 
 class PointGrid:
@@ -57,7 +57,7 @@ class PointGrid:
         x, y, z = point
         i, j, k = axis
         cx, cy, cz = self._cell_of(point)
-        for dx, dy, dz in NEIGHBOURS:
+        for dx, dy, dz in NEIGHBORS:
             for (a, b, c), (u, v, w) in self._cells.get((cx + dx, cy + dy, cz + dz), ()):
                 if (x - a) * (x - a) + (y - b) * (y - b) + (z - c) * (z - c) < self._square and (
                     axis is EVERY_WAY or abs(i * u + j * v + k * w) > HALF_RIGHT

@@ -22,7 +22,7 @@ PERMUTATIONS = ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)
 class RepairPlan:
     """Where each new vertex comes from, and what happens to each polygon that does not stay exactly as it is."""
 
-    vertex_origin: Indices  # (n,) old vertex that gives its data; for a made vertex that of a neighbour
+    vertex_origin: Indices  # (n,) old vertex that gives its data; for a made vertex that of a neighbor
     vertex_is_copy: NDArray[np.bool_]  # (n,) made new: a split copy or the middle of a divided edge
     kept: dict[int, tuple[Indices, bool]]  # polygon -> new vertex of each corner, and whether it turns round
     replaced: dict[int, list[int]]  # polygon -> new triangles in its place
@@ -219,7 +219,7 @@ def _edges(triangle: Indices) -> tuple[frozenset[int], ...]:
 
 
 def _fill_origins(origin: Indices, root: Indices, new_triangles: Indices) -> Indices:
-    """An old vertex for every new one: its own, its root's, or for the middle of an edge that of a neighbour."""
+    """An old vertex for every new one: its own, its root's, or for the middle of an edge that of a neighbor."""
     filled = np.where(root >= 0, origin[np.maximum(root, 0)], -1).astype(np.int32)
     while (filled < 0).any():
         before = int((filled < 0).sum())

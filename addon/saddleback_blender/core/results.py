@@ -19,7 +19,7 @@ class Figures:
 
     triangle_quality: float  # 1 = equilateral, 0 = without area
     least_angle: float  # radians
-    irregular: float  # share of vertices that have not six neighbours (four at a border)
+    irregular: float  # share of vertices that have not six neighbors (four at a border)
     energy: float | None  # times that of regular hexagons in a plane; None where nothing was relaxed
 
 
@@ -120,7 +120,7 @@ class FlatCells(CellPolygons):
 class Sweep:
     """A sweep circle that grows: what is to be seen at which radius."""
 
-    centre: Reals  # (3,)
+    center: Reals  # (3,)
     axes: Reals  # (3, 3) rows: two directions in the plane, and its normal
     last_radius: float  # all edges are there
     edge_vertices: Reals  # (n, 3) edges in short pieces
@@ -207,7 +207,7 @@ class PlacedShapes:
     """n shapes on a surface, as rigid copies stand there, in the world."""
 
     shape: Indices  # (n,) class
-    points: Reals  # (n, 3) the centre
+    points: Reals  # (n, 3) the center
     rotations: Reals  # (n, 4) quaternions, w first: from the shape's axes, z away from the surface
     scales: Reals  # (n, 3) length of a unit of the shape's plane; y negative where it is mirrored
     faces: Indices  # (n,) of the surface's triangles

@@ -95,7 +95,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
         return dual_of(solved.cells, policy, request.threads, progress)
 
     dual = cache.get(("dual", *key, policy), triangulate, lambda made: 2 * made.vertices.nbytes)
-    result = replace(result, figures=figures_of(dual, solved.normalised_energy))
+    result = replace(result, figures=figures_of(dual, solved.normalized_energy))
     if settings.make_dual:
         result = replace(result, dual=dual)
     if settings.make_shell and request.find_crossings is not None:
@@ -170,7 +170,7 @@ class _Solved:
     energy: Reals
     iterations: int
     stop_reason: str
-    normalised_energy: float | None  # None where nothing was relaxed
+    normalized_energy: float | None  # None where nothing was relaxed
     exchanged: int  # sites that were moved for the sake of the dual mesh
 
 
@@ -209,7 +209,7 @@ def _solve(
 ) -> _Solved:
     sb, settings = native.load(), request.settings
     points = None if sites is None else surface_points(mesh, sites)
-    energy, done, reason, normalised, exchanged = np.empty(0), 0, "sites kept", None, 0
+    energy, done, reason, normalized, exchanged = np.empty(0), 0, "sites kept", None, 0
     if points is None or iterations:
         choice: dict[str, Any] = {"sites": points}
         if points is None:
@@ -230,7 +230,7 @@ def _solve(
             )  # fmt: skip
         cells = cvt.cells
         energy, done, reason = np.asarray(cvt.energy, np.float64), int(cvt.iterations), str(cvt.stop_reason)
-        normalised, exchanged = float(cvt.normalised_energy), int(cvt.exchanged)
+        normalized, exchanged = float(cvt.normalized_energy), int(cvt.exchanged)
     else:
         with progress.stage(0.9, "finding the cells") as job:
             cells = sb.geodesic_voronoi(graph, points, threads=request.threads, job=job)
@@ -239,7 +239,7 @@ def _solve(
     vertices, triangles = mesh.vertices, mesh.triangles
     positions = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
     normals = normals_at(vertices, triangles, faces, barycentric)
-    return _Solved(cells, positions, normals, energy, done, reason, normalised, exchanged)
+    return _Solved(cells, positions, normals, energy, done, reason, normalized, exchanged)
 
 
 def _result(request: TessellateRequest, solved: _Solved, density: Reals | None) -> CellsResult:

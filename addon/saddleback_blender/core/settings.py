@@ -42,7 +42,7 @@ class TessellateSettings(DensitySettings):
     hold_marked: bool = False  # edges that are marked sharp
     hold_boundary: bool = False
     quality: str = "NORMAL"  # FAST, NORMAL, FINE
-    k: int = 0  # vertices in a neighbourhood of the graph; 0 = by quality
+    k: int = 0  # vertices in a neighborhood of the graph; 0 = by quality
     cache_on_disk: bool = False
     use_modifiers: bool = False
     make_edges: bool = True
@@ -54,7 +54,7 @@ class TessellateSettings(DensitySettings):
     thickness: float = 0.0
     underside: bool = False
     local_uv: bool = False
-    make_centres: bool = False
+    make_centers: bool = False
     instance_object: str = ""
     instance_scale: float = 1.0
     make_dual: bool = False
@@ -80,7 +80,7 @@ class DistanceSettings:
     sources_object: str = ""  # the curve object of CURVES
     limit: float = 0.0  # no distance beyond it; 0 = none
     quality: str = "NORMAL"  # FAST, NORMAL, FINE, EXACT
-    k: int = 0  # vertices in a neighbourhood of the graph; 0 = by quality
+    k: int = 0  # vertices in a neighborhood of the graph; 0 = by quality
     cache_on_disk: bool = False
     use_modifiers: bool = False
     make_isolines: bool = False
@@ -104,7 +104,7 @@ class PathSettings:
     connect: str = "CHAIN"  # CHAIN, LOOP, PAIRS
     shorten: bool = True
     quality: str = "NORMAL"  # FAST, NORMAL, FINE, EXACT
-    k: int = 0  # vertices in a neighbourhood of the graph; 0 = by quality
+    k: int = 0  # vertices in a neighborhood of the graph; 0 = by quality
     cache_on_disk: bool = False
     use_modifiers: bool = False
     path_radius: float = 0.01
@@ -134,7 +134,7 @@ class Voronoi2dSettings:
     inset: float = 0.0
     thickness: float = 0.0
     underside: bool = False
-    make_centres: bool = False
+    make_centers: bool = False
     instance_object: str = ""
     instance_scale: float = 1.0
     animate: bool = False

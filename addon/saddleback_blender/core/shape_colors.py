@@ -1,4 +1,4 @@
-"""A colour for each shape on a surface: of its class, a little lighter or darker by chance."""
+"""A color for each shape on a surface: of its class, a little lighter or darker by chance."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def random_of(count: int, seed: int) -> Reals:
 
 
 def shape_colors(classes: Indices, random: Reals) -> Reals:
-    """(n, 3) linear colours."""
+    """(n, 3) linear colors."""
     base = CLASSES[classes % len(CLASSES)]
     bright: Reals = base * (1.0 + SPREAD * (2.0 * random[:, None] - 1.0))
     return np.clip(bright, 0.0, 1.0)

@@ -10,7 +10,7 @@ import numpy as np
 from .results import Reals
 from .shape_templates import ShapeTemplate, Solid, dome, fitted, rounded
 
-CENTRE = np.zeros(2)
+CENTER = np.zeros(2)
 
 
 def _scales() -> list[ShapeTemplate]:
@@ -111,7 +111,7 @@ def _raised(solid: Solid, height: Reals) -> Solid:
 
 
 def _template(name: str, outline: Reals, solid: Solid) -> ShapeTemplate:
-    return fitted(name, [[outline]], CENTRE, solid)
+    return fitted(name, [[outline]], CENTER, solid)
 
 
 PRESETS: dict[str, Callable[[], list[ShapeTemplate]]] = {

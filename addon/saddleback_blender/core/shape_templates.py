@@ -68,16 +68,16 @@ def sized(template: ShapeTemplate) -> ShapeTemplate:
     )
 
 
-def fitted(name: str, parts: Sequence[Sequence[Reals]], centre: Reals, solid: Solid | None = None) -> ShapeTemplate:
-    """A template of circumradius 1 about `centre` (2,) of the given coordinates.
+def fitted(name: str, parts: Sequence[Sequence[Reals]], center: Reals, solid: Solid | None = None) -> ShapeTemplate:
+    """A template of circumradius 1 about `center` (2,) of the given coordinates.
 
     A solid that is flat is lifted a little, since it could not be told from the surface on which it lies.
     """
-    radius = max(float(np.linalg.norm(loop - centre, axis=1).max()) for part in parts for loop in part)
+    radius = max(float(np.linalg.norm(loop - center, axis=1).max()) for part in parts for loop in part)
     scale = 1.0 / radius if radius > 0 else 1.0
-    moved = tuple(tuple((loop - centre) * scale for loop in part) for part in parts)
+    moved = tuple(tuple((loop - center) * scale for loop in part) for part in parts)
     is_flat = solid is not None and bool((np.abs(solid.vertices[:, 2]) * scale < FLAT_LIFT).all())
-    shift = (-float(centre[0]), -float(centre[1]), FLAT_LIFT / scale if is_flat else 0.0)
+    shift = (-float(center[0]), -float(center[1]), FLAT_LIFT / scale if is_flat else 0.0)
     own = None if solid is None else solid.moved(np.array(shift), scale)
     return ShapeTemplate(name, moved, own, shift=shift, scale=scale)
 

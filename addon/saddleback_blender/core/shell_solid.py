@@ -1,7 +1,7 @@
 """A strip of a surface made thick to both sides: one closed solid that does not pass through itself.
 
 Each vertex moves along a direction that is the surface's normal, smoothed over the thickness: where directions change
-slowly, neighbouring columns do not cross. Where the solid would still meet itself (in creases, in walls thinner than
+slowly, neighboring columns do not cross. Where the solid would still meet itself (in creases, in walls thinner than
 it) it is made thinner until it does not; where that is not enough, the surface itself is folded, and is smoothed.
 """
 
@@ -71,14 +71,14 @@ def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, p
 
 
 def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[np.bool_], progress: Progress) -> None:
-    """Moves the vertices `there` (n,) to the middle of their neighbours, and turns their directions to what is new."""
+    """Moves the vertices `there` (n,) to the middle of their neighbors, and turns their directions to what is new."""
     around = there
-    for _ in range(3):  # a normal, its mean over neighbours, and whether that is turned away: a ring each
+    for _ in range(3):  # a normal, its mean over neighbors, and whether that is turned away: a ring each
         around = _beside(triangles, np.flatnonzero(around), len(places))
     used, number = np.unique(triangles[around[triangles].all(axis=1)], return_inverse=True)
     near: Indices = number.reshape(-1, 3).astype(np.int32)
     own, moved = there[used], places[used]
-    moved[own] = _Neighbours(near, len(used)).mean(moved)[own]
+    moved[own] = _Neighbors(near, len(used)).mean(moved)[own]
     places[used] = moved
     direction[used[own]] = _directions(moved, near, 0.0, progress)[own]
 
@@ -96,11 +96,11 @@ def _directions(vertices: Reals, triangles: Indices, thickness: float, progress:
     progress.check()
     start, end = directed_edges(triangles)
     mean_edge = float(np.linalg.norm(vertices[end] - vertices[start], axis=1).mean())
-    neighbours = _Neighbours(triangles, len(vertices))
+    neighbors = _Neighbors(triangles, len(vertices))
     smooth = normals
     for _ in range(int(np.clip(4 * (thickness / mean_edge) ** 2, 1, MOST_SMOOTHING))):
         progress.check()
-        smooth = _unit(0.2 * smooth + neighbours.mean(smooth), normals)
+        smooth = _unit(0.2 * smooth + neighbors.mean(smooth), normals)
     progress.check()
     corners = vertices[triangles]
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -111,7 +111,7 @@ def _directions(vertices: Reals, triangles: Indices, thickness: float, progress:
     return np.where(own[:, None], normals, smooth)
 
 
-class _Neighbours:
+class _Neighbors:
     """Corners of the triangles around each vertex but itself, sorted by vertex: one on two triangles counts twice."""
 
     def __init__(self, triangles: Indices, count: int) -> None:
@@ -125,14 +125,14 @@ class _Neighbours:
         self.count = count
 
     def mean(self, values: Reals) -> Reals:
-        """Mean (n, 3) of the neighbours' values; zero where there are none."""
+        """Mean (n, 3) of the neighbors' values; zero where there are none."""
         means = np.zeros((self.count, 3))
         for axis in range(3):
             means[self.used, axis] = np.add.reduceat(values[:, axis][self.other], self.first) / self.times
         return means
 
     def least(self, values: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The least (n,) of each vertex's own value and its neighbours'."""
+        """The least (n,) of each vertex's own value and its neighbors'."""
         least = values.copy()
         least[self.used] = np.minimum(least[self.used], np.minimum.reduceat(values[self.other], self.first))
         return least
@@ -154,10 +154,10 @@ def _beside(triangles: Indices, vertices: NDArray[np.integer], count: int) -> ND
 
 def _pieces(triangles: Indices, count: int) -> int:
     """Number of connected parts: the least vertex of each spreads, in ever longer jumps."""
-    neighbours = _Neighbours(triangles, count)
+    neighbors = _Neighbors(triangles, count)
     label = np.arange(count)
     while True:
-        spread = neighbours.least(label)
+        spread = neighbors.least(label)
         spread = np.minimum(spread, spread[spread])
         # Who led a part so far tells it what its members have heard.
         np.minimum.at(spread, label, spread.copy())

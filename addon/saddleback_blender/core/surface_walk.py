@@ -1,6 +1,6 @@
 """Points of a surface in their order -> curves on it, each straight from point to point within a face.
 
-Neighbours in one face are joined as they are, those in faces with a common edge through that edge. Between others the
+Neighbors in one face are joined as they are, those in faces with a common edge through that edge. Between others the
 middle of the way through space is brought to the surface, again and again; what then has no common edge is joined
 through the common vertex. Where points leap, as from one fold to another, the curve is cut. A line along an edge of the
 mesh trembles from face to face: where it soon comes back to a face it is taken not to have left it.
@@ -43,7 +43,7 @@ def _places(mesh: Any, faces: Indices, barycentric: Reals) -> Reals:
 
 
 def _pieces(mesh: Any, faces: Indices, barycentric: Reals, longest: float) -> list[Any]:
-    """One line without leaps, cut where neighbours have nothing in common after all."""
+    """One line without leaps, cut where neighbors have nothing in common after all."""
     triangles, vertices = mesh.triangles, mesh.vertices
     kept = _without_returns(faces, _places(mesh, faces, barycentric), longest)
     faces, barycentric = faces[kept], barycentric[kept]
@@ -79,7 +79,7 @@ def _common(triangles: Indices, faces: Indices) -> NDArray[np.bool_]:
 def _halved(
     mesh: Any, faces: Indices, barycentric: Reals, begins: NDArray[np.bool_], line: NDArray[np.int64]
 ) -> tuple[Indices, Reals, NDArray[np.bool_], NDArray[np.int64]]:
-    """The points with others between them, until neighbours' faces have an edge in common, where that can be."""
+    """The points with others between them, until neighbors' faces have an edge in common, where that can be."""
     for _ in range(MOST_HALVINGS):
         far = np.flatnonzero((_common(mesh.triangles, faces).sum(axis=(1, 2)) < 2) & ~begins[1:])
         if not len(far):

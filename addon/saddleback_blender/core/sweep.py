@@ -21,23 +21,23 @@ def sweep_over(
 ) -> Sweep:
     """The circle grows from the middle of the domain, about one step of the beach curve a frame.
 
-    A point x of an edge is passed by the beach curve of centre c when the circle's radius is |x - c| + |x - s| - w, s
+    A point x of an edge is passed by the beach curve of center c when the circle's radius is |x - c| + |x - s| - w, s
     being one of its two sites.
     """
     corners = frame.to_plane(cells.vertices)
     low, high = corners.min(axis=0), corners.max(axis=0)
-    centre = 0.5 * (low + high)
+    center = 0.5 * (low + high)
     inner = (cells.edge_cells >= 0).all(axis=1)
     step = float((high - low).max()) / PIECES_ACROSS
     places, edges, site = _pieces(corners, cells.edges[inner], cells.edge_cells[inner, 0], step)
-    radius = np.linalg.norm(places - centre, axis=1) + np.linalg.norm(places - sites[site], axis=1)
+    radius = np.linalg.norm(places - center, axis=1) + np.linalg.norm(places - sites[site], axis=1)
     if weights is not None:
         radius = radius - weights[site]
-    last = float(radius.max(initial=0.0)) or float(np.linalg.norm(high - centre))
+    last = float(radius.max(initial=0.0)) or float(np.linalg.norm(high - center))
     count = min(max(frames, 2), MOST_RINGS)
-    rings = _rings(sites, weights, centre, last * np.arange(1, count + 1) / count, progress)
+    rings = _rings(sites, weights, center, last * np.arange(1, count + 1) / count, progress)
     return Sweep(
-        centre=frame.to_world(centre[None])[0],
+        center=frame.to_world(center[None])[0],
         axes=frame.axes,
         last_radius=last,
         edge_vertices=frame.to_world(places),
@@ -68,13 +68,13 @@ def _pieces(corners: Reals, edges: Indices, cells: Indices, step: float) -> tupl
     return places[used], pieces.reshape(-1, 2).astype(np.int32), sites[used].astype(np.int32)
 
 
-def _rings(sites: Reals, weights: Reals | None, centre: Reals, radii: Reals, progress: Progress) -> Reals:
-    """(k, RING_POINTS, 2) the beach curve at each radius; all at the centre before the first site is touched."""
-    sweep: Any = native.load().SweepCircle(sites, centre, weights)
+def _rings(sites: Reals, weights: Reals | None, center: Reals, radii: Reals, progress: Progress) -> Reals:
+    """(k, RING_POINTS, 2) the beach curve at each radius; all at the center before the first site is touched."""
+    sweep: Any = native.load().SweepCircle(sites, center, weights)
     rings = np.empty((len(radii), RING_POINTS, 2))
     for number, radius in enumerate(radii):
         progress.check()
         sweep.grow(float(radius))
         curve = sweep.beach_curve(RING_POINTS)
-        rings[number] = curve if len(curve) else centre
+        rings[number] = curve if len(curve) else center
     return rings

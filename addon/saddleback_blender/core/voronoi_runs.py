@@ -157,7 +157,7 @@ def _relaxed(
 
 
 def _relaxed_on_surface(request: Voronoi2dRequest, space: Space, sites: _Sites, progress: Progress) -> _Sites:
-    """Cells of equal area on the surface, not in its map: centres of mass by area on the surface."""
+    """Cells of equal area on the surface, not in its map: centers of mass by area on the surface."""
     begin, steps = progress.fraction, request.settings.iterations
     for number in range(steps):
         with progress.stage(begin + (0.7 - begin) * (number + 1) / steps, "relaxing the sites") as job:

@@ -17,7 +17,7 @@ from ..bridge.live_preview import LivePreview
 from ..bridge.mesh_in import mesh_of, read_marked_edges, read_surface
 from ..bridge.out_attributes import write_vertex_attributes
 from ..bridge.out_cells import CELLS_ROLE, vanished_cells, write_cells
-from ..bridge.out_centres import CENTRES_ROLE, write_centres
+from ..bridge.out_centers import CENTERS_ROLE, write_centers
 from ..bridge.out_collection import find_output, remove_output
 from ..bridge.out_dual import DUAL_ROLE, write_dual
 from ..bridge.out_edges import EDGES_ROLE, write_edges
@@ -73,7 +73,7 @@ class CellsOperator(SurfaceOperator):
         outputs = (
             (settings.make_edges, write_edges, EDGES_ROLE),
             (settings.make_cells, write_cells, CELLS_ROLE),
-            (settings.make_centres, write_centres, CENTRES_ROLE),
+            (settings.make_centers, write_centers, CENTERS_ROLE),
             (settings.make_dual, write_dual, DUAL_ROLE),
             (settings.make_shell, write_shell, SHELL_ROLE),
         )
@@ -223,14 +223,14 @@ def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:
         names["edge_distance_attribute"] = settings.edge_distance_attribute
     types = {name: "INT" if name == "cell_attribute" else "FLOAT" for name in names}
     check_attribute_names(source, names, types)
-    if settings.make_centres and settings.instance_object:
+    if settings.make_centers and settings.instance_object:
         instance = find(bpy.data.objects, settings.instance_object)
         if instance is None:
             raise BadInputError(
-                f"'{source.name}': there is no object '{settings.instance_object}' to put on the centres"
+                f"'{source.name}': there is no object '{settings.instance_object}' to put on the centers"
             )
         if instance == source:
-            raise BadInputError(f"'{source.name}' cannot be put on its own centres; choose another object for them")
+            raise BadInputError(f"'{source.name}' cannot be put on its own centers; choose another object for them")
 
 
 CLASSES = (SADDLEBACK_OT_tessellate, SADDLEBACK_OT_relax_live)

@@ -12,7 +12,7 @@ from .. import prefs
 from ..blocks import find
 from ..bridge.mesh_in import mesh_of, read_surface, read_triangle_polygons
 from ..bridge.out_cells import vanished_cells, write_cells, write_polygons
-from ..bridge.out_centres import write_centres
+from ..bridge.out_centers import write_centers
 from ..bridge.out_collection import find_output, remove_output
 from ..bridge.out_edges import write_edges, write_network
 from ..bridge.out_sweep import remove_sweep, write_sweep
@@ -29,7 +29,7 @@ from ..props.voronoi_2d import VORONOI_2D
 from .base import SurfaceOperator
 
 # Other names than tessellate's, so that an object can show both.
-EDGES_ROLE, CELLS_ROLE, CENTRES_ROLE = "voronoi edges", "voronoi cells", "voronoi centres"
+EDGES_ROLE, CELLS_ROLE, CENTERS_ROLE = "voronoi edges", "voronoi cells", "voronoi centers"
 
 
 class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
@@ -67,10 +67,10 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
         settings = settings_of(self, Voronoi2dSettings)
         _write_edges(context, source, result, settings)
         _write_cells(context, source, result, settings)
-        if settings.make_centres:
-            write_centres(context, source, result.cells, settings, CENTRES_ROLE)
+        if settings.make_centers:
+            write_centers(context, source, result.cells, settings, CENTERS_ROLE)
         else:
-            remove_output(source, CENTRES_ROLE)
+            remove_output(source, CENTERS_ROLE)
         if result.sweep is not None:
             write_sweep(context, source, result.sweep, settings)
         else:
@@ -96,8 +96,8 @@ def _write_cells(
     if not settings.make_cells:
         remove_output(source, CELLS_ROLE)
     elif result.flat is not None and result.polygons is not None:
-        neighbours = result.flat.edge_cells
-        write_polygons(context, source, result.polygons, result.cells.count, neighbours, result.vanished, CELLS_ROLE)
+        neighbors = result.flat.edge_cells
+        write_polygons(context, source, result.polygons, result.cells.count, neighbors, result.vanished, CELLS_ROLE)
     else:
         write_cells(context, source, result.cells, settings, CELLS_ROLE)
 
@@ -129,14 +129,14 @@ def _check(source: bpy.types.Object, settings: Voronoi2dSettings) -> None:
             f"'{source.name}': the sweep ends in frame {settings.frame_end}, not after frame {settings.frame_start} "
             "in which it starts; choose a later end"
         )
-    if settings.make_centres and settings.instance_object:
+    if settings.make_centers and settings.instance_object:
         instance = find(bpy.data.objects, settings.instance_object)
         if instance is None:
             raise BadInputError(
-                f"'{source.name}': there is no object '{settings.instance_object}' to put on the centres"
+                f"'{source.name}': there is no object '{settings.instance_object}' to put on the centers"
             )
         if instance == source:
-            raise BadInputError(f"'{source.name}' cannot be put on its own centres; choose another object for them")
+            raise BadInputError(f"'{source.name}' cannot be put on its own centers; choose another object for them")
 
 
 CLASSES = (SADDLEBACK_OT_voronoi_2d,)

@@ -48,7 +48,7 @@ VORONOI_2D: dict[str, Any] = {
     "inset": TESSELLATE["inset"],
     "thickness": TESSELLATE["thickness"],
     "underside": TESSELLATE["underside"],
-    "make_centres": switch("Centres", "Make an object of points at the sites", False),
+    "make_centers": switch("Centers", "Make an object of points at the sites", False),
     "instance_object": TESSELLATE["instance_object"],
     "instance_scale": TESSELLATE["instance_scale"],
     "animate": switch("Animate", "Make a sweep circle that grows and uncovers the edges, frame by frame", False),

@@ -33,7 +33,7 @@ class SaddlebackSubPanel(SaddlebackPanel):
         return not why_not(context)
 
     def split_layout(self, context: bpy.types.Context) -> bpy.types.UILayout:
-        """Names to the left and values to the right; grey while a run goes on."""
+        """Names to the left and values to the right; gray while a run goes on."""
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
@@ -94,7 +94,7 @@ def _draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, item: bp
 def _draw_button(layout: bpy.types.UILayout, context: bpy.types.Context, operator: str, icon: str) -> None:
     """The button that starts a run. While one goes on a label stands in its place.
 
-    A button that is grey under the mouse stays dead in Blender after it could be pressed again; a new one does not.
+    A button that is gray under the mouse stays dead in Blender after it could be pressed again; a new one does not.
     """
     row = layout.row()
     row.scale_y = 1.4
@@ -170,16 +170,16 @@ class SADDLEBACK_PT_cells(SaddlebackOutputPanel, bpy.types.Panel):
         rows.draw_cells(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
-class SADDLEBACK_PT_centres(SaddlebackOutputPanel, bpy.types.Panel):
-    """The centres of the cells."""
+class SADDLEBACK_PT_centers(SaddlebackOutputPanel, bpy.types.Panel):
+    """The centers of the cells."""
 
-    bl_label = "Centres"
+    bl_label = "Centers"
     bl_options = {"DEFAULT_CLOSED"}
-    switch = "make_centres"
+    switch = "make_centers"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_centres(self.split_layout(context), active_object(context).saddleback.tessellate)
+        rows.draw_centers(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
 class SADDLEBACK_PT_dual(SaddlebackOutputPanel, bpy.types.Panel):
@@ -253,7 +253,7 @@ class SADDLEBACK_PT_isolines(SaddlebackSubPanel, bpy.types.Panel):
 
 
 class SADDLEBACK_PT_preview(SaddlebackSubPanel, bpy.types.Panel):
-    """The distances in colours."""
+    """The distances in colors."""
 
     bl_label = "Preview Material"
     bl_parent_id = "SADDLEBACK_PT_distance"
@@ -343,16 +343,16 @@ class SADDLEBACK_PT_plane_cells(SaddlebackPlaneOutputPanel, bpy.types.Panel):
         rows.draw_cells(self.split_layout(context), active_object(context).saddleback.voronoi_2d)
 
 
-class SADDLEBACK_PT_plane_centres(SaddlebackPlaneOutputPanel, bpy.types.Panel):
+class SADDLEBACK_PT_plane_centers(SaddlebackPlaneOutputPanel, bpy.types.Panel):
     """The sites."""
 
-    bl_label = "Centres"
+    bl_label = "Centers"
     bl_options = {"DEFAULT_CLOSED"}
-    switch = "make_centres"
+    switch = "make_centers"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        rows.draw_centres(self.split_layout(context), active_object(context).saddleback.voronoi_2d)
+        rows.draw_centers(self.split_layout(context), active_object(context).saddleback.voronoi_2d)
 
 
 class SADDLEBACK_PT_sweep(SaddlebackPlaneOutputPanel, bpy.types.Panel):
@@ -508,7 +508,7 @@ CLASSES = (
     SADDLEBACK_PT_density,
     SADDLEBACK_PT_edges,
     SADDLEBACK_PT_cells,
-    SADDLEBACK_PT_centres,
+    SADDLEBACK_PT_centers,
     SADDLEBACK_PT_dual,
     SADDLEBACK_PT_shell,
     SADDLEBACK_PT_attributes,
@@ -519,7 +519,7 @@ CLASSES = (
     SADDLEBACK_PT_voronoi_2d,
     SADDLEBACK_PT_plane_edges,
     SADDLEBACK_PT_plane_cells,
-    SADDLEBACK_PT_plane_centres,
+    SADDLEBACK_PT_plane_centers,
     SADDLEBACK_PT_sweep,
     SADDLEBACK_PT_direction_field,
     SADDLEBACK_PT_arrows,

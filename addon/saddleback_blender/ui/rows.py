@@ -17,7 +17,7 @@ DENSITY_LISTS = {
 
 
 def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
-    """Where the cells' centres come from, and how they are evened out."""
+    """Where the cells' centers come from, and how they are evened out."""
     layout.prop(settings, "sites_source")
     if settings.sites_source == "COUNT":
         layout.prop(settings, "count")
@@ -106,9 +106,9 @@ def draw_cells(layout: bpy.types.UILayout, settings: Any) -> None:
         layout.prop(settings, "local_uv")
 
 
-def draw_centres(layout: bpy.types.UILayout, settings: Any) -> None:
-    """The points at the centres, and what stands on them."""
-    layout.active = settings.make_centres
+def draw_centers(layout: bpy.types.UILayout, settings: Any) -> None:
+    """The points at the centers, and what stands on them."""
+    layout.active = settings.make_centers
     draw_object(layout, settings, "instance_object")
     column = layout.column()
     column.active = bool(settings.instance_object)
@@ -143,7 +143,7 @@ def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:
 
 
 def draw_quality(layout: bpy.types.UILayout, settings: Any) -> None:
-    """How exact distances are; a neighbourhood, where one is set, stands for the quality."""
+    """How exact distances are; a neighborhood, where one is set, stands for the quality."""
     column = layout.column()
     row = column.row()
     row.active = settings.k == 0

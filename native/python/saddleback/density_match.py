@@ -16,7 +16,7 @@ class DensityMatch(NamedTuple):
 
     correlation: float  #: Pearson's, of the two by area; not a number where the density is the same everywhere
     wanted: _Floats  #: (cells,) shares of all copies, summing to their number
-    found: _Indices  #: (cells,) copies whose centres lie there
+    found: _Indices  #: (cells,) copies whose centers lie there
 
 
 def equal_areas(mesh: Mesh, cells: int) -> _Indices:
@@ -28,15 +28,15 @@ def equal_areas(mesh: Mesh, cells: int) -> _Indices:
     """
     corners = mesh.vertices[mesh.triangles]
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    centres, labels = corners.mean(axis=1), np.zeros(len(areas), dtype=np.int64)
+    centers, labels = corners.mean(axis=1), np.zeros(len(areas), dtype=np.int64)
     parts = [(np.arange(len(areas)), 0, cells)]
     while parts:
         faces, first, count = parts.pop()
         labels[faces] = first
         if count == 1 or len(faces) < 2:
             continue
-        axis = int(np.ptp(centres[faces], axis=0).argmax())
-        faces = faces[np.argsort(centres[faces, axis], kind="stable")]
+        axis = int(np.ptp(centers[faces], axis=0).argmax())
+        faces = faces[np.argsort(centers[faces, axis], kind="stable")]
         sums = np.cumsum(areas[faces])
         half = count // 2
         cut = int(np.searchsorted(sums, sums[-1] * half / count, side="right"))
@@ -74,7 +74,7 @@ def density_match(mesh: Mesh, placements: Placements, density: ArrayLike, cells:
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     labels = equal_areas(mesh, cells)
     shares = np.bincount(labels, areas * painted[mesh.triangles].mean(axis=1), minlength=cells)
-    found = np.bincount(labels[placements.centre.faces], minlength=cells).astype(np.int64)
+    found = np.bincount(labels[placements.center.faces], minlength=cells).astype(np.int64)
     wanted = np.asarray(shares * (len(placements) / shares.sum()), dtype=np.float64)
     # Faces cannot be divided: what is left of the difference between the cells' areas must not count.
     sizes = np.bincount(labels, areas, minlength=cells)

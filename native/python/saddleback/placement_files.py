@@ -45,8 +45,8 @@ def write_placements(
         "faces": len(mesh.triangles),
         "shapes": [[[loop.tolist() for loop in part] for part in kind.parts] for kind in kinds],
         "shape": placements.shape.tolist(),
-        "face": placements.centre.faces.tolist(),
-        "barycentric": placements.centre.barycentric.tolist(),
+        "face": placements.center.faces.tolist(),
+        "barycentric": placements.center.barycentric.tolist(),
         "angle": placements.angle.tolist(),
         "scale": placements.scale.tolist(),
         "mirrored": placements.mirrored.tolist(),
@@ -80,10 +80,10 @@ def read_placements(path: str | os.PathLike[str], mesh: Mesh) -> tuple[list[Shap
     faces = content.wholes("face", len(mesh.triangles))
     count = len(faces)
     weights = content.reals("barycentric", count, 3)
-    centre = content.make(lambda: SurfacePoints(faces, weights))
+    center = content.make(lambda: SurfacePoints(faces, weights))
     index = content.wholes("shape", len(shapes), count)
     angle, scale, mirrored = content.reals("angle", count), content.reals("scale", count), content.flags(count)
-    return shapes, content.make(lambda: Placements(index, centre, angle, scale, mirrored))
+    return shapes, content.make(lambda: Placements(index, center, angle, scale, mirrored))
 
 
 def read_placement_field(path: str | os.PathLike[str], mesh: Mesh) -> DirectionField | None:

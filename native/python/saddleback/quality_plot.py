@@ -11,7 +11,7 @@ from saddleback._saddleback import InputError, Quality
 
 _Floats = NDArray[np.float64]
 
-# Colours that people of every colour vision tell apart (M. Okabe, K. Ito: Color universal design, 2002).
+# Colors that people of every color vision tell apart (M. Okabe, K. Ito: Color universal design, 2002).
 _COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 _WIDTH, _HEIGHT, _MARGIN, _LEGEND = 260, 150, 30, 22
 
@@ -20,7 +20,7 @@ class _Panel(NamedTuple):
     title: str
     edges: _Floats  # of the bins
     ticks: tuple[float, ...]
-    centred: bool  # ticks stand under the bins' middles
+    centered: bool  # ticks stand under the bins' middles
 
     def shares(self, values: _Floats) -> _Floats:
         """Of all values, in each bin; those beyond the ends count with the first and the last."""
@@ -32,7 +32,7 @@ class _Panel(NamedTuple):
 _PANELS = (
     _Panel("quality of triangles", np.linspace(0, 1, 41), (0, 0.25, 0.5, 0.75, 1), False),
     _Panel("least angle, degrees", np.linspace(0, 60, 41), (0, 15, 30, 45, 60), False),
-    _Panel("neighbours of vertices", np.arange(2.5, 11), (3, 4, 5, 6, 7, 8, 9, 10), True),
+    _Panel("neighbors of vertices", np.arange(2.5, 11), (3, 4, 5, 6, 7, 8, 9, 10), True),
 )
 
 
@@ -94,7 +94,7 @@ def _frame(panel: _Panel) -> list[str]:
     ]
     for tick in panel.ticks:
         x = _WIDTH * (tick - low) / (high - low)
-        if not panel.centred:
+        if not panel.centered:
             lines.append(f'<path d="M{x:g},{_HEIGHT} v4" stroke="#888"/>')
         lines.append(f'<text x="{x:g}" y="{_HEIGHT + 16}" text-anchor="middle">{tick:g}</text>')
     return lines

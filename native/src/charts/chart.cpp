@@ -1,4 +1,4 @@
-#include "saddleback/chart.h"
+#include "saddleback/charts/chart.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "charts/box_tree.h"
 #include "charts/turn.h"
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -114,7 +114,7 @@ SurfacePoint point_at(const Chart& chart, Index face, const Vec2& place) {
   for (int i = 0; i < 3; ++i) barycentric[i] = twice_area(place, corner[(i + 1) % 3], corner[(i + 2) % 3]);
   const double sum = barycentric.cwiseMax(0).sum();
   if (!(sum > 0)) return {face, Vec3::Constant(1.0 / 3)};
-  return {face, normalised_barycentric(barycentric / sum)};
+  return {face, normalized_barycentric(barycentric / sum)};
 }
 
 SurfacePoints Chart::locate(std::span<const Vec2> places, int threads, Job* job) const {

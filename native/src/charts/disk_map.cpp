@@ -1,4 +1,4 @@
-#include "saddleback/disk_map.h"
+#include "saddleback/charts/disk_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ void place_border(const Mesh& mesh, std::vector<Vec2>& places) {
   }
 }
 
-/// Each inner vertex at the mean of its neighbours: one equation each, and what border vertices bring to the right
+/// Each inner vertex at the mean of its neighbors: one equation each, and what border vertices bring to the right
 /// side.
 struct Equations {
   std::vector<Index> vertices;  ///< the inner ones

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "voronoi2d/cell_sides.h"
+#include "voronoi2d/diagram/cell_sides.h"
 
 namespace saddleback::charts {
 namespace {
@@ -69,7 +69,7 @@ class CellClip {
   };
 
   void cut(Index k) {
-    const Bisector by(sides_.mine(), sides_.neighbour(k));
+    const Bisector by(sides_.mine(), sides_.neighbor(k));
     values_.clear();
     for (std::size_t i = 0; i < loop_.size(); ++i)
       values_.push_back(value(loop_[i == 0 ? loop_.size() - 1 : i - 1].line, loop_[i], k, by));
@@ -101,7 +101,7 @@ class CellClip {
 
   Corner crossing(const Corner& from, const Vec2& to, Index k) const {
     if (from.line >= 0) return edge_crossing(from.line, k);
-    // Two sides that are no neighbours meet outside of the cell, and what lies there is cut off later.
+    // Two sides that are no neighbors meet outside of the cell, and what lies there is cut off later.
     const CornerKey key{CornerKey::Kind::branch, sides_.vertex_between(~from.line, k), k_none};
     return {key, sides_.place_between(from.place, sides_.meeting(~from.line, k), to), k_none, 0};
   }
@@ -161,7 +161,7 @@ void divide_face(const Chart& chart, const Voronoi2d& diagram, Index face, Index
   for (std::size_t i = 0; i < found.size(); ++i) {
     CellClip cell(chart, diagram, face, found[i]);
     FacePiece piece{found[i], cell.clip()};
-    if (piece.corners.size() < 3) {  // a neighbour's side was taken for its: who cuts it off has the part
+    if (piece.corners.size() < 3) {  // a neighbor's side was taken for its: who cuts it off has the part
       for (const Index edge : cell.cutting_edges()) find(piece.site, edge);
       continue;
     }

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "saddleback/chart.h"
-#include "saddleback/voronoi_2d.h"
+#include "saddleback/charts/chart.h"
+#include "saddleback/voronoi2d/voronoi_2d.h"
 
 namespace saddleback::charts {
 
@@ -32,7 +32,7 @@ struct FacePiece {
 };
 
 /// Divides a face among the cells, beginning with that of `site`, which must have a part of it; no pieces where it has
-/// all. Neighbours of a cell come next where its piece has a side in common with them.
+/// all. Neighbors of a cell come next where its piece has a side in common with them.
 void divide_face(const Chart& chart, const Voronoi2d& diagram, Index face, Index site, std::vector<FacePiece>& pieces);
 
 }  // namespace saddleback::charts

@@ -4,12 +4,12 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "saddleback/charts/lifted_voronoi.h"
 #include "saddleback/error.h"
-#include "saddleback/lifted_voronoi.h"
 
 #include "charts/face_cells.h"
-#include "support/parallel.h"
-#include "tessellation/split_mesh.h"
+#include "support/threads/parallel.h"
+#include "tessellation/cells/split_mesh.h"
 
 namespace saddleback {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "saddleback/surface_points.h"
+#include "saddleback/mesh/surface_points.h"
 
 namespace saddleback::distribution {
 
@@ -21,7 +21,7 @@ struct Cell {
     const double sign = is_inverted ? -1 : 1;
     return Vec2(i + sign * along, j + sign * up) * unit();
   }
-  Vec2 centre() const { return weights(1.0 / 3, 1.0 / 3); }
+  Vec2 center() const { return weights(1.0 / 3, 1.0 / 3); }
 
   std::array<Cell, 4> children() const {
     const auto next = static_cast<std::uint8_t>(level + 1);
@@ -43,7 +43,7 @@ struct Cell {
 inline constexpr int k_most_levels = 24;
 
 inline SurfacePoint point_at(Index face, const Vec2& weights) {
-  return {face, normalised_barycentric({1 - weights.x() - weights.y(), weights.x(), weights.y()})};
+  return {face, normalized_barycentric({1 - weights.x() - weights.y(), weights.x(), weights.y()})};
 }
 
 }  // namespace saddleback::distribution

@@ -1,4 +1,4 @@
-#include "saddleback/distribution.h"
+#include "saddleback/distribution/distribution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <optional>
 
 #include "saddleback/error.h"
-#include "saddleback/trace.h"
+#include "saddleback/mesh/trace.h"
 
-#include "even_places.h"
-#include "gap_search.h"
-#include "laying.h"
-#include "placing_rules.h"
+#include "distribution/even_places.h"
+#include "distribution/gap_sampling.h"
+#include "distribution/insertion.h"
+#include "distribution/placing_rules.h"
 #include "support/only_ratios.h"
 #include "support/random_numbers.h"
 
@@ -162,8 +162,8 @@ std::vector<Index> interleaved(const std::vector<Index>& counts) {
 /// Places copies so that they follow a density evenly.
 class DensityFollower {
  public:
-  DensityFollower(const Mesh& mesh, const PlacingRules& rules, Laying& laying, const DistributionOptions& options)
-      : mesh_(mesh), rules_(rules), laying_(laying), options_(options) {
+  DensityFollower(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion, const DistributionOptions& options)
+      : mesh_(mesh), rules_(rules), insertion_(insertion), options_(options) {
     for (Index f = 0; f < mesh.face_count(); ++f) mass_ += mesh.face_area(f) * density_at(f, Vec3::Constant(1.0 / 3));
   }
 
@@ -178,8 +178,8 @@ class DensityFollower {
       const double spread = 2.0 * attempt / k_attempts;
       std::vector<Candidate> candidates;
       for (const Index which : missing) candidates.push_back(candidate(which, attempt, spread));
-      const std::vector<Outcome> outcomes =
-          laying_.lay(candidates, stage.part(static_cast<double>(attempt) / k_attempts, (attempt + 1.0) / k_attempts));
+      const std::vector<Outcome> outcomes = insertion_.insert(
+          candidates, stage.part(static_cast<double>(attempt) / k_attempts, (attempt + 1.0) / k_attempts));
       std::erase_if(missing, [&, i = std::size_t{0}](Index) mutable { return outcomes[i++] == Outcome::laid; });
     }
     return missing.empty() ? DistributionStop::counts : DistributionStop::tired;
@@ -213,7 +213,7 @@ class DensityFollower {
 
   const Mesh& mesh_;
   const PlacingRules& rules_;
-  Laying& laying_;
+  Insertion& insertion_;
   const DistributionOptions& options_;
   double mass_ = 0;           ///< the density's integral
   std::vector<Index> turns_;  ///< the shape of each copy
@@ -238,17 +238,17 @@ DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, c
   const JobStage laid = options.field ? stage : stage.part(k_field_share, 1);
   const DirectionField& field = options.field ? *options.field : *smoothest;
   const PlacingRules rules(mesh, shapes, options, field, laid.part(0, 0.05));
-  Laying laying(mesh, rules, options);
+  Insertion insertion(mesh, rules, options);
   DistributionResult result;
   if (!options.density.empty()) {
-    result.stop = DensityFollower(mesh, rules, laying, options).run(laid.part(0.05, 1));
+    result.stop = DensityFollower(mesh, rules, insertion, options).run(laid.part(0.05, 1));
   } else {
-    GapSearch search(mesh, rules, laying, options);
+    GapSampling search(mesh, rules, insertion, options);
     result.stop = search.run(laid.part(0.05, 1));
     if (options.maximal) result.certificate = search.certificate();
   }
-  for (const Copy& copy : laying.settled().copies()) result.placements.push_back(copy.placement);
-  std::copy(laying.rejections().begin(), laying.rejections().end(), result.rejections.begin());
+  for (const Copy& copy : insertion.settled().copies()) result.placements.push_back(copy.placement);
+  std::copy(insertion.rejections().begin(), insertion.rejections().end(), result.rejections.begin());
   stage.update(1);
   return result;
 }

@@ -1,4 +1,4 @@
-#include "edge_distances.h"
+#include "distribution/edge_distances.h"
 
 #include <algorithm>
 #include <cmath>

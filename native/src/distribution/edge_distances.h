@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "saddleback/mesh.h"
+#include "saddleback/mesh/mesh.h"
 
 namespace saddleback::distribution {
 

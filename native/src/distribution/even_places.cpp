@@ -3,15 +3,15 @@
 // few times (Lloyd, Least squares quantization in PCM, 1982), which rounds the pieces off. Points count by the density
 // once more on the way: without, middles would drift from where it is high.
 
-#include "even_places.h"
+#include "distribution/even_places.h"
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <vector>
 
-#include "saddleback/mesh.h"
-#include "saddleback/sample.h"
+#include "saddleback/mesh/mesh.h"
+#include "saddleback/mesh/sample.h"
 
 namespace saddleback::distribution {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "saddleback/surface_points.h"
+#include "saddleback/mesh/surface_points.h"
 
 namespace saddleback::distribution {
 

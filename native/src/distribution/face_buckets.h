@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "saddleback/mesh.h"
+#include "saddleback/mesh/mesh.h"
 
 namespace saddleback::distribution {
 

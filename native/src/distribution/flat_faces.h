@@ -4,10 +4,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "saddleback/mesh.h"
-#include "saddleback/surface_points.h"
+#include "saddleback/mesh/mesh.h"
+#include "saddleback/mesh/surface_points.h"
 
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback::distribution {
 

@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include "saddleback/safe_distance.h"
+#include "saddleback/distribution/safe_distance.h"
 
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {

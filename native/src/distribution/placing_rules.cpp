@@ -1,4 +1,4 @@
-#include "placing_rules.h"
+#include "distribution/placing_rules.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 
 #include "saddleback/error.h"
 
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback::distribution {
 namespace {
 
 /// Copies of sizes that differ by no more share the outline that holds the gap, made for the smallest.
 constexpr double k_size_step = 1.15;
-constexpr std::size_t k_most_kinds = 64;  // a bit of a word each, see gap_search
+constexpr std::size_t k_most_kinds = 64;  // a bit of a word each, see gap_sampling
 /// The field is sampled about the corners of a cell; between them it may go a little beyond.
 constexpr double k_field_slack = 1.2;
 /// Corners of a cell, see Cell::weights.
@@ -45,7 +45,7 @@ PlacingRules::PlacingRules(const Mesh& mesh, std::span<const Shape> shapes, cons
   if (kinds_.size() > k_most_kinds)
     throw InputError(message("shapes: ", shapes.size(), " of them make ", kinds_.size(),
                              " kinds by the field's directions and their mirror images, more than the ", k_most_kinds,
-                             " that can be told apart; leave some out, or lay them one after the other"));
+                             " that can be told apart; leave some out, or insert them one after the other"));
   make_bodies(shapes, options, stage);
 }
 
@@ -69,7 +69,8 @@ void PlacingRules::make_bodies(std::span<const Shape> shapes, const Distribution
     const auto [i, level] = work[k];
     const Shape side = i % 2 == 0 ? shapes[i / 2] : shapes[i / 2].mirrored();
     const double scale = least_scale_ * std::pow(k_size_step, level);
-    bodies_[i][level] = std::make_unique<Body>(options.gap > 0 ? grown(side, 0.5 * options.gap / scale) : side);
+    bodies_[i][level] =
+        std::make_unique<CollisionShape>(options.gap > 0 ? grown(side, 0.5 * options.gap / scale) : side);
   });
   smallest_body_area_ = std::numeric_limits<double>::infinity();
   for (const auto& sizes : bodies_)
@@ -84,23 +85,23 @@ void PlacingRules::make_bodies(std::span<const Shape> shapes, const Distribution
     }
 }
 
-const Body& PlacingRules::body(Index kind, double scale) const {
+const CollisionShape& PlacingRules::body(Index kind, double scale) const {
   const auto& sizes = bodies_[2 * static_cast<std::size_t>(kinds_[kind].shape) + (kinds_[kind].is_mirrored ? 1 : 0)];
   if (sizes.size() == 1) return *sizes[0];
   const auto level = static_cast<int>(std::log(scale / least_scale_) / std::log(k_size_step));
   return *sizes[static_cast<std::size_t>(std::clamp(level, 0, static_cast<int>(sizes.size()) - 1))];
 }
 
-Copy PlacingRules::copy(Index kind, const SurfacePoint& centre, double field_angle, double scale) const {
+Copy PlacingRules::copy(Index kind, const SurfacePoint& center, double field_angle, double scale) const {
   const Kind& what = kinds_[kind];
   const double angle = field_angle + 2 * std::numbers::pi * what.turn / field_->symmetry();
-  return {{what.shape, centre, angle, scale, what.is_mirrored}, &body(kind, scale), 0};
+  return {{what.shape, center, angle, scale, what.is_mirrored}, &body(kind, scale), 0};
 }
 
-std::optional<CentreLine> PlacingRules::line(const Placement& placement) const {
+std::optional<CenterLine> PlacingRules::line(const Placement& placement) const {
   if (!bends_) return std::nullopt;
   // Of the shape itself, not of what holds the gap: the line that it will be laid along in the end.
-  return centre_line(*field_, placement, box_of(shapes_[static_cast<std::size_t>(placement.shape)].loops(), placement));
+  return center_line(*field_, placement, box_of(shapes_[static_cast<std::size_t>(placement.shape)].loops(), placement));
 }
 
 double PlacingRules::size_at(Index face, const Vec2& weights) const {
@@ -110,8 +111,8 @@ double PlacingRules::size_at(Index face, const Vec2& weights) const {
 }
 
 CellView PlacingRules::view(const Cell& cell) const {
-  CellView view{point_at(cell.face, cell.centre()), flat_.place(cell.face, cell.centre()), 0, 0, 0, 0, 0};
-  view.size = size_at(cell.face, cell.centre());
+  CellView view{point_at(cell.face, cell.center()), flat_.place(cell.face, cell.center()), 0, 0, 0, 0, 0};
+  view.size = size_at(cell.face, cell.center());
   for (const auto& [along, up] : k_corners) {
     const Vec2 corner = cell.weights(along, up);
     view.radius = std::max(view.radius, (flat_.place(cell.face, corner) - view.place).norm());
@@ -121,7 +122,7 @@ CellView PlacingRules::view(const Cell& cell) const {
 }
 
 void PlacingRules::turn(const Cell& cell, CellView& view) const {
-  view.angle = field_->angle_at(view.centre);
+  view.angle = field_->angle_at(view.center);
   // Beside a vertex the field depends on the side from which one comes, so it is asked for a little off the corners.
   constexpr double k_off = 0.01;
   for (int i = 0; i < 3; ++i) {

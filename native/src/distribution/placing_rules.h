@@ -6,14 +6,14 @@
 #include <optional>
 #include <vector>
 
-#include "saddleback/centre_line.h"
-#include "saddleback/distribution.h"
+#include "saddleback/distribution/distribution.h"
+#include "saddleback/shape_mapping/center_line.h"
 
-#include "body.h"
-#include "cell.h"
-#include "encounter.h"
-#include "flat_faces.h"
-#include "settled_shapes.h"
+#include "distribution/cell.h"
+#include "distribution/collision_shape.h"
+#include "distribution/flat_faces.h"
+#include "distribution/overlap.h"
+#include "distribution/placed_shapes.h"
 
 namespace saddleback::distribution {
 
@@ -26,10 +26,10 @@ struct Kind {
 
 /// A cell, and how much direction and size change over it.
 struct CellView {
-  SurfacePoint centre;
-  Vec2 place;           ///< the centre in the face's plane
-  double radius;        ///< farthest corner from the centre
-  double angle;         ///< of the field at the centre
+  SurfacePoint center;
+  Vec2 place;           ///< the center in the face's plane
+  double radius;        ///< farthest corner from the center
+  double angle;         ///< of the field at the center
   double angle_spread;  ///< by how much it differs elsewhere in the cell
   double size, size_spread;
 };
@@ -69,17 +69,17 @@ class PlacingRules {
   }
 
   /// A copy of the kind at a point where the field has this angle.
-  Copy copy(Index kind, const SurfacePoint& centre, double field_angle, double scale) const;
+  Copy copy(Index kind, const SurfacePoint& center, double field_angle, double scale) const;
   double field_angle(const SurfacePoint& point) const { return field_->angle_at(point); }
   /// What a copy bends along; none where it does not.
-  std::optional<CentreLine> line(const Placement& placement) const;
-  /// By how much the points of a copy move when its centre does within the cell.
+  std::optional<CenterLine> line(const Placement& placement) const;
+  /// By how much the points of a copy move when its center does within the cell.
   Motion motion(const CellView& view, double factor) const {
     return {view.radius, factor * (view.size * view.angle_spread + view.size_spread)};
   }
 
  private:
-  const Body& body(Index kind, double scale) const;
+  const CollisionShape& body(Index kind, double scale) const;
   void make_bodies(std::span<const Shape> shapes, const DistributionOptions& options, const JobStage& stage);
 
   const Mesh* mesh_;
@@ -91,7 +91,8 @@ class PlacingRules {
   double smallest_factor_, largest_factor_;
   std::vector<double> radii_, inradii_, areas_;  ///< per shape
   std::vector<Kind> kinds_;
-  std::vector<std::vector<std::unique_ptr<Body>>> bodies_;  ///< per shape and side, by size where there is a gap
+  std::vector<std::vector<std::unique_ptr<CollisionShape>>>
+      bodies_;  ///< per shape and side, by size where there is a gap
   double least_scale_ = 1;
   double largest_radius_ = 0, smallest_radius_ = 0, largest_body_radius_ = 0, smallest_body_area_ = 0;
 };

@@ -1,4 +1,4 @@
-#include "saddleback/safe_distance.h"
+#include "saddleback/distribution/safe_distance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "saddleback/error.h"
 
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -44,7 +44,7 @@ double largest_sum(const FrontProfiles& a, Index alpha, double scale_a, const Fr
   double best = -std::numeric_limits<double>::infinity();
   while (i < k_columns && j < k_columns) {
     best = std::max(best, scale_a * fronts_a[i] + scale_b * fronts_b[k_columns - 1 - j]);
-    // Ends of strips counted from the middle. Where rounding cannot tell which is first, both neighbours were summed.
+    // Ends of strips counted from the middle. Where rounding cannot tell which is first, both neighbors were summed.
     const double end_a = (i + 1 - 0.5 * k_columns) * width_a, end_b = (j + 1 - 0.5 * k_columns) * width_b;
     const double slack = k_rounding * (width_a + width_b);
     if (std::abs(end_a - end_b) <= slack) {

@@ -1,17 +1,17 @@
-// A field as it is kept: its singularities, and its value between the centres of faces.
+// A field as it is kept: its singularities, and its value between the centers of faces.
 //
 // On every edge the field is linear between two values at its ends, which both faces share. About a vertex the values
 // on the edges follow a model that turns evenly with the angle, as often as the vertex' index says; what the turns of
 // the faces say beside that is evened out. Inside a face the values of the edges are blended by barycentric
 // coordinates.
 
-#include "saddleback/direction_field.h"
+#include "saddleback/field/direction_field.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "filled_surface.h"
+#include "field/connection/filled_surface.h"
 
 namespace saddleback {
 namespace {
@@ -97,15 +97,15 @@ std::vector<Vec3> DirectionField::vectors() const {
 
 double DirectionField::angle_at(const SurfacePoint& point) const {
   const Vec3& b = point.barycentric;
-  double value = 0, centre = 0;
+  double value = 0, center = 0;
   for (int i = 0; i < 3; ++i) {
     const Index h = 3 * point.face + i;
     const double next = b[(i + 1) % 3], last = b[(i + 2) % 3];
     const double share = next + last > 0 ? last / (next + last) : 0.5;
     value += b[i] * (along_[h] + share * (before_[h] - along_[h]));
-    centre += (along_[h] + before_[h]) / 6;
+    center += (along_[h] + before_[h]) / 6;
   }
-  return angles_[point.face] + value - 27 * b[0] * b[1] * b[2] * centre;
+  return angles_[point.face] + value - 27 * b[0] * b[1] * b[2] * center;
 }
 
 DirectionField DirectionField::turned(double angle) const {

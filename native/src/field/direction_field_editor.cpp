@@ -6,15 +6,15 @@
 #include <complex>
 #include <numbers>
 
-#include "saddleback/direction_field.h"
 #include "saddleback/error.h"
+#include "saddleback/field/direction_field.h"
 
-#include "prescribed_indices.h"
-#include "shape_operator.h"
-#include "sharp_loops.h"
-#include "smooth_powers.h"
-#include "stroke_targets.h"
-#include "untangle_turns.h"
+#include "field/connection/prescribed_indices.h"
+#include "field/connection/shape_operator.h"
+#include "field/connection/sharp_loops.h"
+#include "field/connection/untangle_turns.h"
+#include "field/smoothing/smooth_powers.h"
+#include "field/smoothing/stroke_targets.h"
 
 namespace saddleback {
 namespace {

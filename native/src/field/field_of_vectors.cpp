@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "saddleback/direction_field.h"
 #include "saddleback/error.h"
+#include "saddleback/field/direction_field.h"
 
-#include "surface_connection.h"
+#include "field/connection/surface_connection.h"
 
 namespace saddleback {
 namespace {

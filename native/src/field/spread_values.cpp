@@ -1,4 +1,4 @@
-#include "saddleback/spread_values.h"
+#include "saddleback/field/spread_values.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 #include "saddleback/error.h"
 
-#include "face_springs.h"
-#include "support/parallel.h"
+#include "field/smoothing/face_springs.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {

@@ -1,7 +1,7 @@
 // A walk from face to face with the position in the chart of the face. The field has no value at vertices themselves:
 // a curve that would meet one passes beside it, nearer than anything that counts.
 
-#include "saddleback/streamline.h"
+#include "saddleback/field/streamline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "saddleback/error.h"
 
-#include "surface_connection.h"
+#include "field/connection/surface_connection.h"
 
 namespace saddleback {
 namespace {
@@ -97,7 +97,7 @@ class Walk {
   }
 
   SurfacePoint point_at(const Vec2& place) const {
-    return {face_, normalised_barycentric(chart_->to_barycentric(place))};
+    return {face_, normalized_barycentric(chart_->to_barycentric(place))};
   }
 
   /// Of the field's directions the one nearest to `near`.
@@ -110,14 +110,14 @@ class Walk {
     std::int64_t faces = 0;
     for (std::int64_t steps = 0;; ++steps) {
       if (steps > k_max_steps) throw InputError(too_long("steps", steps));
-      if (steps % 64 == 0) stage_.update(travelled_ / length_);
+      if (steps % 64 == 0) stage_.update(traveled_ / length_);
       if (const Index v = vertex_reached(); v != k_none) {
         Vec3 corner = Vec3::Zero();
         for (int i = 0; i < 3; ++i) corner[i] = mesh_.triangles()[face_][i] == v ? 1 : 0;
         record({face_, corner});
         return StreamlineEnd::singularity;
       }
-      const double left = length_ - travelled_;
+      const double left = length_ - traveled_;
       if (left <= 0) return StreamlineEnd::length;
       double length = std::min(left, step_here());
       Vec2 move = step(length);
@@ -131,16 +131,16 @@ class Walk {
         exit = find_exit(move);
       }
       const double size = move.norm();
-      if (exit.share > 1.05 || travelled_ + size * exit.share >= length_) {
+      if (exit.share > 1.05 || traveled_ + size * exit.share >= length_) {
         const double share = left <= size ? left / size : 1;
         place_ += share * move;
-        travelled_ = left <= size ? length_ : travelled_ + share * size;
+        traveled_ = left <= size ? length_ : traveled_ + share * size;
         heading_ = next_heading_;
         edge_ = k_none;
         record(point_at(place_));
         continue;
       }
-      travelled_ += size * exit.share;
+      traveled_ += size * exit.share;
       heading_ = next_heading_;
       if (!cross_edge(exit, move)) return StreamlineEnd::boundary;
       if (++faces > k_max_faces) throw InputError(too_long("faces", faces));
@@ -149,7 +149,7 @@ class Walk {
 
   std::string too_long(const char* of_what, std::int64_t count) const {
     return message("length ", length_, " is too long to follow: after ", count - 1, " ", of_what, " the curve is ",
-                   travelled_, " long");
+                   traveled_, " long");
   }
 
   double step_here() const {
@@ -246,7 +246,7 @@ class Walk {
   Index face_ = 0, edge_ = k_none;
   std::optional<FaceChart> chart_;
   Vec2 place_ = Vec2::Zero();
-  double heading_ = 0, next_heading_ = 0, share_ = 0, step_ = 0, travelled_ = 0;
+  double heading_ = 0, next_heading_ = 0, share_ = 0, step_ = 0, traveled_ = 0;
   bool singular_ = false;
 };
 
@@ -329,7 +329,7 @@ Side one_side(const DirectionField& field, const SurfacePoint& start, const Stre
 Streamline streamline(const DirectionField& field, const SurfacePoint& start, const StreamlineOptions& options) {
   check(field, start, options);
   SurfacePoint from = start;
-  from.barycentric = normalised_barycentric(start.barycentric);
+  from.barycentric = normalized_barycentric(start.barycentric);
   const double length = options.both ? 0.5 * options.length : options.length;
   const JobStage stage(options.job, "Stream line");
   Streamline result;

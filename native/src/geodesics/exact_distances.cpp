@@ -1,4 +1,4 @@
-#include "saddleback/exact_distances.h"
+#include "saddleback/geodesics/exact_distances.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include "saddleback/error.h"
 
-#include "geodesics/exact_path.h"
-#include "geodesics/exact_progress.h"
+#include "geodesics/exact/exact_path.h"
+#include "geodesics/exact/exact_progress.h"
 
 namespace saddleback {
 namespace {

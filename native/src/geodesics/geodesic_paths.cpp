@@ -1,23 +1,23 @@
 // A path is a chain of arcs from a distance field's predecessors; each arc is unfolded from the vertex where it leaves.
 
-#include "saddleback/geodesic_paths.h"
+#include "saddleback/geodesics/geodesic_paths.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "saddleback/error.h"
-#include "saddleback/surface_curve.h"
+#include "saddleback/mesh/surface_curve.h"
 
-#include "geodesics/joined_paths.h"
-#include "geodesics/label_propagation.h"
-#include "geodesics/line_of_sight.h"
-#include "geodesics/path_progress.h"
-#include "geodesics/path_shortening.h"
-#include "geodesics/point_targets.h"
-#include "geodesics/query_cache.h"
-#include "geodesics/window_propagation.h"
-#include "support/parallel.h"
+#include "geodesics/graph/visible_vertices.h"
+#include "geodesics/queries/joined_paths.h"
+#include "geodesics/queries/label_propagation.h"
+#include "geodesics/queries/path_progress.h"
+#include "geodesics/queries/point_targets.h"
+#include "geodesics/queries/query_cache.h"
+#include "geodesics/unfolding/line_of_sight.h"
+#include "geodesics/unfolding/path_shortening.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {

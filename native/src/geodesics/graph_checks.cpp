@@ -5,7 +5,7 @@
 
 #include "saddleback/error.h"
 
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {

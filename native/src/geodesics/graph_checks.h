@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "saddleback/arc_rows.h"
+#include "saddleback/geodesics/arc_rows.h"
 #include "saddleback/job.h"
-#include "saddleback/mesh.h"
+#include "saddleback/mesh/mesh.h"
 
 namespace saddleback {
 

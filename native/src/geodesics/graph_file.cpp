@@ -13,13 +13,13 @@
 #include <cmath>
 
 #include "saddleback/error.h"
-#include "saddleback/saddle_vertex_graph.h"
+#include "saddleback/geodesics/saddle_vertex_graph.h"
 #include "saddleback/version_error.h"
 
-#include "geodesics/graph_arcs.h"
+#include "geodesics/graph/graph_arcs.h"
+#include "geodesics/graph/path_bound.h"
 #include "geodesics/graph_checks.h"
-#include "geodesics/path_bound.h"
-#include "geodesics/unfolding.h"
+#include "geodesics/unfolding/unfolding.h"
 #include "support/number_files.h"
 
 namespace saddleback {

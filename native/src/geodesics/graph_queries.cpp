@@ -7,14 +7,14 @@
 #include <new>
 
 #include "saddleback/error.h"
-#include "saddleback/saddle_vertex_graph.h"
+#include "saddleback/geodesics/saddle_vertex_graph.h"
 
-#include "geodesics/label_propagation.h"
-#include "geodesics/point_targets.h"
-#include "geodesics/query_cache.h"
-#include "geodesics/twin_search.h"
-#include "support/memory.h"
-#include "support/parallel.h"
+#include "geodesics/queries/graph_search_cuda.h"
+#include "geodesics/queries/label_propagation.h"
+#include "geodesics/queries/point_targets.h"
+#include "geodesics/queries/query_cache.h"
+#include "support/memory/memory.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -95,7 +95,7 @@ std::vector<double> SaddleVertexGraph::distances(const QuerySources& sources, co
   const SourceFans from = find_fans(*this, sources, stages.fans, {.limit = options.limit});
   std::vector<double> result(mesh_->vertex_count());
   if (by_device(options)) {
-    twin_search(*this, {{seeds_of(from.fans)}}, options, {result.data(), nullptr}, stages.fields);
+    cuda_search(*this, {{seeds_of(from.fans)}}, options, {result.data(), nullptr}, stages.fields);
     return result;
   }
   const auto search = queries_->field_searches.lease();
@@ -112,7 +112,7 @@ NearestField SaddleVertexGraph::nearest(const QuerySources& sources, const Query
   if (by_device(options)) {
     NearestField field{std::vector<double>(mesh_->vertex_count()), std::vector<Index>(mesh_->vertex_count())};
     const FieldsTo to{field.distance.data(), field.source.data()};
-    twin_search(*this, {{seeds_of(from.fans)}}, options, to, stages.fields);
+    cuda_search(*this, {{seeds_of(from.fans)}}, options, to, stages.fields);
     return field;
   }
   LabelField field = propagate_labels(*this, seeds_of(from.fans), options, false, stages.fields, stages.reached);
@@ -132,7 +132,7 @@ DistanceFields SaddleVertexGraph::fields(const QuerySources& sources, const Quer
   if (by_device(options)) {
     std::vector<std::vector<Seed>> seeds;
     for (const PointFan& fan : fans) seeds.push_back(seeds_of({&fan, 1}));
-    twin_search(*this, seeds, options, {result.values.get(), nullptr}, stages.fields);
+    cuda_search(*this, seeds, options, {result.values.get(), nullptr}, stages.fields);
     return result;
   }
   std::vector<ScratchPool<GraphSearch>::Lease> searches;

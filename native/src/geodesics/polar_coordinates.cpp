@@ -1,4 +1,4 @@
-#include "saddleback/polar_coordinates.h"
+#include "saddleback/geodesics/polar_coordinates.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,13 +6,13 @@
 #include <numbers>
 
 #include "saddleback/error.h"
-#include "saddleback/trace.h"
+#include "saddleback/mesh/trace.h"
 
-#include "geodesics/curve_windows.h"
-#include "geodesics/distance_progress.h"
-#include "geodesics/log_about.h"
-#include "geodesics/point_star.h"
-#include "support/parallel.h"
+#include "geodesics/exact/distance_progress.h"
+#include "geodesics/wavefront/curve_windows.h"
+#include "geodesics/wavefront/directions_at_point.h"
+#include "geodesics/wavefront/log_about.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -22,12 +22,12 @@ constexpr double k_at_vertex = 1e-10;
 // Of the time; then what is found is sorted and written down.
 constexpr double k_measured = 0.97;
 
-/// The centre of a map: a vertex where it is as good as one.
-SurfacePoint centre_of(const SurfacePoint& given) {
-  SurfacePoint centre{given.face, normalised_barycentric(given.barycentric)};
+/// The center of a map: a vertex where it is as good as one.
+SurfacePoint center_of(const SurfacePoint& given) {
+  SurfacePoint center{given.face, normalized_barycentric(given.barycentric)};
   for (int i = 0; i < 3; ++i)
-    if (centre.barycentric[i] >= 1 - k_at_vertex) centre.barycentric = Vec3::Unit(i);
-  return centre;
+    if (center.barycentric[i] >= 1 - k_at_vertex) center.barycentric = Vec3::Unit(i);
+  return center;
 }
 
 /// An angle of -pi to pi about a vertex as one of 0 to its total angle, scaled. Rounding may put a direction along the
@@ -75,27 +75,27 @@ double angle_scale(const Mesh& mesh, const SurfacePoint& point) {
   return mesh.total_angle(vertex) / (2 * std::numbers::pi);
 }
 
-LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& centre, double radius, Job* job) {
-  check_surface_point(graph.mesh(), centre, "centre");
+LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& center, double radius, Job* job) {
+  check_surface_point(graph.mesh(), center, "center");
   check_radius(radius);
   const JobStage stage(job, "Measuring about the point");
   PlaceDistances none;
-  LogMap result = log_about(graph, centre, radius, nullptr, none, stage);
+  LogMap result = log_about(graph, center, radius, nullptr, none, stage);
   stage.update(1);
   return result;
 }
 
-LogMap log_about(const SaddleVertexGraph& graph, const SurfacePoint& centre, double radius, const WatchedPlaces* places,
+LogMap log_about(const SaddleVertexGraph& graph, const SurfacePoint& center, double radius, const WatchedPlaces* places,
                  PlaceDistances& found, const JobStage& stage) {
   const Mesh& mesh = graph.mesh();
   const WorkClock clock(stage.is_watched());
-  const SurfacePoint point = centre_of(centre);
-  RayField field(graph.unfolding());
+  const SurfacePoint point = center_of(center);
+  WavefrontDistances field(graph.unfolding());
   field.begin(places);
-  const PointStar star(graph.unfolding(), point);
+  const DirectionsAtPoint star(graph.unfolding(), point);
   if (star.vertex() != k_none) field.add_source(star.vertex(), {0, 0, 0, false});
   const RayWindow window{Vec2::Zero(), 0, 0, 0, 0, k_none, Rays::from_point, 0, false};
-  star.shine(field, window, star.begin(), star.begin() + star.total_angle());
+  star.emit(field, window, star.begin(), star.begin() + star.total_angle());
   DistanceProgress progress(mesh, {point}, radius, clock, stage.part(0, k_measured));
   field.run({.radius = radius}, stage, [&](double distance, Index vertices) { progress.reached(distance, vertices); });
   LogMap result;
@@ -123,8 +123,8 @@ LogMap log_about(const SaddleVertexGraph& graph, const SurfacePoint& centre, dou
 }
 
 SurfacePoints exp_map(const Mesh& mesh, const SurfacePoint& given, std::span<const Vec2> uv, int threads, Job* job) {
-  check_surface_point(mesh, given, "centre");
-  const SurfacePoint centre = centre_of(given);
+  check_surface_point(mesh, given, "center");
+  const SurfacePoint center = center_of(given);
   if (threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", threads));
   const auto count = static_cast<Index>(uv.size());
   for (Index i = 0; i < count; ++i) {
@@ -132,13 +132,13 @@ SurfacePoints exp_map(const Mesh& mesh, const SurfacePoint& given, std::span<con
       throw InputError(message("uv: vector ", i, " is (", uv[i].x(), ", ", uv[i].y(), "), which is not finite"));
   }
   const JobStage stage(job, "Tracing");
-  const Index vertex = vertex_at(mesh, centre);
-  const double scale = angle_scale(mesh, centre);
+  const Index vertex = vertex_at(mesh, center);
+  const double scale = angle_scale(mesh, center);
   SurfacePoints result(uv.size());
   std::atomic<Index> done{0};
   parallel_for(count, threads, 64, [&](Index i, int) {
     const double angle = std::atan2(uv[i].y(), uv[i].x());
-    result[i] = trace_end(mesh, centre, from_zero(mesh, vertex, angle) * scale, uv[i].stableNorm()).point;
+    result[i] = trace_end(mesh, center, from_zero(mesh, vertex, angle) * scale, uv[i].stableNorm()).point;
     if (const Index n = done.fetch_add(1, std::memory_order_relaxed) + 1; n % 64 == 0)
       stage.update(static_cast<double>(n) / count);
   });

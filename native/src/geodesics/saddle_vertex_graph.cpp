@@ -1,6 +1,6 @@
 // Building the graph: a window propagation from every vertex, then the union of arcs and reverse arcs in flat arrays.
 
-#include "saddleback/saddle_vertex_graph.h"
+#include "saddleback/geodesics/saddle_vertex_graph.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,19 +9,19 @@
 #include <utility>
 
 #include "saddleback/error.h"
-#include "saddleback/pinned_memory.h"
+#include "saddleback/support/pinned_memory.h"
 
-#include "geodesics/arc_symmetry.h"
-#include "geodesics/arc_unfolding.h"
-#include "geodesics/build_progress.h"
-#include "geodesics/graph_arcs.h"
-#include "geodesics/lattice.h"
-#include "geodesics/path_bound.h"
-#include "geodesics/query_cache.h"
-#include "geodesics/twin_arcs.h"
-#include "mesh/hilbert.h"
-#include "mesh/key_order.h"
-#include "support/parallel.h"
+#include "geodesics/graph/arc_symmetry.h"
+#include "geodesics/graph/build_progress.h"
+#include "geodesics/graph/graph_arcs.h"
+#include "geodesics/graph/graph_arcs_cuda.h"
+#include "geodesics/graph/lattice.h"
+#include "geodesics/graph/path_bound.h"
+#include "geodesics/queries/query_cache.h"
+#include "geodesics/unfolding/arc_unfolding.h"
+#include "mesh/tables/hilbert.h"
+#include "mesh/tables/key_order.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -89,7 +89,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
     progress.laid();
     ArcWords room(options.is_pinned ? &pinned_memory() : nullptr);
     arcs_ =
-        twin_arcs(search, choose_codec, rule, options.cuda_devices, std::move(room), device_times_, progress.joining());
+        cuda_arcs(search, choose_codec, rule, options.cuda_devices, std::move(room), device_times_, progress.joining());
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;

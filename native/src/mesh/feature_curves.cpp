@@ -1,4 +1,4 @@
-#include "saddleback/feature_curves.h"
+#include "saddleback/mesh/feature_curves.h"
 
 #include <algorithm>
 
@@ -87,7 +87,7 @@ class FeatureGraph {
     mark(h);
   }
 
-  /// Neighbours along feature edges, by vertex.
+  /// Neighbors along feature edges, by vertex.
   void link() {
     first_.assign(mesh_.vertex_count() + 1, 0);
     const auto each = [&](auto&& visit) {
@@ -99,10 +99,10 @@ class FeatureGraph {
     };
     each([&](Index from, Index) { ++first_[from + 1]; });
     for (Index vertex = 0; vertex < mesh_.vertex_count(); ++vertex) first_[vertex + 1] += first_[vertex];
-    neighbours_.resize(first_.back());
+    neighbors_.resize(first_.back());
     std::vector<Index> next(first_.begin(), first_.end() - 1);
-    each([&](Index from, Index to) { neighbours_[next[from]++] = to; });
-    is_walked_.assign(neighbours_.size(), 0);
+    each([&](Index from, Index to) { neighbors_[next[from]++] = to; });
+    is_walked_.assign(neighbors_.size(), 0);
   }
 
   /// Where lines end: but for those that go on, and turn little.
@@ -110,14 +110,14 @@ class FeatureGraph {
     const Index count = first_[vertex + 1] - first_[vertex];
     if (count != 2) return count > 0;
     const Vec3& here = mesh_.position(vertex);
-    const Vec3 in = here - mesh_.position(neighbours_[first_[vertex]]);
-    const Vec3 out = mesh_.position(neighbours_[first_[vertex] + 1]) - here;
+    const Vec3 in = here - mesh_.position(neighbors_[first_[vertex]]);
+    const Vec3 out = mesh_.position(neighbors_[first_[vertex] + 1]) - here;
     return angle_between(in, out) > corner_angle_;
   }
 
   Index link_back(Index from, Index to) const {
     Index i = first_[to];
-    while (neighbours_[i] != from) ++i;
+    while (neighbors_[i] != from) ++i;
     return i;
   }
 
@@ -127,7 +127,7 @@ class FeatureGraph {
     const Index start = vertex;
     std::vector<Index> chain{vertex};
     while (true) {
-      const Index next = neighbours_[link], back = link_back(vertex, next);
+      const Index next = neighbors_[link], back = link_back(vertex, next);
       is_walked_[link] = is_walked_[back] = 1;
       chain.push_back(next);
       vertex = next;
@@ -138,9 +138,9 @@ class FeatureGraph {
 
   const Mesh& mesh_;
   const double corner_angle_;
-  std::vector<std::uint8_t> is_feature_;   ///< by half-edge
-  std::vector<Index> first_, neighbours_;  ///< by vertex
-  std::vector<std::uint8_t> is_walked_;    ///< by neighbours_
+  std::vector<std::uint8_t> is_feature_;  ///< by half-edge
+  std::vector<Index> first_, neighbors_;  ///< by vertex
+  std::vector<std::uint8_t> is_walked_;   ///< by neighbors_
 };
 
 }  // namespace

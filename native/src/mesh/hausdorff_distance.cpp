@@ -2,7 +2,7 @@
 // farthest corner from any one face of the other mesh bounds the whole triangle. Triangles whose bound exceeds what was
 // found by more than the tolerance are divided into four, all of one size before those of the next.
 
-#include "saddleback/hausdorff_distance.h"
+#include "saddleback/mesh/hausdorff_distance.h"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 #include <limits>
 
 #include "saddleback/error.h"
-#include "saddleback/project.h"
+#include "saddleback/mesh/project.h"
 
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {

@@ -1,6 +1,6 @@
 // Builds the flat half-edge structure: copy, check, twins from the edge table, then what follows from them. Each step
 // relies on what the checks before it proved, so nothing here can meet a broken mesh.
-#include "saddleback/mesh.h"
+#include "saddleback/mesh/mesh.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,11 +9,11 @@
 #include <numbers>
 #include <numeric>
 
-#include "mesh/edge_table.h"
-#include "mesh/face_shape.h"
-#include "mesh/offenders.h"
-#include "mesh/validate.h"
-#include "support/parallel.h"
+#include "mesh/tables/edge_table.h"
+#include "mesh/tables/face_shape.h"
+#include "mesh/tables/offenders.h"
+#include "mesh/tables/validate.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {

@@ -1,7 +1,7 @@
 // Nearest points on a mesh.
 //
-// The hierarchy halves the faces at the median of their centres along the longest side; its boxes are float32, relative
-// to the mesh's centre and widened beyond every rounding, so that no box is ever passed over that holds a nearest
+// The hierarchy halves the faces at the median of their centers along the longest side; its boxes are float32, relative
+// to the mesh's center and widened beyond every rounding, so that no box is ever passed over that holds a nearest
 // point. Queries go through it in the order of a Hilbert curve, each starting from the face that the one before it
 // found.
 //
@@ -9,7 +9,7 @@
 // different rounding in each of its faces, such a point is first moved exactly onto the edge or vertex, then to its
 // smallest face.
 
-#include "saddleback/project.h"
+#include "saddleback/mesh/project.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -19,10 +19,10 @@
 
 #include "saddleback/error.h"
 
-#include "../support/parallel.h"
-#include "flat_face.h"
-#include "hilbert.h"
-#include "key_order.h"
+#include "mesh/tables/flat_face.h"
+#include "mesh/tables/hilbert.h"
+#include "mesh/tables/key_order.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -60,7 +60,7 @@ void consider(const Mesh& mesh, Index face, const Vec3& query, Nearest& best) {
   // A point outside is nearest to one of the edges that it sees. Signs within rounding count as seen: then both the
   // inside and the edge are tried, and the nearer wins.
   const double rounding = 1e-9 * whole;
-  if (share.minCoeff() > -rounding) offer(normalised_barycentric(share));
+  if (share.minCoeff() > -rounding) offer(normalized_barycentric(share));
   for (int i = 0; i < 3; ++i) {
     if (share[i] > rounding) continue;
     const int from = (i + 1) % 3, to = (i + 2) % 3;
@@ -111,7 +111,7 @@ SurfacePoint nearest_on_face(const Mesh& mesh, Index face, const Vec3& query) {
   return {face, best.barycentric};
 }
 
-Vec3 NearestSurface::to_box_units(const Vec3& point) const { return (point - centre_) / unit_; }
+Vec3 NearestSurface::to_box_units(const Vec3& point) const { return (point - center_) / unit_; }
 
 NearestSurface::NearestSurface(const Mesh& mesh, const JobStage& stage) : mesh_(mesh) {
   Vec3 low = mesh.position(0), high = low;
@@ -119,7 +119,7 @@ NearestSurface::NearestSurface(const Mesh& mesh, const JobStage& stage) : mesh_(
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  centre_ = 0.5 * (low + high);
+  center_ = 0.5 * (low + high);
   unit_ = (high - low).maxCoeff();
   // Float32 rounds to 6e-8 of a coordinate, double to 1e-16 of the largest one: four times both and more.
   const double largest = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
@@ -127,8 +127,8 @@ NearestSurface::NearestSurface(const Mesh& mesh, const JobStage& stage) : mesh_(
 
   std::vector<Item> items(static_cast<std::size_t>(mesh.face_count()));
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Vec3 centre = to_box_units(position(mesh, {f, Vec3::Constant(1.0 / 3)}));
-    items[f] = {{static_cast<float>(centre.x()), static_cast<float>(centre.y()), static_cast<float>(centre.z())}, f};
+    const Vec3 center = to_box_units(position(mesh, {f, Vec3::Constant(1.0 / 3)}));
+    items[f] = {{static_cast<float>(center.x()), static_cast<float>(center.y()), static_cast<float>(center.z())}, f};
   }
   stage.check();
   faces_.resize(items.size());
@@ -158,20 +158,20 @@ Index NearestSurface::build(std::span<Item> items, Index begin, Index end, const
   return index;
 }
 
-/// Puts the half that lies lower along the longest side of the centres' box first.
+/// Puts the half that lies lower along the longest side of the centers' box first.
 Index NearestSurface::halve(std::span<Item> items) {
-  std::array<float, 3> low = items[0].centre, high = low;
+  std::array<float, 3> low = items[0].center, high = low;
   for (const Item& item : items)
     for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], item.centre[i]);
-      high[i] = std::max(high[i], item.centre[i]);
+      low[i] = std::min(low[i], item.center[i]);
+      high[i] = std::max(high[i], item.center[i]);
     }
   int axis = 0;
   for (int i = 1; i < 3; ++i)
     if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
   const auto middle = items.begin() + items.size() / 2;
   std::nth_element(items.begin(), middle, items.end(), [axis](const Item& a, const Item& b) {
-    return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.face < b.face;
+    return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.face < b.face;
   });
   return static_cast<Index>(items.size() / 2);
 }

@@ -1,4 +1,4 @@
-#include "saddleback/read_mesh.h"
+#include "saddleback/mesh/read_mesh.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -10,8 +10,8 @@
 
 #include "saddleback/error.h"
 
-#include "mesh/read_format.h"
-#include "mesh/repair_steps.h"
+#include "mesh/read/read_format.h"
+#include "mesh/repair/repair_steps.h"
 
 namespace saddleback {
 namespace {

@@ -1,7 +1,7 @@
 // Rounds of glue, separate and mend until nothing is wrong. A round that meets no face without area ends it; since
 // mending can take faces away and so part a fan, the next round looks again. After k_patient_rounds whatever still
 // resists is dropped, and as each such round drops faces, the repair ends.
-#include "saddleback/repair.h"
+#include "saddleback/mesh/repair.h"
 
 #include <cmath>
 #include <limits>
@@ -9,9 +9,9 @@
 
 #include "saddleback/error.h"
 
-#include "mesh/face_shape.h"
-#include "mesh/repair_borders.h"
-#include "mesh/repair_steps.h"
+#include "mesh/repair/repair_borders.h"
+#include "mesh/repair/repair_steps.h"
+#include "mesh/tables/face_shape.h"
 
 namespace saddleback {
 

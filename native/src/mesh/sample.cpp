@@ -7,7 +7,7 @@
 // the unit square onto the triangle by the inverse of the density's distribution function, so that large faces are
 // covered evenly as well. Only + - * / sqrt and integers are used: the same seed gives the same bits everywhere.
 
-#include "saddleback/sample.h"
+#include "saddleback/mesh/sample.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,8 @@
 
 #include "saddleback/error.h"
 
-#include "hilbert.h"
-#include "key_order.h"
+#include "mesh/tables/hilbert.h"
+#include "mesh/tables/key_order.h"
 #include "support/random_numbers.h"
 
 namespace saddleback {
@@ -53,7 +53,7 @@ Vec3 to_triangle(const Vec3& f, double u, double v) {
   const double r = inverse_from_corner(f[0], 0.5 * (f[1] + f[2]), u);
   const double at_second = (1 - r) * f[0] + r * f[1], at_third = (1 - r) * f[0] + r * f[2];
   const double t = std::clamp(inverse_linear(at_second, at_third, v), 0.0, 1.0);
-  return normalised_barycentric({1 - r, r * (1 - t), r * t});
+  return normalized_barycentric({1 - r, r * (1 - t), r * t});
 }
 
 class Sampler {
@@ -138,7 +138,7 @@ void check(const Mesh& mesh, const SampleOptions& options) {
                              " connected components that are to get a point each"));
 }
 
-/// Faces along a Hilbert curve through their centres.
+/// Faces along a Hilbert curve through their centers.
 std::vector<Index> ordered_faces(const Mesh& mesh, const JobStage& stage) {
   const HilbertCurve curve(mesh.positions());
   std::vector<std::uint64_t> keys(static_cast<std::size_t>(mesh.face_count()));

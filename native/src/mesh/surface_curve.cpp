@@ -1,4 +1,4 @@
-#include "saddleback/surface_curve.h"
+#include "saddleback/mesh/surface_curve.h"
 
 #include <algorithm>
 
@@ -66,7 +66,7 @@ SurfaceCurve::SurfaceCurve(const Mesh& mesh, SurfacePoints points, bool closed, 
     : mesh_(&mesh), points_(std::move(points)), closed_(closed) {
   check_surface_points(mesh, points_, argument);
   if (points_.size() < 2) throw InputError(message(argument, ": wanted at least two points, got ", points_.size()));
-  for (SurfacePoint& point : points_) point.barycentric = normalised_barycentric(point.barycentric);
+  for (SurfacePoint& point : points_) point.barycentric = normalized_barycentric(point.barycentric);
   segments_.reserve(points_.size());
   for (std::size_t i = 0; i + 1 < points_.size(); ++i) add_segment(i, i + 1, argument);
   if (closed_) add_segment(points_.size() - 1, 0, argument);

@@ -1,6 +1,6 @@
 // Points on a mesh as a face and barycentric coordinates, and the flat chart of a face.
 
-#include "saddleback/surface_points.h"
+#include "saddleback/mesh/surface_points.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "saddleback/error.h"
 
-#include "flat_face.h"
+#include "mesh/tables/flat_face.h"
 
 namespace saddleback {
 namespace {
@@ -30,7 +30,7 @@ std::string fault_of(const SurfacePoint& point, Index face_count) {
 }
 
 /// Up to the last bits, which are let be: points that were given out are themselves when they come back.
-bool is_normalised(const Vec3& barycentric) {
+bool is_normalized(const Vec3& barycentric) {
   constexpr double k_last_bits = 4 * std::numeric_limits<double>::epsilon();
   return barycentric.minCoeff() >= 0 && std::abs(barycentric.sum() - 1) <= k_last_bits;
 }
@@ -64,7 +64,7 @@ SurfacePoints surface_points(std::span<const Index> faces, std::span<const doubl
     if (point.face < 0) throw InputError(message("faces: face ", point.face, " at [", i, "] is negative"));
     if (const std::string fault = fault_of(point, std::numeric_limits<Index>::max()); !fault.empty())
       throw InputError(message("barycentric: point ", i, " ", fault));
-    if (!is_normalised(point.barycentric)) point.barycentric = normalised_barycentric(point.barycentric);
+    if (!is_normalized(point.barycentric)) point.barycentric = normalized_barycentric(point.barycentric);
   }
   return result;
 }
@@ -80,7 +80,7 @@ void check_surface_point(const Mesh& mesh, const SurfacePoint& point, const char
     throw InputError(message(argument, ": the point ", fault));
 }
 
-Vec3 normalised_barycentric(const Vec3& barycentric) {
+Vec3 normalized_barycentric(const Vec3& barycentric) {
   const Vec3 positive = barycentric.cwiseMax(0.0);
   return positive / positive.sum();
 }

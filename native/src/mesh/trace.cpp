@@ -10,7 +10,7 @@
 // of the total angle on either side. So lines along edges and diagonals of regular grids meet their vertices exactly,
 // and every line that is left to cross an edge does so at an angle that is certainly not zero: the walk always gets on.
 
-#include "saddleback/trace.h"
+#include "saddleback/mesh/trace.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 #include "saddleback/error.h"
 
-#include "flat_face.h"
+#include "mesh/tables/flat_face.h"
 
 namespace saddleback {
 namespace {
@@ -88,7 +88,7 @@ class Walk {
   TraceEnd from_point(const SurfacePoint& start, double angle) {
     enter(3 * start.face);
     const FlatFace chart = this->chart();
-    const Vec3 b = normalised_barycentric(start.barycentric);
+    const Vec3 b = normalized_barycentric(start.barycentric);
     place_ = b[0] * chart.corner[0] + b[1] * chart.corner[1] + b[2] * chart.corner[2];
     direction_ = Vec2(std::cos(angle), std::sin(angle));
     record_.add(mesh_, {start.face, b});
@@ -119,8 +119,8 @@ class Walk {
     for (std::int64_t faces = 1; going; ++faces) {
       if (faces > k_max_faces)
         throw InputError(message("length ", length_, " is too long to follow: after ", faces - 1,
-                                 " faces the curve is ", travelled_, " long"));
-      if (faces % k_faces_a_look == 0) record_.went(travelled_ / length_);
+                                 " faces the curve is ", traveled_, " long"));
+      if (faces % k_faces_a_look == 0) record_.went(traveled_ / length_);
       going = at_corner_ ? leave_corner() : leave_through();
     }
     return end_;
@@ -199,8 +199,8 @@ class Walk {
     const double weight_to = width > 0 ? -side_from / width : 1.0;
     const Vec2 exit = weight_from * c.corner[i] + weight_to * c.corner[j];
     const double step = std::max(0.0, direction_.dot(exit - place_));
-    if (travelled_ + step >= length_) return finish(c);
-    travelled_ += step;
+    if (traveled_ + step >= length_) return finish(c);
+    traveled_ += step;
 
     Vec3 b = Vec3::Zero();
     b[corner_index(i)] = weight_from;
@@ -225,8 +225,8 @@ class Walk {
   /// Goes straight to local corner i of the face, then on through that vertex.
   bool meet_vertex(const FlatFace& c, int i) {
     const double step = std::max(0.0, (c.corner[i] - place_).norm());
-    if (travelled_ + step >= length_) return finish(c);
-    travelled_ += step;
+    if (traveled_ + step >= length_) return finish(c);
+    traveled_ += step;
     const SurfacePoint point{Mesh::face_of(halfedge_), Vec3::Unit(corner_index(i))};
     record_.add(mesh_, point);
     const Index out = 3 * point.face + corner_index(i);
@@ -266,8 +266,8 @@ class Walk {
 
   /// The length is used up inside this face.
   bool finish(const FlatFace& c) {
-    const Vec2 xy = place_ + (length_ - travelled_) * direction_;
-    travelled_ = length_;
+    const Vec2 xy = place_ + (length_ - traveled_) * direction_;
+    traveled_ = length_;
     const Vec3 local = snapped(c, c.to_barycentric(xy));
     Vec3 b;
     for (int i = 0; i < 3; ++i) b[corner_index(i)] = local[i];
@@ -277,15 +277,15 @@ class Walk {
   }
 
   bool stop(const SurfacePoint& point, const FlatFace& c, bool hit_boundary) {
-    if (hit_boundary && length_ - travelled_ <= k_snap * c.size) {  // what is left is rounding
+    if (hit_boundary && length_ - traveled_ <= k_snap * c.size) {  // what is left is rounding
       hit_boundary = false;
-      travelled_ = length_;
+      traveled_ = length_;
     }
     // From this chart to the face's: edge 0 of the face is an edge of ours, on which the angle is measured.
     const int zero = (3 - halfedge_ % 3) % 3;
     const Vec2 axis = (zero == 1 ? c.last : Vec2(c.corner[(zero + 1) % 3] - c.corner[zero])).normalized();
     const Vec2 turned = rotated_into(axis, direction_);
-    end_ = {point, std::atan2(turned.y(), turned.x()), travelled_, hit_boundary};
+    end_ = {point, std::atan2(turned.y(), turned.x()), traveled_, hit_boundary};
     return false;
   }
 
@@ -299,7 +299,7 @@ class Walk {
   const Vec3 *from_ = nullptr, *to_ = nullptr;
   Vec2 place_ = Vec2::Zero(), direction_ = Vec2::UnitX();
   bool at_corner_ = false;
-  double travelled_ = 0;
+  double traveled_ = 0;
   TraceEnd end_;
 };
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "saddleback/host_device.h"
+#include "saddleback/support/host_device.h"
 
 namespace saddleback::predicates {
 
@@ -39,7 +39,7 @@ SADDLEBACK_HOST_DEVICE inline void two_product(double a, double b, double& produ
 }
 
 // SADDLEBACK_RARE: in line, nvcc 13.0 leaves out stores to small arrays whose places are counted, and decisions come
-// out wrong (tests/parity/test_signs_twin.py).
+// out wrong (tests/parity/test_signs_cuda.py).
 
 template <int N>
 struct Expansion {

@@ -21,7 +21,7 @@ bool hides(const WeightedPoint2& a, const WeightedPoint2& b);
 Sign compare_weighted_distances(const Point2& p, const WeightedPoint2& a, const WeightedPoint2& b);
 
 /// A direction from a site: where, counter-clockwise, `after` becomes nearer than `before`. The null pointer stands for
-/// a site infinitely far away, whose f is 0. Or one of three fixed directions, with a neighbour that is nearest there.
+/// a site infinitely far away, whose f is 0. Or one of three fixed directions, with a neighbor that is nearest there.
 struct Crossing {
   const WeightedPoint2 *before, *after;
   int fixed = -1;

@@ -1,11 +1,11 @@
-#include "saddleback/bent_copies.h"
+#include "saddleback/shape_mapping/bent_copies.h"
 
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "saddleback/conform.h"
 #include "saddleback/error.h"
+#include "saddleback/shape_mapping/conform.h"
 
 #include "shape_mapping/mapper_team.h"
 #include "shape_mapping/surface_fit.h"

@@ -1,4 +1,4 @@
-#include "saddleback/conform.h"
+#include "saddleback/shape_mapping/conform.h"
 
 #include <cmath>
 
@@ -27,14 +27,14 @@ ConformedPoints conform(OutlineMapper& mapper, const Shape& shape, const Placeme
   result.failure = map_shape(mapper, shape, placement, field, outline, limits);
   if (result.failure != MapFailure::none) return result;
   const ShapeMap& plane = mapper.plane();
-  Index face = plane.centre_face();
+  Index face = plane.center_face();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec2 place = mapper.laid(points[i].head<2>());
     if (mapper.find(place, face) == MapFailure::none) {
       result.anchors.push_back(plane.surface_point(place, face));
     } else {
       result.lost.push_back(static_cast<Index>(i));
-      result.anchors.push_back(placement.centre);
+      result.anchors.push_back(placement.center);
     }
     result.heights.push_back(placement.scale * points[i].z());
   }
@@ -76,15 +76,15 @@ std::vector<RigidFrame> rigid_frames(const Mesh& mesh, std::span<const Vec3> ver
   std::vector<RigidFrame> result;
   result.reserve(placements.size());
   for (const Placement& placement : placements) {
-    const Vec3 z = normal_at(mesh, vertex_normals, placement.centre);
-    const Vec3 along = direction_in_space(mesh, placement.centre.face, placement.angle);
+    const Vec3 z = normal_at(mesh, vertex_normals, placement.center);
+    const Vec3 along = direction_in_space(mesh, placement.center.face, placement.angle);
     Vec3 y = z.cross(along);
-    if (!(y.norm() > 1e-12)) y = z.cross(direction_in_space(mesh, placement.centre.face, placement.angle + 1));
+    if (!(y.norm() > 1e-12)) y = z.cross(direction_in_space(mesh, placement.center.face, placement.angle + 1));
     y.normalize();
     Eigen::Matrix3d axes;
     axes << y.cross(z), y, z;
     const double s = placement.scale;
-    result.push_back({position(mesh, placement.centre), Eigen::Quaterniond(axes).normalized(),
+    result.push_back({position(mesh, placement.center), Eigen::Quaterniond(axes).normalized(),
                       Vec3(s, placement.mirrored ? -s : s, s)});
   }
   return result;

@@ -267,7 +267,7 @@ void ConstrainedTriangulation::clear_crossed(Index from, Index end) {
     const Index h = find(a, b), c = apex(h), d = apex(twins_[h]);
     const bool meets_end = c == from || d == from || c == end || d == end;
     if (!flip(h))
-      crossed_.push_back({a, b});  // later, when its neighbours have been
+      crossed_.push_back({a, b});  // later, when its neighbors have been
     else if (!meets_end && side(from, end, c) != side(from, end, d))
       crossed_.push_back({c, d});
   }

@@ -18,7 +18,7 @@ class ConstrainedTriangulation {
   /// which of the possible triangulations is the best (Delaunay's, as far as the pieces let it).
   void begin(const std::array<Vec2, 3>& shape);
 
-  /// The number of the point; that of an equal one when there is one. O(square root of n) for neighbours in turn.
+  /// The number of the point; that of an equal one when there is one. O(square root of n) for neighbors in turn.
   Index add(const Vec2& weights);
 
   /// Makes the straight piece an edge, or several where it passes points. False when it crosses an earlier one.
@@ -29,8 +29,8 @@ class ConstrainedTriangulation {
 
   std::size_t triangle_count() const { return origins_.size() / 3; }
   Triangle triangle(std::size_t t) const { return {origins_[3 * t], origins_[3 * t + 1], origins_[3 * t + 2]}; }
-  /// The neighbour across edge k of triangle t, k_none across pieces and at the rim.
-  Index neighbour(std::size_t t, int k) const {
+  /// The neighbor across edge k of triangle t, k_none across pieces and at the rim.
+  Index neighbor(std::size_t t, int k) const {
     const auto h = static_cast<Index>(3 * t) + k;
     return fixed_[h] || twins_[h] == k_none ? k_none : twins_[h] / 3;
   }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "saddleback/mesh.h"
+#include "saddleback/mesh/mesh.h"
 
 namespace saddleback {
 namespace {

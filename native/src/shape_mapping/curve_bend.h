@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "saddleback/surface_curve.h"
+#include "saddleback/mesh/surface_curve.h"
 
 namespace saddleback {
 

@@ -1,7 +1,7 @@
 // Every face with pieces of outlines is triangulated for itself. Points on edges are the same numbers in both faces
-// (OutlinePiece), so neighbours fit. Which shape a triangle belongs to spreads from the left sides of the pieces.
+// (OutlinePiece), so neighbors fit. Which shape a triangle belongs to spreads from the left sides of the pieces.
 
-#include "saddleback/cut_shapes.h"
+#include "saddleback/shape_mapping/cut_shapes.h"
 
 #include <algorithm>
 
@@ -226,7 +226,7 @@ class Cutter {
     while (!front_.empty()) {
       const Index t = front_.back();
       front_.pop_back();
-      for (int k = 0; k < 3; ++k) set(flat_.neighbour(static_cast<std::size_t>(t), k), labels_[t]);
+      for (int k = 0; k < 3; ++k) set(flat_.neighbor(static_cast<std::size_t>(t), k), labels_[t]);
     }
   }
 

@@ -1,9 +1,9 @@
-#include "saddleback/map_shapes.h"
+#include "saddleback/shape_mapping/map_shapes.h"
 
 #include "saddleback/error.h"
 
 #include "shape_mapping/mapper_team.h"
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 
@@ -20,7 +20,7 @@ void check_mapping(const Mesh& mesh, std::span<const Shape> shapes, std::span<co
 MapFailure map_shape(OutlineMapper& mapper, const Shape& shape, const Placement& placement, const DirectionField* field,
                      SurfaceOutline& outline, const MapLimits& limits) {
   if (field) {
-    const std::optional<CentreLine> line = centre_line(*field, placement, box_of(shape.loops(), placement));
+    const std::optional<CenterLine> line = center_line(*field, placement, box_of(shape.loops(), placement));
     if (line) return mapper.map_along(shape.loops(), placement, *line, outline, limits);
   }
   return mapper.map(shape.loops(), placement, outline, limits);

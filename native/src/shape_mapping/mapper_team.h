@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "saddleback/map_shapes.h"
+#include "saddleback/shape_mapping/map_shapes.h"
 
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 

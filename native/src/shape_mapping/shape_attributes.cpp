@@ -1,4 +1,4 @@
-#include "saddleback/shape_attributes.h"
+#include "saddleback/shape_mapping/shape_attributes.h"
 
 #include <cmath>
 #include <limits>
@@ -6,9 +6,9 @@
 
 #include "saddleback/error.h"
 
-#include "geodesics/planar.h"
 #include "shape_mapping/mapper_team.h"
-#include "support/parallel.h"
+#include "support/planar.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -32,13 +32,13 @@ void lay_wider(OutlineMapper& mapper, const Shape& shape, const Placement& place
                double reach) {
   PlaneBox box = box_of(shape.loops(), placement);
   if (field) {
-    const std::optional<CentreLine> line = centre_line(*field, placement, box);
+    const std::optional<CenterLine> line = center_line(*field, placement, box);
     const double far = std::max({-box.low.minCoeff(), box.high.maxCoeff()}) * std::numbers::sqrt2 + reach;
     if (line) return mapper.plane().along_curve(line->curve, line->origin, {Vec2(-far, -far), Vec2(far, far)});
   }
   box.low.array() -= reach;
   box.high.array() += reach;
-  mapper.plane().about_point(placement.centre, placement.angle, box);
+  mapper.plane().about_point(placement.center, placement.angle, box);
 }
 
 std::vector<NearVertex> near_vertices(OutlineMapper& mapper, const Shape& shape, const Placement& placement,

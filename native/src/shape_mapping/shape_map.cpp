@@ -1,13 +1,13 @@
 // Coordinates spread from the source outwards, nearest vertex first, as Dijkstra's algorithm does; a vertex gets its
 // own from the two ends of an edge that are settled, by unfolding the triangle on it (sight.h).
 
-#include "saddleback/shape_map.h"
+#include "saddleback/shape_mapping/shape_map.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "saddleback/trace.h"
+#include "saddleback/mesh/trace.h"
 
 #include "shape_mapping/curve_bend.h"
 #include "shape_mapping/sides.h"
@@ -47,32 +47,32 @@ void ShapeMap::begin() {
   queue_.clear();
 }
 
-void ShapeMap::about_point(const SurfacePoint& centre, double angle, const PlaneBox& box, double reach,
+void ShapeMap::about_point(const SurfacePoint& center, double angle, const PlaneBox& box, double reach,
                            const Watch& watch) {
   begin();
   along_curve_ = false;
-  centre_ = position(*mesh_, centre);
+  center_ = position(*mesh_, center);
   reach_ = reach;
-  centre_face_ = centre.face;
-  const Index vertex = vertex_at(*mesh_, centre);
+  center_face_ = center.face;
+  const Index vertex = vertex_at(*mesh_, center);
   if (vertex == k_none)
-    seed_face(centre, angle);
+    seed_face(center, angle);
   else
-    seed_star(centre, vertex, angle);
+    seed_star(center, vertex, angle);
   march(box, watch);
 }
 
-void ShapeMap::seed_face(const SurfacePoint& centre, double angle) {
-  const FaceChart chart(*mesh_, centre.face);
-  const Vec2 place = chart.to_plane(centre.barycentric), x = unit(angle);
+void ShapeMap::seed_face(const SurfacePoint& center, double angle) {
+  const FaceChart chart(*mesh_, center.face);
+  const Vec2 place = chart.to_plane(center.barycentric), x = unit(angle);
   for (int i = 0; i < 3; ++i) {
     const Vec2 arm = chart.corner[i] - place;
-    put_source(mesh_->from(3 * centre.face + i), {x.dot(arm), cross(x, arm)});
+    put_source(mesh_->from(3 * center.face + i), {x.dot(arm), cross(x, arm)});
   }
 }
 
-void ShapeMap::seed_star(const SurfacePoint& centre, Index vertex, double angle) {
-  const double start = angle_about(*mesh_, centre, angle);
+void ShapeMap::seed_star(const SurfacePoint& center, Index vertex, double angle) {
+  const double start = angle_about(*mesh_, center, angle);
   const double scale = mesh_->is_boundary(vertex) ? 1 : 2 * std::numbers::pi / mesh_->total_angle(vertex);
   put_source(vertex, Vec2::Zero());
   const Index first = mesh_->first_halfedge(vertex);
@@ -92,10 +92,10 @@ void ShapeMap::along_curve(const SurfaceCurve& curve, double origin, const Plane
   along_curve_ = true;
   reach_ = std::numeric_limits<double>::infinity();
   bend_->measure(curve, origin);
-  centre_face_ = curve.segments().front().face;
+  center_face_ = curve.segments().front().face;
   for (const CurveSegment& segment : curve.segments()) {
     const double start = segment.start - origin;
-    if (start <= 0) centre_face_ = segment.face;
+    if (start <= 0) center_face_ = segment.face;
     if (start <= box.high.x() && start + segment.length >= box.low.x()) seed_segment(segment, start);
   }
   for (const Index vertex : reached_) {
@@ -151,9 +151,9 @@ void ShapeMap::march(const PlaneBox& box, const Watch& watch) {
   }
 }
 
-/// Whether the straight way from the centre to the edge is longer than the reach.
+/// Whether the straight way from the center to the edge is longer than the reach.
 bool ShapeMap::is_out_of_reach(Index from, Index to) const {
-  const Vec3 begin = mesh_->position(from) - centre_, along = mesh_->position(to) - mesh_->position(from);
+  const Vec3 begin = mesh_->position(from) - center_, along = mesh_->position(to) - mesh_->position(from);
   const double foot = std::clamp(-begin.dot(along) / along.squaredNorm(), 0.0, 1.0);
   return (begin + foot * along).squaredNorm() > reach_ * reach_;
 }
@@ -161,7 +161,7 @@ bool ShapeMap::is_out_of_reach(Index from, Index to) const {
 /// Looks through every edge of the vertex's faces that has now both ends settled.
 void ShapeMap::look_about(Index vertex, const PlaneBox& box) {
   const Vec2 place = nodes_[vertex].place;
-  const bool is_near = (mesh_->position(vertex) - centre_).squaredNorm() <= reach_ * reach_;
+  const bool is_near = (mesh_->position(vertex) - center_).squaredNorm() <= reach_ * reach_;
   const auto is_open = [&](Index other) {
     return has(other) && nodes_[other].state >= State::source && !is_beyond(box, place, nodes_[other].place) &&
            (is_near || !is_out_of_reach(vertex, other));
@@ -237,7 +237,7 @@ SurfacePoint ShapeMap::surface_point(const Vec2& point, Index face) const {
   const Vec2 u = coordinates(mesh_->to(3 * face)) - origin, v = coordinates(mesh_->apex(3 * face)) - origin;
   const Vec2 arm = point - origin;
   const double area = cross(u, v), first = cross(arm, v) / area, second = cross(u, arm) / area;
-  return {face, normalised_barycentric({1 - first - second, first, second})};
+  return {face, normalized_barycentric({1 - first - second, first, second})};
 }
 
 }  // namespace saddleback

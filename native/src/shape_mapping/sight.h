@@ -5,7 +5,7 @@
 
 #include "saddleback/types.h"
 
-#include "geodesics/planar.h"
+#include "support/planar.h"
 
 namespace saddleback {
 
@@ -67,11 +67,11 @@ inline Sight sight_of_point(const UnfoldedTriangle& triangle, const Vec2& from, 
   return {direction * (to_apex.norm() / length), miss};
 }
 
-/// Less bend than this over an edge is none: beyond, distances to the centre of the bend would lose too many digits.
+/// Less bend than this over an edge is none: beyond, distances to the center of the bend would lose too many digits.
 inline constexpr double k_straight = 1e-6;
 
 /// The source is the x axis, which stands for a curve that bends by `curvature` beside the edge. Along a straight one
-/// distance grows evenly across the triangle; along a circle it grows from the circle's centre, or towards it. The foot
+/// distance grows evenly across the triangle; along a circle it grows from the circle's center, or towards it. The foot
 /// stays where it is along the way.
 inline Sight sight_of_line(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to, double curvature) {
   const double side = from.y() + to.y() < 0 ? -1 : 1, e = triangle.edge;
@@ -90,9 +90,9 @@ inline Sight sight_of_line(const UnfoldedTriangle& triangle, const Vec2& from, c
     const double r_from = sign * (radius - from.y()), r_to = sign * (radius - to.y());
     const double x = (r_from * r_from - r_to * r_to + e * e) / (2 * e), y2 = r_from * r_from - x * x;
     if (!(r_from > 0 && r_to > 0 && y2 >= 0)) return unseen();
-    // The centre lies beyond the apex on the inner side of the bend, behind the edge on the outer one.
-    const Vec2 centre(x, side * sign * std::sqrt(y2));
-    const Vec2 to_from = -centre, to_to = Vec2(e, 0) - centre, to_apex = triangle.apex - centre;
+    // The center lies beyond the apex on the inner side of the bend, behind the edge on the outer one.
+    const Vec2 center(x, side * sign * std::sqrt(y2));
+    const Vec2 to_from = -center, to_to = Vec2(e, 0) - center, to_apex = triangle.apex - center;
     const double whole = std::atan2(cross(to_from, to_to), to_from.dot(to_to));
     if (whole == 0) return unseen();
     share = std::atan2(cross(to_from, to_apex), to_from.dot(to_apex)) / whole;

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saddleback/conform.h"
+#include "saddleback/shape_mapping/conform.h"
 
-#include "geodesics/planar.h"
+#include "support/planar.h"
 
 namespace saddleback {
 namespace {
@@ -55,11 +55,11 @@ SolidEdges::SolidEdges(const Solid& solid) : triangle(solid.triangles.size()) {
 void SurfaceFit::bend(OutlineMapper& mapper, const Placement& placement, const Solid& solid, const SolidEdges& edges,
                       double tolerance) {
   mapper_ = &mapper;
-  centre_ = placement.centre;
+  center_ = placement.center;
   scale_ = placement.scale;
   tolerance_ = k_sampled * tolerance;
   deviation_ = 0;
-  hint_ = mapper.plane().centre_face();
+  hint_ = mapper.plane().center_face();
   vertices_.clear();
   edges_.clear();
   faces_.clear();
@@ -81,7 +81,7 @@ void SurfaceFit::bend(OutlineMapper& mapper, const Placement& placement, const S
 SurfaceFit::Vertex SurfaceFit::lay(const Vec3& given) {
   const Vec2 place = mapper_->laid(given.head<2>());
   const MapFailure failure = mapper_->find(place, hint_);
-  Vertex result{given, centre_, scale_ * given.z(), Vec3::Zero(), failure != MapFailure::none};
+  Vertex result{given, center_, scale_ * given.z(), Vec3::Zero(), failure != MapFailure::none};
   if (!result.is_lost) result.anchor = mapper_->plane().surface_point(place, hint_);
   result.position = position(*mesh_, result.anchor);
   if (result.height != 0) result.position += result.height * normal_at(*mesh_, normals_, result.anchor);

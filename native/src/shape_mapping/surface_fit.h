@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "saddleback/bent_copies.h"
+#include "saddleback/shape_mapping/bent_copies.h"
 
 namespace saddleback {
 
@@ -78,7 +78,7 @@ class SurfaceFit {
   const Mesh* mesh_;
   std::span<const Vec3> normals_;
   OutlineMapper* mapper_ = nullptr;
-  SurfacePoint centre_{};
+  SurfacePoint center_{};
   double scale_ = 1, tolerance_ = 0, deviation_ = 0;
   Index hint_ = 0;  ///< face near the last point
   std::vector<Vertex> vertices_;

@@ -7,7 +7,7 @@
 // And the edges that have one end inside are exactly those that the walk crossed an odd number of times: a second sheet
 // over the shape, or a branch point, would have a rim that the walk has not seen.
 
-#include "saddleback/surface_outline.h"
+#include "saddleback/shape_mapping/surface_outline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ MapFailure OutlineMapper::map(std::span<const Loop> loops, const Placement& plac
   double radius = 0;
   for (const Vec2& corner : corners_) radius = std::max(radius, corner.norm());
   try {
-    plane_.about_point(placement.centre, placement.angle, box_, limits.largest * radius,
+    plane_.about_point(placement.center, placement.angle, box_, limits.largest * radius,
                        [this](Index vertex) { look_at(vertex); });
   } catch (const Failed& failed) {
     return failed.reason();
@@ -59,7 +59,7 @@ MapFailure OutlineMapper::map(std::span<const Loop> loops, const Placement& plac
   return cut();
 }
 
-MapFailure OutlineMapper::map_along(std::span<const Loop> loops, const Placement& placement, const CentreLine& line,
+MapFailure OutlineMapper::map_along(std::span<const Loop> loops, const Placement& placement, const CenterLine& line,
                                     SurfaceOutline& outline, const MapLimits& limits) {
   lay_corners(loops, placement, line.turn);
   begin(outline, limits);
@@ -114,7 +114,7 @@ void OutlineMapper::begin(SurfaceOutline& outline, const MapLimits& limits) {
 
 MapFailure OutlineMapper::cut() {
   SurfaceOutline& outline = *outline_;
-  face_ = plane_.centre_face();
+  face_ = plane_.center_face();
   plane_.complete(face_);
   try {
     for (std::size_t i = 0; i + 1 < begins_.size(); ++i) cut_loop(begins_[i], begins_[i + 1]);
@@ -241,16 +241,16 @@ MapFailure OutlineMapper::find(const Vec2& point, Index& face) {
   const auto touches = [this](Index f) { return face_stamps_[f] == stamp_; };
   MapFailure found = plane_.find(point, face);
   if (found == MapFailure::none && touches(face)) return found;
-  Index other = plane_.centre_face();
-  const MapFailure from_centre = plane_.find(point, other);
-  if (found != MapFailure::none || (from_centre == MapFailure::none && touches(other)))
-    found = from_centre, face = other;
+  Index other = plane_.center_face();
+  const MapFailure from_center = plane_.find(point, other);
+  if (found != MapFailure::none || (from_center == MapFailure::none && touches(other)))
+    found = from_center, face = other;
   const bool is_near = (point.array() >= box_.low.array()).all() && (point.array() <= box_.high.array()).all();
   if (is_near && (found != MapFailure::none || !touches(face))) {
     const auto own = std::find_if(touched_.begin(), touched_.end(), [&](Index f) { return plane_.is_in(point, f); });
     if (own != touched_.end()) face = *own, found = MapFailure::none;
   }
-  if (found != MapFailure::none) face = plane_.centre_face();
+  if (found != MapFailure::none) face = plane_.center_face();
   return found;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// CRC-32 as in zip, PNG and Ethernet (IEEE 802.3): any damage of up to 32 neighbouring bits is seen, any other but for
+// CRC-32 as in zip, PNG and Ethernet (IEEE 802.3): any damage of up to 32 neighboring bits is seen, any other but for
 // one in four thousand million.
 
 #include <cstddef>

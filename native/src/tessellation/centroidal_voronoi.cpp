@@ -1,19 +1,19 @@
-#include "saddleback/centroidal_voronoi.h"
+#include "saddleback/tessellation/centroidal_voronoi.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "saddleback/error.h"
-#include "saddleback/sample.h"
+#include "saddleback/mesh/sample.h"
 
 #include "support/only_ratios.h"
-#include "tessellation/annealing.h"
-#include "tessellation/cell_topology.h"
-#include "tessellation/closed_ball.h"
-#include "tessellation/diagram.h"
-#include "tessellation/relaxation_run.h"
-#include "tessellation/stray_cells.h"
-#include "tessellation/unit_relaxation.h"
+#include "tessellation/cells/cell_topology.h"
+#include "tessellation/relaxation/annealing.h"
+#include "tessellation/relaxation/cells_across_curves.h"
+#include "tessellation/relaxation/closed_ball.h"
+#include "tessellation/relaxation/diagram.h"
+#include "tessellation/relaxation/relaxation_run.h"
+#include "tessellation/relaxation/unit_relaxation.h"
 
 namespace saddleback {
 namespace {
@@ -148,7 +148,7 @@ void check_density(const Mesh& mesh, std::span<const double> density) {
   }
 }
 
-double normalised_energy(const Mesh& mesh, std::span<const double> density, double energy, std::size_t count) {
+double normalized_energy(const Mesh& mesh, std::span<const double> density, double energy, std::size_t count) {
   constexpr double k_hexagon = 5 / (36 * 1.7320508075688772);
   double mass = 0;  // the integral of the density
   for (Index face = 0; face < mesh.face_count(); ++face) {
@@ -233,7 +233,7 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   result.held.assign(options.held.begin(), options.held.end());
   if (final_cells == FinalCells::found)
     result.cells = find_cells(graph, best.sites, options.threads, options.cuda_device, last);
-  result.normalised_energy = normalised_energy(graph.mesh(), options.density, best.energy, sites.size());
+  result.normalized_energy = normalized_energy(graph.mesh(), options.density, best.energy, sites.size());
   if (!options.return_when_cancelled) stage.update(1);
   return result;
 }

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <optional>
 
-#include "saddleback/dual_mesh.h"
 #include "saddleback/error.h"
-#include "saddleback/geodesic_paths.h"
-#include "saddleback/surface_curve.h"
+#include "saddleback/geodesics/geodesic_paths.h"
+#include "saddleback/mesh/surface_curve.h"
+#include "saddleback/tessellation/dual_mesh.h"
 
-#include "support/parallel.h"
+#include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
@@ -47,7 +47,7 @@ Crossing crossing_of(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyl
     const double height = std::sqrt(std::max(0.0, from_a * from_a - foot * foot));
     const Vec2 to_site = (foot - on_bit) * along + height * to_left;
     if (best.is_aimed && to_site.norm() >= best.distance) continue;
-    best = {.point = {face, normalised_barycentric(chart.to_barycentric(begin + on_bit * along))},
+    best = {.point = {face, normalized_barycentric(chart.to_barycentric(begin + on_bit * along))},
             .distance = to_site.norm(),
             .angle = std::atan2(to_site.y(), to_site.x()),
             .height = height,

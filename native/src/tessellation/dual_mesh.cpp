@@ -1,4 +1,4 @@
-#include "saddleback/dual_mesh.h"
+#include "saddleback/tessellation/dual_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 
 #include "saddleback/error.h"
 
-#include "tessellation/cell_topology.h"
-#include "tessellation/diagram.h"
+#include "tessellation/cells/cell_topology.h"
+#include "tessellation/relaxation/diagram.h"
 
 namespace saddleback {
 namespace {

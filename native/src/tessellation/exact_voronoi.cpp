@@ -5,10 +5,10 @@
 #include <cmath>
 #include <map>
 
-#include "saddleback/surface_curve.h"
+#include "saddleback/mesh/surface_curve.h"
 
-#include "tessellation/diagram.h"
-#include "tessellation/exact_claims.h"
+#include "tessellation/cells/exact_claims.h"
+#include "tessellation/relaxation/diagram.h"
 
 namespace saddleback {
 namespace {

@@ -1,6 +1,6 @@
 // The public diagram from the cell complex: areas, boundaries chained into polylines, branch points, the split mesh.
 
-#include "saddleback/geodesic_voronoi.h"
+#include "saddleback/tessellation/geodesic_voronoi.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 #include "saddleback/error.h"
 
-#include "geodesics/point_targets.h"
-#include "tessellation/diagram.h"
-#include "tessellation/split_mesh.h"
+#include "geodesics/queries/point_targets.h"
+#include "tessellation/cells/split_mesh.h"
+#include "tessellation/relaxation/diagram.h"
 
 namespace saddleback {
 namespace {

@@ -1,4 +1,4 @@
-#include "saddleback/relaxation_watch.h"
+#include "saddleback/tessellation/relaxation_watch.h"
 
 #include <utility>
 

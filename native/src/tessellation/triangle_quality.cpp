@@ -1,4 +1,4 @@
-#include "saddleback/triangle_quality.h"
+#include "saddleback/tessellation/triangle_quality.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,13 +7,13 @@
 #include <limits>
 
 #include "saddleback/error.h"
-#include "saddleback/voronoi_2d.h"
+#include "saddleback/voronoi2d/voronoi_2d.h"
 
-#include "support/parallel.h"
-#include "voronoi2d/cell_sides.h"
-#include "voronoi2d/clip_weighted.h"
-#include "voronoi2d/domain_map.h"
-#include "voronoi2d/loops.h"
+#include "support/threads/parallel.h"
+#include "voronoi2d/clipping/clip_weighted.h"
+#include "voronoi2d/clipping/domain_map.h"
+#include "voronoi2d/clipping/loops.h"
+#include "voronoi2d/diagram/cell_sides.h"
 
 namespace saddleback {
 
@@ -22,7 +22,7 @@ using namespace voronoi2d;
 namespace {
 
 /// The side of a cell: points at least as near to `mine` as to `other`. The values for the cells on both sides are each
-/// other's negatives, to the last bit, so that neighbours are cut at the same points.
+/// other's negatives, to the last bit, so that neighbors are cut at the same points.
 struct Side {
   Vec2 middle, along, across;
   double distance = 0;  ///< that points must keep from the side, in the unit of `value`
@@ -64,7 +64,7 @@ class CellClip {
 
  private:
   Side side(Index k) const {
-    Side result(sides_.mine(), sides_.neighbour(k));
+    Side result(sides_.mine(), sides_.neighbor(k));
     result.distance = 0.5 * gap_ * result.across.norm();
     return result;
   }

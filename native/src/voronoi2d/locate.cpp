@@ -1,16 +1,16 @@
-// From cell to cell towards the point: a site that is not the nearest has a neighbour that is nearer, with weights or
+// From cell to cell towards the point: a site that is not the nearest has a neighbor that is nearer, with weights or
 // without. Each point starts at a site next to it on a space-filling curve through sites and points alike.
 
 #include <algorithm>
 #include <cmath>
 
 #include "saddleback/error.h"
-#include "saddleback/voronoi_2d.h"
+#include "saddleback/voronoi2d/voronoi_2d.h"
 
 #include "predicates/predicates.h"
 #include "predicates/weighted_2d.h"
-#include "support/parallel.h"
-#include "voronoi2d/curve_order.h"
+#include "support/threads/parallel.h"
+#include "voronoi2d/sites/curve_order.h"
 
 namespace saddleback {
 namespace {
@@ -34,7 +34,7 @@ struct Scaled {
   }
 
   template <class Visit>
-  void for_neighbours(Index site, Visit&& visit) const {
+  void for_neighbors(Index site, Visit&& visit) const {
     for (const Index edge : diagram.cell_edges(site)) {
       const auto [left, right] = diagram.edge_sites[edge];
       visit(left == site ? right : left);
@@ -44,7 +44,7 @@ struct Scaled {
   Index nearest_from(const predicates::Point2& point, Index site) const {
     for (Index next = site;; site = next) {
       bool is_shared = false;
-      for_neighbours(site, [&](Index other) {
+      for_neighbors(site, [&](Index other) {
         const predicates::Sign sign = compare(point, other, next);
         if (sign == predicates::Sign::negative) next = other;
         is_shared |= sign == predicates::Sign::zero;
@@ -53,12 +53,12 @@ struct Scaled {
     }
   }
 
-  /// Of all sites as near as one of the nearest the smallest index: they are neighbours of each other in turn.
+  /// Of all sites as near as one of the nearest the smallest index: they are neighbors of each other in turn.
   Index smallest_nearest(const predicates::Point2& point, Index site) const {
     std::vector<Index> nearest{site};
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const Index from = nearest[i];
-      for_neighbours(from, [&](Index other) {
+      for_neighbors(from, [&](Index other) {
         const bool is_known = std::find(nearest.begin(), nearest.end(), other) != nearest.end();
         if (!is_known && compare(point, other, site) == predicates::Sign::zero) nearest.push_back(other);
       });

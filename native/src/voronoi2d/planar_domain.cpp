@@ -1,4 +1,4 @@
-#include "saddleback/planar_domain.h"
+#include "saddleback/voronoi2d/planar_domain.h"
 
 #include <algorithm>
 #include <cmath>

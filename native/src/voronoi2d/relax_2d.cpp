@@ -1,13 +1,13 @@
-#include "saddleback/relax_2d.h"
+#include "saddleback/voronoi2d/relax_2d.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "saddleback/error.h"
-#include "saddleback/voronoi_2d.h"
+#include "saddleback/voronoi2d/voronoi_2d.h"
 
-#include "support/parallel.h"
-#include "voronoi2d/raster_moments.h"
+#include "support/threads/parallel.h"
+#include "voronoi2d/clipping/raster_moments.h"
 
 namespace saddleback {
 namespace {

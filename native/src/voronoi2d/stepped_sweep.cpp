@@ -1,7 +1,7 @@
-// The ellipse |x - c| + |x - s| = R about the centre c and a site s lies at the distance w / (2 (R - s.u)) in direction
+// The ellipse |x - c| + |x - s| = R about the center c and a site s lies at the distance w / (2 (R - s.u)) in direction
 // u, with w = R^2 - |s|^2 and s counted from c. Two of them are equally far where m.u = R (w' - w), m = s w' - s' w.
 
-#include "saddleback/stepped_sweep.h"
+#include "saddleback/voronoi2d/stepped_sweep.h"
 
 #include <algorithm>
 #include <array>
@@ -13,11 +13,11 @@
 #include "saddleback/error.h"
 #include "saddleback/job.h"
 
-#include "voronoi2d/circumcentre.h"
-#include "voronoi2d/diagram_sweep.h"
-#include "voronoi2d/planar_mesh.h"
-#include "voronoi2d/site_order.h"
-#include "voronoi2d/sweep_step.h"
+#include "voronoi2d/diagram/circumcenter.h"
+#include "voronoi2d/diagram/diagram_sweep.h"
+#include "voronoi2d/sites/site_order.h"
+#include "voronoi2d/sweep/planar_mesh.h"
+#include "voronoi2d/sweep/sweep_step.h"
 
 namespace saddleback {
 
@@ -30,8 +30,8 @@ struct WeightedSweep {
   Voronoi2d diagram;
   DiagramSweep sweep;
   std::size_t next = 0;  ///< event
-  WeightedSweep(std::span<const Vec2> sites, const Vec2& centre, std::span<const double> weights)
-      : diagram(weighted_diagram(sites, weights)), sweep(diagram, centre) {}
+  WeightedSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights)
+      : diagram(weighted_diagram(sites, weights)), sweep(diagram, center) {}
 };
 
 }  // namespace
@@ -44,7 +44,7 @@ struct SteppedSweep::State {
     bool operator>(const Vanishing& other) const { return radius > other.radius; }
   };
 
-  std::unique_ptr<WeightedSweep> weighted;  ///< then only `centre` and `radius` are used of the rest
+  std::unique_ptr<WeightedSweep> weighted;  ///< then only `center` and `radius` are used of the rest
   OrderedSites ordered;
   std::vector<double> x, y, radii;  ///< from near to far
   std::vector<Index> original;
@@ -52,19 +52,19 @@ struct SteppedSweep::State {
   std::vector<Vanishing> vanishing;  ///< a heap, the soonest first; out of date where the arc has another radius
   std::vector<Index> near, triangles, twins;
   SweepState sweep{};
-  Vec2 centre;
+  Vec2 center;
   double radius = 0;
   Index touched = 0;  ///< sites
   Index nearest = 0;  ///< how many sites are equally near and nearest
 
-  void sort_sites(const Vec2& scaled_centre);
+  void sort_sites(const Vec2& scaled_center);
   void start_sweep();
   SweptSite swept(Index k) const { return {x[k], y[k], k}; }
   void touch_site(Index k);
   void note(Index arc);
   double vanish_next(double up_to);
-  Vec2 site(Index k) const { return {x[k] - sweep.centre_x, y[k] - sweep.centre_y}; }
-  Vec2 outside(const Vec2& from_centre) const { return centre + from_centre / ordered.scale; }
+  Vec2 site(Index k) const { return {x[k] - sweep.center_x, y[k] - sweep.center_y}; }
+  Vec2 outside(const Vec2& from_center) const { return center + from_center / ordered.scale; }
   double scaled_radius() const { return radius * ordered.scale; }
   double weight(Index k) const { return (scaled_radius() - radii[k]) * (scaled_radius() + radii[k]); }
   Vec2 point_in(Index k, const Vec2& direction) const;
@@ -75,17 +75,17 @@ struct SteppedSweep::State {
 };
 
 // From near to far; of the nearest ones, if there are several, counter-clockwise.
-void SteppedSweep::State::sort_sites(const Vec2& scaled_centre) {
+void SteppedSweep::State::sort_sites(const Vec2& scaled_center) {
   const Index count = ordered.count();
   std::vector<Index> order(count);
   std::iota(order.begin(), order.end(), 0);
   std::vector<double> distances(count);
   for (Index i = 0; i < count; ++i)
-    distances[i] = std::hypot(ordered.x[i] - scaled_centre.x(), ordered.y[i] - scaled_centre.y());
+    distances[i] = std::hypot(ordered.x[i] - scaled_center.x(), ordered.y[i] - scaled_center.y());
   std::sort(order.begin(), order.end(),
             [&](Index a, Index b) { return distances[a] != distances[b] ? distances[a] < distances[b] : a < b; });
   const auto point = [&](Index i) { return predicates::Point2{ordered.x[i], ordered.y[i]}; };
-  const predicates::Point2 c{scaled_centre.x(), scaled_centre.y()};
+  const predicates::Point2 c{scaled_center.x(), scaled_center.y()};
   nearest = count > 0;
   while (nearest < count &&
          predicates::compare_distances(c, point(order[0]), point(order[nearest])) == predicates::Sign::zero)
@@ -106,8 +106,8 @@ void SteppedSweep::State::start_sweep() {
   near.resize(256);
   triangles.resize(8 * count);
   twins.resize(8 * count);
-  sweep = {.centre_x = sweep.centre_x,
-           .centre_y = sweep.centre_y,
+  sweep = {.center_x = sweep.center_x,
+           .center_y = sweep.center_y,
            .arcs = arcs.data(),
            .near = near.data(),
            .near_count = static_cast<Index>(near.size()),
@@ -143,22 +143,22 @@ double SteppedSweep::State::vanish_next(double up_to) {
   return k_never;
 }
 
-SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& centre, std::span<const double> weights)
+SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights)
     : state_(std::make_unique<State>()) {
-  if (!centre.allFinite())
-    throw InputError(message("centre: wanted finite numbers, got (", centre.x(), ", ", centre.y(), ")"));
+  if (!center.allFinite())
+    throw InputError(message("center: wanted finite numbers, got (", center.x(), ", ", center.y(), ")"));
   State& s = *state_;
-  s.centre = centre;
+  s.center = center;
   if (!weights.empty()) {
-    s.weighted = std::make_unique<WeightedSweep>(sites, centre, weights);
+    s.weighted = std::make_unique<WeightedSweep>(sites, center, weights);
     const auto& events = s.weighted->sweep.events();
     if (!events.empty()) s.radius = std::min(0.0, events[0].radius);
     return;
   }
   s.ordered = order_sites(sites, 1, {});
-  s.sweep.centre_x = centre.x() * s.ordered.scale;
-  s.sweep.centre_y = centre.y() * s.ordered.scale;
-  s.sort_sites({s.sweep.centre_x, s.sweep.centre_y});
+  s.sweep.center_x = center.x() * s.ordered.scale;
+  s.sweep.center_y = center.y() * s.ordered.scale;
+  s.sort_sites({s.sweep.center_x, s.sweep.center_y});
   if (!s.x.empty()) s.start_sweep();
 }
 
@@ -167,7 +167,7 @@ SteppedSweep::SteppedSweep(SteppedSweep&&) noexcept = default;
 SteppedSweep& SteppedSweep::operator=(SteppedSweep&&) noexcept = default;
 
 double SteppedSweep::radius() const { return state_->radius; }
-const Vec2& SteppedSweep::centre() const { return state_->centre; }
+const Vec2& SteppedSweep::center() const { return state_->center; }
 
 std::optional<SteppedSweep::Event> SteppedSweep::step() {
   State& s = *state_;
@@ -241,7 +241,7 @@ void SteppedSweep::State::for_each_arc(Visit&& visit) const {
   } while (arc != sweep.latest);
 }
 
-// A point of the ellipse about a site, counted from the centre.
+// A point of the ellipse about a site, counted from the center.
 Vec2 SteppedSweep::State::point_in(Index k, const Vec2& direction) const {
   const double reach = scaled_radius() - site(k).dot(direction);
   return reach > 0 ? Vec2(weight(k) / (2 * reach) * direction) : Vec2(0, 0);
@@ -299,7 +299,7 @@ Vec2 SteppedSweep::State::vertex(Index triangle) const {
   const auto point = [&](Index k) {
     return predicates::Point2{x[triangles[4 * triangle + k]], y[triangles[4 * triangle + k]]};
   };
-  return circumcentre(point(0), point(1), point(2)) / ordered.scale;
+  return circumcenter(point(0), point(1), point(2)) / ordered.scale;
 }
 
 std::vector<SteppedSweep::Edge> SteppedSweep::edges() const {

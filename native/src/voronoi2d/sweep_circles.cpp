@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "saddleback/error.h"
-#include "saddleback/stepped_sweep.h"
-#include "saddleback/voronoi_2d.h"
+#include "saddleback/voronoi2d/stepped_sweep.h"
+#include "saddleback/voronoi2d/voronoi_2d.h"
 
-#include "voronoi2d/diagram_sweep.h"
+#include "voronoi2d/diagram/diagram_sweep.h"
 
 namespace saddleback {
 
@@ -24,7 +24,7 @@ struct SweepCircles::State {
   };
 
   Voronoi2d diagram;
-  std::vector<Vec2> centres;
+  std::vector<Vec2> centers;
   std::vector<Circle> circles;
   double radius = 0;
 
@@ -34,13 +34,13 @@ struct SweepCircles::State {
 };
 
 void SweepCircles::State::add_circles() {
-  for (const Vec2& centre : centres)
-    circles.push_back({DiagramSweep(diagram, centre), -std::numeric_limits<double>::infinity()});
+  for (const Vec2& center : centers)
+    circles.push_back({DiagramSweep(diagram, center), -std::numeric_limits<double>::infinity()});
   for (const Index site : diagram.cell_sites) {
-    const auto distance = [&](const Vec2& centre) { return (centre - diagram.sites[site]).squaredNorm(); };
-    const auto nearest = std::min_element(centres.begin(), centres.end(),
+    const auto distance = [&](const Vec2& center) { return (center - diagram.sites[site]).squaredNorm(); };
+    const auto nearest = std::min_element(centers.begin(), centers.end(),
                                           [&](const Vec2& a, const Vec2& b) { return distance(a) < distance(b); });
-    Circle& circle = circles[nearest - centres.begin()];
+    Circle& circle = circles[nearest - centers.begin()];
     circle.stop = std::max(circle.stop, circle.sweep.last_radius(site));
   }
   for (const Circle& circle : circles)
@@ -56,15 +56,15 @@ Index SweepCircles::State::soonest() const {
   return best;
 }
 
-SweepCircles::SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centres, std::span<const double> weights)
+SweepCircles::SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centers, std::span<const double> weights)
     : state_(std::make_unique<State>()) {
-  if (centres.empty()) throw InputError("centres: wanted one or more, got none");
-  for (std::size_t k = 0; k < centres.size(); ++k)
-    if (!centres[k].allFinite())
+  if (centers.empty()) throw InputError("centers: wanted one or more, got none");
+  for (std::size_t k = 0; k < centers.size(); ++k)
+    if (!centers[k].allFinite())
       throw InputError(
-          message("centres: centre ", k, " is (", centres[k].x(), ", ", centres[k].y(), "), wanted finite numbers"));
+          message("centers: center ", k, " is (", centers[k].x(), ", ", centers[k].y(), "), wanted finite numbers"));
   state_->diagram = voronoi2d::weighted_diagram(sites, weights);
-  state_->centres.assign(centres.begin(), centres.end());
+  state_->centers.assign(centers.begin(), centers.end());
   state_->add_circles();
 }
 
@@ -89,7 +89,7 @@ void SweepCircles::grow(double radius) {
 }
 
 Index SweepCircles::count() const { return static_cast<Index>(state_->circles.size()); }
-std::span<const Vec2> SweepCircles::centres() const { return state_->centres; }
+std::span<const Vec2> SweepCircles::centers() const { return state_->centers; }
 double SweepCircles::radius(Index circle) const { return state_->radius_of(state_->circles[circle]); }
 bool SweepCircles::is_done(Index circle) const { return state_->circles[circle].is_done(); }
 

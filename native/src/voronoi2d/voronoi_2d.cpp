@@ -1,6 +1,6 @@
 // From sites to the numbered diagram: order, sweep, stitch, place the vertices.
 
-#include "saddleback/voronoi_2d.h"
+#include "saddleback/voronoi2d/voronoi_2d.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,12 @@
 
 #include "saddleback/error.h"
 
-#include "voronoi2d/check_options.h"
-#include "voronoi2d/edge_curve.h"
-#include "voronoi2d/half_edges.h"
-#include "voronoi2d/site_order.h"
-#include "voronoi2d/triangulation.h"
-#include "voronoi2d/twin_voronoi.h"
+#include "voronoi2d/diagram/edge_curve.h"
+#include "voronoi2d/diagram/half_edges.h"
+#include "voronoi2d/sites/check_options.h"
+#include "voronoi2d/sites/site_order.h"
+#include "voronoi2d/sweep/triangulation.h"
+#include "voronoi2d/voronoi_2d_cuda.h"
 
 namespace saddleback {
 namespace {
@@ -69,7 +69,7 @@ Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& option
   check_options(options, sites.size());
   constexpr std::size_t k_fewest = 3;
   std::optional<Voronoi2d> found;
-  if (!options.cuda_devices.empty() && sites.size() >= k_fewest) found = twin_voronoi(sites, {}, options, stage);
+  if (!options.cuda_devices.empty() && sites.size() >= k_fewest) found = cuda_voronoi(sites, {}, options, stage);
   if (found) {
     stage.update(1);
     return std::move(*found);

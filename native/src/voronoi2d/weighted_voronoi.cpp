@@ -5,13 +5,13 @@
 #include <optional>
 
 #include "saddleback/error.h"
-#include "saddleback/voronoi_2d.h"
+#include "saddleback/voronoi2d/voronoi_2d.h"
 
-#include "voronoi2d/check_options.h"
-#include "voronoi2d/site_order.h"
-#include "voronoi2d/twin_voronoi.h"
-#include "voronoi2d/weighted_cells.h"
-#include "voronoi2d/weighted_sites.h"
+#include "voronoi2d/sites/check_options.h"
+#include "voronoi2d/sites/site_order.h"
+#include "voronoi2d/voronoi_2d_cuda.h"
+#include "voronoi2d/weighted/weighted_cells.h"
+#include "voronoi2d/weighted/weighted_sites.h"
 
 namespace saddleback {
 namespace {
@@ -64,9 +64,9 @@ class Numberer {
         continue;
       }
       Index& vertex = vertex_at_[sides[k].vertex];
-      const Index next = sides[k + 1 == sides.size() ? 0 : k + 1].neighbour;
+      const Index next = sides[k + 1 == sides.size() ? 0 : k + 1].neighbor;
       if (vertex == k_none) {
-        if (sides[k].neighbour < cell || next < cell) fail();
+        if (sides[k].neighbor < cell || next < cell) fail();
         vertex = static_cast<Index>(result_.vertices.size());
         result_.vertices.push_back(cells_.position(sides[k].vertex) / sites_.scale);
       }
@@ -79,11 +79,11 @@ class Numberer {
     Index before = first + static_cast<Index>(sides.size()) - 1, corner = first;
     for (const Side& side : sides) {
       Index& edge = edge_at_[side.edge];
-      if ((edge == k_none) != (cell < side.neighbour)) fail();
+      if ((edge == k_none) != (cell < side.neighbor)) fail();
       if (edge == k_none) {
         edge = static_cast<Index>(result_.edges.size());
         add_edge(result_.corner_vertices[before], result_.corner_vertices[corner], sites_.original[cell],
-                 sites_.original[side.neighbour]);
+                 sites_.original[side.neighbor]);
       }
       result_.side_edges.push_back(edge);
       before = corner++;
@@ -114,7 +114,7 @@ std::optional<Voronoi2d> found_on_device(std::span<const Vec2> sites, std::span<
   if (options.cuda_devices.empty() || sites.size() < k_fewest || weights.size() != sites.size() ||
       !std::all_of(weights.begin(), weights.end(), [](double weight) { return std::fabs(weight) < k_largest; }))
     return std::nullopt;
-  std::optional<Voronoi2d> result = twin_voronoi(sites, weights, options, stage);
+  std::optional<Voronoi2d> result = cuda_voronoi(sites, weights, options, stage);
   if (!result) return std::nullopt;
   result->weights.assign(weights.begin(), weights.end());
   for (std::size_t i = 0; i < sites.size(); ++i)

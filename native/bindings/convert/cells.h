@@ -1,0 +1,13 @@
+#pragma once
+
+#include "saddleback/tessellation/geodesic_voronoi.h"
+
+#include "convert/convert.h"
+
+namespace saddleback::bindings {
+
+/// The Python object of a diagram on the mesh of a graph (a Python object), which stays as long as it. `by_cuda`: a
+/// CUDA device found the vertices' nearest sites.
+py::object make_cells(GeodesicVoronoi&& diagram, const py::object& graph, bool by_cuda);
+
+}  // namespace saddleback::bindings

@@ -1,0 +1,37 @@
+#pragma once
+// Shapes laid on a surface, as the bindings hand them round.
+
+#include <memory>
+#include <mutex>
+
+#include "saddleback/shape_mapping/conform.h"
+
+#include "convert/shapes.h"
+
+namespace saddleback::bindings {
+
+/// The shapes with all that they were laid with, so that they can be laid again.
+struct MappedShapes {
+  py::object mesh_object, field_object;
+  std::vector<Shape> shapes;
+  Placements placements;
+  MapLimits limits;
+  std::vector<MappedShape> mapped;
+  std::vector<Vec3> normals;
+  std::mutex mutex;  ///< of the mapper
+  std::unique_ptr<OutlineMapper> mapper;
+
+  const Mesh& mesh() const;
+  const DirectionField* field() const;
+  const Shape& shape(Index i) const { return shapes[placements[i].shape]; }
+  /// An index, negative from the end. \throw IndexError out of range.
+  Index checked(const py::object& index) const;
+  /// The index of a shape that lies on the surface. \throw InputError for one that could not be laid.
+  Index laid(const py::object& index) const;
+};
+
+std::unique_ptr<MappedShapes> make_mapped(const py::object& mesh_object, const py::object& shapes,
+                                          const py::object& placements, const py::object& field,
+                                          const py::object& limits, const py::object& threads, const py::object& job);
+
+}  // namespace saddleback::bindings

@@ -1,0 +1,211 @@
+// Python: plain triangle arrays.
+
+#include "saddleback/mesh/triangle_arrays.h"
+
+#include "convert/convert.h"
+
+namespace saddleback::bindings {
+namespace {
+
+std::span<const Triangle> triangles_of(const ArrayIn<Index>& in) {
+  return {reinterpret_cast<const Triangle*>(in.values.data()), in.values.size() / 3};
+}
+std::span<const Vec3> points_of(const ArrayIn<double>& in) {
+  return {reinterpret_cast<const Vec3*>(in.values.data()), in.values.size() / 3};
+}
+
+py::array normals(const py::object& vertices, const py::object& triangles) {
+  const ArrayIn<double> xyz = as_points3(vertices, "vertices");
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  return to_array(without_gil([&] { return vertex_normals(points_of(xyz), triangles_of(indices)); }));
+}
+
+py::tuple edges_of(const py::object& triangles, const py::object& vertex_count) {
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const Index count = as_integer(vertex_count, "vertex_count");
+  TriangleEdges found = without_gil([&] { return triangle_edges(triangles_of(indices), count); });
+  return py::make_tuple(to_rows<Index>(std::move(found.ends)), to_array(std::move(found.corner_edges)));
+}
+
+py::tuple border(const py::object& triangles, const py::object& vertex_count) {
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const Index count = as_integer(vertex_count, "vertex_count");
+  BorderEdges found = without_gil([&] { return border_edges(triangles_of(indices), count); });
+  return py::make_tuple(to_rows<Index>(std::move(found.ends)), to_array(std::move(found.triangles)));
+}
+
+py::tuple cut(const py::object& fields, const py::object& triangles, const py::object& column,
+              const py::object& level) {
+  const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(fields);
+  if (!rows || rows.ndim() != 2) throw InputError("fields: wanted (V, k) floats");
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const Index at = as_integer(column, "column");
+  const double value = as_real(level, "level");
+  const auto width = static_cast<Index>(rows.shape(1));
+  const std::span values(rows.data(), static_cast<std::size_t>(rows.size()));
+  LevelCut found = without_gil([&] { return cut_at_level(values, width, triangles_of(indices), at, value); });
+  const std::vector<py::ssize_t> shape{-1, width};
+  return py::make_tuple(to_array(std::move(found.fields)).reshape(shape), to_array(std::move(found.triangles)),
+                        to_array(std::move(found.parents)), to_array(std::move(found.aboves)).attr("view")("bool"));
+}
+
+py::tuple boundary(const py::object& triangles, const py::object& cells, const py::object& vertex_count) {
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const ArrayIn<Index> owners = as_indices(cells, "triangle_cell");
+  const Index count = as_integer(vertex_count, "vertex_count");
+  CellBoundary found = without_gil([&] { return cell_boundary(triangles_of(indices), owners.values, count); });
+  return py::make_tuple(to_rows<Index>(std::move(found.segments)), to_rows<Index>(std::move(found.cells)));
+}
+
+py::array boundary_distance(const py::object& vertices, const py::object& triangles, const py::object& cells,
+                            const py::object& limit) {
+  const ArrayIn<double> xyz = as_points3(vertices, "vertices");
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const ArrayIn<Index> owners = as_indices(cells, "triangle_cell");
+  const double farthest = as_real(limit, "limit");
+  return to_array(without_gil(
+      [&] { return cell_boundary_distance(points_of(xyz), triangles_of(indices), owners.values, farthest); }));
+}
+
+py::array crossings(const py::object& vertices, const py::object& triangles, const py::object& threads,
+                    const py::object& job) {
+  const ArrayIn<double> xyz = as_points3(vertices, "vertices");
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const Index count = as_integer(threads, "threads");
+  const JobIn token(job);
+  return to_rows<Index>(without_gil([&] {
+    const JobStage stage(token, "Looking for triangles that pass through each other");
+    return self_crossings(points_of(xyz), triangles_of(indices), count, stage);
+  }));
+}
+
+}  // namespace
+
+void bind_triangle_arrays(py::module_& m) {
+  m.def("vertex_normals", &normals, py::arg("vertices"), py::arg("triangles"),
+        R"(Unit normals of plain triangles' vertices, weighted by area.
+
+Parameters
+----------
+vertices : (V, 3) float array
+triangles : (T, 3) int array
+
+Returns
+-------
+(V, 3) float64; zero where no triangle with an area meets the vertex. O(V + T).)");
+  m.def("triangle_edges", &edges_of, py::arg("triangles"), py::arg("vertex_count"),
+        R"(Number the edges of triangles, in the order in which these come upon them, whichever way round.
+
+Parameters
+----------
+triangles : (T, 3) int array
+vertex_count : int
+
+Returns
+-------
+ends : (e, 2) int32
+    The vertices of each edge, once.
+corner_edges : (3 T,) int32
+    The edge from each triangle's corner to its next one. O(V + T).)");
+  m.def("border_edges", &border, py::arg("triangles"), py::arg("vertex_count"),
+        R"(Find the edges that only one triangle uses.
+
+Parameters
+----------
+triangles : (T, 3) int array
+vertex_count : int
+
+Returns
+-------
+ends : (b, 2) int32
+    From and to, in the triangle's orientation.
+triangles : (b,) int32
+    The one that uses the edge, in increasing order. O(V + T).)");
+  m.def("cut_at_level", &cut, py::arg("fields"), py::arg("triangles"), py::arg("column"), py::arg("level"),
+        R"(Cut triangles along the line where a function that is linear over each equals a level.
+
+Parameters
+----------
+fields : (V, k) float array
+    All numbers of a vertex side by side, the position first: new vertices interpolate each of them, and are shared by
+    both sides, so that no crack opens.
+triangles : (T, 3) int array
+column : int
+    Of the function. A vertex nearer to the level than 1e-9 of its greatest value is on it. Values may be infinite, as
+    distances beyond a limit are: an edge from a finite value to such a one crosses the level at its finite end.
+level : float
+    Finite.
+
+Returns
+-------
+fields : (W, k) float64
+    The given vertices, then the new ones.
+triangles : (U, 3) int32
+parents : (U,) int32
+    The given triangle that each is part of, in increasing order.
+aboves : (U,) bool
+    Whether it lies above the level; a triangle wholly on it does not. O(V k + T).)");
+  m.def("cell_boundary", &boundary, py::arg("triangles"), py::arg("triangle_cell"), py::arg("vertex_count"),
+        R"(Find the edges between triangles of different cells.
+
+Parameters
+----------
+triangles : (T, 3) int array
+triangle_cell : (T,) int array
+vertex_count : int
+
+Returns
+-------
+segments : (b, 2) int32
+    The two vertices of each; the border of the mesh is no boundary of a cell.
+cells : (b, 2) int32
+    The two cells beside each. O(V + T).)");
+  m.def("cell_boundary_distance", &boundary_distance, py::arg("vertices"), py::arg("triangles"),
+        py::arg("triangle_cell"), py::arg("limit") = std::numeric_limits<double>::infinity(),
+        R"(Measure how far vertices are from the boundary of the cell that they lie in.
+
+Parameters
+----------
+vertices : (V, 3) float array
+triangles, triangle_cell : (T, 3), (T,) int arrays
+    Every triangle inside one cell, as `split` gives them.
+limit : float
+    Vertices farther than one ring beyond it get infinity.
+
+Returns
+-------
+(V,) float64
+    0 on a boundary, infinity in a cell without one. Straight distances to segments that were reached on the surface:
+    never too short, at most a few percent too long near the middle line of a cell with a ragged boundary.
+
+Notes
+-----
+O(V + T) for a fixed number of rings. Vector distance transform: P.-E. Danielsson, Euclidean distance mapping, 1980.)");
+  m.def("self_crossings", &crossings, py::arg("vertices"), py::arg("triangles"), py::kw_only(), py::arg("threads") = 0,
+        py::arg("job") = py::none(),
+        R"(Find the triangles that pass through each other.
+
+Exact for the coordinates as they are. Triangles that only touch, lie in one plane or share an edge are no such pair.
+
+Parameters
+----------
+vertices : (V, 3) float array
+triangles : (T, 3) int array
+threads : int
+    0: all cores. The result does not depend on it.
+job : Job, optional
+
+Returns
+-------
+(k, 2) int32
+    Numbers of triangles, the smaller first, in order. About O(T log T).
+
+Raises
+------
+InputError
+    A corner that is no vertex, a vertex that is not finite.
+Cancelled
+    The job was cancelled.)");
+}
+
+}  // namespace saddleback::bindings

@@ -1,0 +1,20 @@
+#pragma once
+// How a surface bends.
+
+#include <vector>
+
+#include "saddleback/mesh/mesh.h"
+
+namespace saddleback {
+
+/// Per vertex, 1 / length, positive where the surface bends away from its normal (a sphere's are 1 / radius).
+struct PrincipalCurvatures {
+  std::vector<double> smallest, largest;  ///< smallest <= largest
+  std::vector<Vec3> direction;            ///< of `largest`, a unit vector in the vertex' tangent plane, up to its sign
+};
+
+/// From the change of vertex normals over each face, averaged about vertices by area (Rusinkiewicz, Estimating
+/// curvatures and their derivatives on triangle meshes, 2004). O(F).
+PrincipalCurvatures principal_curvatures(const Mesh& mesh);
+
+}  // namespace saddleback

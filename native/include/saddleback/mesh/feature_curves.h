@@ -1,0 +1,27 @@
+#pragma once
+// The lines of a mesh that a remesh should keep: creases, the boundary, edges that somebody chose.
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "saddleback/mesh/surface_curve.h"
+
+namespace saddleback {
+
+struct FeatureCurveOptions {
+  double angle = 40 * M_PI / 180;  ///< radians: an edge whose faces' normals differ by more is a feature; pi: none is
+  bool boundary = true;            ///< whether the edges of the boundary are features
+  std::span<const std::array<Index, 2>> edges;  ///< more of them, each by its two vertices
+  /// Radians: where a line turns by more than this it ends, and another begins.
+  double corner_angle = 50 * M_PI / 180;
+};
+
+/// The feature edges as curves: as long as can be between the vertices where their number is not two or where they
+/// turn sharply; lines without such a vertex are closed. In the order of their first vertices, each edge once.
+///
+/// \throw InputError for an angle outside [0, pi], two vertices that no edge joins. O(V + F).
+std::vector<SurfaceCurve> feature_curves(const Mesh& mesh, const FeatureCurveOptions& options);
+
+}  // namespace saddleback

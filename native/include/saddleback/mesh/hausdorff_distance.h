@@ -1,0 +1,27 @@
+#pragma once
+// How far two surfaces are from each other.
+
+#include "saddleback/job.h"
+#include "saddleback/mesh/surface_points.h"
+
+namespace saddleback {
+
+/// The point of one surface that is farthest from another.
+struct FarthestPoint {
+  SurfacePoint point;   ///< of the first surface
+  double distance = 0;  ///< straight through space, from the other
+};
+
+struct HausdorffOptions {
+  double tolerance = 1e-4;  ///< of the distance, as a share of the diagonal of both meshes' box
+  int threads = 0;          ///< 0: all cores; the result does not depend on it
+};
+
+/// The greatest distance from any point of one mesh, not its vertices alone, to the other; too small by the tolerance
+/// at most. Both directions, and the greater of the two, make the Hausdorff distance. \throw InputError for a tolerance
+/// that is not above 0; Cancelled. About O((V + F) log F): triangles are divided where they might hold a farther point
+/// (M. Tang, M. Lee, Y. J. Kim: Interactive Hausdorff distance computation for general polygonal models, 2009).
+FarthestPoint farthest_point(const Mesh& from, const Mesh& to, const HausdorffOptions& options = {},
+                             const JobStage& stage = {});
+
+}  // namespace saddleback

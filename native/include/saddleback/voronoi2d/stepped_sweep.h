@@ -1,0 +1,103 @@
+#pragma once
+// Sweep circles of the plane, event by event, to be looked at.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "saddleback/types.h"
+
+namespace saddleback {
+
+namespace voronoi2d {
+class DiagramSweep;
+}
+
+/// The step that computes Voronoi diagrams, one event at a time and from any center. Positions are rounded and so is
+/// the order of nearly simultaneous events; `voronoi_2d` gives the exact diagram. With weights the events are told from
+/// that diagram; hidden sites have none, and a vertex of many cells is one event.
+class SteppedSweep {
+ public:
+  struct Event {
+    bool is_touch;             ///< a site is touched; else an arc vanishes
+    double radius;             ///< of the circle; less than 0 for a site whose disk holds the center
+    std::vector<Index> sites;  ///< the one touched, or the three (with weights: or more) whose vertex is found
+    Vec2 point;                ///< the site, or the vertex
+  };
+  struct Arc {
+    Index site;
+    double begin, end;  ///< directions from the center, radians, counter-clockwise; begin < end
+  };
+  struct Edge {
+    Vec2 begin, end;
+    std::array<Index, 2> sites;
+    bool is_finished;  ///< else it still grows, at its end or at both
+  };
+
+  /// With weights one for each site, or none. \throw InputError as voronoi_2d does. O(n log n).
+  SteppedSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights = {});
+  ~SteppedSweep();  // NOLINT(performance-trivially-destructible): State is known in the .cpp only
+  SteppedSweep(SteppedSweep&&) noexcept;
+  SteppedSweep& operator=(SteppedSweep&&) noexcept;
+
+  /// Goes on to the next event; none after the last. O(1) expected.
+  std::optional<Event> step();
+  /// Grows the circle to a radius, through all events on the way; a smaller radius changes nothing.
+  void grow(double radius);
+
+  double radius() const;
+  const Vec2& center() const;
+  /// The ellipse arcs about the center, counter-clockwise. O(arcs).
+  std::vector<Arc> arcs() const;
+  /// Points of the beach curve in directions equally far apart, from 0. O(samples + arcs).
+  std::vector<Vec2> beach_curve(Index samples) const;
+  /// Edges within the beach curve, those that begin at it with no length, too: after the last event as many as the
+  /// diagram has. O(sites touched).
+  std::vector<Edge> edges() const;
+  /// Points along each of `edges`, no part of which is farther from their chords than a tolerance; one finer than 2^-26
+  /// of the radius is taken as that. O(sites touched + points).
+  std::vector<std::vector<Vec2>> edge_polylines(double tolerance) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Sweep circles that grow together, each about its center, until it has closed the cells of the sites nearest to it;
+/// one with an open cell among these goes on to the last vertex.
+class SweepCircles {
+ public:
+  struct Event {
+    Index circle;
+    SteppedSweep::Event event;
+  };
+
+  /// \throw InputError as voronoi_2d does, and for no center or one that is not finite. O(n log n) for each center.
+  SweepCircles(std::span<const Vec2> sites, std::span<const Vec2> centers, std::span<const double> weights = {});
+  ~SweepCircles();  // NOLINT(performance-trivially-destructible): State is known in the .cpp only
+  SweepCircles(SweepCircles&&) noexcept;
+  SweepCircles& operator=(SweepCircles&&) noexcept;
+
+  /// Goes on to the next event of any circle; none after the last. O(centers).
+  std::optional<Event> step();
+  /// Grows all circles to a radius, through all events on the way; a smaller radius changes nothing.
+  void grow(double radius);
+
+  Index count() const;
+  std::span<const Vec2> centers() const;
+  /// That of all circles, or where this one stopped; minus infinity for one to which no site is nearest.
+  double radius(Index circle) const;
+  bool is_done(Index circle) const;
+  /// As those of SteppedSweep.
+  std::vector<SteppedSweep::Arc> arcs(Index circle) const;
+  std::vector<Vec2> beach_curve(Index circle, Index samples) const;
+  std::vector<SteppedSweep::Edge> edges(Index circle) const;
+  std::vector<std::vector<Vec2>> edge_polylines(Index circle, double tolerance) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace saddleback

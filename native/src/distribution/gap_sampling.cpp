@@ -1,0 +1,542 @@
+// First it rains: candidates fall evenly all over the surface, and those that find room stay. Then rounds over all open
+// cells: those that are proven covered are dropped; into each of the others a dart is thrown; what remains is split in
+// four. Cells over which a copy can move by less than the tolerance are leaves: one copy is tried at the center, and if
+// it does not fit, nothing fits there with that clearance. How many candidates fall on a face, and where, depends on
+// that face alone: so other triangles elsewhere, or other sheets, change nothing.
+
+#include "distribution/gap_sampling.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "saddleback/mesh/trace.h"
+
+#include "distribution/edge_distances.h"
+#include "support/random_numbers.h"
+#include "support/threads/parallel.h"
+
+namespace saddleback::distribution {
+namespace {
+
+/// Where the tracing of a point ends differs from where the flat plane puts it by a quarter of K r^2 of its distance;
+/// lengths across are off by as much as K r^2. So the one tells the other.
+constexpr double k_bending = 4;
+/// And the stretch of a map is a sixth of K r^2 at its rim: points are certainly not farther off than this many times
+/// that, of their distance. What is deeper needs no tracing.
+constexpr double k_drift = 4;
+/// Ways along edges are at most so much longer than others on meshes of sound triangles.
+constexpr double k_edge_excess = 1.5;
+constexpr Index k_border_corners = 24;
+/// A round that lays less than this share of all is the last one, unless everything is wanted.
+constexpr double k_tired = 0.02;
+/// Drops of each try_batch on the area of a copy; a sweep needs many to choose from. The last ones are for when no
+/// search follows.
+constexpr std::array<double, 10> k_batches{2, 2, 4, 4, 8, 8, 16, 16, 32, 32};
+constexpr std::array<double, 4> k_sweeping_batches{80, 40, 40, 40};
+constexpr std::size_t k_searching_batches = 6, k_searching_sweeps = 2;
+constexpr double k_most_drops = 1e6;  ///< on a face
+/// So many are held at a time; of shapes that are tiny beside the surface there would be more than memory holds.
+constexpr std::size_t k_drops_held = 4'000'000, k_most_cells = 1 << 20;
+/// A certificate that leaves more than this share of the surface open is not called one.
+constexpr double k_unproven = 0.5;
+/// Cells smaller than this share of that square get fewer darts.
+constexpr double k_dart_area = 0.05, k_free_area = 0.006;  ///< the second where the center seems free
+/// Disks looked at before all of them are: the largest, which tell most cells.
+constexpr std::size_t k_first_disks = 6;
+
+bool is_odd(Outcome outcome) { return outcome == Outcome::fold || outcome == Outcome::stretched; }
+
+Eigen::Matrix2d turn_of(const Copy& copy) {
+  const double c = copy.placement.scale * std::cos(copy.placement.angle),
+               s = copy.placement.scale * std::sin(copy.placement.angle);
+  Eigen::Matrix2d turn;
+  turn << c, -s, s, c;
+  return turn;
+}
+
+}  // namespace
+
+GapSampling::GapSampling(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion,
+                         const DistributionOptions& options)
+    : mesh_(&mesh), rules_(&rules), insertion_(&insertion), options_(&options) {
+  if (options.packing > 0) front_ = sweep_coordinate(mesh);
+  if (options.maximal) {
+    const double size = options.smallest * *std::max_element(options.size.begin(), options.size.end());
+    certificate_.tolerance = options.tolerance * (size * rules.largest_shape_radius() + 0.5 * options.gap);
+  }
+  suspected_.resize(options.maximal ? static_cast<std::size_t>(mesh.face_count()) : 0);
+  flag_borders();
+}
+
+void GapSampling::flag_borders() {
+  std::vector<Index> rim = mesh_->boundary_vertices(), allowed;
+  if (!options_->forbidden.empty()) {
+    std::vector<std::uint8_t> has_forbidden(static_cast<std::size_t>(mesh_->vertex_count()), 0);
+    std::vector<std::uint8_t> has_allowed = has_forbidden;
+    for (Index h = 0; h < mesh_->halfedge_count(); ++h)
+      (options_->forbidden[Mesh::face_of(h)] ? has_forbidden : has_allowed)[mesh_->from(h)] = 1;
+    for (Index v = 0; v < mesh_->vertex_count(); ++v) {
+      if (has_forbidden[v]) rim.push_back(v);
+      if (has_allowed[v]) allowed.push_back(v);
+    }
+    forbidden_depth_ = edge_distances(*mesh_, allowed, std::numeric_limits<double>::infinity());
+    for (double& depth : forbidden_depth_) depth /= k_edge_excess;
+  }
+  if (rim.empty()) return;
+  const std::vector<double> distances = edge_distances(*mesh_, rim, k_edge_excess * rules_->largest_radius());
+  near_border_.resize(static_cast<std::size_t>(mesh_->face_count()));
+  for (Index f = 0; f < mesh_->face_count(); ++f)
+    for (const Index vertex : mesh_->triangles()[f])
+      if (std::isfinite(distances[vertex])) near_border_[f] = 1;
+  for (Index f = 0; f < mesh_->face_count(); ++f) {  // large faces reach out of the range
+    const double reach = rules_->largest_radius();
+    if (mesh_->length(3 * f) > reach || mesh_->length(3 * f + 1) > reach || mesh_->length(3 * f + 2) > reach)
+      near_border_[f] = 1;
+  }
+}
+
+/// Larger cells are hardly ever covered as a whole.
+double GapSampling::base_radius() const { return 0.5 * rules_->smallest_radius(); }
+
+/// Of the next faces, as many as are looked at together.
+void GapSampling::make_base_cells(const JobStage& stage) {
+  const std::size_t count = rules_->kinds().size();
+  const std::uint64_t all = count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+  while (next_face_ < mesh_->face_count() && open_.size() < k_most_cells) {
+    stage.check();
+    const Index f = next_face_++;
+    if (!options_->forbidden.empty() && options_->forbidden[f]) continue;
+    const double edge = std::max({mesh_->length(3 * f), mesh_->length(3 * f + 1), mesh_->length(3 * f + 2)});
+    int level = 0;
+    // Similar triangles of a needle would be as many as its length asks for, with hardly any area each.
+    const double least_area = 0.1 * base_radius() * base_radius();
+    while (level < 12 && edge / (1 << level) > 1.7 * base_radius() &&
+           std::ldexp(mesh_->face_area(f), -2 * level) > least_area)
+      ++level;
+    const std::int32_t n = 1 << level;
+    const auto depth = static_cast<std::uint8_t>(level);
+    for (std::int32_t j = 0; j < n; ++j)
+      for (std::int32_t i = 0; i + j < n; ++i) {
+        open_.push_back({{f, i, j, depth, false}, all});
+        if (i + j + 1 < n) open_.push_back({{f, i + 1, j + 1, depth, true}, all});
+      }
+  }
+}
+
+double GapSampling::order(const SurfacePoint& point, std::uint64_t key) const {
+  const double chance = uniform(key, 3);
+  if (options_->packing <= 0) return chance;
+  const Triangle& t = mesh_->triangles()[point.face];
+  const double front =
+      front_[t[0]] * point.barycentric[0] + front_[t[1]] * point.barycentric[1] + front_[t[2]] * point.barycentric[2];
+  return (1 - options_->packing) * chance + options_->packing * front;
+}
+
+void GapSampling::weigh_kinds() {
+  kind_weights_.clear();
+  for (const Kind& kind : rules_->kinds())
+    kind_weights_.push_back(insertion_->share(kind.shape) * rules_->shape_radius(kind) * rules_->shape_radius(kind));
+}
+
+Index GapSampling::draw_kind(std::uint64_t kinds, double chance) const {
+  double total = 0;
+  for (std::size_t k = 0; k < kind_weights_.size(); ++k)
+    if (kinds >> k & 1) total += kind_weights_[k];
+  double pick = chance * total;
+  Index kind = k_none;
+  for (std::size_t k = 0; k < kind_weights_.size(); ++k) {
+    if (!(kinds >> k & 1) || kind_weights_[k] <= 0) continue;
+    kind = static_cast<Index>(k);
+    pick -= kind_weights_[k];
+    if (pick < 0) break;
+  }
+  return kind;
+}
+
+double GapSampling::mean_drops(Index face, double per_area) const {
+  const double size = rules_->size_at(face, Vec2::Constant(1.0 / 3));
+  return std::min(per_area * mesh_->face_area(face) / (size * size), k_most_drops);
+}
+
+/// Calls visit(key of the drop, its number among random ones, point) for each.
+template <class Visit>
+void GapSampling::draw_candidates(Index face, int try_batch, double per_area, const JobStage& stage,
+                                  Visit&& visit) const {
+  constexpr Index k_drops_between_looks = 1 << 14;
+  if (!options_->forbidden.empty() && options_->forbidden[face]) return;
+  const std::uint64_t own = mixed(mixed(options_->seed, static_cast<std::uint64_t>(try_batch)), face);
+  const auto count = static_cast<Index>(mean_drops(face, per_area) + uniform(own, 0));
+  for (Index i = 0; i < count; ++i) {
+    if (i % k_drops_between_looks == 0) stage.check();
+    const std::uint64_t key = mixed(own, static_cast<std::uint64_t>(i) + 1);
+    double along = uniform(key, 1), up = uniform(key, 2);
+    if (along + up > 1) along = 1 - along, up = 1 - up;
+    const SurfacePoint point = point_at(face, Vec2(along, up));
+    visit(order(point, key), key, point);
+  }
+}
+
+/// In the order of their keys, as many at a time as are held.
+void GapSampling::try_batch(int number, double per_area, const JobStage& stage) {
+  constexpr std::size_t k_bins = 4096;
+  const auto for_each = [&](auto&& visit) {
+    for (Index f = 0; f < mesh_->face_count(); ++f) {
+      if (f % 4096 == 0) stage.check();
+      draw_candidates(f, number, per_area, stage, visit);
+    }
+  };
+  // Few are all held at once, in one bin.
+  double expected = mesh_->face_count();
+  for (Index f = 0; f < mesh_->face_count(); ++f) expected += mean_drops(f, per_area);
+  const std::size_t bin_count = expected < static_cast<double>(k_drops_held) ? 1 : k_bins;
+  const auto bin_of = [&](double key) {
+    return static_cast<std::size_t>(std::clamp(key, 0.0, 1.0) * static_cast<double>(bin_count - 1));
+  };
+  std::vector<std::size_t> bins(bin_count, 1);
+  if (bin_count > 1) for_each([&](double key, std::uint64_t, const SurfacePoint&) { ++bins[bin_of(key)]; });
+  const double count = static_cast<double>(std::accumulate(bins.begin(), bins.end(), std::size_t{0}));
+  std::vector<Candidate> candidates;
+  for (std::size_t begin = 0, end, done = 0; begin < bin_count && insertion_->is_any_wanted(); begin = end) {
+    std::size_t held = bins[begin];
+    for (end = begin + 1; end < bin_count && held + bins[end] <= k_drops_held;) held += bins[end++];
+    candidates.clear();
+    for_each([&](double order, std::uint64_t key, const SurfacePoint& point) {
+      if (bin_of(order) < begin || bin_of(order) >= end) return;
+      const Index kind = draw_kind(~std::uint64_t{0}, uniform(key, 0));
+      candidates.push_back({order, kind, point.face, point, drawn_scale(point, uniform(key, 4))});
+    });
+    const auto share = [&](std::size_t drop) { return static_cast<double>(drop) / count; };
+    insertion_->insert(candidates, stage.part(share(done), share(done + held)));
+    done += held;
+    if (insertion_->is_hopeless()) break;
+  }
+}
+
+/// Until a try_batch lays hardly anything, or all have fallen.
+DistributionStop GapSampling::sample_at_random(const JobStage& stage) {
+  std::span<const double> batches = options_->packing > 0 ? std::span<const double>(k_sweeping_batches) : k_batches;
+  if (searches()) batches = batches.first(options_->packing > 0 ? k_searching_sweeps : k_searching_batches);
+  double area = 0;
+  for (const Kind& kind : rules_->kinds()) area += rules_->shape_area(kind);
+  area *= rules_->mean_square_factor() / static_cast<double>(rules_->kinds().size());
+  bool is_tired = false;
+  for (std::size_t i = 0; i < batches.size() && insertion_->is_any_wanted(); ++i) {
+    const auto part = [&](double share) {
+      return (static_cast<double>(i) + share) / static_cast<double>(batches.size());
+    };
+    weigh_kinds();
+    const std::size_t before = insertion_->settled().copies().size();
+    try_batch(static_cast<int>(i), batches[i] / area, stage.part(part(0), part(1)));
+    if (insertion_->is_hopeless()) break;
+    const std::size_t total = insertion_->settled().copies().size();
+    is_tired = static_cast<double>(total - before) < k_tired * static_cast<double>(total);
+    if (is_tired && !options_->maximal) break;
+  }
+  if (!insertion_->is_any_wanted()) return DistributionStop::counts;
+  return DistributionStop::tired;
+}
+
+/// In every cell whose center seems free, unless that is for numbers alone; in others by their area.
+void GapSampling::throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const {
+  const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
+  const Index kind = draw_kind(look.free ? look.free : look.open, uniform(key, 0));
+  if (kind == k_none) return;
+  double along = uniform(key, 1), up = uniform(key, 2);
+  if (along + up > 1) along = 1 - along, up = 1 - up;
+  const double radius = view.size * rules_->smallest_factor() * rules_->shape_radius(rules_->kinds()[kind]);
+  const double area = mesh_->face_area(open.cell.face) * open.cell.unit() * open.cell.unit();
+  const double least = look.free ? k_free_area : k_dart_area;
+  const bool may_be_lost = options_->maximal && view.radius < least_stuck_;
+  const bool is_suspected = may_be_lost && 2 * view.radius < least_stuck_ && suspected_[open.cell.face];
+  const bool is_thinned = (!look.free && !is_suspected) || !options_->maximal;
+  if (is_thinned && area < uniform(key, 5) * least * radius * radius) return;
+  if (look.free || is_suspected) {
+    // The first cells that may be given up learn whether they have to be: their parts would ask one by one.
+    const bool is_probe = is_suspected || (may_be_lost && 2 * view.radius >= least_stuck_);
+    const double scale = view.size * rules_->smallest_factor();
+    look.is_central = true;
+    if (open.tried.kind == kind) return;
+    look.has_dart = true;
+    look.dart = {order(view.center, key), kind, number, view.center, scale, false, is_probe};
+    return;
+  }
+  const SurfacePoint point = point_at(open.cell.face, open.cell.weights(along, up));
+  look.has_dart = true;
+  look.dart = {order(point, key), kind, number, point, drawn_scale(point, uniform(key, 4))};
+}
+
+bool GapSampling::is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const {
+  Index corners = 0;
+  const Index stride = 1 + copy.body->shape.corner_count() / k_border_corners;
+  for (const Shape::Loop& loop : copy.body->shape.loops())
+    for (const Vec2& corner : loop) {
+      if (corners++ % stride != 0) continue;
+      const double length = corner.norm() * copy.placement.scale, moved = motion.of(corner);
+      const TraceEnd end = trace_end(
+          *mesh_, view.center,
+          angle_about(*mesh_, view.center, copy.placement.angle + std::atan2(corner.y(), corner.x())), length);
+      if (end.hit_boundary && length - end.length > moved) return true;
+      if (end.hit_boundary || forbidden_depth_.empty() || !options_->forbidden[end.point.face]) continue;
+      double depth = std::numeric_limits<double>::infinity();
+      for (const Index vertex : mesh_->triangles()[end.point.face]) depth = std::min(depth, forbidden_depth_[vertex]);
+      if (depth > moved) return true;
+    }
+  return false;
+}
+
+/// Where a point of the copy at the cell's center lies in the plane of another: it is traced over the surface.
+bool GapSampling::trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const {
+  const double length = point.norm() * copy.placement.scale;
+  const double angle = copy.placement.angle + std::atan2(point.y(), point.x());
+  const TraceEnd end = trace_end(*mesh_, view.center, angle_about(*mesh_, view.center, angle), length);
+  if (end.hit_boundary) return false;
+  const Vec2 in_face = rules_->flat().place(end.point);
+  return insertion_->settled().visit(end.point.face, {end.point.barycentric[1], end.point.barycentric[2]},
+                                     copy.radius(), [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
+                                       if (number != other) return false;
+                                       place = origin + turn * in_face;
+                                       return true;
+                                     });
+}
+
+/// Whether what the flat planes foresee holds: first of the whole disk, whose width the surface may bend, then of the
+/// point of it alone that is deepest in both.
+bool GapSampling::is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found,
+                             const Pose& pose, Index other) const {
+  const Copy& there = insertion_->settled().copies()[other];
+  const double scale = copy.placement.scale, other_scale = there.placement.scale;
+  const double rounded = k_rounding * (copy.radius() + there.radius());
+  const auto bending = [&](const Vec2& point, const Vec2& place) {
+    const double length = point.norm() * scale;
+    return length > 0 ? std::min(0.5, k_bending * (place - pose(point)).norm() / length) : 0;
+  };
+  Vec2 place = pose.at;
+  if (found.point != Vec2::Zero() && !trace_to(view, copy, found.point, other, place)) return false;
+  const Eigen::Matrix2d back = pose.turn.inverse();
+  const Vec2 own = found.is_of_other ? Vec2(found.point + back * (found.other_point - place)) : found.point;
+  const double distance = found.is_of_other ? scale * copy.body->distance.exact(own)
+                                            : other_scale * there.body->distance.exact(place / other_scale);
+  const double bent = bending(found.point, place), overlap = found.radius - distance;
+  if (found.radius * (1 - bent) - distance - motion.of(own) * (1 + bent) > rounded) return true;
+  if (overlap - motion.of(own) <= rounded || found.radius == 0) return false;
+  // Most of the overlap is on the other's side, where moving matters.
+  const Vec2 deepest =
+      found.is_of_other ? Vec2(own + std::max(0.0, distance + 0.1 * overlap) / scale * copy.body->distance.way_in(own))
+                        : Vec2(own + std::max(0.0, distance + 0.9 * overlap) *
+                                         (back * there.body->distance.way_in(place / other_scale)));
+  if (!trace_to(view, copy, deepest, other, place)) return false;
+  const double depth = -other_scale * there.body->distance.exact(place / other_scale);
+  return depth - motion.of(deepest) * (1 + bending(deepest, place)) > rounded;
+}
+
+/// Those that the smallest copies may meet, the nearest first.
+void GapSampling::find_neighbors(const CellView& view, Neighbors& near) const {
+  near.clear();
+  const SurfacePoint& center = view.center;
+  const double reach = rules_->smallest_factor() * view.size * rules_->largest_body_radius();
+  insertion_->settled().visit(center.face, {center.barycentric[1], center.barycentric[2]}, reach,
+                              [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
+                                const Copy& there = insertion_->settled().copies()[other];
+                                const double away = (origin + turn * view.place).norm() - there.radius();
+                                if (away < reach) near.push_back({other, away, origin, turn});
+                                return false;
+                              });
+  std::sort(near.begin(), near.end(),
+            [](const Neighbor& a, const Neighbor& b) { return a.away != b.away ? a.away < b.away : a.copy < b.copy; });
+}
+
+/// Kinds of which the disk about the center meets a copy wherever in the cell it is. It does not matter how they turn.
+std::uint64_t GapSampling::centrally_covered(const CellView& view, std::uint64_t kinds, const Neighbors& near) const {
+  const double scale = rules_->smallest_factor() * view.size;
+  std::uint64_t covered = 0;
+  for (const Neighbor& neighbor : near) {
+    if (neighbor.away > scale * rules_->largest_inradius()) break;
+    const Copy& there = insertion_->settled().copies()[neighbor.copy];
+    const Vec2 place = (neighbor.origin + neighbor.turn * view.place) / there.placement.scale;
+    const double distance = there.placement.scale * there.body->distance.upper(place);
+    for (std::uint64_t rest = kinds & ~covered; rest; rest &= rest - 1) {
+      const auto kind = static_cast<Index>(std::countr_zero(rest));
+      if (scale * rules_->inradius(kind) - view.radius > distance) covered |= std::uint64_t{1} << kind;
+    }
+    if (covered == kinds) break;
+  }
+  return covered;
+}
+
+bool GapSampling::is_covered(const CellView& view, const Copy& copy, const Motion& motion,
+                             const Neighbors& near) const {
+  const double scale = copy.placement.scale;
+  const Eigen::Matrix2d own = turn_of(copy);
+  for (const std::size_t disks : {k_first_disks, std::numeric_limits<std::size_t>::max()})
+    for (const Neighbor& neighbor : near) {
+      const Copy& there = insertion_->settled().copies()[neighbor.copy];
+      const Pose pose{neighbor.origin + neighbor.turn * view.place, neighbor.turn * own};
+      // What the grids cannot tell, their distances being rounded up, the exact ones may.
+      const double slack =
+          std::max(scale * copy.body->distance.slack(), there.placement.scale * there.body->distance.slack());
+      const double drift = k_drift * there.bend * scale;
+      const Overlap found = find_overlap(
+          *copy.body, scale, pose, motion, *there.body, there.placement.scale,
+          {.least = -slack, .enough = slack + drift * copy.body->shape.circumradius(), .most_disks = disks});
+      if (found.depth > drift * found.point.norm()) return true;
+      if (found.depth > -slack && is_certain(view, copy, motion, found, pose, neighbor.copy)) return true;
+    }
+  return !near_border_.empty() && near_border_[view.center.face] && is_beyond_border(view, copy, motion);
+}
+
+void GapSampling::look(const OpenCell& open, Index number, Neighbors& near, Look& look) const {
+  CellView view = rules_->view(open.cell);
+  look.tests = std::popcount(open.kinds);
+  find_neighbors(view, near);
+  const std::uint64_t kinds = open.kinds & ~centrally_covered(view, open.kinds, near);
+  if (!kinds) return;
+  rules_->turn(open.cell, view);
+  const Motion motion = rules_->motion(view, rules_->smallest_factor());
+  for (std::uint64_t rest = kinds; rest; rest &= rest - 1) {
+    const auto kind = static_cast<Index>(std::countr_zero(rest));
+    const Kind& what = rules_->kinds()[kind];
+    if (!insertion_->is_wanted(what.shape)) continue;
+    const Copy copy = rules_->copy(kind, view.center, view.angle, rules_->smallest_factor() * view.size);
+    if (is_covered(view, copy, motion, near)) continue;
+    const double least = tolerance(view, what);
+    if (motion.base + motion.per_length * copy.body->shape.circumradius() > least) {
+      if (view.radius < 0.25 * least || open.cell.level >= k_most_levels)
+        look.is_lost = true;
+      else
+        look.open |= std::uint64_t{1} << kind;
+      if (!is_covered(view, copy, {}, near)) look.free |= std::uint64_t{1} << kind;
+    } else if (open.tried.is(kind, Outcome::collision) || is_covered(view, copy, {}, near)) {
+      ++look.leaves;
+    } else {
+      look.asked |= std::uint64_t{1} << kind;
+    }
+  }
+  if (look.open) throw_dart(open, view, number, look);
+}
+
+/// Where many candidates fell on places where shapes cannot be laid, the rims of such places are found less finely.
+void GapSampling::find_least_stuck() {
+  constexpr double k_fine = 4, k_coarse = 8, k_much = 0.02;
+  const auto rejected = insertion_->rejections();
+  const auto number = [](Outcome outcome) {
+    return static_cast<std::size_t>(outcome) - static_cast<std::size_t>(Outcome::collision);
+  };
+  const std::int64_t odd = rejected[number(Outcome::fold)] + rejected[number(Outcome::stretched)];
+  const std::int64_t all = std::accumulate(rejected.begin(), rejected.end(), std::int64_t{0});
+  const double least = options_->tolerance * (rules_->smallest_radius() + 0.5 * options_->gap);
+  least_stuck_ = least * (static_cast<double>(odd) > k_much * static_cast<double>(all) ? k_coarse : k_fine);
+}
+
+/// The face and those about it.
+void GapSampling::suspect(Index face) {
+  for (const Index vertex : mesh_->triangles()[face]) {
+    const Index first = mesh_->first_halfedge(vertex);
+    Index h = first;
+    do {
+      suspected_[Mesh::face_of(h)] = 1;
+      h = mesh_->rotate(h);
+    } while (h != k_none && h != first);
+  }
+}
+
+void GapSampling::lose(const Cell& cell) {
+  certificate_.uncertified_area += mesh_->face_area(cell.face) * cell.unit() * cell.unit();
+  certificate_.uncertified.push_back(point_at(cell.face, cell.center()));
+}
+
+void GapSampling::round(const JobStage& stage) {
+  weigh_kinds();
+  std::vector<Look> looks(open_.size());
+  const JobStage looking = stage.part(0, 0.5);
+  std::vector<Neighbors> near(static_cast<std::size_t>(thread_count(options_->threads)));
+  parallel_for(static_cast<Index>(open_.size()), options_->threads, 64, [&](Index i, int thread) {
+    if (i % 1024 == 0) looking.update(static_cast<double>(i) / static_cast<double>(open_.size()));
+    look(open_[i], i, near[thread], looks[i]);
+  });
+  std::vector<Candidate> candidates;
+  for (Index i = 0; i < static_cast<Index>(open_.size()); ++i) {
+    if (i % 4096 == 0) stage.check();
+    const Look& found = looks[i];
+    certificate_.cells += found.tests;
+    certificate_.leaves += found.leaves;
+    if (found.is_lost) lose(open_[i].cell);
+    if (found.has_dart) candidates.push_back(found.dart);
+    for (std::uint64_t rest = found.asked; rest; rest &= rest - 1) {
+      const auto kind = static_cast<Index>(std::countr_zero(rest));
+      const CellView view = rules_->view(open_[i].cell);
+      const std::uint64_t key = mixed(options_->seed, open_[i].cell.key());
+      const double scale = rules_->smallest_factor() * view.size;
+      candidates.push_back({order(view.center, key), kind, i, view.center, scale, true});
+    }
+  }
+  const std::vector<Outcome> outcomes = insertion_->insert(candidates, stage.part(0.5, 1));
+  std::vector<std::uint8_t> is_stuck(open_.size(), 0);
+  inserted_in_round_ = 0;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const Candidate& candidate = candidates[k];
+    const Outcome outcome = outcomes[k];
+    inserted_in_round_ += outcome == Outcome::laid ? 1 : 0;
+    if (is_odd(outcome) && options_->maximal) suspect(candidate.center.face);
+    if (!candidate.is_thorough) {
+      // Other collisions may only be foreseen.
+      const bool is_mapped = candidate.is_probe || is_odd(outcome);
+      if (looks[candidate.cell].is_central && is_mapped) open_[candidate.cell].tried = {candidate.kind, outcome};
+      is_stuck[candidate.cell] = is_odd(outcome);
+    } else if (outcome == Outcome::laid || outcome == Outcome::not_wanted) {
+      looks[candidate.cell].open |= std::uint64_t{1} << candidate.kind;  // the next round finds it covered
+    } else {
+      ++certificate_.leaves;
+      if (is_odd(outcome)) lose(open_[candidate.cell].cell);
+    }
+  }
+  std::vector<OpenCell> next;
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    if (i % 4096 == 0) stage.check();
+    if (!looks[i].open) continue;
+    const bool is_known_stuck = looks[i].is_central && is_odd(open_[i].tried.outcome);
+    if ((is_stuck[i] || is_known_stuck) && rules_->view(open_[i].cell).radius < least_stuck_) {
+      lose(open_[i].cell);
+      continue;
+    }
+    const std::array<Cell, 4> parts = open_[i].cell.children();
+    for (const Cell& part : parts) next.push_back({part, looks[i].open});
+    next.back().tried = open_[i].tried;  // the middle one has the same center
+  }
+  open_ = std::move(next);
+  ++rounds_;
+}
+
+/// Until none is open, or (unless all is wanted) rooms become rare.
+void GapSampling::search_cells(const JobStage& stage) {
+  const int first = rounds_;
+  for (double done = 0; !open_.empty() && insertion_->is_any_wanted(); done += 0.5 * (1 - done)) {
+    round(stage.part(done, done + 0.5 * (1 - done)));
+    const auto total = static_cast<double>(insertion_->settled().copies().size());
+    const bool is_tired = static_cast<double>(inserted_in_round_) < k_tired * total && rounds_ > first + 1;
+    if (!options_->maximal && (is_tired || total == 0)) break;
+  }
+  open_.clear();
+}
+
+DistributionStop GapSampling::run(const JobStage& stage) {
+  constexpr double k_random_share = 0.4;  // of the work, where cells are searched after it
+  const DistributionStop random_stop = sample_at_random(stage.part(0, searches() ? k_random_share : 1));
+  if (random_stop == DistributionStop::counts || !searches() || insertion_->is_hopeless()) return random_stop;
+  find_least_stuck();
+  const auto share = [&] { return k_random_share + (1 - k_random_share) * next_face_ / mesh_->face_count(); };
+  while (next_face_ < mesh_->face_count() && insertion_->is_any_wanted()) {
+    const double begin = share();
+    make_base_cells(stage);
+    search_cells(stage.part(begin, share()));
+    if (!options_->maximal && insertion_->settled().copies().empty()) break;
+  }
+  if (!insertion_->is_any_wanted()) return DistributionStop::counts;
+  if (!options_->maximal) return DistributionStop::tired;
+  return certificate_.uncertified_area > k_unproven * mesh_->area() ? DistributionStop::unproven
+                                                                    : DistributionStop::full;
+}
+
+}  // namespace saddleback::distribution

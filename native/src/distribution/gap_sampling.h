@@ -1,0 +1,106 @@
+#pragma once
+// Looks for room by subdivision, and proves where there is none.
+
+#include <vector>
+
+#include "saddleback/distribution/distribution.h"
+
+#include "distribution/insertion.h"
+
+namespace saddleback::distribution {
+
+class GapSampling {
+ public:
+  GapSampling(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion, const DistributionOptions& options);
+
+  /// Lays copies until every count is met, nothing more fits, or (unless all is wanted) rooms become rare.
+  DistributionStop run(const JobStage& stage);
+  const Certificate& certificate() const { return certificate_; }
+
+ private:
+  /// What became of the smallest copy of a kind at some place; collisions and folds stay.
+  struct Tried {
+    Index kind = k_none;
+    Outcome outcome = Outcome::not_wanted;
+    bool is(Index what, Outcome is_so) const { return kind == what && outcome == is_so; }
+  };
+  /// A cell and the kinds that may still fit somewhere in it, by bits.
+  struct OpenCell {
+    Cell cell;
+    std::uint64_t kinds;
+    Tried tried = {};  ///< at the cell's center, as a part of another cell
+  };
+  /// What came of looking at a cell.
+  struct Look {
+    std::uint64_t open = 0;   ///< kinds that may fit, to be split
+    std::uint64_t free = 0;   ///< those of them of which a copy at the center seems to have room
+    std::uint64_t asked = 0;  ///< kinds of which a copy at the center is to be tried
+    std::int64_t tests = 0, leaves = 0;
+    bool is_lost = false;                       ///< some kind cannot be told
+    bool has_dart = false, is_central = false;  ///< the dart is wanted at the center
+    Candidate dart;
+  };
+  /// A copy that one in the cell might meet, and how the cell's face lies in its plane.
+  struct Neighbor {
+    Index copy;
+    double away;  ///< from its circumcircle to the cell's center
+    Vec2 origin;
+    Eigen::Matrix2d turn;
+  };
+  using Neighbors = std::vector<Neighbor>;
+
+  void make_base_cells(const JobStage& stage);
+  double base_radius() const;
+  void flag_borders();
+  /// Copies that are wanted by number are looked for where the sample_at_random has missed the room.
+  bool searches() const { return options_->maximal || !options_->counts.empty(); }
+  void weigh_kinds();
+  DistributionStop sample_at_random(const JobStage& stage);
+  double mean_drops(Index face, double per_area) const;
+  void try_batch(int number, double per_area, const JobStage& stage);
+  template <class Visit>
+  void draw_candidates(Index face, int try_batch, double per_area, const JobStage& stage, Visit&& visit) const;
+  void search_cells(const JobStage& stage);
+  void round(const JobStage& stage);
+  void look(const OpenCell& open, Index number, Neighbors& near, Look& look) const;
+  void find_neighbors(const CellView& view, Neighbors& near) const;
+  Index draw_kind(std::uint64_t kinds, double chance) const;
+  double drawn_scale(const SurfacePoint& point, double chance) const {
+    return rules_->size_at(point) * (options_->smallest + (options_->largest - options_->smallest) * chance);
+  }
+  void suspect(Index face);
+  void throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const;
+  std::uint64_t centrally_covered(const CellView& view, std::uint64_t kinds, const Neighbors& near) const;
+  bool is_covered(const CellView& view, const Copy& copy, const Motion& motion, const Neighbors& near) const;
+  bool trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const;
+  bool is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found, const Pose& pose,
+                  Index other) const;
+  bool is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const;
+  double order(const SurfacePoint& point, std::uint64_t key) const;
+  double tolerance(const CellView& view, const Kind& kind) const {
+    const double radius = rules_->smallest_factor() * view.size * rules_->shape_radius(kind);
+    return options_->tolerance * (radius + 0.5 * options_->gap);
+  }
+  void find_least_stuck();
+  void lose(const Cell& cell);
+
+  const Mesh* mesh_;
+  const PlacingRules* rules_;
+  Insertion* insertion_;
+  const DistributionOptions* options_;
+  std::vector<OpenCell> open_;
+  Index next_face_ = 0;                    ///< whose cells have not been opened yet
+  std::vector<double> front_;              ///< per vertex, for packing
+  std::vector<std::uint8_t> near_border_;  ///< per face; empty where there is none
+  /// Per face: near a place where shapes cannot be laid. Cells there that are small enough to be given up are probed,
+  /// as their parts would be one by one.
+  std::vector<std::uint8_t> suspected_;
+  std::vector<double> forbidden_depth_;  ///< per vertex: at least so far within what is forbidden
+  std::vector<double> kind_weights_;     ///< sums, by which kinds are drawn
+  Certificate certificate_;
+  std::int64_t inserted_in_round_ = 0;
+  double least_stuck_ = 0;  ///< cells so small are given up where shapes cannot be laid
+  int rounds_ = 0;
+};
+
+}  // namespace saddleback::distribution

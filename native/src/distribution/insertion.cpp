@@ -1,0 +1,224 @@
+// Candidates are taken in batches: all of a batch are tested against what insert there before it, by all threads, then
+// committed in order. One that shares a face with another of its batch that was committed before it is tested again. So
+// each is laid exactly if it has room among those before it. Batches depend on nothing but the outcomes.
+
+#include "distribution/insertion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "support/threads/parallel.h"
+
+namespace saddleback::distribution {
+namespace {
+
+constexpr std::size_t k_least_batch = 8, k_first_batch = 64, k_largest_batch = 4096;
+constexpr std::size_t k_sorted_at_once = 1 << 18;  ///< candidates, more than a batch
+/// Candidates that a thread takes at a time: fewer are not worth waking it up for.
+constexpr Index k_share = 32;
+
+Outcome outcome_of(MapFailure failure) {
+  switch (failure) {
+    case MapFailure::boundary:
+      return Outcome::boundary;
+    case MapFailure::fold:
+      return Outcome::fold;
+    case MapFailure::stretched:
+      return Outcome::stretched;
+    default:
+      return Outcome::laid;
+  }
+}
+
+/// As many as fall on the area of a copy without a gap. With a gap much wider than the shapes they would be thousands
+/// for each place, and every one spreads over all of the surface that the gap does.
+double most_in_vain(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options) {
+  constexpr double k_per_copy = 200;
+  if (options.gap <= 0 || options.maximal) return std::numeric_limits<double>::infinity();
+  return k_per_copy * std::max(1.0, mesh.area() / rules.smallest_body_area());
+}
+
+}  // namespace
+
+Insertion::Insertion(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options)
+    : mesh_(&mesh),
+      rules_(&rules),
+      forbidden_(options.forbidden),
+      threads_(thread_count(options.threads)),
+      settled_(mesh, rules.flat(), rules.smallest_radius(), rules.largest_radius()),
+      wanted_(options.counts),
+      shares_(options.density.empty() ? options.shares : std::vector<double>()),
+      most_in_vain_(most_in_vain(mesh, rules, options)),
+      touched_(static_cast<std::size_t>(mesh.face_count()), 0) {
+  for (const Kind& kind : rules.kinds()) laid_.resize(static_cast<std::size_t>(kind.shape) + 1, 0);
+  mappers_.resize(static_cast<std::size_t>(threads_));
+  surroundings_.resize(static_cast<std::size_t>(threads_));
+}
+
+bool Insertion::is_any_wanted() const {
+  for (Index shape = 0; shape < static_cast<Index>(laid_.size()); ++shape)
+    if (wanted_.empty() || laid_[shape] < wanted_[shape]) return true;
+  return false;
+}
+
+bool Insertion::is_hopeless() const {
+  return inserted_in_all_ == 0 &&
+         static_cast<double>(std::accumulate(rejections_.begin(), rejections_.end(), std::int64_t{0})) >= most_in_vain_;
+}
+
+double Insertion::share(Index shape) const {
+  if (!wanted_.empty()) return std::max(0, wanted_[shape] - laid_[shape]);
+  if (shares_.empty()) return 1;
+  // Those that are behind are tried much more often than their share.
+  return std::max(0.0, shares_[shape] * (1.1 * inserted_in_all_ + 20) - laid_[shape]);
+}
+
+bool Insertion::is_foreseen_to_meet(const Copy& copy) const {
+  const SurfacePoint& center = copy.placement.center;
+  const Vec2 place = rules_->flat().place(center);
+  const double c = copy.placement.scale * std::cos(copy.placement.angle),
+               s = copy.placement.scale * std::sin(copy.placement.angle);
+  Eigen::Matrix2d own;
+  own << c, -s, s, c;
+  return settled_.visit(
+      center.face, {center.barycentric[1], center.barycentric[2]}, copy.radius(),
+      [&](Index number, const Vec2& origin, const Eigen::Matrix2d& turn) {
+        const Copy& other = settled_.copies()[number];
+        const Pose pose{origin + turn * place, turn * own};
+        const double reach = copy.radius() + other.radius();
+        if (pose.at.squaredNorm() > reach * reach || !boxes_meet(*copy.body, pose, *other.body, other.placement.scale))
+          return false;
+        const Search deep{.least = 0, .enough = 0, .most_disks = 4};
+        return find_overlap(*copy.body, copy.placement.scale, pose, {}, *other.body, other.placement.scale, deep)
+                       .depth > 0 ||
+               outlines_cross(copy.body->shape, pose, other.body->shape, other.placement.scale);
+      });
+}
+
+void Insertion::attempt(const Candidate& candidate, Attempt& attempt, int thread) const {
+  attempt.copy = rules_->copy(candidate.kind, candidate.center, rules_->field_angle(candidate.center), candidate.scale);
+  if (!is_wanted(attempt.copy.placement.shape)) {
+    attempt.outcome = Outcome::not_wanted;
+    return;
+  }
+  if (!candidate.is_thorough && !candidate.is_probe && is_foreseen_to_meet(attempt.copy)) {
+    attempt.outcome = Outcome::collision;
+    return;
+  }
+  auto& mapper = mappers_[thread];
+  if (!mapper) mapper = std::make_unique<OutlineMapper>(*mesh_);
+  test(attempt, *mapper);
+}
+
+void Insertion::test(Attempt& attempt, OutlineMapper& mapper) const {
+  Placement placement = attempt.copy.placement;
+  const std::optional<CenterLine> line = rules_->line(placement);
+  placement.mirrored = false;  // the body is
+  const auto loops = attempt.copy.body->shape.loops();
+  const MapFailure failure =
+      line ? mapper.map_along(loops, placement, *line, attempt.outline) : mapper.map(loops, placement, attempt.outline);
+  attempt.outcome = outcome_of(failure);
+  if (attempt.outcome != Outcome::laid) return;
+  const auto is_forbidden = [&](Index face) { return !forbidden_.empty() && forbidden_[face]; };
+  if (std::any_of(attempt.outline.faces.begin(), attempt.outline.faces.end(), is_forbidden))
+    attempt.outcome = Outcome::forbidden;
+  else if (!settled_.is_free(attempt.copy, attempt.outline, mapper))
+    attempt.outcome = Outcome::collision;
+  if (attempt.outcome != Outcome::laid) return;
+  const ShapeMap& plane = mapper.plane();
+  attempt.plane.clear();
+  for (const Index vertex : plane.vertices()) attempt.plane.push_back({vertex, plane.coordinates(vertex)});
+  attempt.faces.clear();
+  for (const Index face : attempt.outline.faces) {
+    const Triangle& corners = mesh_->triangles()[face];
+    const Vec2& origin = plane.coordinates(corners[0]);
+    const Vec2 e1 = plane.coordinates(corners[1]) - origin, e2 = plane.coordinates(corners[2]) - origin;
+    attempt.faces.push_back({face, origin, rules_->flat().turn_to(face, e1, e2)});
+  }
+}
+
+void Insertion::commit(Attempt& attempt) {
+  if (attempt.outcome == Outcome::laid && !is_wanted(attempt.copy.placement.shape))
+    attempt.outcome = Outcome::not_wanted;
+  if (attempt.outcome == Outcome::laid) {
+    const auto& faces = attempt.outline.faces;
+    if (std::any_of(faces.begin(), faces.end(), [&](Index face) { return touched_[face] == batch_; })) {
+      if (!mappers_[0]) mappers_[0] = std::make_unique<OutlineMapper>(*mesh_);
+      test(attempt, *mappers_[0]);
+    }
+  }
+  if (attempt.outcome == Outcome::laid) {
+    attempt.copy.bend = std::max(attempt.outline.largest - 1, 1 - attempt.outline.smallest);
+    const auto number = static_cast<Index>(settled_.copies().size());
+    settled_.add(attempt.copy, attempt.outline);
+    settled_.add_places(number, attempt.faces);
+    pending_.push_back({number, std::move(attempt.plane), attempt.outline.faces});
+    ++laid_[attempt.copy.placement.shape];
+    ++inserted_in_all_;
+    for (const Index face : attempt.outline.faces) touched_[face] = batch_;
+  } else if (attempt.outcome != Outcome::not_wanted) {
+    ++rejections_[static_cast<std::size_t>(attempt.outcome) - static_cast<std::size_t>(Outcome::collision)];
+  }
+}
+
+void Insertion::make_pending_known() {
+  // A few at a time: what is about all of them is much more than what is known about each.
+  constexpr Index k_at_once = 64;
+  std::vector<std::vector<FacePlace>> places(k_at_once);
+  for (std::size_t begin = 0; begin < pending_.size(); begin += k_at_once) {
+    const auto count = static_cast<Index>(std::min<std::size_t>(k_at_once, pending_.size() - begin));
+    parallel_for(count, threads_, 4, [&](Index i, int thread) {
+      auto& surroundings = surroundings_[thread];
+      if (!surroundings) surroundings = std::make_unique<LocalLayout>(*mesh_, rules_->flat());
+      const Pending& pending = pending_[begin + i];
+      places[i] = surroundings->about(pending.plane, pending.faces, settled_.reach(settled_.copies()[pending.copy]));
+    });
+    for (Index i = 0; i < count; ++i) settled_.add_places(pending_[begin + i].copy, places[i]);
+  }
+  pending_.clear();
+}
+
+std::vector<Outcome> Insertion::insert(std::vector<Candidate> candidates, const JobStage& stage) {
+  std::vector<Outcome> outcomes(candidates.size(), Outcome::not_wanted);
+  std::vector<Index> order(candidates.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto comes_first = [&](Index a, Index b) {
+    return candidates[a].key != candidates[b].key ? candidates[a].key < candidates[b].key : a < b;
+  };
+  std::size_t size = k_first_batch, sorted = 0;
+  for (std::size_t begin = 0, end; begin < order.size() && is_any_wanted() && !is_hopeless(); begin = end) {
+    stage.update(static_cast<double>(begin) / static_cast<double>(order.size()));
+    end = std::min(order.size(), begin + size);
+    if (end > sorted) {  // a part at a time: sorting millions could not be stopped
+      const auto from = order.begin() + static_cast<std::ptrdiff_t>(sorted);
+      sorted = std::min(order.size(), sorted + k_sorted_at_once);
+      const auto to = order.begin() + static_cast<std::ptrdiff_t>(sorted);
+      if (to != order.end()) std::nth_element(from, to, order.end(), comes_first);
+      std::sort(from, to, comes_first);
+    }
+    ++batch_;
+    attempts_.resize(std::max(attempts_.size(), end - begin));
+    parallel_for(static_cast<Index>(end - begin), threads_, k_share, [&](Index i, int thread) {
+      stage.check();
+      attempt(candidates[order[begin + i]], attempts_[i], thread);
+    });
+    std::size_t laid = 0, in_vain = 0;  // in vain: mapped, and turned away for another of the batch
+    for (std::size_t i = begin; i < end; ++i) {
+      stage.check();
+      const bool has_room = attempts_[i - begin].outcome == Outcome::laid;
+      commit(attempts_[i - begin]);
+      outcomes[order[i]] = attempts_[i - begin].outcome;
+      const bool is_laid = attempts_[i - begin].outcome == Outcome::laid;
+      laid += is_laid ? 1 : 0;
+      in_vain += has_room && !is_laid ? 1 : 0;
+    }
+    make_pending_known();
+    if (2 * in_vain > laid) size = std::max(k_least_batch, size / 2);
+    if (8 * in_vain <= laid) size = std::min(k_largest_batch, size * 2);
+  }
+  return outcomes;
+}
+
+}  // namespace saddleback::distribution

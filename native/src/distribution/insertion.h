@@ -1,0 +1,93 @@
+#pragma once
+// Lays candidates one after the other, as far as others can tell, by several threads.
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "saddleback/distribution/distribution.h"
+
+#include "distribution/placing_rules.h"
+
+namespace saddleback::distribution {
+
+struct Candidate {
+  double key;  ///< the smallest comes first
+  Index kind;
+  Index cell;  ///< of the caller's, also what comes first among equal keys
+  SurfacePoint center;
+  double scale;
+  /// Not turned away by what is only foreseen: its outline is tested.
+  bool is_thorough = false;
+  /// As thorough, to learn whether shapes can be laid there at all.
+  bool is_probe = false;
+};
+
+enum class Outcome : std::uint8_t { laid, not_wanted, collision, boundary, forbidden, fold, stretched };
+
+class Insertion {
+ public:
+  Insertion(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options);
+
+  const PlacedShapes& settled() const { return settled_; }
+  std::span<const std::int64_t> rejections() const { return rejections_; }
+
+  bool is_wanted(Index shape) const { return (wanted_.empty() || laid_[shape] < wanted_[shape]) && !is_ahead(shape); }
+  bool is_any_wanted() const;
+  /// Whether so much was tried in vain on the bare surface that copies, with their gap, find no room at all.
+  bool is_hopeless() const;
+  /// How often to try it, against others: as many as are missing; all equal where neither counts nor shares are wanted.
+  double share(Index shape) const;
+
+  /// Lays those that find room, in the order of their keys. Returns what became of each, in the order given. Stops as
+  /// soon as every count is met, or nothing can be hoped for.
+  std::vector<Outcome> insert(std::vector<Candidate> candidates, const JobStage& stage);
+
+  /// Whether a copy meets one that lies there, as far as can be foreseen.
+  bool is_foreseen_to_meet(const Copy& copy) const;
+
+ private:
+  struct Attempt {
+    Copy copy;
+    Outcome outcome = Outcome::laid;
+    SurfaceOutline outline;
+    // If it has room:
+    std::vector<LaidVertex> plane;  ///< vertices about the copy
+    std::vector<FacePlace> faces;   ///< that it touches
+  };
+  /// A copy whose surroundings are not known yet.
+  struct Pending {
+    Index copy;
+    std::vector<LaidVertex> plane;
+    std::vector<Index> faces;  ///< those that it touches are known
+  };
+
+  /// Whether another copy would be more than the shape's share.
+  bool is_ahead(Index shape) const {
+    constexpr double k_slack = 1.01;
+    return !shares_.empty() && laid_[shape] >= k_slack * shares_[shape] * (inserted_in_all_ + 1) + 1;
+  }
+  void attempt(const Candidate& candidate, Attempt& attempt, int thread) const;
+  void test(Attempt& attempt, OutlineMapper& mapper) const;
+  void commit(Attempt& attempt);
+  void make_pending_known();
+
+  const Mesh* mesh_;
+  const PlacingRules* rules_;
+  std::span<const std::uint8_t> forbidden_;
+  int threads_;
+  PlacedShapes settled_;
+  std::vector<Index> wanted_, laid_;
+  std::vector<double> shares_;  ///< sum 1; empty: any
+  Index inserted_in_all_ = 0;
+  std::array<std::int64_t, k_rejection_count> rejections_{};
+  double most_in_vain_;                                          ///< candidates on a bare surface
+  mutable std::vector<std::unique_ptr<OutlineMapper>> mappers_;  ///< one a thread
+  std::vector<Attempt> attempts_;
+  mutable std::vector<std::unique_ptr<LocalLayout>> surroundings_;  ///< one a thread
+  std::vector<Pending> pending_;
+  std::vector<std::uint32_t> touched_;  ///< per face the last batch that laid something there
+  std::uint32_t batch_ = 0;
+};
+
+}  // namespace saddleback::distribution

@@ -1,0 +1,124 @@
+#include "distribution/placed_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "predicates/planar_loops.h"
+
+namespace saddleback::distribution {
+namespace {
+
+constexpr int k_most_rings = 8;
+
+/// The points of a face that are within `reach` of the origin of the copy's plane, as a box of weights; false when
+/// there are none. e1 and e2: where its edges from corner 0 lie.
+bool reached_box(const FacePlace& place, const Vec2& e1, const Vec2& e2, double reach, Vec2& low, Vec2& high) {
+  const double area = e1.x() * e2.y() - e1.y() * e2.x();
+  const auto weights = [&](const Vec2& arm) {
+    return Vec2((arm.x() * e2.y() - arm.y() * e2.x()) / area, (e1.x() * arm.y() - e1.y() * arm.x()) / area);
+  };
+  const Vec2 center = weights(-place.origin);
+  // A circle of the plane is an ellipse in weights, as wide as the gradients of the weights are long.
+  const Vec2 half(reach * e2.norm() / area, reach * e1.norm() / area);
+  low = (center - half).cwiseMax(0.0);
+  high = (center + half).cwiseMin(1.0);
+  const Vec2 third = -Vec2(e1 - e2);  // the third weight's gradient is as long as this over the area
+  const double sum_low = center.sum() - reach * third.norm() / area;
+  return low.x() <= high.x() && low.y() <= high.y() && sum_low <= 1;
+}
+
+}  // namespace
+
+PlacedShapes::PlacedShapes(const Mesh& mesh, const FlatFaces& flat, double least, double most)
+    : mesh_(&mesh),
+      flat_(&flat),
+      least_(least),
+      reach_(most),
+      rings_(1 + std::clamp(static_cast<int>(std::ceil(std::log2(most / least) - 1e-9)), 0, k_most_rings - 1)),
+      buckets_(mesh, least + most),
+      start_heads_(static_cast<std::size_t>(mesh.face_count()), k_none),
+      piece_heads_(static_cast<std::size_t>(buckets_.count()), k_none),
+      place_heads_(static_cast<std::size_t>(buckets_.count()) * rings_, k_none) {}
+
+bool PlacedShapes::is_free(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
+  for (const OutlinePiece& piece : outline.pieces)
+    if (meets(piece)) return false;
+  // No outlines meet: one point of each loop tells the rest.
+  for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop)
+    if (is_within_another(outline.pieces[outline.loop_begins[loop]])) return false;
+  return !holds_another(copy, outline, mapper);
+}
+
+bool PlacedShapes::meets(const OutlinePiece& piece) const {
+  const Vec2 low = piece.begin.cwiseMin(piece.end), high = piece.begin.cwiseMax(piece.end);
+  bool found = false;
+  buckets_.visit(piece.face, low, high, [&](Index bucket) {
+    for (Index i = piece_heads_[bucket]; i != k_none && !found; i = pieces_[i].next) {
+      const Piece& other = pieces_[i];
+      const bool apart = (other.begin.cwiseMin(other.end).array() > high.array()).any() ||
+                         (other.begin.cwiseMax(other.end).array() < low.array()).any();
+      found = !apart && predicates::segments_touch(piece.begin, piece.end, other.begin, other.end);
+    }
+  });
+  return found;
+}
+
+bool PlacedShapes::is_within_another(const OutlinePiece& piece) const {
+  const Vec2 point = flat_->place(piece.face, piece.begin);
+  return visit(piece.face, piece.begin, 0, [&](Index other, const Vec2& origin, const Eigen::Matrix2d& turn) {
+    const Copy& copy = copies_[other];
+    const Vec2 place = (origin + turn * point) / copy.placement.scale;
+    return copy.body->distance.exact(place) < k_rounding * copy.body->shape.circumradius();
+  });
+}
+
+/// Whoever lies within begins in a face that the outline holds.
+bool PlacedShapes::holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
+  const ShapeMap& plane = mapper.plane();
+  for (const Index face : outline.faces)
+    for (Index i = start_heads_[face]; i != k_none; i = starts_[i].next) {
+      const Triangle& corners = mesh_->triangles()[face];
+      const Vec2& weights = starts_[i].weights;
+      const Vec2 place = plane.coordinates(corners[0]) * (1 - weights.x() - weights.y()) +
+                         plane.coordinates(corners[1]) * weights.x() + plane.coordinates(corners[2]) * weights.y();
+      if (copy.body->shape.contains(mapper.given(place))) return true;
+    }
+  return false;
+}
+
+void PlacedShapes::add(const Copy& copy, const SurfaceOutline& outline) {
+  copies_.push_back(copy);
+  for (std::size_t loop = 0; loop + 1 < outline.loop_begins.size(); ++loop) {
+    const OutlinePiece& piece = outline.pieces[outline.loop_begins[loop]];
+    starts_.push_back({piece.begin, start_heads_[piece.face]});
+    start_heads_[piece.face] = static_cast<Index>(starts_.size()) - 1;
+  }
+  for (const OutlinePiece& piece : outline.pieces)
+    buckets_.visit(piece.face, piece.begin.cwiseMin(piece.end), piece.begin.cwiseMax(piece.end), [&](Index bucket) {
+      pieces_.push_back({piece.begin, piece.end, piece_heads_[bucket]});
+      piece_heads_[bucket] = static_cast<Index>(pieces_.size()) - 1;
+    });
+}
+
+void PlacedShapes::add_place(const FacePlace& place, Index copy, Index& head) {
+  if (place_count_ % k_block == 0) places_.push_back(std::make_unique_for_overwrite<Place[]>(k_block));
+  places_.back()[place_count_ % k_block] = {place.turn.cast<float>(), place.origin.cast<float>(), copy, head};
+  head = place_count_++;
+}
+
+void PlacedShapes::add_places(Index copy, const std::vector<FacePlace>& places) {
+  const double radius = copies_[copy].radius();
+  for (const FacePlace& place : places) {
+    const Vec2 e1 = place.turn * flat_->place(place.face, {1, 0}), e2 = place.turn * flat_->place(place.face, {0, 1});
+    Vec2 low = Vec2::Zero(), high = Vec2::Ones();
+    if (buckets_.divisions(place.face) > 1 && !reached_box(place, e1, e2, radius + reach_, low, high)) continue;
+    buckets_.visit_cells(place.face, low, high, [&](Index bucket, const Vec2& middle, double share) {
+      const double away = (place.origin + middle.x() * e1 + middle.y() * e2).norm() - share * (e1.norm() + e2.norm());
+      if (away > radius + reach_) return;
+      Index& head = place_heads_[static_cast<std::size_t>(bucket) * rings_ + ring_of(away - radius)];
+      add_place(place, copy, head);
+    });
+  }
+}
+
+}  // namespace saddleback::distribution

@@ -1,0 +1,109 @@
+#pragma once
+// The copies that lie on the surface: their outlines face by face, and where points near them are in their planes.
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "saddleback/shape_mapping/surface_outline.h"
+
+#include "distribution/collision_shape.h"
+#include "distribution/face_buckets.h"
+#include "distribution/flat_faces.h"
+#include "distribution/local_layout.h"
+
+namespace saddleback::distribution {
+
+/// What is laid, or is to be.
+struct Copy {
+  Placement placement;
+  const CollisionShape* body = nullptr;
+  double bend = 0;  ///< by how much lengths on it differ from those of its plane, as a share
+  double radius() const { return placement.scale * body->shape.circumradius(); }
+};
+
+/// Where things lie in planes of copies is rounded by less than this share of what is looked at from there.
+inline constexpr double k_rounding = 1e-6;
+
+class PlacedShapes {
+ public:
+  /// `least` and `most`: circumradii of what copies may be met by.
+  PlacedShapes(const Mesh& mesh, const FlatFaces& flat, double least, double most);
+
+  const Mesh& mesh() const { return *mesh_; }
+  std::span<const Copy> copies() const { return copies_; }
+
+  /// Exact: whether the outline has no common point with those that lie there and neither lies within the other.
+  /// `mapper` has just mapped it.
+  bool is_free(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;
+
+  /// Puts a copy there.
+  void add(const Copy& copy, const SurfaceOutline& outline);
+
+  /// How far from its center a copy can be met.
+  double reach(const Copy& copy) const { return copy.radius() + reach_; }
+  /// Makes known for the copy of this number where faces lie about it.
+  void add_places(Index copy, const std::vector<FacePlace>& places);
+
+  /// Calls visit(copy number, FacePlace's origin and turn) for copies that something of the circumradius `reach` about
+  /// the point may meet, until it gives true; then returns true.
+  template <class Visit>
+  bool visit(Index face, const Vec2& weights, double reach, Visit&& visit) const {
+    const Index* const heads = place_heads_.data() + static_cast<std::size_t>(buckets_.at(face, weights)) * rings_;
+    const int last = ring_of(reach);
+    for (int ring = 0; ring <= last; ++ring)
+      for (Index i = heads[ring]; i != k_none; i = place(i).next)
+        if (visit(place(i).copy, place(i).origin.template cast<double>(), place(i).turn.template cast<double>()))
+          return true;
+    return false;
+  }
+
+ private:
+  struct Piece {
+    Vec2 begin, end;
+    Index next;
+  };
+  /// In single precision: there are millions, and all that is decided by them allows for k_rounding.
+  struct Place {
+    Eigen::Matrix2f turn;
+    Eigen::Vector2f origin;
+    Index copy, next;
+  };
+  static constexpr Index k_block = 1 << 15;
+  struct Start {
+    Vec2 weights;
+    Index next;
+  };
+
+  /// Copies are listed by how large something has to be to meet them: in ring k up to the circumradius least * 2^k.
+  int ring_of(double reach) const {
+    int ring = 0;
+    double radius = least_;
+    while (radius < reach && ring + 1 < rings_) {
+      radius *= 2;
+      ++ring;
+    }
+    return ring;
+  }
+  const Place& place(Index i) const { return places_[static_cast<std::size_t>(i / k_block)][i % k_block]; }
+  void add_place(const FacePlace& place, Index copy, Index& head);
+  bool meets(const OutlinePiece& piece) const;
+  bool is_within_another(const OutlinePiece& piece) const;
+  bool holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;
+
+  const Mesh* mesh_;
+  const FlatFaces* flat_;
+  double least_, reach_;
+  int rings_;
+  FaceBuckets buckets_;
+  std::vector<Copy> copies_;
+  std::vector<Start> starts_;                     ///< a point of every loop
+  std::vector<Index> start_heads_;                ///< per face
+  std::vector<Index> piece_heads_, place_heads_;  ///< per bucket, of places per ring
+  std::vector<Piece> pieces_;
+  std::vector<std::unique_ptr<Place[]>> places_;  ///< in blocks, which never move
+  Index place_count_ = 0;
+};
+
+}  // namespace saddleback::distribution

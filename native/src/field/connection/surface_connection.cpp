@@ -1,0 +1,41 @@
+#include "field/connection/surface_connection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace saddleback {
+namespace {
+
+/// Cotangent of the angle at h's apex.
+double apex_cotangent(const Mesh& mesh, Index h) {
+  const Vec3& apex = mesh.position(mesh.apex(h));
+  const Vec3 a = mesh.position(mesh.from(h)) - apex, b = mesh.position(mesh.to(h)) - apex;
+  return a.dot(b) / a.cross(b).norm();
+}
+
+}  // namespace
+
+double chart_angle(const Mesh& mesh, Index h) {
+  const Index first = h - h % 3;
+  if (h % 3 == 0) return 0;
+  return h % 3 == 1 ? std::numbers::pi - mesh.corner_angle(first + 1) : std::numbers::pi + mesh.corner_angle(first);
+}
+
+SurfaceConnection surface_connection(const Mesh& mesh, const JobStage& stage) {
+  SurfaceConnection result{std::vector<double>(mesh.halfedge_count(), 0.0),
+                           std::vector<double>(mesh.halfedge_count(), 1.0)};
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (h % 65536 == 0) stage.check();
+    const Index twin = mesh.twin(h);
+    if (twin == k_none || twin < h) continue;
+    const double turn = chart_angle(mesh, twin) + std::numbers::pi - chart_angle(mesh, h);
+    result.transport[h] = std::remainder(turn, 2 * std::numbers::pi);
+    result.transport[twin] = -result.transport[h];
+    const double weight = 0.5 * (apex_cotangent(mesh, h) + apex_cotangent(mesh, twin));
+    result.weight[h] = result.weight[twin] = std::clamp(weight, 1 / k_weight_range, k_weight_range);
+  }
+  return result;
+}
+
+}  // namespace saddleback

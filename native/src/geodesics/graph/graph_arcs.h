@@ -1,0 +1,52 @@
+#pragma once
+// The three ways to choose a graph's arcs.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geodesics/graph/arc_symmetry.h"
+#include "geodesics/graph/build_progress.h"
+#include "geodesics/graph/geodesic_disks.h"
+
+namespace saddleback {
+
+/// What waves of windows run on.
+struct WaveTables {
+  WindowMesh mesh;
+  WaveSectors sectors;
+  /// \throw InputError for more triangles than slots can be numbered for; Cancelled.
+  WaveTables(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+             const JobStage& stage);
+
+ private:
+  WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+             std::span<const Index> vertices, int threads, const JobStage& stage);
+};
+
+/// \throw InputError for more triangles than slots can be numbered for.
+void check_mesh_size(const Mesh& mesh);
+
+/// Where arcs are looked for.
+struct ArcSearch {
+  const Unfolding& unfolding;
+  std::span<const Index> nodes, vertices;  ///< nodes of the vertices, vertices of the nodes
+  const WaveKernel& kernel;
+  int threads = 0;
+};
+
+/// What a graph of the given options keeps, of vertices and of other points.
+DiskRule disk_rule(Index k, double accuracy, Lattice lattice = Lattice::none);
+
+/// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
+std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
+                                const DiskRule& rule, BuildProgress& progress);
+
+/// All straight geodesics of the mesh. \throw InputError when the graph would not fit into memory; Cancelled. O(V^2 log
+/// V).
+std::vector<KeptArcs> exact_arcs(const ArcSearch& search, const ArcCodec& codec, BuildProgress& progress);
+
+/// The fastest kernel that this machine runs for "auto", or the one named. \throw InputError when there is none.
+const WaveKernel& wave_kernel(const std::string& instructions);
+
+}  // namespace saddleback

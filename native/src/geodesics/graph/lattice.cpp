@@ -1,0 +1,140 @@
+#include "geodesics/graph/lattice.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "support/threads/parallel.h"
+
+namespace saddleback {
+namespace {
+
+// Radians. What is rounded counts; what is merely nearly regular only where it is stretched: there detours are alike
+// for long enough, as on wavy oblong grids.
+constexpr double k_straight = 1e-5, k_nearly_straight = 0.05;
+constexpr Index k_most_sampled = 1 << 13;
+/// Parts of mechanical shapes are such, too; curved meshes have none but by chance.
+constexpr double k_share = 0.01;
+/// Of what is nearly a lattice. Scans and remeshed models have up to a half.
+constexpr double k_nearly_share = 0.6;
+/// A vertex' longest edge, in its shortest ones, from which on cells are stretched: between those of squares divided by
+/// diagonals and of oblongs of 3 : 1.
+constexpr double k_stretched = 2.5;
+
+/// What a vertex is part of, if only to k_nearly_straight.
+struct Surroundings {
+  Lattice lattice = Lattice::none;
+  bool nearly = false;
+};
+
+/// How well another edge goes on from the target of h in the direction in which h arrives, where nothing bends the
+/// surface: angles in radians.
+struct GoingOn {
+  double bent = std::numeric_limits<double>::infinity(), turned = std::numeric_limits<double>::infinity();
+  bool is_straight(double angle) const { return bent <= angle && turned < angle; }
+};
+
+GoingOn going_on(const Unfolding& unfolding, Index h) {
+  const Mesh& mesh = unfolding.mesh();
+  const Index vertex = mesh.to(h);
+  if (mesh.is_boundary(vertex)) return {};
+  GoingOn best{std::abs(mesh.total_angle(vertex) - 2 * std::numbers::pi)};
+  if (best.bent > k_nearly_straight) return best;
+  const double back = unfolding.polar_of_reverse(h);
+  const Index first = mesh.first_halfedge(vertex);
+  Index out = first;
+  do {
+    const double turn = std::abs(unfolding.polar(out) - back);
+    best.turned = std::min(best.turned, std::abs(turn - std::numbers::pi));
+    out = mesh.rotate(out);
+  } while (out != k_none && out != first);
+  return best;
+}
+
+/// An edge of a vertex: its direction there, and its length.
+struct Spoke {
+  double angle, length;
+};
+
+/// Counter-clockwise. O(degree)
+std::vector<Spoke> spokes_of(const Unfolding& unfolding, Index vertex) {
+  const Mesh& mesh = unfolding.mesh();
+  std::vector<Spoke> spokes;
+  const Index first = mesh.first_halfedge(vertex);
+  for (Index h = first; h != k_none;) {
+    spokes.push_back({unfolding.polar(h), mesh.length(h)});
+    const Index last = Mesh::prev(h);
+    h = mesh.rotate(h);
+    if (h == k_none) spokes.push_back({mesh.total_angle(vertex), mesh.length(last)});
+    if (h == first) h = k_none;
+  }
+  return spokes;
+}
+
+/// Whether two edges go straight on along a side on which all others reach as far: a flat strip one cell wide, as
+/// between the rims of a lathed cylinder and between the two inmost rows of a torus. Along it the same detour follows
+/// again and again.
+bool is_beside_strip(const Unfolding& unfolding, Index vertex) {
+  const Mesh& mesh = unfolding.mesh();
+  const std::vector<Spoke> spokes = spokes_of(unfolding, vertex);
+  const std::size_t count = spokes.size(), most = mesh.is_boundary(vertex) ? 1 : count;
+  for (std::size_t begin = 0; begin < most; ++begin) {
+    double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+    for (std::size_t i = 1; i < count; ++i) {
+      const Spoke& spoke = spokes[(begin + i) % count];
+      double turn = spoke.angle - spokes[begin].angle;
+      if (turn < 0) turn += mesh.total_angle(vertex);
+      if (turn > std::numbers::pi - k_straight) {
+        const bool is_straight = turn < std::numbers::pi + k_straight;
+        if (i > 2 && is_straight && farthest - nearest <= k_straight * farthest) return true;
+        break;
+      }
+      const double height = spoke.length * std::sin(turn);
+      nearest = std::min(nearest, height);
+      farthest = std::max(farthest, height);
+    }
+  }
+  return false;
+}
+
+Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
+  const Mesh& mesh = unfolding.mesh();
+  int edges = 0, straight = 0, nearly_straight = 0;
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  const Index first = mesh.first_halfedge(vertex);
+  Index h = first;
+  do {
+    ++edges;
+    const GoingOn on = going_on(unfolding, h);
+    straight += on.is_straight(k_straight);
+    nearly_straight += on.is_straight(k_nearly_straight);
+    shortest = std::min(shortest, mesh.length(h));
+    longest = std::max(longest, mesh.length(h));
+    h = mesh.rotate(h);
+  } while (h != k_none && h != first);
+  const bool is_strip = is_beside_strip(unfolding, vertex);
+  if (2 * nearly_straight < edges && !is_strip) return {};
+  return {longest < k_stretched * shortest ? Lattice::even : Lattice::stretched, 2 * straight < edges && !is_strip};
+}
+
+}  // namespace
+
+Lattice lattice_of(const Unfolding& unfolding, int threads, const JobStage& stage) {
+  const Index count = unfolding.mesh().vertex_count(), stride = std::max<Index>(1, count / k_most_sampled);
+  const Index looked_at = (count + stride - 1) / stride;
+  std::atomic<Index> even = 0, stretched = 0, nearly_stretched = 0;
+  parallel_for(looked_at, threads, 256, [&](Index i, int) {
+    stage.check();
+    const auto [found, nearly] = surroundings_of(unfolding, i * stride);
+    if (found == Lattice::even && !nearly) ++even;
+    if (found == Lattice::stretched && !nearly) ++stretched;
+    if (found == Lattice::stretched) ++nearly_stretched;
+  });
+  if (stretched > k_share * looked_at || nearly_stretched > k_nearly_share * looked_at) return Lattice::stretched;
+  return even + stretched > k_share * looked_at ? Lattice::even : Lattice::none;
+}
+
+}  // namespace saddleback

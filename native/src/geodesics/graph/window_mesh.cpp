@@ -1,0 +1,211 @@
+#include "geodesics/graph/window_mesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "geodesics/unfolding/unfolded_corner.h"
+#include "support/planar.h"
+#include "support/threads/parallel.h"
+
+namespace saddleback {
+namespace {
+
+constexpr Index k_chunk = 1024;
+// Edges whose half-edges' records are asked for ahead, and edges whose neighbors' are.
+constexpr Index k_records_ahead = 24, k_neighbors_ahead = 12;
+
+/// Calls use(edge, halfedge) for the edges out of each node, a chunk of nodes to a thread. `fetch(halfedge)` and
+/// `fetch_neighbors(halfedge)` ask for what will be read: half-edges of neighboring nodes lie anywhere.
+template <class Use, class Fetch, class FetchNeighbors>
+void for_each_edge(const NodeEdges& edges, int threads, const JobStage& stage, Use&& use, Fetch&& fetch,
+                   FetchNeighbors&& fetch_neighbors) {
+  const auto nodes = static_cast<Index>(edges.first.size()) - 1, last = static_cast<Index>(edges.halfedges.size()) - 1;
+  const Index chunks = (nodes + k_chunk - 1) / k_chunk;
+  parallel_for(chunks, threads, 1, [&](Index chunk, int) {
+    stage.update(static_cast<double>(chunk) / chunks);
+    const Index begin = chunk * k_chunk, end = std::min(nodes, begin + k_chunk);
+    for (Index node = begin; node < end; ++node) {
+      for (Index e = edges.first[node]; e < edges.first[node + 1]; ++e) {
+        fetch(edges.halfedges[std::min(e + k_records_ahead, last)]);
+        fetch_neighbors(edges.halfedges[std::min(e + k_neighbors_ahead, last)]);
+        use(node, e, edges.halfedges[e]);
+      }
+    }
+  });
+}
+
+}  // namespace
+
+NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int threads, const JobStage& stage)
+    : first(vertices.size() + 1, 0), halfedges(mesh.halfedge_count()), edge_of(mesh.halfedge_count()) {
+  const auto count = static_cast<Index>(vertices.size()), chunks = (count + k_chunk - 1) / k_chunk;
+  std::vector<std::vector<Index>> found(chunks);  // how many a node has is known once they are
+  const JobStage finding = stage.part(0, 0.6), placing = stage.part(0.6, 1);
+  parallel_for(chunks, threads, 1, [&](Index chunk, int) {
+    finding.update(static_cast<double>(chunk) / chunks);
+    std::vector<Index>& out = found[chunk];
+    out.reserve(8 * k_chunk);
+    for (Index node = chunk * k_chunk; node < std::min(count, (chunk + 1) * k_chunk); ++node) {
+      const std::size_t before = out.size();
+      const Index start = mesh.first_halfedge(vertices[node]);
+      Index h = start;
+      do {
+        out.push_back(h);
+        h = mesh.rotate(h);
+      } while (h != k_none && h != start);
+      first[node + 1] = static_cast<Index>(out.size() - before);
+    }
+  });
+  for (Index node = 0; node < count; ++node) first[node + 1] += first[node];
+  parallel_for(chunks, threads, 1, [&](Index chunk, int) {
+    placing.update(static_cast<double>(chunk) / chunks);
+    Index e = first[chunk * k_chunk];
+    for (const Index h : found[chunk]) {
+      halfedges[e] = h;
+      edge_of[h] = e++;
+    }
+  });
+}
+
+WindowMesh::WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+                       std::span<const Index> vertices, int threads, const JobStage& stage)
+    : first_(edges.first) {
+  const Mesh& mesh = unfolding.mesh();
+  unit_ = mesh.mean_edge_length();
+  records_.resize(edges.halfedges.size());
+  targets_.resize(edges.halfedges.size());
+  lengths_.resize(edges.halfedges.size());
+  saddles_.resize(vertices.size());
+  const Index *const twins = mesh.twins().data(), *const edge_of = edges.edge_of.data();
+  const auto edge_behind = [&](Index h) { return twins[h] == k_none ? k_none : edge_of[twins[h]]; };
+  constexpr double k_recorded = 0.63;  // of the time
+  for_each_edge(
+      edges, threads, stage.part(0, k_recorded),
+      [&](Index node, Index e, Index h) {
+        if (e == first_[node]) saddles_[node] = mesh.is_saddle(vertices[node]);
+        const Index apex = mesh.apex(h);
+        // As the device lays it, which has no positions and leaves the extreme to the processor: directions are of
+        // single precision here.
+        const double base = mesh.length(h), left = mesh.length(Mesh::prev(h)), right = mesh.length(Mesh::next(h));
+        const double off = corner_off(base, mesh.face_area(Mesh::face_of(h)));
+        const double along = left > k_extreme * base ? unfolding.apex(h).x() : corner_along(base, left, right);
+        records_[e] = {along / base, off / base, edge_behind(Mesh::prev(h)), edge_behind(Mesh::next(h)),
+                       nodes[apex],  0};
+        targets_[e] = nodes[mesh.to(h)];
+        lengths_[e] = mesh.length(h) / unit_;
+      },
+      [&](Index h) {
+        __builtin_prefetch(twins + h);
+        __builtin_prefetch(&mesh.triangles()[Mesh::face_of(h)]);
+        __builtin_prefetch(mesh.lengths().data() + h);
+        __builtin_prefetch(&mesh.face_areas()[Mesh::face_of(h)]);
+      },
+      [&](Index h) {
+        __builtin_prefetch(edge_of + std::max(twins[Mesh::prev(h)], 0));
+        __builtin_prefetch(edge_of + std::max(twins[Mesh::next(h)], 0));
+        __builtin_prefetch(&nodes[mesh.apex(h)]);
+        __builtin_prefetch(&nodes[mesh.to(h)]);
+      });
+  find_clearances(threads, stage.part(k_recorded, 1));
+}
+
+/// From a point of an edge a straight way comes to the corner beyond, or it crosses a side, and with it the faces about
+/// one of the edge's ends. There it comes to a vertex, which is off the edge by the face's angle at that end at least,
+/// or it leaves across an edge opposite the end. Laid flat, the two edges are nearest to each other at an end of one of
+/// them: that is one of those vertices, or one of the first edge's ends and an edge opposite it.
+void WindowMesh::find_clearances(int threads, const JobStage& stage) {
+  constexpr double k_about = 0.35, k_cleared = 0.9;  // of the time, until then
+  const JobStage first = stage.part(0, k_about), second = stage.part(k_about, k_cleared);
+  const auto look = [this](const JobStage& part, Index node) {
+    if (node % k_chunk == 0) part.update(static_cast<double>(node) / node_count());
+  };
+  struct About {
+    double clearance = std::numeric_limits<double>::infinity();  ///< from the node to the edges opposite it
+    double shortest = std::numeric_limits<double>::infinity();   ///< edge
+  };
+  LargeArray<About> about(node_count());
+  parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
+    look(first, node);
+    for (Index e = begin(node); e < end(node); ++e) {
+      const Vec2 target(length(e), 0), far = apex(e);
+      about[node].clearance = std::min(about[node].clearance, distance_to_segment(Vec2(0, 0), target, far));
+      about[node].shortest = std::min({about[node].shortest, length(e), far.norm()});
+    }
+  });
+  LargeArray<float> clearances(records_.size());
+  parallel_for(node_count(), threads, k_chunk, [&](Index node, int) {
+    look(second, node);
+    const auto beside = [](const About& end, const Vec2& along, const Vec2& to_apex) {
+      const double sine =
+          along.dot(to_apex) > 0 ? std::abs(cross(along, to_apex)) / (along.norm() * to_apex.norm()) : 1;
+      return std::min(end.clearance, sine * end.shortest);
+    };
+    for (Index e = begin(node); e < end(node); ++e) {
+      const Vec2 target(length(e), 0), far = apex(e);
+      const double least = std::min({distance_to_segment(far, Vec2(0, 0), target), beside(about[node], target, far),
+                                     beside(about[targets_[e]], -target, far - target)});
+      clearances[e] = static_cast<float>(least * (1 - k_clearance_rounding));
+    }
+  });
+  const auto upper_half = [&](Index edge) {
+    return edge < 0 ? 0U : std::bit_cast<std::uint32_t>(clearances[edge]) >> 16;
+  };
+  parallel_for(edge_count(), threads, k_chunk, [&](Index e, int) {
+    EdgeRecord& record = records_[e];
+    record.clearances = upper_half(record.left) << 16 | (upper_half(record.right) & ~k_saddle_bit);
+  });
+}
+
+Index WindowMesh::edge_between(Index from, Index to) const {
+  Index edge = begin(from);
+  while (edge < end(from) && target(edge) != to) ++edge;
+  return edge < end(from) ? edge : k_none;
+}
+
+FanMesh::FanMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+                 const JobStage& stage)
+    : FanMesh(unfolding, NodeEdges(unfolding.mesh(), vertices, threads, stage.part(0, 0.4)), nodes, vertices, threads,
+              stage.part(0.4, 1)) {}
+
+FanMesh::FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+                 std::span<const Index> vertices, int threads, const JobStage& stage)
+    : waves_(unfolding, edges, nodes, vertices, threads, stage.part(0, 0.7)), apex_directions_(edges.halfedges.size()) {
+  for_each_edge(
+      edges, threads, stage.part(0.7, 1),
+      [&](Index, Index e, Index h) { apex_directions_[e] = unfolding.polar(Mesh::prev(h)); },
+      [&](Index h) { __builtin_prefetch(&unfolding.polar(h)); }, [](Index) {});
+}
+
+WaveSectors::WaveSectors(const NodeEdges& edges, const Unfolding& unfolding, std::span<const Index> vertices,
+                         int sectors, int threads, const JobStage& stage) {
+  const Mesh& mesh = unfolding.mesh();
+  sectors_.resize(edges.halfedges.size());
+  reverse_sectors_.resize(edges.halfedges.size());
+  apex_sectors_.resize(edges.halfedges.size());
+  per_radian_.resize(vertices.size());
+  const auto per_radian = [&](Index vertex) { return sectors / mesh.total_angle(vertex); };
+  for_each_edge(
+      edges, threads, stage,
+      [&](Index node, Index e, Index h) {
+        const double here = per_radian(vertices[node]);
+        if (e == edges.first[node]) per_radian_[node] = static_cast<float>(here);
+        sectors_[e] = static_cast<float>(unfolding.polar(h) * here);
+        reverse_sectors_[e] = static_cast<float>(unfolding.polar_of_reverse(h) * per_radian(mesh.to(h)));
+        apex_sectors_[e] = static_cast<float>(unfolding.polar(Mesh::prev(h)) * per_radian(mesh.apex(h)));
+      },
+      [&](Index h) {
+        __builtin_prefetch(mesh.twins().data() + h);
+        __builtin_prefetch(&mesh.triangles()[Mesh::face_of(h)]);
+        __builtin_prefetch(&unfolding.polar(h));
+      },
+      [&](Index h) {
+        __builtin_prefetch(&unfolding.polar(std::max(mesh.twin(h), 0)));
+        __builtin_prefetch(&mesh.total_angles()[mesh.to(h)]);
+        __builtin_prefetch(&mesh.total_angles()[mesh.apex(h)]);
+      });
+}
+
+}  // namespace saddleback

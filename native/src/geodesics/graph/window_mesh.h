@@ -1,0 +1,100 @@
+#pragma once
+// A mesh as waves of windows want it: a record a half-edge, in the order of the graph's nodes.
+
+#include <span>
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/support/large_array.h"
+
+#include "geodesics/graph/window_batches.h"
+#include "geodesics/unfolding/unfolding.h"
+
+namespace saddleback {
+
+/// A mesh's half-edges in the order of the graph's nodes.
+struct NodeEdges {
+  std::vector<Index> first;     ///< per node, and the number of edges at the end
+  LargeArray<Index> halfedges;  ///< of the edges; those out of one node are neighbors, counter-clockwise
+  LargeArray<Index> edge_of;    ///< the halfedges' inverse
+  /// `vertices` of the nodes. \throw Cancelled.
+  NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int threads, const JobStage& stage);
+};
+
+/// Half-edges in the order of NodeEdges. Lengths are in units of the mean edge, so that
+/// single-precision bounds hold at any scale.
+class WindowMesh {
+ public:
+  /// \throw Cancelled.
+  WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+             std::span<const Index> vertices, int threads, const JobStage& stage);
+
+  Index node_count() const { return static_cast<Index>(first_.size()) - 1; }
+  Index begin(Index node) const { return first_[node]; }  ///< edges out of a node: [begin, end)
+  Index end(Index node) const { return first_[node + 1]; }
+  Index edge_count() const { return static_cast<Index>(records_.size()); }
+  const EdgeRecord* records() const { return records_.data(); }
+  double unit() const { return unit_; }
+
+  Index target(Index edge) const { return targets_[edge]; }   ///< node that the edge leads to
+  double length(Index edge) const { return lengths_[edge]; }  ///< in units
+  bool is_saddle(Index node) const { return saddles_[node] != 0; }
+  /// The edge's face, seen from the origin with the edge along x: its far corner in units.
+  Vec2 apex(Index edge) const { return {records_[edge].a * lengths_[edge], records_[edge].b * lengths_[edge]}; }
+  /// Behind the side opposite the edge's origin; -1 at the boundary.
+  Index opposite(Index edge) const { return records_[edge].right; }
+  bool has_left(Index edge) const { return records_[edge].left >= 0; }
+  /// The edge from one node to another. O(degree).
+  Index edge_between(Index from, Index to) const;
+
+  /// Whole tables: per node, with the number of edges at the end; per edge; per edge.
+  const Index* firsts() const { return first_.data(); }
+  const Index* targets() const { return targets_.data(); }
+  const double* lengths() const { return lengths_.data(); }
+
+ private:
+  void find_clearances(int threads, const JobStage& stage);
+
+  LargeArray<EdgeRecord> records_;
+  std::vector<Index> first_;
+  LargeArray<Index> targets_;
+  LargeArray<double> lengths_;
+  std::vector<std::uint8_t> saddles_;
+  double unit_ = 1;
+};
+
+/// What the arcs of points are found with, and their directions back.
+class FanMesh {
+ public:
+  /// `nodes` of the vertices and `vertices` of the nodes. \throw Cancelled.
+  FanMesh(const Unfolding& unfolding, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
+          const JobStage& stage);
+  const WindowMesh& waves() const { return waves_; }
+  /// Surface angle, at the apex of an edge's face, of the way from there to the edge's origin.
+  double apex_direction(Index edge) const { return apex_directions_[edge]; }
+
+ private:
+  FanMesh(const Unfolding& unfolding, const NodeEdges& edges, std::span<const Index> nodes,
+          std::span<const Index> vertices, int threads, const JobStage& stage);
+  WindowMesh waves_;
+  std::vector<double> apex_directions_;
+};
+
+/// Directions of a WindowMesh's edges, counted in sectors of the full angle about their vertex.
+class WaveSectors {
+ public:
+  /// `vertices` of the nodes. \throw Cancelled.
+  WaveSectors(const NodeEdges& edges, const Unfolding& unfolding, std::span<const Index> vertices, int sectors,
+              int threads, const JobStage& stage);
+
+  float sector(Index edge) const { return sectors_[edge]; }                  ///< of the edge at its origin
+  float reverse_sector(Index edge) const { return reverse_sectors_[edge]; }  ///< and at its target
+  /// Of the way from its face's apex to its origin.
+  float apex_sector(Index edge) const { return apex_sectors_[edge]; }
+  float per_radian(Index node) const { return per_radian_[node]; }
+
+ private:
+  LargeArray<float> sectors_, reverse_sectors_, apex_sectors_, per_radian_;
+};
+
+}  // namespace saddleback

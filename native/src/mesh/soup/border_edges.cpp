@@ -1,0 +1,48 @@
+#include <algorithm>
+#include <compare>
+
+#include "saddleback/mesh/triangle_arrays.h"
+
+#include "mesh/tables/corner_table.h"
+
+namespace saddleback {
+
+std::vector<Vec3> vertex_normals(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+  check_corners(triangles, static_cast<Index>(vertices.size()));
+  std::vector<Vec3> normals(vertices.size(), Vec3::Zero());
+  for (const Triangle& t : triangles) {
+    const Vec3 doubled = (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
+    for (const Index v : t) normals[v] += doubled;
+  }
+  for (Vec3& normal : normals) {
+    const double length = normal.norm();
+    if (length > 0) normal /= length;
+  }
+  return normals;
+}
+
+BorderEdges border_edges(std::span<const Triangle> triangles, Index vertex_count) {
+  const CornerTable table(triangles, vertex_count);
+  struct Edge {
+    Index triangle, from, to;
+    auto operator<=>(const Edge&) const = default;
+  };
+  std::vector<Edge> edges;
+  for (Index vertex = 0; vertex < vertex_count; ++vertex) {
+    const auto corners = table.at(vertex);
+    const SharedEdges shared(corners);
+    for (const CornerTable::Corner& corner : corners) {
+      const auto any = [](const CornerTable::Corner&) { return true; };
+      if (!shared.any(corner, any)) edges.push_back({corner.triangle, vertex, corner.next});
+    }
+  }
+  std::ranges::sort(edges);
+  BorderEdges result;
+  for (const Edge& edge : edges) {
+    result.ends.push_back({edge.from, edge.to});
+    result.triangles.push_back(edge.triangle);
+  }
+  return result;
+}
+
+}  // namespace saddleback

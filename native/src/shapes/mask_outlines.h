@@ -1,0 +1,18 @@
+#pragma once
+// Where an image passes one half.
+
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/shapes/shape.h"
+
+namespace saddleback::distribution {
+
+/// Closed outlines with the inside on their left, in pixels: pixel centers at (column, -row), zeros around the image.
+/// No two touch. Marching squares (Lorensen and Cline, Marching cubes, 1987, in the plane). O(pixels).
+std::vector<Shape::Loop> mask_outlines(const MaskImage& image, const JobStage& stage = {});
+
+/// Every hole with the smallest outline around it. O(loops^2 corners).
+std::vector<Shape::Part> parts_of(std::vector<Shape::Loop> loops, const JobStage& stage = {});
+
+}  // namespace saddleback::distribution

@@ -1,0 +1,45 @@
+#pragma once
+// Whether cells are disks that meet as they should.
+
+#include <vector>
+
+#include "saddleback/tessellation/dual_mesh.h"
+
+namespace saddleback {
+
+/// Polylines that leave each point of the diagram, and what lies beside them.
+class PointStars {
+ public:
+  explicit PointStars(const GeodesicVoronoi& cells);
+  struct Ray {
+    Index polyline;
+    bool forward;       ///< the polyline begins here
+    Index left, right;  ///< cells beside it, seen along the way out
+  };
+  /// Rays of a branch point or of an end at the mesh's boundary.
+  std::span<const Ray> rays(Index point) const {
+    return {rays_.data() + first_[point], rays_.data() + first_[point + 1]};
+  }
+
+ private:
+  std::vector<Index> first_;
+  std::vector<Ray> rays_;
+};
+
+/// The cells around a branch point, counter-clockwise, one for each polyline that meets there.
+std::vector<Index> cells_around(const PointStars& stars, Index branch_point);
+
+/// Euler characteristic of every cell with its border, where it touches itself taken apart: 1 for a disk. O(V + F).
+std::vector<Index> cell_characteristics(const Mesh& mesh, const GeodesicVoronoi& cells);
+
+/// Every violation of the closed-ball property, by kind and cell. O(V + F).
+std::vector<DualIssue> find_dual_issues(const Mesh& mesh, const GeodesicVoronoi& cells, const JobStage& stage = {});
+
+/// One place for each cell concerned: neighbors' complaints have often one cause.
+SurfacePoints places_to_mend(const std::vector<DualIssue>& issues, Index cell_count);
+
+/// Whether a point lies on the mesh's boundary. A site that parts a cell from the boundary does so only there: in the
+/// middle of its own cell it would meet both sides of a narrow strip again.
+bool is_on_boundary(const Mesh& mesh, const SurfacePoint& place);
+
+}  // namespace saddleback

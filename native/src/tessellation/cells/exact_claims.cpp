@@ -1,0 +1,360 @@
+#include "tessellation/cells/exact_claims.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace saddleback {
+namespace {
+
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+// Of parts, some for each face and site: a hundred times what usual cells have. Only where rounding decides which site
+// is nearer would there be more, wherever it does.
+constexpr std::size_t k_some_parts = 1 << 17, k_parts_each = 128;
+
+// Of the tolerance, where no way bends: bisectors are straight there, so that it costs few parts.
+constexpr double k_unbent = 0.1;
+
+// Of the tolerance: a way that is the shortest is as long as the distance, but for rounding.
+constexpr double k_explained = 1e-3;
+
+/// Whether another claim is nearer at all corners: then it is in the whole part.
+bool is_beaten(const FaceClaim& claim, const std::vector<FaceClaim>& claims) {
+  return std::ranges::any_of(claims, [&](const FaceClaim& other) {
+    for (int i = 0; i < 3; ++i)
+      if (!(other.squared_distance[i] < claim.squared_distance[i])) return false;
+    return true;
+  });
+}
+
+/// The entry of a source in a list by source; null where there is none.
+template <class List>
+auto find_source(List& list, Index source) {
+  const auto found = std::ranges::lower_bound(list, source, {}, [](const auto& entry) { return entry.source; });
+  return found != list.end() && found->source == source ? &*found : nullptr;
+}
+
+/// Where a part is looked at, barycentric: the middles of its edges and of itself.
+std::array<Vec3, 4> samples_of_part() {
+  return {Vec3(0.5, 0.5, 0), Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(1, 1, 1) / 3};
+}
+
+SurfacePoint point_in(const FaceRefinement::Part& part, const Vec3& x) {
+  return {part.face, x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2]};
+}
+
+/// What the squared distances at the corners say in between, as for a point in the plane.
+double distance_at(const FaceRefinement::Part& part, const FaceClaim& claim, const Vec3& x) {
+  double squared = 0;
+  for (int i = 0; i < 3; ++i)
+    squared += x[i] * claim.squared_distance[i] - x[i] * x[(i + 1) % 3] * part.length[i] * part.length[i];
+  return std::sqrt(std::max(0.0, squared));
+}
+
+/// Beside the bisectors in a part, on all sides of them; barycentric in the part.
+std::vector<Vec3> places_by_bisectors(const std::vector<FaceClaim>& claims) {
+  constexpr double k_aside = 0.1;
+  std::vector<EdgeLine> lines;
+  std::vector<EdgePiece> pieces;
+  std::vector<Vec3> on_bisectors, places;
+  for (Index side = 0; side < 3; ++side) {
+    lines.clear();
+    for (const FaceClaim& claim : claims) lines.push_back(claim.line_along(side));
+    lower_envelope(lines, pieces);
+    for (std::size_t i = 1; i < pieces.size(); ++i)
+      on_bisectors.push_back((1 - pieces[i].begin) * Vec3::Unit(side) + pieces[i].begin * Vec3::Unit((side + 1) % 3));
+  }
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& place : on_bisectors) middle += place / static_cast<double>(on_bisectors.size());
+  if (!on_bisectors.empty()) on_bisectors.push_back(middle);
+  for (const Vec3& place : on_bisectors)
+    for (int i = 0; i < 3; ++i) places.push_back((1 - k_aside) * place + k_aside * Vec3::Unit(i));
+  return places;
+}
+
+}  // namespace
+
+ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites, double tolerance,
+                       const JobStage& stage)
+    : field_(field), sites_(sites), tolerance_(tolerance), refinement_(field.mesh()) {
+  look_at_mesh_vertices(stage.part(0, 0.3));
+  const std::size_t most = k_some_parts + k_parts_each * (field.mesh().face_count() + sites.size());
+  looked_.assign(field.mesh().face_count(), k_none);
+  const double faces = field.mesh().face_count();
+  double looks = 0;                      // how many parts more will be looked at than there are faces is not known
+  for (bool goes_on = true; goes_on;) {  // what is told anew in one part is looked at in those beside
+    goes_on = false;
+    for (std::size_t part = 0; part < looked_.size(); ++part) {
+      if (is_looked_at(static_cast<Index>(part))) continue;
+      goes_on = true;
+      if (std::fmod(looks++, 64) == 0)
+        stage.update(0.3 + 0.7 * (looks <= faces ? looks / faces / 2 : 1 - faces / looks / 2));
+      const bool is_done = is_right(refinement_.parts()[part]);
+      looked_[part] = clock_;
+      if (is_done || refinement_.parts().size() >= most || !refinement_.can_halve(static_cast<Index>(part))) continue;
+      divide(static_cast<Index>(part));
+    }
+  }
+  order_.resize(refinement_.parts().size());
+  std::iota(order_.begin(), order_.end(), 0);
+  std::ranges::stable_sort(order_, {}, [&](Index part) { return refinement_.parts()[part].face; });
+}
+
+void ExactParts::divide(Index part) {
+  std::vector<Index> changed;
+  refinement_.halve(part, changed);
+  look_at_added();
+  looked_.resize(refinement_.parts().size());
+  for (const Index other : changed) looked_[other] = k_none;
+}
+
+bool ExactParts::is_looked_at(Index part) const {
+  return std::ranges::all_of(refinement_.parts()[part].corner,
+                             [&](Index corner) { return told_[corner] <= looked_[part]; });
+}
+
+void ExactParts::find_ways(const SurfacePoint& place, Ways& ways) const {
+  field_.ways_at(place, ways);
+  for (Way& way : ways) way.source = sites_[way.source];
+}
+
+void ExactParts::add_distances(const SurfacePoint& place, Distances& distances) const {
+  Ways found;
+  find_ways(place, found);
+  for (const Way& way : found) {
+    const auto known = std::ranges::lower_bound(distances, way.source, {}, &Known::source);
+    if (known == distances.end() || known->source != way.source)
+      distances.insert(known, {way.source, way.distance});
+    else
+      known->distance = std::min(known->distance, way.distance);
+  }
+}
+
+void ExactParts::set_nearest(Index vertex) {
+  nearest_[vertex] = {k_none, k_infinity};
+  for (const Known& known : distances_[vertex])
+    if (known.distance < nearest_[vertex].distance) nearest_[vertex] = {known.source, known.distance};
+}
+
+void ExactParts::look_at_mesh_vertices(const JobStage& stage) {
+  const Mesh& mesh = field_.mesh();
+  distances_.resize(mesh.vertex_count());
+  nearest_.resize(mesh.vertex_count());
+  told_.assign(mesh.vertex_count(), 0);
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    if (face % 256 == 0) stage.update(static_cast<double>(face) / mesh.face_count());
+    for (int i = 0; i < 3; ++i) add_distances({face, Vec3::Unit(i)}, distances_[mesh.triangles()[face][i]]);
+  }
+  for (Index vertex = 0; vertex < mesh.vertex_count(); ++vertex) set_nearest(vertex);
+}
+
+void ExactParts::look_at_added() {
+  for (auto vertex = static_cast<Index>(distances_.size()); vertex < refinement_.vertex_count(); ++vertex) {
+    const FaceRefinement::Added& added = refinement_.added()[vertex - field_.mesh().vertex_count()];
+    Distances& distances = distances_.emplace_back();
+    for (int i = 0; i < added.faces; ++i) add_distances(added.at[i], distances);
+    nearest_.emplace_back();
+    told_.push_back(clock_);
+    set_nearest(vertex);
+  }
+}
+
+ExactParts::Corners ExactParts::corners_of(const FaceRefinement::Part& part) const {
+  return {&distances_[part.corner[0]], &distances_[part.corner[1]], &distances_[part.corner[2]]};
+}
+
+void ExactParts::find_claims(const FaceRefinement::Part& part, std::vector<FaceClaim>& claims) const {
+  find_claims(part, corners_of(part), claims);
+}
+
+/// A distance changes by no more than the way between two points: a site that is far behind at a corner owns nothing.
+void ExactParts::find_claims(const FaceRefinement::Part& part, const Corners& corners,
+                             std::vector<FaceClaim>& claims) const {
+  claims.clear();
+  for (const Distances* const at_corner : corners) {
+    for (const Known& known_here : *at_corner) {
+      if (std::ranges::find(claims, known_here.source, &FaceClaim::site) != claims.end()) continue;
+      FaceClaim claim{part.face, known_here.source, {}};
+      std::array<double, 3> distance;
+      for (int i = 0; i < 3; ++i) {
+        const Known* const known = find_source(*corners[i], known_here.source);
+        distance[i] = known ? known->distance : k_infinity;
+      }
+      bool may_own = true, is_nearest = false;  // the latter whatever rounding says of the former
+      for (int i = 0; i < 3; ++i) {
+        const double to_next = part.length[i], to_last = part.length[(i + 2) % 3];
+        const double least = std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
+        const ExactField::Sight& nearest = nearest_[part.corner[i]];
+        const double lead = least - nearest.distance;
+        may_own = may_own && lead <= 2 * std::max(to_next, to_last);
+        // Whatever rounding says of ties, all parts about a vertex agree on whose it is.
+        const double of_nearest = nearest.distance * nearest.distance;
+        claim.squared_distance[i] =
+            nearest.source == claim.site ? of_nearest : std::max(least * least, std::nextafter(of_nearest, k_infinity));
+        is_nearest = is_nearest || nearest.source == claim.site;
+      }
+      if (may_own || is_nearest) claims.push_back(claim);
+    }
+  }
+  std::ranges::sort(claims, {}, &FaceClaim::site);
+}
+
+bool ExactParts::is_right(const FaceRefinement::Part& part) {
+  if (std::ranges::max(part.length) <= k_unbent * tolerance_ / 2) return true;
+  std::vector<FaceClaim> claims;
+  find_claims(part, claims);
+  if (claims.size() == 1) return true;
+  const std::array<Vec3, 4> samples = samples_of_part();
+  for (std::size_t i = 0; i < samples.size(); ++i) find_ways(point_in(part, samples[i]), at_samples_[i]);
+  const auto is_rival = [&](const Way& way) {
+    const auto claim = std::ranges::find(claims, way.source, &FaceClaim::site);
+    return claim != claims.end() && !is_beaten(*claim, claims);
+  };
+  const bool bends = std::ranges::any_of(at_samples_, [&](const Ways& ways) {
+    return std::ranges::any_of(ways, [&](const Way& way) { return way.before > 0 && is_rival(way); });
+  });
+  if (bends && std::ranges::max(part.length) <= tolerance_ / 2) return true;
+  const double tolerance = bends ? tolerance_ : k_unbent * tolerance_;
+  return fits(part, claims, nullptr, tolerance) || straighten(part, claims, tolerance);
+}
+
+/// Looks at what the sites' distances at the samples are more than the corners say. Among sites that own something
+/// there it must be the same: what it is moves no bisector. Others may be behind by less, but by no more than half of
+/// what they are farther away. `straight`: the ways by which the former go, else each by its shortest.
+bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceClaim>& claims, const Ways* straight,
+                      double tolerance) const {
+  std::vector<std::uint8_t> is_rival;
+  for (const FaceClaim& claim : claims) is_rival.push_back(!is_beaten(claim, claims));
+  const std::array<Vec3, 4> samples = samples_of_part();
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const Vec3& x = samples[s];
+    double first = k_infinity, least = k_infinity, most = -k_infinity;
+    for (std::size_t i = 0; i < claims.size(); ++i) {
+      const Way* const way = find_source(straight ? *straight : at_samples_[s], claims[i].site);
+      if (straight && is_rival[i] && !way) return false;
+      if (!is_rival[i] || !way) continue;
+      const double distance = straight ? way->straight_to(field_.place_of(point_in(part, x))) : way->distance;
+      const double expected = distance_at(part, claims[i], x);
+      first = std::min(first, expected);
+      least = std::min(least, distance - expected);
+      most = std::max(most, distance - expected);
+    }
+    if (most - least > tolerance) return false;
+    for (std::size_t i = 0; i < claims.size(); ++i) {
+      const Way* const way = find_source(at_samples_[s], claims[i].site);
+      if (is_rival[i] || !way) continue;
+      const double expected = distance_at(part, claims[i], x), more = way->distance - expected;
+      if (most - more > std::max(tolerance, (expected - first) / 2)) return false;
+    }
+  }
+  return true;
+}
+
+/// Of each claim's site the way at the sample where the site is nearest, or least behind the nearest.
+ExactParts::Ways ExactParts::ways_seen(const std::vector<FaceClaim>& claims) const {
+  Ways seen;
+  for (const FaceClaim& claim : claims) {
+    double least = k_infinity;
+    const Way* best = nullptr;
+    for (const Ways& ways : at_samples_) {
+      const Way* const way = find_source(ways, claim.site);
+      if (!way) continue;
+      const double lead = way->distance - std::ranges::min(ways, {}, &Way::distance).distance;
+      if (lead < least) least = lead, best = way;
+    }
+    if (best) seen.push_back(*best);
+  }
+  return seen;
+}
+
+/// Whether the shortest of straight ways is as long as the distance, at places in the part.
+bool ExactParts::explain(const FaceRefinement::Part& part, const Ways& ways, std::span<const Vec3> places) const {
+  for (const Vec3& x : places) {
+    const SurfacePoint point = point_in(part, x);
+    const Vec2 place = field_.place_of(point);
+    double least = k_infinity;
+    for (const Way& way : ways) least = std::min(least, way.straight_to(place));
+    if (std::abs(least - field_.nearest_at(point).distance) > k_explained * tolerance_) return false;
+  }
+  return true;
+}
+
+/// Tells how far sites are from the part's corners, where they are not nearest, as if the surface went on; only if the
+/// part is right then.
+bool ExactParts::straighten(const FaceRefinement::Part& part, const std::vector<FaceClaim>& claims, double tolerance) {
+  Ways ways = ways_seen(claims);
+  std::erase_if(ways, [&](const Way& way) {
+    const auto claim = std::ranges::find(claims, way.source, &FaceClaim::site);
+    return is_beaten(*claim, claims);
+  });
+  if (!explain(part, ways, samples_of_part())) return false;
+  std::array<Distances, 3> told;
+  for (int i = 0; i < 3; ++i) {
+    told[i] = distances_[part.corner[i]];
+    const ExactField::Sight& nearest = nearest_[part.corner[i]];
+    const Vec2 place = field_.place_of({part.face, part.place[i]});
+    for (const Way& way : ways) {
+      if (way.source == nearest.source) continue;
+      const double distance = way.straight_to(place);
+      if (distance <= nearest.distance) return false;
+      const auto known = std::ranges::lower_bound(told[i], way.source, {}, &Known::source);
+      if (known == told[i].end() || known->source != way.source)
+        told[i].insert(known, {way.source, distance, true});
+      else if (!known->is_straight)
+        *known = {way.source, distance, true};
+    }
+  }
+  std::vector<FaceClaim> straight;
+  find_claims(part, {&told[0], &told[1], &told[2]}, straight);
+  if (!fits(part, straight, &ways, tolerance) || !explain(part, ways, places_by_bisectors(straight))) return false;
+  ++clock_;
+  for (int i = 0; i < 3; ++i) {
+    Distances& now = distances_[part.corner[i]];
+    if (std::ranges::equal(now, told[i], {}, &Known::distance, &Known::distance)) continue;
+    now = std::move(told[i]);
+    told_[part.corner[i]] = clock_;
+  }
+  return true;
+}
+
+ExactClaims::ExactClaims(const ExactParts& parts, const Mesh& mesh, Index site_count)
+    : FaceClaims(mesh, site_count), parts_(parts) {
+  std::vector<Index> first{0};
+  std::vector<FaceClaim> all, claims;
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    const FaceRefinement::Part& part = parts.refinement().parts()[parts.order()[face]];
+    parts.find_claims(part, claims);
+    for (FaceClaim& claim : claims) {
+      claim.face = face;
+      if (!is_beaten(claim, claims)) all.push_back(claim);
+    }
+    first.push_back(static_cast<Index>(all.size()));
+  }
+  const auto count = [&](Index face) { return first[face + 1] - first[face]; };
+  // A face that does not know of a site that its neighbor sees on their edge must be divided there all the same.
+  std::vector<std::uint8_t> is_shared(mesh.face_count(), 0);
+  std::vector<EdgeLine> lines;
+  std::vector<EdgePiece> pieces;
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    if (count(face) == 1) continue;
+    is_shared[face] = 1;
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      const Index twin = mesh.twin(h);
+      if (twin == k_none || count(Mesh::face_of(twin)) > 1) continue;
+      lines.clear();
+      for (Index i = first[face]; i < first[face + 1]; ++i) lines.push_back(all[i].line_along(h));
+      lower_envelope(lines, pieces);
+      if (pieces.size() > 1) is_shared[Mesh::face_of(twin)] = 1;
+    }
+  }
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    if (!is_shared[face]) continue;
+    shared_index_[face] = shared_count();
+    faces_.push_back(face);
+    claims_.insert(claims_.end(), all.begin() + first[face], all.begin() + first[face + 1]);
+    first_.push_back(claim_count());
+  }
+}
+
+}  // namespace saddleback

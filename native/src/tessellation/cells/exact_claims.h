@@ -1,0 +1,83 @@
+#pragma once
+// Claims by exact distances, on faces divided so finely that squared distances are what one plane would say.
+
+#include "saddleback/geodesics/exact_distances.h"
+
+#include "tessellation/cells/cell_claims.h"
+#include "tessellation/cells/face_refinement.h"
+
+namespace saddleback {
+
+/// Divides faces where several sites are nearest until, in every part, the squared distance of each of them is that of
+/// a point in the part's plane to within a tolerance: behind saddle vertices, where bisectors are hyperbolas, and where
+/// geodesics to a site go round a vertex on two sides. Between two sites only the difference of their distances counts,
+/// which is as smooth as they are near each other. How far a site is where another is nearer may be told as if the
+/// surface went on as where the site is nearest: then straight bisectors need no parts. Parts are divided no further
+/// beyond a number that is proportional to that of faces and sites and that no bisectors of lines and hyperbolas ask
+/// for.
+class ExactParts {
+ public:
+  /// `sites`: the sites that are the field's sources, in increasing order; cells are numbered by them. `tolerance`: of
+  /// distances, mesh units. All must outlive the parts. \throw Cancelled.
+  ExactParts(const ExactField& field, const std::vector<Index>& sites, double tolerance, const JobStage& stage);
+
+  const FaceRefinement& refinement() const { return refinement_; }
+  /// By face of the mesh.
+  const std::vector<Index>& order() const { return order_; }
+  const ExactField::Sight& nearest(Index vertex) const { return nearest_[vertex]; }
+  /// The sites that may own something of a part, by site.
+  void find_claims(const FaceRefinement::Part& part, std::vector<FaceClaim>& claims) const;
+
+ private:
+  using Way = ExactField::Way;
+  using Ways = std::vector<Way>;
+  /// How far a site is from a vertex, in all its faces.
+  struct Known {
+    Index source;
+    double distance;
+    bool is_straight = false;  ///< told as if the surface went on
+  };
+  using Distances = std::vector<Known>;  ///< by site
+  using Corners = std::array<const Distances*, 3>;
+  void look_at_mesh_vertices(const JobStage& stage);
+  void look_at_added();
+  void find_ways(const SurfacePoint& place, Ways& ways) const;
+  void add_distances(const SurfacePoint& place, Distances& distances) const;
+  void set_nearest(Index vertex);
+  Corners corners_of(const FaceRefinement::Part& part) const;
+  void find_claims(const FaceRefinement::Part& part, const Corners& corners, std::vector<FaceClaim>& claims) const;
+  void divide(Index part);
+  bool is_looked_at(Index part) const;
+  bool is_right(const FaceRefinement::Part& part);
+  bool fits(const FaceRefinement::Part& part, const std::vector<FaceClaim>& claims, const Ways* straight,
+            double tolerance) const;
+  Ways ways_seen(const std::vector<FaceClaim>& claims) const;
+  bool explain(const FaceRefinement::Part& part, const Ways& ways, std::span<const Vec3> places) const;
+  bool straighten(const FaceRefinement::Part& part, const std::vector<FaceClaim>& claims, double tolerance);
+
+  const ExactField& field_;
+  const std::vector<Index>& sites_;
+  const double tolerance_;
+  FaceRefinement refinement_;
+  std::vector<Distances> distances_;  ///< by vertex
+  std::vector<ExactField::Sight> nearest_;
+  std::array<Ways, 4> at_samples_;  ///< of the part that is looked at
+  Index clock_ = 0;                 ///< counts what is told anew
+  std::vector<Index> told_;         ///< by vertex: when its distances were told
+  std::vector<Index> looked_;       ///< by part: when it was found to be right, k_none: not yet
+  std::vector<Index> order_;
+};
+
+/// The same as claims on a mesh whose faces are the parts, in their order.
+class ExactClaims final : public FaceClaims {
+ public:
+  /// Both must outlive the claims.
+  ExactClaims(const ExactParts& parts, const Mesh& mesh, Index site_count);
+  Index label(Index vertex) const override { return parts_.nearest(vertex).source; }
+  double distance(Index vertex) const override { return parts_.nearest(vertex).distance; }
+
+ private:
+  const ExactParts& parts_;
+};
+
+}  // namespace saddleback

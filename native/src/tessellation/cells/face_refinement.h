@@ -1,0 +1,54 @@
+#pragma once
+// Faces in halves and halves of halves, as fine as each place asks for.
+
+#include <array>
+#include <vector>
+
+#include "saddleback/mesh/mesh.h"
+#include "saddleback/mesh/surface_points.h"
+
+namespace saddleback {
+
+/// A mesh whose faces are divided into triangles that fit along every edge. A part is halved across its longest edge,
+/// parts beyond it as far as they must be for that (M.-C. Rivara: Algorithms for refining triangular grids, 1984), so
+/// that no part is much thinner than the face that it comes from.
+class FaceRefinement {
+ public:
+  struct Part {
+    Index face;                    ///< of the mesh
+    std::array<Index, 3> corner;   ///< the mesh's vertices, then the added ones
+    std::array<Vec3, 3> place;     ///< of the corners, barycentric in the face
+    std::array<Index, 3> beyond;   ///< the part across the edge from corner i to i + 1, k_none at the boundary
+    std::array<double, 3> length;  ///< of that edge
+    double area;
+  };
+
+  /// Begins with one part a face. The mesh must outlive it.
+  explicit FaceRefinement(const Mesh& mesh);
+
+  const Mesh& mesh() const { return *mesh_; }
+  const std::vector<Part>& parts() const { return parts_; }
+  Index vertex_count() const { return mesh_->vertex_count() + static_cast<Index>(added_.size()); }
+  /// Where vertex V + i lies, in one face or in the two beside an edge.
+  struct Added {
+    std::array<SurfacePoint, 2> at;
+    int faces;
+  };
+  const std::vector<Added>& added() const { return added_; }
+
+  /// False where a part that would be halved, too, is so thin that its halves might have no area.
+  bool can_halve(Index part) const;
+  /// Halves a part and appends every part that changed, new ones too, to `changed`.
+  void halve(Index part, std::vector<Index>& changed);
+
+ private:
+  int longest_edge(const Part& part) const;
+  int edge_towards(Index part, Index other) const;
+  Index cut(Index part, int edge, Index middle);
+
+  const Mesh* mesh_;
+  std::vector<Part> parts_;
+  std::vector<Added> added_;
+};
+
+}  // namespace saddleback

@@ -1,0 +1,181 @@
+#include "saddleback/tessellation/geodesic_center.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "saddleback/error.h"
+#include "saddleback/geodesics/polar_coordinates.h"
+#include "saddleback/mesh/surface_curve.h"
+
+#include "geodesics/wavefront/log_about.h"
+#include "tessellation/log_map/tangent_moves.h"
+
+namespace saddleback {
+namespace {
+
+// A step is done when it is this short, relative to the spread of the points.
+constexpr double k_tolerance = 1e-9;
+// The sum is known to such a share of it.
+constexpr double k_rounding = 1e-12;
+// Positive curvature makes steps fall short by less than a half where a center is unique; far fewer are made.
+constexpr int k_most_steps = 100;
+
+std::vector<double> checked_weights(std::span<const double> weights, std::size_t count) {
+  if (weights.empty()) return std::vector<double>(count, 1.0);
+  if (weights.size() != count)
+    throw InputError(message("weights: wanted one for each of the ", count, " points, got ", weights.size()));
+  const auto bad = std::ranges::find_if(weights, [](double w) { return !(w >= 0) || std::isinf(w); });
+  if (bad != weights.end()) {
+    throw InputError(
+        message("weights: wanted finite numbers of 0 or more, got ", *bad, " for point ", bad - weights.begin()));
+  }
+  if (std::ranges::all_of(weights, [](double w) { return w == 0; })) throw InputError("weights: all are 0");
+  return {weights.begin(), weights.end()};
+}
+
+/// Points with their logarithms about a center that moves.
+class Gathering {
+ public:
+  Gathering(const SaddleVertexGraph& graph, const SurfacePoints& points, std::vector<double> weights)
+      : graph_(graph),
+        mesh_(graph.mesh()),
+        points_(points),
+        weights_(std::move(weights)),
+        places_(points),
+        are_vertices_(
+            std::ranges::all_of(points, [&](const SurfacePoint& point) { return vertex_at(mesh_, point) != k_none; })) {
+    for (const SurfacePoint& point : points_) {
+      const Triangle& t = mesh_.triangles()[point.face];
+      corners_.insert(corners_.end(), t.begin(), t.end());
+    }
+    std::ranges::sort(corners_);
+    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+  }
+
+  /// The given point nearest in space to the weighted mean.
+  SurfacePoint start() {
+    Vec3 mean = Vec3::Zero();
+    double sum = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      mean += weights_[i] * position(mesh_, points_[i]);
+      sum += weights_[i];
+    }
+    mean /= sum;
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const double distance = (position(mesh_, points_[i]) - mean).norm();
+      if (distance < least) least = distance, best = i;
+    }
+    for (const SurfacePoint& point : points_)
+      radius_ = std::max(radius_, 2 * (position(mesh_, point) - position(mesh_, points_[best])).norm());
+    for (const SurfacePoint& point : points_)
+      for (int i = 0; i < 3; ++i) radius_ = std::max(radius_, 2 * mesh_.length(3 * point.face + i));
+    return points_[best];
+  }
+
+  /// Towards the center, in the tangent plane of a place.
+  Vec2 step_at(const SurfacePoint& place, const JobStage& stage) {
+    PlaceDistances seen;
+    const LogMap map = log_of_corners(place, seen, stage);
+    Vec2 sum = Vec2::Zero();
+    double mass = 0;
+    spread_ = energy_ = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Vec2 log = log_of(map, seen, place, i);
+      spread_ = std::max(spread_, log.norm());
+      energy_ += weights_[i] * log.squaredNorm();
+      sum += weights_[i] * log;
+      mass += weights_[i];
+    }
+    return sum / mass;
+  }
+  /// Of the place of the last step: how far the farthest point is, and the sum that is to be least.
+  double spread() const { return spread_; }
+  double energy() const { return energy_; }
+
+ private:
+  /// Wider and wider, until the map holds every corner.
+  LogMap log_of_corners(const SurfacePoint& place, PlaceDistances& seen, const JobStage& stage) {
+    while (true) {
+      LogMap map = log_about(graph_, place, radius_, are_vertices_ ? nullptr : &places_, seen, stage);
+      if (std::ranges::includes(map.vertices, corners_)) return map;
+      radius_ *= 1.5;
+    }
+  }
+
+  /// The shortest of the ways within a face, by a corner, and across an edge as rays have found it.
+  Vec2 log_of(const LogMap& map, const PlaceDistances& seen, const SurfacePoint& place, std::size_t i) const {
+    const SurfacePoint& point = points_[i];
+    const FaceChart chart(mesh_, point.face);
+    const Vec2 at = chart.to_plane(point.barycentric);
+    double length = are_vertices_ ? std::numeric_limits<double>::infinity() : seen.values()[i];
+    double angle = are_vertices_ ? 0 : seen.labels()[i];
+    Vec2 between_corners = Vec2::Zero();
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto known = std::ranges::lower_bound(map.vertices, mesh_.triangles()[point.face][corner]);
+      const auto k = static_cast<std::size_t>(known - map.vertices.begin());
+      between_corners += point.barycentric[corner] * map.uv[k];
+      const double by_corner = map.distance[k] + (chart.corner[corner] - at).norm();
+      if (by_corner <= length) length = by_corner, angle = map.angle[k];
+    }
+    if (const std::optional<Vec3> here = barycentric_in(mesh_, place, point.face)) {
+      const double straight = (chart.to_plane(*here) - at).norm();
+      if (straight <= length) return between_corners.normalized() * straight;
+    }
+    const double scale = angle_scale(mesh_, place);
+    return length * Vec2(std::cos(angle / scale), std::sin(angle / scale));
+  }
+
+  const SaddleVertexGraph& graph_;
+  const Mesh& mesh_;
+  const SurfacePoints& points_;
+  const std::vector<double> weights_;
+  const WatchedPlaces places_;
+  const bool are_vertices_;
+  std::vector<Index> corners_;
+  double radius_ = 0, spread_ = 0, energy_ = 0;
+};
+
+void check_points(const Mesh& mesh, const SurfacePoints& points) {
+  if (points.empty()) throw InputError("points: wanted at least one, got none");
+  check_surface_points(mesh, points, "points");
+  const auto component = [&](const SurfacePoint& point) { return mesh.component_of(mesh.triangles()[point.face][0]); };
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (component(points[i]) != component(points[0]))
+      throw InputError(message("points: 0 and ", i, " lie on separate parts of the mesh, between which no way leads"));
+  }
+}
+
+}  // namespace
+
+SurfacePoint geodesic_center(const SaddleVertexGraph& graph, const SurfacePoints& points,
+                             std::span<const double> weights, Job* job) {
+  const Mesh& mesh = graph.mesh();
+  check_points(mesh, points);
+  Gathering gathering(graph, points, checked_weights(weights, points.size()));
+  const JobStage stage(job, "Finding a center");
+  SurfacePoint center = gathering.start();
+  Vec2 step = gathering.step_at(center, stage.part(0, 0));
+  double energy = gathering.energy();
+  for (int i = 0; i < k_most_steps && step.norm() > k_tolerance * gathering.spread(); ++i) {
+    const double done = 1 - 1.0 / (i + 1);
+    stage.update(done);
+    const SurfacePoint next = move_sites(mesh, {center}, {step}, 1).sites.front();
+    const Vec2 next_step = gathering.step_at(next, stage.part(done, done));
+    if (gathering.energy() > energy * (1 + k_rounding)) {  // too far: round saddles the sum bends more than in a plane
+      step /= 2;
+      continue;
+    }
+    center = next;
+    step = next_step;
+    energy = gathering.energy();
+  }
+  stage.update(1);
+  return center;
+}
+
+}  // namespace saddleback

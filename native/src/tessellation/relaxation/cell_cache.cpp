@@ -1,0 +1,113 @@
+#include "tessellation/relaxation/cell_cache.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "support/threads/parallel.h"
+
+namespace saddleback {
+namespace {
+
+using PointKey = std::tuple<Index, double, double, double>;
+
+PointKey key_of(const SurfacePoint& point) {
+  return {point.face, point.barycentric[0], point.barycentric[1], point.barycentric[2]};
+}
+
+/// Of each site, the number of one that was at the same place before, in increasing order; k_none where there is none.
+std::vector<Index> numbers_before(const SurfacePoints& before, const SurfacePoints& now) {
+  std::multimap<PointKey, Index> places;
+  for (Index i = 0; i < static_cast<Index>(before.size()); ++i) places.emplace(key_of(before[i]), i);
+  std::vector<Index> numbers;
+  Index next = 0;
+  for (const SurfacePoint& site : now) {
+    const auto [first, last] = places.equal_range(key_of(site));
+    const auto found = std::find_if(first, last, [&](const auto& place) { return place.second >= next; });
+    numbers.push_back(found == last ? k_none : found->second);
+    if (found != last) next = found->second + 1;
+  }
+  return numbers;
+}
+
+}  // namespace
+
+CellCache::CellCache() = default;
+CellCache::~CellCache() = default;
+
+void CellCache::clear() {
+  take(Cells::relaxed);
+  take(Cells::shown);
+}
+
+std::unique_ptr<CellCache::Content> CellCache::take(Cells which) {
+  const std::scoped_lock lock(mutex_);
+  return std::move(contents_[static_cast<std::size_t>(which)]);
+}
+
+void CellCache::put(Cells which, std::unique_ptr<Content> content) {
+  const std::scoped_lock lock(mutex_);
+  contents_[static_cast<std::size_t>(which)].swap(content);
+}
+
+KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, CellLengths lengths,
+                       int threads, int cuda_device)
+    : graph_(graph),
+      density_(density.begin(), density.end()),
+      threads_(thread_count(threads)),
+      cuda_device_(cuda_device),
+      rings_(graph, threads),
+      integrals_(graph, rings_, density_, threads),
+      claims_(graph, rings_, lengths, threads, cuda_device) {}
+
+bool KnownCells::fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads,
+                      int cuda_device) const {
+  return &graph == &graph_ && thread_count(threads) == threads_ && cuda_device == cuda_device_ &&
+         std::ranges::equal(density, density_);
+}
+
+void KnownCells::match(const SurfacePoints& sites) {
+  const SurfacePoints& before = claims_.maps().sites();
+  if (!is_whole_) return;
+  const std::vector<Index> numbers = numbers_before(before, sites);
+  if (2 * std::ranges::count(numbers, k_none) > std::ssize(numbers)) claims_.forget();  // others may be far away now
+  claims_.renumber(numbers);
+  std::vector<CellMoments> moments(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    if (numbers[i] != k_none) moments[i] = moments_[numbers[i]];
+  moments_.swap(moments);
+}
+
+const std::vector<CellMoments>& KnownCells::find(const SurfacePoints& sites, const JobStage& stage) {
+  if (!std::exchange(is_whole_, false)) claims_.forget();
+  claims_.find(sites, stage.part(0, 0.8));
+  moments_ = integrals_.moments(claims_, std::move(moments_), stage);
+  is_whole_ = true;
+  return moments_;
+}
+
+void KnownCells::look_farther(const JobStage& stage) {
+  is_whole_ = false;
+  claims_.look_farther(stage);
+  moments_ = integrals_.moments(claims_, std::move(moments_), stage);
+  is_whole_ = true;
+}
+
+BorrowedCells::BorrowedCells(CellCache* cache, CellCache::Cells which, const SaddleVertexGraph& graph,
+                             std::span<const double> density, int threads, int cuda_device)
+    : cache_(cache), which_(which) {
+  if (auto content = cache ? cache->take(which) : nullptr;
+      content && content->cells->fits(graph, density, threads, cuda_device))
+    cells_ = std::move(content->cells);
+  else
+    cells_ = std::make_unique<KnownCells>(
+        graph, density, which == CellCache::Cells::relaxed ? CellLengths::smooth : CellLengths::of_ways, threads,
+        cuda_device);
+}
+
+BorrowedCells::~BorrowedCells() {
+  if (cache_) cache_->put(which_, std::make_unique<CellCache::Content>(std::move(cells_)));
+}
+
+}  // namespace saddleback

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "saddleback/tessellation/centroidal_voronoi.h"
+
+#include "tessellation/cells/cell_complex.h"
+
+namespace saddleback {
+
+/// The cells of a complex of these sites, their boundaries and areas, without what `locate` asks. \throw Cancelled.
+GeodesicVoronoi subdivision(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
+
+/// The public diagram of a cell complex of these sites. \throw Cancelled.
+GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage);
+
+/// geodesic_voronoi as a part of other work; the sites are checked. \throw Cancelled, DeviceError.
+GeodesicVoronoi find_cells(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, int cuda_device,
+                           const JobStage& stage);
+
+/// \throw InputError for a density of wrong length, with a negative, infinite or not-a-number value, or zero
+/// everywhere; an empty one is uniform.
+void check_density(const Mesh& mesh, std::span<const double> density);
+
+/// CentroidalVoronoi's, of an energy. O(F).
+double normalized_energy(const Mesh& mesh, std::span<const double> density, double energy, std::size_t count);
+
+/// Whether a relaxation ends with the cells of its sites.
+enum class FinalCells { found, left_out };
+
+/// centroidal_voronoi as a part of other work, on the graph itself whatever its size.
+CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
+                              const CentroidalVoronoiOptions& options, const JobStage& stage,
+                              FinalCells final_cells = FinalCells::found);
+
+/// A start for `count` cells from relaxed cells of a quarter of the number, and so on down. \throw as initial_sites;
+/// Cancelled.
+SurfacePoints coarse_to_fine_sites(const SaddleVertexGraph& graph, Index count, const CentroidalVoronoiOptions& options,
+                                   std::uint64_t seed, const JobStage& stage);
+
+}  // namespace saddleback

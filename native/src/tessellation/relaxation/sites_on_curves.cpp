@@ -1,0 +1,213 @@
+#include "tessellation/relaxation/sites_on_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saddleback/error.h"
+#include "saddleback/mesh/sample.h"
+
+namespace saddleback {
+namespace {
+
+Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
+
+Vec3 space(const Mesh& mesh, Index face, const Vec3& barycentric) { return position(mesh, {face, barycentric}); }
+
+/// Arc length of the curve's point nearest in space.
+double nearest_along(const SurfaceCurve& curve, const Vec3& place) {
+  double least = std::numeric_limits<double>::infinity(), along = 0;
+  for (const CurveSegment& segment : curve.segments()) {
+    const Vec3 begin = space(curve.mesh(), segment.face, segment.begin);
+    const Vec3 step = space(curve.mesh(), segment.face, segment.end) - begin;
+    const double share = std::clamp((place - begin).dot(step) / step.squaredNorm(), 0.0, 1.0);
+    const double squared = (begin + share * step - place).squaredNorm();
+    if (squared < least) least = squared, along = segment.start + share * segment.length;
+  }
+  return along;
+}
+
+/// Round a closed curve; up to the ends of an open one.
+double on_curve(const SurfaceCurve& curve, double along) {
+  if (!curve.closed()) return std::clamp(along, 0.0, curve.length());
+  along = std::fmod(along, curve.length());
+  return along < 0 ? along + curve.length() : along;
+}
+
+const CurveSegment& segment_at(const SurfaceCurve& curve, double along) {
+  const auto segments = curve.segments();
+  const auto next = std::ranges::upper_bound(segments, along, {}, &CurveSegment::start);
+  return next == segments.begin() ? segments.front() : *(next - 1);
+}
+
+SurfacePoint point_on(const CurveSegment& segment, double along) {
+  constexpr double k_rounding = 1e-12;  // ends are points of the curve to the bit
+  const double share = (along - segment.start) / segment.length;
+  if (share < k_rounding) return {segment.face, segment.begin};
+  if (share > 1 - k_rounding) return {segment.face, segment.end};
+  return {segment.face, normalized_barycentric((1 - share) * segment.begin + share * segment.end)};
+}
+
+}  // namespace
+
+HeldSites::HeldSites(const Mesh& mesh, std::span<const SurfaceCurve* const> curves, std::span<const Index> held,
+                     std::size_t site_count)
+    : mesh_(mesh), curves_(curves) {
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    if (&curves[i]->mesh() != &mesh) throw InputError(message("curves: curve ", i, " lies on another mesh"));
+  if (held.empty()) return;
+  if (held.size() != site_count)
+    throw InputError(message("held: wanted a curve or -1 for each of the ", site_count, " sites, got ", held.size()));
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] < k_none || held[i] >= static_cast<Index>(curves.size()))
+      throw InputError(
+          message("held: wanted -1 to ", static_cast<Index>(curves.size()) - 1, ", got ", held[i], " for site ", i));
+  }
+  if (std::ranges::any_of(held, [](Index curve) { return curve != k_none; }))
+    curve_of_.assign(held.begin(), held.end());
+}
+
+HeldSites::Place HeldSites::place_at(const SurfaceCurve& curve, double along) const {
+  const CurveSegment& segment = segment_at(curve, along);
+  const FaceChart chart(mesh_, segment.face);
+  const Vec2 step = chart.to_plane(segment.end) - chart.to_plane(segment.begin);
+  const SurfacePoint point = point_on(segment, along);
+  return {point, tangent_heading(mesh_, point, std::atan2(step.y(), step.x()))};
+}
+
+std::vector<double> HeldSites::bring(SurfacePoints& sites) const {
+  std::vector<double> along(any() ? sites.size() : 0);
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    if (!is_held(i)) continue;
+    const SurfaceCurve& curve = *curves_[curve_of_[i]];
+    along[i] = nearest_along(curve, position(mesh_, sites[i]));
+    sites[i] = place_at(curve, along[i]).point;
+  }
+  return along;
+}
+
+void HeldSites::project(const std::vector<double>& along, const SurfacePoints& sites, TangentField& field) const {
+  if (!any()) return;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    if (!is_held(i)) continue;
+    const Vec2 tangent = polar(1, place_at(*curves_[curve_of_[i]], along[i]).heading);
+    field[i] = field[i].dot(tangent) * tangent;
+  }
+}
+
+std::vector<double> HeldSites::move(const std::vector<double>& along, const SurfacePoints& sites,
+                                    const TangentField& steps, Moved& moved) const {
+  std::vector<double> next = along;
+  if (!any()) return next;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    if (!is_held(i)) continue;
+    const SurfaceCurve& curve = *curves_[curve_of_[i]];
+    const double before = place_at(curve, along[i]).heading, wanted = steps[i].dot(polar(1, before));
+    next[i] = on_curve(curve, along[i] + wanted);
+    const Place place = place_at(curve, next[i]);
+    moved.sites[i] = place.point;
+    moved.turns[i] = polar(1, place.heading - before);
+    moved.steps[i] = polar(curve.closed() ? wanted : next[i] - along[i], place.heading);
+  }
+  return next;
+}
+
+namespace {
+
+/// Along a curve in units of what neighbors in even cells are apart, at the ends of its segments.
+std::vector<double> wanted_spacings(const SurfaceCurve& curve, std::span<const double> density, double mass,
+                                    Index count) {
+  const Mesh& mesh = curve.mesh();
+  const auto density_at = [&](Index face, const Vec3& x) {
+    if (density.empty()) return 1.0;
+    const Triangle& t = mesh.triangles()[face];
+    return x[0] * density[t[0]] + x[1] * density[t[1]] + x[2] * density[t[2]];
+  };
+  // A regular hexagon of area a has neighbors at the square root of 2 a / sqrt(3).
+  const double cells_a_mass = count / mass, shape = std::sqrt(std::sqrt(3.0) / 2);
+  std::vector<double> sums{0};
+  for (const CurveSegment& segment : curve.segments()) {
+    const double painted = density_at(segment.face, 0.5 * (segment.begin + segment.end));
+    sums.push_back(sums.back() + segment.length * shape * std::sqrt(painted * cells_a_mass));
+  }
+  return sums;
+}
+
+double along_at(const SurfaceCurve& curve, const std::vector<double>& sums, double sum) {
+  const auto next = std::ranges::upper_bound(sums, sum);
+  if (next == sums.end()) return curve.length();
+  const auto i = static_cast<std::size_t>(next - sums.begin()) - 1;
+  const CurveSegment& segment = curve.segments()[i];
+  return segment.start + segment.length * (sum - sums[i]) / (sums[i + 1] - sums[i]);
+}
+
+/// Each site takes the place of a point: those nearest to any site are left out.
+SurfacePoints away_from(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& points) {
+  std::vector<Vec3> places;
+  for (const SurfacePoint& site : sites) places.push_back(position(mesh, site));
+  std::vector<std::pair<double, Index>> nearest;
+  for (Index i = 0; i < static_cast<Index>(points.size()); ++i) {
+    const Vec3 place = position(mesh, points[i]);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& site : places) least = std::min(least, (site - place).squaredNorm());
+    nearest.emplace_back(least, i);
+  }
+  std::ranges::sort(nearest);
+  nearest.erase(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(sites.size()));
+  std::ranges::sort(nearest, {}, &std::pair<double, Index>::second);
+  SurfacePoints rest;
+  for (const auto& [distance, i] : nearest) rest.push_back(points[i]);
+  return rest;
+}
+
+double mass_of(const Mesh& mesh, std::span<const double> density) {
+  if (density.empty()) return mesh.area();
+  double sum = 0;
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    const Triangle& t = mesh.triangles()[face];
+    sum += mesh.face_area(face) * (density[t[0]] + density[t[1]] + density[t[2]]) / 3;
+  }
+  return sum;
+}
+
+}  // namespace
+
+HeldStart held_start(const Mesh& mesh, Index count, std::span<const SurfaceCurve* const> curves,
+                     std::span<const double> density, std::uint64_t seed) {
+  constexpr double k_same = 1e-9;  // relative to the curve: ends that several curves share
+  HeldStart start;
+  const double mass = mass_of(mesh, density);
+  const auto add = [&](Index curve, double along, bool is_end) {
+    const SurfacePoint point = point_on(segment_at(*curves[curve], along), along);
+    const Vec3 place = position(mesh, point);
+    const auto is_there = [&](Index site) {
+      return (position(mesh, start.sites[site]) - place).norm() <= k_same * curves[curve]->length();
+    };
+    if (is_end && std::ranges::any_of(start.fixed, is_there)) return;
+    if (is_end) start.fixed.push_back(static_cast<Index>(start.sites.size()));
+    start.sites.push_back(point);
+    start.held.push_back(curve);
+  };
+  for (Index i = 0; i < static_cast<Index>(curves.size()); ++i) {
+    const SurfaceCurve& curve = *curves[i];
+    const std::vector<double> sums = wanted_spacings(curve, density, mass, count);
+    const Index least = curve.closed() ? 3 : 1, gaps = std::max(least, static_cast<Index>(std::lround(sums.back())));
+    if (!curve.closed()) add(i, 0, true), add(i, curve.length(), true);
+    for (Index gap = curve.closed() ? 0 : 1; gap < gaps; ++gap)
+      add(i, along_at(curve, sums, sums.back() * gap / gaps), false);
+  }
+  const auto on_curves = static_cast<Index>(start.sites.size());
+  if (on_curves > count) {
+    throw InputError(message("count: the curves need ", on_curves,
+                             " sites, so that their cells are as large as the others; got ", count));
+  }
+  const SurfacePoints rest = away_from(
+      mesh, start.sites,
+      sample(mesh,
+             {.count = count, .density = density, .seed = seed, .one_per_component = mesh.component_count() > 1}));
+  start.sites.insert(start.sites.end(), rest.begin(), rest.end());
+  start.held.resize(start.sites.size(), k_none);
+  return start;
+}
+
+}  // namespace saddleback

@@ -1,0 +1,38 @@
+#pragma once
+// Cells with curved edges within a domain.
+
+#include <span>
+#include <vector>
+
+#include "saddleback/job.h"
+#include "saddleback/voronoi2d/voronoi_2d.h"
+
+#include "voronoi2d/clipping/domain_map.h"
+#include "voronoi2d/clipping/loops.h"
+
+namespace saddleback::voronoi2d {
+
+/// Cells of weighted sites as polygons, their edges within a tolerance of the curves. Neighbors share their points.
+class CurvedCells {
+ public:
+  CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, const DomainMap& map, double tolerance,
+              const JobStage& stage);
+
+  /// What lies of a cell in the domain. O(points of the cell), times the corners of the domain if these are near.
+  /// \throw Cancelled
+  std::vector<Loop> clip(Index site) const;
+
+ private:
+  double reach_from(Index site) const;
+  Loop outline(Index site) const;
+  void add_side(Index site, Index edge, Loop& loop) const;
+
+  const Voronoi2d& diagram_;
+  const PlanarDomain& domain_;
+  const DomainMap& map_;
+  const JobStage& stage_;
+  double tolerance_;
+  Vec2 low_, high_;  ///< the domain's box
+};
+
+}  // namespace saddleback::voronoi2d
