@@ -260,8 +260,8 @@ def cells(case: meshes.Case, way: Way, count: int, exact: bool = False) -> Itera
     sites = sb.sample(case.mesh, count, seed=6, one_per_component=True)
     found = sb.geodesic_voronoi(graph_of(case, way), sites, exact=exact, threads=way.threads, device=way.device)
     points = points_on(case, 60, 7)
-    answer = [*cells_of(found, way), *surface(found.centres(threads=way.threads)), found.cells_at(points)]
-    return [*answer, *found.locate(points), *surface(found.centres(density_of(case), threads=way.threads))]
+    answer = [*cells_of(found, way), *surface(found.centers(threads=way.threads)), found.cells_at(points)]
+    return [*answer, *found.locate(points), *surface(found.centers(density_of(case), threads=way.threads))]
 
 
 @asked(
@@ -286,7 +286,7 @@ def relaxed(case: meshes.Case, way: Way, **options: Any) -> sb.CentroidalVoronoi
 
 
 def even_cells_of(result: sb.CentroidalVoronoi) -> list[object]:
-    names = "energy iterations converged held normalised_energy exchanged"
+    names = "energy iterations converged held normalized_energy exchanged"
     return [*surface(result.sites), *all_of(result, names), *all_of(result.cells, CELLS)]
 
 
@@ -331,8 +331,8 @@ def center(case: meshes.Case, way: Way) -> Iterable[object]:
     points = points_on(case, 5)
     graph = graph_of(case, way)
     return [
-        *surface(sb.geodesic_centre(graph, points)),
-        *surface(sb.geodesic_centre(graph, np.arange(4, dtype=np.int32), [1.0, 2.0, 3.0, 4.0])),
+        *surface(sb.geodesic_center(graph, points)),
+        *surface(sb.geodesic_center(graph, np.arange(4, dtype=np.int32), [1.0, 2.0, 3.0, 4.0])),
     ]  # fmt: skip
 
 
@@ -584,7 +584,7 @@ def shape_from_mask(coarse: int) -> Iterable[object]:
 
 
 def placements_of(made: sb.Placements) -> list[object]:
-    return [*all_of(made, "shape angle scale mirrored"), *surface(made.centre)]
+    return [*all_of(made, "shape angle scale mirrored"), *surface(made.center)]
 
 
 COVERED = {
