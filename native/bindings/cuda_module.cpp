@@ -52,7 +52,7 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
   py::class_<CudaDevices>(module, "CudaDevices", py::module_local())
       .def_readonly("usable", &CudaDevices::usable)
       .def_readonly("reason", &CudaDevices::reason);
-  static const saddleback::CudaModule twins{.find_arcs = &saddleback::find_arcs_on_device,
+  static const saddleback::CudaModule functions{.find_arcs = &saddleback::find_arcs_on_device,
                                             .find_voronoi = &saddleback::find_voronoi_on_device,
                                             .drop_voronoi = &saddleback::drop_voronoi_on_device,
                                             .copy_back = &saddleback::copy_back_from_device,
@@ -61,7 +61,7 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
                                             .put_graph = &saddleback::put_graph_on_device,
                                             .drop_graph = &saddleback::drop_graph_on_device,
                                             .search = &saddleback::search_on_device};
-  module.attr("twins") = py::capsule(&twins);
+  module.attr("functions") = py::capsule(&functions);
   module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
   module.def("plane_signs", &plane_signs, py::arg("points"), py::arg("device") = 0,
              R"(What a device decides of each four points; for tests.

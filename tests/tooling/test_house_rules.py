@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
+import subprocess
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -130,8 +132,107 @@ def test_native_headers_know_neither_python_nor_openmesh():
     for source in (ROOT / "native/src").rglob("*.*"):
         text = source.read_text(encoding="utf-8")
         assert not re.search(r"#include\s*[<\"](Python\.h|pybind11)", text), source
-        if source.parent.name != "mesh":
+        if source.relative_to(ROOT / "native/src").parts[0] != "mesh":
             assert not re.search(r"#include\s*[<\"]OpenMesh", text), f"{source}: OpenMesh stays in mesh/"
+
+
+ROOMS = ROOT / "native/src"
+# From the ground up: a subfolder includes itself and those before it.
+SUBFOLDERS = {
+    "support": ["threads", "memory", "simd", "cuda"],
+    "mesh": ["tables", "read", "repair", "soup"],
+    "voronoi2d": ["sites", "sweep", "diagram", "clipping", "weighted", "cuda"],
+    "geodesics": ["unfolding", "graph", "exact", "wavefront", "queries", "cuda"],
+    "tessellation": ["log_map", "cells", "relaxation"],
+    "field": ["linear", "connection", "smoothing"],
+    "distribution": ["check"],
+}
+# From the ground up as well: a room includes itself and those before it, but for the headers of the public door.
+ORDER = ["support", "predicates", "mesh", "voronoi2d", "geodesics", "tessellation", "charts", "field"]
+ORDER += ["shapes", "shape_mapping", "distribution"]
+
+
+def native_sources() -> list[Path]:
+    return sorted(path for path in ROOMS.rglob("*") if path.suffix in {".h", ".cpp", ".cu", ".cuh"})
+
+
+def included(source: Path) -> list[str]:
+    return re.findall(r'^#include "([^"]+)"', source.read_text(encoding="utf-8"), re.MULTILINE)
+
+
+def place(path: str) -> tuple[str, str]:
+    """Return the room and the subfolder ("" at the door) of a path within native/src."""
+    parts = path.split("/")
+    return parts[0], parts[1] if len(parts) == 3 else ""
+
+
+def is_allowed(source: str, name: str) -> bool:
+    (room, folder), (other, beneath) = place(source), place(name)
+    if room != other:
+        return ORDER.index(other) < ORDER.index(room)
+    if not folder or folder == beneath:
+        return True
+    order = SUBFOLDERS[room]
+    return beneath != "" and order.index(beneath) < order.index(folder)
+
+
+def test_rooms_and_subfolders_are_those_of_the_plan():
+    assert {path.name for path in ROOMS.iterdir() if path.is_dir()} == set(ORDER)
+    for room in ORDER:
+        folders = {path.name for path in (ROOMS / room).iterdir() if path.is_dir()}
+        assert folders == set(SUBFOLDERS.get(room, [])), room
+
+
+def test_includes_name_the_whole_path():
+    """`"saddleback/room/x.h"` for the public headers, `"room/folder/x.h"` for the others."""
+    for source in native_sources():
+        for name in included(source):
+            root = ROOT / "native/include" if name.startswith("saddleback/") else ROOMS
+            assert (root / name).is_file(), f"{source.relative_to(ROOT)} includes {name}"
+
+
+def test_includes_lead_downwards():
+    wrong = [
+        f"{source.relative_to(ROOMS)} includes {name}"
+        for source in native_sources()
+        for name in included(source)
+        if not name.startswith("saddleback/") and not is_allowed(source.relative_to(ROOMS).as_posix(), name)
+    ]
+    assert not wrong, wrong
+
+
+def test_the_rule_of_includes_finds_what_it_forbids():
+    assert not is_allowed("geodesics/graph/a.cpp", "geodesics/queries/b.h")  # upwards
+    assert not is_allowed("geodesics/graph/a.cpp", "geodesics/b.h")  # the door
+    assert not is_allowed("geodesics/a.cpp", "tessellation/cells/b.h")  # a room above
+    assert is_allowed("tessellation/cells/a.cpp", "geodesics/graph/b.h")
+
+
+def test_namespaces_are_that_of_the_library_or_those_of_the_rooms():
+    names = {"saddleback", *(f"saddleback::{room}" for room in ORDER)}
+    for source in native_sources() + sorted((ROOT / "native/include").rglob("*.h")):
+        found = set(re.findall(r"^namespace ([\w:]+) \{", source.read_text(encoding="utf-8"), re.MULTILINE))
+        assert found <= names, f"{source.relative_to(ROOT)}: {found - names}"
+
+
+MOST_FILES = 30
+# TODO
+CROWDED: set[str] = set()
+
+
+def test_no_folder_grows_beyond_what_one_can_overlook():
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+    counts = Counter(str(Path(name).parent) for name in tracked)
+    crowded = {folder: count for folder, count in counts.items() if count > MOST_FILES and folder not in CROWDED}
+    assert not crowded
+
+
+def test_no_binaries_are_tracked():
+    tracked = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    for name in filter(None, tracked.split("\0")):
+        path = ROOT / name
+        if path.suffix not in {".png", ".gif", ".svg", ".blend", ".npz"} and path.is_file():
+            assert b"\0" not in path.read_bytes(), f"{name} is a binary"
 
 
 def test_every_version_is_the_same():

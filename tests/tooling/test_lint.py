@@ -45,13 +45,13 @@ def test_mypy_strict(package):
 
 
 def test_clang_format():
-    run(BIN / "clang-format", "--dry-run", "--Werror", *sources(".h", ".cpp", ".cu"))
+    run(BIN / "clang-format", "--dry-run", "--Werror", *sources(".h", ".cpp", ".cu", ".cuh"))
 
 
 def include_digest(text: bytes) -> str:
     """Digest what every verdict depends on besides the file itself: the rules, the tool, and all our headers."""
     digest = hashlib.sha256((ROOT / ".clang-tidy").read_bytes() + (ROOT / "tests/requirements.txt").read_bytes())
-    for header in sources(".h"):
+    for header in sources(".h", ".cuh"):
         digest.update(header.read_bytes())
     digest.update(text)
     return digest.hexdigest()

@@ -62,8 +62,8 @@ py::dict as_dict(const DeviceTimes& times) {
 void bind_devices(py::module_& m) {
   m.def(
       "set_cuda_module",
-      [](const py::capsule& twins) { set_cuda_module(static_cast<const CudaModule*>(twins.get_pointer())); },
-      py::arg("twins"), "Tell the library what the CUDA module offers.");
+      [](const py::capsule& module) { set_cuda_module(static_cast<const CudaModule*>(module.get_pointer())); },
+      py::arg("module"), "Tell the library what the CUDA module offers.");
   m.def(
       "limit_device_memory", [](const py::object& bytes) { limit_cuda_memory(as_seed(bytes, "bytes")); },
       py::arg("bytes"), R"(Say how much of a CUDA device's memory may be taken, from the next call on.

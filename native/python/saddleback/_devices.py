@@ -65,7 +65,7 @@ def _usable_cuda_devices(wanted: list[int] | None) -> list[int] | str:
     for place in places:
         if place >= len(found):
             return f"there is no CUDA device {place}; the usable ones are 0 to {len(found) - 1}"
-    set_cuda_module(_cuda_module().twins)
+    set_cuda_module(_cuda_module().functions)
     return [found[place].index for place in places]
 
 

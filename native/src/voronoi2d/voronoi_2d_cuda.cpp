@@ -134,7 +134,7 @@ class Caller {
 
 std::optional<Voronoi2d> cuda_voronoi(std::span<const Vec2> sites, std::span<const double> weights,
                                       const Voronoi2dOptions& options, const JobStage& stage) {
-  const CudaModule& twins = loaded_cuda_module();
+  const CudaModule& cuda = loaded_cuda_module();
   DiagramRequest request;
   request.devices = options.cuda_devices.data();
   request.device_count = static_cast<int>(options.cuda_devices.size());
@@ -146,7 +146,7 @@ std::optional<Voronoi2d> cuda_voronoi(std::span<const Vec2> sites, std::span<con
   Caller caller(sites, weights, options, stage);
   DeviceTimes times;
   CudaReason reason;
-  const CudaStatus status = twins.find_voronoi(request, caller.calls(), times, reason);
+  const CudaStatus status = cuda.find_voronoi(request, caller.calls(), times, reason);
   if (status == CudaStatus::left) return std::nullopt;
   caller.guard().check(status, reason);
   Voronoi2d result = caller.take();

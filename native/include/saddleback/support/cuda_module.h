@@ -45,9 +45,9 @@ struct CudaReason {
 struct CudaModule {
   static constexpr int k_version = 9;  ///< of this table and of all that it passes
   int version = k_version;
-  /// See geodesics/arc_twin.h.
+  /// See geodesics/graph/arcs_abi.h.
   CudaStatus (*find_arcs)(const ArcsRequest&, const ArcsCaller&, DeviceTimes&, CudaReason&) = nullptr;
-  /// See voronoi2d/plane_twin.h.
+  /// See voronoi2d/cuda/diagram_abi.h.
   CudaStatus (*find_voronoi)(const DiagramRequest&, const DiagramCaller&, DeviceTimes&, CudaReason&) = nullptr;
   void (*drop_voronoi)(KeptPlane*) = nullptr;
   /// Copies bytes from a device's memory to the host's.
@@ -55,7 +55,7 @@ struct CudaModule {
   /// Lets all devices copy to and from host memory by themselves, if they can.
   bool (*pin)(void* memory, std::uint64_t bytes) = nullptr;
   void (*unpin)(void* memory) = nullptr;
-  /// See geodesics/search_twin.h.
+  /// See geodesics/queries/search_abi.h.
   CudaStatus (*put_graph)(const CudaGraphRequest&, CudaGraph**, double* seconds, CudaReason&) = nullptr;
   void (*drop_graph)(CudaGraph*) = nullptr;
   CudaStatus (*search)(const CudaGraph&, const SearchRequest&, const SearchCaller&, DeviceTimes&,
@@ -64,7 +64,7 @@ struct CudaModule {
 
 /// Tells the library of the CUDA module's functions, which stay valid until the process ends. \throw DeviceError for
 /// another version.
-void set_cuda_module(const CudaModule* twins);
+void set_cuda_module(const CudaModule* module);
 /// Null until they are told.
 const CudaModule* cuda_module();
 

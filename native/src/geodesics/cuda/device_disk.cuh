@@ -9,7 +9,7 @@
 namespace saddleback {
 namespace {
 
-// As in disk_finder.cpp.
+// As in geodesic_disks.cpp.
 constexpr float k_disk_as_far = 1 + 1e-5f;
 constexpr float k_bend_longer = 1 + 1e-6f;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The radius of a disk whose source sees too few vertices, by the edges of the mesh: the twin of
+// The radius of a disk whose source sees too few vertices, by the edges of the mesh: the CUDA counterpart of
 // GeodesicDisks::radius_by_edges.
 
 #include <cstdint>

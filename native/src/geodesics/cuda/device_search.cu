@@ -231,13 +231,13 @@ CudaStatus put_graph_on_device(const CudaGraphRequest& r, CudaGraph** graph, dou
     const auto arcs = static_cast<std::uint64_t>(r.arc_count), nodes = static_cast<std::uint64_t>(r.node_count);
     check_device_room("the graph", 8 * arcs + 12 * nodes + (1 << 20), r.most_bytes);
     keep_freed_memory(r.device);
-    auto twin = std::make_unique<CudaGraph>(r);
-    Stopwatch watch(twin->stream);
-    HostCopies copies(twin->stream);
-    copies.to_device(r.words, static_cast<std::size_t>(arcs), twin->words.data());
+    auto kept = std::make_unique<CudaGraph>(r);
+    Stopwatch watch(kept->stream);
+    HostCopies copies(kept->stream);
+    copies.to_device(r.words, static_cast<std::size_t>(arcs), kept->words.data());
     copies.finish();
     *seconds = watch.lap();
-    *graph = twin.release();
+    *graph = kept.release();
   });
 }
 

@@ -176,7 +176,7 @@ struct alignas(16) WindowRay<false> {
   float x, y, reach, way;
 };
 
-/// A side of a window's face that cone falls on: the window's number in its generation, and whether it is the right
+/// A side of a window's face that its cone covers: the window's number in its generation, and whether it is the right
 /// side.
 struct Cone {
   static constexpr int k_right = 1 << 15, k_number = k_right - 1;

@@ -4,7 +4,7 @@
 //
 // As there, generations have no order but their own: all windows of one look at their apexes, the labels are lowered,
 // then all are split. Where labels do not count yet (k_free_generations) not even that matters: 32 windows are sighted
-// and 32 cones split, whichever wait. Most windows see no corner and cone one side only, so that sides are what lanes
+// and 32 cones split, whichever wait. Most windows see no corner and cover one side only, so that sides are what lanes
 // are filled with when windows are split. In what order a generation is taken matters to nothing but which of two
 // sightings is the first: see device_sighting_order.cuh.
 
@@ -149,7 +149,7 @@ class WarpWaves {
   SADDLEBACK_STEP static int cone_place(int number) { return Pool::is_dense ? number & (Pool::Cones - 1) : number; }
   SADDLEBACK_STEP int window_of_cone(int number) const { return pool_.cones[cone_place(number)] & Cone::k_number; }
 
-  /// When no window waits any more and no cone: those that count_ counts, from a place on, come next, all of one
+  /// When no window and no cone waits any more: those that count_ counts, from a place on, come next, all of one
   /// generation. \return how many
   SADDLEBACK_STEP int begin_generation(int place) {
     const int all = count_;

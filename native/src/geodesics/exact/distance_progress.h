@@ -13,7 +13,7 @@ namespace saddleback {
 
 /// The windows of each ring about the sources are guessed from ways along edges, which take little of the time, and
 /// what is still to come from the time so far; without a watched job nothing is computed. Every vertex of the front
-/// splits a window. Windows end where the surface has bent their cone so much that they meet others, and with the
+/// splits a window. Windows end where the surface has bent them so much that they meet others, and with the
 /// front where it meets itself; but where curvature alone draws it together, as on the far side of a sphere, they live
 /// on, more and more side by side.
 class DistanceProgress {

@@ -11,7 +11,7 @@
 // the order of windows changes the work alone: buckets replace the heap. (2) Rays through a vertex belong to the
 // windows on both its sides, and nothing is dropped that does not lose by more than rounding: that makes regular grids
 // right. (3) A ray to the apex that just misses its window still counts, with the detour round the window's end, which
-// is a real path. (4) No cone is lost, whatever lies near to what:
+// is a real path. (4) No window is lost, whatever lies near to what:
 //  - Directions of short edges come from positions (see unfold): each face turns an image of a root by a few roundings,
 //    not by a rounding of the longest edge over the shortest.
 //  - Windows are told apart by the angle of their rays, which is the same on every edge. Neighbors share the ray
@@ -97,8 +97,8 @@ void ExactPropagation::run(ExactProgress& progress) {
   progress.end();
 }
 
-/// Whether some vertex is farther than by an edge from its neighbor. No cone that comes to the neighbor went on,
-/// then: it becomes a root, which cones all round it. So whatever rounding does, no vertex of a component stays
+/// Whether some vertex is farther than by an edge from its neighbor. No window that comes to the neighbor went on,
+/// then: it becomes a root, which emits windows all round it. So whatever rounding does, no vertex of a component stays
 /// unreached and no two ends of an edge are farther from each other than it is long.
 bool ExactPropagation::cover_again() {
   const auto look = [&](Index a, Index b, double length) {
@@ -405,7 +405,7 @@ double ExactPropagation::arrival_angle(Index vertex) const {
   return angle;  // along the last edge of a boundary vertex
 }
 
-/// Makes a vertex a root: it cones the directions that are at least pi from where the path comes, on both sides.
+/// Makes a vertex a root: it emits windows in the directions that are at least pi from where the path comes, on both sides.
 void ExactPropagation::bend(Index vertex) {
   const double distance = distances_[vertex];
   if (bent_at_[vertex] <= distance) return;

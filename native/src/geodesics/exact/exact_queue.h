@@ -11,7 +11,7 @@ struct Window {
   double sx, sy, b0, b1;
   double sigma;  ///< distance of the root
   Index halfedge;
-  Index root;  ///< the vertex that the cone comes from, or vertex_count + i for source i inside a face or edge
+  Index root;  ///< the vertex that the path comes from, or vertex_count + i for source i inside a face or edge
 };
 
 using WindowQueue = BlockQueue<Window>;

@@ -66,7 +66,7 @@ class ExactSurface {
   Vec2 in_frame(Index h, const Vec3& barycentric) const;
   /// Where a shortest path may bend: on the boundary, or the total angle exceeds 2 pi by more than rounding.
   bool may_bend(Index vertex) const { return bends_[vertex] != Bends::never; }
-  /// So near to a source that rounding leaves gaps between rays on their way round it: it cones what a source there
+  /// So near to a source that rounding leaves gaps between rays on their way round it: it emits what a source there
   /// would.
   bool is_beside_source(Index vertex) const { return bends_[vertex] == Bends::all_round; }
 

@@ -10,7 +10,7 @@
 
 namespace saddleback {
 
-/// A window ends at rays that go on beyond the vertices which split it, until other cone came sooner or the surface
+/// A window ends at rays that go on beyond the vertices which split it, until another path came sooner or the surface
 /// ends. So the edges that these rays cross tell how many windows there will be, and how far out; a few thousand
 /// vertices from all over the surface stand for all.
 class WindowForecast {

@@ -17,7 +17,7 @@
 namespace saddleback {
 namespace {
 
-// Windows end a little early, see disk_finder: on thousands of fields over twenty meshes this kept every error below
+// Windows end a little early, see geodesic_disks.cpp: on thousands of fields over twenty meshes this kept every error below
 // the accuracy asked for. Fine graphs need more room: there errors of a sixth more than their tolerance were seen.
 constexpr double k_room = 0.95, k_room_where_fine = 0.8, k_fine = 2e-3, k_usual = 5e-3;
 

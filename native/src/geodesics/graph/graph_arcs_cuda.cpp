@@ -120,7 +120,7 @@ class Caller {
 
 ArcRows cuda_arcs(const ArcSearch& search, const std::function<ArcCodec()>& choose_codec, const DiskRule& rule,
                   std::span<const int> devices, ArcWords room, DeviceTimes& times, const JobStage& stage) {
-  const CudaModule& twins = loaded_cuda_module();
+  const CudaModule& cuda = loaded_cuda_module();
   const Mesh& mesh = search.unfolding.mesh();
   const WaveScene scene = wave_scene(nullptr, rule);
   ArcsRequest request;
@@ -149,7 +149,7 @@ ArcRows cuda_arcs(const ArcSearch& search, const std::function<ArcCodec()>& choo
 
   Caller caller(search, choose_codec, rule, std::move(room), stage);
   CudaReason reason;
-  caller.guard().check(twins.find_arcs(request, caller.calls(), times, reason), reason);
+  caller.guard().check(cuda.find_arcs(request, caller.calls(), times, reason), reason);
   return caller.take();
 }
 

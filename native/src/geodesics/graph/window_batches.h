@@ -1,5 +1,5 @@
 #pragma once
-// Windows by whole generations: the data that the driver (disk_finder) and the vector kernels share.
+// Windows by whole generations: the data that the driver (geodesic_disks) and the vector kernels share.
 //
 // Only plain data and no inline functions: this header is compiled for several instruction sets, and a function that
 // two of them define could be linked into code for a machine that lacks it.

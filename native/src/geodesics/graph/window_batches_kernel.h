@@ -1,4 +1,4 @@
-// The kernel of window_waves.h, included by one source an instruction set, which defines `Simd` (see support/simd_*.h)
+// The kernel of window_batches.h, included by one source an instruction set, which defines `Simd` (see support/simd_*.h)
 // and SADDLEBACK_WAVE_KERNEL.
 
 #include "geodesics/graph/window_batches.h"

@@ -129,7 +129,7 @@ SADDLEBACK_STEP Rays turn_inwards(const Rays& rays, Floats right_tangent, Floats
 /// One side of a window's face, in the words of its left side: from the start of the half-edge, the *near* end, to the
 /// apex. The right side is the left one of the mirror image, y upside down, to the bit.
 struct Side {
-  Mask beam;                            ///< any cone falls on it
+  Mask beam;                            ///< any cone covers a part of it
   Mask cut;                             ///< the cone ends at the apex
   Floats near_x, near_y, far_x, far_y;  ///< ends of the half-edge
   Floats apex_x, apex_y;
@@ -152,7 +152,7 @@ SADDLEBACK_STEP Child look_at(const Side& side) {
   const Floats along_x = side.apex_x - side.near_x, along_y = side.apex_y - side.near_y;
   const Floats near_off = Simd::max(cross(side.near_ray_x, side.near_ray_y, side.near_x, side.near_y), zero);
   const Floats near_in = Simd::max(cross(side.far_ray_x, side.far_ray_y, side.near_x, side.near_y), zero);
-  // The apex of a side with cone on it is off the ray by more than nothing.
+  // The apex of a side that a cone covers is off the ray by more than nothing.
   const Floats begin = Simd::share(near_off, side.apex_off);
   const Floats end = Simd::pick(side.cut, one, Simd::min(Simd::quotient(near_in, near_in - side.apex_in), one));
   const Mask useful = side.beam & (Simd::fill(k_narrow) < end - begin);

@@ -41,7 +41,7 @@ void search(const SaddleVertexGraph& graph, int device, const FlatSeeds& seeds, 
                              return asked.guard.run([&] { asked.stage.update(fraction); });
                            }};
   CudaReason reason;
-  caller.guard.check(loaded_cuda_module().search(*kept.twin, to, calls, times, reason), reason);
+  caller.guard.check(loaded_cuda_module().search(*kept.graph, to, calls, times, reason), reason);
   graphs.tell(times);
   stage.update(1);
 }
@@ -49,7 +49,7 @@ void search(const SaddleVertexGraph& graph, int device, const FlatSeeds& seeds, 
 }  // namespace
 
 DeviceGraphs::Kept DeviceGraphs::on(int device, const SaddleVertexGraph& graph, DeviceTimes& times) {
-  const CudaModule& twins = loaded_cuda_module();
+  const CudaModule& cuda = loaded_cuda_module();
   const std::lock_guard lock(mutex_);
   if (kept_ && kept_->device == device) return *kept_;
   kept_.reset();
@@ -62,10 +62,10 @@ DeviceGraphs::Kept DeviceGraphs::on(int device, const SaddleVertexGraph& graph, 
                                  .words = arcs.words().data(),
                                  .nodes = graph.nodes().data(),
                                  .packing = arcs.codec().packing()};
-  CudaGraph* twin = nullptr;
+  CudaGraph* graph_on_device = nullptr;
   CudaReason reason;
-  CudaGuard().check(twins.put_graph(request, &twin, &times.upload, reason), reason);
-  kept_ = Kept{device, k_front_step * shortest_arcs_below(arcs, k_median), {twin, twins.drop_graph}};
+  CudaGuard().check(cuda.put_graph(request, &graph_on_device, &times.upload, reason), reason);
+  kept_ = Kept{device, k_front_step * shortest_arcs_below(arcs, k_median), {graph_on_device, cuda.drop_graph}};
   return *kept_;
 }
 

@@ -20,7 +20,7 @@ class DeviceGraphs {
   struct Kept {
     int device;
     double step;  ///< for a front to advance by
-    std::shared_ptr<const CudaGraph> twin;
+    std::shared_ptr<const CudaGraph> graph;
   };
   /// Puts the graph there unless it is; `times` gets the upload. \throw DeviceError
   Kept on(int device, const SaddleVertexGraph& graph, DeviceTimes& times);

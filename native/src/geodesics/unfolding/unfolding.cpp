@@ -5,7 +5,7 @@
 
 namespace saddleback {
 // The difference of the squares of two lengths is off by a rounding of the longest edge's square, so that the direction
-// of a short edge would be off by the longest over that edge: cone that comes through it was turned by as much.
+// of a short edge would be off by the longest over that edge: a cone that comes through it was turned by as much.
 // Differences of positions keep all digits.
 UnfoldedFace unfold(const Mesh& mesh, Index h) {
   const double base = mesh.length(h), left = mesh.length(Mesh::prev(h)), right = mesh.length(Mesh::next(h));

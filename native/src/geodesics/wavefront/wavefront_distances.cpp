@@ -1,4 +1,4 @@
-// See ray_field.h. Sources are rotated from frame to frame, perpendicular rays as a direction and a linear function:
+// See wavefront_distances.h. Sources are rotated from frame to frame, perpendicular rays as a direction and a linear function:
 // distance at p = offset + direction . p, arc length at p = value + tangent . p.
 
 #include "geodesics/wavefront/wavefront_distances.h"

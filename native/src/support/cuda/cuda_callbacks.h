@@ -38,9 +38,9 @@ class CudaGuard {
 
 /// \throw DeviceError when there are none.
 inline const CudaModule& loaded_cuda_module() {
-  const CudaModule* const twins = cuda_module();
-  if (!twins) throw DeviceError("device: the CUDA module is not loaded");
-  return *twins;
+  const CudaModule* const module = cuda_module();
+  if (!module) throw DeviceError("device: the CUDA module is not loaded");
+  return *module;
 }
 
 }  // namespace saddleback

@@ -12,12 +12,12 @@ std::atomic<std::uint64_t> most_bytes{0};
 
 }  // namespace
 
-void set_cuda_module(const CudaModule* twins) {
-  if (twins && twins->version != CudaModule::k_version) {
+void set_cuda_module(const CudaModule* module) {
+  if (module && module->version != CudaModule::k_version) {
     throw DeviceError(message("device: the CUDA module is of another version of Saddleback (its table is version ",
-                              twins->version, ", this one needs ", CudaModule::k_version, "); install both together"));
+                              module->version, ", this one needs ", CudaModule::k_version, "); install both together"));
   }
-  current.store(twins);
+  current.store(module);
 }
 
 const CudaModule* cuda_module() { return current.load(); }
