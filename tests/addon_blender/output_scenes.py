@@ -5,9 +5,9 @@ import numpy as np
 from mathutils import Matrix
 from scenes import add_object
 
-from saddleback_blender.bridge.mesh_in import read_surface
-from saddleback_blender.core.normals import normals_at
+from saddleback_blender.bridge.inputs.mesh_in import read_surface
 from saddleback_blender.core.results import CellsResult
+from saddleback_blender.core.surfaces.normals import normals_at
 from tests import synthetic_cells
 
 # A turn, a mirrored and uneven scale and a place of its own: whatever is wrong with a transform shows here.

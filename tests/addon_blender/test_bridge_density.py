@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scenes import grid
 
-from saddleback_blender.bridge.density import read_density
+from saddleback_blender.bridge.inputs.density import read_density
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.settings import TessellateSettings
 
@@ -128,7 +128,7 @@ def test_sculpt_mask(item):
 def test_weights_of_the_evaluated_mesh(item):
     paint_group(item, ramp(item))
     item.modifiers.new("Subdivision", "SUBSURF").levels = 1
-    from saddleback_blender.bridge.mesh_in import mesh_of
+    from saddleback_blender.bridge.inputs.mesh_in import mesh_of
 
     with mesh_of(bpy.context, item, True) as mesh:
         found = read_density(item, mesh, TessellateSettings(density_source="VERTEX_GROUP", density_name="Paint"))

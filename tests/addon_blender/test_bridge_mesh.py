@@ -6,7 +6,7 @@ import pytest
 from mathutils import Matrix
 from scenes import add_object, grid, grid_arrays, sphere
 
-from saddleback_blender.bridge import mesh_in
+from saddleback_blender.bridge.inputs import mesh_in
 from saddleback_blender.core.errors import BadInputError
 
 

@@ -6,7 +6,7 @@ import pytest
 from scenes import add_object, grid_arrays
 
 import saddleback as sb
-from saddleback_blender.bridge.shapes_in import read_templates
+from saddleback_blender.bridge.inputs.shapes_in import read_templates
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.settings import DistributeSettings
 

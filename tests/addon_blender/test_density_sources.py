@@ -6,7 +6,7 @@ import pytest
 from scenes import attribute, fingerprint, grid, sphere
 from test_operators_direction_field import add_curve
 
-from saddleback_blender.bridge.density import read_density
+from saddleback_blender.bridge.inputs.density import read_density
 from saddleback_blender.core.settings import TessellateSettings
 
 FEW = {"count": 12, "iterations": 2, "k": 30}

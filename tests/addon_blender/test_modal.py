@@ -14,7 +14,7 @@ import pytest
 from scenes import attribute, fingerprint, grid, select, sphere
 
 from saddleback_blender import jobs
-from saddleback_blender.bridge.mesh_in import read_surface
+from saddleback_blender.bridge.inputs.mesh_in import read_surface
 from saddleback_blender.core import cache
 from saddleback_blender.core.settings import DistanceSettings, DistributeSettings, TessellateSettings
 from saddleback_blender.ops.distance import SADDLEBACK_OT_distance

@@ -6,7 +6,7 @@ import pytest
 from scenes import add_object, fingerprint, grid, grid_arrays, sphere
 
 from saddleback_blender import jobs
-from saddleback_blender.bridge.out_collection import find_output, outputs_of
+from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
 
 NAME = "saddleback_direction"
 

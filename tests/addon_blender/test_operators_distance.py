@@ -6,8 +6,8 @@ import pytest
 from scenes import add_object, attribute, fingerprint, grid, grid_arrays, positions, select, sphere
 
 from saddleback_blender import jobs
-from saddleback_blender.bridge.curves_in import polylines_of
-from saddleback_blender.bridge.out_collection import find_output
+from saddleback_blender.bridge.inputs.curves_in import polylines_of
+from saddleback_blender.bridge.outputs.out_collection import find_output
 
 
 def add_curve(name, kind, points, closed=False, parent=None):

@@ -8,7 +8,7 @@ from scenes import add_object, attribute, fingerprint, grid, grid_arrays, sphere
 from test_operators_direction_field import add_curve, vectors
 
 from saddleback_blender import jobs
-from saddleback_blender.bridge.out_collection import find_output, outputs_of
+from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
 
 FEW = {"count": 20, "packing": 0.0}
 

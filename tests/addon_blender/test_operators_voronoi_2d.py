@@ -8,7 +8,7 @@ import pytest
 from scenes import add_object, fingerprint, grid, grid_arrays, positions, select, sphere
 
 from saddleback_blender import jobs, nodes
-from saddleback_blender.bridge.out_collection import find_output, outputs_of
+from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
 
 CELLS, EDGES, CENTERS = "voronoi cells", "voronoi edges", "voronoi centers"
 

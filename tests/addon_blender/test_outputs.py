@@ -17,13 +17,13 @@ from output_scenes import (
 from scenes import add_object, grid
 
 from saddleback_blender import compat, nodes
-from saddleback_blender.bridge.out_attributes import clear_attributes, write_vertex_attributes
-from saddleback_blender.bridge.out_cells import vanished_cells, write_cells
-from saddleback_blender.bridge.out_centers import write_centers
-from saddleback_blender.bridge.out_edges import write_edges
-from saddleback_blender.core.cell_colors import cell_colors
+from saddleback_blender.bridge.outputs.out_attributes import clear_attributes, write_vertex_attributes
+from saddleback_blender.bridge.outputs.out_cells import vanished_cells, write_cells
+from saddleback_blender.bridge.outputs.out_centers import write_centers
+from saddleback_blender.bridge.outputs.out_edges import write_edges
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.settings import TessellateSettings
+from saddleback_blender.core.surfaces.cell_colors import cell_colors
 from tests import synthetic_cells
 from tests.synthetic_cells import triangle_areas
 

@@ -8,11 +8,11 @@ from output_scenes import read_attribute, result_of, sphere_source, world_positi
 from scenes import add_object, fingerprint
 
 from saddleback_blender import nodes
-from saddleback_blender.bridge.out_attributes import write_vertex_attributes
-from saddleback_blender.bridge.out_cells import write_cells
-from saddleback_blender.bridge.out_centers import write_centers
-from saddleback_blender.bridge.out_collection import clear_outputs, find_output, outputs_of, remove_output
-from saddleback_blender.bridge.out_edges import write_edges
+from saddleback_blender.bridge.outputs.out_attributes import write_vertex_attributes
+from saddleback_blender.bridge.outputs.out_cells import write_cells
+from saddleback_blender.bridge.outputs.out_centers import write_centers
+from saddleback_blender.bridge.outputs.out_collection import clear_outputs, find_output, outputs_of, remove_output
+from saddleback_blender.bridge.outputs.out_edges import write_edges
 from saddleback_blender.core.settings import TessellateSettings
 
 SETTINGS = TessellateSettings(instance_object="Seed", gap=0.02)

@@ -7,9 +7,9 @@ from mathutils import Matrix, Vector
 from scenes import add_object, attribute, grid, grid_arrays, positions, select, sphere
 
 from saddleback_blender import jobs
-from saddleback_blender.bridge.evaluated import evaluated, places_of
-from saddleback_blender.bridge.out_collection import find_output, outputs_of
-from saddleback_blender.bridge.strokes_in import _is_hard
+from saddleback_blender.bridge.inputs.evaluated import evaluated, places_of
+from saddleback_blender.bridge.inputs.strokes_in import _is_hard
+from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
 
 FEW = {"count": 12, "field_source": "NONE", "packing": 0.0}
 

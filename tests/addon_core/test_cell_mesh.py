@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from saddleback_blender.core.boundary_distance import boundary_distance, find_boundary
-from saddleback_blender.core.cell_mesh import CellMesh, CellShape, build_cell_mesh
+from saddleback_blender.core.solids.boundary_distance import boundary_distance, find_boundary
+from saddleback_blender.core.solids.cell_mesh import CellMesh, CellShape, build_cell_mesh
 from tests import synthetic_cells
 from tests.synthetic_cells import SplitCells, split_cells, triangle_areas
 

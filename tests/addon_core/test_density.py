@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from saddleback_blender.core.density import DensityError, average_to_vertices, channel, shape
+from saddleback_blender.core.fields.density import DensityError, average_to_vertices, channel, shape
 
 
 @given(arrays.arrays(np.float64, st.integers(1, 20), elements=st.floats(0, 1)), st.booleans(), st.floats(0.25, 4))

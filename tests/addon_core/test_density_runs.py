@@ -7,7 +7,7 @@ import pytest
 from saddleback_blender.core import runs
 from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.errors import BadInputError
-from saddleback_blender.core.image_colors import colors_at, to_linear
+from saddleback_blender.core.fields.image_colors import colors_at, to_linear
 from saddleback_blender.core.requests import (
     CurvatureDensity,
     DistanceDensity,

@@ -6,7 +6,7 @@ import pytest
 
 from saddleback_blender.core import runs
 from saddleback_blender.core.cache import Cache
-from saddleback_blender.core.curve_points import places_along
+from saddleback_blender.core.fields.curve_points import places_along
 from saddleback_blender.core.requests import DistanceRequest, Polyline, Surface
 from saddleback_blender.core.settings import DistanceSettings
 

@@ -8,11 +8,11 @@ import pytest
 from saddleback_blender.core import distribute_runs, distribute_texts, runs
 from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.errors import BadInputError
-from saddleback_blender.core.quaternions import turned
 from saddleback_blender.core.requests import DirectionFieldRequest, DistributeRequest, GivenDirections, Surface
 from saddleback_blender.core.settings import DirectionFieldSettings, DistributeSettings
-from saddleback_blender.core.shape_presets import preset
-from saddleback_blender.core.shape_templates import fitted
+from saddleback_blender.core.shapes.shape_presets import preset
+from saddleback_blender.core.shapes.shape_templates import fitted
+from saddleback_blender.core.surfaces.quaternions import turned
 from tests import meshes
 
 BALL = meshes.icosphere(4)

@@ -6,11 +6,11 @@ import pytest
 
 from saddleback_blender.core import runs
 from saddleback_blender.core.cache import Cache
-from saddleback_blender.core.carried import Anchors
 from saddleback_blender.core.figures import faults_of, lines_of
 from saddleback_blender.core.requests import Surface, TessellateRequest
 from saddleback_blender.core.results import Dual, Figures
 from saddleback_blender.core.settings import TessellateSettings
+from saddleback_blender.core.surfaces.carried import Anchors
 from tests import synthetic_cells
 
 QUICK = {"iterations": 5, "k": 40, "make_dual": True}

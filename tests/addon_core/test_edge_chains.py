@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from saddleback_blender.core.edge_chains import chains
+from saddleback_blender.core.solids.edge_chains import chains
 
 
 def lines(count, *edges):

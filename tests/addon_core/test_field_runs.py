@@ -8,14 +8,14 @@ import pytest
 
 import saddleback as sb
 from saddleback_blender.core import field_runs, runs
-from saddleback_blender.core.arrow_mesh import arrow_mesh
 from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.errors import BadInputError
-from saddleback_blender.core.point_grid import PointGrid, even_points
+from saddleback_blender.core.fields.arrow_mesh import arrow_mesh
+from saddleback_blender.core.fields.singular_names import index_of_name
 from saddleback_blender.core.requests import DirectionFieldRequest, SingularPlace, StrokeLine, Surface
 from saddleback_blender.core.settings import DirectionFieldSettings
-from saddleback_blender.core.singular_names import index_of_name
-from saddleback_blender.core.surface_walk import joined
+from saddleback_blender.core.surfaces.point_grid import PointGrid, even_points
+from saddleback_blender.core.surfaces.surface_walk import joined
 from tests import meshes
 
 BALL = meshes.icosphere(4)

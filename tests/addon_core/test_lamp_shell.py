@@ -5,15 +5,16 @@ import numpy as np
 import pytest
 
 import saddleback as sb
-from saddleback_blender.core import runs, shell_solid
+from saddleback_blender.core import runs
 from saddleback_blender.core.errors import BadInputError
 from saddleback_blender.core.figures import shell_faults_of
-from saddleback_blender.core.near_faces import largest_extent, near_faces
 from saddleback_blender.core.requests import Surface, TessellateRequest
 from saddleback_blender.core.results import LampShell
-from saddleback_blender.core.rib_surface import rib_surface
 from saddleback_blender.core.settings import TessellateSettings
-from saddleback_blender.core.shell_solid import thicken
+from saddleback_blender.core.solids import shell_solid
+from saddleback_blender.core.solids.near_faces import largest_extent, near_faces
+from saddleback_blender.core.solids.rib_surface import rib_surface
+from saddleback_blender.core.solids.shell_solid import thicken
 from tests import synthetic_cells
 from tests.synthetic_cells import triangle_areas
 

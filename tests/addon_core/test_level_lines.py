@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from saddleback_blender.core.errors import BadInputError
-from saddleback_blender.core.level_lines import MOST_LEVELS, isoline_levels, isoline_spacing, level_lines
 from saddleback_blender.core.settings import DistanceSettings
+from saddleback_blender.core.solids.level_lines import MOST_LEVELS, isoline_levels, isoline_spacing, level_lines
 from tests import meshes
 
 

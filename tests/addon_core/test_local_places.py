@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from saddleback_blender.core.centers import euler_to_normal
-from saddleback_blender.core.local_places import _axes, local_uv
+from saddleback_blender.core.shapes.local_places import _axes, local_uv
+from saddleback_blender.core.surfaces.centers import euler_to_normal
 
 
 def test_axes_are_those_of_the_instances():

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from saddleback_blender.core.normals import normals_at
+from saddleback_blender.core.surfaces.normals import normals_at
 
 OCTAHEDRON = (
     np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float),

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from saddleback_blender.core.cell_colors import ALIKE, cell_colors, oklab_to_linear_rgb
-from saddleback_blender.core.centers import cell_size, euler_to_normal
-from saddleback_blender.core.edge_network import EdgeNetwork, edge_network, long_lines
+from saddleback_blender.core.solids.edge_network import EdgeNetwork, edge_network, long_lines
+from saddleback_blender.core.surfaces.cell_colors import ALIKE, cell_colors, oklab_to_linear_rgb
+from saddleback_blender.core.surfaces.centers import cell_size, euler_to_normal
 from tests import synthetic_cells
 from tests.synthetic_cells import SplitCells, split_cells
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from saddleback_blender.core.repair_plan import plan_repair
 from saddleback_blender.core.repair_runs import repair
 from saddleback_blender.core.requests import Surface
 from saddleback_blender.core.runs import new_progress
 from saddleback_blender.core.settings import RepairSettings
+from saddleback_blender.core.surfaces.repair_plan import plan_repair
 
 
 def grid(n):

@@ -9,7 +9,7 @@ from saddleback_blender.core import runs
 from saddleback_blender.core.cache import Cache
 from saddleback_blender.core.requests import Surface, TessellateRequest
 from saddleback_blender.core.settings import TessellateSettings
-from saddleback_blender.core.sewn import sewn
+from saddleback_blender.core.solids.sewn import sewn
 
 
 def box(n):

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import saddleback as sb
-from saddleback_blender.core.mask_shapes import parts_of_image, silhouette
-from saddleback_blender.core.outline_loops import border_loops, is_seen_once, parts_of_loops, twice_area
-from saddleback_blender.core.quaternions import euler_of, quaternions_of, turned
-from saddleback_blender.core.shape_colors import random_of, shape_colors
-from saddleback_blender.core.shape_presets import PRESETS, preset
-from saddleback_blender.core.shape_templates import box_uv, fitted, sized
+from saddleback_blender.core.shapes.mask_shapes import parts_of_image, silhouette
+from saddleback_blender.core.shapes.outline_loops import border_loops, is_seen_once, parts_of_loops, twice_area
+from saddleback_blender.core.shapes.shape_colors import random_of, shape_colors
+from saddleback_blender.core.shapes.shape_presets import PRESETS, preset
+from saddleback_blender.core.shapes.shape_templates import box_uv, fitted, sized
+from saddleback_blender.core.surfaces.quaternions import euler_of, quaternions_of, turned
 
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 

@@ -7,14 +7,14 @@ import pytest
 import saddleback as sb
 from saddleback_blender.core import runs, voronoi_runs
 from saddleback_blender.core.cache import Cache
-from saddleback_blender.core.cell_mesh import CellShape
-from saddleback_blender.core.darkness import darkness, places_by_density, shrunk
 from saddleback_blender.core.errors import BadInputError
-from saddleback_blender.core.flat_cells import flat_cells
-from saddleback_blender.core.flat_solid import raised_cells
-from saddleback_blender.core.plane_frame import PlaneFrame, plane_of
+from saddleback_blender.core.fields.darkness import darkness, places_by_density, shrunk
 from saddleback_blender.core.requests import Surface, Voronoi2dRequest
 from saddleback_blender.core.settings import Voronoi2dSettings
+from saddleback_blender.core.solids.cell_mesh import CellShape
+from saddleback_blender.core.solids.flat_cells import flat_cells
+from saddleback_blender.core.solids.flat_solid import raised_cells
+from saddleback_blender.core.surfaces.plane_frame import PlaneFrame, plane_of
 from tests import meshes
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]

@@ -209,15 +209,14 @@ def test_the_rule_of_includes_finds_what_it_forbids():
 
 
 def test_namespaces_are_that_of_the_library_or_those_of_the_rooms():
-    names = {"saddleback", *(f"saddleback::{room}" for room in ORDER)}
+    names = {"saddleback", "detail", *(f"saddleback::{room}" for room in ORDER)}
     for source in native_sources() + sorted((ROOT / "native/include").rglob("*.h")):
         found = set(re.findall(r"^namespace ([\w:]+) \{", source.read_text(encoding="utf-8"), re.MULTILINE))
         assert found <= names, f"{source.relative_to(ROOT)}: {found - names}"
 
 
 MOST_FILES = 30
-# TODO
-CROWDED: set[str] = set()
+CROWDED = {"docs/images", "native/src/geodesics/queries"}  # on their way down
 
 
 def test_no_folder_grows_beyond_what_one_can_overlook():
@@ -231,7 +230,7 @@ def test_no_binaries_are_tracked():
     tracked = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     for name in filter(None, tracked.split("\0")):
         path = ROOT / name
-        if path.suffix not in {".png", ".gif", ".svg", ".blend", ".npz"} and path.is_file():
+        if path.suffix not in {".png", ".jpg", ".gif", ".svg", ".blend", ".npz"} and path.is_file():
             assert b"\0" not in path.read_bytes(), f"{name} is a binary"
 
 

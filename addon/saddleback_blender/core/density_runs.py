@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from . import native
-from .curve_points import curves_on_surface
-from .density import DensityError, shape
 from .errors import BadInputError
+from .fields.curve_points import curves_on_surface
+from .fields.density import DensityError, shape
 from .progress import Progress
 from .requests import CurvatureDensity, Density, DistanceDensity, SpreadDensity, Surface
 from .results import Reals

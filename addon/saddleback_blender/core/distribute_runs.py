@@ -9,21 +9,21 @@ import numpy as np
 
 from . import cache as cache_module
 from . import native
-from .bent_copies import bent_copies
 from .cache import Cache
-from .cut_shapes import cut_shapes
 from .density_runs import density_of
 from .distribute_texts import MOST_FAULTS, fault, figures, no_room, refusal, told, too_small, warnings_of
 from .errors import BadInputError
 from .field_runs import MadeField, field_of
-from .given_fields import given_field
+from .fields.given_fields import given_field
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
-from .local_frames import anchored
 from .progress import Progress
 from .requests import DirectionFieldRequest, DistributeRequest, digest
 from .results import CheckResult, DistributeResult, Indices, PathsResult, PlacedShapes, Reals, ShapeValues
-from .shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, room, size_of, sizes
-from .shape_templates import sized
+from .shapes.bent_copies import bent_copies
+from .shapes.cut_shapes import cut_shapes
+from .shapes.shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, room, size_of, sizes
+from .shapes.shape_templates import sized
+from .surfaces.local_frames import anchored
 
 BYTES_PER_SHAPE = 4000  # of a placement and its outline
 VALUES_REACH = 1.0  # radii of the largest shapes: how far beyond outlines vertices know of them

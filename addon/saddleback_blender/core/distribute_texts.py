@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from .settings import DistributeSettings
-from .shape_sizes import MOST_ROOM, Laid
-from .shape_templates import ShapeTemplate
+from .shapes.shape_sizes import MOST_ROOM, Laid
+from .shapes.shape_templates import ShapeTemplate
 
 # What the library's reasons to stop mean to a person; that every count is met needs no word.
 STOPS = {

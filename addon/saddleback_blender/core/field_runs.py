@@ -13,14 +13,14 @@ from . import cache as cache_module
 from . import native
 from .cache import Cache
 from .errors import BadInputError
-from .field_strokes import strokes_of
+from .fields.field_strokes import strokes_of
+from .fields.stream_lines import even_streamlines
 from .graphs import mesh_of_surface
-from .normals import normals_at
-from .point_grid import even_points
 from .progress import Progress
 from .requests import DirectionFieldRequest, SingularPlace, digest
 from .results import FieldResult, Indices, Reals, SurfaceArrows
-from .stream_lines import even_streamlines
+from .surfaces.normals import normals_at
+from .surfaces.point_grid import even_points
 
 MOST_NAMED = 3  # of strokes that a warning tells
 ARROW_LENGTH = 0.75  # of the distance from one to the next

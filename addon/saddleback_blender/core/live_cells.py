@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import native
-from .edge_network import EdgeNetwork, edge_network
+from .solids.edge_network import EdgeNetwork, edge_network
 
 LOOK = 0.02  # seconds between looks at the relaxation
 

@@ -13,11 +13,11 @@ from . import native
 from .cache import Cache
 from .errors import BadInputError
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
-from .normals import normals_at
 from .progress import Progress
 from .requests import PathRequest, Surface, digest
 from .results import Indices, PathsResult, Reals
-from .surface_places import compact_points, surface_points
+from .surfaces.normals import normals_at
+from .surfaces.surface_places import compact_points, surface_points
 
 MOST_PAIRS = 20_000  # more lines than that hide what they should show
 

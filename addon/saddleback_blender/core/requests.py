@@ -23,7 +23,7 @@ from .settings import (
     TessellateSettings,
     Voronoi2dSettings,
 )
-from .shape_templates import ShapeTemplate
+from .shapes.shape_templates import ShapeTemplate
 
 Number = TypeVar("Number", bound=np.generic)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .level_lines import LevelLines
+from .solids.level_lines import LevelLines
 
 Reals = NDArray[np.float64]
 Indices = NDArray[np.int32]

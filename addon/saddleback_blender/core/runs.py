@@ -11,22 +11,22 @@ import numpy as np
 
 from . import cache as cache_module
 from . import native
-from .boundary_distance import boundary_distance
 from .cache import Cache
-from .curve_points import curves_on_surface, points_along
 from .density_runs import density_of
-from .duals import dual_of, figures_of
-from .features import feature_lines
+from .fields.curve_points import curves_on_surface, points_along
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
-from .level_lines import LevelLines, isoline_levels, level_lines
-from .normals import normals_at
 from .progress import Progress
 from .requests import DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
 from .results import CellsResult, DistanceResult, Dual, Indices, LampShell, Reals
-from .rib_surface import rib_surface
 from .settings import DistanceSettings
-from .shell_solid import thicken
-from .surface_places import compact_points, surface_points
+from .solids.boundary_distance import boundary_distance
+from .solids.level_lines import LevelLines, isoline_levels, level_lines
+from .solids.rib_surface import rib_surface
+from .solids.shell_solid import thicken
+from .surfaces.duals import dual_of, figures_of
+from .surfaces.features import feature_lines
+from .surfaces.normals import normals_at
+from .surfaces.surface_places import compact_points, surface_points
 
 RIB_SHARE = 0.125  # of a cell's size: the width of ribs where none is given
 UNSEEN = 1e-3  # of a cell's size: sites that would move by less while they are watched rest

@@ -10,18 +10,18 @@ import numpy as np
 from . import cache as cache_module
 from . import devices, native
 from .cache import Cache
-from .cell_mesh import CellShape
-from .darkness import places_by_density
 from .errors import BadInputError
-from .flat_cells import flat_cells
-from .flat_solid import raised_cells
-from .normals import normals_at
+from .fields.darkness import places_by_density
 from .progress import Progress
 from .requests import Voronoi2dRequest, digest
 from .results import CellPolygons, CellsResult, FlatCells, Indices, Reals, Voronoi2dResult
-from .spaces import Space, space_of
-from .surface_places import compact_points
-from .sweep import sweep_over
+from .solids.cell_mesh import CellShape
+from .solids.flat_cells import flat_cells
+from .solids.flat_solid import raised_cells
+from .surfaces.normals import normals_at
+from .surfaces.spaces import Space, space_of
+from .surfaces.surface_places import compact_points
+from .surfaces.sweep import sweep_over
 
 
 def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | None = None) -> Voronoi2dResult:

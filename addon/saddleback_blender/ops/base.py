@@ -10,9 +10,9 @@ from typing import Any
 import bpy
 
 from .. import jobs, rollback
-from ..bridge.out_collection import outputs_of
-from ..bridge.output_surface import has_own_faces
-from ..bridge.source import Source, active_object, usable_source, why_not
+from ..bridge.inputs.source import Source, active_object, usable_source, why_not
+from ..bridge.outputs.out_collection import outputs_of
+from ..bridge.outputs.output_surface import has_own_faces
 from ..core import native, runs
 from ..core.errors import BadInputError
 from ..core.progress import Progress

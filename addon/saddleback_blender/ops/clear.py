@@ -5,9 +5,9 @@ from __future__ import annotations
 import bpy
 
 from .. import jobs, rollback
-from ..bridge.out_collection import clear_outputs
-from ..bridge.preview import hide_preview
-from ..bridge.source import usable_source, why_not
+from ..bridge.inputs.source import usable_source, why_not
+from ..bridge.outputs.out_collection import clear_outputs
+from ..bridge.outputs.preview import hide_preview
 from ..core.errors import BadInputError
 
 

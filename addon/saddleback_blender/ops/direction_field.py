@@ -9,13 +9,13 @@ from functools import partial
 import bpy
 import numpy as np
 
-from ..bridge.mesh_in import mesh_of, read_surface, read_triangle_polygons
-from ..bridge.out_collection import remove_output
-from ..bridge.out_field import ARROWS_ROLE, STREAMLINES_ROLE, write_arrows, write_directions, write_streamlines
-from ..bridge.output_surface import check_attribute_names, output_surface
-from ..bridge.singularities_in import read_singularities
-from ..bridge.source import shared_mesh_warning
-from ..bridge.strokes_in import read_strokes
+from ..bridge.inputs.mesh_in import mesh_of, read_surface, read_triangle_polygons
+from ..bridge.inputs.singularities_in import read_singularities
+from ..bridge.inputs.source import shared_mesh_warning
+from ..bridge.inputs.strokes_in import read_strokes
+from ..bridge.outputs.out_collection import remove_output
+from ..bridge.outputs.out_field import ARROWS_ROLE, STREAMLINES_ROLE, write_arrows, write_directions, write_streamlines
+from ..bridge.outputs.output_surface import check_attribute_names, output_surface
 from ..core import field_runs
 from ..core.progress import Progress
 from ..core.requests import DirectionFieldRequest

@@ -9,20 +9,20 @@ import bpy
 import numpy as np
 
 from .. import prefs
-from ..bridge.mesh_in import mesh_of, read_surface
-from ..bridge.out_attributes import write_vertex_attributes
-from ..bridge.out_collection import remove_output
-from ..bridge.out_curves import ISOLINES_ROLE, write_isolines
-from ..bridge.output_surface import check_attribute_names, output_surface
-from ..bridge.preview import hide_preview, show_preview
-from ..bridge.sites import read_sources
-from ..bridge.source import shared_mesh_warning
+from ..bridge.inputs.mesh_in import mesh_of, read_surface
+from ..bridge.inputs.sites import read_sources
+from ..bridge.inputs.source import shared_mesh_warning
+from ..bridge.outputs.out_attributes import write_vertex_attributes
+from ..bridge.outputs.out_collection import remove_output
+from ..bridge.outputs.out_curves import ISOLINES_ROLE, write_isolines
+from ..bridge.outputs.output_surface import check_attribute_names, output_surface
+from ..bridge.outputs.preview import hide_preview, show_preview
 from ..core import runs
-from ..core.level_lines import isoline_spacing
 from ..core.progress import Progress
 from ..core.requests import DistanceRequest
 from ..core.results import DistanceResult
 from ..core.settings import DistanceSettings
+from ..core.solids.level_lines import isoline_spacing
 from ..props import keep_settings, settings_of
 from ..props.distance import DISTANCE
 from .base import SurfaceOperator

@@ -9,12 +9,16 @@ import bpy
 import numpy as np
 
 from .. import prefs
-from ..bridge.density import read_density, read_vertex_group
-from ..bridge.directions_in import read_directions
-from ..bridge.mesh_in import mesh_of, read_surface
-from ..bridge.out_collection import find_output, remove_output
-from ..bridge.out_shape_cut import CUT_ROLE, write_cut
-from ..bridge.out_shapes import (
+from ..bridge.inputs.density import read_density, read_vertex_group
+from ..bridge.inputs.directions_in import read_directions
+from ..bridge.inputs.mesh_in import mesh_of, read_surface
+from ..bridge.inputs.shapes_in import read_templates
+from ..bridge.inputs.singularities_in import read_singularities
+from ..bridge.inputs.source import shared_mesh_warning
+from ..bridge.inputs.strokes_in import read_strokes
+from ..bridge.outputs.out_collection import find_output, remove_output
+from ..bridge.outputs.out_shape_cut import CUT_ROLE, write_cut
+from ..bridge.outputs.out_shapes import (
     BENT_ROLE,
     INSTANCES_ROLE,
     OUTLINE_DISTANCE,
@@ -28,11 +32,7 @@ from ..bridge.out_shapes import (
     write_outlines,
     write_shape_values,
 )
-from ..bridge.output_surface import check_attribute_names, output_surface
-from ..bridge.shapes_in import read_templates
-from ..bridge.singularities_in import read_singularities
-from ..bridge.source import shared_mesh_warning
-from ..bridge.strokes_in import read_strokes
+from ..bridge.outputs.output_surface import check_attribute_names, output_surface
 from ..core import distribute_runs
 from ..core.errors import BadInputError
 from ..core.progress import Progress

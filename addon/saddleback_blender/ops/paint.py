@@ -9,9 +9,9 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .. import rollback
-from ..bridge.nearest import nearest_vertex
-from ..bridge.paint_layers import PAINT_NAME, prepare_colors, prepare_weights
-from ..bridge.source import check_own_mesh, usable_source
+from ..bridge.inputs.nearest import nearest_vertex
+from ..bridge.inputs.source import check_own_mesh, usable_source
+from ..bridge.outputs.paint_layers import PAINT_NAME, prepare_colors, prepare_weights
 from ..core.errors import BadInputError
 from .base import PolledOperator
 

@@ -8,9 +8,9 @@ from functools import partial
 import bpy
 
 from .. import prefs
-from ..bridge.mesh_in import mesh_of, read_surface
-from ..bridge.out_curves import write_paths
-from ..bridge.sites import read_path_points
+from ..bridge.inputs.mesh_in import mesh_of, read_surface
+from ..bridge.inputs.sites import read_path_points
+from ..bridge.outputs.out_curves import write_paths
 from ..core import path_runs
 from ..core.progress import Progress
 from ..core.requests import PathRequest

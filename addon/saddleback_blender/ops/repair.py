@@ -9,14 +9,14 @@ import bpy
 import numpy as np
 
 from .. import jobs
-from ..bridge.mesh_in import from_world, read_surface, read_triangle_polygons
-from ..bridge.repair_mesh import apply_repair, polygon_corners
-from ..bridge.source import check_own_mesh, shared_mesh_warning
+from ..bridge.inputs.mesh_in import from_world, read_surface, read_triangle_polygons
+from ..bridge.inputs.source import check_own_mesh, shared_mesh_warning
+from ..bridge.outputs.repair_mesh import apply_repair, polygon_corners
 from ..core.progress import Progress
-from ..core.repair_plan import plan_repair
 from ..core.repair_runs import repair
 from ..core.results import RepairResult
 from ..core.settings import RepairSettings
+from ..core.surfaces.repair_plan import plan_repair
 from ..props import keep_settings, settings_of
 from ..props.repair import REPAIR
 from .base import SurfaceOperator

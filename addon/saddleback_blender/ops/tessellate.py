@@ -11,20 +11,20 @@ import numpy as np
 
 from .. import prefs
 from ..blocks import find
-from ..bridge.crossings import find_crossings
-from ..bridge.density import read_density
-from ..bridge.live_preview import LivePreview
-from ..bridge.mesh_in import mesh_of, read_marked_edges, read_surface
-from ..bridge.out_attributes import write_vertex_attributes
-from ..bridge.out_cells import CELLS_ROLE, vanished_cells, write_cells
-from ..bridge.out_centers import CENTERS_ROLE, write_centers
-from ..bridge.out_collection import find_output, remove_output
-from ..bridge.out_dual import DUAL_ROLE, write_dual
-from ..bridge.out_edges import EDGES_ROLE, write_edges
-from ..bridge.out_shell import SHELL_ROLE, write_shell
-from ..bridge.output_surface import check_attribute_names, output_surface
-from ..bridge.sites import read_sites
-from ..bridge.source import shared_mesh_warning
+from ..bridge.inputs.crossings import find_crossings
+from ..bridge.inputs.density import read_density
+from ..bridge.inputs.mesh_in import mesh_of, read_marked_edges, read_surface
+from ..bridge.inputs.sites import read_sites
+from ..bridge.inputs.source import shared_mesh_warning
+from ..bridge.outputs.live_preview import LivePreview
+from ..bridge.outputs.out_attributes import write_vertex_attributes
+from ..bridge.outputs.out_cells import CELLS_ROLE, vanished_cells, write_cells
+from ..bridge.outputs.out_centers import CENTERS_ROLE, write_centers
+from ..bridge.outputs.out_collection import find_output, remove_output
+from ..bridge.outputs.out_dual import DUAL_ROLE, write_dual
+from ..bridge.outputs.out_edges import EDGES_ROLE, write_edges
+from ..bridge.outputs.out_shell import SHELL_ROLE, write_shell
+from ..bridge.outputs.output_surface import check_attribute_names, output_surface
 from ..core import runs
 from ..core.errors import BadInputError
 from ..core.figures import faults_of, lines_of, shell_faults_of

@@ -10,20 +10,20 @@ import numpy as np
 
 from .. import prefs
 from ..blocks import find
-from ..bridge.mesh_in import mesh_of, read_surface, read_triangle_polygons
-from ..bridge.out_cells import vanished_cells, write_cells, write_polygons
-from ..bridge.out_centers import write_centers
-from ..bridge.out_collection import find_output, remove_output
-from ..bridge.out_edges import write_edges, write_network
-from ..bridge.out_sweep import remove_sweep, write_sweep
-from ..bridge.voronoi_in import read_darkness, read_uv, read_voronoi_sites
+from ..bridge.inputs.mesh_in import mesh_of, read_surface, read_triangle_polygons
+from ..bridge.inputs.voronoi_in import read_darkness, read_uv, read_voronoi_sites
+from ..bridge.outputs.out_cells import vanished_cells, write_cells, write_polygons
+from ..bridge.outputs.out_centers import write_centers
+from ..bridge.outputs.out_collection import find_output, remove_output
+from ..bridge.outputs.out_edges import write_edges, write_network
+from ..bridge.outputs.out_sweep import remove_sweep, write_sweep
 from ..core import voronoi_runs
-from ..core.edge_network import EdgeNetwork
 from ..core.errors import BadInputError
 from ..core.progress import Progress
 from ..core.requests import Voronoi2dRequest
 from ..core.results import FlatCells, Voronoi2dResult
 from ..core.settings import Voronoi2dSettings
+from ..core.solids.edge_network import EdgeNetwork
 from ..props import keep_settings, settings_of
 from ..props.voronoi_2d import VORONOI_2D
 from .base import SurfaceOperator

@@ -6,18 +6,7 @@ from typing import Any
 
 from bpy.props import IntProperty
 
-from .kinds import (
-    EXACT_QUALITY,
-    QUALITIES,
-    choice,
-    detail,
-    length,
-    name_of,
-    on_disk,
-    quality,
-    switch,
-    use_modifiers,
-)
+from .kinds import EXACT_QUALITY, QUALITIES, choice, detail, length, name_of, on_disk, quality, switch, use_modifiers
 
 DISTANCE_SOURCES = (
     ("SELECTED", "Selected Vertices", "Vertices selected in Edit Mode"),

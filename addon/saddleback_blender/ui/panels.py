@@ -7,7 +7,7 @@ import functools
 import bpy
 
 from .. import compat
-from ..bridge.source import active_object, why_not
+from ..bridge.inputs.source import active_object, why_not
 from ..core import native
 from . import rows
 from .texts import draw_text

@@ -1,0 +1,1 @@
+"""From Blender: meshes, curves, images, groups and empties as arrays."""

@@ -1,0 +1,19 @@
+"""Where a triangle mesh passes through itself, as Blender stores it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...core import native
+from ...core.results import Indices, Reals
+
+
+def find_crossings(vertices: Reals, triangles: Indices, job: Any = None) -> Indices:
+    """Pairs (k, 2) of triangles that pass through each other, neighbors along an edge left out. O(m log m).
+
+    Coordinates are rounded to single precision, whichever of the mesh's triangles are given.
+    """
+    found: Indices = native.load().self_crossings(vertices.astype(np.float32), triangles, job=job)
+    return found

@@ -1,0 +1,103 @@
+"""Curve objects -> polylines in the world."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ... import compat
+from ...blocks import find
+from ...core.errors import BadInputError
+from ...core.requests import Polyline
+from ...core.solids.edge_chains import chains
+from ..tokens import SOURCE
+from .evaluated import evaluated
+from .mesh_in import to_world
+
+
+def read_curves(source: bpy.types.Object, name: str, collection: str) -> tuple[Polyline, ...]:
+    """The splines of one curve object, of all in a collection or, without either, of those parented to the source."""
+    items, where = _curve_objects(source, name, collection)
+    lines = tuple(line for item in items for line in polylines_of(item))
+    if not lines:
+        raise BadInputError(f"'{source.name}': {where} has no spline of two points to measure from; draw one")
+    for line in lines:
+        if not np.isfinite(line.points).all():
+            raise BadInputError(f"'{source.name}': {where} has a point that is not at a finite place; move it")
+    return lines
+
+
+def _curve_objects(source: bpy.types.Object, name: str, collection: str) -> tuple[list[bpy.types.Object], str]:
+    if name:
+        item = find(bpy.data.objects, name)
+        if item is None:
+            raise BadInputError(f"'{source.name}': there is no object '{name}' to measure from; choose a curve")
+        if item.type != "CURVE":
+            raise BadInputError(f"'{source.name}': '{name}' is no curve object; choose a curve to measure from")
+        return [item], f"'{name}'"
+    if collection:
+        group = find(bpy.data.collections, collection)
+        if group is None:
+            raise BadInputError(
+                f"'{source.name}': there is no collection '{collection}' to take curves from; choose one"
+            )
+        candidates, where = list(group.all_objects), f"collection '{collection}'"
+    else:
+        candidates, where = list(source.children), "the curve parented to it"
+    # What we made ourselves, isolines and the like, is no source.
+    curves = [item for item in candidates if item.type == "CURVE" and SOURCE not in item]
+    if not curves:
+        place = f"in collection '{collection}'" if collection else f"parented to '{source.name}'"
+        raise BadInputError(f"'{source.name}': no curve is {place}; choose one to measure from")
+    return sorted(curves, key=lambda item: item.name_full), where
+
+
+def polylines_of(item: bpy.types.Object) -> list[Polyline]:
+    """The splines of a curve object as Blender draws them without bevel, its modifiers included.
+
+    The curve is copied for a moment, since its own bevel would make it a tube. Modifiers that make a surface of it do
+    not count.
+    """
+    plain = item.data.copy()
+    plain.bevel_mode, plain.bevel_object = "ROUND", None
+    plain.bevel_depth = plain.extrude = plain.offset = 0.0
+    plain.dimensions, plain.twist_mode = "3D", item.data.twist_mode
+    try:
+        lines = _modified(item, plain) if any(modifier.show_viewport for modifier in item.modifiers) else None
+        return _plain(item, plain) if lines is None else lines
+    finally:
+        bpy.data.curves.remove(plain)
+
+
+def _plain(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline]:
+    holder = bpy.data.objects.new("Saddleback", plain)
+    try:
+        with evaluated(bpy.context, [item]) as (shown,):
+            lines = _lines(shown, holder.to_mesh())
+        holder.to_mesh_clear()
+    finally:
+        bpy.data.objects.remove(holder)
+    return lines
+
+
+def _modified(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline] | None:
+    """What modifiers make of the curve, None where that has faces. Only what is in a scene is modified."""
+    scene = bpy.context.scene.collection
+    holder = item.copy()
+    holder.data, holder.hide_viewport = plain, False
+    scene.objects.link(holder)
+    try:
+        shown = holder.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        mesh = shown.to_mesh()
+        lines = None if len(mesh.polygons) else _lines(shown, mesh)
+        shown.to_mesh_clear()
+    finally:
+        bpy.data.objects.remove(holder)
+    return lines
+
+
+def _lines(item: bpy.types.Object, mesh: bpy.types.Mesh) -> list[Polyline]:
+    places = to_world(item, compat.read_positions(mesh))
+    return [
+        Polyline(places[numbers], closed) for numbers, closed in chains(len(places), compat.read_edge_vertices(mesh))
+    ]

@@ -1,0 +1,105 @@
+"""A Blender mesh -> the arrays of a surface, in world space."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import compat
+from ...core.errors import BadInputError
+from ...core.requests import Surface
+from ...core.results import Indices, Reals
+from .evaluated import evaluated
+
+
+@contextmanager
+def mesh_of(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> Iterator[bpy.types.Mesh]:
+    """The object's mesh, or with `use_modifiers` its evaluated one, to be read only inside the `with`."""
+    if not use_modifiers:
+        yield source.data
+        return
+    with modified(context, source) as (_, mesh):
+        yield mesh
+
+
+@contextmanager
+def modified(context: bpy.types.Context, item: bpy.types.Object) -> Iterator[tuple[bpy.types.Object, bpy.types.Mesh]]:
+    """The object and its mesh as evaluated, whether or not the view layer shows it; to be read inside the `with`."""
+    with evaluated(context, [item]) as (shown,):
+        mesh = shown.to_mesh(preserve_all_data_layers=True, depsgraph=context.evaluated_depsgraph_get())
+        try:
+            yield shown, mesh
+        finally:
+            shown.to_mesh_clear()
+
+
+def read_surface(source: bpy.types.Object, mesh: bpy.types.Mesh, check: bool = True) -> Surface:
+    """The surface of `mesh` as placed in the world by `source`: scale applied, polygons cut into triangles.
+
+    Raises BadInputError for a mesh without faces and, with `check`, for coordinates that are not finite.
+    """
+    vertices = to_world(source, compat.read_positions(mesh))
+    if check and not np.isfinite(vertices).all():
+        vertex = int(np.nonzero(~np.isfinite(vertices).all(axis=1))[0][0])
+        raise BadInputError(f"'{source.name}': vertex {vertex} is not at a finite place; delete it or press Repair")
+    triangles = read_triangles(mesh)
+    if not len(triangles):
+        raise BadInputError(f"'{source.name}' has no faces; choose an object with a surface")
+    if source.matrix_world.determinant() < 0:  # a mirrored object shows its faces from the other side
+        triangles = np.ascontiguousarray(triangles[:, ::-1])
+    used, triangles = _compact(triangles, len(vertices))
+    count = len(vertices)
+    return Surface(source.name, vertices if used is None else vertices[used], triangles, count, used)
+
+
+def read_triangles(mesh: bpy.types.Mesh) -> Indices:
+    """(F, 3) vertices of the mesh's triangles, polygons cut as Blender draws them."""
+    if len(mesh.loops) == 3 * len(mesh.polygons) and _all_triangles(mesh):
+        return compat.read_corner_vertices(mesh).reshape(-1, 3)
+    mesh.calc_loop_triangles()
+    return compat.read_numbers(mesh.loop_triangles, "vertices", 3).reshape(-1, 3)
+
+
+def read_triangle_polygons(mesh: bpy.types.Mesh) -> Indices:
+    """(F,) polygon that each triangle of `read_triangles` is part of."""
+    mesh.calc_loop_triangles()
+    return compat.read_numbers(mesh.loop_triangles, "polygon_index")
+
+
+def read_marked_edges(mesh: bpy.types.Mesh) -> Indices:
+    """(n, 2) vertices of the edges that are marked sharp."""
+    is_sharp = np.empty(len(mesh.edges), np.bool_)
+    mesh.edges.foreach_get("use_edge_sharp", is_sharp)
+    return compat.read_edge_vertices(mesh)[is_sharp]
+
+
+def to_world(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals:
+    """(n, 3) object-space positions -> world space, in double precision."""
+    matrix = np.array(source.matrix_world, np.float64)
+    return positions.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def from_world(source: bpy.types.Object, points: Reals) -> Reals:
+    """(n, 3) world space -> the object's own space."""
+    matrix = np.linalg.inv(np.array(source.matrix_world, np.float64))
+    own: Reals = points @ matrix[:3, :3].T + matrix[:3, 3]
+    return own
+
+
+def _all_triangles(mesh: bpy.types.Mesh) -> bool:
+    return bool((compat.read_numbers(mesh.polygons, "loop_total") == 3).all())
+
+
+def _compact(triangles: Indices, vertex_count: int) -> tuple[Indices | None, Indices]:
+    """Drops the numbers that no triangle uses: (n,) old number of each vertex left, or None when all are; triangles."""
+    is_used = np.zeros(vertex_count, bool)
+    is_used[triangles.ravel()] = True
+    if is_used.all():
+        return None, triangles
+    used = np.nonzero(is_used)[0].astype(np.int32)
+    numbers = np.cumsum(is_used, dtype=np.int32) - np.int32(1)
+    return used, numbers[triangles]

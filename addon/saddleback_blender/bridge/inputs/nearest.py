@@ -1,0 +1,16 @@
+"""The vertex of an object that is nearest to a place in the world."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ...core.results import Reals
+from .mesh_in import read_surface
+
+
+def nearest_vertex(source: bpy.types.Object, place: Reals) -> Reals:
+    """(3,) its place in the world, measured there. Raises BadInputError for an object without faces."""
+    vertices = read_surface(source, source.data).vertices
+    nearest: Reals = vertices[np.linalg.norm(vertices - place, axis=1).argmin()]
+    return nearest

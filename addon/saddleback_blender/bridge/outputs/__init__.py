@@ -1,0 +1,1 @@
+"""Into Blender: attributes, curves, meshes and instances."""

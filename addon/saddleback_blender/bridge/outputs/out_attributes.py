@@ -1,0 +1,141 @@
+"""Arrays -> named attributes of a mesh, and the list of those that we made."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import rollback
+from ...blocks import is_editable
+from ...core.errors import BadInputError
+from ..tokens import SOURCE, owns, source_token, token_of
+
+# On a mesh: the attributes that we wrote, each with the token of the object that they are of, in JSON. Files of older
+# versions have names only, one a line. Clear removes these and no others.
+RECORD = "saddleback_attributes"
+
+# dtype kind and trailing shape -> attribute type, its element property, and the dtype that is copied without a loop.
+KINDS: dict[tuple[str, tuple[int, ...]], tuple[str, str, type[np.generic]]] = {
+    ("f", ()): ("FLOAT", "value", np.float32),
+    ("i", ()): ("INT", "value", np.int32),
+    ("b", ()): ("BOOLEAN", "value", np.bool_),
+    ("f", (2,)): ("FLOAT2", "vector", np.float32),
+    ("f", (3,)): ("FLOAT_VECTOR", "vector", np.float32),
+    ("f", (4,)): ("FLOAT_COLOR", "color", np.float32),
+}
+DOMAIN_ELEMENTS = {"POINT": "vertices", "EDGE": "edges", "FACE": "polygons", "CORNER": "loops"}
+
+
+def write_vertex_attributes(item: bpy.types.Object, values: dict[str, NDArray[Any]]) -> None:
+    """Writes arrays (V,) or (V, c) as vertex attributes of the object's mesh and remembers that they are ours."""
+    write_attributes(item, "POINT", values)
+
+
+def write_attributes(item: bpy.types.Object, domain: str, values: dict[str, NDArray[Any]]) -> None:
+    """Writes arrays (n,) or (n, c) as attributes of n elements of the object's mesh and remembers that they are ours.
+
+    An attribute of the same name is written over; one of another type or domain is replaced. Where nothing differs
+    nothing is written, so that Blender need not evaluate the object anew.
+    """
+    mesh = item.data
+    changed = {name: array for name, array in values.items() if not _holds(mesh, name, domain, array)}
+    for name, array in changed.items():
+        set_attribute(mesh, name, domain, array)
+    record(item, values)
+    if changed:
+        mesh.update_tag()
+
+
+def _holds(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[Any]) -> bool:
+    """Whether the mesh has this attribute with just these values."""
+    kind, element, dtype = KINDS[values.dtype.kind, values.shape[1:]]
+    attribute = mesh.attributes.get(name)
+    if attribute is None or (attribute.data_type, attribute.domain) != (kind, domain):
+        return False
+    if len(attribute.data) != len(values):
+        return False
+    now = np.empty(values.size, dtype)
+    attribute.data.foreach_get(element, now)
+    return bool(np.array_equal(now, np.ascontiguousarray(values, dtype).ravel()))
+
+
+def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[Any]) -> bpy.types.Attribute:
+    """Makes or fills one attribute. Raises BadInputError where Blender refuses the name or the length does not fit."""
+    kind, element, dtype = KINDS[values.dtype.kind, values.shape[1:]]
+    wanted = len(getattr(mesh, DOMAIN_ELEMENTS[domain]))
+    if len(values) != wanted:
+        raise BadInputError(f"'{mesh.name}': attribute '{name}' has {len(values)} values for {wanted} elements")
+    rollback.remember_attribute(mesh, name)
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.data_type, attribute.domain) != (kind, domain):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    if attribute is None:
+        attribute = mesh.attributes.new(name=name, type=kind, domain=domain)
+        if attribute is None or attribute.name != name:
+            if attribute is not None:
+                mesh.attributes.remove(attribute)
+            raise BadInputError(
+                f"'{mesh.name}': the name '{name}' is taken or too long; choose another name for the attribute"
+            )
+    attribute.data.foreach_set(element, np.ascontiguousarray(values, dtype).ravel())
+    return attribute
+
+
+def record(item: bpy.types.Object, names: Any) -> None:
+    """Adds names to the list of the object's mesh, as the object's; an output's own mesh is nobody else's."""
+    _keep(item.data, _writers(item.data) | dict.fromkeys(names, "" if SOURCE in item else source_token(item)))
+
+
+def forget(mesh: bpy.types.Mesh, name: str) -> None:
+    """Takes a name off the mesh's list: the attribute is the artist's from now on."""
+    _keep(mesh, {other: token for other, token in _writers(mesh).items() if other != name})
+
+
+def recorded(mesh: bpy.types.Mesh) -> list[str]:
+    """The attributes that we wrote, whether or not they still exist."""
+    return list(_writers(mesh))
+
+
+def clear_attributes(source: bpy.types.Object) -> int:
+    """Removes the attributes that we wrote for the object, and their list; returns how many there were.
+
+    Those of another object with the same mesh stay.
+    """
+    mesh = source.data
+    if not is_editable(mesh):
+        return 0
+    twins = [item for item in bpy.data.objects if item.data == mesh and item != source]
+    writers = _writers(mesh)
+    others = {token for item in twins for token in {token_of(item)} if token and owns(item, token)}
+    own = [name for name, token in writers.items() if token not in others]
+    count = 0
+    for name in own:
+        attribute = mesh.attributes.get(name)
+        if attribute is not None:
+            rollback.remember_attribute(mesh, name)
+            mesh.attributes.remove(attribute)
+            count += 1
+    _keep(mesh, {name: token for name, token in writers.items() if name not in own})
+    return count
+
+
+def _writers(mesh: bpy.types.Mesh) -> dict[str, str]:
+    """Token by name of the attributes that we wrote; "" where an older version wrote it."""
+    text = str(mesh.get(RECORD, ""))
+    return dict(json.loads(text)) if text.startswith("{") else dict.fromkeys(filter(None, text.split("\n")), "")
+
+
+def _keep(mesh: bpy.types.Mesh, writers: dict[str, str]) -> None:
+    text = json.dumps(writers, sort_keys=True)
+    if mesh.get(RECORD, "{}") == text:
+        return
+    rollback.remember_keys(mesh, RECORD)
+    if writers:
+        mesh[RECORD] = text
+    else:
+        del mesh[RECORD]

@@ -1,0 +1,126 @@
+"""The cells as a mesh object: a cell number and a color on every face."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ... import compat, nodes
+from ...core import cache
+from ...core.requests import digest
+from ...core.results import CellPolygons, CellsResult, Indices
+from ...core.settings import TessellateSettings, Voronoi2dSettings
+from ...core.shapes.local_places import local_uv
+from ...core.solids.cell_mesh import CellMesh, CellPieces, CellShape, cell_pieces, raise_cells
+from ...core.solids.mesh_edges import triangle_edges
+from ...core.surfaces.cell_colors import cell_colors, linear_to_srgb
+from .out_attributes import set_attribute
+from .out_collection import level_place, replace_object, to_place
+
+CELLS_ROLE = "cells"
+CELL_ATTRIBUTE = "saddleback_cell"
+LOCAL_UV = "saddleback_local"
+# On the object: how many cells its gap left nothing of.
+VANISHED = "saddleback_vanished_cells"
+# A plateau's edge is steeper than this, and a mesh fine enough for cells bends less from face to face.
+CREASE_ANGLE = math.radians(30.0)
+
+
+def write_cells(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: CellsResult,
+    settings: TessellateSettings | Voronoi2dSettings,
+    role: str = CELLS_ROLE,
+) -> bpy.types.Object:
+    """Makes or replaces the source's cells object; gap, inset and thickness are in world units."""
+    shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
+    cells = raise_cells(_pieces(result, shape), shape)
+    colors = cell_colors(len(result.sites_position), result.edge_cells)
+    place = level_place(source)
+    mesh = _mesh(to_place(place, cells.vertices), cells, colors, compat.is_shaded_smooth(source.data))
+    if isinstance(settings, TessellateSettings) and settings.local_uv:
+        places = local_uv(
+            cells.vertices, cells.triangles, cells.triangle_cell, result.sites_position, result.sites_normal
+        )
+        mesh.uv_layers.new(name=LOCAL_UV).data.foreach_set("uv", places.astype(np.float32).ravel())
+    item = _shown(context, source, role, mesh, place)
+    item[VANISHED] = len(cells.vanished)
+    return item
+
+
+def write_polygons(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    cells: CellPolygons,
+    count: int,
+    neighbors: Indices,
+    vanished: int,
+    role: str,
+) -> bpy.types.Object:
+    """Makes or replaces the source's cells object from polygons; `neighbors` (e, 2) get colors unlike each other."""
+    place = level_place(source)
+    mesh = _new_mesh(to_place(place, cells.vertices))
+    compat.write_polygons(mesh, cells.corners, cells.offsets)
+    colors = cell_colors(count, neighbors)
+    compat.shade_flat(mesh)
+    mesh.update(calc_edges=True)
+    set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.polygon_cell)
+    _write_colors(mesh, colors, np.repeat(cells.polygon_cell, np.diff(cells.offsets)))
+    item = _shown(context, source, role, mesh, place)
+    item[VANISHED] = vanished
+    return item
+
+
+def vanished_cells(item: bpy.types.Object) -> int:
+    """How many cells are missing in a cells object because they are narrower than the gap."""
+    return int(item.get(VANISHED, 0))
+
+
+def _pieces(result: CellsResult, shape: CellShape) -> CellPieces:
+    """The cells with their gap, kept for the next run: it may change no more than inset or thickness."""
+    split = (result.split_vertices, result.split_triangles, result.split_cell)
+    key = ("cell pieces", digest(*split, shape.gap, shape.cuts))
+    return cache.shared.get(key, lambda: cell_pieces(*split, shape), lambda pieces: pieces.nbytes)
+
+
+def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray, is_smooth: bool) -> bpy.types.Mesh:
+    mesh = _new_mesh(positions)
+    compat.write_corners(mesh, cells.triangles)
+    compat.write_edges(mesh, *triangle_edges(cells.triangles, len(positions)))  # sooner than Blender finds them
+    mesh.update()
+    set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.triangle_cell)
+    _write_colors(mesh, colors, np.repeat(cells.triangle_cell, 3))
+    if is_smooth:
+        compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
+    else:
+        compat.shade_flat(mesh)
+    return mesh
+
+
+def _new_mesh(positions: np.ndarray) -> bpy.types.Mesh:
+    mesh = bpy.data.meshes.new("Saddleback Cells")
+    mesh.vertices.add(len(positions))
+    mesh.vertices.foreach_set("co", positions.astype(np.float32).ravel())
+    return mesh
+
+
+def _shown(
+    context: bpy.types.Context, source: bpy.types.Object, role: str, mesh: bpy.types.Mesh, place: Matrix
+) -> bpy.types.Object:
+    mesh.materials.append(nodes.cells_material())
+    return replace_object(context, source, role, mesh, place)
+
+
+def _write_colors(mesh: bpy.types.Mesh, colors: np.ndarray, corner_cell: np.ndarray) -> None:
+    """Of corners, as scripts find them whether cells share vertices or not; Blender does not show colors of faces.
+
+    Blender keeps them as sRGB: given so, a color is converted once a cell, not once a corner.
+    """
+    color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
+    rgba = np.column_stack([linear_to_srgb(colors), np.ones(len(colors))]).astype(np.float32)
+    color.data.foreach_set("color_srgb", rgba.take(corner_cell, axis=0).ravel())
+    compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)

@@ -1,0 +1,64 @@
+"""The centers of the cells as points that carry what something put on them needs to know."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ... import nodes
+from ...blocks import find
+from ...core.errors import BadInputError
+from ...core.results import CellsResult
+from ...core.settings import TessellateSettings, Voronoi2dSettings
+from ...core.surfaces.centers import cell_size, euler_to_normal
+from .out_attributes import set_attribute
+from .out_collection import directions_to_place, find_output, level_place, replace_object, to_place
+
+CENTERS_ROLE = "centers"
+CELL_ATTRIBUTE, AREA_ATTRIBUTE, NORMAL_ATTRIBUTE = "saddleback_cell", "saddleback_area", "saddleback_normal"
+
+
+def write_centers(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: CellsResult,
+    settings: TessellateSettings | Voronoi2dSettings,
+    role: str = CENTERS_ROLE,
+) -> bpy.types.Object:
+    """Makes or replaces the source's centers object, with the chosen object on every center.
+
+    Point attributes: cell, area (world units squared), normal (unit), size (radius of the disk of that area) and
+    rotation (Euler XYZ that takes Z to the normal).
+    """
+    instance = _instance(source, settings.instance_object, role)
+    place = level_place(source)
+    mesh = bpy.data.meshes.new("Saddleback Centers")
+    count = len(result.sites_position)
+    mesh.vertices.add(count)
+    mesh.vertices.foreach_set("co", to_place(place, result.sites_position).astype(np.float32).ravel())
+    normal = directions_to_place(place, result.sites_normal)
+    columns: dict[str, np.ndarray] = {
+        CELL_ATTRIBUTE: np.arange(count, dtype=np.int32),
+        AREA_ATTRIBUTE: result.cell_area,
+        NORMAL_ATTRIBUTE: normal,
+        nodes.SIZE_ATTRIBUTE: cell_size(result.cell_area),
+        nodes.ROTATION_ATTRIBUTE: euler_to_normal(normal),
+    }
+    for name, values in columns.items():
+        set_attribute(mesh, name, "POINT", values)
+    mesh.update()
+    item = replace_object(context, source, role, mesh, place)
+    nodes.set_instances(item, instance, settings.instance_scale)
+    return item
+
+
+def _instance(source: bpy.types.Object, name: str, role: str) -> bpy.types.Object | None:
+    """The object to put on the centers. Raises BadInputError where none has that name, or it is the centers'."""
+    if not name:
+        return None
+    instance = find(bpy.data.objects, name)
+    if instance is None:
+        raise BadInputError(f"There is no object '{name}' to put on the centers of '{source.name}'; choose another")
+    if instance == find_output(source, role):
+        raise BadInputError(f"'{name}' holds the centers themselves and cannot be put on them; choose another object")
+    return instance

@@ -1,0 +1,248 @@
+"""Output objects: where they go, how they are found again, and how they all go away.
+
+An output knows its source by a token, a random word kept on both as a custom property, so that both may be renamed,
+saved and reopened; and by being its child, which tells a source from its duplicate (a duplicate has the same token, but
+not the same children). An artist's duplicate of an output is the artist's: the name tells it from ours. No pointer is
+kept, since a pointer in a custom property would keep a deleted object in the file.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ... import nodes, rollback
+from ...blocks import is_editable
+from ..tokens import SOURCE, forget_token, owns, source_token, token_of
+from .out_attributes import clear_attributes
+from .rest_places import forget_rest
+
+ROLE = "saddleback_role"  # on outputs: what it shows
+NAME = "saddleback_name"  # on outputs: the name that we gave it
+PLACE = "saddleback_place"  # on outputs: the matrix that we gave it
+MATERIALS = "saddleback_materials"  # on outputs: the names of the materials that we gave it, one a line
+COLLECTION = "saddleback_outputs"  # on our collections
+
+COLLECTION_NAME = "Saddleback"
+
+
+def output_collection(context: bpy.types.Context, source: bpy.types.Object) -> bpy.types.Collection:
+    """The collection `Saddleback` beside the source: found by its mark, whatever its name is by now, or made."""
+    scene = context.scene.collection
+    homes = [home for home in _reachable(context) if source.name in home.objects and is_editable(home)]
+    home = homes[0] if homes else scene
+    if COLLECTION in home:  # the source is an output itself
+        return home
+    for child in home.children:
+        if COLLECTION in child and is_editable(child):
+            return child
+    collection = bpy.data.collections.new(COLLECTION_NAME)
+    collection[COLLECTION] = True
+    home.children.link(collection)
+    return collection
+
+
+def replace_object(
+    context: bpy.types.Context, source: bpy.types.Object, role: str, data: bpy.types.ID, place: Matrix | None = None
+) -> bpy.types.Object:
+    """Shows `data` as the source's output of this role: in the object that is there from the last run, or a new one.
+
+    `place` is the world matrix that the data is made for, the source's own by default. What the artist did to the
+    object stays: name, collection, modifiers, materials, and a move away from where we put it. An output that was made
+    in another scene is shown in this one, too.
+    """
+    place = source.matrix_world.copy() if place is None else place
+    item = find_output(source, role)
+    if item is not None and item.type != _object_type(data):
+        remove_object(item)
+        item = None
+    if item is None:
+        item = bpy.data.objects.new(f"{source.name} {role.title()}", data)
+        item[ROLE], item[NAME] = role, item.name
+        moved = Matrix.Identity(4)
+        given = _names(data)
+    else:
+        rollback.remember(item, "matrix_basis", "matrix_parent_inverse", "parent_type", "parent", "data")
+        rollback.remember_keys(item, MATERIALS, SOURCE, PLACE)
+        moved = _artists_move(item)
+        given = _names(data)
+        _swap_data(item, data)
+    item[MATERIALS] = "\n".join(given)
+    if not any(home in item.users_collection for home in _reachable(context)):
+        collection = output_collection(context, source)
+        collection.objects.link(item)
+        rollback.undo_with(partial(collection.objects.unlink, item))
+    item[SOURCE] = source_token(source)
+    item.parent, item.parent_type = source, "OBJECT"
+    # Location, rotation and scale cannot hold a shear: the parent's inverse holds it.
+    basis, inverse = Matrix.LocRotScale(*place.decompose()), source.matrix_world.inverted_safe()
+    is_sheared = not _are_equal(basis, place)
+    item.matrix_parent_inverse = inverse @ place @ basis.inverted_safe() if is_sheared else inverse
+    item[PLACE] = [value for row in (basis if is_sheared else place) for value in row]
+    item.matrix_basis = moved @ (basis if is_sheared else place)
+    data.name = item.name
+    return item
+
+
+def _reachable(context: bpy.types.Context) -> list[bpy.types.Collection]:
+    scene = context.scene.collection
+    return [scene, *scene.children_recursive]
+
+
+def level_place(source: bpy.types.Object) -> Matrix:
+    """The source's place and turn without its scale, so that round tubes and instances stay round."""
+    location, rotation, _ = source.matrix_world.decompose()
+    place: Matrix = Matrix.Translation(location) @ rotation.to_matrix().to_4x4()
+    return place
+
+
+def to_place(place: Matrix, positions: np.ndarray) -> np.ndarray:
+    """World positions (n,3) as seen from an object whose world matrix is `place`."""
+    inverse = np.linalg.inv(np.array(place, np.float64))
+    return positions @ inverse[:3, :3].T + inverse[:3, 3]
+
+
+def directions_to_place(place: Matrix, directions: np.ndarray) -> np.ndarray:
+    """World directions (n,3) as seen from an object whose world matrix is `place`, a turn without scale."""
+    return directions @ np.array(place, np.float64)[:3, :3]
+
+
+def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
+    """What we made for the source and still exists, one object for each role."""
+    token = token_of(source)
+    if not token or not owns(source, token):
+        return []
+    by_role: dict[str, list[bpy.types.Object]] = {}
+    for item in bpy.data.objects:
+        is_ours = item.get(SOURCE) == token and item.library is None and item != source
+        if is_ours and (item.parent is None or item.parent == source or token_of(item.parent) != token):
+            by_role.setdefault(str(item.get(ROLE)), []).append(item)
+    return [_original(candidates) for candidates in by_role.values()]
+
+
+def find_output(source: bpy.types.Object, role: str) -> bpy.types.Object | None:
+    """The source's output of a role, None where there is none."""
+    return next((item for item in outputs_of(source) if item[ROLE] == role), None)
+
+
+def remove_output(source: bpy.types.Object, role: str) -> bool:
+    """Removes the output of one role, when its kind is no longer wanted; says whether there was one."""
+    item = find_output(source, role)
+    if item is None:
+        return False
+    collections = list(item.users_collection)
+    remove_object(item)
+    rollback.when_written(partial(_remove_empty, collections))
+    return True
+
+
+def clear_outputs(context: bpy.types.Context, source: bpy.types.Object) -> int:
+    """Removes all that we made for the source and nothing else; returns how many objects and attributes went."""
+    items = outputs_of(source)
+    collections = [collection for item in items for collection in item.users_collection]
+    for item in items:
+        remove_object(item)
+    rollback.when_written(partial(_remove_empty, collections))
+    rollback.when_written(nodes.remove_unused)
+    cleared = clear_attributes(source)
+    forget_rest(source)
+    forget_token(source)
+    rollback.when_written(context.view_layer.update)
+    return len(items) + cleared
+
+
+def remove_object(item: bpy.types.Object) -> None:
+    """Removes an object, and its data and node groups unless something else uses them, when all is written.
+
+    Until then it is no output any more, and its name is free.
+    """
+    rollback.remember_keys(item, ROLE, SOURCE)
+    for key in (ROLE, SOURCE):
+        if key in item:
+            del item[key]
+    for block in (item, item.data) if item.data.users == 1 else (item,):
+        rollback.remember_name(block)
+        block.name = "Saddleback Former"
+    rollback.when_written(partial(_remove, item))
+
+
+def _remove(item: bpy.types.Object) -> None:
+    data, animation = item.data, item.animation_data
+    action = animation.action if animation is not None else None
+    groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
+    bpy.data.objects.remove(item)
+    _remove_data(data)
+    for group in groups:
+        if group is not None and nodes.is_ours(group) and group.users == 0:
+            bpy.data.node_groups.remove(group)
+    if action is not None and action.users == 0:
+        bpy.data.actions.remove(action)
+
+
+def _original(candidates: list[bpy.types.Object]) -> bpy.types.Object:
+    return min(candidates, key=lambda item: (item.name != item.get(NAME), item.name))
+
+
+def _object_type(data: bpy.types.ID) -> str:
+    return "CURVE" if isinstance(data, bpy.types.Curve) else "MESH"
+
+
+def _names(data: bpy.types.ID) -> list[str]:
+    return [material.name if material is not None else "" for material in data.materials]
+
+
+def _swap_data(item: bpy.types.Object, data: bpy.types.ID) -> None:
+    """Gives the object new data; materials that the artist put in the place of ours, or added, stay.
+
+    Slots are filled one by one: `materials.clear` would forget which faces show which.
+    """
+    old = item.data
+    before = str(item.get(MATERIALS, "\n".join(_names(data))))  # older files have no list
+    given = _counted(before.split("\n") if before else [])
+    chosen = dict(zip(given, old.materials, strict=False))
+    for slot, (name, number) in enumerate(_counted(_names(data))):
+        material = chosen.get((name, number), chosen.get((name, 0), data.materials[slot]))
+        data.materials[slot] = material
+    for material in old.materials[len(given) :]:
+        data.materials.append(material)
+    item.data = data
+    if old.users == 0:
+        rollback.remember_name(old)
+        old.name = "Saddleback Former"
+    rollback.when_written(partial(_remove_data, old))
+
+
+def _counted(names: list[str]) -> list[tuple[str, int]]:
+    """Each name and how often it came before."""
+    return [(name, names[:i].count(name)) for i, name in enumerate(names)]
+
+
+def _remove_data(data: bpy.types.ID) -> None:
+    if data.users == 0:
+        (bpy.data.curves if isinstance(data, bpy.types.Curve) else bpy.data.meshes).remove(data)
+
+
+def _artists_move(item: bpy.types.Object) -> Matrix:
+    """What the artist did to the place that we gave the object; exactly nothing where that is only rounding."""
+    ours = item.get(PLACE)
+    if ours is None or len(ours) != 16:
+        return Matrix.Identity(4)
+    values = [float(value) for value in ours]
+    before = Matrix([values[4 * row : 4 * row + 4] for row in range(4)])
+    return Matrix.Identity(4) if _are_equal(item.matrix_basis, before) else item.matrix_basis @ before.inverted_safe()
+
+
+def _are_equal(one: Matrix, other: Matrix) -> bool:
+    """But for rounding."""
+    size = max(1.0, max(abs(value) for row in one for value in row))
+    return all(abs(one[i][j] - other[i][j]) <= 1e-5 * size for i in range(4) for j in range(4))
+
+
+def _remove_empty(collections: list[bpy.types.Collection]) -> None:
+    """Removes those of our collections that hold nothing any more."""
+    for collection in set(collections):
+        if COLLECTION in collection and not collection.objects and not collection.children:
+            bpy.data.collections.remove(collection)

@@ -1,0 +1,62 @@
+"""A field of directions into Blender: the vector attribute, arrows to look at, streamlines."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ... import compat, nodes
+from ...core.fields.arrow_mesh import arrow_mesh
+from ...core.results import FieldResult, Reals
+from .out_attributes import write_attributes
+from .out_collection import level_place, replace_object, to_place
+from .out_curves import new_curve
+
+ARROWS_ROLE, STREAMLINES_ROLE = "arrows", "streamlines"
+SYMMETRY = "saddleback_symmetry"  # custom property of the mesh: how many directions the attribute stands for
+
+
+def write_directions(source: bpy.types.Object, surface: bpy.types.Object, name: str, result: FieldResult) -> None:
+    """Writes the field as unit vectors in the source's own space on the mesh of `surface`."""
+    own = _own_directions(source, result.directions)
+    write_attributes(surface, result.domain, {name: own.astype(np.float32)})
+    if surface.data.get(SYMMETRY) != result.symmetry:
+        surface.data[SYMMETRY] = result.symmetry
+
+
+def write_arrows(context: bpy.types.Context, source: bpy.types.Object, result: FieldResult) -> bpy.types.Object:
+    """Makes or replaces the source's arrows object, singularities with it."""
+    place = level_place(source)
+    arrows = arrow_mesh(result)
+    mesh = bpy.data.meshes.new("Saddleback Arrows")
+    mesh.vertices.add(len(arrows.vertices))
+    mesh.vertices.foreach_set("co", to_place(place, arrows.vertices).astype(np.float32).ravel())
+    compat.write_polygons(mesh, arrows.corners, arrows.offsets)
+    compat.write_numbers(mesh.polygons, "material_index", arrows.materials)
+    mesh.polygons.foreach_set("use_smooth", arrows.smooth.astype(bool))
+    mesh.update(calc_edges=True)
+    for material in nodes.field_materials():
+        mesh.materials.append(material)
+    return replace_object(context, source, ARROWS_ROLE, mesh, place)
+
+
+def write_streamlines(
+    context: bpy.types.Context, source: bpy.types.Object, result: FieldResult, radius: float
+) -> bpy.types.Object:
+    """Makes or replaces the source's streamlines object; the radius is in world units."""
+    assert result.streamlines is not None
+    place, lines = level_place(source), result.streamlines
+    points = to_place(place, lines.points)
+    ends = zip(lines.offsets[:-1], lines.offsets[1:], strict=True)
+    curve = new_curve("Saddleback Streamlines", ((points[begin:end], False) for begin, end in ends), radius)
+    curve.materials.append(nodes.edges_material())
+    return replace_object(context, source, STREAMLINES_ROLE, curve, place)
+
+
+def _own_directions(source: bpy.types.Object, directions: Reals) -> Reals:
+    """World directions as seen from the source, of unit length; zero stays zero."""
+    matrix = np.array(source.matrix_world, np.float64)[:3, :3]
+    own = directions @ np.linalg.inv(matrix).T
+    lengths = np.linalg.norm(own, axis=1, keepdims=True)
+    units: Reals = np.divide(own, lengths, out=np.zeros_like(own), where=lengths > 0)
+    return units

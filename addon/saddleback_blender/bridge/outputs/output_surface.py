@@ -1,0 +1,83 @@
+"""The mesh that attributes go to: the object's own or, where modifiers made other vertices, a new object beside it."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ... import compat
+from ...blocks import is_editable
+from ...core.errors import BadInputError
+from ..inputs.mesh_in import mesh_of
+from .out_attributes import recorded
+from .out_collection import find_output, replace_object
+
+SURFACE_ROLE = "surface"
+
+
+def output_surface(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> bpy.types.Object:
+    """The object whose mesh has the vertices that were read: the source, unless its own are others or are linked."""
+    if is_editable(source.data) and (not use_modifiers or has_own_faces(context, source)):
+        return source
+    existing = find_output(source, SURFACE_ROLE)
+    if existing is not None and _same_shape(context, source, existing, use_modifiers):
+        return existing  # with the other operators' results on it
+    if not use_modifiers:
+        return replace_object(context, source, SURFACE_ROLE, source.data.copy())
+    depsgraph = context.evaluated_depsgraph_get()
+    mesh = bpy.data.meshes.new_from_object(
+        source.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph
+    )
+    return replace_object(context, source, SURFACE_ROLE, mesh)
+
+
+def check_attribute_names(
+    source: bpy.types.Object, names: dict[str, str], types: dict[str, str], domain: str = "POINT"
+) -> None:
+    """Refuses names that would overwrite something else.
+
+    `names`: property -> attribute to be written; `types`: property -> its data type.
+    """
+    seen: set[str] = set()
+    for prop, name in names.items():
+        label = prop.replace("_", " ")
+        if not name or name.startswith(".") or name in ("position", "material_index"):
+            raise BadInputError(f"'{source.name}': the {label} cannot be called '{name}'; choose another name")
+        if name in seen:
+            raise BadInputError(
+                f"'{source.name}': two attributes are to be called '{name}'; choose another name for one"
+            )
+        seen.add(name)
+        if name in source.vertex_groups:
+            raise BadInputError(f"'{source.name}' has a vertex group '{name}': choose another name for the {label}")
+        old = source.data.attributes.get(name)
+        if (
+            old is not None
+            and name not in recorded(source.data)
+            and (old.domain != domain or old.data_type != types[prop])
+        ):
+            raise BadInputError(
+                f"'{source.name}' has another kind of attribute '{name}': choose another name for the {label}"
+            )
+
+
+def has_own_faces(context: bpy.types.Context, source: bpy.types.Object) -> bool:
+    """Whether the object's faces are those of its own mesh after its modifiers, too, wherever they have moved."""
+    with mesh_of(context, source, True) as mesh:
+        return _equal_faces(mesh, source.data)
+
+
+def _same_shape(
+    context: bpy.types.Context, source: bpy.types.Object, other: bpy.types.Object, use_modifiers: bool
+) -> bool:
+    with mesh_of(context, source, use_modifiers) as mesh:
+        return _equal_faces(mesh, other.data) and np.array_equal(
+            compat.read_positions(mesh), compat.read_positions(other.data)
+        )
+
+
+def _equal_faces(mesh: bpy.types.Mesh, other: bpy.types.Mesh) -> bool:
+    counts = [(len(one.vertices), len(one.loops), len(one.polygons)) for one in (mesh, other)]
+    if counts[0] != counts[1]:
+        return False
+    return bool(np.array_equal(compat.read_corner_vertices(mesh), compat.read_corner_vertices(other)))

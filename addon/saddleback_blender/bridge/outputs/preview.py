@@ -1,0 +1,170 @@
+"""A look at distances: a material of colors and lines on the object, without touching the artist's own materials.
+
+Each material slot of the object is linked to the object instead of the mesh and shows the preview; the mesh keeps its
+materials. Taking the preview away links the slots back.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import bpy
+
+from ... import compat, nodes, rollback
+
+KIND = "distance"
+ADDED_SLOT = "saddleback_preview_slot"  # on an object: the slot that a mesh without materials was given
+BEFORE = "saddleback_before_preview_"  # on an object, with a slot's number: the material that was linked to the object
+
+# Node names, by which a later run finds what it sets; all else of the material is the artist's to change.
+ATTRIBUTE, FARTHEST, SPACING, DARKNESS = "Distance", "Farthest", "Line Spacing", "Line Darkness"
+LINE_WIDTH = 0.05  # half of it, in spacings
+LINE_DARKNESS = 0.8
+
+# Near to far, linear: sand, orange, magenta, violet, night.
+RAMP = (
+    (0.00, (1.000, 0.835, 0.440)),
+    (0.25, (0.956, 0.339, 0.070)),
+    (0.50, (0.651, 0.060, 0.126)),
+    (0.75, (0.208, 0.022, 0.201)),
+    (1.00, (0.020, 0.012, 0.078)),
+)
+
+
+def show_preview(item: bpy.types.Object, attribute: str, farthest: float, spacing: float) -> bpy.types.Material:
+    """Shows the attribute from 0 to `farthest` in colors, with a line every `spacing` (0: none) mesh units."""
+    _remember(item)
+    material = _own_material(item)
+    if material is None:
+        material = _new_material()
+    _set(material, attribute, farthest, spacing)
+    if not len(item.material_slots):
+        item.data.materials.append(None)
+        item[ADDED_SLOT] = True
+    for number, slot in enumerate(item.material_slots):
+        if slot.link == "OBJECT" and slot.material is not None and not _is_preview(slot.material):
+            item[f"{BEFORE}{number}"] = slot.material
+        slot.link = "OBJECT"
+        slot.material = material
+    return material
+
+
+def hide_preview(item: bpy.types.Object) -> bool:
+    """Gives the object its own materials back; says whether it showed a preview."""
+    _remember(item)
+    shown = [(number, slot) for number, slot in enumerate(item.material_slots) if _is_preview(slot.material)]
+    materials = {slot.material for _, slot in shown}
+    for number, slot in shown:
+        key = f"{BEFORE}{number}"
+        slot.link = "OBJECT"
+        slot.material = item.get(key)
+        if item.get(key) is None:
+            slot.link = "DATA"
+    for key in [key for key in item.keys() if key.startswith(BEFORE)]:  # noqa: SIM118  (an ID is no dict)
+        del item[key]
+    if ADDED_SLOT in item:
+        del item[ADDED_SLOT]
+        if len(item.data.materials) == 1 and item.data.materials[0] is None:
+            compat.remove_material_slots(item.data)
+    for material in materials:
+        rollback.when_written(partial(_remove_if_unused, material))
+    return bool(shown)
+
+
+def _remember(item: bpy.types.Object) -> None:
+    """The slots, which are about to change."""
+    keys = [ADDED_SLOT, *(f"{BEFORE}{number}" for number in range(len(item.material_slots)))]
+    rollback.remember_keys(item, *keys)
+    slots = [(slot.link, slot.material) for slot in item.material_slots]
+    rollback.undo_with(partial(_put_back, item, slots))
+
+
+def _put_back(item: bpy.types.Object, slots: list[tuple[str, bpy.types.Material | None]]) -> None:
+    while len(item.data.materials) < len(slots):
+        item.data.materials.append(None)
+    for slot, (link, material) in zip(item.material_slots, slots, strict=False):
+        slot.link = link
+        slot.material = material
+    if not slots and len(item.data.materials):
+        compat.remove_material_slots(item.data)
+
+
+def _remove_if_unused(material: bpy.types.Material) -> None:
+    if material.users == 0:
+        bpy.data.materials.remove(material)
+
+
+def _is_preview(material: bpy.types.Material | None) -> bool:
+    return material is not None and material.get(nodes.MARK) == KIND
+
+
+def _own_material(item: bpy.types.Object) -> bpy.types.Material | None:
+    """The preview of an earlier run, unless another object (a duplicate of this one) shows it as well."""
+    for slot in item.material_slots:
+        if _is_preview(slot.material):
+            uses = sum(other.material == slot.material for other in item.material_slots)
+            return slot.material if slot.material.users <= uses and slot.material.library is None else None
+    return None
+
+
+def _set(material: bpy.types.Material, attribute: str, farthest: float, spacing: float) -> None:
+    tree = material.node_tree.nodes
+    if ATTRIBUTE in tree:
+        rollback.remember(tree[ATTRIBUTE], "attribute_name")
+        tree[ATTRIBUTE].attribute_name = attribute
+    values = {FARTHEST: max(farthest, 1e-30), SPACING: spacing if spacing > 0.0 else 1.0}
+    values[DARKNESS] = LINE_DARKNESS if spacing > 0.0 else 0.0
+    for name, value in values.items():
+        if name in tree:
+            rollback.remember(tree[name].inputs[1], "default_value")
+            tree[name].inputs[1].default_value = value
+
+
+def _new_material() -> bpy.types.Material:
+    """Distance / farthest -> ramp -> color, darkened where distance / spacing is near a whole number."""
+    material, shader = nodes.new_material("Saddleback Distance", KIND)
+    material.diffuse_color = (*RAMP[1][1], 1.0)
+    tree, link = material.node_tree.nodes, material.node_tree.links.new
+
+    def math(operation: str, name: str, second: float, x: float, y: float) -> Any:
+        node = tree.new("ShaderNodeMath")
+        node.operation, node.name, node.label = operation, name, name
+        node.inputs[1].default_value = second
+        node.location = (x, y)
+        return node
+
+    distance = tree.new("ShaderNodeAttribute")
+    distance.name = distance.label = ATTRIBUTE
+    distance.location = (-1300, 200)
+    share = math("DIVIDE", FARTHEST, 1.0, -1080, 300)
+    ramp = tree.new("ShaderNodeValToRGB")
+    ramp.location = (-860, 300)
+    colors = ramp.color_ramp.elements
+    colors[0].position, colors[1].position = RAMP[0][0], RAMP[-1][0]
+    for position, _ in RAMP[1:-1]:
+        colors.new(position)
+    for stop, (_, color) in zip(colors, RAMP, strict=True):
+        stop.color = (*color, 1.0)
+    turns = math("DIVIDE", SPACING, 1.0, -1080, 20)
+    to_line = math("PINGPONG", "To Nearest Line", 0.5, -860, 20)
+    on_line = math("LESS_THAN", "On Line", LINE_WIDTH, -680, 20)
+    dark = math("MULTIPLY", DARKNESS, LINE_DARKNESS, -500, 20)
+    bright = math("SUBTRACT", "Brightness", 0.0, -500, 200)
+    bright.inputs[0].default_value = 1.0
+    shaded = tree.new("ShaderNodeVectorMath")
+    shaded.operation = "SCALE"
+    shaded.location = (-280, 300)
+
+    link(distance.outputs["Fac"], share.inputs[0])
+    link(share.outputs[0], ramp.inputs[0])
+    link(distance.outputs["Fac"], turns.inputs[0])
+    link(turns.outputs[0], to_line.inputs[0])
+    link(to_line.outputs[0], on_line.inputs[0])
+    link(on_line.outputs[0], dark.inputs[0])
+    link(dark.outputs[0], bright.inputs[1])
+    link(ramp.outputs["Color"], shaded.inputs[0])
+    link(bright.outputs[0], shaded.inputs["Scale"])
+    link(shaded.outputs[0], shader.inputs["Base Color"])
+    shader.inputs["Roughness"].default_value = 0.6
+    return material

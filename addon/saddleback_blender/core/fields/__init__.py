@@ -1,0 +1,1 @@
+"""Densities and directions, from what was painted, drawn or found in images."""

@@ -1,0 +1,59 @@
+"""A vector attribute -> the library's field."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .. import native
+from ..errors import BadInputError
+from ..requests import GivenDirections, Surface
+from ..results import Reals
+
+LEAST = 1e-6  # of the longest vector: shorter ones are no direction
+
+
+def given_field(surface: Surface, given: GivenDirections, mesh: Any) -> Any:
+    """The field of the vectors; faces without one are told. Raises BadInputError."""
+    vectors = _of_faces(surface, given, mesh)
+    normals = _face_normals(mesh)
+    within = vectors - np.einsum("ij,ij->i", vectors, normals)[:, None] * normals
+    lengths = np.linalg.norm(within, axis=1)
+    bad = ~np.isfinite(lengths) | ~(lengths > LEAST * max(float(np.nanmax(lengths, initial=0.0)), 1e-30))
+    if bad.any():
+        raise BadInputError(
+            f"'{surface.name}': {given.label} has no direction along the surface on {int(bad.sum())} of {len(bad)} "
+            "faces; fill it, or let the Direction Field panel make the field"
+        )
+    return native.load().DirectionField.from_vectors(mesh, within, given.symmetry)
+
+
+def _of_faces(surface: Surface, given: GivenDirections, mesh: Any) -> Reals:
+    """(F, 3): a polygon's own, or the mean of the corners' as far as the symmetry lets them agree."""
+    if given.polygons is not None:
+        polygon_vectors: Reals = given.vectors[given.polygons]
+        return polygon_vectors
+    corners = given.vectors if surface.used is None else given.vectors[surface.used]
+    triangles, normals, n = mesh.triangles, _face_normals(mesh), given.symmetry
+    vertices = mesh.vertices
+    x = vertices[triangles[:, 1]] - vertices[triangles[:, 0]]
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    y = np.cross(normals, x)
+    total = np.zeros(len(triangles), complex)
+    for i in range(3):
+        vector = corners[triangles[:, i]]
+        number = np.einsum("ij,ij->i", vector, x) + 1j * np.einsum("ij,ij->i", vector, y)
+        length = np.abs(number)
+        unit = np.divide(number, length, out=np.zeros_like(number), where=length > 0)
+        total += length * unit**n
+    angle = np.angle(total) / n
+    found: Reals = np.abs(total)[:, None] * (np.cos(angle)[:, None] * x + np.sin(angle)[:, None] * y)
+    return found
+
+
+def _face_normals(mesh: Any) -> Reals:
+    a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    units: Reals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    return units

@@ -1,0 +1,180 @@
+"""Copies of shapes bent onto the surface, as one mesh that knows whose each face is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..progress import Progress
+from ..results import BentCopies, Indices, Reals
+from ..settings import DistributeSettings
+from ..surfaces.normals import normals_at
+from .shape_templates import ShapeTemplate, Solid
+
+THICKNESS = 0.12  # of a shape's radius: of raised pieces of surface, where none is given
+
+
+def bent_copies(
+    mesh: Any, mapped: Any, templates: Sequence[ShapeTemplate], settings: DistributeSettings, threads: int,
+    progress: Progress,
+) -> BentCopies:  # fmt: skip
+    """One copy for each placement that could be laid, those with a solid first."""
+    shapes, scales, mirrored = (
+        mapped.placements.shape.tolist(), mapped.placements.scale, mapped.placements.mirrored
+    )  # fmt: skip
+    pieces = []
+    with progress.stage(0.95, "bending shapes onto the surface") as job:
+        solids = [_triangulated(template.solid) for template in templates]
+        bent = mapped.bend(solids, settings.fit, threads=threads, job=job)
+    for shape, template in enumerate(templates):
+        if template.solid is not None:
+            pieces.append(_of_solid(bent, mapped, template.solid, shape))
+    for number, shape in enumerate(shapes):
+        if number % 32 == 0:
+            progress.check()
+        if number not in mapped.failures and templates[shape].solid is None:
+            height = settings.thickness or THICKNESS * float(scales[number])
+            pieces.append(_raised(mesh, mapped.patch(number), height, bool(mirrored[number]), number, shape))
+    return _joined(pieces)
+
+
+def _triangulated(solid: Solid | None) -> tuple[Reals, Indices] | None:
+    return None if solid is None else (solid.vertices, solid.corners[solid.parted()])
+
+
+@dataclass(frozen=True)
+class _Piece:
+    vertices: Reals
+    faces: Indices
+    barycentric: Reals
+    corners: Indices
+    offsets: Indices
+    uv: Reals
+    smooth: NDArray[np.bool_]
+    material: Indices
+    copy: Indices  # (polygons,)
+    shape: int
+
+
+def _joined(pieces: list[_Piece]) -> BentCopies:
+    counts = [len(piece.offsets) - 1 for piece in pieces]
+    firsts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
+    sizes = [np.diff(piece.offsets) for piece in pieces]
+    corners = [piece.corners + first for piece, first in zip(pieces, firsts, strict=False)]
+    return BentCopies(
+        vertices=_rows([piece.vertices for piece in pieces], 3),
+        faces=_row([piece.faces for piece in pieces], np.int32),
+        barycentric=_rows([piece.barycentric for piece in pieces], 3),
+        corners=_row(corners, np.int32),
+        offsets=np.concatenate([[0], np.cumsum(_row(sizes, np.int32))]).astype(np.int32),
+        uv=_rows([piece.uv for piece in pieces], 2),
+        smooth=_row([piece.smooth for piece in pieces], np.bool_),
+        material=_row([piece.material for piece in pieces], np.int32),
+        polygon_copy=_row([piece.copy for piece in pieces], np.int32),
+        polygon_shape=np.repeat([piece.shape for piece in pieces], counts).astype(np.int32),
+    )
+
+
+def _rows(parts: list[Reals], width: int) -> Reals:
+    rows: Reals = np.concatenate(parts) if parts else np.empty((0, width))
+    return rows
+
+
+def _row(parts: list[Any], dtype: type[np.generic]) -> Any:
+    return (np.concatenate(parts) if parts else np.empty(0)).astype(dtype)
+
+
+def _of_solid(bent: Any, mapped: Any, solid: Solid, shape: int) -> _Piece:
+    """All copies of a class: polygons as they were where nothing of them was divided, else triangles."""
+    parted = solid.parted()
+    polygon = (np.searchsorted(solid.offsets, parted[:, 0], "right") - 1).astype(np.int32)
+    copies = np.flatnonzero((mapped.placements.shape == shape) & (np.diff(bent.begins) > 0))
+    begins, ends = bent.begins[copies], bent.begins[copies + 1]
+    used = np.concatenate([np.arange(b, e) for b, e in zip(begins, ends, strict=True)] or [np.empty(0, np.int64)])
+    order = np.zeros(len(bent.vertices), np.int64)  # of a vertex among those used
+    order[used] = np.arange(len(used))
+    rank = np.zeros(len(mapped.placements), np.int64)
+    rank[copies] = np.arange(len(copies))
+
+    mine = np.flatnonzero(np.isin(bent.triangle_copy, copies))
+    source, owner = bent.triangle_source[mine], rank[bent.triangle_copy[mine]]
+    # A polygon is whole where each of its triangles is there once.
+    parts = np.bincount(owner * len(parted) + source, minlength=len(copies) * len(parted)).reshape(-1, len(parted))
+    is_whole = np.ones((len(copies), len(solid.offsets) - 1), bool)
+    row, triangle = np.nonzero(parts != 1)
+    is_whole[row, polygon[triangle]] = False
+    whole_row, whole = np.nonzero(is_whole)
+    is_mirrored = np.asarray(mapped.placements.mirrored)[copies][whole_row]
+
+    sizes = np.diff(solid.offsets)[whole]
+    kept = _runs(solid.offsets[:-1][whole], sizes, is_mirrored)
+    kept_corners = order[np.repeat(begins[whole_row], sizes) + solid.corners[kept]]
+    cut = mine[~is_whole[owner, polygon[source]]]
+    cut_source = bent.triangle_source[cut]
+    cut_uv = np.einsum("tck,tkj->tcj", bent.weights[cut], solid.uv[parted[cut_source]]).reshape(-1, 2)
+    of_cut = polygon[cut_source]
+    all_sizes = np.concatenate([sizes, np.full(len(cut), 3)])
+    return _Piece(
+        vertices=bent.vertices[used],
+        faces=bent.surface.faces[used],
+        barycentric=bent.surface.barycentric[used],
+        corners=np.concatenate([kept_corners, order[bent.triangles[cut].ravel()]]).astype(np.int32),
+        offsets=np.concatenate([[0], np.cumsum(all_sizes)]).astype(np.int32),
+        uv=np.concatenate([solid.uv[kept], cut_uv]),
+        smooth=np.concatenate([solid.smooth[whole], solid.smooth[of_cut]]),
+        material=np.concatenate([solid.material[whole], solid.material[of_cut]]),
+        copy=np.concatenate([copies[whole_row], bent.triangle_copy[cut]]).astype(np.int32),
+        shape=shape,
+    )
+
+
+def _runs(firsts: Indices, sizes: Indices, is_backwards: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The corners of polygons one after the other, each from its first on, or from its last back."""
+    within = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    back = np.repeat(firsts + sizes - 1, sizes) - within
+    forth = np.repeat(firsts, sizes) + within
+    runs: NDArray[np.int64] = np.where(np.repeat(is_backwards, sizes), back, forth)
+    return runs
+
+
+def _raised(mesh: Any, patch: Any, height: float, is_mirrored: bool, copy: int, shape: int) -> _Piece:
+    """A piece of the surface, raised by a height, with walls down to the surface all around."""
+    places, triangles = np.asarray(patch.vertices), np.asarray(patch.triangles)
+    points = patch.surface
+    up = normals_at(mesh.vertices, mesh.triangles, points.faces, points.barycentric)
+    begin, end = _border(triangles)
+    below = np.full(len(places), -1)
+    rim = np.unique(np.concatenate([begin, end]))
+    below[rim] = len(places) + np.arange(len(rim))
+    walls = np.stack([below[begin], below[end], end, begin], axis=1)
+    uv = np.asarray(patch.uv)
+    uv = 0.5 + 0.5 * uv * (1.0, -1.0 if is_mirrored else 1.0)
+    uv = np.concatenate([uv, uv[rim]])
+    corners = np.concatenate([triangles.ravel(), walls.ravel()]).astype(np.int32)
+    sizes = np.concatenate([np.full(len(triangles), 3), np.full(len(walls), 4)])
+    is_top = np.arange(len(sizes)) < len(triangles)
+    return _Piece(
+        vertices=np.concatenate([places + height * up, places[rim]]),
+        faces=np.concatenate([points.faces, points.faces[rim]]),
+        barycentric=np.concatenate([points.barycentric, points.barycentric[rim]]),
+        corners=corners,
+        offsets=np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32),
+        uv=uv[corners],
+        smooth=is_top,
+        material=np.zeros(len(sizes), np.int32),
+        copy=np.full(len(sizes), copy, np.int32),
+        shape=shape,
+    )
+
+
+def _border(triangles: Indices) -> tuple[Indices, Indices]:
+    """Begin and end of the edges that only one triangle has, as it runs through them."""
+    begin, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    size = int(triangles.max(initial=0)) + 1
+    there, back = begin.astype(np.int64) * size + end, end.astype(np.int64) * size + begin
+    lone = ~np.isin(there, back)
+    return begin[lone], end[lone]

@@ -1,0 +1,1 @@
+"""Cells, ribs and plates as meshes with thickness: cut, raised, closed."""

@@ -1,0 +1,167 @@
+"""The ribs between cells as a strip of the surface: all that lies within half the rib's width of a line between cells.
+
+The mesh is refined where ribs run, until no edge there is longer than half their width; then it is cut along the level
+of the distance to the lines. It is not cut along the lines themselves, so no triangle is thinner than the mesh's own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import native
+from ..errors import BadInputError
+from ..progress import Progress
+from ..results import Indices, Reals
+from .boundary_distance import segment_distance
+from .level_cut import cut_at_level, split_edges
+from .mesh_edges import border_edges
+
+# Vertices nearer to the level than this share of half the width are moved off it: then the cut passes through no
+# vertex, the strip is a surface everywhere (nowhere two pieces meet in a point), and no triangle is a needle.
+OFF_LEVEL = 0.05
+# Pairs of a point and a segment that are measured at once.
+PAIRS = 1 << 20
+# Ribs are this many times as long as wide at most, all together; a solid has about forty triangles for each.
+MOST_STEPS = 100_000
+POSITION, DISTANCE = slice(0, 3), 3
+
+
+@dataclass(frozen=True)
+class RibSurface:
+    """Refined mesh: vertices (n, 3), triangles (t, 3), and which of them (t,) are ribs."""
+
+    vertices: Reals
+    triangles: Indices
+    is_rib: NDArray[np.bool_]
+
+
+def rib_surface(name: str, mesh: Any, cells: Any, width: float, progress: Progress) -> RibSurface:
+    """The ribs of the library's cells on its mesh; a border of the mesh has a rib, too.
+
+    `name` of the object, for messages. Raises BadInputError where there are no lines, or the ribs are too narrow for
+    the mesh. O(t) and the number of points times the number of segments around their cell.
+    """
+    length = _length(mesh, cells)
+    if not length:
+        raise BadInputError(f"'{name}': there are no lines between cells to make ribs of; ask for more cells")
+    if length > MOST_STEPS * width:
+        raise BadInputError(f"'{name}': ribs of width {width:g} are too narrow for its size; make them wider")
+    lines = _Lines(mesh, cells, width)
+    vertices, triangles = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.triangles, np.int32)
+    face = np.arange(len(triangles), dtype=np.int32)
+    distance = lines.distance(vertices, _surface_points(mesh, vertices, triangles, face, 0))
+    fields = np.column_stack([vertices, distance])
+    while True:
+        progress.check()
+        marked = _too_long(fields, triangles, width)
+        if not marked.any():
+            break
+        old = len(fields)
+        cut = split_edges(fields, triangles, marked)
+        fields, triangles, face = cut.fields, cut.triangles, face[cut.parent]
+        added = _surface_points(mesh, fields[:, POSITION], triangles, face, old)
+        fields[old:, DISTANCE] = lines.distance(fields[old:, POSITION], added)
+    level = 0.5 * width
+    above = fields[:, DISTANCE] - level
+    fields[:, DISTANCE] = level + np.where(above < 0, -1, 1) * np.maximum(abs(above), OFF_LEVEL * level)
+    fields[~np.isfinite(fields[:, DISTANCE]), DISTANCE] = 2 * width
+    cut = cut_at_level(fields, triangles, DISTANCE, level)
+    corner = cut.fields[cut.triangles, DISTANCE]
+    return RibSurface(cut.fields[:, POSITION], cut.triangles, corner.min(axis=1) < level)
+
+
+def _too_long(fields: Reals, triangles: Indices, width: float) -> NDArray[np.bool_]:
+    """Sides (t, 3) that are longer than half the width and may come nearer to a line than that."""
+    places, distance = fields[triangles, POSITION], fields[triangles, DISTANCE]
+    length = np.linalg.norm(np.roll(places, -1, axis=1) - places, axis=2)
+    # A distance changes by no more than the way.
+    least = 0.5 * (distance + np.roll(distance, -1, axis=1) - length)
+    long: NDArray[np.bool_] = (length > 0.5 * width) & (least < 0.5 * width)
+    return long
+
+
+def _surface_points(mesh: Any, places: Reals, triangles: Indices, face: Indices, first: int) -> Any:
+    """The refined mesh's vertices from `first` on as points of the mesh; `face` (t,) is where its triangles lie."""
+    owner = np.empty(len(places), np.int64)
+    owner[triangles.ravel()] = np.repeat(np.arange(len(triangles)), 3)
+    faces = face[owner[first:]]
+    corners = mesh.vertices[mesh.triangles[faces]]
+    away = corners - places[first:, None]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    opposite = np.cross(np.roll(away, -1, axis=1), np.roll(away, -2, axis=1))
+    weights = np.maximum(np.einsum("nij,nj->ni", opposite, normal), 0.0)
+    return native.load().SurfacePoints(faces, weights / weights.sum(axis=1, keepdims=True))
+
+
+def _length(mesh: Any, cells: Any) -> float:
+    """Of all lines between cells, and of the mesh's border."""
+    steps = np.diff(np.asarray(cells.edge_points), axis=0)
+    steps = np.delete(steps, np.asarray(cells.edge_offsets)[1:-1] - 1, axis=0)
+    start, end, _ = border_edges(np.asarray(mesh.triangles), len(mesh.vertices))
+    return float(sum(np.linalg.norm(ways, axis=1).sum() for ways in (steps, mesh.vertices[end] - mesh.vertices[start])))
+
+
+class _Lines:
+    """The lines between cells in straight pieces, listed by cell."""
+
+    def __init__(self, mesh: Any, cells: Any, width: float) -> None:
+        points, offsets = np.asarray(cells.edge_points), np.asarray(cells.edge_offsets)
+        line = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+        inner = np.flatnonzero(line[1:] == line[:-1])
+        sides = np.asarray(cells.edge_cells, np.int32).reshape(-1, 2)[line[inner]]
+        rim_first, rim_second, rim_cell = _rim(mesh, cells, 0.5 * width)
+        self.first = np.concatenate([points[inner], points[inner], rim_first])
+        self.second = np.concatenate([points[inner + 1], points[inner + 1], rim_second])
+        owner = np.concatenate([sides[:, 0], sides[:, 1], rim_cell])
+        order = np.argsort(owner, kind="stable")
+        self.first, self.second = self.first[order], self.second[order]
+        self.count = np.bincount(owner, minlength=len(cells.areas))
+        self.begin = np.cumsum(self.count) - self.count
+        self.cells = cells
+
+    def distance(self, places: Reals, points: Any) -> Reals:
+        """Distance (n,) to the lines around each point's own cell, straight through space; inf where there is none."""
+        found = np.full(len(places), np.inf)
+        if not len(places):
+            return found
+        own = self.cells.cells_at(points)
+        count = self.count[own]
+        total = np.cumsum(count)
+        cuts = np.searchsorted(total, np.arange(0, int(total[-1]) + PAIRS, PAIRS), side="left")
+        for low, high in pairwise(cuts):
+            part = np.arange(low, min(high + 1, len(places)))
+            part = part[count[part] > 0]
+            if not len(part):
+                continue
+            start = np.cumsum(count[part]) - count[part]
+            which = np.repeat(np.arange(len(part)), count[part])
+            segment = self.begin[own[part]][which] + np.arange(len(which)) - start[which]
+            length = segment_distance(places[part][which], self.first[segment], self.second[segment])
+            found[part] = np.minimum.reduceat(length, start)
+        return found
+
+
+def _rim(mesh: Any, cells: Any, step: float) -> tuple[Reals, Reals, Indices]:
+    """The mesh's border in pieces no longer than `step`: their ends (m, 3) and the cell (m,) of each piece's middle."""
+    triangles, vertices = np.asarray(mesh.triangles), np.asarray(mesh.vertices)
+    start, end, face = border_edges(triangles, len(vertices))
+    if not len(start):
+        return np.empty((0, 3)), np.empty((0, 3)), np.empty(0, np.int32)
+    pieces = np.maximum(np.ceil(np.linalg.norm(vertices[end] - vertices[start], axis=1) / step), 1).astype(np.int64)
+    edge = np.repeat(np.arange(len(start)), pieces)
+    number = np.arange(len(edge)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+
+    def along(share: Reals) -> Reals:
+        places: Reals = vertices[start[edge]] + share[:, None] * (vertices[end] - vertices[start])[edge]
+        return places
+
+    middle = (number + 0.5) / pieces[edge]
+    is_start, is_end = (triangles[face[edge]] == ends[edge][:, None] for ends in (start, end))
+    barycentric = is_start * (1 - middle)[:, None] + is_end * middle[:, None]
+    cell = cells.cells_at(native.load().SurfacePoints(face[edge], barycentric))
+    return along(number / pieces[edge]), along((number + 1) / pieces[edge]), cell

@@ -1,0 +1,1 @@
+"""Places on surfaces and what they carry: frames, normals, walks, grids."""

@@ -1,0 +1,32 @@
+"""The lines that a remesh shall keep: sharp edges, marked ones, the border."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .. import native
+from ..requests import Surface
+from ..results import Indices
+from ..settings import TessellateSettings
+from ..solids.mesh_edges import directed_edges, edge_keys
+
+
+def feature_lines(surface: Surface, mesh: Any, settings: TessellateSettings, marked: Indices | None) -> list[Any]:
+    """Curves on the library's mesh; none where none are wanted. `marked` (n, 2) speaks of the Blender mesh."""
+    if not (settings.hold_sharp or settings.hold_boundary or marked is not None):
+        return []
+    angle = settings.sharp_angle if settings.hold_sharp else math.pi
+    edges = None if marked is None else _edges_of_faces(surface, marked)
+    curves: list[Any] = native.load().feature_curves(mesh, angle, boundary=settings.hold_boundary, edges=edges)
+    return curves
+
+
+def _edges_of_faces(surface: Surface, marked: Indices) -> Indices:
+    """Numbers in the surface of the edges that faces have; loose ones are left out."""
+    edges = surface.compact(marked.ravel()).reshape(-1, 2)
+    count = len(surface.vertices)
+    known = edge_keys(*directed_edges(surface.triangles), count)
+    return edges[np.isin(edge_keys(edges[:, 0], edges[:, 1], count), known) & (edges >= 0).all(axis=1)]
