@@ -65,8 +65,11 @@ class Shape {
   bool has_half_turn_ = false;
 };
 
+}  // namespace saddleback
+
 /// Shapes of circumradius 1 about their center. \throw InputError for what makes no shape.
-namespace shapes {
+namespace saddleback::shapes {
+
 /// A regular polygon, its first corner on the x axis. corners >= 3.
 Shape disk(Index corners = 64);
 /// points >= 2 tips on the circle, the corners between them at the radius `inner` in (0, 1), one tip on the x axis.
@@ -80,7 +83,10 @@ Shape leaf(double aspect = 2.5, Index corners = 40);
 Shape drop(double round = 0.6, Index corners = 40);
 /// A disk less a disk of the radius `inner` in (0, 1] that is moved by `shift` along the x axis; open towards x.
 Shape crescent(double inner = 0.8, double shift = 0.4, Index corners = 48);
-}  // namespace shapes
+
+}  // namespace saddleback::shapes
+
+namespace saddleback {
 
 /// An image of a mask: rows from top to bottom, values 0 (outside) to 1 (inside).
 struct MaskImage {

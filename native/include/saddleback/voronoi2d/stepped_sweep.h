@@ -8,11 +8,11 @@
 
 #include "saddleback/types.h"
 
-namespace saddleback {
-
-namespace voronoi2d {
+namespace saddleback::voronoi2d {
 class DiagramSweep;
 }
+
+namespace saddleback {
 
 /// The step that computes Voronoi diagrams, one event at a time and from any center. Positions are rounded and so is
 /// the order of nearly simultaneous events; `voronoi_2d` gives the exact diagram. With weights the events are told from

@@ -4,8 +4,7 @@
 
 #include "saddleback/error.h"
 
-namespace saddleback {
-namespace voronoi2d {
+namespace saddleback::voronoi2d {
 namespace {
 
 WeightedPoint2 weighted_site(const Voronoi2d& diagram, Index site) {
@@ -46,7 +45,9 @@ void add_edge_points(const Voronoi2d& diagram, Index edge, double tolerance, dou
   points.push_back(second == k_none ? curve.at(to) : diagram.vertices[second]);
 }
 
-}  // namespace voronoi2d
+}  // namespace saddleback::voronoi2d
+
+namespace saddleback {
 
 using namespace voronoi2d;
 
