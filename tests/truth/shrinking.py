@@ -13,7 +13,7 @@ Rows = NDArray[np.int64]
 def fewest_rows(count: int, fails: Callable[[Rows], bool], tries: int = 400) -> Rows:
     """Fewer and fewer of `count` rows, as long as the rest still fails: delta debugging.
 
-    A. Zeller and R. Hildebrandt, Simplifying and isolating failure-inducing input, IEEE TSE 28 (2002).
+    After [zeller2002].
     """
     rows, block = np.arange(count), max(count // 2, 1)
     while tries > 0:

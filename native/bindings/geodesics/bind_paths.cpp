@@ -131,8 +131,8 @@ Raises:
     Cancelled: the job was.
 
 Notes:
-    O(n sqrt(n) log n) for n vertices within the radius. After X. Ying, Parallel geodesic computing, section 6.1, with
-    exact rays instead of arc lengths along offset curves.
+    O(n sqrt(n) log n) for n vertices within the radius. After [ying2014] section 6.1, with exact rays instead of arc
+    lengths along offset curves.
 )";
 
 /// A method for a class that another file binds.

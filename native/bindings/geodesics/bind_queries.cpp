@@ -224,9 +224,8 @@ Cancelled
 
 Notes
 -----
-Distances to sixteen landmarks bound what is left of a path (Goldberg and Harrelson, Computing the shortest path: A*
-search meets graph theory, SODA 2005), so that few vertices are looked at. The first call finds the landmarks: the time
-of 17 fields, 64 bytes a vertex.)";
+Distances to sixteen landmarks bound what is left of a path [goldberg2005], so that few vertices are looked at. The
+first call finds the landmarks: the time of 17 fields, 64 bytes a vertex.)";
 
 constexpr const char* k_distances_to_doc = R"(Distance of every target from the nearest source.
 
@@ -252,7 +251,7 @@ Cancelled
 Notes
 -----
 A field, and for each point inside a face a window propagation of its own; points near each other are joined by their
-straight geodesic. After X. Ying, thesis, section 4.4.4.)";
+straight geodesic. After [ying2014] section 4.4.4.)";
 
 }  // namespace
 

@@ -61,8 +61,8 @@ MeshError
 
 Notes
 -----
-O(n log n), and O(h^3) for a hole of h edges. Non-manifold edges are cut and stitched after Gueziec, Taubin, Lazarus and
-Horn (2001), holes filled after Barequet and Sharir (1995).)";
+O(n log n), and O(h^3) for a hole of h edges. Non-manifold edges are cut and stitched after [gueziec2001], holes filled
+after [barequet1995].)";
 
 }  // namespace
 

@@ -55,9 +55,8 @@ Raises:
 
 constexpr const char* k_trace_doc = R"(Walks straight on over the surface: the exponential map.
 
-Through a vertex the curve goes on with half of the total angle on either side (Polthier and Schmies, Straightest
-geodesics on polyhedral surfaces, 1998); at the boundary it stops, unless it runs along a straight border or touches a
-corner. O(faces crossed).
+Through a vertex the curve goes on with half of the total angle on either side [polthier1998]; at the boundary it stops,
+unless it runs along a straight border or touches a corner. O(faces crossed).
 
 Args:
     point: one surface point, or a vertex index.

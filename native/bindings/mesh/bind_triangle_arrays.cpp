@@ -180,7 +180,7 @@ Returns
 
 Notes
 -----
-O(V + T) for a fixed number of rings. Vector distance transform: P.-E. Danielsson, Euclidean distance mapping, 1980.)");
+O(V + T) for a fixed number of rings. A vector distance transform [danielsson1980].)");
   m.def("self_crossings", &crossings, py::arg("vertices"), py::arg("triangles"), py::kw_only(), py::arg("threads") = 0,
         py::arg("job") = py::none(),
         R"(Find the triangles that pass through each other.

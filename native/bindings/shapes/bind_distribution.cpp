@@ -54,9 +54,8 @@ Raises:
     Cancelled: the job was.
 
 Notes:
-    Distances are within the surface: sheets that lie close to each other know nothing of each other. After Blelloch,
-    Fineman and Shun, Greedy sequential maximal independent set and matching are parallel on average (2012), and Ebeida and
-    others, Efficient maximal Poisson-disk sampling (2011), for outlines instead of disks.
+    Distances are within the surface: sheets that lie close to each other know nothing of each other. After
+    [blelloch2012], and [ebeida2011] for outlines instead of disks.
 )";
 
 /// The result, and what it was made of.

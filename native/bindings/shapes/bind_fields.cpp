@@ -31,10 +31,9 @@ Raises:
 
 constexpr const char* k_direction_doc = R"(Directions all over a surface, smooth, with singularities where one wants.
 
-With `singularities`: the field that turns least of those that have exactly these (trivial connections: Crane, Desbrun and
-Schroeder 2010). Strokes and alignment turn it by one angle a face, which cannot change any index. Without: the smoothest
-field, or the one nearest to strokes and alignment, with the singularities that it then has (Knoeppel, Crane, Pinkall and
-Schroeder, Globally optimal direction fields, 2013).
+With `singularities`: the field that turns least of those that have exactly these (trivial connections [crane2010]).
+Strokes and alignment turn it by one angle a face, which cannot change any index. Without: the smoothest field, or the
+one nearest to strokes and alignment, with the singularities that it then has [knoppel2013].
 
 Args:
     mesh: the mesh, kept alive by the field.
@@ -138,13 +137,12 @@ Raises:
     Cancelled: the job was.
 
 Notes:
-    After Botsch and Kobbelt, An intuitive framework for real-time freeform modeling (2004), with one constraint a place.
+    After [botsch2004], with one constraint a place.
 )";
 
 constexpr const char* k_curvature_doc = R"(How the surface bends at each vertex.
 
-From the change of vertex normals over each face, averaged about vertices (Rusinkiewicz, Estimating curvatures and their
-derivatives on triangle meshes, 2004). O(F).
+From the change of vertex normals over each face, averaged about vertices [rusinkiewicz2004]. O(F).
 
 Returns:
     smallest, largest (V,) float64: principal curvatures, 1 / mesh units, positive where the surface bends away from its

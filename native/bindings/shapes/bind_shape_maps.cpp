@@ -36,8 +36,7 @@ Raises:
     Cancelled: the job was.
 
 Notes:
-    O(n log n + c m) a shape, for n vertices about it, m within it and c corners. After Melvaer and Reimers, Geodesic
-    polar coordinates on polygonal meshes (2012).
+    O(n log n + c m) a shape, for n vertices about it, m within it and c corners. After [melvaer2012].
 )";
 
 constexpr const char* k_mapped_doc =

@@ -148,7 +148,7 @@ InputError
 
 Notes
 -----
-O(V + T log T). P. Frey, H. Borouchaki: Surface mesh quality evaluation, 1999.)");
+O(V + T log T). After [frey1999].)");
 }
 
 }  // namespace saddleback::bindings

@@ -222,7 +222,7 @@ Cancelled
 
 Notes
 -----
-O(f log f) for f faces of a cell. H. Karcher: Riemannian center of mass and mollifier smoothing, 1977.)";
+O(f log f) for f faces of a cell. After [karcher1977].)";
 
 constexpr const char* k_center_doc = R"(Find the point from which squared geodesic distances to points are least in sum.
 
@@ -250,9 +250,8 @@ Cancelled
 Notes
 -----
 Steps to the mean of the points in the tangent plane, by exact distances, while they lower the sum and are longer than
-1e-9 of the points' spread. Where the sum has a crease, through a saddle vertex, they may end beside its least. A few log
-maps, O(m sqrt(m) log m) each for m vertices within the spread of the points. H. Karcher: Riemannian center of
-mass and mollifier smoothing, 1977.)";
+1e-9 of the points' spread. Where the sum has a crease, through a saddle vertex, they may end beside its least. A few
+log maps, O(m sqrt(m) log m) each for m vertices within the spread of the points. After [karcher1977].)";
 
 constexpr const char* k_voronoi_doc = R"(Assign every point of the surface to its nearest site.
 

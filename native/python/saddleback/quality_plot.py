@@ -11,7 +11,7 @@ from saddleback._saddleback import InputError, Quality
 
 _Floats = NDArray[np.float64]
 
-# Colors that people of every color vision tell apart (M. Okabe, K. Ito: Color universal design, 2002).
+# Colors that people of every color vision tell apart [okabe2002].
 _COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 _WIDTH, _HEIGHT, _MARGIN, _LEGEND = 260, 150, 30, 22
 

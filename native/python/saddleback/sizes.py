@@ -27,7 +27,7 @@ def blend_by_distance(distances: ArrayLike, values: ArrayLike, power: float = 2.
     ------
         InputError: shapes that do not fit, negative distances, values that are not finite.
 
-    After Shepard, A two-dimensional interpolation function for irregularly-spaced data (1968), with geodesic distances.
+    After [shepard1968], with geodesic distances.
     """
     far, known = np.asarray(distances, dtype=np.float64), np.asarray(values, dtype=np.float64)
     if far.ndim != 2 or known.shape != far.shape[:1] or not len(known):

@@ -23,11 +23,10 @@ struct SymmetricMatrix {
 };
 
 /// (n) unknowns in an order that keeps the factors of a matrix sparse: halves of the surface, one after the other, and
-/// last what lies between them; the halves in the same way (A. George, Nested dissection of a regular finite element
-/// mesh, 1973). O(n log n).
+/// last what lies between them; the halves in the same way (nested dissection [george1973]). O(n log n).
 std::vector<Index> dissection_order(const SymmetricMatrix& matrix, std::span<const Vec3> places);
 
-/// Factors L D L^T, row by row (T. Davis, Algorithm 849, 2005), with a look at the job between rows.
+/// Factors L D L^T, row by row [davis2005], with a look at the job between rows.
 class SparseCholesky {
  public:
   /// O(n log n) numbers and O(n^1.5) time on a surface, in dissection order. \throw Cancelled.

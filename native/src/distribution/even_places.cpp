@@ -1,7 +1,7 @@
 // Many more points than wanted, in the order of a curve that fills the surface: runs of them are compact pieces of
 // equal mass. Then each point goes to the piece whose middle is nearest, and middles move to those of their pieces, a
-// few times (Lloyd, Least squares quantization in PCM, 1982), which rounds the pieces off. Points count by the density
-// once more on the way: without, middles would drift from where it is high.
+// few times [lloyd1982], which rounds the pieces off. Points count by the density once more on the way: without,
+// middles would drift from where it is high.
 
 #include "distribution/even_places.h"
 

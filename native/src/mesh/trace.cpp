@@ -1,5 +1,4 @@
-// Straightest geodesics by unfolding one face at a time (Polthier and Schmies, Straightest geodesics on polyhedral
-// surfaces, 1998).
+// Straightest geodesics by unfolding one face at a time [polthier1998].
 //
 // The state is a half-edge h of the face being crossed, and the position and direction in the chart of h: from(h) at
 // the origin, to(h) on the positive x axis, the apex above it. Which edge the line leaves by is decided by the side of

@@ -1,7 +1,7 @@
 #pragma once
-// Exact sums and products of doubles: an expansion is a sum of doubles that do not overlap, the largest last.
-// J. R. Shewchuk: Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, 1997. No
-// allocation; plain functions, so that device code can use them as well. Exact unless a product over- or underflows.
+// Exact sums and products of doubles: an expansion is a sum of doubles that do not overlap, the largest last. After
+// [shewchuk1997]. No allocation; plain functions, so that device code can use them as well. Exact unless a product
+// over- or underflows.
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Decisions in the plane, for the processor and for devices. Every combinatorial decision on floating-point numbers:
-// first in doubles with an error bound, exactly where that cannot tell. The bounds are Shewchuk's (1997, section 4).
-// Coordinates must be finite and their products must not over- or underflow (a Mesh's are within 1e60; below 1e-60
+// first in doubles with an error bound, exactly where that cannot tell. The bounds are those of [shewchuk1997] section
+// 4. Coordinates must be finite and their products must not over- or underflow (a Mesh's are within 1e60; below 1e-60
 // differences count as none there).
 
 #include "predicates/expansion.h"

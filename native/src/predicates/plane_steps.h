@@ -16,8 +16,8 @@ namespace saddleback::predicates {
 
 namespace detail {
 
-/// The test as `in_circle` begins it, in any binary numbers with room for doubles. True if `sign` is certain;
-/// Shewchuk's bound (1997, section 4) for half a unit of the last place of theirs.
+/// The test as `in_circle` begins it, in any binary numbers with room for doubles. True if `sign` is certain; the bound
+/// of [shewchuk1997] section 4 for half a unit of the last place of theirs.
 template <class Real>
 bool find_in_circle(const Point2& a, const Point2& b, const Point2& c, const Point2& d, Sign& sign) {
   constexpr Real k_unit = std::numeric_limits<Real>::epsilon() / 2, k_bound = (10 + 96 * k_unit) * k_unit;

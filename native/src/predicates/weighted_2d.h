@@ -6,8 +6,7 @@
 // which is positive as neither hides the other. With q = (D, e) / N this is linear: f(u) = q.(u, 1). The site's cell
 // ends where the largest f of all others does. Two of them cross at a direction whose coordinates have one square root;
 // no decision here takes a polynomial of more than degree twelve. The usual tests of circles tangent to three others
-// take 14 and more (I. Z. Emiris and M. I. Karavelas: The predicates of the Apollonius diagram, 2006); that eight are
-// enough for the circle test was found by D. L. Millman (2007).
+// take 14 and more [emiris2006]; that eight are enough for the circle test was found in [millman2007].
 
 #include "predicates/predicates.h"
 #include "predicates/weighted_point.h"

@@ -1,5 +1,4 @@
-// Points are put in one by one, then pieces are made edges by exchanging the triangles that they cross (Sloan, A fast
-// algorithm for generating constrained Delaunay triangulations, 1993).
+// Points are put in one by one, then pieces are made edges by exchanging the triangles that they cross [sloan1993].
 
 #include "shape_mapping/constrained_triangulation.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // On which side of a line of the plane a point lies, never on it: all corners of outlines count as shifted by the same
 // infinitesimal vector (-e, -e^2) against all vertices. So every decision about outlines and flat faces agrees with
-// every other (Edelsbrunner and Muecke, Simulation of simplicity, 1990).
+// every other (simulation of simplicity [edelsbrunner1990]).
 
 #include "predicates/predicates.h"
 

@@ -13,7 +13,7 @@ struct Circle {
 };
 
 /// Up to rounding. The points must not be empty. O(n) expected for points in no particular order, O(n^3) at worst
-/// (Welzl, Smallest enclosing disks, 1991).
+/// [welzl1991].
 Circle enclosing_circle(std::span<const Vec2> points);
 
 }  // namespace saddleback::distribution

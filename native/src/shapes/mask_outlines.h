@@ -9,7 +9,7 @@
 namespace saddleback::distribution {
 
 /// Closed outlines with the inside on their left, in pixels: pixel centers at (column, -row), zeros around the image.
-/// No two touch. Marching squares (Lorensen and Cline, Marching cubes, 1987, in the plane). O(pixels).
+/// No two touch. Marching squares, after [lorensen1987]. O(pixels).
 std::vector<Shape::Loop> mask_outlines(const MaskImage& image, const JobStage& stage = {});
 
 /// Every hole with the smallest outline around it. O(loops^2 corners).

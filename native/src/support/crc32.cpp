@@ -1,5 +1,4 @@
-// Eight bytes at a time by eight tables (M. Kounavis, F. Berry: Novel Table Lookup-Based Algorithms for
-// High-Performance CRC Generation, IEEE Transactions on Computers 57(11), 2008).
+// Eight bytes at a time by eight tables [kounavis2008].
 
 #include "support/crc32.h"
 

@@ -5,7 +5,7 @@
 
 namespace saddleback {
 
-/// A well mixed 64-bit number for each pair (splitmix64; Steele, Lea, Flood 2014).
+/// A well mixed 64-bit number for each pair (splitmix64 [steele2014]).
 inline std::uint64_t mixed(std::uint64_t seed, std::uint64_t counter) {
   std::uint64_t z = seed + (counter + 1) * 0x9E3779B97F4A7C15u;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;

@@ -1,7 +1,7 @@
 """Lines along a field that keep their distance from each other, so that all of the surface shows how it runs.
 
-After Jobard and Lefer, Creating evenly-spaced streamlines of arbitrary density (1997): a line ends where it would come
-too near to one that is there. Lines begin at even points, in their order.
+After [jobard1997]: a line ends where it would come too near to one that is there. Lines begin at even points, in their
+order.
 """
 
 from __future__ import annotations

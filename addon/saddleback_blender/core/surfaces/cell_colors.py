@@ -1,7 +1,6 @@
 """A pleasant color for every cell, the same every time, unlike those of its neighbors.
 
-Colors are drawn in Oklab, where equal steps look equal (B. Ottosson, "A perceptual color space for image processing",
-2020): a middling lightness and chroma, any hue.
+Colors are drawn in Oklab, where equal steps look equal [ottosson2020]: a middling lightness and chroma, any hue.
 """
 
 from __future__ import annotations

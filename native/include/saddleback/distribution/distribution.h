@@ -87,16 +87,14 @@ struct DistributionResult {
 /// Lays copies of shapes on a surface, by the exponential map or along the field's curves, so that their outlines on
 /// the mesh have no common point: every copy is accepted only after the exact test of its outline, cut at the edges of
 /// the faces, against those already there. Candidates come in a random order (or that of a sweep) and each that finds
-/// room stays, as if one after the other: the same result for any number of threads (Blelloch, Fineman and Shun, Greedy
-/// sequential maximal independent set and matching are parallel on average, 2012). Where the surface is covered is
-/// found by subdivision (after Ebeida and others, Efficient maximal Poisson-disk sampling, 2011, for outlines instead
-/// of disks). Distances are within the surface: sheets that lie close to each other know nothing of each other. \throw
-/// InputError naming the argument: no shape; counts of another number than shapes or negative; a field of another mesh;
-/// sizes, density or forbidden of the wrong length, not finite, not positive (density: negative or zero everywhere); a
-/// range of sizes that is none; a copy larger than the surface, alone or with half of the gap around; a negative gap;
-/// packing outside 0 to 1; a tolerance outside 0.001 to 0.5; shares of another number than shapes, negative, all zero,
-/// or with maximal; bend without a field or with maximal; a density without counts, or with maximal; everything
-/// forbidden. Cancelled.
+/// room stays, as if one after the other: the same result for any number of threads [blelloch2012]. Where the surface
+/// is covered is found by subdivision (after [ebeida2011], for outlines instead of disks). Distances are within the
+/// surface: sheets that lie close to each other know nothing of each other. \throw InputError naming the argument: no
+/// shape; counts of another number than shapes or negative; a field of another mesh; sizes, density or forbidden of the
+/// wrong length, not finite, not positive (density: negative or zero everywhere); a range of sizes that is none; a copy
+/// larger than the surface, alone or with half of the gap around; a negative gap; packing outside 0 to 1; a tolerance
+/// outside 0.001 to 0.5; shares of another number than shapes, negative, all zero, or with maximal; bend without a
+/// field or with maximal; a density without counts, or with maximal; everything forbidden. Cancelled.
 DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options,
                               Job* job = nullptr);
 

@@ -111,11 +111,10 @@ class DirectionFieldEditor {
   DirectionFieldEditor(DirectionFieldEditor&&) noexcept;
   DirectionFieldEditor& operator=(DirectionFieldEditor&&) noexcept;
 
-  /// With singularities: the trivial connection that has exactly those (Crane, Desbrun and Schroeder 2010), to which
-  /// strokes add a single-valued turning only, so that no stroke can change an index. Without: the smoothest field, or
-  /// the one nearest to strokes and alignment, with the singularities that it then has (Knoeppel, Crane, Pinkall and
-  /// Schroeder, Globally optimal direction fields, 2013). Without anything that fixes it, the angle in the smallest
-  /// face of a component is 0.
+  /// With singularities: the trivial connection that has exactly those [crane2010], to which strokes add a
+  /// single-valued turning only, so that no stroke can change an index. Without: the smoothest field, or the one
+  /// nearest to strokes and alignment, with the singularities that it then has [knoppel2013]. Without anything that
+  /// fixes it, the angle in the smallest face of a component is 0.
   /// \throw InputError for a vertex out of range, on the boundary or named twice; indices that do not sum to the Euler
   /// characteristic of their component (naming it and what is missing); a stroke of another mesh or a weight that is
   /// not positive and finite; hard strokes that disagree in a face, with others or themselves; curvature for

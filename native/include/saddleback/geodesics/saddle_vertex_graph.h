@@ -1,5 +1,5 @@
 #pragma once
-// The Saddle Vertex Graph (Ying, Wang and He 2013): geodesic distances as shortest paths in a sparse graph.
+// The Saddle Vertex Graph [ying2013]: geodesic distances as shortest paths in a sparse graph.
 
 #include <limits>
 #include <memory>
@@ -80,8 +80,8 @@ struct NearestField {
 /// Departures from the paper: found arcs are united with their reverses (the paper's graph is not symmetric), mesh
 /// edges are always arcs (the graph is as connected as the mesh), and windows behind saddles are not propagated (they
 /// would only confirm what two arcs say). With an accuracy instead of k, arcs that two shorter ones replace within a
-/// tolerance are left out while windows spread (Adikusuma, Fang and He 2020): fewer arcs for less error. Immutable once
-/// built: any number of threads may query it.
+/// tolerance are left out while windows spread [adikusuma2020]: fewer arcs for less error. Immutable once built: any
+/// number of threads may query it.
 class SaddleVertexGraph {
  public:
   /// Builds the graph by window propagation from every vertex. The mesh must outlive the graph. \throw InputError for k

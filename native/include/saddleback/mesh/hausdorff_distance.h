@@ -20,7 +20,7 @@ struct HausdorffOptions {
 /// The greatest distance from any point of one mesh, not its vertices alone, to the other; too small by the tolerance
 /// at most. Both directions, and the greater of the two, make the Hausdorff distance. \throw InputError for a tolerance
 /// that is not above 0; Cancelled. About O((V + F) log F): triangles are divided where they might hold a farther point
-/// (M. Tang, M. Lee, Y. J. Kim: Interactive Hausdorff distance computation for general polygonal models, 2009).
+/// [tang2009].
 FarthestPoint farthest_point(const Mesh& from, const Mesh& to, const HausdorffOptions& options = {},
                              const JobStage& stage = {});
 

@@ -57,7 +57,7 @@ inline constexpr Index k_most_hole_edges = 2000;  ///< some seconds, and 50 MB
 /// told, or stitched; holes are filled where asked for. A good mesh without coincident vertices comes back as it was.
 /// \throw MeshError when no face is left. \throw InputError for a negative or non-finite weld distance, a number of
 /// edges out of range, coordinates or indices not in threes. O(n log n), and O(h^3) for a hole of h edges. The cutting
-/// and stitching follows Gueziec, Taubin, Lazarus and Horn 2001, the filling Barequet and Sharir 1995.
+/// and stitching follows [gueziec2001], the filling [barequet1995].
 RepairResult repair(std::span<const double> xyz, std::span<const Index> triangles, const RepairOptions& options = {});
 
 }  // namespace saddleback

@@ -31,11 +31,11 @@ struct TraceEnd {
 
 /// Walks straight on from `start` for `length`. The angle is measured in the FaceChart of start.face or, when the point
 /// is exactly a vertex, from first_halfedge(vertex) counter-clockwise on the surface (0 to total_angle). Through a
-/// vertex it goes on with half the total angle on either side (Polthier and Schmies 1998). At the boundary it stops,
-/// unless it comes to a vertex with half a turn or more on one side: there it goes straight on, along a straight border
-/// or past a corner that it touches. The polyline has one point for each edge or vertex crossed. An angle that leaves
-/// the surface at once (boundary) gives the start with hit_boundary; length 0 gives the start. \throw InputError for a
-/// point off the mesh, a negative or non-finite length, a non-finite angle, a curve over more than a million faces.
+/// vertex it goes on with half the total angle on either side [polthier1998]. At the boundary it stops, unless it comes
+/// to a vertex with half a turn or more on one side: there it goes straight on, along a straight border or past a
+/// corner that it touches. The polyline has one point for each edge or vertex crossed. An angle that leaves the surface
+/// at once (boundary) gives the start with hit_boundary; length 0 gives the start. \throw InputError for a point off
+/// the mesh, a negative or non-finite length, a non-finite angle, a curve over more than a million faces.
 /// \throw Cancelled. O(faces crossed).
 TraceResult trace(const Mesh& mesh, const SurfacePoint& start, double angle, double length, Job* job = nullptr);
 

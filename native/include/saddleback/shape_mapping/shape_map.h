@@ -36,11 +36,10 @@ struct PlaneBox {
 
 /// Flat coordinates of the vertices near a place, linear inside each face: so the plane is laid on the surface by a
 /// continuous map that is straight in every face, and whose folding and stretch are known face by face. Lengths are
-/// mesh units. About a point the coordinates are those of the exponential map (length and direction of the shortest
-/// way from the center), along a curve Fermi's (arc length of the foot, signed distance): each vertex has them from an
-/// edge that is nearer, through which it sees the source when the faces are unfolded (Melvaer and Reimers, Geodesic
-/// polar coordinates on polygonal meshes, 2012); a vertex that sees it through no edge (behind a saddle) is laid out
-/// beside its neighbors instead. Exact where the surface can be unrolled.
+/// mesh units. About a point the coordinates are those of the exponential map (length and direction of the shortest way
+/// from the center), along a curve Fermi's (arc length of the foot, signed distance): each vertex has them from an edge
+/// that is nearer, through which it sees the source when the faces are unfolded [melvaer2012]; a vertex that sees it
+/// through no edge (behind a saddle) is laid out beside its neighbors instead. Exact where the surface can be unrolled.
 ///
 /// Made once for a mesh, which must outlive it, and used again and again in the same memory. One thread at a time.
 class ShapeMap {

@@ -99,8 +99,7 @@ struct MaskImage {
 /// pixels with the first pixel's center at the origin.
 /// \throw InputError: fewer values than rows times columns, a value that is not finite, max_corners < 8; no clear mask:
 /// nothing or everything over one half, or more parts and holes than there are corners for. About O(pixels + m^2) for
-/// outlines of m corners (Lorensen and Cline, Marching cubes, 1987, in the plane).
-/// Cancelled.
+/// outlines of m corners [lorensen1987]. Cancelled.
 Shape shape_from_mask(const MaskImage& image, Index max_corners = 128, bool centered = true, Job* job = nullptr);
 
 }  // namespace saddleback

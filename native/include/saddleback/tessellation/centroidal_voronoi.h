@@ -84,15 +84,14 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 /// Moves the sites until each rests at the center of its cell.
 ///
 /// The energy is the integral of density^2 times squared distance to the nearest site: the square makes the number of
-/// cells per area follow the density (Du, Faber, Gunzburger 1999: cells of a CVT in the plane go with the square root
-/// of the weight). Lloyd's step goes along the exponential map to the weighted mean of the cell in the site's tangent
-/// plane; L-BFGS (Liu, Wang, Levy, Sun, Yan, Lu, Yang: On centroidal Voronoi tessellation, 2009) makes of several such
-/// steps a better one, on the product of the tangent planes. No step is accepted that would raise the energy. A site
-/// that coincides with another, and so has no cell, is put where the most energy is. Where it all ends depends on where
-/// it began: annealing (see the options; Kirkpatrick, Gelatt, Vecchi: Optimization by simulated annealing, 1983) and
-/// several starts end with less. \throw InputError for a density of wrong length, with a negative, infinite or
-/// not-a-number value, or zero everywhere; for a fixed site out of range; for what geodesic_voronoi refuses;
-/// DeviceError; Cancelled unless the best is to be returned. Per iteration O(sites k log k + arcs).
+/// cells per area follow the density ([du1999]: cells of a CVT in the plane go with the square root of the weight).
+/// Lloyd's step goes along the exponential map to the weighted mean of the cell in the site's tangent plane; L-BFGS
+/// [liu2009] makes of several such steps a better one, on the product of the tangent planes. No step is accepted that
+/// would raise the energy. A site that coincides with another, and so has no cell, is put where the most energy is.
+/// Where it all ends depends on where it began: annealing (see the options; [kirkpatrick1983]) and several starts end
+/// with less. \throw InputError for a density of wrong length, with a negative, infinite or not-a-number value, or zero
+/// everywhere; for a fixed site out of range; for what geodesic_voronoi refuses; DeviceError; Cancelled unless the best
+/// is to be returned. Per iteration O(sites k log k + arcs).
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);
 

@@ -16,8 +16,8 @@ enum class DualPolicy {
   fail,    ///< refuse
 };
 
-/// Where cells break the closed-ball property (Edelsbrunner and Shah 1997), without which the dual is not a
-/// triangulation of the surface.
+/// Where cells break the closed-ball property [edelsbrunner1997], without which the dual is not a triangulation of the
+/// surface.
 struct DualIssue {
   enum class Kind {
     not_a_disk,         ///< a cell with a handle or several borders, or that is in several parts

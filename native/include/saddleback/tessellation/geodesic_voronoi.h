@@ -87,10 +87,8 @@ struct GeodesicVoronoi {
 
 /// Assigns every point of the surface to its nearest site. Bisectors are straight inside a face, exactly right where
 /// the geodesics to both sites cross no saddle vertex; cells smaller than a face and several sites in one face are
-/// found. \throw InputError for no sites, a site off the mesh, a component without a site; DeviceError;
-/// Cancelled. O(sites k log k + arcs + pieces). After Y.-J. Liu, Z. Chen, K. Tang: Construction of iso-contours,
-/// bisectors, and Voronoi diagrams on triangulated surfaces (TPAMI 2011), with candidates spread over edges instead of
-/// vertex labels alone.
+/// found. \throw InputError for no sites, a site off the mesh, a component without a site; DeviceError; Cancelled.
+/// O(sites k log k + arcs + pieces). After [liu2011], with candidates spread over edges instead of vertex labels alone.
 GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                  const GeodesicVoronoiOptions& options = {}, Job* job = nullptr);
 

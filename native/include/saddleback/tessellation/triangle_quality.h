@@ -17,9 +17,8 @@ struct TriangleQuality {
   double irregular = 0;                   ///< share of vertices in use whose valence is not 6, on the boundary not 4
 };
 
-/// S is a triangle's area, p half its perimeter, h its longest edge (P. Frey, H. Borouchaki: Surface mesh quality
-/// evaluation, 1999). Any triangles will do, manifold or not. \throw InputError for an index out of range or a
-/// coordinate that is not finite, naming the first. O(V + T log T).
+/// S is a triangle's area, p half its perimeter, h its longest edge [frey1999]. Any triangles will do, manifold or not.
+/// \throw InputError for an index out of range or a coordinate that is not finite, naming the first. O(V + T log T).
 TriangleQuality triangle_quality(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
 }  // namespace saddleback

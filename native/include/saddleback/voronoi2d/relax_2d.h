@@ -36,11 +36,10 @@ struct Relaxation2d {
 /// cell has no mass (outside, where the density is zero, equal to an earlier one) stays.
 ///
 /// The energy is the integral of density^2 times squared distance to the nearest site: the square makes the number of
-/// cells per area follow the density (Q. Du, V. Faber, M. Gunzburger, 1999), so that dots at the sites have an image's
-/// tone (A. Secord, Weighted Voronoi stippling, 2002). Integrals over cells are exact: along their borders, row by row
-/// of the raster. \throw InputError for no sites, a coordinate that is not finite, options out of range, a density
-/// that is negative, not finite or zero all over the domain; Cancelled. Per iteration O(n log n + raster cells that
-/// borders of cells cross); O(rows * columns) memory.
+/// cells per area follow the density [du1999], so that dots at the sites have an image's tone [secord2002]. Integrals
+/// over cells are exact: along their borders, row by row of the raster. \throw InputError for no sites, a coordinate
+/// that is not finite, options out of range, a density that is negative, not finite or zero all over the domain;
+/// Cancelled. Per iteration O(n log n + raster cells that borders of cells cross); O(rows * columns) memory.
 Relaxation2d relax_2d(std::span<const Vec2> sites, const PlanarDomain& domain, const Relaxation2dOptions& options = {},
                       Job* job = nullptr);
 

@@ -33,7 +33,7 @@ struct PatchTriangles {
   FaceBoxes boxes;
 };
 
-std::uint64_t mixed(std::uint64_t x) {  // splitmix64 (Steele, Lea and Flood 2014)
+std::uint64_t mixed(std::uint64_t x) {  // splitmix64 [steele2014]
   x += 0x9e3779b97f4a7c15;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
   x = (x ^ (x >> 27)) * 0x94d049bb133111eb;

@@ -17,8 +17,8 @@ struct DualLoops {
 };
 
 /// Tree-cotree decomposition: breadth-first trees over faces, and of the edges that they do not cross a forest over
-/// nodes that prefers edges of long loops, so that short ones are left (Eppstein 2003; Erickson and Whittlesey 2005).
-/// O(F) and the length of the loops.
+/// nodes that prefers edges of long loops, so that short ones are left [eppstein2003], [erickson2005]. O(F) and the
+/// length of the loops.
 DualLoops dual_loops(const Mesh& mesh, const FilledSurface& filled);
 
 }  // namespace saddleback

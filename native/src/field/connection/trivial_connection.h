@@ -12,10 +12,9 @@
 
 namespace saddleback {
 
-/// Trivial connections in the Hodge form (Crane, Desbrun and Schroeder, Trivial connections on discrete surfaces,
-/// 2010): the smallest turning, in the sense of the dual edges' weights, with given indices. Its part from
-/// singularities is one Poisson problem over nodes; that from handles a combination of harmonic forms, made when first
-/// needed and kept.
+/// Trivial connections in the Hodge form [crane2010]: the smallest turning, in the sense of the dual edges' weights,
+/// with given indices. Its part from singularities is one Poisson problem over nodes; that from handles a combination
+/// of harmonic forms, made when first needed and kept.
 class TrivialConnection {
  public:
   /// The arguments must outlive this. O(F). \throw Cancelled.

@@ -10,10 +10,10 @@
 namespace saddleback {
 
 /// Solves with one matrix, prepared once: pairwise aggregation twice a level, K-cycles in single precision as the
-/// preconditioner of flexible conjugate gradients in double precision (Notay, An aggregation-based algebraic multigrid
-/// method, 2010). Of complex matrices the aggregates carry the phase by which neighbors are transported, so that
-/// connection Laplacians are coarsened as well as real ones. Scalar: double or std::complex<double>.
-/// Serial, so results do not depend on threads; any number of threads may solve at the same time.
+/// preconditioner of flexible conjugate gradients in double precision [notay2010]. Of complex matrices the aggregates
+/// carry the phase by which neighbors are transported, so that connection Laplacians are coarsened as well as real
+/// ones. Scalar: double or std::complex<double>. Serial, so results do not depend on threads; any number of threads may
+/// solve at the same time.
 template <class Scalar>
 class MultigridSolver {
  public:

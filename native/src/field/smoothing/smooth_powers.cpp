@@ -65,7 +65,7 @@ class Minimizer {
 
   /// The eigenvector is all but zero where the surface bends much, and its directions there are noise. Unit length
   /// everywhere and diffusion over the eigenvector's own scale, by turns, leave the singularities that the surface asks
-  /// for (Viertel and Osting, An approach to quad meshing based on harmonic cross-valued maps, 2019).
+  /// for [viertel2019].
   Vector even_out(const JobStage& stage) {
     solver_.reset();
     GraphMatrix<Complex> diffusion = matrix_;

@@ -27,9 +27,9 @@ struct Simd {
   SADDLEBACK_STEP static float min(float a, float b) { return a < b ? a : b; }
   SADDLEBACK_STEP static float max(float a, float b) { return a > b ? a : b; }
   // Quotients and roots as IEEE's, by the steps that compilers take for numbers that are neither huge nor tiny, but
-  // without asking each time whether they are: asking takes as long, and lanes wait for one another. P. Markstein,
-  // "Computation of elementary functions on the IBM RISC System/6000 processor", 1990. See k_longest. Compilers correct
-  // a quotient twice; from the reciprocals of compute capability 9.0 once does, by trial of all pairs of significands.
+  // without asking each time whether they are: asking takes as long, and lanes wait for one another. After
+  // [markstein1990]. See k_longest. Compilers correct a quotient twice; from the reciprocals of compute capability 9.0
+  // once does, by trial of all pairs of significands.
   SADDLEBACK_STEP static float quotient(float a, float b) {
     float inverse;
     asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(b));

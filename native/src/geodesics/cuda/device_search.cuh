@@ -4,8 +4,7 @@
 // the warp that has its row. Sums of arcs are exact (see ArcCodec), so that no order shows in the result.
 //
 // Nodes that wait are bits. Those of one word are spread over the whole mesh, and so is a front's work over the warps.
-// A. Davidson, S. Baxter, M. Garland, J. Owens, Work-Efficient Parallel GPU Methods for Single-Source Shortest Paths,
-// IPDPS 2014, compare ways to advance a front.
+// [davidson2014] compares ways to advance a front.
 
 #include <cstdint>
 #include <type_traits>

@@ -1,5 +1,4 @@
-// Window propagation after Chen and Han (1990) with the filters of Xin and Wang, "Improving Chen and Han's algorithm on
-// the discrete geodesic problem" (2009).
+// Window propagation after [chen1990] with the filters of [xin2009].
 //
 // A window is a part of a half-edge that one root sees along straight lines; it is passed on through the face beyond,
 // to one or both of the other edges. A root is a source or a vertex at which a shortest path bends: a saddle vertex or

@@ -30,7 +30,7 @@ struct ExactPropagationOptions {
   bool keep_windows = false;  ///< for `kept`
 };
 
-/// Window propagation after Chen and Han with the filters of Xin and Wang (2009): see exact_propagation.cpp.
+/// Window propagation after [chen1990] with the filters of [xin2009]: see exact_propagation.cpp.
 class ExactPropagation {
  public:
   /// `sources` are checked and outlive this object.

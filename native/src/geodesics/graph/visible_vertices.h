@@ -19,9 +19,9 @@ struct DirectArc {
   double end_angle;    ///< direction back to the source, at the vertex from first_halfedge
 };
 
-/// Window propagation after Chen and Han with the filters of Xin and Wang (2009), kept to the windows of the source
-/// itself: vertices behind a saddle vertex get an upper bound by edges, which is enough to kill windows that serve
-/// nothing. Windows and vertices leave one queue in order of distance, until k vertices are settled.
+/// Window propagation after [chen1990] with the filters of [xin2009], kept to the windows of the source itself:
+/// vertices behind a saddle vertex get an upper bound by edges, which is enough to kill windows that serve nothing.
+/// Windows and vertices leave one queue in order of distance, until k vertices are settled.
 ///
 /// Two rules make it right on regular grids, where rays run through lattice points: a window updates an apex on its
 /// very border (closed interval), and ties never remove a window. Holds scratch memory of O(V + F) to be reused; one a

@@ -4,12 +4,12 @@
 // functions need to be called. Multiplications and additions are not fused and roots and quotients are IEEE's, so that
 // every machine gives the same bits.
 //
-// Windows and their filters: Xin and Wang 2009. To keep an arc only where no way over a flank will do, and to end
-// windows there: Adikusuma, Fang and He 2020 ("Fast construction of discrete geodesic graphs"). Their rule allows every
-// detour the same share of the whole way, and such shares add up where the second leg is itself a detour. Here a way
-// counts the graph's distance to the flank, and the rest with the whole tolerance on top: way + (1 + e) rest <= (1 + e)
-// straight. By induction over lengths no distance in the graph is then longer than 1 + e times the geodesic, as far as
-// windows have run; their end is a bound on one detour alone, with a factor found by measuring.
+// Windows and their filters: [xin2009]. To keep an arc only where no way over a flank will do, and to end windows
+// there: [adikusuma2020]. Their rule allows every detour the same share of the whole way, and such shares add up where
+// the second leg is itself a detour. Here a way counts the graph's distance to the flank, and the rest with the whole
+// tolerance on top: way + (1 + e) rest <= (1 + e) straight. By induction over lengths no distance in the graph is then
+// longer than 1 + e times the geodesic, as far as windows have run; their end is a bound on one detour alone, with a
+// factor found by measuring.
 //
 // By the same inequality, at the distances that are still ahead of it, the cone of a window is narrowed to what its
 // flanks do not serve: a quarter fewer windows, among needles a third, and the same arcs but for one in two hundred.

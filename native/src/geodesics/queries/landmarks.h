@@ -10,8 +10,8 @@
 
 namespace saddleback {
 
-/// The triangle inequality about landmarks: d(v, t) >= |d(L, v) - d(L, t)| (Goldberg and Harrelson 2005). Each
-/// component has its own, chosen one after the other as far as can be from those before. 64 bytes a vertex.
+/// The triangle inequality about landmarks: d(v, t) >= |d(L, v) - d(L, t)| [goldberg2005]. Each component has its own,
+/// chosen one after the other as far as can be from those before. 64 bytes a vertex.
 class Landmarks {
  public:
   static constexpr int k_count = 16;

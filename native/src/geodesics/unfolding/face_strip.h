@@ -32,8 +32,7 @@ struct StripTurn {
   std::size_t first, last;
 };
 
-/// Where the shortest path along a strip turns, in order: the funnel algorithm (Lee and Preparata 1984). Holds scratch
-/// memory.
+/// Where the shortest path along a strip turns, in order: the funnel algorithm [lee1984]. Holds scratch memory.
 class Funnel {
  public:
   explicit Funnel(const Unfolding& unfolding) : unfolding_(unfolding) {}

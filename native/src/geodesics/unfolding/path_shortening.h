@@ -18,10 +18,10 @@ struct LegChain {
   double length() const;
 };
 
-/// Moves a chain to the other side of vertices that it passes with less than pi on one side, until there are none:
-/// each time the faces about the vertex on that side join the faces before and after it to one strip, whose shortest
-/// path replaces the two pieces (as the edge flips of Sharp and Crane, You can find geodesic paths in triangle meshes
-/// by just flipping edges, 2020, but without a mesh to flip). Never longer; ends because every step is shorter.
+/// Moves a chain to the other side of vertices that it passes with less than pi on one side, until there are none: each
+/// time the faces about the vertex on that side join the faces before and after it to one strip, whose shortest path
+/// replaces the two pieces (as the edge flips of [sharp2020], but without a mesh to flip). Never longer; ends because
+/// every step is shorter.
 class PathShortener {
  public:
   explicit PathShortener(const Unfolding& unfolding)

@@ -33,11 +33,11 @@ struct RayLimits {
 /// Takes how far the rays have come, and to how many vertices.
 using ReportRays = std::function<void(double distance, Index vertices)>;
 
-/// Window propagation (Chen and Han 1990, filters of Xin and Wang 2009) of windows of any front, with saddle vertices
-/// sending out windows of their own: every label is that of a shortest path. A vertex on the very border of a window is
-/// updated by it (closed intervals), so that rays through the vertices of regular grids reach what lies behind them.
-/// Windows come in the order of their distance, roughly (see exact_propagation.cpp): a vertex whose label falls after
-/// it sent out windows sends out others. Holds scratch memory of O(V + F) to be reused; one a thread.
+/// Window propagation [chen1990], with the filters of [xin2009], of windows of any front, with saddle vertices sending
+/// out windows of their own: every label is that of a shortest path. A vertex on the very border of a window is updated
+/// by it (closed intervals), so that rays through the vertices of regular grids reach what lies behind them. Windows
+/// come in the order of their distance, roughly (see exact_propagation.cpp): a vertex whose label falls after it sent
+/// out windows sends out others. Holds scratch memory of O(V + F) to be reused; one a thread.
 class WavefrontDistances {
  public:
   explicit WavefrontDistances(const Unfolding& unfolding);

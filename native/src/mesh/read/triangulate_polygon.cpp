@@ -1,6 +1,6 @@
-// Ears are cut off (Meisters 1975) until a triangle is left; then edges are exchanged until all are Delaunay's (Lawson
-// 1977). A disk of triangles that are all turned alike covers what its rim encloses, each place once when the rim does
-// not cross itself: so it is enough that no triangle is ever turned over.
+// Ears are cut off [meisters1975] until a triangle is left; then edges are exchanged until all are Delaunay's
+// [lawson1977]. A disk of triangles that are all turned alike covers what its rim encloses, each place once when the
+// rim does not cross itself: so it is enough that no triangle is ever turned over.
 
 #include "mesh/read/triangulate_polygon.h"
 

@@ -1,8 +1,7 @@
-// Cutting and stitching (Gueziec, Taubin, Lazarus, Horn 2001: "Cutting and stitching: converting sets of polygons to
-// manifold surfaces"). Every edge with two half-edges is glued. At an edge with more, those glued in the input (the
-// same two vertices, exactly two faces) stay so; the rest are paired by geometry below. Faces are oriented breadth
-// first, crossing edges where the input agrees with itself before others, so that a seam that must be cut (a Moebius
-// strip) is where the input has it; crowded edges then join oriented patches by union-find with parity.
+// Cutting and stitching [gueziec2001]. Every edge with two half-edges is glued. At an edge with more, those glued in
+// the input (the same two vertices, exactly two faces) stay so; the rest are paired by geometry below. Faces are
+// oriented breadth first, crossing edges where the input agrees with itself before others, so that a seam that must be
+// cut (a Moebius strip) is where the input has it; crowded edges then join oriented patches by union-find with parity.
 
 #include <algorithm>
 #include <cmath>

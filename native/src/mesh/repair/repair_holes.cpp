@@ -1,6 +1,5 @@
-// Holes are filled by the triangulation of least area, found by dynamic programming over chords (G. Barequet and M.
-// Sharir, Filling gaps in the boundary of a polyhedron, 1995). No chord repeats an edge of the mesh, so that what was
-// manifold stays so.
+// Holes are filled by the triangulation of least area, found by dynamic programming over chords [barequet1995]. No
+// chord repeats an edge of the mesh, so that what was manifold stays so.
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@ namespace saddleback {
 namespace {
 
 /// Numbers edges as they come. They are chained at the end with fewer corners: the chains of a surface are short, also
-/// where one vertex has very many neighbors (N. Chiba, T. Nishizeki: Arboricity and subgraph listing algorithms, 1985:
-/// the sum over all edges of the smaller degree is linear in their number).
+/// where one vertex has very many neighbors ([chiba1985]: the sum over all edges of the smaller degree is linear in
+/// their number).
 class EdgeNumbers {
  public:
   EdgeNumbers(std::span<const Triangle> triangles, Index vertex_count)

@@ -25,7 +25,7 @@ struct FaceShape {
 
 /// Lengths, angles and area. The area comes from the cross product of the two shortest edges and each angle from
 /// atan2(2 area, dot), which keeps full relative accuracy for needles, where the law of cosines loses half the digits
-/// (compare Kahan, "Miscalculating area and angles of a needle-like triangle", 2014).
+/// [kahan2014].
 FaceShape measure_face(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// True for a face without area: collinear corners (decided exactly) or a height within k_degenerate_height.

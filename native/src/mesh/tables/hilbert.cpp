@@ -1,6 +1,5 @@
-// Hilbert keys after Skilling, "Programming the Hilbert curve" (2004). There each bit of the axes turns all lower bits
-// of them; what has been turned so far is one of few frames, so that a table tells each octant's place and the next
-// frame.
+// Hilbert keys after [skilling2004]. There each bit of the axes turns all lower bits of them; what has been turned so
+// far is one of few frames, so that a table tells each octant's place and the next frame.
 
 #include "mesh/tables/hilbert.h"
 

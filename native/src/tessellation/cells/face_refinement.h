@@ -10,8 +10,8 @@
 namespace saddleback {
 
 /// A mesh whose faces are divided into triangles that fit along every edge. A part is halved across its longest edge,
-/// parts beyond it as far as they must be for that (M.-C. Rivara: Algorithms for refining triangular grids, 1984), so
-/// that no part is much thinner than the face that it comes from.
+/// parts beyond it as far as they must be for that [rivara1984], so that no part is much thinner than the face that it
+/// comes from.
 class FaceRefinement {
  public:
   struct Part {

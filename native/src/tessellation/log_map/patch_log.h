@@ -11,8 +11,7 @@ namespace saddleback {
 
 /// Places the corners of a patch of faces in the tangent plane of a point of the patch, by geodesics that stay in it:
 /// in order of distance, each vertex is seen across an edge whose ends are placed, or along an edge where that is
-/// shorter. E. Melvaer, M. Reimers: Geodesic polar coordinates on polygonal meshes (2012). Exact where the patch is
-/// flat and convex; of second order elsewhere.
+/// shorter. After [melvaer2012]. Exact where the patch is flat and convex; of second order elsewhere.
 class PatchLog {
  public:
   explicit PatchLog(const Mesh& mesh) : mesh_(mesh) {}

@@ -13,8 +13,7 @@ namespace saddleback {
 /// paths lead over nodes of the same source alone, and so hold still; lengths of arcs sum up without rounding, so the
 /// result has the same bits.
 ///
-/// After D. Frigioni, A. Marchetti-Spaccamela, U. Nanni: Fully dynamic algorithms for maintaining shortest paths trees
-/// (2000).
+/// After [frigioni2000].
 class Relabeling {
  public:
   /// `distances` and `sources`, by node, are written to. All must outlive it.

@@ -14,7 +14,7 @@ constexpr double k_inertia = 0.9;    // of the last step
 constexpr double k_warmth = 0.02;    // first pushes, in roots of the cell's area: the deviation of either coordinate
 constexpr std::uint64_t k_seed = 3;  // any
 
-/// Two independent normal numbers of deviation 1 (G. Box, M. Muller 1958).
+/// Two independent normal numbers of deviation 1 [box1958].
 Vec2 normal_pair(std::uint64_t key, std::uint64_t counter) {
   const double radius = std::sqrt(-2 * std::log1p(-uniform(key, 2 * counter)));
   const double angle = 2 * M_PI * uniform(key, 2 * counter + 1);

@@ -10,10 +10,8 @@ namespace saddleback {
 /// across cells that are even; with inertia and warmth such pairs wander, meet and vanish. The pushes depend on nothing
 /// but the numbers of steps and sites.
 ///
-/// S. Kirkpatrick, C. Gelatt, M. Vecchi: Optimization by simulated annealing (1983), by Langevin's equation of motion
-/// (P. Langevin: Sur la theorie du mouvement brownien, 1908); for the same aim by random displacements and relaxations
-/// in turn: L. Lu, F. Sun, H. Pan, W. Wang: Global optimization of centroidal Voronoi tessellation with Monte Carlo
-/// approach (2012). \throw Cancelled, the sites as after the last step.
+/// Simulated annealing [kirkpatrick1983] by Langevin's equation of motion [langevin1908]; [lu2012] has random
+/// displacements and relaxations in turn for the same aim. \throw Cancelled, the sites as after the last step.
 void anneal(Relaxation& relaxation, int steps, const JobStage& stage);
 
 }  // namespace saddleback

@@ -11,8 +11,7 @@ namespace saddleback {
 /// Remembers how the gradient changed along the last steps. Pairs are carried along when sites move: rotations of
 /// tangent planes leave their products as they are.
 ///
-/// J. Nocedal: Updating quasi-Newton matrices with limited storage (1980); on manifolds with transported pairs:
-/// W. Huang, K. Gallivan, P.-A. Absil: A Broyden class of quasi-Newton methods for Riemannian optimization (2015).
+/// After [nocedal1980]; on manifolds, with transported pairs, after [huang2015].
 class LimitedMemory {
  public:
   /// Minus the approximate inverse Hessian times the gradient. `stiffness` is the Hessian's diagonal to begin with, one

@@ -1,6 +1,5 @@
 #pragma once
-// Two Delaunay triangulations side by side made one, from their lower common tangent up: L. Guibas and J. Stolfi,
-// Primitives for the Manipulation of General Subdivisions and the Computation of Voronoi Diagrams, 1985.
+// Two Delaunay triangulations side by side made one, from their lower common tangent up: [guibas1985].
 
 #include <cstdint>
 

@@ -23,8 +23,8 @@ struct MergedRun {
   std::int32_t first, last;
 };
 
-/// Who merges with whom is found on the way up: runs in the order of the places, which differ least. C. Apetrei, Fast
-/// and Simple Agglomerative LBVH Construction, 2014.
+/// Who merges with whom is found on the way up: runs in the order of the places, which differ least. After
+/// [apetrei2014].
 struct MergeTree {
   MergedMesh mesh;
   const std::uint32_t* places;  ///< by rank, never falling

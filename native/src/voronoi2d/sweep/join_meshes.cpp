@@ -301,7 +301,7 @@ void MeshJoiner::exchange(Index half) {
   mesh_.twins[half | 3] = mesh_.twins[twin | 3] = 0;
 }
 
-// After C. L. Lawson, 1977.
+// After [lawson1977].
 void MeshJoiner::restore(std::vector<Index>& doubtful) {
   const auto mark = [&](Index half, bool is_flat) {
     Index& flags = mesh_.twins[half | 3];

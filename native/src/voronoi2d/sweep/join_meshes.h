@@ -1,5 +1,5 @@
 #pragma once
-// Two triangulations side by side become one (L. Guibas and J. Stolfi, 1985).
+// Two triangulations side by side become one [guibas1985].
 
 #include <utility>
 #include <vector>
@@ -35,8 +35,8 @@ class MeshJoiner {
   /// True when `result` is Delaunay's triangulation of both; false when nothing was done, because neither has triangles
   /// or no line parts them. O(changes) and as much as the borders. \throw Cancelled
   bool join(MeshPart& first, MeshPart& second, MeshPart& result);
-  /// Makes a triangulation Delaunay's (C. L. Lawson, 1977). `doubtful`: half-edges among whose edges are all that do
-  /// not pass the circle test or whose triangles share a circle; used up. \throw Cancelled
+  /// Makes a triangulation Delaunay's [lawson1977]. `doubtful`: half-edges among whose edges are all that do not pass
+  /// the circle test or whose triangles share a circle; used up. \throw Cancelled
   void restore(std::vector<Index>& doubtful);
 
  private:

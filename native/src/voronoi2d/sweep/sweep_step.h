@@ -1,5 +1,6 @@
 #pragma once
-// One sweep circle, event by event: the beach curve of ellipse arcs, touching and vanishing events (thesis chapter 3).
+// One sweep circle, event by event: the beach curve of ellipse arcs, touching and vanishing events [ying2014] chapter
+// 3.
 //
 // The circle grows from a site c. At radius R the points x with |x - c| + |x - s| = R form an ellipse about each site s
 // inside; the outermost parts of these ellipses are the beach curve, and what lies within it is final. A site that the
