@@ -35,9 +35,3 @@ def test_the_blender_example_names_what_the_addon_has():
     source = "".join(file.read_text() for file in files)
     for name in re.findall(r"(\w+)=", call[1]):
         assert re.search(rf"\b{name}\b", source), f"{call[0]} has no property {name}"
-
-
-def test_every_link_leads_somewhere():
-    for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]:
-        for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8")):
-            assert (page.parent / target).exists(), f"{page.name} points to {target}, which does not exist"
