@@ -88,9 +88,7 @@ def even_cells(mesh: sb.Mesh, rng: Random) -> None:
     start = sb.sample(mesh, count, seed=int(rng.integers(1 << 30)), one_per_component=True)
     fixed = rng.permutation(count)[: int(rng.integers(0, 2))].astype(np.int32)
     steps, method = int(rng.integers(0, 6)), str(rng.choice(["lbfgs", "lloyd"]))
-    relaxed = sb.centroidal_voronoi(
-        graph, start, max_iterations=steps, method=method, fixed=fixed, scale_free=bool(rng.random() < 0.5), threads=1
-    )
+    relaxed = sb.centroidal_voronoi(graph, start, max_iterations=steps, method=method, fixed=fixed, threads=1)
     assert len(relaxed.energy) == relaxed.iterations + 1 <= steps + 1
     assert relaxed.converged == (relaxed.stop_reason != "max_iterations")
     assert (np.diff(relaxed.energy) <= 1e-12 * relaxed.energy[0]).all()

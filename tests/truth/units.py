@@ -101,7 +101,7 @@ def cells_of(mesh: sb.Mesh, unit: float, seed: int) -> Answer:
     graph, is_exact = sb.SaddleVertexGraph(mesh, threads=1), bool(rng.random() < 0.5)
     cells = sb.geodesic_voronoi(graph, sites, exact=is_exact, threads=1)
     split, dual = cells.split(), cells.dual("strict")
-    relaxed = sb.centroidal_voronoi(graph, sites, max_iterations=3, scale_free=bool(rng.random() < 0.5), threads=1)
+    relaxed = sb.centroidal_voronoi(graph, sites, max_iterations=3, threads=1)
     return [
         *points_of(mesh, sites), (cells.vertex_cell, 0), (cells.vertex_distance, 1), (cells.areas, 2),
         (cells.edge_points, 1), (cells.edge_cells, 0),

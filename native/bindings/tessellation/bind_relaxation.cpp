@@ -73,8 +73,8 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
               const std::string& method, const py::object& max_iterations, const py::object& tolerance,
               const py::object& seed, const std::string& start, const py::object& starts, const py::object& annealing,
               const py::object& fixed, const py::object& curves, const py::object& held, const py::object& least_move,
-              const py::object& cache, bool scale_free, bool closed_ball, bool return_when_cancelled,
-              const py::object& watch, const py::object& threads, const std::string& device, const py::object& job) {
+              const py::object& cache, bool closed_ball, bool return_when_cancelled, const py::object& watch,
+              const py::object& threads, const std::string& device, const py::object& job) {
   const auto& g = py::cast<const SaddleVertexGraph&>(graph);
   if (sites.is_none() == count.is_none()) throw InputError("sites, count: wanted one of the two");
   ArrayIn<double> weights;
@@ -95,7 +95,6 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
                                    .least_move = as_real(least_move, "least_move"),
                                    .closed_ball = closed_ball,
                                    .cache = as_cache(cache, graph),
-                                   .scale_free = scale_free,
                                    .return_when_cancelled = return_when_cancelled,
                                    .watch = as_watch(watch),
                                    .threads = as_integer(threads, "threads")};
@@ -167,12 +166,6 @@ closed_ball : bool
     sites is then a triangulation of the surface. Fixed sites stay, held ones stay on their curves. The energy may end
     above where the first relaxation did. Where no site can be spared, or 40 rounds of moving some do not help, or ten do
     not leave fewer faults, the sites are left as they were, and `CentroidalVoronoi.issues` tells so.
-scale_free : bool
-    Relax on a copy of the mesh of unit size, its coordinates rounded to 2^-26 of that: the sites are then the same, to
-    the bit of their faces and barycentric coordinates, for the mesh enlarged, shrunk or moved. Otherwise the last bit of
-    a coordinate may decide between two patterns. The first call with a graph builds a graph of the copy, which the graph
-    keeps. Meshes with more than a few edges shorter than 1e-5 of their size, and those whose graph takes more than 128 MB
-    (230,000 vertices), are relaxed as they are.
 return_when_cancelled : bool
     When the job is cancelled during annealing or the iterations, return the best found so far instead of raising.
 watch : RelaxationWatch, optional
@@ -287,9 +280,8 @@ the same to the bit. About 1 KB a vertex, and the graph, are kept.)")
         py::arg("tolerance") = 1e-6, py::arg("seed") = 0, py::kw_only(), py::arg("start") = "auto",
         py::arg("starts") = 1, py::arg("annealing") = 0, py::arg("fixed") = py::none(), py::arg("curves") = py::none(),
         py::arg("held") = py::none(), py::arg("least_move") = 0.0, py::arg("cache") = py::none(),
-        py::arg("scale_free") = true, py::arg("closed_ball") = false, py::arg("return_when_cancelled") = false,
-        py::arg("watch") = py::none(), py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(),
-        k_centroidal_doc);
+        py::arg("closed_ball") = false, py::arg("return_when_cancelled") = false, py::arg("watch") = py::none(),
+        py::arg("threads") = 0, py::arg("device") = "auto", py::arg("job") = py::none(), k_centroidal_doc);
 }
 
 }  // namespace saddleback::bindings

@@ -583,7 +583,6 @@ def centroidal_voronoi(
     held: ArrayLike | None = None,
     least_move: SupportsFloat = 0.0,
     cache: CellCache | None = None,
-    scale_free: bool = True,
     closed_ball: bool = False,
     return_when_cancelled: bool = False,
     watch: RelaxationWatch | None = None,

@@ -118,7 +118,7 @@ SaddleVertexGraph::~SaddleVertexGraph() = default;
 SaddleVertexGraph::SaddleVertexGraph(SaddleVertexGraph&&) noexcept = default;
 
 std::size_t SaddleVertexGraph::nbytes() const {
-  return arcs_.nbytes() + (nodes_.size() + vertices_.size()) * sizeof(Index) + queries_->nbytes_at_unit_size();
+  return arcs_.nbytes() + (nodes_.size() + vertices_.size()) * sizeof(Index);
 }
 
 ArcHint SaddleVertexGraph::hint(Index node, std::int64_t arc) const {

@@ -9,11 +9,11 @@
 #include "support/only_ratios.h"
 #include "tessellation/cells/cell_topology.h"
 #include "tessellation/relaxation/annealing.h"
+#include "tessellation/relaxation/cell_cache.h"
 #include "tessellation/relaxation/cells_across_curves.h"
 #include "tessellation/relaxation/closed_ball.h"
 #include "tessellation/relaxation/diagram.h"
 #include "tessellation/relaxation/relaxation_run.h"
-#include "tessellation/relaxation/unit_relaxation.h"
 
 namespace saddleback {
 namespace {
@@ -65,6 +65,23 @@ void shake(Relaxation& relaxation, const CentroidalVoronoiOptions& options, cons
   keep_the_better(stage);
 }
 
+/// Finds the cells of the relaxed sites, those of a cache only where sites have moved.
+void show_cells(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& options, const JobStage& stage,
+                CentroidalVoronoi& result) {
+  const JobStage showing = options.return_when_cancelled ? JobStage() : stage;
+  if (!options.cache) {
+    result.cells = find_cells(graph, result.sites, options.threads, options.cuda_device, showing);
+    return;
+  }
+  const BorrowedCells cells(options.cache, CellCache::Cells::shown, graph, options.density, options.threads,
+                            options.cuda_device);
+  cells->match(result.sites);
+  cells->find(result.sites, showing.part(0, 0.7));
+  cells->look_farther(showing.part(0.7, 0.8));
+  const ClaimsOfCells claims(cells->claims());
+  result.cells = make_diagram(CellComplex(claims, options.threads, showing.part(0.8, 1)), result.sites, showing);
+}
+
 /// Sites on the curves and others, relaxed. Where the cell of a free site reaches across a curve, the site is put onto
 /// it, and all are relaxed again: first a few steps, after which most such cells are known.
 CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, std::uint64_t seed,
@@ -84,6 +101,7 @@ CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, s
     on_curves.closed_ball = options.closed_ball && on_curves.max_iterations == options.max_iterations;
     const JobStage part = stage.part(1 - std::pow(0.5, round), 1 - std::pow(0.5, round + 1));
     CentroidalVoronoi result = relax_sites(graph, start.sites, on_curves, part);
+    show_cells(graph, on_curves, part, result);
     if (result.stop_reason == k_cancelled || options.max_iterations == 0 || round == k_most_rounds) return result;
     start.sites = result.sites;
     const bool changed = hold_stray_sites(mesh, result.cells, options.curves, fixed, start.sites, start.held);
@@ -93,17 +111,17 @@ CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, s
 }
 
 CentroidalVoronoi relax_count(const SaddleVertexGraph& graph, Index count, RelaxationStart start, std::uint64_t seed,
-                              const CentroidalVoronoiOptions& options, const JobStage& stage, FinalCells final_cells) {
+                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
   constexpr double k_start = 0.4;  // coarse cells take nearly as long as fine ones, but few iterations
   constexpr int k_long_run = 50;
   if (!options.curves.empty()) return relax_on_curves(graph, count, seed, options, stage);
   const bool coarse = start == RelaxationStart::automatic ? options.max_iterations >= k_long_run
                                                           : start == RelaxationStart::coarse_to_fine;
   if (!coarse || options.max_iterations == 0) {
-    return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage, final_cells);
+    return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage);
   }
   return relax_sites(graph, coarse_to_fine_sites(graph, count, options, seed, stage.part(0, k_start)), options,
-                     stage.part(k_start, 1), final_cells);
+                     stage.part(k_start, 1));
 }
 
 /// Has fewer faults, where those are looked for, or as many and less energy.
@@ -114,12 +132,12 @@ bool is_better(const CentroidalVoronoi& one, const CentroidalVoronoi& other) {
 
 /// The best of the starts.
 CentroidalVoronoi relax_starts(const SaddleVertexGraph& graph, Index count, RelaxationStart start, std::uint64_t seed,
-                               const CentroidalVoronoiOptions& options, const JobStage& stage, FinalCells final_cells) {
+                               const CentroidalVoronoiOptions& options, const JobStage& stage) {
   CentroidalVoronoi best;
   for (int i = 0; i < options.starts; ++i) {
     const double part = 1.0 / options.starts;
     CentroidalVoronoi found = relax_count(graph, count, start, seed + static_cast<std::uint64_t>(i), options,
-                                          stage.part(i * part, (i + 1) * part), final_cells);
+                                          stage.part(i * part, (i + 1) * part));
     const bool was_cancelled = found.stop_reason == k_cancelled;
     const bool is_known = !was_cancelled || !options.closed_ball;  // what is wrong with it
     if (i == 0 || (is_known && is_better(found, best))) best = std::move(found);
@@ -128,6 +146,23 @@ CentroidalVoronoi relax_starts(const SaddleVertexGraph& graph, Index count, Rela
     break;
   }
   return best;
+}
+
+/// Relaxes with a density of which only ratios matter, and finds the cells of the result where they are not known.
+template <class Relax>
+CentroidalVoronoi relax_and_show(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& options, Job* job,
+                                 Relax&& relax) {
+  constexpr double k_showing = 3;  // in iterations
+  const double whole = 1 + options.annealing + options.max_iterations + k_showing, relaxed = 1 - k_showing / whole;
+  const OnlyRatios density(options.density);
+  CentroidalVoronoiOptions scaled = options;
+  scaled.density = density.values();
+  const JobStage stage(job, "Finding cells");
+  CentroidalVoronoi result = relax(scaled, stage.part(0, relaxed));
+  if (result.cells.sites.empty()) show_cells(graph, scaled, stage.part(relaxed, 1), result);
+  if (options.closed_ball) result.issues = find_dual_issues(graph.mesh(), result.cells);
+  if (!options.return_when_cancelled) stage.update(1);
+  return result;
 }
 
 }  // namespace
@@ -170,15 +205,9 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
   check_sites(graph.mesh(), sites);
   check_options(graph.mesh(), options);
   check_fixed(options, static_cast<Index>(sites.size()));
-  const OnlyRatios density(options.density);
-  CentroidalVoronoiOptions scaled = options;
-  scaled.density = density.values();
-  CentroidalVoronoi result = relax_at_unit_size(
-      graph, sites.size(), scaled, JobStage(job, "Finding cells"),
-      [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
-          FinalCells final_cells) { return relax_sites(ground, sites, there, stage, final_cells); });
-  if (options.closed_ball) result.issues = find_dual_issues(graph.mesh(), result.cells);
-  return result;
+  return relax_and_show(graph, options, job, [&](const CentroidalVoronoiOptions& scaled, const JobStage& stage) {
+    return relax_sites(graph, sites, scaled, stage);
+  });
 }
 
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
@@ -187,19 +216,13 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count
   check_count(graph.mesh(), count);
   check_fixed(options, count);
   if (!options.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
-  const OnlyRatios density(options.density);
-  CentroidalVoronoiOptions scaled = options;
-  scaled.density = density.values();
-  CentroidalVoronoi result = relax_at_unit_size(
-      graph, static_cast<std::size_t>(count), scaled, JobStage(job, "Finding cells"),
-      [&](const SaddleVertexGraph& ground, const CentroidalVoronoiOptions& there, const JobStage& stage,
-          FinalCells final_cells) { return relax_starts(ground, count, start, seed, there, stage, final_cells); });
-  if (options.closed_ball) result.issues = find_dual_issues(graph.mesh(), result.cells);
-  return result;
+  return relax_and_show(graph, options, job, [&](const CentroidalVoronoiOptions& scaled, const JobStage& stage) {
+    return relax_starts(graph, count, start, seed, scaled, stage);
+  });
 }
 
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
-                              const CentroidalVoronoiOptions& options, const JobStage& stage, FinalCells final_cells) {
+                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
   constexpr double k_first = 0.5;  // of the steps, where sites may be exchanged after them
   const double part = 1.0 / (options.annealing + options.max_iterations + 1), shaken = (options.annealing + 1) * part,
                relaxed = options.closed_ball ? shaken + k_first * (1 - shaken) : 1;
@@ -228,14 +251,17 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   result.converged = log.converged;
   result.stop_reason = std::move(log.stop_reason);
   const RelaxationState& best = relaxation.state();
-  const JobStage last = options.return_when_cancelled ? JobStage() : stage;
   result.sites = best.sites;
   result.held.assign(options.held.begin(), options.held.end());
-  if (final_cells == FinalCells::found)
-    result.cells = find_cells(graph, best.sites, options.threads, options.cuda_device, last);
   result.normalized_energy = normalized_energy(graph.mesh(), options.density, best.energy, sites.size());
   if (!options.return_when_cancelled) stage.update(1);
   return result;
+}
+
+GeodesicVoronoi relaxed_cells(const SaddleVertexGraph& graph, const SurfacePoints& sites,
+                              const CentroidalVoronoiOptions& options, const JobStage& stage) {
+  const CentroidalVoronoi relaxed = relax_sites(graph, sites, options, stage);
+  return find_cells(graph, relaxed.sites, options.threads, options.cuda_device, stage);
 }
 
 }  // namespace saddleback

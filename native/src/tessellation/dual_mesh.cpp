@@ -110,7 +110,7 @@ DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, 
     options.method = RelaxationMethod::lloyd;
     options.max_iterations = k_settling_steps;
     options.threads = threads;
-    current = relax_sites(graph, sites, options, part).cells;
+    current = relaxed_cells(graph, sites, options, part);
   }
   DualMesh result = dual_of(mesh, current, stage);
   const std::size_t added = current.sites.size() - kept;

@@ -108,7 +108,7 @@ class SaddleVertexGraph {
   bool is_exact() const { return exact_; }
   std::int64_t arc_count() const { return arcs_.count(); }
   double mean_degree() const { return static_cast<double>(arc_count()) / mesh_->vertex_count(); }
-  /// Memory of the arcs and the order of the nodes, also of the graph at unit size that relaxations have made.
+  /// Memory of the arcs and the order of the nodes.
   std::size_t nbytes() const;
   double build_seconds() const { return build_seconds_; }
   bool built_by_cuda() const { return built_by_cuda_; }

@@ -44,12 +44,7 @@ struct CentroidalVoronoiOptions {
   /// triangulation of the surface as their dual. Where no site can be spared, or 40 rounds of moving some do not help,
   /// or ten do not leave fewer faults, they are left as they were, and `issues` tells so.
   bool closed_ball = false;
-  CellCache* cache = nullptr;  ///< cells to begin with, and afterwards those of the result
-  /// Whether sites are relaxed on a copy of the mesh of unit size, rounded to 2^-26 of that: they are the same to the
-  /// bit, as points of faces, for the mesh enlarged, shrunk or moved. The first relaxation on a graph then builds a
-  /// graph of the copy, which the graph keeps. Meshes with edges too short for that, and those whose graph takes more
-  /// than 128 MB, are relaxed as they are.
-  bool scale_free = true;
+  CellCache* cache = nullptr;          ///< cells to begin with, and afterwards those of the result
   bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
   /// Is shown the start and every iteration of the wanted number of sites; after an exchange for `closed_ball` from 0
   /// on again, and those at which the cells were looked at.

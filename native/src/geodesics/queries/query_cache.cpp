@@ -2,8 +2,6 @@
 
 #include <chrono>
 
-#include "geodesics/queries/unit_graph.h"
-
 namespace saddleback {
 
 namespace {
@@ -32,18 +30,6 @@ const FanMesh& QueryCache::fan_mesh(const SaddleVertexGraph& graph, int threads,
     fan_mesh_ = std::make_unique<FanMesh>(graph.unfolding(), graph.nodes(), graph.vertices(), threads, stage);
   has_fan_mesh_ = true;
   return *fan_mesh_;
-}
-
-const UnitGraph* QueryCache::unit_graph(const SaddleVertexGraph& graph, int threads, int cuda_device,
-                                        const JobStage& stage) {
-  const auto lock = wait_for(unit_graph_mutex_, stage);
-  if (!has_unit_graph_) unit_graph_ = saddleback::unit_graph(graph, threads, cuda_device, stage);
-  has_unit_graph_ = true;
-  return unit_graph_.get();
-}
-
-std::size_t QueryCache::nbytes_at_unit_size() const {
-  return has_unit_graph_ && unit_graph_ ? unit_graph_->graph.nbytes() : 0;
 }
 
 std::shared_ptr<QueryCache> make_query_cache() { return std::make_shared<QueryCache>(); }

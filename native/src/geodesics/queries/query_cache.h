@@ -15,8 +15,6 @@
 
 namespace saddleback {
 
-struct UnitGraph;
-
 /// Safe to use from any number of threads.
 struct QueryCache {
   ScratchPool<GraphSearch> field_searches;
@@ -30,17 +28,12 @@ struct QueryCache {
   /// The same for what fans of points are found with.
   const FanMesh& fan_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage);
   bool has_fan_mesh() const { return has_fan_mesh_; }
-  /// The same for the function of that name, whose result may be none.
-  const UnitGraph* unit_graph(const SaddleVertexGraph& graph, int threads, int cuda_device, const JobStage& stage);
-  bool has_unit_graph() const { return has_unit_graph_; }
-  std::size_t nbytes_at_unit_size() const;
 
  private:
-  std::timed_mutex landmarks_mutex_, fan_mesh_mutex_, unit_graph_mutex_;
+  std::timed_mutex landmarks_mutex_, fan_mesh_mutex_;
   std::unique_ptr<Landmarks> landmarks_;
   std::unique_ptr<FanMesh> fan_mesh_;
-  std::unique_ptr<const UnitGraph> unit_graph_;
-  std::atomic<bool> has_fan_mesh_{false}, has_unit_graph_{false};
+  std::atomic<bool> has_fan_mesh_{false};
 };
 
 }  // namespace saddleback

@@ -101,11 +101,11 @@ SurfacePoints start(const SaddleVertexGraph& graph, Index count, const Centroida
   // Round thin parts coarse cells meet themselves or each other twice; where many do, they are no start for others.
   CentroidalVoronoiOptions first = rough;
   first.max_iterations = std::min(rough.max_iterations, k_first_iterations);
-  CentroidalVoronoi relaxed = relax_sites(graph, sites, first, stage.part(0.5, 0.6));
-  const auto faulty = std::ranges::count(faulty_cells(mesh, relaxed.cells), 1);
+  GeodesicVoronoi cells = relaxed_cells(graph, sites, first, stage.part(0.5, 0.6));
+  const auto faulty = std::ranges::count(faulty_cells(mesh, cells), 1);
   if (static_cast<double>(faulty) > k_most_faulty * coarse) return initial_sites(mesh, count, options.density, seed);
-  relaxed = relax_sites(graph, relaxed.sites, rough, stage.part(0.6, 1));
-  return refined(mesh, relaxed.cells, faulty_cells(mesh, relaxed.cells), count, options, seed);
+  cells = relaxed_cells(graph, cells.sites, rough, stage.part(0.6, 1));
+  return refined(mesh, cells, faulty_cells(mesh, cells), count, options, seed);
 }
 
 }  // namespace

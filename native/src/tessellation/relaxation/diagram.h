@@ -23,13 +23,13 @@ void check_density(const Mesh& mesh, std::span<const double> density);
 /// CentroidalVoronoi's, of an energy. O(F).
 double normalized_energy(const Mesh& mesh, std::span<const double> density, double energy, std::size_t count);
 
-/// Whether a relaxation ends with the cells of its sites.
-enum class FinalCells { found, left_out };
-
-/// centroidal_voronoi as a part of other work, on the graph itself whatever its size.
+/// centroidal_voronoi as a part of other work; the cells of the result are left to find.
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
-                              const CentroidalVoronoiOptions& options, const JobStage& stage,
-                              FinalCells final_cells = FinalCells::found);
+                              const CentroidalVoronoiOptions& options, const JobStage& stage);
+
+/// The cells of such sites.
+GeodesicVoronoi relaxed_cells(const SaddleVertexGraph& graph, const SurfacePoints& sites,
+                              const CentroidalVoronoiOptions& options, const JobStage& stage);
 
 /// A start for `count` cells from relaxed cells of a quarter of the number, and so on down. \throw as initial_sites;
 /// Cancelled.
