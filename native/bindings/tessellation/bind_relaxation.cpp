@@ -28,10 +28,11 @@ RelaxationMethod as_method(const std::string& name) {
   throw InputError(message("method: wanted 'lbfgs' or 'lloyd', got '", name, "'"));
 }
 
-RelaxationStart as_start(const std::string& name) {
-  if (name == "auto") return RelaxationStart::automatic;
-  if (name == "coarse_to_fine") return RelaxationStart::coarse_to_fine;
-  if (name == "sample") return RelaxationStart::sample;
+RelaxationStart::From as_start(const std::string& name) {
+  using From = RelaxationStart::From;
+  if (name == "auto") return From::automatic;
+  if (name == "coarse_to_fine") return From::coarse_to_fine;
+  if (name == "sample") return From::sample;
   throw InputError(message("start: wanted 'auto', 'coarse_to_fine' or 'sample', got '", name, "'"));
 }
 
@@ -83,24 +84,22 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
   if (!fixed.is_none()) stay = as_indices(fixed, "fixed");
   if (!held.is_none()) on_curves = as_indices(held, "held");
   const std::vector<const SurfaceCurve*> lines = as_curves(curves);
-  CentroidalVoronoiOptions options{.density = weights.values,
-                                   .fixed = stay.values,
-                                   .curves = lines,
-                                   .held = on_curves.values,
-                                   .method = as_method(method),
-                                   .max_iterations = as_integer(max_iterations, "max_iterations"),
-                                   .tolerance = as_real(tolerance, "tolerance"),
-                                   .starts = as_integer(starts, "starts"),
-                                   .annealing = as_integer(annealing, "annealing"),
-                                   .least_move = as_real(least_move, "least_move"),
-                                   .closed_ball = closed_ball,
-                                   .cache = as_cache(cache, graph),
-                                   .return_when_cancelled = return_when_cancelled,
-                                   .watch = as_watch(watch),
-                                   .threads = as_integer(threads, "threads")};
-  const std::uint64_t number = as_seed(seed, "seed");
+  CentroidalVoronoiOptions options{
+      .density = weights.values,
+      .method = as_method(method),
+      .start = {.starts = as_integer(starts, "starts"), .annealing = as_integer(annealing, "annealing")},
+      .constraints = {.fixed = stay.values, .curves = lines, .held = on_curves.values},
+      .stop = {.max_iterations = as_integer(max_iterations, "max_iterations"),
+               .tolerance = as_real(tolerance, "tolerance"),
+               .least_move = as_real(least_move, "least_move"),
+               .return_when_cancelled = return_when_cancelled},
+      .closed_ball = closed_ball,
+      .cache = as_cache(cache, graph),
+      .watch = as_watch(watch),
+      .threads = as_integer(threads, "threads")};
+  options.start.seed = as_seed(seed, "seed");
+  options.start.from = as_start(start);
   const JobIn token(job);
-  const RelaxationStart source = as_start(start);
   SurfacePoints given;
   if (!sites.is_none()) given = as_surface_points(sites, g.mesh(), "sites");
   const Index wanted = count.is_none() ? 0 : as_integer(count, "count");
@@ -108,8 +107,7 @@ Relaxed relax(const py::object& graph, const py::object& sites, const py::object
   CentroidalVoronoi result = run_on(device, is_search_worth_a_device(g), [&](const std::vector<int>& devices) {
     options.cuda_device = first_device(devices);
     return without_gil([&] {
-      return has_count ? centroidal_voronoi(g, wanted, source, number, options, token)
-                       : centroidal_voronoi(g, given, options, token);
+      return has_count ? centroidal_voronoi(g, wanted, options, token) : centroidal_voronoi(g, given, options, token);
     });
   });
   as_cache(cache, graph);  // another call may have been with another graph meanwhile

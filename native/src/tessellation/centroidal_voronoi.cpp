@@ -21,14 +21,17 @@ namespace {
 constexpr const char* k_cancelled = "cancelled";
 
 void check_options(const Mesh& mesh, const CentroidalVoronoiOptions& options) {
-  if (options.max_iterations < 0)
-    throw InputError(message("max_iterations: wanted 0 or more, got ", options.max_iterations));
-  if (!(options.tolerance >= 0)) throw InputError(message("tolerance: wanted 0 or more, got ", options.tolerance));
-  if (options.starts < 1) throw InputError(message("starts: wanted 1 or more, got ", options.starts));
-  if (!(options.least_move >= 0)) throw InputError(message("least_move: wanted 0 or more, got ", options.least_move));
-  if (std::isinf(options.least_move))
+  if (options.stop.max_iterations < 0)
+    throw InputError(message("max_iterations: wanted 0 or more, got ", options.stop.max_iterations));
+  if (!(options.stop.tolerance >= 0))
+    throw InputError(message("tolerance: wanted 0 or more, got ", options.stop.tolerance));
+  if (options.start.starts < 1) throw InputError(message("starts: wanted 1 or more, got ", options.start.starts));
+  if (!(options.stop.least_move >= 0))
+    throw InputError(message("least_move: wanted 0 or more, got ", options.stop.least_move));
+  if (std::isinf(options.stop.least_move))
     throw InputError("least_move: wanted a finite number, got inf: no site would move");
-  if (options.annealing < 0) throw InputError(message("annealing: wanted 0 or more, got ", options.annealing));
+  if (options.start.annealing < 0)
+    throw InputError(message("annealing: wanted 0 or more, got ", options.start.annealing));
   check_density(mesh, options.density);
 }
 
@@ -41,7 +44,7 @@ void check_count(const Mesh& mesh, Index count) {
 }
 
 void check_fixed(const CentroidalVoronoiOptions& options, Index count) {
-  for (const Index site : options.fixed) {
+  for (const Index site : options.constraints.fixed) {
     if (site >= 0 && site < count) continue;
     throw InputError(message("fixed: wanted sites from 0 to ", count - 1, ", got ", site));
   }
@@ -49,7 +52,7 @@ void check_fixed(const CentroidalVoronoiOptions& options, Index count) {
 
 /// Shakes the sites, unless they had less energy before.
 void shake(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage) {
-  if (options.annealing == 0) return;
+  if (options.start.annealing == 0) return;
   const SurfacePoints sites = relaxation.state().sites;
   const std::vector<double> along = relaxation.state().along;
   const double energy = relaxation.state().energy;
@@ -57,9 +60,9 @@ void shake(Relaxation& relaxation, const CentroidalVoronoiOptions& options, cons
     if (!(relaxation.state().energy < energy)) relaxation.go_to(sites, along, last);
   };
   try {
-    anneal(relaxation, options.annealing, stage);
+    anneal(relaxation, options.start.annealing, stage);
   } catch (const Cancelled&) {
-    if (options.return_when_cancelled) keep_the_better(JobStage());
+    if (options.stop.return_when_cancelled) keep_the_better(JobStage());
     throw;
   }
   keep_the_better(stage);
@@ -68,7 +71,7 @@ void shake(Relaxation& relaxation, const CentroidalVoronoiOptions& options, cons
 /// Finds the cells of the relaxed sites, those of a cache only where sites have moved.
 void show_cells(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& options, const JobStage& stage,
                 CentroidalVoronoi& result) {
-  const JobStage showing = options.return_when_cancelled ? JobStage() : stage;
+  const JobStage showing = options.stop.return_when_cancelled ? JobStage() : stage;
   if (!options.cache) {
     result.cells = find_cells(graph, result.sites, options.threads, options.cuda_device, showing);
     return;
@@ -88,36 +91,38 @@ CentroidalVoronoi relax_on_curves(const SaddleVertexGraph& graph, Index count, s
                                   const CentroidalVoronoiOptions& options, const JobStage& stage) {
   constexpr int k_first_iterations = 10, k_most_rounds = 5;
   const Mesh& mesh = graph.mesh();
-  const HeldSites checked(mesh, options.curves, {}, 0);
-  HeldStart start = held_start(mesh, count, options.curves, options.density, seed);
-  std::vector<Index> fixed(options.fixed.begin(), options.fixed.end());
+  const HeldSites checked(mesh, options.constraints.curves, {}, 0);
+  HeldStart start = held_start(mesh, count, options.constraints.curves, options.density, seed);
+  std::vector<Index> fixed(options.constraints.fixed.begin(), options.constraints.fixed.end());
   fixed.insert(fixed.end(), start.fixed.begin(), start.fixed.end());
   CentroidalVoronoiOptions on_curves = options;
-  on_curves.fixed = fixed;
+  on_curves.constraints.fixed = fixed;
   for (int round = 0;; ++round) {
-    on_curves.max_iterations =
-        round == 0 ? std::min(options.max_iterations, k_first_iterations) : options.max_iterations;
-    on_curves.held = start.held;
-    on_curves.closed_ball = options.closed_ball && on_curves.max_iterations == options.max_iterations;
+    on_curves.stop.max_iterations =
+        round == 0 ? std::min(options.stop.max_iterations, k_first_iterations) : options.stop.max_iterations;
+    on_curves.constraints.held = start.held;
+    on_curves.closed_ball = options.closed_ball && on_curves.stop.max_iterations == options.stop.max_iterations;
     const JobStage part = stage.part(1 - std::pow(0.5, round), 1 - std::pow(0.5, round + 1));
     CentroidalVoronoi result = relax_sites(graph, start.sites, on_curves, part);
     show_cells(graph, on_curves, part, result);
-    if (result.stop_reason == k_cancelled || options.max_iterations == 0 || round == k_most_rounds) return result;
+    if (result.stop_reason == k_cancelled || options.stop.max_iterations == 0 || round == k_most_rounds) return result;
     start.sites = result.sites;
-    const bool changed = hold_stray_sites(mesh, result.cells, options.curves, fixed, start.sites, start.held);
-    if (!changed && on_curves.max_iterations == options.max_iterations) return result;
-    on_curves.annealing = 0;
+    const bool changed =
+        hold_stray_sites(mesh, result.cells, options.constraints.curves, fixed, start.sites, start.held);
+    if (!changed && on_curves.stop.max_iterations == options.stop.max_iterations) return result;
+    on_curves.start.annealing = 0;
   }
 }
 
-CentroidalVoronoi relax_count(const SaddleVertexGraph& graph, Index count, RelaxationStart start, std::uint64_t seed,
+CentroidalVoronoi relax_count(const SaddleVertexGraph& graph, Index count, std::uint64_t seed,
                               const CentroidalVoronoiOptions& options, const JobStage& stage) {
   constexpr double k_start = 0.4;  // coarse cells take nearly as long as fine ones, but few iterations
   constexpr int k_long_run = 50;
-  if (!options.curves.empty()) return relax_on_curves(graph, count, seed, options, stage);
-  const bool coarse = start == RelaxationStart::automatic ? options.max_iterations >= k_long_run
-                                                          : start == RelaxationStart::coarse_to_fine;
-  if (!coarse || options.max_iterations == 0) {
+  if (!options.constraints.curves.empty()) return relax_on_curves(graph, count, seed, options, stage);
+  using From = RelaxationStart::From;
+  const bool coarse = options.start.from == From::automatic ? options.stop.max_iterations >= k_long_run
+                                                            : options.start.from == From::coarse_to_fine;
+  if (!coarse || options.stop.max_iterations == 0) {
     return relax_sites(graph, initial_sites(graph.mesh(), count, options.density, seed), options, stage);
   }
   return relax_sites(graph, coarse_to_fine_sites(graph, count, options, seed, stage.part(0, k_start)), options,
@@ -130,13 +135,13 @@ bool is_better(const CentroidalVoronoi& one, const CentroidalVoronoi& other) {
   return one.energy.back() < other.energy.back();
 }
 
-/// The best of the starts.
-CentroidalVoronoi relax_starts(const SaddleVertexGraph& graph, Index count, RelaxationStart start, std::uint64_t seed,
-                               const CentroidalVoronoiOptions& options, const JobStage& stage) {
+/// The best of the relaxations from all starts.
+CentroidalVoronoi best_of_starts(const SaddleVertexGraph& graph, Index count, const CentroidalVoronoiOptions& options,
+                                 const JobStage& stage) {
   CentroidalVoronoi best;
-  for (int i = 0; i < options.starts; ++i) {
-    const double part = 1.0 / options.starts;
-    CentroidalVoronoi found = relax_count(graph, count, start, seed + static_cast<std::uint64_t>(i), options,
+  for (int i = 0; i < options.start.starts; ++i) {
+    const double part = 1.0 / options.start.starts;
+    CentroidalVoronoi found = relax_count(graph, count, options.start.seed + static_cast<std::uint64_t>(i), options,
                                           stage.part(i * part, (i + 1) * part));
     const bool was_cancelled = found.stop_reason == k_cancelled;
     const bool is_known = !was_cancelled || !options.closed_ball;  // what is wrong with it
@@ -153,7 +158,8 @@ template <class Relax>
 CentroidalVoronoi relax_and_show(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& options, Job* job,
                                  Relax&& relax) {
   constexpr double k_showing = 3;  // in iterations
-  const double whole = 1 + options.annealing + options.max_iterations + k_showing, relaxed = 1 - k_showing / whole;
+  const double whole = 1 + options.start.annealing + options.stop.max_iterations + k_showing,
+               relaxed = 1 - k_showing / whole;
   const OnlyRatios density(options.density);
   CentroidalVoronoiOptions scaled = options;
   scaled.density = density.values();
@@ -161,7 +167,7 @@ CentroidalVoronoi relax_and_show(const SaddleVertexGraph& graph, const Centroida
   CentroidalVoronoi result = relax(scaled, stage.part(0, relaxed));
   if (result.cells.sites.empty()) show_cells(graph, scaled, stage.part(relaxed, 1), result);
   if (options.closed_ball) result.issues = find_dual_issues(graph.mesh(), result.cells);
-  if (!options.return_when_cancelled) stage.update(1);
+  if (!options.stop.return_when_cancelled) stage.update(1);
   return result;
 }
 
@@ -201,7 +207,7 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options, Job* job) {
-  if (options.starts > 1) throw InputError("starts: wanted 1 where the sites are given; others are for a count");
+  if (options.start.starts > 1) throw InputError("starts: wanted 1 where the sites are given; others are for a count");
   check_sites(graph.mesh(), sites);
   check_options(graph.mesh(), options);
   check_fixed(options, static_cast<Index>(sites.size()));
@@ -210,21 +216,22 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
   });
 }
 
-CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
-                                     std::uint64_t seed, const CentroidalVoronoiOptions& options, Job* job) {
+CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count,
+                                     const CentroidalVoronoiOptions& options, Job* job) {
   check_options(graph.mesh(), options);
   check_count(graph.mesh(), count);
   check_fixed(options, count);
-  if (!options.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
+  if (!options.constraints.held.empty()) throw InputError("held: wanted sites to go with it, got a count");
   return relax_and_show(graph, options, job, [&](const CentroidalVoronoiOptions& scaled, const JobStage& stage) {
-    return relax_starts(graph, count, start, seed, scaled, stage);
+    return best_of_starts(graph, count, scaled, stage);
   });
 }
 
 CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                               const CentroidalVoronoiOptions& options, const JobStage& stage) {
   constexpr double k_first = 0.5;  // of the steps, where sites may be exchanged after them
-  const double part = 1.0 / (options.annealing + options.max_iterations + 1), shaken = (options.annealing + 1) * part,
+  const double part = 1.0 / (options.start.annealing + options.stop.max_iterations + 1),
+               shaken = (options.start.annealing + 1) * part,
                relaxed = options.closed_ball ? shaken + k_first * (1 - shaken) : 1;
   Relaxation relaxation(graph, sites, options, stage.part(0, part));
   RelaxationLog log;
@@ -239,7 +246,7 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
     relax(relaxation, options, stage.part(shaken, relaxed), log);
     if (options.closed_ball) close_balls(relaxation, options, stage.part(relaxed, 1), log, exchange);
   } catch (const Cancelled&) {
-    if (!options.return_when_cancelled) throw;
+    if (!options.stop.return_when_cancelled) throw;
     if (log.energy.empty()) begin();
     log.stop_reason = k_cancelled;
   }
@@ -252,9 +259,9 @@ CentroidalVoronoi relax_sites(const SaddleVertexGraph& graph, const SurfacePoint
   result.stop_reason = std::move(log.stop_reason);
   const RelaxationState& best = relaxation.state();
   result.sites = best.sites;
-  result.held.assign(options.held.begin(), options.held.end());
+  result.held.assign(options.constraints.held.begin(), options.constraints.held.end());
   result.normalized_energy = normalized_energy(graph.mesh(), options.density, best.energy, sites.size());
-  if (!options.return_when_cancelled) stage.update(1);
+  if (!options.stop.return_when_cancelled) stage.update(1);
   return result;
 }
 

@@ -106,9 +106,9 @@ DualMesh repaired(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, 
     }
     const JobStage part = stage.part(static_cast<double>(round) / k_repair_rounds, (round + 1.0) / k_repair_rounds);
     CentroidalVoronoiOptions options;
-    options.fixed = fixed;
+    options.constraints.fixed = fixed;
     options.method = RelaxationMethod::lloyd;
-    options.max_iterations = k_settling_steps;
+    options.stop.max_iterations = k_settling_steps;
     options.threads = threads;
     current = relaxed_cells(graph, sites, options, part);
   }

@@ -1,6 +1,7 @@
 #pragma once
 // Centroidal Voronoi tessellation: even cells.
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -13,39 +14,55 @@ namespace saddleback {
 
 enum class RelaxationMethod { lbfgs, lloyd };
 
-/// Where sites come from when only their number is given: relaxed cells of a quarter of the number, with a site more on
-/// each boundary between two of them (few irregular cells remain; samples where coarse cells are no disks or meet
-/// twice), or a sample by density and seed. Automatic: from coarse cells for runs long enough to be worth it.
-enum class RelaxationStart { automatic, coarse_to_fine, sample };
-
-struct CentroidalVoronoiOptions {
-  std::span<const double> density;  ///< (V,) wanted cells per area, in proportion; empty: uniform
-  std::span<const Index> fixed;     ///< sites that stay where they are
-  /// Curves that sites slide along instead of leaving them: features, the mesh's boundary.
-  std::span<const SurfaceCurve* const> curves;
-  /// (n,) the curve that each site is held on, k_none for free ones; empty: all are free. Held sites begin at the
-  /// nearest points of their curves. Not for a number of cells, which says itself.
-  std::span<const Index> held;
-  RelaxationMethod method = RelaxationMethod::lbfgs;
-  int max_iterations = 100;  ///< of each start
-  double tolerance = 1e-6;   ///< stop when the energy falls by less than this share of itself
+/// Where a relaxation begins.
+struct RelaxationStart {
+  /// Where sites come from when only their number is given: relaxed cells of a quarter of the number, with a site more
+  /// on each boundary between two of them (few irregular cells remain; samples where coarse cells are no disks or meet
+  /// twice), or a sample by density and seed. Automatic: from coarse cells for runs long enough to be worth it.
+  enum class From { automatic, coarse_to_fine, sample };
+  From from = From::automatic;
+  std::uint64_t seed = 0;  ///< of the sample
   /// Only for a number of cells: so many relaxations, by the seeds from the given one on, of which the one with the
   /// least energy is the result. Where a relaxation ends depends on where it began.
   int starts = 1;
   /// So many steps of simulated annealing before the iterations, each as long as one of those: ends with less energy
   /// than any number of iterations; 300 are many. Sites that would end with more energy are left as they were.
   int annealing = 0;
+};
+
+/// What sites may not do.
+struct RelaxationConstraints {
+  std::span<const Index> fixed;  ///< sites that stay where they are
+  /// Curves that sites slide along instead of leaving them: features, the mesh's boundary.
+  std::span<const SurfaceCurve* const> curves;
+  /// (n,) the curve that each site is held on, k_none for free ones; empty: all are free. Held sites begin at the
+  /// nearest points of their curves. Not for a number of cells, which says itself.
+  std::span<const Index> held;
+};
+
+/// When a relaxation ends.
+struct RelaxationStop {
+  int max_iterations = 100;  ///< of each start
+  double tolerance = 1e-6;   ///< stop when the energy falls by less than this share of itself
   /// Sites that an iteration would move by less, in roots of their cells' areas, stay where they are, and cells that
   /// neither move nor have neighbors that do are not found anew: where most sites rest, iterations are short. When
   /// all would stay, the run ends. 0: all move. 1e-3 is less than one sees; energies then end higher by about 1e-5.
   double least_move = 0;
+  bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
+};
+
+struct CentroidalVoronoiOptions {
+  std::span<const double> density;  ///< (V,) wanted cells per area, in proportion; empty: uniform
+  RelaxationMethod method = RelaxationMethod::lbfgs;
+  RelaxationStart start;
+  RelaxationConstraints constraints;
+  RelaxationStop stop;
   /// Whether sites are moved afterwards from where they are least needed to where the cells break the closed-ball
   /// property (see DualIssue), and all relaxed again as far as nothing breaks it: `count` sites then have a
   /// triangulation of the surface as their dual. Where no site can be spared, or 40 rounds of moving some do not help,
   /// or ten do not leave fewer faults, they are left as they were, and `issues` tells so.
   bool closed_ball = false;
-  CellCache* cache = nullptr;          ///< cells to begin with, and afterwards those of the result
-  bool return_when_cancelled = false;  ///< the best found so far, instead of throwing
+  CellCache* cache = nullptr;  ///< cells to begin with, and afterwards those of the result
   /// Is shown the start and every iteration of the wanted number of sites; after an exchange for `closed_ball` from 0
   /// on again, and those at which the cells were looked at.
   RelaxationWatch* watch = nullptr;
@@ -94,8 +111,7 @@ CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const Surfa
 /// them, as far apart as neighbors are, the ends of open ones fixed; the others are the sample's, and those of them
 /// whose cells reach across a curve are put onto it, before the relaxation that is reported. \throw InputError also as
 /// `initial_sites`, and for fewer cells than the curves need.
-CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count, RelaxationStart start,
-                                     std::uint64_t seed, const CentroidalVoronoiOptions& options = {},
-                                     Job* job = nullptr);
+CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count,
+                                     const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);
 
 }  // namespace saddleback

@@ -107,7 +107,7 @@ void relax_closed(Relaxation& relaxation, const CentroidalVoronoiOptions& option
   show(relaxation, options, log);
   for (int vain = 0; log.stop_reason.empty() && vain < k_most_vain_runs;) {
     RelaxationLog longer = log;
-    const double done = static_cast<double>(log.iterations) / std::max(options.max_iterations, 1);
+    const double done = static_cast<double>(log.iterations) / std::max(options.stop.max_iterations, 1);
     const JobStage looking = stage.part(done, done);
     try {
       for (int i = 0; i < k_steps_a_look && longer.stop_reason.empty(); ++i)
@@ -126,7 +126,7 @@ void relax_closed(Relaxation& relaxation, const CentroidalVoronoiOptions& option
       }
       mark_more(cells, issues, stays);
     } catch (const Cancelled&) {
-      if (options.return_when_cancelled) whole.restore(relaxation, JobStage());
+      if (options.stop.return_when_cancelled) whole.restore(relaxation, JobStage());
       throw;
     }
     whole.restore(relaxation, looking);
@@ -146,7 +146,7 @@ void close_balls(Relaxation& relaxation, const CentroidalVoronoiOptions& options
   try {
     result = exchange(relaxation, options, stage.part(0, k_exchange));
   } catch (const Cancelled&) {
-    if (options.return_when_cancelled) before.restore(relaxation, JobStage());
+    if (options.stop.return_when_cancelled) before.restore(relaxation, JobStage());
     throw;
   }
   if (!result.left.empty()) before.restore(relaxation, stage.part(k_exchange, 1));

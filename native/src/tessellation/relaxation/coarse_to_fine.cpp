@@ -89,18 +89,18 @@ SurfacePoints start(const SaddleVertexGraph& graph, Index count, const Centroida
   const Index coarse = (count + 3 * euler_characteristic(mesh)) / 4;
   if (coarse < std::max(k_coarsest, mesh.component_count())) return initial_sites(mesh, count, options.density, seed);
   CentroidalVoronoiOptions rough = options;
-  rough.fixed = {};
-  rough.annealing = 0;
+  rough.constraints.fixed = {};
+  rough.start.annealing = 0;
   rough.closed_ball = false;
-  rough.max_iterations = std::min(options.max_iterations, k_most_coarse_iterations);
-  rough.tolerance = std::max(options.tolerance, k_coarse_tolerance);
-  rough.return_when_cancelled = false;
+  rough.stop.max_iterations = std::min(options.stop.max_iterations, k_most_coarse_iterations);
+  rough.stop.tolerance = std::max(options.stop.tolerance, k_coarse_tolerance);
+  rough.stop.return_when_cancelled = false;
   rough.watch = nullptr;
   rough.cache = nullptr;
   const SurfacePoints sites = start(graph, coarse, options, seed, stage.part(0, 0.5));
   // Round thin parts coarse cells meet themselves or each other twice; where many do, they are no start for others.
   CentroidalVoronoiOptions first = rough;
-  first.max_iterations = std::min(rough.max_iterations, k_first_iterations);
+  first.stop.max_iterations = std::min(rough.stop.max_iterations, k_first_iterations);
   GeodesicVoronoi cells = relaxed_cells(graph, sites, first, stage.part(0.5, 0.6));
   const auto faulty = std::ranges::count(faulty_cells(mesh, cells), 1);
   if (static_cast<double>(faulty) > k_most_faulty * coarse) return initial_sites(mesh, count, options.density, seed);

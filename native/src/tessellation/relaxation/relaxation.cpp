@@ -13,8 +13,8 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
       cells_(options.cache, CellCache::Cells::relaxed, graph, options.density, options.threads, options.cuda_device),
       is_fixed_(sites.size(), 0),
       is_resting_(sites.size(), 0),
-      held_(graph.mesh(), options.curves, options.held, sites.size()) {
-  for (const Index site : options.fixed) is_fixed_[site] = 1;
+      held_(graph.mesh(), options.constraints.curves, options.constraints.held, sites.size()) {
+  for (const Index site : options.constraints.fixed) is_fixed_[site] = 1;
   SurfacePoints start = sites;
   std::vector<double> along = held_.bring(start);
   cells_->match(start);
@@ -191,10 +191,10 @@ void Relaxation::shorten(TangentField& direction) const {
 
 /// Takes out the steps that are shorter than least_move.
 void Relaxation::leave_at_rest(TangentField& direction) {
-  if (options_.least_move == 0) return;
+  if (options_.stop.least_move == 0) return;
   is_at_rest_ = true;
   for (std::size_t i = 0; i < direction.size(); ++i) {
-    if (direction[i].norm() < options_.least_move * std::sqrt(state_.moments[i].area))
+    if (direction[i].norm() < options_.stop.least_move * std::sqrt(state_.moments[i].area))
       direction[i].setZero();
     else
       is_at_rest_ = false;

@@ -25,17 +25,17 @@ RelaxationLog log_of_start(const Relaxation& relaxation) {
 
 void take_step(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage,
                RelaxationLog& log) {
-  if (log.iterations >= options.max_iterations) return end(log, false, "max_iterations");
-  const double part = 1.0 / options.max_iterations;
+  if (log.iterations >= options.stop.max_iterations) return end(log, false, "max_iterations");
+  const double part = 1.0 / options.stop.max_iterations;
   const JobStage step =
       stage.part(log.iterations * part, (log.iterations + 1) * part,
-                 message("Relaxing cells, step ", log.iterations + 1, " of ", options.max_iterations));
+                 message("Relaxing cells, step ", log.iterations + 1, " of ", options.stop.max_iterations));
   if (!relaxation.advance(step))
     return end(log, true, relaxation.is_at_rest() ? "least_move" : "no step lowers the energy");
   const double energy = relaxation.state().energy, fall = log.energy.back() - energy;
   log.energy.push_back(energy);
   ++log.iterations;
-  log.small_falls = fall <= options.tolerance * energy ? log.small_falls + 1 : 0;
+  log.small_falls = fall <= options.stop.tolerance * energy ? log.small_falls + 1 : 0;
   if (log.small_falls >= patience(options.method)) end(log, true, "tolerance");
 }
 
