@@ -105,6 +105,18 @@ def test_python_in_the_documentation_uses_names_that_exist(page: Path) -> None:
                 thing = getattr(thing, part)
 
 
+def test_operators_in_the_documentation_have_the_properties_that_are_shown() -> None:
+    addon = ROOT / "addon/saddleback_blender"
+    source = "".join(
+        path.read_text(encoding="utf-8") for room in ("ops", "props") for path in (addon / room).glob("*.py")
+    )
+    for page in DOCS:
+        for name, given in re.findall(r"bpy\.ops\.saddleback\.(\w+)\(([^()]*)\)", page.read_text(encoding="utf-8")):
+            assert f'"saddleback.{name}"' in source, f"{page.name}: there is no operator {name}"
+            for keyword in re.findall(r"(\w+)=", given):
+                assert re.search(rf"\b{keyword}\b", source), f"{page.name}: {name} has no property {keyword}"
+
+
 def test_numbers_are_written_with_a_digit_before_the_point() -> None:
     found = [
         f"{page.relative_to(ROOT)}: {match[0].strip()}"
