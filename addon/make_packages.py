@@ -43,7 +43,7 @@ def main(wheels: list[Path]) -> None:
 
 
 def legacy_zip(path: Path, wheels: list[Path]) -> Path:
-    """For Blender 3.4 to 4.1: the package with the wheels unpacked in its lib/, where core/native.py looks."""
+    """Writes the package for Blender 3.4 to 4.1, with the wheels unpacked in its lib/, where core/native.py looks."""
     contents = {f"saddleback_blender/{name}": data for name, data in addon_files() if name != MANIFEST}
     for wheel in wheels:
         with zipfile.ZipFile(wheel) as archive:
@@ -54,7 +54,9 @@ def legacy_zip(path: Path, wheels: list[Path]) -> Path:
 
 
 def extension_zip(path: Path, wheels: list[Path], manifest: str, platform: str) -> Path:
-    """For Blender 4.2 and later: the package's files, a manifest that names the wheels, and the wheels."""
+    """Writes the package for Blender 4.2 and later: the package's files, a manifest that names the wheels, and the
+    wheels.
+    """
     contents = dict(addon_files())
     contents[MANIFEST] = completed_manifest(manifest, [wheel.name for wheel in wheels], platform).encode()
     for wheel in wheels:

@@ -46,7 +46,7 @@ def timed(what: str) -> Iterator[None]:
 
 
 def cells_for(subject: bpy.types.Object, wanted: int) -> int:
-    """How many cells: as asked, or as many as the mesh shows well."""
+    """Returns how many cells: as asked, or as many as the mesh shows well."""
     vertices = len(subject.data.vertices)
     return min(wanted, vertices) if wanted else int(np.clip(vertices / 25, min(12, vertices), 1500))
 
@@ -88,7 +88,7 @@ def repaired(subject: bpy.types.Object) -> None:
 
 
 def output(subject: bpy.types.Object, role: str) -> bpy.types.Object:
-    """What the add-on made for the subject."""
+    """Returns what the add-on made for the subject."""
     return next(item for item in subject.children if item.get(ROLE) == role)
 
 

@@ -38,7 +38,7 @@ def largest_part(vertices: np.ndarray, quads: np.ndarray) -> tuple[np.ndarray, n
 
 
 def is_closed(quads: np.ndarray, vertex_count: int) -> bool:
-    """Whether every edge has two quads."""
+    """Tells whether every edge has two quads."""
     ends = np.concatenate([quads[:, [i, (i + 1) % 4]] for i in range(4)])
     key = np.sort(ends, axis=1) @ np.array([vertex_count, 1], np.int64)
     return bool(np.all(np.unique(key, return_counts=True)[1] == 2))
@@ -103,7 +103,7 @@ def make_eyes(body: bpy.types.Object, collection: bpy.types.Collection) -> None:
 
 
 def make_strokes(body: bpy.types.Object, collection: bpy.types.Collection) -> None:
-    """What an artist would draw to say which way scales lie: one curve object, parented to the body."""
+    """Draws what an artist would draw to say which way scales lie: one curve object, parented to the body."""
     curve = bpy.data.curves.new("Strokes", "CURVE")
     curve.dimensions = "3D"
     for points in strokes.strokes():

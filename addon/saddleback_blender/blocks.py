@@ -28,5 +28,5 @@ def find(blocks: Any, name: str) -> Any:
 
 
 def is_editable(block: bpy.types.ID) -> bool:
-    """Whether something may be added to a data-block: to none of another file, nor to an override of one."""
+    """Tells whether something may be added to a data-block: to none of another file, nor to an override of one."""
     return block.library is None and block.override_library is None

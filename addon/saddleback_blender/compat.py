@@ -128,7 +128,7 @@ def write_polygons(mesh: bpy.types.Mesh, corners: NDArray[np.int32], offsets: ND
 
 
 def is_shaded_smooth(mesh: bpy.types.Mesh) -> bool:
-    """Whether any face is."""
+    """Tells whether any face is."""
     smooth = np.zeros(len(mesh.polygons), bool)
     mesh.polygons.foreach_get("use_smooth", smooth)
     return bool(smooth.any())
@@ -215,7 +215,7 @@ def modifier_inputs(modifier: bpy.types.Modifier) -> dict[str, Any]:
 
 
 def user_folder() -> str:
-    """Where this add-on may keep files of its own; an extension has a place of its own from 4.2 on."""
+    """Tells where this add-on may keep files of its own; an extension has a place of its own from 4.2 on."""
     is_extension = __package__.startswith("bl_ext.")
     if is_extension and hasattr(bpy.utils, "extension_path_user"):
         return str(bpy.utils.extension_path_user(__package__, path="graphs"))
@@ -223,7 +223,8 @@ def user_folder() -> str:
 
 
 def in_order_of_selection(mesh: bpy.types.Mesh, vertices: NDArray[np.int32]) -> NDArray[np.int32]:
-    """The same vertices in the order in which they were selected; as they are where Blender does not know it of all.
+    """Returns the same vertices in the order in which they were selected; as they are where Blender does not know it of
+    all.
 
     Blender keeps the order with the mesh, but shows it to scripts through bmesh only, which costs seconds for a million
     vertices.
@@ -239,7 +240,7 @@ def in_order_of_selection(mesh: bpy.types.Mesh, vertices: NDArray[np.int32]) -> 
 
 
 def annotation_strokes(scene: bpy.types.Scene) -> list[tuple[str, NDArray[np.float32]]]:
-    """What was drawn in the scene with the annotation tool and is shown now: layer, places (n, 3) in the world.
+    """Returns what was drawn in the scene with the annotation tool and is shown now: layer, places (n, 3) in the world.
 
     The scene's annotation is called so from 5.0 on, grease pencil before. Strokes that lie on the screen are left out.
     """
@@ -275,7 +276,7 @@ def grease_pencil_strokes(item: bpy.types.Object) -> list[tuple[str, NDArray[np.
 
 
 def is_grease_pencil(item: bpy.types.Object) -> bool:
-    """Whether an object holds grease pencil strokes, of the older or the newer kind."""
+    """Tells whether an object holds grease pencil strokes, of the older or the newer kind."""
     return item.type in ("GPENCIL", "GREASEPENCIL")
 
 

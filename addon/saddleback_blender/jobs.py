@@ -31,7 +31,7 @@ class Task:
 
     @property
     def text(self) -> str:
-        """Whose run it is and what is being done."""
+        """Says whose run it is and what is being done."""
         return f"{self.name}: {self.progress.text}" if self.progress.text else self.name
 
     @property
@@ -60,7 +60,7 @@ class Task:
 
 
 class State:
-    """What the panel shows: the task that is watched, the object that was refused last, what the last run made."""
+    """Holds what the panel shows: the task that is watched, the object refused last, what the last run made."""
 
     def __init__(self) -> None:
         self.task: Task | None = None

@@ -24,7 +24,7 @@ FROM_ATTRIBUTE, UNTIL_ATTRIBUTE = "saddleback_from", "saddleback_until"
 
 
 def is_ours(block: bpy.types.ID) -> bool:
-    """Whether we made a node group or material."""
+    """Tells whether we made a node group or material."""
     return MARK in block
 
 
@@ -317,7 +317,9 @@ def paths_material() -> bpy.types.Material:
 
 
 def field_materials() -> list[bpy.types.Material]:
-    """Of a field's arrows, of its singularities with a positive index, of those with a negative one."""
+    """Returns the materials of a field's arrows, of its singularities with a positive index, of those with a negative
+    one.
+    """
     looks = (
         ("Saddleback Arrows", ARROWS, (0.012, 0.02, 0.05, 1.0)),
         ("Saddleback Sources", SOURCES, (0.85, 0.13, 0.06, 1.0)),
@@ -327,7 +329,7 @@ def field_materials() -> list[bpy.types.Material]:
 
 
 def _new_painted(name: str, kind: str, roughness: float) -> bpy.types.Material:
-    """Of the color attribute."""
+    """Returns the layer of the color attribute."""
     material, shader = new_material(name, kind)
     color = material.node_tree.nodes.new("ShaderNodeVertexColor")
     color.layer_name = COLOR_ATTRIBUTE

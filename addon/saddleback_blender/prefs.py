@@ -23,7 +23,7 @@ def _choose_device(preferences: bpy.types.AddonPreferences, _context: bpy.types.
 
 
 class SaddlebackPreferences(bpy.types.AddonPreferences):
-    """What holds for the whole computer rather than for one file."""
+    """Holds the settings of the whole computer rather than for one file."""
 
     bl_idname = __package__
 

@@ -30,7 +30,7 @@ ELEMENTS: dict[str, tuple[str, int, type[np.generic]]] = {
 
 
 class _Changes:
-    """What is being written."""
+    """Holds what is being written."""
 
     def __init__(self) -> None:
         self.before = {kind: {block.as_pointer() for block in getattr(bpy.data, kind)} for kind in KINDS}
@@ -55,7 +55,7 @@ _open: list[_Changes] = []  # one at most
 
 @contextmanager
 def all_or_nothing() -> Iterator[None]:
-    """What is changed in the `with` stays only if nothing in it raises. One in another is part of that."""
+    """Keeps what is changed in the `with` only if nothing in it raises. One in another is part of that."""
     if _open:
         yield
         return

@@ -58,7 +58,7 @@ class Host:
 
     @classmethod
     def of(cls, item: bpy.types.Object, place: Matrix, vertex_count: int, has_rest: bool) -> Host:
-        """As seen from an object whose world matrix is `place`."""
+        """Returns it as seen from an object whose world matrix is `place`."""
         columns = np.array(place.inverted() @ item.matrix_world).T[:, :3].tolist()
         return cls(item, tuple(map(tuple, columns[:3])), tuple(columns[3]), vertex_count, has_rest)
 
@@ -109,7 +109,7 @@ def _new_shapes_group(shapes: list[bpy.types.Object], host: Host | None) -> bpy.
 
 @dataclass(frozen=True)
 class Tubes:
-    """What a curve object needs to follow: its own bevel would come before the points are moved."""
+    """Holds what a curve object needs to follow: its own bevel would come before the points are moved."""
 
     keeper: bpy.types.Object  # whose mesh has a vertex with the attributes for each point of the curve
     radius: float
@@ -216,7 +216,7 @@ class _RestMesh:
         self._now = wiring.attribute(NOW_POSITION, "FLOAT_VECTOR")
 
     def now(self, place: Any) -> Any:
-        """Where the place of the surface is now that is next to one at rest."""
+        """Returns where the place of the surface is now that is next to one at rest."""
         made = self._wiring.node("GeometryNodeSampleNearestSurface")
         made.data_type = "FLOAT_VECTOR"
         self._wiring.link(self._mesh, made.inputs["Mesh"])
@@ -225,19 +225,19 @@ class _RestMesh:
         return self._wiring.enabled(made.outputs, "Value")
 
     def way(self, place: Any, step: Any) -> Any:
-        """From where a step back from the place leads, to where one ahead does."""
+        """Returns the way from where a step back from the place leads, to where one ahead does."""
         back, ahead = (self._wiring.vector(operation, place, step) for operation in ("SUBTRACT", "ADD"))
         return self._wiring.vector("SUBTRACT", self.now(ahead), self.now(back))
 
 
 def _place_of(wiring: _Wiring, now: _TriangleNow, read: Callable[[str, str], Any]) -> Any:
-    """Where a point is now; where it was put where the mesh has become another one."""
+    """Returns where a point is now; where it was put where the mesh has become another one."""
     shift = wiring.combined(read(SHIFT_ATTRIBUTE, "FLOAT_VECTOR"), now.axes)
     return wiring.chosen(now.is_known, now.own, wiring.vector("ADD", now.foot, shift))
 
 
 def _turn_of(wiring: _Wiring, now: _TriangleNow, rotation: Any) -> Any:
-    """How a shape is turned now."""
+    """Returns how a shape is turned now."""
     along, away = (
         wiring.combined(wiring.attribute(name, "FLOAT_VECTOR"), now.axes) for name in (X_ATTRIBUTE, Z_ATTRIBUTE)
     )
@@ -281,7 +281,7 @@ class _Wiring:
         return self.enabled(made.outputs, "Value")
 
     def kept_by(self, keeper: Any) -> Callable[[str, str], Any]:
-        """What reads attributes of another object's mesh, of the vertex with the same index."""
+        """Returns what reads attributes of another object's mesh, of the vertex with the same index."""
         info = self.node("GeometryNodeObjectInfo")
         self.link(keeper, info.inputs["Object"])
         index = self.node("GeometryNodeInputIndex").outputs["Index"]
@@ -290,7 +290,7 @@ class _Wiring:
         )
 
     def is_equal(self, number: Any, to: int) -> Any:
-        """Whether a whole number is the one given."""
+        """Tells whether a whole number is the one given."""
         made = self.node("FunctionNodeCompare")
         made.data_type, made.operation = "INT", "EQUAL"
         self.link(number, self.enabled(made.inputs, "A"))
@@ -298,7 +298,7 @@ class _Wiring:
         return made.outputs["Result"]
 
     def is_long(self, vector: Any) -> Any:
-        """Whether a vector is longer than zero."""
+        """Tells whether a vector is longer than zero."""
         length, made = self.node("ShaderNodeVectorMath"), self.node("FunctionNodeCompare")
         length.operation = "LENGTH"
         self.link(vector, length.inputs[0])
@@ -308,7 +308,7 @@ class _Wiring:
         return made.outputs["Result"]
 
     def either(self, one: Any, other: Any) -> Any:
-        """Whether one of two is true."""
+        """Tells whether one of two is true."""
         made = self.node("FunctionNodeBooleanMath")
         made.operation = "OR"
         self.link(one, made.inputs[0])

@@ -75,7 +75,7 @@ def tube(knots: list[tuple[float, ...]], blend: float = 0.05, samples: int = 0, 
 
 
 def mirrored(part: Tube) -> Tube:
-    """The same part on the other side of the plane y = 0."""
+    """Returns the same part on the other side of the plane y = 0."""
     stations = part.stations.copy()
     stations[:, 1] *= -1
     return Tube(stations, part.blend, part.carve)

@@ -1,4 +1,4 @@
-"""What a sculptor does after the big forms stand: smoothing, creases, folds and fine noise."""
+"""Does what a sculptor does after the big forms stand: smoothing, creases, folds and fine noise."""
 
 from __future__ import annotations
 
@@ -71,14 +71,14 @@ def distance_to_line(points: Array, line: Array) -> Array:
 
 
 def eye_coordinates(points: Array) -> tuple[Array, Array]:
-    """For the nearer eye: distance from its axis and height along it."""
+    """Returns for the nearer eye: distance from its axis and height along it."""
     offset = points * [1, 0, 1] + [0, 1, 0] * np.abs(points) - EYE_CENTER
     height = offset @ EYE_AXIS
     return np.linalg.norm(offset - height[:, None] * EYE_AXIS, axis=1), height
 
 
 def detail(vertices: Array, normals: Array) -> Array:
-    """How far each vertex moves along its normal."""
+    """Returns how far each vertex moves along its normal."""
     x, y, z = vertices.T
     head = step(x, 0.95, 1.1)
     trunk = step(x, -1.1, -0.7) * step(x, 1.0, 0.7) * step(z, 0.28, 0.45)

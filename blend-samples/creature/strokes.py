@@ -43,6 +43,6 @@ def _along_body(degrees: float) -> Array:
 
 
 def _along_tail() -> Array:
-    """On the side of the spiral, to shortly before its end."""
+    """Returns how far a place is on the side of the spiral, to shortly before its end."""
     stations = np.array(tail_stations())[:-6:3]
     return np.stack([stations[:, 0], stations[:, 4], stations[:, 2]], axis=1)

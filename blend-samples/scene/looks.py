@@ -28,7 +28,7 @@ def gold() -> bpy.types.Material:
 
 
 def grout() -> bpy.types.Material:
-    """What shows between the cells."""
+    """Returns what shows between the cells."""
     return principled("Grout", (0.10, 0.055, 0.02), Roughness=0.6)
 
 
@@ -43,7 +43,7 @@ def horn() -> bpy.types.Material:
 
 
 def skin() -> bpy.types.Material:
-    """What shows between scales."""
+    """Returns what shows between scales."""
     return principled("Skin", (0.016, 0.011, 0.012), Roughness=0.7, Specular=0.2)
 
 

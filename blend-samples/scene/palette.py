@@ -50,12 +50,12 @@ def from_oklab(lab: Array) -> Array:
 
 
 def mix(a: Array, b: Array, amount: Array) -> Array:
-    """From a (n, 3) to b (3,) by amount (n,)."""
+    """Mixes from a (n, 3) to b (3,) by amount (n,)."""
     return a + amount[:, None] * (b - a)
 
 
 def smoothstep(value: Array, low: float, high: float) -> Array:
-    """0 at `low`, 1 at `high`, smooth between."""
+    """Returns 0 at `low`, 1 at `high`, smooth between."""
     t = np.clip((value - low) / (high - low), 0, 1)
     return t * t * (3 - 2 * t)
 

@@ -1,4 +1,6 @@
-"""What diagrams of the plane are good for: a tiled plate, stippling, a vase, a shell, and the sweep that finds them."""
+"""Shows what diagrams of the plane are good for: a tiled plate, stippling, a vase, a shell, and the sweep that finds
+them.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,7 @@ def add_mesh(name: str, vertices: np.ndarray, faces: list[tuple[int, ...]]) -> b
 
 
 def output(source: bpy.types.Object, role: str) -> bpy.types.Object:
-    """What the add-on made for an object."""
+    """Returns what the add-on made for an object."""
     return next(child for child in source.children if child.get(ROLE) == role)
 
 

@@ -19,7 +19,7 @@ CURVATURE = "Cell density"
 
 @dataclass
 class Paint:
-    """Where the density comes from: the operator's `density_source` and `density_name`."""
+    """Holds where the density comes from: the operator's `density_source` and `density_name`."""
 
     source: str = "UNIFORM"
     name: str = ""

@@ -1,4 +1,4 @@
-"""How an output knows its source: by a token, a random word that both keep, so that both may be renamed and saved."""
+"""Lets an output know its source: by a token, a random word that both keep, so that both may be renamed and saved."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where graphs and diagrams are found: as the preferences say, for the whole session. The result is the same."""
+"""Chooses where graphs and diagrams are found, as the preferences say. The result is the same everywhere."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def choose(kind: str, index: int = 0) -> None:
 
 
 def chosen() -> str:
-    """In the library's words."""
+    """Returns the choice in the library's words."""
     return _chosen
 
 
@@ -48,7 +48,7 @@ def plane_diagram(sites: Any, weights: Any, threads: int, progress: Progress, jo
 
 
 def by_chosen(work: Callable[[str], Any], progress: Progress) -> Any:
-    """Where the chosen device fails the processor does it, and the user is told."""
+    """Runs on the chosen device; where that fails the processor does it, and the user is told."""
     try:
         return work(_chosen)
     except native.load().DeviceError as error:

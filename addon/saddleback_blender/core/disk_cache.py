@@ -33,7 +33,7 @@ class DiskCache:
         return self.folder / (name + SUFFIX)
 
     def has(self, name: str) -> bool:
-        """Whether there is such a file, usable or not."""
+        """Tells whether there is such a file, usable or not."""
         return self.path(name).is_file()
 
     def load(self, name: str, mesh: Any, job: Any, note: Callable[[str], None]) -> Any | None:

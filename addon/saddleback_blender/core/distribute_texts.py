@@ -52,7 +52,7 @@ def told(laid: Laid, counts: np.ndarray, settings: DistributeSettings) -> str:
 
 
 def figures(laid: Laid, is_maximal: bool) -> tuple[str, ...]:
-    """How dense it is, why others were refused, what is proved."""
+    """Returns how dense it is, why others were refused, what is proved."""
     placements = laid.result.placements
     areas = np.array([shape.area for shape in laid.shapes])[placements.shape] * placements.scale**2
     lines = [f"Covered: {areas.sum() / laid.mesh.area:.1%}; radius of the largest {laid.size:.3g}"]
@@ -71,7 +71,7 @@ def figures(laid: Laid, is_maximal: bool) -> tuple[str, ...]:
 
 
 def warnings_of(laid: Laid, mapped: Any, settings: DistributeSettings) -> tuple[str, ...]:
-    """What a person may not have wanted."""
+    """Returns what a person may not have wanted."""
     found = []
     if len(mapped.failures):
         found.append(f"{len(mapped.failures)} shapes could not be laid out and are missing in what was made")

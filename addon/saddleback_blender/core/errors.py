@@ -4,4 +4,4 @@ from __future__ import annotations
 
 
 class BadInputError(Exception):
-    """What was asked cannot be done; one sentence that names the object and says what to do."""
+    """Says that what was asked cannot be done; one sentence that names the object and says what to do."""

@@ -77,7 +77,7 @@ class MadeField:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What to warn of."""
+        """Returns what to warn of."""
         if not self.left_out:
             return ()
         many = len(self.left_out)

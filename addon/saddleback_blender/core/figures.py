@@ -1,4 +1,4 @@
-"""What a run tells about its cells, in words."""
+"""Says what a run tells about its cells, in words."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ MESH_BYTES_PER_VERTEX, MESH_BYTES_PER_FACE = 48, 84
 
 @dataclass(frozen=True)
 class GraphChoice:
-    """Which graph of a surface: by the error accepted or, where k is not 0, by the vertices in a neighborhood."""
+    """Says which graph of a surface: by the error accepted or, where k is not 0, by the vertices in a neighborhood."""
 
     quality: str
     k: int
@@ -32,13 +32,13 @@ class GraphChoice:
         return self.quality == EXACT and self.k == 0
 
     def options(self, surface: Surface) -> dict[str, Any]:
-        """What the library is asked for."""
+        """Returns what the library is asked for."""
         if self.k > 0:  # a neighborhood cannot hold more than the whole surface
             return {"k": min(self.k, len(surface.vertices))}
         return {"accuracy": ACCURACY[self.quality]}
 
     def name(self, surface: Surface) -> str:
-        """The same for the same graph of whatever object, today and tomorrow."""
+        """Returns the same for the same graph of whatever object, today and tomorrow."""
         if self.is_exact:
             return f"{surface.key}-exact"
         (option, value), *_ = self.options(surface).items()

@@ -68,7 +68,7 @@ class _Line:
 
 
 class _Ways(Protocol):
-    """Where shortest paths come from."""
+    """Holds where shortest paths come from."""
 
     def paths(self, source: Any, targets: Any, job: Any) -> list[Any]:
         """One path of the library's from the source to each of the targets."""

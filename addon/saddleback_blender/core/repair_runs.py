@@ -47,12 +47,12 @@ def _counts(report: Any) -> dict[str, int]:
 
 
 def _follow(first: Indices, then: Indices) -> Indices:
-    """Where two maps lead one after the other; -1 = gone."""
+    """Returns where two maps lead one after the other; -1 = gone."""
     return np.where(first >= 0, then[first], -1).astype(np.int32)
 
 
 def _changes_of(report: Any) -> str:
-    """What was done, without the advice, which speaks of the library's arguments."""
+    """Returns what was done, without the advice, which speaks of the library's arguments."""
     return str(report).split("; ")[0] if report.changes else ""
 
 
@@ -62,7 +62,7 @@ def _holes_of(counts: dict[str, int]) -> str:
 
 
 def _advice(report: Any, settings: RepairSettings, holes_left: int) -> tuple[str, ...]:
-    """What would join the borders that nearly meet, and fill the holes that are left."""
+    """Returns what would join the borders that nearly meet, and fill the holes that are left."""
     near, amid = report.near_border_vertices, report.t_junctions
     told = []
     if near:

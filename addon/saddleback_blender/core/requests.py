@@ -1,4 +1,4 @@
-"""What the core is given: arrays of one surface and a way to find it again."""
+"""Holds what the core is given: arrays of one surface and a way to find it again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""What a run answers: frozen dataclasses of numpy arrays in world space, with the Blender mesh's own vertex numbers."""
+"""Holds what a run answers: frozen dataclasses of numpy arrays in world space, with the Blender mesh's own vertex
+numbers.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,7 @@ Indices = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class Figures:
-    """How even cells are, as numbers; those of triangles are of the dual mesh, means over all of its triangles."""
+    """Holds how even cells are, as numbers; those of triangles are means over all of the dual mesh."""
 
     triangle_quality: float  # 1 = equilateral, 0 = without area
     least_angle: float  # radians
@@ -243,7 +245,7 @@ class BentCopies:
 
 @dataclass(frozen=True)
 class ShapeValues:
-    """What each of the Blender mesh's V vertices knows of the shapes."""
+    """Holds what each of the Blender mesh's V vertices knows of the shapes."""
 
     shape: Indices  # (V,) whose outline is nearest; -1 = none near
     distance: Reals  # (V,) world units to its outline, negative inside; inf = none near
@@ -286,7 +288,7 @@ class DistributeResult:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """What an independent check of shapes found."""
+    """Holds what an independent check of shapes found."""
 
     text: str  # for a person to read
     faults: tuple[str, ...]  # the first of them, one sentence each

@@ -175,7 +175,7 @@ class _Solved:
 
 
 def _held(request: TessellateRequest) -> tuple[object, ...]:
-    """What says on which lines sites stay."""
+    """Returns what says on which lines sites stay."""
     settings = request.settings
     if request.sites is not None:
         return ()
@@ -183,7 +183,7 @@ def _held(request: TessellateRequest) -> tuple[object, ...]:
 
 
 def _starts(request: TessellateRequest) -> int:
-    """How many relaxations to choose from: one of sites that are given, or that is watched, is the only one."""
+    """Returns how many relaxations to choose from: one of sites that are given, or that is watched, is the only one."""
     settings = request.settings
     return settings.starts if settings.iterations and request.sites is None and request.live is None else 1
 
@@ -194,7 +194,7 @@ def _annealing(request: TessellateRequest, iterations: int) -> int:
 
 
 def _closed_ball(request: TessellateRequest, iterations: int) -> bool:
-    """Whether sites may be exchanged for the sake of the dual mesh: not those that are to stay where they are."""
+    """Tells whether sites may be exchanged for the sake of the dual mesh: not those that are to stay where they are."""
     return bool(iterations) and request.settings.make_dual and request.settings.keep_count
 
 

@@ -1,4 +1,4 @@
-"""What a run is asked to do: one frozen dataclass for each operator, field for field its properties."""
+"""Holds what a run is asked to do: one frozen dataclass for each operator, field for field its properties."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class DensitySettings:
-    """Where cells or shapes are small: the properties that several operators share."""
+    """Holds where cells or shapes are small: the properties that several operators share."""
 
     density_source: str = "UNIFORM"
     # UNIFORM, VERTEX_GROUP, ATTRIBUTE, COLOR, MASK, IMAGE, CURVATURE, DISTANCE, SPREAD

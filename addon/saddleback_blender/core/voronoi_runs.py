@@ -104,7 +104,7 @@ def _placed(request: Voronoi2dRequest, space: Space, progress: Progress) -> _Sit
 
 
 def _sites(request: Voronoi2dRequest, space: Space, density: Reals | None) -> _Sites:
-    """Where the sites are at first."""
+    """Returns where the sites are at first."""
     sb, settings, surface = native.load(), request.settings, request.surface
     if settings.sites_source == "COUNT":
         return _Sites.at(space, sb.sample(space.mesh, settings.count, seed=settings.seed))

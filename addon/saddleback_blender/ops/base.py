@@ -1,4 +1,4 @@
-"""What every operator that computes shares: gather, run (at once for scripts, in a thread for the panel), write."""
+"""Does what all operators that compute share: gather, run (at once for scripts, in a thread for the panel), write."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class PolledOperator:
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether the button can be pressed; says why not."""
+        """Tells whether the button can be pressed; says why not."""
         problem = why_not(context)
         if not problem and jobs.state.task is not None:
             problem = f"{jobs.state.task.name} is being computed: wait, or press ESC"
@@ -74,7 +74,7 @@ class SurfaceOperator(PolledOperator):
         """Takes away what was shown."""
 
     def keeps(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        """Whether the event asks for what the run has so far."""
+        """Tells whether the event asks for what the run has so far."""
         return False
 
     def figures(self, result: Any) -> list[str]:

@@ -21,7 +21,7 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether the button can be pressed; says why not."""
+        """Tells whether the button can be pressed; says why not."""
         problem = why_not(context)
         if problem:
             cls.poll_message_set(problem)

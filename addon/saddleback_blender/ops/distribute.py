@@ -96,11 +96,11 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
         return f"'{source.name}': {result.text}"
 
     def notes(self, result: DistributeResult) -> list[str]:
-        """What went wrong."""
+        """Returns what went wrong."""
         return list(result.warnings)
 
     def figures(self, result: DistributeResult) -> list[str]:
-        """How dense it is, and why no more found room."""
+        """Returns how dense it is, and why no more found room."""
         return list(result.lines)
 
 
@@ -128,7 +128,7 @@ class SADDLEBACK_OT_check_distribution(SurfaceOperator, bpy.types.Operator):
         return list(result.faults)
 
     def figures(self, result: CheckResult) -> list[str]:
-        """What was looked at."""
+        """Returns what was looked at."""
         return list(result.lines)
 
 

@@ -59,14 +59,14 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
         return f"'{source.name}': {result.text}"
 
     def notes(self, result: RepairResult) -> list[str]:
-        """What is left, and which setting would mend it."""
+        """Returns what is left, and which setting would mend it."""
         return list(result.advice)
 
     figures = notes
 
 
 def _has_modifiers(source: bpy.types.Object) -> bool:
-    """Whether what is seen is not, or not only, the object's own mesh."""
+    """Tells whether what is seen is not, or not only, the object's own mesh."""
     return any(modifier.show_viewport for modifier in source.modifiers)
 
 

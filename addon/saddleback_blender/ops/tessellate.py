@@ -88,12 +88,12 @@ class CellsOperator(SurfaceOperator):
         return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(source)}{_added(result)}"
 
     def notes(self, result: CellsResult) -> list[str]:
-        """What is wrong with the meshes that were made."""
+        """Returns what is wrong with the meshes that were made."""
         dual = [] if result.dual is None else faults_of(result.dual)
         return dual if result.shell is None else [*dual, *shell_faults_of(result.shell)]
 
     def figures(self, result: CellsResult) -> list[str]:
-        """How even the cells are."""
+        """Returns how even the cells are."""
         return lines_of(result.figures)
 
 
@@ -162,7 +162,7 @@ def _gather(
 
 
 def _keeps(context: bpy.types.Context, event: bpy.types.Event) -> bool:
-    """Whether the event asks for the cells as they are: ENTER, or a click into a 3D view, not on its panels."""
+    """Tells whether the event asks for the cells as they are: ENTER, or a click into a 3D view, not on its panels."""
     if event.value != "PRESS":
         return False
     if event.type != "LEFTMOUSE":
@@ -179,7 +179,7 @@ def _is_over(region: bpy.types.Region, event: bpy.types.Event) -> bool:
 
 
 def _writes_density(settings: TessellateSettings) -> bool:
-    """Whether the density used becomes an attribute; not where it was painted under that name."""
+    """Tells whether the density used becomes an attribute; not where it was painted under that name."""
     is_named = settings.density_source in ("VERTEX_GROUP", "ATTRIBUTE", "COLOR", "SPREAD")
     is_source = is_named and settings.density_name == settings.density_attribute
     return settings.density_source != "UNIFORM" and not is_source
@@ -194,7 +194,7 @@ def _steps(result: CellsResult) -> str:
 
 
 def _added(result: CellsResult) -> str:
-    """What the dual mesh needed: cells elsewhere, vertices beyond one a cell."""
+    """Returns what the dual mesh needed: cells elsewhere, vertices beyond one a cell."""
     if result.dual is None:
         return ""
     moved = "1 cell" if result.exchanged == 1 else f"{result.exchanged} cells"
@@ -203,7 +203,7 @@ def _added(result: CellsResult) -> str:
 
 
 def _lost(source: bpy.types.Object) -> str:
-    """How many cells are too narrow for the gap, where there are any."""
+    """Returns how many cells are too narrow for the gap, where there are any."""
     cells = find_output(source, CELLS_ROLE)
     lost = vanished_cells(cells) if cells is not None else 0
     return f", {lost} narrower than the gap left out" if lost else ""

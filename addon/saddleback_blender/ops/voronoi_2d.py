@@ -116,7 +116,7 @@ def _told(result: Voronoi2dResult) -> str:
 
 
 def _lost(source: bpy.types.Object) -> str:
-    """How many cells are too narrow for the gap, where there are any."""
+    """Returns how many cells are too narrow for the gap, where there are any."""
     cells = find_output(source, CELLS_ROLE)
     lost = vanished_cells(cells) if cells is not None else 0
     return f", {lost} narrower than the gap left out" if lost else ""

@@ -69,7 +69,7 @@ PROPERTIES = {
 
 
 def _kept(properties: dict[str, Any]) -> dict[str, Any]:
-    """The same properties for an object to keep: named objects, collections and images become pointers."""
+    """Makes the same properties for an object to keep: named objects, collections and images become pointers."""
     pointers = (
         dict.fromkeys(OBJECT_NAMES, bpy.types.Object)
         | dict.fromkeys(COLLECTION_NAMES, bpy.types.Collection)
@@ -220,7 +220,7 @@ def _set_plain(group: bpy.types.PropertyGroup, name: str, value: Any) -> None:
 
 
 def _blocks(name: str) -> Any:
-    """Where the data-blocks are that a setting points to; None for any other setting."""
+    """Returns where the data-blocks are that a setting points to; None for any other setting."""
     if name in OBJECT_NAMES:
         return bpy.data.objects
     if name in COLLECTION_NAMES:
@@ -244,7 +244,7 @@ def settings_of(operator: bpy.types.Operator, kind: type[Settings]) -> Settings:
 
 
 def told_settings(source: bpy.types.Object) -> dict[str, dict[str, Any]]:
-    """What the object keeps, by operator and name."""
+    """Returns what the object keeps, by operator and name."""
     groups = {name: _existing_group(source, name) for name in PROPERTIES}
     return {
         name: {prop: _plain(group, prop) for prop in (*PROPERTIES[name], CALL) if group.is_property_set(prop)}

@@ -1,4 +1,4 @@
-"""How dense cells and shapes are to be: for all panels that ask."""
+"""Holds how dense cells and shapes are to be: for all panels that ask."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ EXACT_QUALITY = ("EXACT", "Exact", "Exact distances, with nothing kept for the n
 
 
 def quality(items: tuple[tuple[str, str, str], ...] = QUALITIES) -> Any:
-    """How exact distances are."""
+    """Returns how exact distances are."""
     return choice("Quality", "How exact distances are, and how long the first run on a mesh takes", items, "NORMAL")
 
 
@@ -33,12 +33,12 @@ def detail() -> Any:
 
 
 def on_disk() -> Any:
-    """Whether the graph is kept."""
+    """Tells whether the graph is kept."""
     return switch("Keep on Disk", "Keep the distance graph of this mesh in the folder of the preferences", False)
 
 
 def use_modifiers() -> Any:
-    """Whether the modifiers' result is worked on."""
+    """Tells whether the modifiers' result is worked on."""
     return BoolProperty(
         name="Use Modifiers",
         description="Work on what the modifiers make of the object; where they add vertices, a new object is made",

@@ -1,5 +1,5 @@
-"""What a library override keeps. Of an object that overrides another file's, Blender saves only registered properties
-that may be overridden, and from 5.0 on no groups of them: token and settings are kept as texts besides.
+"""Keeps what a library override keeps. Of an object that overrides another file's, Blender saves only registered
+properties that may be overridden, and from 5.0 on no groups of them: token and settings are kept as texts besides.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ SETTINGS = "saddleback_override_settings"
 
 @persistent  # type: ignore[untyped-decorator]
 def write_texts(*_: Any) -> None:
-    """Before a file is saved."""
+    """Writes texts before a file is saved."""
     from . import told_settings
 
     for item in _overrides():
@@ -30,7 +30,7 @@ def write_texts(*_: Any) -> None:
 
 @persistent  # type: ignore[untyped-decorator]
 def read_texts(*_: Any) -> None:
-    """After a file was opened."""
+    """Reads texts after a file was opened."""
     from . import take_settings
 
     for item in _overrides():

@@ -29,7 +29,7 @@ class SaddlebackSubPanel(SaddlebackPanel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Only where something can be done."""
+        """Allows it only where something can be done."""
         return not why_not(context)
 
     def split_layout(self, context: bpy.types.Context) -> bpy.types.UILayout:
@@ -42,7 +42,7 @@ class SaddlebackSubPanel(SaddlebackPanel):
 
 
 class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
-    """What Saddleback works on, what it is doing, what it did."""
+    """Shows what Saddleback works on, what it is doing, what it did."""
 
     bl_label = "Saddleback"
 
@@ -122,7 +122,7 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
 
 
 class SADDLEBACK_PT_density(SaddlebackSubPanel, bpy.types.Panel):
-    """Where cells are small."""
+    """Shows where cells are small."""
 
     bl_label = "Density"
     bl_parent_id = "SADDLEBACK_PT_tessellate"
@@ -368,7 +368,7 @@ class SADDLEBACK_PT_sweep(SaddlebackPlaneOutputPanel, bpy.types.Panel):
 
 
 class SADDLEBACK_PT_direction_field(SaddlebackSubPanel, bpy.types.Panel):
-    """Which way things point."""
+    """Shows which way things point."""
 
     bl_label = "Direction Field"
     bl_options = {"DEFAULT_CLOSED"}
@@ -438,7 +438,7 @@ class SADDLEBACK_PT_distribute(SaddlebackSubPanel, bpy.types.Panel):
 
 
 class SADDLEBACK_PT_shape_density(SaddlebackSubPanel, bpy.types.Panel):
-    """Where shapes are many."""
+    """Shows where shapes are many."""
 
     bl_label = "Density"
     bl_parent_id = "SADDLEBACK_PT_distribute"
@@ -451,7 +451,7 @@ class SADDLEBACK_PT_shape_density(SaddlebackSubPanel, bpy.types.Panel):
 
 
 class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
-    """What is made of the shapes."""
+    """Shows what is made of the shapes."""
 
     bl_label = "Output"
     bl_parent_id = "SADDLEBACK_PT_distribute"

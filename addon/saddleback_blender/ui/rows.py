@@ -17,7 +17,7 @@ DENSITY_LISTS = {
 
 
 def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
-    """Where the cells' centers come from, and how they are evened out."""
+    """Draws where the cells' centers come from, and how they are evened out."""
     layout.prop(settings, "sites_source")
     if settings.sites_source == "COUNT":
         layout.prop(settings, "count")
@@ -48,7 +48,7 @@ def _draw_held(layout: bpy.types.UILayout, settings: Any) -> None:
 
 
 def draw_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
-    """What says where cells are small."""
+    """Draws what says where cells are small."""
     layout.prop(settings, "density_source", text="Source")
     source = settings.density_source
     if source in DENSITY_LISTS:
@@ -143,7 +143,7 @@ def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:
 
 
 def draw_quality(layout: bpy.types.UILayout, settings: Any) -> None:
-    """How exact distances are; a neighborhood, where one is set, stands for the quality."""
+    """Draws how exact distances are; a neighborhood, where one is set, stands for the quality."""
     column = layout.column()
     row = column.row()
     row.active = settings.k == 0
@@ -183,7 +183,7 @@ def draw_sweep(layout: bpy.types.UILayout, settings: Any) -> None:
 
 
 def draw_field(layout: bpy.types.UILayout, settings: Any) -> None:
-    """What a field is made of and what it follows."""
+    """Draws what a field is made of and what it follows."""
     layout.prop(settings, "symmetry")
     layout.prop(settings, "align")
     if settings.align == "CURVATURE":
@@ -222,7 +222,7 @@ def draw_streamlines(layout: bpy.types.UILayout, settings: Any) -> None:
 
 
 def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
-    """What is laid on a surface, how many, how large, which way."""
+    """Draws what is laid on a surface, how many, how large, which way."""
     layout.prop(settings, "shapes")
     if settings.shapes == "COLLECTION":
         draw_collection(layout, settings, "shapes_collection")
@@ -249,7 +249,7 @@ def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Objec
 
 
 def draw_shape_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
-    """Where shapes are many, or small."""
+    """Draws where shapes are many, or small."""
     draw_density(layout, settings, item)
     row = layout.row()
     row.active = settings.density_source != "UNIFORM"
@@ -258,7 +258,7 @@ def draw_shape_density(layout: bpy.types.UILayout, settings: Any, item: bpy.type
 
 
 def draw_distance_sources(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
-    """Where distances are measured from, and how far."""
+    """Draws where distances are measured from, and how far."""
     layout.prop(settings, "sources")
     if settings.sources == "VERTEX_GROUP":
         layout.prop_search(settings, "sources_group", item, "vertex_groups", text="Group", icon="GROUP_VERTEX")
@@ -282,7 +282,7 @@ def draw_isolines(layout: bpy.types.UILayout, settings: Any) -> None:
 
 
 def draw_path_points(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
-    """What paths connect, and how."""
+    """Draws what paths connect, and how."""
     layout.prop(settings, "points")
     if settings.points == "VERTEX_GROUP":
         layout.prop_search(settings, "points_group", item, "vertex_groups", text="Group", icon="GROUP_VERTEX")

@@ -1,4 +1,4 @@
-"""What can compute here: the processor, always, and the CUDA devices that this build and this machine offer."""
+"""Tells what can compute here: the processor, always, and the CUDA devices that this build and this machine offer."""
 
 from __future__ import annotations
 

@@ -6,7 +6,9 @@ from importlib import import_module
 
 
 def _is_main() -> bool:
-    """By the module that the interpreter has for it, under its name of 3.13 or before; without either there is one."""
+    """Tells by the module that the interpreter has for it, under its name of 3.13 or before; without either there is
+    one.
+    """
     for name in ("_interpreters", "_xxsubinterpreters"):
         try:
             interpreters = import_module(name)

@@ -1,4 +1,4 @@
-"""How well an arrangement follows the density that was painted."""
+"""Measures how well an arrangement follows the density that was painted."""
 
 from typing import NamedTuple
 

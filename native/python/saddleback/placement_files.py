@@ -112,7 +112,7 @@ def read_placement_field(path: str | os.PathLike[str], mesh: Mesh) -> DirectionF
 
 
 class _Content:
-    """What a file of placements says. Whatever is not as it must be is told with its place and value."""
+    """Holds what a file of placements says. Whatever is not as it must be is told with its place and value."""
 
     def __init__(self, path: str | os.PathLike[str], mesh: Mesh) -> None:
         self.name = os.fspath(path)
@@ -143,7 +143,7 @@ class _Content:
         return InputError(f"{self.name}: {place} is {shown[:40]}, wanted {wanted}")
 
     def make(self, make: Callable[[], _Made]) -> _Made:
-        """What the library makes of the values; what it refuses is the file's fault."""
+        """Returns what the library makes of the values; what it refuses is the file's fault."""
         try:
             return make()
         except InputError as error:
@@ -166,7 +166,7 @@ class _Content:
         return np.array(values, dtype=np.int32)
 
     def flags(self, count: int) -> NDArray[np.bool_]:
-        """Which placements are mirrored."""
+        """Tells which placements are mirrored."""
         values = self.rows("mirrored", self.values["mirrored"], count)
         for i, value in enumerate(values):
             if type(value) is not bool:

@@ -23,7 +23,7 @@ class _Panel(NamedTuple):
     centered: bool  # ticks stand under the bins' middles
 
     def shares(self, values: _Floats) -> _Floats:
-        """Of all values, in each bin; those beyond the ends count with the first and the last."""
+        """Returns the shares of all values, in each bin; those beyond the ends count with the first and the last."""
         inside = np.clip(values, self.edges[0], self.edges[-1])
         shares: _Floats = np.histogram(inside, self.edges)[0] / max(len(values), 1)
         return shares

@@ -1,1 +1,1 @@
-"""From Blender: meshes, curves, images, groups and empties as arrays."""
+"""Reads from Blender: meshes, curves, images, groups and empties as arrays."""

@@ -1,4 +1,4 @@
-"""What an artist put on a mesh, read at points of its surface: groups, UV maps, attributes, shading, materials."""
+"""Reads at points of a surface what an artist put on the mesh: groups, UV maps, attributes, shading, materials."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ NOT_CARRIED = ("position", "material_index", "sharp_face", "sharp_edge", "custom
 
 @dataclass(frozen=True)
 class Carried:
-    """At n points: number attributes, UV places, weights by group name as (points, weights); and of their polygons."""
+    """Holds at n points: number attributes, UV places, weights by group name as (points, weights); and of their
+    polygons.
+    """
 
     attributes: dict[str, NDArray[Any]]
     uv_maps: dict[str, NDArray[np.float32]]  # (n, 2)

@@ -1,4 +1,4 @@
-"""Where a triangle mesh passes through itself, as Blender stores it."""
+"""Finds where a triangle mesh passes through itself, as Blender stores it."""
 
 from __future__ import annotations
 

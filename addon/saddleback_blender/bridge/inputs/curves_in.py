@@ -81,7 +81,7 @@ def _plain(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline]:
 
 
 def _modified(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline] | None:
-    """What modifiers make of the curve, None where that has faces. Only what is in a scene is modified."""
+    """Returns what modifiers make of the curve, None where that has faces. Only what is in a scene is modified."""
     scene = bpy.context.scene.collection
     holder = item.copy()
     holder.data, holder.hide_viewport = plain, False

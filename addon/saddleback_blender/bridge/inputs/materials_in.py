@@ -6,7 +6,9 @@ import bpy
 
 
 def shown_materials(item: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bpy.types.Material | None]:
-    """By the faces' material index: of the mesh, the object's own or evaluated one, unless the object has its own."""
+    """Returns them by the faces' material index: of the mesh, the object's own or evaluated one, unless the object has
+    its own.
+    """
     found = []
     for number, material in enumerate(mesh.materials):
         if number < len(item.material_slots) and item.material_slots[number].link == "OBJECT":

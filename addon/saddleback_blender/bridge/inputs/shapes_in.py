@@ -176,7 +176,7 @@ def _image(source: bpy.types.Object, name: str) -> bpy.types.Image:
 
 
 def _of_image(source: bpy.types.Object, image: bpy.types.Image) -> ShapeTemplate:
-    """Where the image is opaque; of an image without transparency where it is dark."""
+    """Returns where the image is opaque; of an image without transparency where it is dark."""
     pixels, is_encoded = read_pixels(source, image)
     mask = pixels[:, :, 3].astype(np.float64)
     if mask.min() >= 0.5:

@@ -1,4 +1,6 @@
-"""Where cells are centered, and distances and paths begin: vertices chosen or painted, objects, curves, the cursor."""
+"""Reads where cells are centered, and distances and paths begin: vertices chosen or painted, objects, curves, the
+cursor.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,7 @@ def read_sites(
 def read_sources(
     context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, settings: DistanceSettings
 ) -> Points | tuple[Polyline, ...]:
-    """Where distances are measured from."""
+    """Returns where distances are measured from."""
     if settings.sources == "VERTEX_GROUP":
         return group_vertices(source, mesh, settings.sources_group, "choose another source")
     if settings.sources == "EMPTIES":
@@ -47,7 +49,7 @@ def read_sources(
 def read_path_points(
     context: bpy.types.Context, source: bpy.types.Object, mesh: bpy.types.Mesh, settings: PathSettings
 ) -> Points:
-    """What paths run through, in order."""
+    """Returns what paths run through, in order."""
     points: Points
     if settings.points == "VERTEX_GROUP":
         points = group_vertices(source, mesh, settings.points_group, "choose other points")

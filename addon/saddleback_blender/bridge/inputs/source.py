@@ -74,7 +74,7 @@ def check_own_mesh(source: bpy.types.Object) -> None:
 
 
 def shared_mesh_warning(source: bpy.types.Object) -> str:
-    """What to say about a mesh that other objects show too, or ""."""
+    """Returns what to say about a mesh that other objects show too, or ""."""
     users = sum(item.data == source.data for item in bpy.data.objects)
     if users < 2:
         return ""

@@ -92,6 +92,6 @@ def _lines_of(context: bpy.types.Context, item: bpy.types.Object) -> list[Stroke
 
 
 def _is_hard(name: str) -> bool:
-    """Whether one of the name's words is it: 'Hard', 'eyes_hard.001', 'HardEdges', but not 'Orchard'."""
+    """Tells whether one of the name's words is it: 'Hard', 'eyes_hard.001', 'HardEdges', but not 'Orchard'."""
     words = re.findall(r"[^\W\d_]+", re.sub(r"(?<=[^\W\d_A-Z])(?=[A-Z])", " ", name))
     return HARD in map(str.lower, words)

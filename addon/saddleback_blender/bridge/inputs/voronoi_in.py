@@ -1,4 +1,4 @@
-"""What a plane diagram is made from: UV maps, images, sites with weights."""
+"""Reads what a plane diagram is made from: UV maps, images, sites with weights."""
 
 from __future__ import annotations
 

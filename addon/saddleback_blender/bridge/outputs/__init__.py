@@ -1,1 +1,1 @@
-"""Into Blender: attributes, curves, meshes and instances."""
+"""Writes into Blender: attributes, curves, meshes and instances."""

@@ -1,4 +1,4 @@
-"""What was read at points of a mesh, onto the objects that have them as vertices."""
+"""Writes what was read at points of a mesh, onto the objects that have them as vertices."""
 
 from __future__ import annotations
 

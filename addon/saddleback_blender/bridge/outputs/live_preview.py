@@ -1,4 +1,4 @@
-"""What a run shows while it goes on: lines that no undo step and no file keeps."""
+"""Draws what a run shows while it goes on: lines that no undo step and no file keeps."""
 
 from __future__ import annotations
 

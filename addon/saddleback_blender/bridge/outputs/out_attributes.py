@@ -51,7 +51,7 @@ def write_attributes(item: bpy.types.Object, domain: str, values: dict[str, NDAr
 
 
 def _holds(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[Any]) -> bool:
-    """Whether the mesh has this attribute with just these values."""
+    """Tells whether the mesh has this attribute with just these values."""
     kind, element, dtype = KINDS[values.dtype.kind, values.shape[1:]]
     attribute = mesh.attributes.get(name)
     if attribute is None or (attribute.data_type, attribute.domain) != (kind, domain):

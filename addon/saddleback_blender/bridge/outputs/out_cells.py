@@ -76,7 +76,7 @@ def write_polygons(
 
 
 def vanished_cells(item: bpy.types.Object) -> int:
-    """How many cells are missing in a cells object because they are narrower than the gap."""
+    """Returns how many cells are missing in a cells object because they are narrower than the gap."""
     return int(item.get(VANISHED, 0))
 
 
@@ -116,7 +116,8 @@ def _shown(
 
 
 def _write_colors(mesh: bpy.types.Mesh, colors: np.ndarray, corner_cell: np.ndarray) -> None:
-    """Of corners, as scripts find them whether cells share vertices or not; Blender does not show colors of faces.
+    """Writes the colors of corners, as scripts find them whether cells share vertices or not; Blender does not show
+    colors of faces.
 
     Blender keeps them as sRGB: given so, a color is converted once a cell, not once a corner.
     """

@@ -111,7 +111,7 @@ def directions_to_place(place: Matrix, directions: np.ndarray) -> np.ndarray:
 
 
 def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
-    """What we made for the source and still exists, one object for each role."""
+    """Returns what we made for the source and still exists, one object for each role."""
     token = token_of(source)
     if not token or not owns(source, token):
         return []
@@ -226,7 +226,7 @@ def _remove_data(data: bpy.types.ID) -> None:
 
 
 def _artists_move(item: bpy.types.Object) -> Matrix:
-    """What the artist did to the place that we gave the object; exactly nothing where that is only rounding."""
+    """Returns what the artist did to the place that we gave the object; exactly nothing where that is only rounding."""
     ours = item.get(PLACE)
     if ours is None or len(ours) != 16:
         return Matrix.Identity(4)
@@ -236,7 +236,7 @@ def _artists_move(item: bpy.types.Object) -> Matrix:
 
 
 def _are_equal(one: Matrix, other: Matrix) -> bool:
-    """But for rounding."""
+    """Tells whether two are equal but for rounding."""
     size = max(1.0, max(abs(value) for row in one for value in row))
     return all(abs(one[i][j] - other[i][j]) <= 1e-5 * size for i in range(4) for j in range(4))
 

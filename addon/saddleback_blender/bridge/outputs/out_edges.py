@@ -39,7 +39,7 @@ def write_network(
     settings: TessellateSettings | Voronoi2dSettings,
     role: str,
 ) -> bpy.types.Object:
-    """The same from lines that are joined already, in the world."""
+    """Writes the same from lines that are joined already, in the world."""
     place = level_place(source)
     network = replace(network, vertices=to_place(place, network.vertices))
     if settings.edge_kind == "CURVE":

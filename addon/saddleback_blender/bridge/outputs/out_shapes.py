@@ -146,7 +146,7 @@ def write_instances(
 
 
 def _by_triangles(place: Matrix, placed: PlacedShapes, points: Reals) -> dict[str, np.ndarray]:
-    """Where the shapes stand and how they are turned, as seen from the triangles that they stand on."""
+    """Returns where the shapes stand and how they are turned, as seen from the triangles that they stand on."""
     frames = triangle_frames(placed.corner_points)
     feet = np.einsum("ni,nij->nj", placed.barycentric, placed.corner_points)
     x, z = (turned(placed.rotations, np.tile(axis, (len(points), 1))) for axis in ([1.0, 0, 0], [0, 0, 1.0]))
@@ -265,7 +265,7 @@ def remove_templates(source: bpy.types.Object) -> None:
 
 
 def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate) -> bpy.types.Object:
-    """What an instance shows: the artist's own object, or a new one of ours."""
+    """Returns what an instance shows: the artist's own object, or a new one of ours."""
     if template.source:
         return find(bpy.data.objects, template.source)
     mesh = bpy.data.meshes.new(template.name)

@@ -62,7 +62,7 @@ def check_attribute_names(
 
 
 def has_own_faces(context: bpy.types.Context, source: bpy.types.Object) -> bool:
-    """Whether the object's faces are those of its own mesh after its modifiers, too, wherever they have moved."""
+    """Tells whether the object's faces are those of its own mesh after its modifiers, too, wherever they have moved."""
     with mesh_of(context, source, True) as mesh:
         return _equal_faces(mesh, source.data)
 

@@ -1,4 +1,6 @@
-"""Where a mesh's vertices are at rest, before shape keys, armatures and other modifiers: Blender tells when asked."""
+"""Keeps where a mesh's vertices are at rest, before shape keys, armatures and other modifiers: Blender tells when
+asked.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From what was painted to the density that the tessellation is given."""
+"""Leads from what was painted to the density that the tessellation is given."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def strokes_of(request: DirectionFieldRequest, mesh: Any) -> SurfaceStrokes:
 
 
 def _smoothed(places: Reals, closed: bool) -> Reals:
-    """The same places without the tremble; the ends of an open line stay."""
+    """Returns the same places without the tremble; the ends of an open line stay."""
     if len(places) < 3:
         return places
     for _ in range(SMOOTHING_ROUNDS):

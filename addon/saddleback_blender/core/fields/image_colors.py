@@ -32,7 +32,7 @@ def colors_at(pixels: NDArray[np.float32], places: Reals, is_encoded: bool) -> R
 
 
 def _linear(colors: NDArray[np.float32], is_encoded: bool) -> Reals:
-    """The same colors, of which only alpha is never encoded."""
+    """Returns the same colors, of which only alpha is never encoded."""
     linear = colors.astype(np.float64)
     if is_encoded:
         linear[:, :3] = to_linear(linear[:, :3])

@@ -1,4 +1,4 @@
-"""How often a field turns about a singularity: read from a number, a fraction, or the name of an empty."""
+"""Reads how often a field turns about a singularity: from a number, a fraction, or the name of an empty."""
 
 from __future__ import annotations
 

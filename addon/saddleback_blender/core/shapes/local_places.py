@@ -1,4 +1,4 @@
-"""Where a corner of a cell's mesh lies within its cell: coordinates for materials that repeat in every cell."""
+"""Tells where a corner of a cell's mesh lies within its cell: coordinates for materials that repeat in every cell."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def parts_of_loops(loops: Sequence[Reals]) -> Parts:
 
 
 def is_seen_once(places: Reals, triangles: Indices) -> bool:
-    """Whether all triangles (t, 3) of places (n, 2) lie the same way up and none on its edge."""
+    """Tells whether all triangles (t, 3) of places (n, 2) lie the same way up and none on its edge."""
     a, b, c = (places[triangles[:, i]] for i in range(3))
     areas = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     return bool((areas > 0).all() or (areas < 0).all())

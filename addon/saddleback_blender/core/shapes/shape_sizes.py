@@ -1,4 +1,4 @@
-"""How large shapes are: by their count, by a density."""
+"""Finds how large shapes are: by their count, by a density."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Placed:
 
 @dataclass(frozen=True)
 class Laid:
-    """What the library answered, and what it was asked with."""
+    """Holds what the library answered, and what it was asked with."""
 
     mesh: Any
     templates: tuple[ShapeTemplate, ...]
@@ -90,13 +90,13 @@ def sizes(mesh: Any, size: float, density: Reals | None) -> float | Reals:
 
 
 def room(area: float, size: float | Reals, smallest: float, shapes: Sequence[Any]) -> float:
-    """About how many of the smallest shapes the area has room for. `smallest`: share of the size."""
+    """Returns about how many of the smallest shapes the area has room for. `smallest`: share of the size."""
     least = float(np.min(size)) * smallest
     return float(area / (least**2 * min(shape.area for shape in shapes)))
 
 
 def crowding(mesh: Any, density: Reals) -> float:
-    """How many more than on average are where the density is high."""
+    """Returns how many more than on average are where the density is high."""
     high = float(np.quantile(density, HIGH))
     return max(1.0, high / float(np.average(density, weights=_vertex_areas(mesh))))
 

@@ -1,4 +1,4 @@
-"""What is laid on a surface: an outline, and what stands on it as a small mesh in the outline's own units."""
+"""Makes what is laid on a surface: an outline, and what stands on it as a small mesh in the outline's own units."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ class CellShape:
 
     @property
     def cuts(self) -> bool:
-        """Whether the cells differ from the split mesh before raising."""
+        """Tells whether the cells differ from the split mesh before raising."""
         return self.gap > 0.0 or self.inset > 0.0
 
 
@@ -65,7 +65,8 @@ class CellMesh:
 
 @dataclass(frozen=True)
 class CellPieces:
-    """What of a split mesh the gap leaves, and what its cells are raised by: all that no inset or thickness changes.
+    """Holds what of a split mesh the gap leaves, and what its cells are raised by: all that no inset or thickness
+    changes.
 
     fields (n,7): position, normal, distance to the boundary of the cell; triangles (m,3), the cell of each (m,); the
     cells (k,) that the split mesh has.
@@ -78,7 +79,7 @@ class CellPieces:
 
     @property
     def nbytes(self) -> int:
-        """What is kept in memory."""
+        """Returns what is kept in memory."""
         return self.fields.nbytes + self.triangles.nbytes + self.cells.nbytes + self.present.nbytes
 
 

@@ -72,7 +72,7 @@ def edge_network(points: Reals, offsets: Indices, cells: Indices, closed: NDArra
 def _distinct(
     points: Reals, offsets: Indices, line: NDArray[np.int64], closed: NDArray[np.bool_], tolerance: float
 ) -> NDArray[np.bool_]:
-    """Which points stay: not those that repeat their predecessor; the ends of open lines always stay."""
+    """Tells which points stay: not those that repeat their predecessor; the ends of open lines always stay."""
     kept = np.ones(len(points), dtype=np.bool_)
     if len(points) == 0:
         return kept
@@ -135,7 +135,7 @@ def long_lines(network: EdgeNetwork) -> list[tuple[Indices, bool]]:
 
 
 def _partners(network: EdgeNetwork) -> dict[tuple[int, int], tuple[int, int]]:
-    """For ends (line, 0 at its first vertex or 1 at its last) the end of the line that goes on straightest."""
+    """Finds for ends (line, 0 at its first vertex or 1 at its last) the end of the line that goes on straightest."""
     at: dict[int, list[tuple[int, int]]] = defaultdict(list)
     direction: dict[tuple[int, int], Reals] = {}
     offsets, chain, vertices = network.offsets, network.chain, network.vertices

@@ -33,7 +33,7 @@ class LevelLines:
     level: Reals  # (m,)
 
     def lines(self) -> list[tuple[slice, bool]]:
-        """Where each line's points are, and whether it is closed."""
+        """Returns where each line's points are, and whether it is closed."""
         ends = zip(self.offsets[:-1], self.offsets[1:], self.closed, strict=True)
         return [(slice(int(begin), int(end)), bool(closed)) for begin, end, closed in ends]
 

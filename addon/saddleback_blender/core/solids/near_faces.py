@@ -1,4 +1,4 @@
-"""Which triangles can touch some that have moved: a search for crossings need not look at the others again."""
+"""Tells which triangles can touch some that have moved: a search for crossings need not look at the others again."""
 
 from __future__ import annotations
 

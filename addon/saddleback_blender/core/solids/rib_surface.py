@@ -99,7 +99,7 @@ def _surface_points(mesh: Any, places: Reals, triangles: Indices, face: Indices,
 
 
 def _length(mesh: Any, cells: Any) -> float:
-    """Of all lines between cells, and of the mesh's border."""
+    """Returns the length of all lines between cells, and of the mesh's border."""
     steps = np.diff(np.asarray(cells.edge_points), axis=0)
     steps = np.delete(steps, np.asarray(cells.edge_offsets)[1:-1] - 1, axis=0)
     start, end, _ = border_edges(np.asarray(mesh.triangles), len(mesh.vertices))

@@ -13,7 +13,7 @@ from ..results import Indices, Reals
 
 @dataclass(frozen=True)
 class Anchors:
-    """Where n points lie in a Blender mesh: in a triangle between three vertices, and in which polygon."""
+    """Holds where n points lie in a Blender mesh: in a triangle between three vertices, and in which polygon."""
 
     vertices: Indices  # (n, 3)
     corners: Indices  # (n, 3) of the polygon

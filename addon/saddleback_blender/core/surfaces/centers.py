@@ -1,4 +1,4 @@
-"""What a point at the center of a cell carries: how large its cell is and how to turn something to stand on it."""
+"""Tells what a cell's center carries: how large its cell is and how to turn something to stand on it."""
 
 from __future__ import annotations
 

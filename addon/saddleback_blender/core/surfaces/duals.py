@@ -29,7 +29,7 @@ def dual_of(cells: Any, policy: str, threads: int, progress: Progress) -> Dual:
 
 
 def figures_of(dual: Dual, energy: float | None) -> Figures | None:
-    """What is told of a run; None where there is no triangle."""
+    """Returns what is told of a run; None where there is no triangle."""
     if not len(dual.triangles):
         return None
     quality = native.load().triangle_quality(dual.vertices, dual.triangles)

@@ -24,7 +24,8 @@ def triangle_frames(corners: Reals) -> Reals:
 
 
 def rest_anchors(rest: Reals, corners: Indices, barycentric: Reals) -> tuple[Reals, Reals, Reals]:
-    """Where points (n,) stand on a mesh at rest, and steps from there along the first two axes of their triangles.
+    """Returns where points (n,) stand on a mesh at rest, and steps from there along the first two axes of their
+    triangles.
 
     `rest` (V, 3) its vertices' places, `corners` (n, 3) of the triangles, `barycentric` (n, 3). O(n).
     """

@@ -75,7 +75,7 @@ def _listed(axes: Reals | None, count: int) -> list[Place]:
 
 
 def even_points(mesh: Any, count: int, seed: int) -> Any:
-    """About `count` points of a surface that keep their distance, as the library's SurfacePoints."""
+    """Returns about `count` points of a surface that keep their distance, as the library's SurfacePoints."""
     sb = native.load()
     points = sb.sample(mesh, CANDIDATES * count, seed=seed)
     kept = PointGrid(SPACING * float(np.sqrt(mesh.area / count))).take_free(points.positions(mesh))

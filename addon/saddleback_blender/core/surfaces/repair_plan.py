@@ -1,4 +1,4 @@
-"""From a repair of triangles to a repair of polygons: which stay, which turn round, which give way to triangles.
+"""Leads from a repair of triangles to a repair of polygons: which stay, which turn round, which give way to triangles.
 
 The library repairs triangles and says which old vertex and face became which new one. An artist's mesh has polygons
 with layers of data on them, so as much of it as possible is kept: a polygon whose triangles all survive stays a
@@ -20,7 +20,7 @@ PERMUTATIONS = ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)
 
 @dataclass(frozen=True)
 class RepairPlan:
-    """Where each new vertex comes from, and what happens to each polygon that does not stay exactly as it is."""
+    """Holds where each new vertex comes from, and what happens to each polygon that does not stay exactly as it is."""
 
     vertex_origin: Indices  # (n,) old vertex that gives its data; for a made vertex that of a neighbor
     vertex_is_copy: NDArray[np.bool_]  # (n,) made new: a split copy or the middle of a divided edge
@@ -81,7 +81,7 @@ def plan_repair(
 
 
 def _is_renumbering(triangles: Indices, corner_vertex: Indices, new_count: int) -> bool:
-    """Whether corners with one old vertex have one new vertex and the other way round.
+    """Tells whether corners with one old vertex have one new vertex and the other way round.
 
     So it is where vertices at one place are joined and then split again as they were.
     """
@@ -120,7 +120,9 @@ def _first_claims(face_map: Indices, new_count: int) -> Indices:
 def _match_corners(
     triangles: Indices, new_triangles: Indices, vertex_map: Indices, root: Indices, claimed: Indices
 ) -> tuple[Indices, NDArray[np.bool_], NDArray[np.bool_]]:
-    """For each old triangle the new vertex of each corner, whether it turned round, and whether it matches at all."""
+    """Finds for each old triangle the new vertex of each corner, whether it turned round, and whether it matches at
+    all.
+    """
     count = len(triangles)
     corner_vertex = np.full((count, 3), -1, np.int32)
     turned, matches = np.zeros(count, bool), np.zeros(count, bool)
@@ -189,7 +191,7 @@ def _give_parts(
 
 
 def _lenders(new_triangles: Indices, filled: Indices, home: Indices) -> dict[int, int]:
-    """For each triangle in a hole the polygon beside it, or beside the nearest of its hole that has one there.
+    """Finds for each triangle in a hole the polygon beside it, or beside the nearest of its hole that has one there.
 
     `home`: the polygon of every other new triangle.
     """

@@ -91,7 +91,7 @@ def _twice_area(loop: Reals) -> float:
 
 
 def _told(request: Voronoi2dRequest, remedy: str, call: Callable[[], Value]) -> Value:
-    """What the library refuses, about the object instead of an argument and with Blender's numbers of faces."""
+    """Returns what the library refuses, about the object instead of an argument and with Blender's numbers of faces."""
     try:
         return call()
     except native.load().InputError as error:

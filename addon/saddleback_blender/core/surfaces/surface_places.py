@@ -1,4 +1,4 @@
-"""From the numbers and places that an artist chose to points of the library's mesh."""
+"""Leads from the numbers and places that an artist chose to points of the library's mesh."""
 
 from __future__ import annotations
 

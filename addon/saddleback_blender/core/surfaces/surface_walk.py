@@ -21,7 +21,7 @@ MOST_HALVINGS = 8
 
 
 def joined(mesh: Any, faces: Indices, barycentric: Reals, starts: NDArray[np.bool_], longest: float) -> list[list[Any]]:
-    """Of each line the library's SurfacePoints of its pieces between leaps, of two points or more.
+    """Returns of each line the library's SurfacePoints of its pieces between leaps, of two points or more.
 
     Lines follow each other in `faces` (n,) and `barycentric` (n, 3); `starts` (n,) is True where one begins. `longest`:
     a step through space that is longer is a leap, a way out of a face and back that is longer was meant. O(n) for close
@@ -142,7 +142,7 @@ def _between(
 def _along_and_off(
     vertices: Reals, triangles: Indices, faces: Indices, barycentric: Reals, begin: Reals, end: Reals
 ) -> tuple[Reals, Reals]:
-    """Of points in faces: where they lie along an edge, as a share of it, and how far off it."""
+    """Returns of points in faces: where they lie along an edge, as a share of it, and how far off it."""
     places = (barycentric[:, :, None] * vertices[triangles[faces]]).sum(axis=1)
     edge, away = end - begin, places - begin
     square = np.einsum("ij,ij->i", edge, edge)
