@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from tests.parity.test_graph_twin import saved
+from tests.parity.test_graph_cuda import saved
 
 import saddleback as sb
 from tests.native import plane_sites

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.parity.test_graph_twin import LARGER
-from tests.parity.test_search_twin import CASES, RULES, graph_of, some
+from tests.parity.test_graph_cuda import LARGER
+from tests.parity.test_search_cuda import CASES, RULES, graph_of, some
 
 import saddleback as sb
 from tests import meshes

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from tests.parity.test_voronoi_twin import DEVICES, expect_kept, expect_twins
+from tests.parity.test_voronoi_cuda import DEVICES, expect_kept, expect_twins
 
 import saddleback as sb
 from tests.native import plane_sites

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.parity.test_graph_twin import saved
-from tests.parity.test_voronoi_twin import ARRAYS, DEVICES, weights_of
+from tests.parity.test_graph_cuda import saved
+from tests.parity.test_voronoi_cuda import ARRAYS, DEVICES, weights_of
 
 import saddleback as sb
 from tests import meshes

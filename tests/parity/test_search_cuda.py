@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.parity.test_graph_twin import LARGER
+from tests.parity.test_graph_cuda import LARGER
 
 import saddleback as sb
 from tests import meshes

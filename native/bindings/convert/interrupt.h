@@ -36,7 +36,7 @@ class JobIn {
   operator Job*() const { return job_; }  // NOLINT(google-explicit-constructor): stands for the job everywhere
 
  private:
-  Job own_{Job::Watched::no};
+  Job own_;
   Job* job_;
   CancelOnInterrupt interrupt_;
 };

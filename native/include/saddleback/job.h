@@ -11,13 +11,10 @@ namespace saddleback {
 /// Work that takes a Job* accepts nullptr, meaning nobody watches. Reused Jobs start again from 0.
 class Job {
  public:
-  /// Whether anybody reads the fraction: what costs something to know is left out where nobody does.
-  enum class Watched { no, yes };
-  explicit Job(Watched watched = Watched::yes) : watched_(watched) {}
-
   /// Share of the work done, 0 to 1, never falling during one call.
   double fraction() const { return fraction_.load(std::memory_order_relaxed); }
-  /// What is being done, for a person to read.
+  /// What is being done, for a person to read. While the fraction stands still but work goes on, dots that follow it
+  /// change from call to call.
   std::string text() const;
   /// Asks the work to stop; it does so within 0.1 s by throwing Cancelled.
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
@@ -25,10 +22,12 @@ class Job {
 
  private:
   friend class JobStage;
-  Watched watched_;
   std::atomic<double> fraction_{0.0};
   std::atomic<bool> cancelled_{false};
+  mutable std::atomic<bool> alive_{false};  ///< since the text was read, work has asked whether to stop
   mutable std::mutex text_mutex_;
+  mutable double read_fraction_ = -1;  ///< when the text was read last
+  mutable int dots_ = 0;
   std::string text_;
 };
 
@@ -46,11 +45,12 @@ class JobStage {
   void update(double fraction) const;
   /// Throws Cancelled when asked to stop. Cheap enough for every few microseconds of work.
   void check() const {
-    if (job_ && job_->cancelled()) throw_cancelled();
+    if (!job_) return;
+    if (job_->cancelled()) throw_cancelled();
+    // Looked at first: threads that only read a line of memory do not take it from each other.
+    if (!job_->alive_.load(std::memory_order_relaxed)) job_->alive_.store(true, std::memory_order_relaxed);
   }
   bool cancelled() const { return job_ && job_->cancelled(); }
-  /// Progress that costs something to know is only for those who watch.
-  bool is_watched() const { return job_ && job_->watched_ == Job::Watched::yes; }
 
  private:
   [[noreturn]] static void throw_cancelled();

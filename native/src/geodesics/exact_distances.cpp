@@ -7,7 +7,8 @@
 #include "saddleback/error.h"
 
 #include "geodesics/exact/exact_path.h"
-#include "geodesics/exact/exact_progress.h"
+#include "geodesics/exact/exact_propagation.h"
+#include "geodesics/exact/exact_windows.h"
 
 namespace saddleback {
 namespace {
@@ -16,6 +17,8 @@ namespace {
 constexpr double k_at_vertex = 1e-12;
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr const char* k_text = "Measuring exact distances";
+// Of the time, until the surface is laid out, and until windows are propagated where they are sorted afterwards.
+constexpr double k_laid_out = 0.05, k_propagated = 0.75;
 
 SurfacePoints snapped_to_vertices(SurfacePoints points) {
   for (SurfacePoint& point : points)
@@ -48,30 +51,30 @@ std::vector<Index> owners_of(const ExactSurface& surface, const ExactPropagation
 std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& given, double limit, Job* job) {
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
-  ExactProgress progress({mesh, sources, limit}, JobStage(job, k_text));
-  const ExactSurface surface(mesh, sources, progress.laying());
+  const JobStage stage(job, k_text);
+  const ExactSurface surface(mesh, sources, stage.part(0, k_laid_out));
   ExactPropagation propagation(surface, sources, {.limit = limit});
-  propagation.run(progress);
+  propagation.run(stage.part(k_laid_out, 1));
   return distances_of(surface, propagation);
 }
 
 NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& given, double limit, Job* job) {
   check(mesh, given, limit);
   const SurfacePoints sources = snapped_to_vertices(given);
-  ExactProgress progress({mesh, sources, limit}, JobStage(job, k_text));
-  const ExactSurface surface(mesh, sources, progress.laying());
+  const JobStage stage(job, k_text);
+  const ExactSurface surface(mesh, sources, stage.part(0, k_laid_out));
   ExactPropagation propagation(surface, sources, {.limit = limit, .break_ties = sources.size() > 1});
-  propagation.run(progress);
+  propagation.run(stage.part(k_laid_out, 1));
   return {distances_of(surface, propagation), owners_of(surface, propagation)};
 }
 
 struct ExactField::Parts {
   Parts(const Mesh& mesh, const SurfacePoints& given, const JobStage& stage)
       : sources(snapped_to_vertices(given)),
-        progress({mesh, sources, k_infinity, true}, stage),
-        surface(mesh, sources, progress.laying()),
+        surface(mesh, sources, stage.part(0, k_laid_out)),
         propagation(surface, sources, {.break_ties = sources.size() > 1, .keep_windows = true}),
-        windows((propagation.run(progress), KeptWindows(surface, propagation, progress.sorting()))),
+        windows((propagation.run(stage.part(k_laid_out, k_propagated)),
+                 KeptWindows(surface, propagation, stage.part(k_propagated, 1)))),
         tracer(surface, sources, propagation, windows),
         distances(distances_of(surface, propagation)),
         nearest(owners_of(surface, propagation)) {
@@ -79,7 +82,6 @@ struct ExactField::Parts {
   }
 
   const SurfacePoints sources;
-  ExactProgress progress;
   const ExactSurface surface;
   ExactPropagation propagation;
   const KeptWindows windows;

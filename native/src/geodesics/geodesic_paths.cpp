@@ -12,12 +12,12 @@
 #include "geodesics/graph/visible_vertices.h"
 #include "geodesics/queries/joined_paths.h"
 #include "geodesics/queries/label_propagation.h"
-#include "geodesics/queries/path_progress.h"
 #include "geodesics/queries/point_targets.h"
 #include "geodesics/queries/query_cache.h"
 #include "geodesics/unfolding/line_of_sight.h"
 #include "geodesics/unfolding/path_shortening.h"
 #include "support/threads/parallel.h"
+#include "support/work_done.h"
 
 namespace saddleback {
 namespace {
@@ -44,8 +44,7 @@ struct PathField {
 PathField make_field(const SaddleVertexGraph& graph, const SurfacePoints& sources, double limit, int threads,
                      const JobStage& stage) {
   PathField field{sources, {}, {}, {}};
-  const double cost = cost_of_fans(graph, sources),
-               share = PathProgress::k_with_angles * cost / PathProgress::cost_of_field(graph, cost);
+  const double cost = cost_of_fans(graph, sources), share = cost / (cost + graph.mesh().vertex_count());
   field.fans = direct_fans(graph, sources, threads, stage.part(0, share));
   for (std::size_t i = 0; i < sources.size(); ++i)
     field.point_fans.push_back(point_fan(graph, sources[i], field.fans[i]));
@@ -257,9 +256,13 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   check_surface_points(graph.mesh(), targets, "targets");
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
   const JobStage stage(job, "Finding paths");
-  PathProgress progress(graph, {sources, targets, options}, stage);
+  // By numbers of nodes that a search expands in the time: a field's, and what a path takes.
+  constexpr double k_cost_of_path = 100;
+  const double field_cost = cost_of_fans(graph, sources) + graph.mesh().vertex_count(),
+               target_cost = cost_of_fans(graph, targets) + k_cost_of_path * static_cast<double>(targets.size()),
+               with_field = field_cost / (field_cost + target_cost);
   const PathField field = make_field(graph, sources, longest_path(graph, sources, targets, stage.part(0, 0)),
-                                     options.threads, progress.field());
+                                     options.threads, stage.part(0, with_field));
   constexpr Index k_block = 32;
   const auto count = static_cast<Index>(targets.size());
   const Index blocks = (count + k_block - 1) / k_block;
@@ -267,27 +270,24 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   std::vector<GeodesicPaths> parts(thread_count(options.threads));
   std::vector<std::unique_ptr<PathMaker>> makers(parts.size());
   std::vector<DirectFans> fans(parts.size());
-  FanTeam team(graph, targets, options.threads, progress.fan_mesh());
+  FanTeam team(graph, targets, options.threads, stage.part(with_field, with_field));
   const bool any_inside = std::ranges::any_of(
       targets, [&](const SurfacePoint& target) { return vertex_at(graph.mesh(), target) == k_none; });
   const SurfacePoints no_sources;  // vertices are reached by the field alone
   const NearbySources nearby(graph, any_inside ? sources : no_sources,
                              any_inside ? std::span<const PointFan>(field.point_fans) : std::span<const PointFan>());
-  progress.begin_paths(field.labels);
+  WorkDone done(stage.part(with_field, 1), count);
   parallel_for(blocks, options.threads, 1, [&](Index block, int thread) {
     if (!makers[thread]) makers[thread] = std::make_unique<PathMaker>(graph, field, nearby, options.shorten, stage);
     const Index first = block * k_block;
     const std::span own = std::span(targets).subspan(first, std::min(k_block, count - first));
     fans[thread].clear();
     team[thread].find(graph, own, {}, FanAngles::both, fans[thread], stage);
-    double share = 0;
     for (std::size_t i = 0; i < own.size(); ++i) {
       makers[thread]->append(own[i], fans[thread][i], parts[thread]);
-      const double more = progress.share_of(first + i);
-      progress.found(more, thread);
-      share += more;
+      done.add(1);
     }
-    paths.add(block, share, parts[thread]);
+    paths.add(block, static_cast<double>(own.size()) / count, parts[thread]);
   });
   stage.update(1);
   return paths.take();

@@ -47,41 +47,14 @@ DistanceFields allocate_fields(std::size_t count, std::size_t vertex_count) {
   }
 }
 
-/// Share of the vertices that lie within the limit of a source, in space and by a sample: enough to tell progress by.
-double share_within(const Mesh& mesh, const QuerySources& sources, double limit, const JobStage& stage) {
-  constexpr std::size_t k_places = 64;
-  constexpr Index k_vertices = 512;
-  constexpr double k_straighter = 0.9;  // lines through space than ways on the surface
-  if (std::isinf(limit) || !stage.is_watched()) return 1;
-  std::vector<Vec3> places;
-  const auto some_of = [&](const auto& items, auto&& place) {
-    const std::size_t stride = 1 + items.size() / k_places;
-    for (std::size_t i = 0; i < items.size(); i += stride) places.push_back(place(items[i]));
-  };
-  some_of(sources.points, [&](const SurfacePoint& point) { return position(mesh, point); });
-  for (const SurfaceCurve* const curve : sources.curves)
-    some_of(curve->segments(), [&](const CurveSegment& s) { return position(mesh, {s.face, s.begin}); });
-  const Index stride = 1 + mesh.vertex_count() / k_vertices;
-  double within = 0, all = 0;
-  for (Index v = 0; v < mesh.vertex_count(); v += stride) {
-    const auto is_near = [&](const Vec3& place) { return (mesh.position(v) - place).norm() <= k_straighter * limit; };
-    within += std::ranges::any_of(places, is_near) ? 1 : 0;
-    ++all;
-  }
-  return std::max(within, 1.0) / all;
-}
-
-/// How a query's time is spread over its fans and so many fields, which reach that share of the vertices each.
+/// How a query's time is spread over its fans and so many fields.
 struct QueryStages {
-  QueryStages(const SaddleVertexGraph& graph, const QuerySources& sources, double field_count, double limit,
-              const JobStage& stage)
-      : reached(share_within(graph.mesh(), sources, limit, stage)) {
-    const double cost = cost_of_fans(graph, sources), vertices = field_count * reached * graph.mesh().vertex_count(),
+  QueryStages(const SaddleVertexGraph& graph, const QuerySources& sources, double field_count, const JobStage& stage) {
+    const double cost = cost_of_fans(graph, sources), vertices = field_count * graph.mesh().vertex_count(),
                  share = cost / (cost + std::max(vertices, cost_of_seeds(graph, sources.points)));
     fans = stage.part(0, share);
     fields = stage.part(share, 1);
   }
-  double reached;
   JobStage fans, fields;
 };
 
@@ -91,7 +64,7 @@ std::vector<double> SaddleVertexGraph::distances(const QuerySources& sources, co
                                                  Job* job) const {
   const JobStage stage(job, "Measuring distances");
   check(*this, sources, options);
-  const QueryStages stages(*this, sources, 1, options.limit, stage);
+  const QueryStages stages(*this, sources, 1, stage);
   const SourceFans from = find_fans(*this, sources, stages.fans, {.limit = options.limit});
   std::vector<double> result(mesh_->vertex_count());
   if (by_device(options)) {
@@ -99,7 +72,7 @@ std::vector<double> SaddleVertexGraph::distances(const QuerySources& sources, co
     return result;
   }
   const auto search = queries_->field_searches.lease();
-  search->run(*this, seeds_of(from.fans), options, SearchLabels::none, stages.fields, stages.reached);
+  search->run(*this, seeds_of(from.fans), options, SearchLabels::none, stages.fields);
   search->write_distances(*this, result);
   return result;
 }
@@ -107,7 +80,7 @@ std::vector<double> SaddleVertexGraph::distances(const QuerySources& sources, co
 NearestField SaddleVertexGraph::nearest(const QuerySources& sources, const QueryOptions& options, Job* job) const {
   const JobStage stage(job, "Finding nearest sources");
   check(*this, sources, options);
-  const QueryStages stages(*this, sources, 1, options.limit, stage);
+  const QueryStages stages(*this, sources, 1, stage);
   const SourceFans from = find_fans(*this, sources, stages.fans, {.limit = options.limit});
   if (by_device(options)) {
     NearestField field{std::vector<double>(mesh_->vertex_count()), std::vector<Index>(mesh_->vertex_count())};
@@ -115,7 +88,7 @@ NearestField SaddleVertexGraph::nearest(const QuerySources& sources, const Query
     cuda_search(*this, {{seeds_of(from.fans)}}, options, to, stages.fields);
     return field;
   }
-  LabelField field = propagate_labels(*this, seeds_of(from.fans), options, false, stages.fields, stages.reached);
+  LabelField field = propagate_labels(*this, seeds_of(from.fans), options, false, stages.fields);
   return {std::move(field.distance), std::move(field.source)};
 }
 
@@ -126,7 +99,7 @@ DistanceFields SaddleVertexGraph::fields(const QuerySources& sources, const Quer
   if (threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", threads));
   const auto vertex_count = static_cast<std::size_t>(mesh_->vertex_count());
   DistanceFields result = allocate_fields(sources.size(), vertex_count);
-  const QueryStages stages(*this, sources, static_cast<double>(sources.size()), options.limit, stage);
+  const QueryStages stages(*this, sources, static_cast<double>(sources.size()), stage);
   const std::vector<PointFan> fans =
       find_fans(*this, sources, stages.fans, {.limit = options.limit, .threads = threads}).fans;
   if (by_device(options)) {

@@ -8,7 +8,6 @@
 #include "saddleback/error.h"
 #include "saddleback/mesh/trace.h"
 
-#include "geodesics/exact/distance_progress.h"
 #include "geodesics/wavefront/curve_windows.h"
 #include "geodesics/wavefront/directions_at_point.h"
 #include "geodesics/wavefront/log_about.h"
@@ -42,6 +41,9 @@ void check_radius(double radius) {
   if (!(radius > 0)) throw InputError(message("radius: wanted a distance above 0, got ", radius));
 }
 
+/// How much of the work is done, at least, when so many vertices are reached.
+double share_of(const Mesh& mesh, Index vertices) { return static_cast<double>(vertices) / mesh.vertex_count(); }
+
 }  // namespace
 
 PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const SurfaceCurve& curve, double radius, Job* job) {
@@ -49,14 +51,12 @@ PolarCoordinates polar_coordinates(const SaddleVertexGraph& graph, const Surface
     throw InputError("curve: it lies on another mesh than the graph's");
   check_radius(radius);
   const JobStage stage(job, "Measuring from the curve");
-  const WorkClock clock(stage.is_watched());
   CurveWindows windows(graph.unfolding());
   std::vector<CurveFoot> feet;
-  SurfacePoints places;
-  for (const CurveSegment& segment : curve.segments()) places.push_back({segment.face, segment.begin});
-  DistanceProgress progress(graph.mesh(), places, radius, clock, stage.part(0, k_measured));
-  windows.from_curve(curve, {.radius = radius}, feet, stage.part(0, 0), nullptr,
-                     [&](double distance, Index vertices) { progress.reached(distance, vertices); });
+  const JobStage measuring = stage.part(0, k_measured);
+  windows.from_curve(curve, {.radius = radius}, feet, stage.part(0, 0), nullptr, [&](double distance, Index vertices) {
+    measuring.update(std::max(distance / radius, share_of(graph.mesh(), vertices)));
+  });
   std::ranges::sort(feet, {}, &CurveFoot::vertex);
   PolarCoordinates result;
   for (const CurveFoot& foot : feet) {
@@ -88,7 +88,6 @@ LogMap log_map(const SaddleVertexGraph& graph, const SurfacePoint& center, doubl
 LogMap log_about(const SaddleVertexGraph& graph, const SurfacePoint& center, double radius, const WatchedPlaces* places,
                  PlaceDistances& found, const JobStage& stage) {
   const Mesh& mesh = graph.mesh();
-  const WorkClock clock(stage.is_watched());
   const SurfacePoint point = center_of(center);
   WavefrontDistances field(graph.unfolding());
   field.begin(places);
@@ -96,8 +95,10 @@ LogMap log_about(const SaddleVertexGraph& graph, const SurfacePoint& center, dou
   if (star.vertex() != k_none) field.add_source(star.vertex(), {0, 0, 0, false});
   const RayWindow window{Vec2::Zero(), 0, 0, 0, 0, k_none, Rays::from_point, 0, false};
   star.emit(field, window, star.begin(), star.begin() + star.total_angle());
-  DistanceProgress progress(mesh, {point}, radius, clock, stage.part(0, k_measured));
-  field.run({.radius = radius}, stage, [&](double distance, Index vertices) { progress.reached(distance, vertices); });
+  const JobStage measuring = stage.part(0, k_measured);
+  field.run({.radius = radius}, stage, [&](double distance, Index vertices) {
+    measuring.update(std::max(distance / radius * distance / radius, share_of(mesh, vertices)));
+  });
   LogMap result;
   result.vertices = field.settled();
   std::ranges::sort(result.vertices);

@@ -12,7 +12,6 @@
 #include "saddleback/support/pinned_memory.h"
 
 #include "geodesics/graph/arc_symmetry.h"
-#include "geodesics/graph/build_progress.h"
 #include "geodesics/graph/graph_arcs.h"
 #include "geodesics/graph/graph_arcs_cuda.h"
 #include "geodesics/graph/lattice.h"
@@ -47,12 +46,8 @@ void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
 // bound of paths. The rest takes the search for a lattice.
 constexpr double k_unfolded = 0.1, k_ordered = 0.16, k_laid_for_waves = 0.86, k_bounded = 0.93;
 
-/// What finding the arcs of a vertex is expected to take.
-double expected_cost(const Mesh& mesh, Index k, double accuracy, bool on_device) {
-  constexpr double k_device_cost = 0.08;  // beside that of the tables, which the processor lays
-  const double cost = BuildProgress::by_rule(mesh, k, accuracy);
-  return on_device ? k_device_cost * cost : cost;
-}
+// Of the time of a build, until tables are laid and until arcs are found; the rest joins them with their reverses.
+constexpr double k_laid = 0.15, k_found = 0.85;
 
 }  // namespace
 
@@ -68,14 +63,14 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
     throw DeviceError("device: exact graphs are built on the CPU only; use device=\"auto\" or \"cpu\"");
   kernel_ = &wave_kernel(options.instructions);
   const auto started = std::chrono::steady_clock::now();
-  BuildProgress progress(mesh, expected_cost(mesh, k_, accuracy_, on_device), options.threads, stage);
-  unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, progress.laying(0, k_unfolded));
-  order_nodes(options.threads, progress.laying(k_unfolded, k_ordered));
+  const JobStage laying = stage.part(0, k_laid);
+  unfolding_ = std::make_unique<Unfolding>(mesh, options.threads, laying.part(0, k_unfolded));
+  order_nodes(options.threads, laying.part(k_unfolded, k_ordered));
   std::optional<WaveTables> tables;
   if (on_device) check_mesh_size(mesh);
   if (!exact_ && !on_device)
-    tables.emplace(*unfolding_, nodes_, vertices_, options.threads, progress.laying(k_ordered, k_laid_for_waves));
-  const JobStage bounding = progress.laying(tables ? k_laid_for_waves : k_ordered, k_bounded);
+    tables.emplace(*unfolding_, nodes_, vertices_, options.threads, laying.part(k_ordered, k_laid_for_waves));
+  const JobStage bounding = laying.part(tables ? k_laid_for_waves : k_ordered, k_bounded);
   const auto choose_codec = [&] {
     const PathBounds bounds = tables ? path_bounds(tables->mesh, options.threads, bounding)
                                      : path_bounds(mesh, nodes_, vertices_, options.threads, bounding);
@@ -86,19 +81,18 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
       disk_rule(k_, accuracy_, accuracy_ > 0 ? lattice_of(*unfolding_, options.threads, stage) : Lattice::none);
   const ArcSearch search{*unfolding_, nodes_, vertices_, *kernel_, options.threads};
   if (on_device) {
-    progress.laid();
     ArcWords room(options.is_pinned ? &pinned_memory() : nullptr);
-    arcs_ =
-        cuda_arcs(search, choose_codec, rule, options.cuda_devices, std::move(room), device_times_, progress.joining());
+    arcs_ = cuda_arcs(search, choose_codec, rule, options.cuda_devices, std::move(room), device_times_,
+                      stage.part(k_laid, 1));
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;
   }
   const ArcCodec codec = choose_codec();
-  progress.laid();
-  auto found = exact_ ? exact_arcs(search, codec, progress) : disk_arcs(search, codec, *tables, rule, progress);
+  const JobStage finding = stage.part(k_laid, k_found);
+  auto found = exact_ ? exact_arcs(search, codec, finding) : disk_arcs(search, codec, *tables, rule, finding);
   tables.reset();
-  arcs_ = unite_with_reverses(codec, *kernel_, found, options.threads, progress.joining());
+  arcs_ = unite_with_reverses(codec, *kernel_, found, options.threads, stage.part(k_found, 1));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 

@@ -7,8 +7,17 @@
 namespace saddleback {
 
 std::string Job::text() const {
+  constexpr int k_most_dots = 3;
   const std::lock_guard lock(text_mutex_);
-  return text_;
+  const bool stands_still = fraction() == read_fraction_ && !text_.empty();
+  const bool is_alive = alive_.exchange(false, std::memory_order_relaxed);
+  read_fraction_ = fraction();
+  if (!stands_still) {
+    dots_ = 0;
+  } else if (is_alive) {
+    dots_ = dots_ % k_most_dots + 1;
+  }
+  return text_ + std::string(static_cast<std::size_t>(dots_), '.');
 }
 
 JobStage::JobStage(Job* job, const std::string& text) : job_(job) {
@@ -38,6 +47,7 @@ void JobStage::set_text(const std::string& text) const {
   if (!job_) return;
   const std::lock_guard lock(job_->text_mutex_);
   job_->text_ = text;
+  job_->read_fraction_ = -1;
 }
 
 void JobStage::throw_cancelled() { throw Cancelled(); }

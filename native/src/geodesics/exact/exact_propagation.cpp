@@ -82,18 +82,17 @@ ExactPropagation::ExactPropagation(const ExactSurface& surface, const SurfacePoi
       arrivals_(surface.vertex_count(), {0, 0, Arrival::k_unreached, k_none}),
       occupants_(surface.halfedge_count(), {k_far, 0}) {}
 
-void ExactPropagation::run(ExactProgress& progress) {
-  progress.foretell(surface_, queue_->width());
+void ExactPropagation::run(const JobStage& stage) {
   start();
   do {
     while (queue_->advance() && queue_->reached() <= options_.limit) {
-      while (WindowBlock* const block = queue_->take()) drain(block, progress);
+      while (WindowBlock* const block = queue_->take()) drain(block, stage);
       // Last in the bucket: by now their distances are final, nearly always.
       for (const Index vertex : due_) bend(vertex);
       due_.clear();
     }
   } while (cover_again());
-  progress.end();
+  stage.update(1);
 }
 
 /// Whether some vertex is farther than by an edge from its neighbor. No window that comes to the neighbor went on,
@@ -141,9 +140,10 @@ void ExactPropagation::fetch(Index halfedge) const {
 }
 
 /// Propagates a chain of blocks.
-void ExactPropagation::drain(WindowBlock* block, ExactProgress& progress) {
+void ExactPropagation::drain(WindowBlock* block, const JobStage& stage) {
+  constexpr std::int64_t k_blocks_a_look = 16;
   while (block) {
-    progress.update({queue_->reached(), window_count_, reached_count_, block_count_++, queue_->blocks_in_use()});
+    if (block_count_++ % k_blocks_a_look == 0) stage.update(share_done());
     for (Index i = 0; i < block->size; ++i) {
       const Window& window = block->items[i];
       if (i + k_ahead < block->size) fetch(block->items[i + k_ahead].halfedge);
@@ -162,7 +162,6 @@ void ExactPropagation::drain(WindowBlock* block, ExactProgress& progress) {
     if (options_.keep_windows) {
       queue_->keep(block);
       kept_.push_back(block);
-      if (progress.is_watched()) tell_kept(progress);
     } else {
       queue_->give_back(block);
     }
@@ -170,27 +169,11 @@ void ExactPropagation::drain(WindowBlock* block, ExactProgress& progress) {
   }
 }
 
-/// Now and then looks at some windows of long ago as sorting them will; the first of them only bring what is around.
-void ExactPropagation::tell_kept(ExactProgress& progress) const {
-  constexpr std::size_t k_apart = 1 << 14, k_first = 64, k_blocks = 128;
-  progress.kept(window_count_, k_bytes_of_kept_window);
-  if (kept_.size() % k_apart != 0) return;
-  std::int64_t windows = 0, needed = 0;
-  const auto look = [&](auto begin, auto end) {
-    windows = needed = 0;
-    for (auto block = begin; block != end; ++block) {
-      for (const Window& window : std::span((*block)->items, static_cast<std::size_t>((*block)->size))) {
-        if (window.halfedge < 0) continue;
-        ++windows;
-        if (!is_needless(surface_, *this, window)) ++needed;
-      }
-    }
-  };
-  const auto middle = kept_.begin() + static_cast<std::ptrdiff_t>(kept_.size() / 2);
-  look(middle - k_first, middle);
-  const WorkClock clock;
-  look(middle, middle + k_blocks);
-  progress.tried_sorting(windows, needed, clock.seconds() / k_choosing);
+/// Of the vertices, those that are reached; within a limit the share of the disk that is behind the front.
+double ExactPropagation::share_done() const {
+  const double vertices = static_cast<double>(reached_count_) / std::max<Index>(1, surface_.vertex_count());
+  const double radius = queue_->reached() / options_.limit;
+  return std::max(vertices, radius * radius);
 }
 
 void ExactPropagation::start() {
@@ -404,7 +387,8 @@ double ExactPropagation::arrival_angle(Index vertex) const {
   return angle;  // along the last edge of a boundary vertex
 }
 
-/// Makes a vertex a root: it emits windows in the directions that are at least pi from where the path comes, on both sides.
+/// Makes a vertex a root: it emits windows in the directions that are at least pi from where the path comes, on both
+/// sides.
 void ExactPropagation::bend(Index vertex) {
   const double distance = distances_[vertex];
   if (bent_at_[vertex] <= distance) return;

@@ -9,7 +9,6 @@
 #include "saddleback/job.h"
 #include "saddleback/mesh/surface_points.h"
 
-#include "geodesics/exact/exact_progress.h"
 #include "geodesics/exact/exact_queue.h"
 #include "geodesics/exact/exact_surface.h"
 
@@ -37,7 +36,7 @@ class ExactPropagation {
   ExactPropagation(const ExactSurface& surface, const SurfacePoints& sources, const ExactPropagationOptions& options);
 
   /// \throw Cancelled. Once.
-  void run(ExactProgress& progress);
+  void run(const JobStage& stage);
 
   /// Infinity where no source reaches, or only beyond the limit.
   double distance(Index vertex) const { return distances_[vertex] <= options_.limit ? distances_[vertex] : k_far; }
@@ -61,8 +60,8 @@ class ExactPropagation {
   void start();
   void start_in_face(const SourceInFace& place);
   void fetch(Index halfedge) const;
-  void drain(WindowBlock* block, ExactProgress& progress);
-  void tell_kept(ExactProgress& progress) const;
+  void drain(WindowBlock* block, const JobStage& stage);
+  double share_done() const;
   void offer(Index vertex, double distance, const Arrival& arrival);
   bool owns_before(const Arrival& a, const Arrival& b) const;
   bool cover_again();

@@ -11,14 +11,15 @@
 #include "geodesics/graph/disk_arcs.h"
 #include "geodesics/graph/visible_vertices.h"
 #include "support/memory/memory.h"
-#include "support/scattering_step.h"
 #include "support/threads/parallel.h"
+#include "support/work_done.h"
 
 namespace saddleback {
 namespace {
 
-// Windows end a little early, see geodesic_disks.cpp: on thousands of fields over twenty meshes this kept every error below
-// the accuracy asked for. Fine graphs need more room: there errors of a sixth more than their tolerance were seen.
+// Windows end a little early, see geodesic_disks.cpp: on thousands of fields over twenty meshes this kept every error
+// below the accuracy asked for. Fine graphs need more room: there errors of a sixth more than their tolerance were
+// seen.
 constexpr double k_room = 0.95, k_room_where_fine = 0.8, k_fine = 2e-3, k_usual = 5e-3;
 
 double room_for(double accuracy) {
@@ -26,60 +27,29 @@ double room_for(double accuracy) {
   return std::lerp(k_room_where_fine, k_room, std::clamp(usual, 0.0, 1.0));
 }
 
-/// So many parts of the mesh, one after the other from all over it, take as long as they would if the mesh were even.
-/// By count some vertices take many times as long as others, and are neighbors: there a part has no more arcs than
-/// these.
-constexpr Index k_parts = 377, k_part_arcs = 64000;
 // Nodes whose arcs are kept together: so many that what is done for each block is nothing, so few that no thread waits
 // long for the last.
-constexpr Index k_block = 128, k_most_watched = 256, k_least_watched = 64;
-// Bytes. Of blocks that are united in another order each has a piece of its own, lest all be kept to the end.
+constexpr Index k_block = 128;
+// Bytes.
 constexpr std::size_t k_piece = std::size_t{1} << 21, k_piece_a_node = 512;
-
-/// Neighbors that are done one after the other, for those who watch; k of a graph by count, or 0.
-Index part_size(Index node_count, Index k) {
-  const Index even = std::max(k_least_watched, (node_count / k_parts + k_batch - 1) / k_batch * k_batch);
-  return k > 0 ? std::clamp(k_part_arcs / k / k_batch * k_batch, k_batch, even) : even;
-}
-
-std::size_t piece_size(Index node_count, bool watched) {
-  return watched ? 0 : std::min(k_piece, k_piece_a_node * static_cast<std::size_t>(node_count));
-}
-
-/// Blocks in the order in which they are done: by itself theirs, which is as near as memory can be; for those who watch
-/// a few neighbors at a time from all over the mesh, since parts of it may take longer.
-std::vector<Index> order_of_blocks(Index count, Index per_part) {
-  std::vector<Index> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  if (per_part >= count) return order;
-  const Index parts = (count + per_part - 1) / per_part;
-  const Index step = scattering_step(parts);
-  auto next = order.begin();
-  for (Index i = 0; i < parts; ++i) {
-    const auto part = static_cast<Index>(std::int64_t{i} * step % parts);
-    for (Index b = part * per_part; b < std::min(count, (part + 1) * per_part); ++b) *next++ = b;
-  }
-  return order;
-}
 
 /// Calls find(draft, count, thread) from all threads. Blocks are filled in memory that each thread keeps.
 template <class Find>
-std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, Index k, bool watched, Find&& find) {
+std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, const JobStage& stage, Find&& find) {
   const auto node_count = static_cast<Index>(search.vertices.size());
-  const Index part = watched ? part_size(node_count, k) : node_count;
-  const Index size = watched ? std::min(part, k_most_watched) : k_block;
-  const std::vector<Index> order = order_of_blocks((node_count + size - 1) / size, (part + size - 1) / size);
-  std::vector<KeptArcs> found(order.size());
+  std::vector<KeptArcs> found((node_count + k_block - 1) / k_block);
   std::vector<FoundArcs> drafts(thread_count(search.threads));
-  std::vector<ReturnedPieces> pieces(drafts.size(), ReturnedPieces(piece_size(node_count, watched)));
-  const auto find_block = [&](Index i, int thread) {
+  const std::size_t piece = std::min(k_piece, k_piece_a_node * static_cast<std::size_t>(node_count));
+  std::vector<ReturnedPieces> pieces(drafts.size(), ReturnedPieces(piece));
+  WorkDone done(stage, node_count);
+  const auto find_block = [&](Index block, int thread) {
     FoundArcs& draft = drafts[thread];
-    draft.first_node = order[i] * size;
+    draft.first_node = block * k_block;
     draft.counts.clear();
     draft.words.clear();
     draft.back_sectors.clear();
-    find(draft, std::min(size, node_count - draft.first_node), thread);
-    found[order[i]] = KeptArcs(draft, pieces[thread]);
+    find(draft, std::min(k_block, node_count - draft.first_node), thread, done);
+    found[block] = KeptArcs(draft, pieces[thread]);
   };
   try {
     parallel_for(static_cast<Index>(found.size()), search.threads, 1, find_block);
@@ -168,37 +138,31 @@ WaveTables::WaveTables(const Unfolding& unfolding, const NodeEdges& edges, std::
       sectors(edges, unfolding, vertices, ArcCodec::k_sectors, threads, stage.part(k_with_mesh, 1)) {}
 
 std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
-                                const DiskRule& rule, BuildProgress& progress) {
+                                const DiskRule& rule, const JobStage& stage) {
   std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
-  return find_by_blocks(search, rule.k, progress.stage().is_watched(), [&](FoundArcs& found, Index count, int thread) {
+  return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread, WorkDone& done) {
     if (!finders[thread])
       finders[thread] = std::make_unique<DiskRows>(tables.mesh, tables.sectors, codec, search.kernel, rule);
     for (Index i = 0; i < count; i += k_batch) {
       const Index batch = std::min(k_batch, count - i);
-      progress.time([&]() -> ArcCount {
-        const std::int64_t before = std::ssize(found.words);
-        finders[thread]->find(found.first_node + i, batch, found, progress.stage());
-        return {batch, std::ssize(found.words) - before};
-      });
+      finders[thread]->find(found.first_node + i, batch, found, stage);
+      done.add(batch);
     }
   });
 }
 
-std::vector<KeptArcs> exact_arcs(const ArcSearch& search, const ArcCodec& codec, BuildProgress& progress) {
+std::vector<KeptArcs> exact_arcs(const ArcSearch& search, const ArcCodec& codec, const JobStage& stage) {
   std::vector<std::unique_ptr<VisibleVertices>> propagators(thread_count(search.threads));
   std::vector<std::vector<DirectArc>> rows(propagators.size());
   propagators[0] = std::make_unique<VisibleVertices>(search.unfolding);
-  check_memory(search, *propagators[0], progress.stage());
-  return find_by_blocks(search, 0, progress.stage().is_watched(), [&](FoundArcs& found, Index count, int thread) {
+  check_memory(search, *propagators[0], stage);
+  return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread, WorkDone& done) {
     if (!propagators[thread]) propagators[thread] = std::make_unique<VisibleVertices>(search.unfolding);
     for (Index i = 0; i < count; ++i) {
       const Index vertex = search.vertices[found.first_node + i];
-      progress.time([&]() -> ArcCount {
-        propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread],
-                                         progress.stage());
-        append_row(search, codec, vertex, rows[thread], found);
-        return {1, std::ssize(rows[thread])};
-      });
+      propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread], stage);
+      append_row(search, codec, vertex, rows[thread], found);
+      done.add(1);
     }
   });
 }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "geodesics/graph/arc_symmetry.h"
-#include "geodesics/graph/build_progress.h"
 #include "geodesics/graph/geodesic_disks.h"
 
 namespace saddleback {
@@ -40,11 +39,11 @@ DiskRule disk_rule(Index k, double accuracy, Lattice lattice = Lattice::none);
 
 /// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
 std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
-                                const DiskRule& rule, BuildProgress& progress);
+                                const DiskRule& rule, const JobStage& stage);
 
 /// All straight geodesics of the mesh. \throw InputError when the graph would not fit into memory; Cancelled. O(V^2 log
 /// V).
-std::vector<KeptArcs> exact_arcs(const ArcSearch& search, const ArcCodec& codec, BuildProgress& progress);
+std::vector<KeptArcs> exact_arcs(const ArcSearch& search, const ArcCodec& codec, const JobStage& stage);
 
 /// The fastest kernel that this machine runs for "auto", or the one named. \throw InputError when there is none.
 const WaveKernel& wave_kernel(const std::string& instructions);

@@ -60,21 +60,21 @@ Index node_of(const SaddleVertexGraph&, const NodeSeed& seed) { return seed.node
 }  // namespace
 
 void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
-                      SearchLabels labels, const JobStage& stage, double reached) {
-  run_from(graph, seeds, options, labels, stage, reached);
+                      SearchLabels labels, const JobStage& stage) {
+  run_from(graph, seeds, options, labels, stage);
 }
 
 void GraphSearch::run(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const QueryOptions& options,
                       SearchLabels labels, const JobStage& stage) {
-  run_from(graph, seeds, options, labels, stage, 1);
+  run_from(graph, seeds, options, labels, stage);
 }
 
 template <class AnySeed>
 void GraphSearch::run_from(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const QueryOptions& options,
-                           SearchLabels labels, const JobStage& stage, double reached) {
+                           SearchLabels labels, const JobStage& stage) {
   bound_ = std::nextafter(options.limit, k_infinity);
   clear(graph, labels);
-  likely_ = reached * graph.arcs().node_count();
+  likely_ = graph.arcs().node_count();
   if (options.method == QueryMethod::dijkstra) {
     // With the portable loop over a row: together the search that the fast one is checked against.
     Heap heap;

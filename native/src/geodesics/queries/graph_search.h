@@ -36,10 +36,10 @@ enum class SearchLabels { none, sources, sources_and_predecessors };
 /// run; one a thread and graph.
 class GraphSearch {
  public:
-  /// `reached`: share of the nodes, about, within the limit; for those who watch. \throw Cancelled. O(arcs) with
+  /// \throw Cancelled. O(arcs) with
   /// buckets, O(arcs + V log V) with Dijkstra's heap.
   void run(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
-           SearchLabels labels, const JobStage& stage, double reached = 1);
+           SearchLabels labels, const JobStage& stage);
   void run(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const QueryOptions& options,
            SearchLabels labels, const JobStage& stage);
 
@@ -66,7 +66,7 @@ class GraphSearch {
  private:
   template <class AnySeed>
   void run_from(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const QueryOptions& options,
-                SearchLabels labels, const JobStage& stage, double reached);
+                SearchLabels labels, const JobStage& stage);
   void clear(const SaddleVertexGraph& graph, SearchLabels labels);
   template <class AnySeed>
   void propagate_in_buckets(const SaddleVertexGraph& graph, std::span<const AnySeed> seeds, const JobStage& stage);

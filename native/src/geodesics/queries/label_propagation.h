@@ -16,8 +16,8 @@ struct LabelField {
 };
 
 /// Least distance and, among equals, least source for every vertex: label-correcting with buckets, or Dijkstra's heap.
-/// Works in the order of the nodes inside (see GraphSearch, also for `reached`); seeds and fields are vertices.
+/// Works in the order of the nodes inside (see GraphSearch); seeds and fields are vertices.
 LabelField propagate_labels(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
-                            bool with_predecessors, const JobStage& stage, double reached = 1);
+                            bool with_predecessors, const JobStage& stage);
 
 }  // namespace saddleback

@@ -10,10 +10,9 @@
 
 #include "geodesics/graph/graph_arcs.h"
 #include "geodesics/queries/query_cache.h"
-#include "geodesics/unfolding/needles.h"
 #include "support/planar.h"
-#include "support/scattering_step.h"
 #include "support/threads/parallel.h"
+#include "support/work_done.h"
 
 namespace saddleback {
 namespace {
@@ -193,15 +192,11 @@ FanTeam::FanTeam(const SaddleVertexGraph& graph, std::span<const SurfacePoint> p
 
 namespace {
 
-/// Of the parts. For those who watch they are scattered among needles, where those of one side may take much longer;
-/// elsewhere neighbors, which are at hand in memory, save a twentieth of the time.
-enum class Parts { in_order, scattered };
-
 /// Calls see(finder, thread, batch, points, limits) for batches of the order, with what `points` and `limits` have of
 /// them.
 template <class See>
 void for_each_batch(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const Index> order,
-                    std::span<const double> limits, Parts parts, int threads, const JobStage& stage, See&& see) {
+                    std::span<const double> limits, int threads, const JobStage& stage, See&& see) {
   if (order.empty()) return;
   const auto count = static_cast<Index>(order.size());
   const Index share = count / (k_chunks_a_thread * thread_count(threads)) / k_batch * k_batch;
@@ -215,10 +210,8 @@ void for_each_batch(const SaddleVertexGraph& graph, std::span<const SurfacePoint
     std::vector<double> limits;
   };
   std::vector<Work> works(thread_count(threads));
-  std::atomic<Index> done{0};
-  const Index step = parts == Parts::scattered ? scattering_step(blocks) : 1;
-  parallel_for(blocks, threads, 1, [&](Index turn, int thread) {
-    const auto block = static_cast<Index>(std::int64_t{turn} * step % blocks);
+  WorkDone done(finding, count);
+  parallel_for(blocks, threads, 1, [&](Index block, int thread) {
     auto& [own, own_limits] = works[thread];
     const Index end = std::min((block + 1) * chunk, count);
     for (Index first = block * chunk; first < end; first += k_batch) {  // what they see is used while it is at hand
@@ -230,8 +223,7 @@ void for_each_batch(const SaddleVertexGraph& graph, std::span<const SurfacePoint
         if (!limits.empty()) own_limits.push_back(limits[i]);
       }
       see(team[thread], thread, batch, own, own_limits);
-      const auto size = static_cast<Index>(batch.size());
-      finding.update(static_cast<double>(done.fetch_add(size, std::memory_order_relaxed) + size) / count);
+      done.add(static_cast<double>(batch.size()));
     }
   });
 }
@@ -245,9 +237,7 @@ void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> 
     DirectFans fans;
   };
   std::vector<Rows> rows(thread_count(threads));
-  const bool is_uneven = stage.is_watched() && has_needles(graph.mesh());
-  const Parts parts = is_uneven ? Parts::scattered : Parts::in_order;
-  for_each_batch(graph, points, order, limits, parts, threads, stage,
+  for_each_batch(graph, points, order, limits, threads, stage,
                  [&](DirectFanFinder& finder, int thread, auto batch, const auto& own, const auto& own_limits) {
                    DirectFans& fans = rows[thread].fans;
                    fans.clear();
@@ -260,7 +250,7 @@ void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint>
                    int threads, const JobStage& stage, const UseSeen& use) {
   std::vector<Index> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  for_each_batch(graph, points, order, limits, Parts::in_order, threads, stage,
+  for_each_batch(graph, points, order, limits, threads, stage,
                  [&](DirectFanFinder& finder, int, auto batch, const auto& own, const auto& own_limits) {
                    finder.view(graph, own, own_limits, stage,
                                [&](Index i, const SeenView& view) { use(batch[i], view); });

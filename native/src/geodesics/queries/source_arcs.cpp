@@ -6,7 +6,6 @@
 #include <mutex>
 
 #include "geodesics/queries/query_cache.h"
-#include "geodesics/unfolding/needles.h"
 #include "support/planar.h"
 #include "support/threads/parallel.h"
 
@@ -31,47 +30,6 @@ double share_of_new_faces(const SurfaceCurve& curve) {
   const auto repeated = std::ranges::unique(faces);
   return 1 - static_cast<double>(std::ssize(repeated)) / std::max(1.0, static_cast<double>(faces.size()));
 }
-
-/// How much of a strip is done when its rays have come so far: beside each segment it is as wide as so many of the
-/// edges there, by which rays are measured, and full of so many vertices.
-class StripProgress {
- public:
-  StripProgress(std::span<const CurveSegment> segments, const Mesh& mesh, const RayLimits& limits)
-      : vertices_(mesh.vertex_count()) {
-    for (const CurveSegment& segment : segments) {
-      const Index h = 3 * segment.face;
-      const double edge = std::max({mesh.length(h), mesh.length(h + 1), mesh.length(h + 2)});
-      parts_.push_back({std::min(limits.radius, limits.edges * edge), segment.length / (edge * edge)});
-    }
-    std::ranges::sort(parts_, {}, &Part::width);
-    for (const Part& part : parts_) {
-      wide_ += part.density;
-      all_ += part.width * part.density;
-    }
-  }
-
-  /// Of rays that have come to `distance`, which never falls from call to call, when so many vertices are reached: all
-  /// of them, maybe, before the strip is as wide as it could be.
-  double share(double distance, Index reached) {
-    constexpr double k_growth = 1.3;  // farther out vertices have more windows
-    for (; next_ < parts_.size() && parts_[next_].width <= distance; ++next_) {
-      narrow_ += parts_[next_].width * parts_[next_].density;
-      wide_ -= parts_[next_].density;
-    }
-    const double width = all_ > 0 ? std::min(1.0, (narrow_ + distance * std::max(0.0, wide_)) / all_) : 1;
-    return std::max(std::pow(width, k_growth), reached / vertices_);
-  }
-
- private:
-  struct Part {
-    double width, density;  ///< vertices for each step away from the segment, about
-  };
-  const double vertices_;
-  std::vector<Part> parts_;    ///< narrow ones first
-  std::size_t next_ = 0;       ///< the first one that is not done
-  double narrow_ = 0;          ///< work in those that are
-  double wide_ = 0, all_ = 0;  ///< density of the others; the work in all
-};
 
 /// The corners of the faces that a curve passes, by the straight line inside the face.
 void add_corners(const SurfaceCurve& curve, std::vector<PointFan::Arc>& arcs) {
@@ -102,10 +60,13 @@ PointFan CurveFanFinder::find(const SaddleVertexGraph& graph, const SurfaceCurve
   if (!curve_windows_) curve_windows_ = std::make_unique<CurveWindows>(graph.unfolding());
   const RayLimits limits{.radius = options.limit, .edges = strip_width(graph)};
   const JobStage running = stage.part(begun, 1);
-  StripProgress progress(stage.is_watched() ? curve.segments() : std::span<const CurveSegment>(), graph.mesh(), limits);
-  curve_windows_->from_curve(
-      curve, limits, feet_, stage.part(made, begun), options.places,
-      [&](double distance, Index reached) { running.update(progress.share(distance, reached)); });
+  const Mesh& mesh = graph.mesh();
+  const double width = std::min(limits.radius, limits.edges * mesh.mean_edge_length());
+  curve_windows_->from_curve(curve, limits, feet_, stage.part(made, begun), options.places,
+                             [&](double distance, Index reached) {
+                               const double vertices = static_cast<double>(reached) / mesh.vertex_count();
+                               running.update(std::max(distance / width, vertices));
+                             });
   PointFan fan;
   add_corners(curve, fan.arcs);
   for (const CurveFoot& foot : feet_) fan.arcs.push_back({foot.vertex, foot.distance});
@@ -175,7 +136,7 @@ double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points,
   if (graph.is_exact()) return k_cost_of_exact_point * static_cast<double>(inside);
   const double of_mesh = inside > 0 && first == FirstFans::maybe ? fans_a_fan_mesh_costs(graph) : 0;
   if (inside == 0) return 0;
-  return needle_factor(graph.mesh()) * k_cost_of_point * (static_cast<double>(inside) + of_mesh);
+  return k_cost_of_point * (static_cast<double>(inside) + of_mesh);
 }
 
 double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources) {
@@ -183,9 +144,8 @@ double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources)
   for (const SurfaceCurve* const curve : sources.curves) {
     const double length = share_of_new_faces(*curve) * curve->length();
     const double strip = 2 * strip_width(graph) * length / graph.mesh().mean_edge_length();
-    cost += needle_factor(graph.mesh()) * k_cost_of_strip_vertex *
-            std::max(std::min(strip, static_cast<double>(graph.mesh().vertex_count())),
-                     k_vertices_a_segment * static_cast<double>(curve->segments().size()));
+    cost += k_cost_of_strip_vertex * std::max(std::min(strip, static_cast<double>(graph.mesh().vertex_count())),
+                                              k_vertices_a_segment * static_cast<double>(curve->segments().size()));
   }
   return cost;
 }
