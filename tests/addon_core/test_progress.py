@@ -12,6 +12,7 @@ class StoppedError(Exception):
 class Job:
     def __init__(self):
         self.fraction = 0.0
+        self.text = "Measuring"
         self.stopped = False
 
     def cancel(self):
@@ -25,6 +26,8 @@ def test_stages_map_onto_parts_and_never_fall():
         assert progress.text == "first" and progress.fraction == 0
         job.fraction = 0.5
         assert progress.fraction == pytest.approx(0.2)
+        job.text = "Measuring.."
+        assert progress.text == "first.."
         job.fraction = 1.0
     assert progress.fraction == pytest.approx(0.4)
     with progress.stage(0.9, "second") as job:

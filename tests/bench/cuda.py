@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from tests.parity.test_graph_cuda import saved
 
 import saddleback as sb
 from tests.native import plane_sites
+from tests.parity.test_graph_cuda import saved
 
 RULES: tuple[dict[str, Any], ...] = ({"k": 100}, {"accuracy": 5e-3})
 TIMES = 5

@@ -22,7 +22,7 @@ class Progress:
         self._begin, self._end, self._reached = 0.0, 0.0, 0.0
         self._cancelled = False
         self._can_settle = False
-        self.text = ""  # what is being done, for a person to read
+        self._text = ""
         self.notes: list[str] = []  # what a person should know when the run is over
 
     @property
@@ -31,6 +31,12 @@ class Progress:
         begin, end, job = self._begin, self._end, self._job
         self._reached = max(self._reached, begin + (end - begin) * job.fraction)
         return self._reached
+
+    @property
+    def text(self) -> str:
+        """What is being done, for a person to read; dots behind it move while work goes on that cannot be counted."""
+        told: str = self._job.text
+        return self._text + told[len(told.rstrip(".")) :] if self._text else ""
 
     @property
     def cancelled(self) -> bool:
@@ -74,7 +80,7 @@ class Progress:
         self._begin = self._end = self._reached
         self._job = job
         self.check()
-        self.text = text
+        self._text = text
         self._end = end
         self._can_settle = can_settle
         try:
