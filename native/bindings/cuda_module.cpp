@@ -53,14 +53,14 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
       .def_readonly("usable", &CudaDevices::usable)
       .def_readonly("reason", &CudaDevices::reason);
   static const saddleback::CudaModule functions{.find_arcs = &saddleback::find_arcs_on_device,
-                                            .find_voronoi = &saddleback::find_voronoi_on_device,
-                                            .drop_voronoi = &saddleback::drop_voronoi_on_device,
-                                            .copy_back = &saddleback::copy_back_from_device,
-                                            .pin = &saddleback::pin_host_memory,
-                                            .unpin = &saddleback::unpin_host_memory,
-                                            .put_graph = &saddleback::put_graph_on_device,
-                                            .drop_graph = &saddleback::drop_graph_on_device,
-                                            .search = &saddleback::search_on_device};
+                                                .find_voronoi = &saddleback::find_voronoi_on_device,
+                                                .drop_voronoi = &saddleback::drop_voronoi_on_device,
+                                                .copy_back = &saddleback::copy_back_from_device,
+                                                .pin = &saddleback::pin_host_memory,
+                                                .unpin = &saddleback::unpin_host_memory,
+                                                .put_graph = &saddleback::put_graph_on_device,
+                                                .drop_graph = &saddleback::drop_graph_on_device,
+                                                .search = &saddleback::search_on_device};
   module.attr("functions") = py::capsule(&functions);
   module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
   module.def("plane_signs", &plane_signs, py::arg("points"), py::arg("device") = 0,

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.parity.test_graph_cuda import LARGER
-from tests.parity.test_search_cuda import CASES, RULES, graph_of, some
 
 import saddleback as sb
 from tests import meshes
+from tests.parity.test_graph_cuda import LARGER
+from tests.parity.test_search_cuda import CASES, RULES, graph_of, some
 
 PARTS = ("vertex_cell", "vertex_distance", "areas", "edge_points", "edge_cells", "edge_closed")
 

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from tests.parity.test_voronoi_cuda import DEVICES, expect_kept, expect_twins
 
 import saddleback as sb
 from tests.native import plane_sites
 from tests.parity.cancelling import expect_to_stop_within_a_moment
+from tests.parity.test_voronoi_cuda import DEVICES, expect_kept, expect_twins
 
 Points = plane_sites.Points
 Rng = np.random.Generator

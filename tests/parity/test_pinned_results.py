@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.parity.test_graph_cuda import saved
-from tests.parity.test_voronoi_cuda import ARRAYS, DEVICES, weights_of
 
 import saddleback as sb
 from tests import meshes
 from tests.native import plane_sites
 from tests.parity.cancelling import expect_to_stop_within_a_moment
+from tests.parity.test_graph_cuda import saved
+from tests.parity.test_voronoi_cuda import ARRAYS, DEVICES, weights_of
 
 PINNED = 1  # cudaMemoryTypeHost
 WRITTEN = ("vertices", "edges", "edge_sites", "site_of")  # the rest is made of these

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.parity.test_graph_cuda import LARGER
 
 import saddleback as sb
 from tests import meshes
+from tests.parity.test_graph_cuda import LARGER
 
 RULES: tuple[dict[str, Any], ...] = ({"accuracy": 5e-3}, {"k": 12})
 RULE_NAMES = [next(f"{name}={value}" for name, value in rule.items()) for rule in RULES]
