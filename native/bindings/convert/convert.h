@@ -43,7 +43,7 @@ Vec3 as_vec3(const py::object& value, const char* name);                        
 
 double as_real(const py::object& value, const char* name);    ///< a float or int, numpy's too
 Index as_integer(const py::object& value, const char* name);  ///< an int (not a float), numpy's too
-/// As as_integer, for seeds: 0 to 2^64 - 1.
+/// Works as as_integer, for seeds: 0 to 2^64 - 1.
 std::uint64_t as_seed(const py::object& value, const char* name);
 /// Any str, bytes or os.PathLike, in the bytes that the operating system knows the file by.
 std::string as_path(const py::object& value, const char* name);

@@ -19,7 +19,7 @@ std::vector<int> cuda_devices_of(const std::string& device, bool is_worth_it);
 /// Vertices of a mesh below which what a device gains is lost on the way there.
 inline constexpr Index k_vertices_worth_a_device = 20'000;
 
-/// Whether a search in the graph is worth it with device="auto": where a CUDA device built the graph or keeps it.
+/// Tells whether a search in the graph is worth it with device="auto": where a CUDA device built the graph or keeps it.
 inline bool is_search_worth_a_device(const SaddleVertexGraph& graph) {
   return (graph.built_by_cuda() || graph.is_on_device()) && graph.mesh().vertex_count() >= k_vertices_worth_a_device;
 }

@@ -10,7 +10,7 @@
 
 namespace saddleback::bindings {
 
-/// With what its edges' lengths are found from, once asked for.
+/// Holds a dual mesh with what its edges' lengths are found from, once asked for.
 struct Dual : DualMesh {
   py::object owner;  ///< of the mesh and the cells
   const Mesh* mesh;

@@ -46,7 +46,7 @@ void uninstall() { sigaction(SIGINT, &g_previous, nullptr); }
 // Kept for the life of the process.
 py::handle g_get_handler, g_default_handler, g_main_thread;
 
-/// Whether this is the main thread and Ctrl-C would raise KeyboardInterrupt in it.
+/// Tells whether this is the main thread and Ctrl-C would raise KeyboardInterrupt in it.
 bool would_interrupt() {
   if (py::cast<unsigned long>(g_main_thread().attr("ident")) != PyThread_get_thread_ident()) return false;
   return g_get_handler(SIGINT).is(g_default_handler);

@@ -11,8 +11,9 @@ namespace saddleback::bindings {
 /// Looks up what the others need of Python; once, when the module is loaded.
 void prepare_interrupts();
 
-/// While it lives, Ctrl-C cancels the job at once, beside what Python does with it. Python's own handler only notes the
-/// signal and raises KeyboardInterrupt between bytecodes, and a native call is one long bytecode.
+/// Cancels the job at once when Ctrl-C is pressed while this lives, beside what Python does with it. Python's own
+/// handler only notes the signal and raises KeyboardInterrupt between bytecodes, and a native call is one long
+/// bytecode.
 ///
 /// Only in the main thread, to which the signal belongs, and only where Python would raise KeyboardInterrupt: a handler
 /// of the program's own may want the call to go on.

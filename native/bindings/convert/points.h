@@ -23,7 +23,7 @@ struct PointsIn {
 /// \throw InputError naming `argument`, the position and the value.
 PointsIn as_points(const py::object& value, const Mesh& mesh, const char* argument);
 
-/// As as_points, when it does not matter how they were given.
+/// Works as as_points, when it does not matter how they were given.
 SurfacePoints as_surface_points(const py::object& value, const Mesh& mesh, const char* argument);
 
 /// Exactly one point.

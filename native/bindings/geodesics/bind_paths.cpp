@@ -344,7 +344,7 @@ void bind_curve(py::module_& m) {
 
 }  // namespace
 
-/// After bind_surface and bind_graph, whose classes it extends.
+/// Runs after bind_surface and bind_graph, whose classes it extends.
 void bind_paths(py::module_& m) {
   bind_curve(m);
   bind_geodesic_paths(m);

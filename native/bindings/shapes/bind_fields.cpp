@@ -453,7 +453,7 @@ py::tuple curvatures_of(const py::object& mesh_object) {
 
 }  // namespace
 
-/// After bind_surface and bind_paths, whose classes it takes.
+/// Runs after bind_surface and bind_paths, whose classes it takes.
 void bind_fields(py::module_& m) {
   bind_direction_field(m);
   bind_strokes(m);

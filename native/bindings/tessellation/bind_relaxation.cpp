@@ -47,7 +47,7 @@ std::vector<const SurfaceCurve*> as_curves(const py::object& curves) {
   return result;
 }
 
-/// What is shown is never written again: Python's pointer to it is not const, for want of a holder that is.
+/// Shows memory that is never written again: Python's pointer to it is not const, for want of a holder that is.
 std::shared_ptr<RelaxationStep> latest_step(const RelaxationWatch& watch) {
   return std::const_pointer_cast<RelaxationStep>(watch.latest());
 }

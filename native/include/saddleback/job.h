@@ -13,8 +13,8 @@ class Job {
  public:
   /// Share of the work done, 0 to 1, never falling during one call.
   double fraction() const { return fraction_.load(std::memory_order_relaxed); }
-  /// What is being done, for a person to read. While the fraction stands still but work goes on, dots that follow it
-  /// change from call to call.
+  /// Returns what is being done, for a person to read. While the fraction stands still but work goes on, dots that
+  /// follow it change from call to call.
   std::string text() const;
   /// Asks the work to stop; it does so within 0.1 s by throwing Cancelled.
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }

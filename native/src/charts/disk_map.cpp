@@ -26,7 +26,7 @@ void check_disk(const Mesh& mesh) {
 
 double cotangent(double angle) { return std::cos(angle) / std::sin(angle); }
 
-/// Of the edge of a half-edge, from the angles opposite to it; the same for both half-edges.
+/// Returns the weight of the edge of a half-edge, from the angles opposite to it; the same for both half-edges.
 double weight(const Mesh& mesh, Index h) {
   double sum = cotangent(mesh.corner_angle(Mesh::prev(h)));
   if (mesh.twin(h) != k_none) sum += cotangent(mesh.corner_angle(Mesh::prev(mesh.twin(h))));

@@ -42,7 +42,7 @@ class CellClip {
       loop_.push_back({{CornerKey::Kind::vertex, chart.mesh().from(h), k_none}, chart.corners()[h], k_none, h});
   }
 
-  /// What is left of the face; fewer than three corners where nothing is.
+  /// Returns what is left of the face; fewer than three corners where nothing is.
   std::vector<PieceCorner> clip() {
     for (Index k = 0; k < sides_.count() && !loop_.empty(); ++k) cut(k);
     std::vector<PieceCorner> corners;
@@ -57,7 +57,7 @@ class CellClip {
     return corners;
   }
 
-  /// Of the diagram: those that have cut something off.
+  /// Lists edges of the diagram: those that have cut something off.
   const std::vector<Index>& cutting_edges() const { return cutting_edges_; }
 
  private:
@@ -133,7 +133,7 @@ class CellClip {
   std::vector<Index> cutting_edges_;
 };
 
-/// Whether a cell holds the whole face: nearly all faces of fine meshes.
+/// Tells whether a cell holds the whole face: nearly all faces of fine meshes.
 bool holds(const Voronoi2d& diagram, Index site, const Vec2* corner) {
   for (const Index edge : diagram.cell_edges(site)) {
     const auto [left, right] = diagram.edge_sites[edge];

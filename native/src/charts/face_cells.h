@@ -8,7 +8,7 @@
 
 namespace saddleback::charts {
 
-/// What a corner of a piece is; equal for all pieces that share it.
+/// Holds what a corner of a piece is; equal for all pieces that share it.
 struct CornerKey {
   enum class Kind : std::uint8_t { vertex, crossing, branch };
   Kind kind;

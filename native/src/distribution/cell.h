@@ -8,8 +8,8 @@
 
 namespace saddleback::distribution {
 
-/// With sides of 1 / 2^level of the face's: corners (i, j), (i + 1, j), (i, j + 1) in units of that, as weights of the
-/// face's corners 1 and 2, or (i, j), (i - 1, j), (i, j - 1) when it stands on its head.
+/// Holds a square with sides of 1 / 2^level of the face's: corners (i, j), (i + 1, j), (i, j + 1) in units of that, as
+/// weights of the face's corners 1 and 2, or (i, j), (i - 1, j), (i, j - 1) when it stands on its head.
 struct Cell {
   Index face;
   std::int32_t i = 0, j = 0;

@@ -16,8 +16,8 @@ constexpr Index k_outline_samples = 96;  ///< places looked at along the outline
 constexpr double k_least_radius = 0.02;  ///< of a disk, as a share of the circumradius
 constexpr double k_covered = 0.004;      ///< what lies this near to a disk needs no other, same unit
 constexpr Index k_most_grown_corners = 128;
-/// How far beyond a shape the grid of its distances reaches, as a share of the circumradius: middles of the disks that
-/// touch it are so far away.
+/// Says how far beyond a shape the grid of its distances reaches, as a share of the circumradius: middles of the disks
+/// that touch it are so far away.
 constexpr double k_least_margin = 0.6;
 
 double margin_of(const Shape& shape) {

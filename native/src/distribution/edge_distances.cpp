@@ -10,7 +10,7 @@ namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
-/// Of every component the vertex of the largest finite value.
+/// Finds of every component the vertex of the largest finite value.
 std::vector<Index> farthest(const Mesh& mesh, const std::vector<double>& distances) {
   std::vector<Index> result(static_cast<std::size_t>(mesh.component_count()), k_none);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {

@@ -122,7 +122,8 @@ class Relaxation {
     for (std::size_t i = 0; i < at_.size(); ++i) pieces_[i] = tree.nearest(at_[i], normals_[i], pieces_[i]);
   }
 
-  /// Of each piece the point nearest to its middle. A piece that has lost all of its points keeps the first it had.
+  /// Finds of each piece the point nearest to its middle. A piece that has lost all of its points keeps the first it
+  /// had.
   SurfacePoints places(Index each) const {
     std::vector<std::size_t> best(middles_.size());
     std::vector<double> least(middles_.size(), std::numeric_limits<double>::infinity());

@@ -17,7 +17,7 @@ namespace {
 constexpr double k_range = 2 * std::numbers::pi / FrontProfiles::k_angles;
 /// Angles are reduced to one turn with rounding of some 1e-16; ranges overlap by more.
 constexpr double k_half_range = 0.5 * k_range + 1e-12;
-/// By how much arcs of that half angle bulge over their chord, and rounding, as a share of the radius.
+/// Bounds by how much arcs of that half angle bulge over their chord, and rounding, as a share of the radius.
 constexpr double k_rounding = 1e-12;
 const double k_bulge = (1 - std::cos(k_half_range)) + k_rounding;
 

@@ -21,11 +21,11 @@
 namespace saddleback::distribution {
 namespace {
 
-/// Where the tracing of a point ends differs from where the flat plane puts it by a quarter of K r^2 of its distance;
-/// lengths across are off by as much as K r^2. So the one tells the other.
+/// Bounds the drift: where the tracing of a point ends differs from where the flat plane puts it by a quarter of K r^2
+/// of its distance; lengths across are off by as much as K r^2. So the one tells the other.
 constexpr double k_bending = 4;
-/// And the stretch of a map is a sixth of K r^2 at its rim: points are certainly not farther off than this many times
-/// that, of their distance. What is deeper needs no tracing.
+/// Bounds the stretch: that of a map is a sixth of K r^2 at its rim: points are certainly not farther off than this
+/// many times that, of their distance. What is deeper needs no tracing.
 constexpr double k_drift = 4;
 /// Ways along edges are at most so much longer than others on meshes of sound triangles.
 constexpr double k_edge_excess = 1.5;
@@ -38,7 +38,8 @@ constexpr std::array<double, 10> k_batches{2, 2, 4, 4, 8, 8, 16, 16, 32, 32};
 constexpr std::array<double, 4> k_sweeping_batches{80, 40, 40, 40};
 constexpr std::size_t k_searching_batches = 6, k_searching_sweeps = 2;
 constexpr double k_most_drops = 1e6;  ///< on a face
-/// So many are held at a time; of shapes that are tiny beside the surface there would be more than memory holds.
+/// Bounds how many are held at a time; of shapes that are tiny beside the surface there would be more than memory
+/// holds.
 constexpr std::size_t k_drops_held = 4'000'000, k_most_cells = 1 << 20;
 /// A certificate that leaves more than this share of the surface open is not called one.
 constexpr double k_unproven = 0.5;
@@ -101,7 +102,7 @@ void GapSampling::flag_borders() {
 /// Larger cells are hardly ever covered as a whole.
 double GapSampling::base_radius() const { return 0.5 * rules_->smallest_radius(); }
 
-/// Of the next faces, as many as are looked at together.
+/// Makes the base cells of the next faces, as many as are looked at together.
 void GapSampling::make_base_cells(const JobStage& stage) {
   const std::size_t count = rules_->kinds().size();
   const std::uint64_t all = count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
@@ -179,7 +180,7 @@ void GapSampling::draw_candidates(Index face, int try_batch, double per_area, co
   }
 }
 
-/// In the order of their keys, as many at a time as are held.
+/// Tries them in the order of their keys, as many at a time as are held.
 void GapSampling::try_batch(int number, double per_area, const JobStage& stage) {
   constexpr std::size_t k_bins = 4096;
   const auto for_each = [&](auto&& visit) {
@@ -215,7 +216,7 @@ void GapSampling::try_batch(int number, double per_area, const JobStage& stage) 
   }
 }
 
-/// Until a try_batch lays hardly anything, or all have fallen.
+/// Goes on until a try_batch lays hardly anything, or all have fallen.
 DistributionStop GapSampling::sample_at_random(const JobStage& stage) {
   std::span<const double> batches = options_->packing > 0 ? std::span<const double>(k_sweeping_batches) : k_batches;
   if (searches()) batches = batches.first(options_->packing > 0 ? k_searching_sweeps : k_searching_batches);
@@ -239,7 +240,7 @@ DistributionStop GapSampling::sample_at_random(const JobStage& stage) {
   return DistributionStop::tired;
 }
 
-/// In every cell whose center seems free, unless that is for numbers alone; in others by their area.
+/// Throws darts into every cell whose center seems free, unless that is for numbers alone; in others by their area.
 void GapSampling::throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const {
   const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
   const Index kind = draw_kind(look.free ? look.free : look.open, uniform(key, 0));
@@ -287,7 +288,7 @@ bool GapSampling::is_beyond_border(const CellView& view, const Copy& copy, const
   return false;
 }
 
-/// Where a point of the copy at the cell's center lies in the plane of another: it is traced over the surface.
+/// Returns where a point of the copy at the cell's center lies in the plane of another: it is traced over the surface.
 bool GapSampling::trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const {
   const double length = point.norm() * copy.placement.scale;
   const double angle = copy.placement.angle + std::atan2(point.y(), point.x());
@@ -302,8 +303,8 @@ bool GapSampling::trace_to(const CellView& view, const Copy& copy, const Vec2& p
                                      });
 }
 
-/// Whether what the flat planes foresee holds: first of the whole disk, whose width the surface may bend, then of the
-/// point of it alone that is deepest in both.
+/// Tells whether what the flat planes foresee holds: first of the whole disk, whose width the surface may bend, then of
+/// the point of it alone that is deepest in both.
 bool GapSampling::is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found,
                              const Pose& pose, Index other) const {
   const Copy& there = insertion_->settled().copies()[other];
@@ -417,7 +418,7 @@ void GapSampling::look(const OpenCell& open, Index number, Neighbors& near, Look
   if (look.open) throw_dart(open, view, number, look);
 }
 
-/// Where many candidates fell on places where shapes cannot be laid, the rims of such places are found less finely.
+/// Finds the rims of places where shapes cannot be laid less finely where many candidates fell on such places.
 void GapSampling::find_least_stuck() {
   constexpr double k_fine = 4, k_coarse = 8, k_much = 0.02;
   const auto rejected = insertion_->rejections();
@@ -509,7 +510,7 @@ void GapSampling::round(const JobStage& stage) {
   ++rounds_;
 }
 
-/// Until none is open, or (unless all is wanted) rooms become rare.
+/// Goes on until none is open, or (unless all is wanted) rooms become rare.
 void GapSampling::search_cells(const JobStage& stage) {
   const int first = rounds_;
   for (double done = 0; !open_.empty() && insertion_->is_any_wanted(); done += 0.5 * (1 - done)) {

@@ -18,7 +18,7 @@ class GapSampling {
   const Certificate& certificate() const { return certificate_; }
 
  private:
-  /// What became of the smallest copy of a kind at some place; collisions and folds stay.
+  /// Holds what became of the smallest copy of a kind at some place; collisions and folds stay.
   struct Tried {
     Index kind = k_none;
     Outcome outcome = Outcome::not_wanted;
@@ -30,7 +30,7 @@ class GapSampling {
     std::uint64_t kinds;
     Tried tried = {};  ///< at the cell's center, as a part of another cell
   };
-  /// What came of looking at a cell.
+  /// Holds what came of looking at a cell.
   struct Look {
     std::uint64_t open = 0;   ///< kinds that may fit, to be split
     std::uint64_t free = 0;   ///< those of them of which a copy at the center seems to have room

@@ -32,8 +32,8 @@ Outcome outcome_of(MapFailure failure) {
   }
 }
 
-/// As many as fall on the area of a copy without a gap. With a gap much wider than the shapes they would be thousands
-/// for each place, and every one spreads over all of the surface that the gap does.
+/// Allows as many candidates in vain as fall on the area of a copy without a gap. With a gap much wider than the shapes
+/// they would be thousands for each place, and every one spreads over all of the surface that the gap does.
 double most_in_vain(const Mesh& mesh, const PlacingRules& rules, const DistributionOptions& options) {
   constexpr double k_per_copy = 200;
   if (options.gap <= 0 || options.maximal) return std::numeric_limits<double>::infinity();

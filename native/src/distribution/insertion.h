@@ -17,9 +17,9 @@ struct Candidate {
   Index cell;  ///< of the caller's, also what comes first among equal keys
   SurfacePoint center;
   double scale;
-  /// Not turned away by what is only foreseen: its outline is tested.
+  /// Says that the candidate is not to be turned away by what is only foreseen: its outline is tested.
   bool is_thorough = false;
-  /// As thorough, to learn whether shapes can be laid there at all.
+  /// Says that the candidate is as thorough, to learn whether shapes can be laid there at all.
   bool is_probe = false;
 };
 
@@ -34,16 +34,17 @@ class Insertion {
 
   bool is_wanted(Index shape) const { return (wanted_.empty() || laid_[shape] < wanted_[shape]) && !is_ahead(shape); }
   bool is_any_wanted() const;
-  /// Whether so much was tried in vain on the bare surface that copies, with their gap, find no room at all.
+  /// Tells whether so much was tried in vain on the bare surface that copies, with their gap, find no room at all.
   bool is_hopeless() const;
-  /// How often to try it, against others: as many as are missing; all equal where neither counts nor shares are wanted.
+  /// Returns how often to try it, against others: as many as are missing; all equal where neither counts nor shares are
+  /// wanted.
   double share(Index shape) const;
 
   /// Lays those that find room, in the order of their keys. Returns what became of each, in the order given. Stops as
   /// soon as every count is met, or nothing can be hoped for.
   std::vector<Outcome> insert(std::vector<Candidate> candidates, const JobStage& stage);
 
-  /// Whether a copy meets one that lies there, as far as can be foreseen.
+  /// Tells whether a copy meets one that lies there, as far as can be foreseen.
   bool is_foreseen_to_meet(const Copy& copy) const;
 
  private:
@@ -62,7 +63,7 @@ class Insertion {
     std::vector<Index> faces;  ///< those that it touches are known
   };
 
-  /// Whether another copy would be more than the shape's share.
+  /// Tells whether another copy would be more than the shape's share.
   bool is_ahead(Index shape) const {
     constexpr double k_slack = 1.01;
     return !shares_.empty() && laid_[shape] >= k_slack * shares_[shape] * (inserted_in_all_ + 1) + 1;

@@ -61,7 +61,7 @@ void LocalLayout::spread() {
   ring_ = 0;
 }
 
-/// Whether an edge is, somewhere.
+/// Tells whether an edge is, somewhere.
 bool LocalLayout::is_within_reach(const Vec2& from, const Vec2& to) const {
   const double square = reach_ * reach_;
   if (from.squaredNorm() <= square || to.squaredNorm() <= square) return true;

@@ -11,7 +11,7 @@
 
 namespace saddleback::distribution {
 
-/// How a face lies in the plane of a copy, in mesh units: a point p of the face's own plane (FlatFaces) is at
+/// Holds how a face lies in the plane of a copy, in mesh units: a point p of the face's own plane (FlatFaces) is at
 /// origin + turn * p.
 struct FacePlace {
   Index face;

@@ -14,7 +14,7 @@ struct Pose {
   Vec2 operator()(const Vec2& m) const { return at + turn * m; }
 };
 
-/// By how much a point m of the moving shape's plane moves at most: base + per_length * |m|.
+/// Bounds by how much a point m of the moving shape's plane moves at most: base + per_length * |m|.
 struct Motion {
   double base = 0, per_length = 0;
   double of(const Vec2& m) const { return base + per_length * m.norm(); }
@@ -32,8 +32,8 @@ struct Overlap {
 /// False only if the boxes of the two have no common point, so that the shapes have none.
 bool boxes_meet(const CollisionShape& body, const Pose& pose, const CollisionShape& other, double other_scale);
 
-/// What is looked for: places deeper than `least`; the search stops at the first that is deeper than `enough`, and
-/// looks at no more than the `most_disks` largest disks of either.
+/// Holds what is looked for: places deeper than `least`; the search stops at the first that is deeper than `enough`,
+/// and looks at no more than the `most_disks` largest disks of either.
 struct Search {
   double least = -SignedDistance::k_far, enough = SignedDistance::k_far;
   std::size_t most_disks = 1000;
@@ -44,8 +44,8 @@ struct Search {
 Overlap find_overlap(const CollisionShape& body, double scale, const Pose& pose, const Motion& motion,
                      const CollisionShape& other, double other_scale, const Search& search);
 
-/// Whether outlines cross when the shape is laid into the plane of the other, up to rounding. O(corners of both) for
-/// most, O(their product) at worst.
+/// Tells whether outlines cross when the shape is laid into the plane of the other, up to rounding. O(corners of both)
+/// for most, O(their product) at worst.
 bool outlines_cross(const Shape& shape, const Pose& pose, const Shape& other, double other_scale);
 
 }  // namespace saddleback::distribution

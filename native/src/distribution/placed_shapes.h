@@ -15,7 +15,7 @@
 
 namespace saddleback::distribution {
 
-/// What is laid, or is to be.
+/// Holds what is laid, or is to be.
 struct Copy {
   Placement placement;
   const CollisionShape* body = nullptr;
@@ -23,7 +23,7 @@ struct Copy {
   double radius() const { return placement.scale * body->shape.circumradius(); }
 };
 
-/// Where things lie in planes of copies is rounded by less than this share of what is looked at from there.
+/// Bounds the rounding of where things lie in planes of copies: less than this share of what is looked at from there.
 inline constexpr double k_rounding = 1e-6;
 
 class PlacedShapes {
@@ -41,7 +41,7 @@ class PlacedShapes {
   /// Puts a copy there.
   void add(const Copy& copy, const SurfaceOutline& outline);
 
-  /// How far from its center a copy can be met.
+  /// Returns how far from its center a copy can be met.
   double reach(const Copy& copy) const { return copy.radius() + reach_; }
   /// Makes known for the copy of this number where faces lie about it.
   void add_places(Index copy, const std::vector<FacePlace>& places);
@@ -64,7 +64,7 @@ class PlacedShapes {
     Vec2 begin, end;
     Index next;
   };
-  /// In single precision: there are millions, and all that is decided by them allows for k_rounding.
+  /// Holds a place in single precision: there are millions, and all that is decided by them allows for k_rounding.
   struct Place {
     Eigen::Matrix2f turn;
     Eigen::Vector2f origin;

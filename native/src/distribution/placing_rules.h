@@ -48,7 +48,7 @@ class PlacingRules {
   double shape_area(const Kind& kind) const { return areas_[kind.shape]; }
   double inradius(Index kind) const { return inradii_[kinds_[kind].shape]; }
   double largest_inradius() const { return *std::max_element(inradii_.begin(), inradii_.end()); }
-  /// Of bodies, the gap included, in units of their planes.
+  /// Returns the radius of bodies, the gap included, in units of their planes.
   double largest_body_radius() const { return largest_body_radius_; }
   double largest_shape_radius() const { return *std::max_element(radii_.begin(), radii_.end()); }
   double smallest_body_area() const { return smallest_body_area_; }  ///< the gap included, mesh units
@@ -71,9 +71,9 @@ class PlacingRules {
   /// A copy of the kind at a point where the field has this angle.
   Copy copy(Index kind, const SurfacePoint& center, double field_angle, double scale) const;
   double field_angle(const SurfacePoint& point) const { return field_->angle_at(point); }
-  /// What a copy bends along; none where it does not.
+  /// Returns what a copy bends along; none where it does not.
   std::optional<CenterLine> line(const Placement& placement) const;
-  /// By how much the points of a copy move when its center does within the cell.
+  /// Returns by how much the points of a copy move when its center does within the cell.
   Motion motion(const CellView& view, double factor) const {
     return {view.radius, factor * (view.size * view.angle_spread + view.size_spread)};
   }

@@ -25,7 +25,7 @@ constexpr double k_turn = 2 * std::numbers::pi;
 /// Whatever the accuracy, fields close and fixed faces are met exactly; this is how smooth they are in between.
 constexpr MultigridSolver<double>::Accuracy k_stroke_accuracy{.residual = 1e-7};
 constexpr MultigridSolver<Complex>::Accuracy k_power_accuracy{.residual = 1e-6};
-/// How often the branches of curvature directions are chosen anew after the field has turned onto them.
+/// Counts how often the branches of curvature directions are chosen anew after the field has turned onto them.
 constexpr int k_curvature_rounds = 3;
 
 void check_options(const DirectionFieldOptions& options, int symmetry) {

@@ -9,9 +9,9 @@
 namespace saddleback {
 namespace {
 
-/// Beyond, no curve can follow the field from face to face in a time that one waits for.
+/// Bounds the turn beyond which no curve can follow the field from face to face in a time that one waits for.
 constexpr double k_most_turn = 1000;
-/// Beyond, what is left of an angle after whole turns is rounding.
+/// Bounds the angle beyond which what is left after whole turns is rounding.
 constexpr double k_most_angle = 1e6;
 constexpr double k_opposite = 1e-9, k_arrives = 1e-6;  // radians
 

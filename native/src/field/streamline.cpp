@@ -43,7 +43,7 @@ class Walk {
         quantum_(2 * k_pi / field.symmetry()),
         offset_(backwards ? k_pi : 0) {}
 
-  /// From inside a face, along the direction nearest to that angle of its chart.
+  /// Goes on from inside a face, along the direction nearest to that angle of its chart.
   StreamlineEnd from_face(const SurfacePoint& start, double heading) {
     record(start);
     enter(start.face, k_none);
@@ -52,7 +52,7 @@ class Walk {
     return run();
   }
 
-  /// From a vertex along that half-edge's corner, at that angle from the half-edge.
+  /// Goes on from a vertex along that half-edge's corner, at that angle from the half-edge.
   StreamlineEnd from_vertex(const SurfacePoint& start, Index h, double angle) {
     record(start);
     enter(Mesh::face_of(h), k_none);
@@ -85,7 +85,7 @@ class Walk {
     for (const Index v : mesh_.triangles()[face]) singular_ = singular_ || field_.units_at(v) != 0;
   }
 
-  /// By how much the field's angles at the corners of a face differ.
+  /// Returns by how much the field's angles at the corners of a face differ.
   double turn_within(Index face) const {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
@@ -100,7 +100,7 @@ class Walk {
     return {face_, normalized_barycentric(chart_->to_barycentric(place))};
   }
 
-  /// Of the field's directions the one nearest to `near`.
+  /// Returns of the field's directions the one nearest to `near`.
   double direction(const Vec2& place, double near) const {
     const double angle = field_.angle_at(point_at(place)) + offset_;
     return angle - quantum_ * std::round((angle - near) / quantum_);
@@ -172,7 +172,7 @@ class Walk {
     return k_none;
   }
 
-  /// Where the curve gets to in that length if the face went on; sets the heading there.
+  /// Returns where the curve gets to in that length if the face went on; sets the heading there.
   Vec2 step(double length) {
     if (std::isfinite(max_curvature_)) {
       const double wanted = direction(place_ + 0.5 * length * unit(heading_), heading_) - heading_;
@@ -188,7 +188,7 @@ class Walk {
     return length / 6 * (unit(a) + 2 * unit(b) + 2 * unit(c) + unit(d));
   }
 
-  /// Through faces so thin that no step is short enough.
+  /// Steps through faces so thin that no step is short enough.
   Vec2 straight_step(double length) {
     next_heading_ = direction(place_, heading_);
     return length * unit(next_heading_);

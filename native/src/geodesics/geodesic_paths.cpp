@@ -61,7 +61,7 @@ double longest_path(const SaddleVertexGraph& graph, const SurfacePoints& sources
   return direct_length(graph, sources[0], fans[0], targets[0], fans[1]);
 }
 
-/// Where a path to a target ends: after the last vertex, none when it comes straight from the source.
+/// Holds where a path to a target ends: after the last vertex, none when it comes straight from the source.
 struct Arrival {
   double distance = k_infinity;
   Index source = k_none;
@@ -165,7 +165,7 @@ class PathMaker {
     }
   }
 
-  /// From the vertex of an arc back to the point that it leaves.
+  /// Unfolds from the vertex of an arc back to the point that it leaves.
   void unfold_to(const DirectArc& arc, const SurfacePoint& point, UnfoldedArc& leg) {
     ArcHint hint{arc.vertex, k_none, arc.length, arc.end_angle - k_angle_margin, arc.end_angle + k_angle_margin,
                  k_rounding};

@@ -39,13 +39,15 @@ class ArcChecker {
     upward_.fetch_add(upward, std::memory_order_relaxed);
   }
 
-  /// After all rows: every upward arc has its reverse and no target comes twice, so that equal counts leave no others.
+  /// Checks the counts after all rows: every upward arc has its reverse and no target comes twice, so that equal counts
+  /// leave no others.
   void check_counts() const {
     if (2 * upward_.load() != arcs_.count()) refuse_graph_file(path_, "it has arcs without their reverses");
   }
 
  private:
-  /// As ArcCodec::pack leaves a word: nothing in its spare bits; a length of whole quanta, no longer than paths are.
+  /// Tells whether a word is as ArcCodec::pack leaves a word: nothing in its spare bits; a length of whole quanta, no
+  /// longer than paths are.
   bool is_packed(std::uint64_t word) const {
     const ArcCodec& codec = arcs_.codec();
     const double quanta = codec.length(word) / codec.quantum();

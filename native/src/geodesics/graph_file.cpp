@@ -41,7 +41,7 @@ struct FileHeader {
   std::int32_t target_bits = 0, least_exponent = 0;  // of the codec
   double quantum = 0;
 
-  /// Of a file with this header: it overflows for no counts of 32 bits and arcs that fit a disk.
+  /// Returns the bytes of a file with this header: it overflows for no counts of 32 bits and arcs that fit a disk.
   std::uint64_t expected_bytes() const {
     return k_header_bytes + vertex_count * (sizeof(Index) + sizeof(std::uint32_t)) + arc_count * sizeof(std::uint64_t) +
            sizeof(std::uint32_t);
@@ -72,7 +72,7 @@ void write_header(NumberFileWriter& file, const FileHeader& header) {
   each_field(header, [&](auto field) { file.write(field); });
 }
 
-/// What a file with that header must be told before anything else is read of it.
+/// Returns what a file with that header must be told before anything else is read of it.
 FileHeader read_header(NumberFileReader& file, const std::string& path) {
   FileHeader header;
   header.magic = {};

@@ -30,7 +30,7 @@ void check(const SaddleVertexGraph& graph, const QuerySources& sources, const Qu
 
 bool by_device(const QueryOptions& options) { return options.cuda_device >= 0; }
 
-/// In sentences: 12.3 GB.
+/// Writes it for sentences: 12.3 GB.
 std::string in_gigabytes(double bytes) { return message(std::ceil(bytes / 1e8) / 10, " GB"); }
 
 DistanceFields allocate_fields(std::size_t count, std::size_t vertex_count) {
@@ -47,7 +47,7 @@ DistanceFields allocate_fields(std::size_t count, std::size_t vertex_count) {
   }
 }
 
-/// How a query's time is spread over its fans and so many fields.
+/// Holds how a query's time is spread over its fans and so many fields.
 struct QueryStages {
   QueryStages(const SaddleVertexGraph& graph, const QuerySources& sources, double field_count, const JobStage& stage) {
     const double cost = cost_of_fans(graph, sources), vertices = field_count * graph.mesh().vertex_count(),

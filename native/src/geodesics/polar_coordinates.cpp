@@ -41,7 +41,7 @@ void check_radius(double radius) {
   if (!(radius > 0)) throw InputError(message("radius: wanted a distance above 0, got ", radius));
 }
 
-/// How much of the work is done, at least, when so many vertices are reached.
+/// Returns how much of the work is done, at least, when so many vertices are reached.
 double share_of(const Mesh& mesh, Index vertices) { return static_cast<double>(vertices) / mesh.vertex_count(); }
 
 }  // namespace

@@ -31,7 +31,7 @@ Index find_edge(const Mesh& mesh, Index a, Index b) {
   return k_none;
 }
 
-/// Which edges are features, and how they meet.
+/// Knows which edges are features, and how they meet.
 class FeatureGraph {
  public:
   FeatureGraph(const Mesh& mesh, const FeatureCurveOptions& options)
@@ -105,7 +105,7 @@ class FeatureGraph {
     is_walked_.assign(neighbors_.size(), 0);
   }
 
-  /// Where lines end: but for those that go on, and turn little.
+  /// Returns where lines end: but for those that go on, and turn little.
   bool is_end(Index vertex) const {
     const Index count = first_[vertex + 1] - first_[vertex];
     if (count != 2) return count > 0;
@@ -121,7 +121,7 @@ class FeatureGraph {
     return i;
   }
 
-  /// Along a link and on, to an end or back to the start.
+  /// Walks along a link and on, to an end or back to the start.
   std::vector<Index> walk(Index link) {
     Index vertex = static_cast<Index>(std::ranges::upper_bound(first_, link) - first_.begin()) - 1;
     const Index start = vertex;

@@ -30,8 +30,8 @@ namespace {
 constexpr Index k_leaf_size = 4;
 constexpr Index k_chunk = 1024;  ///< queries
 
-/// Beyond this a query's squared distance would overflow; it is pulled in along its line from the origin, which changes
-/// nothing that double coordinates could tell (meshes end at 1e60).
+/// Bounds queries, whose squared distance beyond would overflow; it is pulled in along its line from the origin, which
+/// changes nothing that double coordinates could tell (meshes end at 1e60).
 constexpr double k_farthest_query = 1e100;
 
 struct Nearest {
@@ -72,7 +72,7 @@ void consider(const Mesh& mesh, Index face, const Vec3& query, Nearest& best) {
   }
 }
 
-/// The same point in the smallest of its faces, exactly on the edge or vertex that it is on within rounding.
+/// Returns the same point in the smallest of its faces, exactly on the edge or vertex that it is on within rounding.
 SurfacePoint settled(const Mesh& mesh, Index face, const Vec3& barycentric) {
   const FlatFace flat(mesh.position(mesh.triangles()[face][0]), mesh.position(mesh.triangles()[face][1]),
                       mesh.position(mesh.triangles()[face][2]));
@@ -194,7 +194,7 @@ void NearestSurface::make_leaf(Node& node, std::span<const Item> items, Index be
   node.count = end - begin;
 }
 
-/// From a point (in box units) to the box, in mesh units, never too large.
+/// Returns the distance from a point (in box units) to the box, in mesh units, never too large.
 double NearestSurface::squared_distance(const Node& node, const Vec3& local) const {
   double sum = 0;
   for (int i = 0; i < 3; ++i) {

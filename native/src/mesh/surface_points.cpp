@@ -14,7 +14,7 @@
 namespace saddleback {
 namespace {
 
-/// What is wrong with a point on a mesh of that many faces, empty when nothing is.
+/// Returns what is wrong with a point on a mesh of that many faces, empty when nothing is.
 std::string fault_of(const SurfacePoint& point, Index face_count) {
   if (point.face < 0 || point.face >= face_count)
     return message("has face ", point.face, ", but the mesh has ", face_count, " faces");
@@ -29,7 +29,8 @@ std::string fault_of(const SurfacePoint& point, Index face_count) {
   return {};
 }
 
-/// Up to the last bits, which are let be: points that were given out are themselves when they come back.
+/// Tells whether weights sum to 1 up to the last bits, bits, which are let be: points that were given out are
+/// themselves when they come back.
 bool is_normalized(const Vec3& barycentric) {
   constexpr double k_last_bits = 4 * std::numeric_limits<double>::epsilon();
   return barycentric.minCoeff() >= 0 && std::abs(barycentric.sum() - 1) <= k_last_bits;

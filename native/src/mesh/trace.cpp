@@ -36,7 +36,7 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 /// Components of v in the frame whose x axis is the unit vector `axis`.
 Vec2 rotated_into(const Vec2& axis, const Vec2& v) { return {axis.dot(v), cross(axis, v)}; }
 
-/// What the walk writes down, every point or nothing, and whom it tells what share of its length it has gone.
+/// Holds what the walk writes down, every point or nothing, and whom it tells what share of its length it has gone.
 struct Polyline {
   GeodesicPath path;
   JobStage stage;
@@ -134,7 +134,7 @@ class Walk {
 
   FlatFace chart() const { return {*from_, *to_, mesh_.position(mesh_.apex(halfedge_))}; }
 
-  /// From anywhere in the closed face, in any direction.
+  /// Leaves from anywhere in the closed face, in any direction.
   bool leave_inside() {
     const FlatFace c = chart();
     double side[3], ahead[3];
@@ -169,7 +169,7 @@ class Walk {
     return cross_edge(c, best, -t, 1 - t);
   }
 
-  /// From a point of the chart's own edge, into the face: only the side of the apex is to be decided.
+  /// Leaves from a point of the chart's own edge, into the face: only the side of the apex is to be decided.
   bool leave_through() {
     const FlatFace c = chart();
     const Vec2 to_apex = c.corner[2] - place_;
@@ -180,7 +180,7 @@ class Walk {
     return cross_edge(c, 2, side, cross(direction_, c.corner[0] - place_));
   }
 
-  /// From corner 0 into the face.
+  /// Leaves from corner 0 into the face.
   bool leave_corner() {
     at_corner_ = false;
     const FlatFace c = chart();

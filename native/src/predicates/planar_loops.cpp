@@ -40,7 +40,7 @@ struct Turn {
     const bool of_first = turn(from, at, point) == Sign::positive, of_second = turn(at, to, point) == Sign::positive;
     return turn(from, at, to) == Sign::positive ? of_first && of_second : of_first || of_second;
   }
-  /// Whether a point is straight ahead on one of the two ways.
+  /// Tells whether a point is straight ahead on one of the two ways.
   bool is_along(const Vec2& point) const { return lies_along(from, point) || lies_along(to, point); }
   bool lies_along(const Vec2& way, const Vec2& point) const {
     return turn(at, way, point) == Sign::zero && (is_between(at, way, point) || is_between(at, point, way));
@@ -54,7 +54,8 @@ Turn turn_at(const Loop& loop, const Edge& e, const Vec2& point) {
   return {e.a, point, e.b};
 }
 
-/// Of edges of two loops with a point in common: whether that is all, and neither loop goes through the other there.
+/// Tells of edges of two loops with a point in common whether that is all, and neither loop goes through the other
+/// there.
 bool only_touch(std::span<const Loop> loops, const Edge& e, const Edge& f) {
   for (const Vec2& point : {e.a, e.b, f.a, f.b}) {
     if (turn(e.a, e.b, point) != Sign::zero || !is_between(e.a, e.b, point)) continue;

@@ -32,8 +32,8 @@ bool find_in_circle(const Point2& a, const Point2& b, const Point2& c, const Poi
   return std::fabs(det) > k_bound * magnitude;
 }
 
-/// Whether the points' coordinates are multiples of a power of two that is `Bits` binary places below the largest of
-/// their differences from the last one: of so many digits and one more at most, these are exact in doubles.
+/// Tells whether the points' coordinates are multiples of a power of two that is `Bits` binary places below the largest
+/// of their differences from the last one: of so many digits and one more at most, these are exact in doubles.
 template <int Bits, std::size_t Count>
 bool have_few_digits(const Point2 (&points)[Count]) {
   const Point2& last = points[Count - 1];
@@ -52,7 +52,7 @@ bool have_few_digits(const Point2 (&points)[Count]) {
 
 }  // namespace detail
 
-/// What `orient_2d` says. O(1).
+/// Returns what `orient_2d` says. O(1).
 inline Sign orient_2d_by_steps(const Point2& a, const Point2& b, const Point2& c) {
   const double left = (a.x - c.x) * (b.y - c.y), right = (a.y - c.y) * (b.x - c.x), det = left - right;
   if (std::fabs(det) > detail::k_orient_bound * (std::fabs(left) + std::fabs(right)) ||
@@ -61,7 +61,7 @@ inline Sign orient_2d_by_steps(const Point2& a, const Point2& b, const Point2& c
   return detail::orient_2d_exact(a, b, c);
 }
 
-/// What `in_circle` says. O(1).
+/// Returns what `in_circle` says. O(1).
 inline Sign in_circle_by_steps(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
   Sign sign;
   if (detail::find_in_circle<double>(a, b, c, d, sign)) return sign;

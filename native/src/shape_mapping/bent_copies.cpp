@@ -32,7 +32,7 @@ void check(std::span<const Shape> shapes, std::span<const Solid> solids, const B
   }
 }
 
-/// What became of one placement.
+/// Holds what became of one placement.
 struct Bent {
   MapFailure failure = MapFailure::none;
   std::vector<SurfaceFit::Vertex> vertices;

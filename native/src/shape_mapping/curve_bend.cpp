@@ -13,12 +13,12 @@ double angle_of(const Vec2& v) { return std::atan2(v.y(), v.x()); }
 
 double chart_angle(const FaceChart& chart, int i) { return angle_of(chart.corner[(i + 1) % 3] - chart.corner[i]); }
 
-/// Of a segment in the chart of its face.
+/// Returns the angle of a segment in the chart of its face.
 double angle_in(const FaceChart& chart, const CurveSegment& segment) {
   return angle_of(chart.to_plane(segment.end) - chart.to_plane(segment.begin));
 }
 
-/// From one segment to the next; 0 through a vertex, where no face tells.
+/// Returns the turn from one segment to the next; 0 through a vertex, where no face tells.
 double turn_between(const Mesh& mesh, const CurveSegment& a, const CurveSegment& b) {
   const FaceChart here(mesh, a.face), there(mesh, b.face);
   double turn = angle_in(there, b) - angle_in(here, a);

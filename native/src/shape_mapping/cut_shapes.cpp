@@ -80,7 +80,7 @@ class Cutter {
     }
   }
 
-  /// With the ends of the pieces as vertices.
+  /// Lists them with the ends of the pieces as vertices.
   void list_pieces(std::size_t s) {
     const SurfaceOutline& outline = shapes_[s].outline;
     const auto id = static_cast<Index>(result_.vertices.size());
@@ -207,9 +207,10 @@ class Cutter {
     return is_only_shapes_ && shape != pieces.front().shape ? k_none : shape;
   }
 
-  /// Of shapes that do not overlap, what lies right of an outline is in none (or left of another one that touches it),
-  /// and what lies at a corner of the face in the one that the corner is in. Since whatever an outline or a vertex
-  /// bounds is looked at so, overlapping ones differ somewhere. What differs only from itself has been rounded so.
+  /// Checks a face's labels: of shapes that do not overlap, what lies right of an outline is in none (or left of
+  /// another one that touches it), and what lies at a corner of the face in the one that the corner is in. Since
+  /// whatever an outline or a vertex bounds is looked at so, overlapping ones differ somewhere. What differs only from
+  /// itself has been rounded so.
   void check_labels(Index face, const std::array<Index, 3>& corners) const {
     const auto differ = [](Index a, Index b) { return a >= 0 && b >= 0 && a != b; };
     for (std::size_t h = 0; h < left_.size(); ++h) {
@@ -235,7 +236,7 @@ class Cutter {
         message("shapes ", std::min(one, other), " and ", std::max(one, other), " overlap in face ", face));
   }
 
-  /// For a piece that crosses one of the earlier ones.
+  /// Collects the parts of a piece that crosses one of the earlier ones.
   [[noreturn]] static void refuse(const FacePiece& piece, std::span<const FacePiece> earlier) {
     const auto parts = [](const FacePiece& one, const FacePiece& other) {
       const auto side = [&](const Vec2& p) {

@@ -19,10 +19,10 @@ inline double rounded_weight(double weight, double most) {
   return std::round(std::clamp(weight, k_least_weight, most) / k_weight_step) * k_weight_step;
 }
 
-/// Of the second end of an edge.
+/// Returns the weight of the second end of an edge.
 inline double edge_weight(double weight) { return rounded_weight(weight, 1 - k_least_weight); }
 
-/// Of corners 1 and 2, the point strictly inside.
+/// Returns the weights of corners 1 and 2, the point strictly inside.
 inline Vec2 inner_weights(double first, double second) {
   const double a = rounded_weight(first, 1 - 2 * k_least_weight);
   return {a, rounded_weight(second, 1 - a - k_least_weight)};

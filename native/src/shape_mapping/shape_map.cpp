@@ -151,7 +151,7 @@ void ShapeMap::march(const PlaneBox& box, const Watch& watch) {
   }
 }
 
-/// Whether the straight way from the center to the edge is longer than the reach.
+/// Tells whether the straight way from the center to the edge is longer than the reach.
 bool ShapeMap::is_out_of_reach(Index from, Index to) const {
   const Vec3 begin = mesh_->position(from) - center_, along = mesh_->position(to) - mesh_->position(from);
   const double foot = std::clamp(-begin.dot(along) / along.squaredNorm(), 0.0, 1.0);

@@ -21,16 +21,16 @@ struct UnfoldedTriangle {
   }
 };
 
-/// Where the apex comes to lie when the triangle is laid beside the places of its edge's ends.
+/// Returns where the apex comes to lie when the triangle is laid beside the places of its edge's ends.
 inline Vec2 beside(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) {
   const Vec2 along = (to - from) / triangle.edge;
   return from + triangle.apex.x() * along + triangle.apex.y() * Vec2(-along.y(), along.x());
 }
 
-/// What the apex sees of the source.
+/// Holds what the apex sees of the source.
 struct Sight {
   Vec2 place;
-  /// By how much the line of sight misses the edge, in lengths of the edge: 0 when it passes through.
+  /// Says by how much the line of sight misses the edge, in lengths of the edge: 0 when it passes through.
   double miss;
 };
 
@@ -39,7 +39,7 @@ inline constexpr double k_sight = 1e-9;
 /// The apex counts as out of sight from here on, and is laid beside the edge.
 inline constexpr double k_most_miss = 0.5;
 
-/// Where along an edge of length 1 a line crosses: how far beside it.
+/// Returns where along an edge of length 1 a line crosses: how far beside it.
 inline double miss_of(double hit) {
   const double miss = hit < 0 ? -hit : hit > 1 ? hit - 1 : 0;
   return miss <= k_sight ? 0 : miss;

@@ -18,7 +18,7 @@ constexpr int k_most_depth = 9;
 constexpr int k_least_samples = 3, k_most_samples = 16, k_most_rows = 6;
 /// Samples are so far apart, in heights of the surface's triangles.
 constexpr double k_sample_step = 0.8;
-/// What samples are held to, as a share of the tolerance: they are seldom at the worst place.
+/// Says what samples are held to, as a share of the tolerance: they are seldom at the worst place.
 constexpr double k_sampled = 0.85;
 constexpr int k_search_steps = 12;  ///< a thousandth of the way between samples
 /// Nothing is split nearer to a corner than this share: slivers would not lie better.
@@ -77,7 +77,7 @@ void SurfaceFit::bend(OutlineMapper& mapper, const Placement& placement, const S
   }
 }
 
-/// Where a point of the shape's space comes to lie; in mesh order of the walk from the last one.
+/// Returns where a point of the shape's space comes to lie; in mesh order of the walk from the last one.
 SurfaceFit::Vertex SurfaceFit::lay(const Vec3& given) {
   const Vec2 place = mapper_->laid(given.head<2>());
   const MapFailure failure = mapper_->find(place, hint_);
@@ -104,7 +104,7 @@ double SurfaceFit::sample_length(const Vertex& vertex) const {
   return k_sample_step * 2 * mesh_->face_area(vertex.anchor.face) / longest;
 }
 
-/// Where the surface is farthest from the chord between two vertices.
+/// Returns where the surface is farthest from the chord between two vertices.
 SurfaceFit::Peak SurfaceFit::peak_of_edge(const Vertex& a, const Vertex& b) {
   Peak peak;
   if (a.is_lost || b.is_lost) return peak;
@@ -131,7 +131,7 @@ SurfaceFit::Peak SurfaceFit::peak_of_edge(const Vertex& a, const Vertex& b) {
   return peak;
 }
 
-/// Where the surface is farthest from the plane of a face.
+/// Returns where the surface is farthest from the plane of a face.
 SurfaceFit::Peak SurfaceFit::peak_of_face(const Face& face) {
   Peak peak;
   const Vertex a = vertices_[face.vertices[0]], b = vertices_[face.vertices[1]], c = vertices_[face.vertices[2]];
@@ -215,7 +215,7 @@ Index SurfaceFit::half(const Part& part, int edge, bool first) const {
 
 namespace {
 
-/// Where on an edge of a face, from corner i, a point of the shape's space lies.
+/// Returns where on an edge of a face, from corner i, a point of the shape's space lies.
 Vec3 weights_on_edge(int i, const Vec3& from, const Vec3& to, const Vec3& point) {
   const double along = (point - from).norm(), rest = (to - point).norm();
   const double share = along + rest > 0 ? along / (along + rest) : 0.5;

@@ -184,7 +184,7 @@ void OutlineMapper::walk(const Vec2& a, const Vec2& b, Index corner) {
   weights_ = end;
 }
 
-/// Where the line from a to b crosses an edge, as the share of its end.
+/// Returns where the line from a to b crosses an edge, as the share of its end.
 double OutlineMapper::cross_weight(Index h, const Vec2& a, const Vec2& b) const {
   const Vec2 along = b - a;
   const double right = std::abs(cross(along, place(mesh_->from(h)) - a));
@@ -209,7 +209,7 @@ OutlineMapper::Stretch OutlineMapper::checked(Index face) const {
   return stretch;
 }
 
-/// Of faces about vertices in the shape, those whose last corner this is.
+/// Looks at the faces, of those about vertices in the shape, whose last corner this is.
 void OutlineMapper::look_at(Index vertex) {
   const Vec2& at = place(vertex);
   const bool is_in = is_in_shape(at);

@@ -12,8 +12,8 @@ struct Circle {
   double radius;
 };
 
-/// Up to rounding. The points must not be empty. O(n) expected for points in no particular order, O(n^3) at worst
-/// [welzl1991].
+/// Finds the circle, up to rounding. The points must not be empty. O(n) expected for points in no particular order,
+/// O(n^3) at worst [welzl1991].
 Circle enclosing_circle(std::span<const Vec2> points);
 
 }  // namespace saddleback::distribution

@@ -15,7 +15,7 @@ namespace {
 using Loop = Shape::Loop;
 using Box = Eigen::AlignedBox2d;
 
-/// What counts as rounding when half a turn is looked for, as a share of the circumradius.
+/// Bounds what counts as rounding when half a turn is looked for, as a share of the circumradius.
 constexpr double k_symmetry_tolerance = 1e-9;
 /// Squares of areas stay among the doubles, whatever the scale of a placement.
 constexpr double k_largest_coordinate = 1e30;
@@ -26,7 +26,7 @@ double distance_to_segment(const Vec2& a, const Vec2& b) {
   return (a + share * along).norm();
 }
 
-/// Whether half a turn carries one loop onto the other, corner by corner.
+/// Tells whether half a turn carries one loop onto the other, corner by corner.
 bool is_half_turn(const Loop& loop, const Loop& other, double tolerance) {
   if (loop.size() != other.size()) return false;
   const std::size_t count = loop.size();

@@ -23,7 +23,7 @@ class SignedDistance {
     return Vec2(exact(point - right) - exact(point + right), exact(point - up) - exact(point + up)).stableNormalized();
   }
 
-  /// Not below the exact value, and above by at most `slack`; infinite beyond the grid. O(1).
+  /// Returns a bound not below the exact value, and above by at most `slack`; infinite beyond the grid. O(1).
   double upper(const Vec2& point) const {
     const double x = (point.x() + reach_) * per_unit_, y = (point.y() + reach_) * per_unit_;
     if (!(x >= 0 && y >= 0 && x < k_cells && y < k_cells)) return k_far;

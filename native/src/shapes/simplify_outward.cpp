@@ -97,14 +97,14 @@ class Simplifier {
  private:
   const Vec2& place(Index i) const { return corners_[i].place; }
 
-  /// Where the edges before and after the edge from b would meet.
+  /// Returns where the edges before and after the edge from b would meet.
   Vec2 meeting(Index b) const {
     const Index c = corners_[b].after;
     const Vec2 u = place(b) - place(corners_[b].before), v = place(corners_[c].after) - place(c);
     return place(b) + u * (cross(place(c) - place(b), v) / cross(u, v));
   }
 
-  /// What can be done about the corner b, or about the edge that begins there.
+  /// Proposes what can be done about the corner b, or about the edge that begins there.
   void propose(Index b) {
     const Index a = corners_[b].before, c = corners_[b].after, d = corners_[c].after;
     const Index version = corners_[b].version;
@@ -172,9 +172,9 @@ class Simplifier {
     --sizes_[corner.loop];
   }
 
-  /// Whether a triangle holds nothing of the loops but the corners `at` and `also`, which go, and `ends`, and no edge
-  /// touches the new side from p to q but those of these corners. By number: another corner may lie where a new one
-  /// would.
+  /// Tells whether a triangle holds nothing of the loops but the corners `at` and `also`, which go, and `ends`, and no
+  /// edge touches the new side from p to q but those of these corners. By number: another corner may lie where a new
+  /// one would.
   bool is_free(const Vec2 (&triangle)[3], const Vec2& p, const Vec2& q, Index at, Index also,
                std::initializer_list<Index> ends) {
     const Vec2 low = triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]);

@@ -31,7 +31,7 @@ class BucketQueue {
     push_into(std::clamp(static_cast<std::int64_t>(place), current_, current_ + mask_), node, place);
   }
 
-  /// As push, for a node whose key was `before` (negative: none) and has fallen: an entry that waits in the right
+  /// Works as push, for a node whose key was `before` (negative: none) and has fallen: an entry that waits in the right
   /// bucket will do, so that is_due must tell what to expand. Only for keys that keep what `reset` asks.
   void lower(Index node, double key, double before) {
     const double place = key * inverse_width_;
@@ -57,13 +57,14 @@ class BucketQueue {
     return true;
   }
 
-  /// Whether the entry was pushed with this key, up to rounding: if not, the node was pushed again with a lesser one.
+  /// Tells whether the entry was pushed with this key, up to rounding: if not, the node was pushed again with a lesser
+  /// one.
   bool is_current(const Entry& entry, double key) const {
     return static_cast<float>(key * inverse_width_) == entry.key;
   }
 
-  /// Whether the entry's node, now with this key, belongs into the bucket being emptied: else its key has fallen since
-  /// and it was expanded before.
+  /// Tells whether the entry's node, now with this key, belongs into the bucket being emptied: else its key has fallen
+  /// since and it was expanded before.
   bool is_due(const Entry&, double key) const { return bucket_of(key) == current_; }
 
   /// The entry to be popped after `count` more, null when it is not at hand.

@@ -37,7 +37,7 @@ std::string name_beside(const fs::path& target) {
   return (target.parent_path() / name).string();
 }
 
-/// Where a link leads, so that the file is replaced and not the link; it may lead to nothing yet.
+/// Returns where a link leads, so that the file is replaced and not the link; it may lead to nothing yet.
 fs::path followed(fs::path path) {
   constexpr int k_most_links = 40;  // as Linux: more are a circle
   std::error_code error;

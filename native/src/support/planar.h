@@ -19,8 +19,8 @@ double distance_to_segment(const Vector& point, const Vector& from, const Vector
   return (from + part * along - point).norm();
 }
 
-/// Where the straight way from the origin to `target` crosses an edge, as a share of the edge; `at` is where it has
-/// come to, and moves on. An edge that lies on the way is met where the way is already, and none beyond the target:
+/// Returns where the straight way from the origin to `target` crosses an edge, as a share of the edge; `at` is where it
+/// has come to, and moves on. An edge that lies on the way is met where the way is already, and none beyond the target:
 /// where a way passes a vertex by less than rounding, its edges may lead there.
 inline double crossed_share(const Vec2& from, const Vec2& to, const Vec2& target, Vec2& at) {
   // Of the square of the way: what rounding makes of the area of a triangle of places on it.

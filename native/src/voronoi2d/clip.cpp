@@ -37,7 +37,7 @@ struct Corner {
 };
 using Corners = std::vector<Corner>;
 
-/// What a cut leaves of a loop: from where it comes in to where it goes out.
+/// Holds what a cut leaves of a loop: from where it comes in to where it goes out.
 struct Chain {
   std::size_t begin, end;  ///< of the corners of all chains
   double in, out;          ///< places along the side

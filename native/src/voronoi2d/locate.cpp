@@ -53,7 +53,7 @@ struct Scaled {
     }
   }
 
-  /// Of all sites as near as one of the nearest the smallest index: they are neighbors of each other in turn.
+  /// Returns of all sites as near as one of the nearest the smallest index: they are neighbors of each other in turn.
   Index smallest_nearest(const predicates::Point2& point, Index site) const {
     std::vector<Index> nearest{site};
     for (std::size_t i = 0; i < nearest.size(); ++i) {

@@ -16,8 +16,8 @@ namespace {
 
 using predicates::Loop;
 
-/// Of a loop that at most touches another: told by a corner that the other does not pass through, or by the middle of a
-/// side if there is none.
+/// Tells whether a loop that at most touches another lies in it: by a corner that the other does not pass through, or
+/// by the middle of a side if there is none.
 bool lies_in(const Loop& outer, const Loop& inner) {
   for (const Vec2& corner : inner) {
     const auto passes = [&](std::size_t i) {

@@ -56,8 +56,8 @@ class Caller {
   void copy_sites() {
     if (result_.sites.empty()) result_.sites = copy_of(sites_, threads_, stage_.part(0, 0));
   }
-  /// Where the device copies the sites. It copies to what is pinned alone and faster than cores do, after whose reading
-  /// it would need longer for the caller's.
+  /// Returns where the device copies the sites. It copies to what is pinned alone and faster than cores do, after whose
+  /// reading it would need longer for the caller's.
   double* place_for_sites() {
     if (result_.sites.get_allocator().source != &pinned_memory()) {
       copy_sites();

@@ -26,7 +26,7 @@ class Chart {
   const Mesh& mesh() const { return *mesh_; }
   /// (3 F) by half-edge: the place of the corner that it leaves.
   std::span<const Vec2> corners() const { return corners_; }
-  /// Whether the faces on both sides of a half-edge lie side by side in the plane, too.
+  /// Tells whether the faces on both sides of a half-edge lie side by side in the plane, too.
   bool is_joined(Index h) const {
     const Index twin = mesh_->twin(h);
     return twin != k_none && corners_[h] == corners_[Mesh::next(twin)] && corners_[Mesh::next(h)] == corners_[twin];
@@ -35,7 +35,7 @@ class Chart {
   /// The point of the surface at each place, the face k_none where there is none; of several faces the smallest. Exact
   /// but for the rounding of coordinates. O(m log F). \throw InputError for a place that is not finite; Cancelled.
   SurfacePoints locate(std::span<const Vec2> places, int threads = 0, Job* job = nullptr) const;
-  /// Where points of the surface lie in the plane. \throw InputError for a point off the mesh.
+  /// Returns where points of the surface lie in the plane. \throw InputError for a point off the mesh.
   std::vector<Vec2> places(const SurfacePoints& points) const;
 
   /// Overlaps up to this part of the largest coordinate count as none: coordinates often come as float32, and islands

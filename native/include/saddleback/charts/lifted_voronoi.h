@@ -10,7 +10,7 @@
 
 namespace saddleback {
 
-/// What lies of each cell on the surface.
+/// Holds what lies of each cell on the surface.
 struct LiftedVoronoi {
   using Piece = GeodesicVoronoi::Piece;
 

@@ -21,7 +21,7 @@ struct DistributionOptions {
   /// by more than a hundredth and one copy, so where one finds no more room the others stop as well. With a density the
   /// shares are those of the counts.
   std::vector<double> shares;
-  /// Where shapes point: x axes along one of the field's directions, chosen at random among those that differ.
+  /// Says where shapes point: x axes along one of the field's directions, chosen at random among those that differ.
   const DirectionField* field = nullptr;
   /// Scale of the shapes (mesh units for one unit of their planes): one value, or one a vertex.
   std::vector<double> size{1.0};
@@ -33,7 +33,8 @@ struct DistributionOptions {
   std::vector<std::uint8_t> forbidden;
   /// Least distance between copies, mesh units; half of it is kept to the border and to what is forbidden.
   double gap = 0;
-  /// 0: in random order; 1: one beside the other in a front that sweeps over the surface, denser by a quarter and more.
+  /// Chooses the order of candidates: 0: random order; 1: one beside the other in a front that sweeps over the surface,
+  /// denser by a quarter and more.
   double packing = 0;
   bool mirror = false;  ///< half of the copies are mirrored, at random
   /// Copies bend along the field: they are laid along its curves (see center_line), as map_shapes lays them when given

@@ -10,9 +10,9 @@
 
 namespace saddleback {
 
-/// How far a shape reaches in every direction: for each of `k_angles` ranges of viewing angles and `k_columns` strips
-/// along the view, the farthest that any point of the shape gets in any view of the range. Nothing of the shape is
-/// beyond; rounding is outwards.
+/// Holds how far a shape reaches in every direction: for each of `k_angles` ranges of viewing angles and `k_columns`
+/// strips along the view, the farthest that any point of the shape gets in any view of the range. Nothing of the shape
+/// is beyond; rounding is outwards.
 class FrontProfiles {
  public:
   static constexpr Index k_angles = 720, k_columns = 256;
@@ -40,7 +40,7 @@ class FrontProfiles {
 /// the outside, and scales enter exactly.
 class SafeDistanceTable {
  public:
-  /// The same for any number of threads (0: all cores). O(k_angles (k_angles k_columns + corners)): some 20
+  /// Finds the same for any number of threads (0: all cores). O(k_angles (k_angles k_columns + corners)): some 20
   /// milliseconds of one core, 2.5 MB. \throw Cancelled.
   SafeDistanceTable(const Shape& a, const Shape& b, int threads = 0, Job* job = nullptr);
 

@@ -13,7 +13,8 @@ struct PrincipalCurvatures {
   std::vector<Vec3> direction;            ///< of `largest`, a unit vector in the vertex' tangent plane, up to its sign
 };
 
-/// From the change of vertex normals over each face, averaged about vertices by area [rusinkiewicz2004]. O(F).
+/// Computes them from the change of vertex normals over each face, averaged about vertices by area [rusinkiewicz2004].
+/// O(F).
 PrincipalCurvatures principal_curvatures(const Mesh& mesh);
 
 }  // namespace saddleback

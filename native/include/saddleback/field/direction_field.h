@@ -41,7 +41,8 @@ class DirectionField {
   /// Euler characteristic in each component.
   const std::vector<Singularity>& singularities() const { return singularities_; }
   Index units_at(Index vertex) const;
-  /// Of each boundary loop: how often (in units) the field turns against the boundary along it, 0 where it follows it.
+  /// Returns for each boundary loop how often (in units) the field turns against the boundary along it, 0 where it
+  /// follows it.
   const std::vector<Index>& loop_units() const { return loop_units_; }
   /// The largest of the turns, radians. While it is below pi / symmetry the directions of the faces alone tell the
   /// singularities; beyond, faces are too large for how fast the field has to turn there.
@@ -61,7 +62,7 @@ class DirectionField {
     return {angles_[h / 3] + along_[h], angles_[h / 3] + before_[h]};
   }
 
-  /// The same field turned by a constant angle, radians counter-clockwise.
+  /// Returns the same field turned by a constant angle, radians counter-clockwise.
   DirectionField turned(double angle) const;
 
  private:
@@ -111,16 +112,16 @@ class DirectionFieldEditor {
   DirectionFieldEditor(DirectionFieldEditor&&) noexcept;
   DirectionFieldEditor& operator=(DirectionFieldEditor&&) noexcept;
 
-  /// With singularities: the trivial connection that has exactly those [crane2010], to which strokes add a
-  /// single-valued turning only, so that no stroke can change an index. Without: the smoothest field, or the one
+  /// Finds, when there are singularities, the trivial connection that has exactly those [crane2010], to which strokes
+  /// add a single-valued turning only, so that no stroke can change an index. Without: the smoothest field, or the one
   /// nearest to strokes and alignment, with the singularities that it then has [knoppel2013]. Without anything that
   /// fixes it, the angle in the smallest face of a component is 0.
   /// \throw InputError for a vertex out of range, on the boundary or named twice; indices that do not sum to the Euler
   /// characteristic of their component (naming it and what is missing); a stroke of another mesh or a weight that is
-  /// not positive and finite; hard strokes that disagree in a face, with others or themselves; curvature for
-  /// symmetry 1. Cancelled. About O(F).
+  /// not positive and finite; hard strokes that disagree in a face, with others or themselves; curvature for symmetry
+  /// 1. Cancelled. About O(F).
   DirectionField field(const DirectionFieldOptions& options = {}, Job* job = nullptr);
-  /// The same as a part of other work.
+  /// Does the same as a part of other work.
   DirectionField field(const DirectionFieldOptions& options, const JobStage& stage);
 
  private:
@@ -144,7 +145,7 @@ DirectionField field_of_turns(const Mesh& mesh, int symmetry, std::span<const do
 /// One field, as by an editor that is used once.
 DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options = {},
                                Job* job = nullptr);
-/// The same as a part of other work.
+/// Does the same as a part of other work.
 DirectionField direction_field(const Mesh& mesh, int symmetry, const DirectionFieldOptions& options,
                                const JobStage& stage);
 

@@ -22,7 +22,7 @@ struct StreamlineOptions {
   double length = 0;  ///< mesh units, > 0
   /// Half of the length on either side of the start, so that the start is the middle unless one side stops early.
   bool both = false;
-  /// Of the field's directions at the start the one nearest to this is followed; none: the first one.
+  /// Chooses, of the field's directions at the start, the one nearest to this; none: the first one.
   std::optional<Vec3> heading;
   /// The most by which the curve bends (geodesic curvature, radians per length). Where the field turns faster the curve
   /// lags behind, so that what is laid across it up to 1 / max_curvature on either side does not fold.

@@ -14,12 +14,13 @@ struct ArcPacking {
   int kept_shift = 6;  ///< that brings a double's exponent to the top of the word
   double least = 1, rounder = 1;
 
-  /// Up, so that no distance is shorter than the truth.
+  /// Rounds up, so that no distance is shorter than the truth.
   SADDLEBACK_HOST_DEVICE double round(double length) const {
     const double rounded = round_up(length, rounder);
     return rounded < least ? least : rounded;
   }
-  /// To a multiple of the last bit of `rounder`, a power of two that is no shorter: their sum has room for no less.
+  /// Rounds up to a multiple of the last bit of `rounder`, a power of two that is no shorter: their sum has room for no
+  /// less.
   SADDLEBACK_HOST_DEVICE static double round_up(double length, double rounder) {
     const double nearest = (length + rounder) - rounder;
     return nearest < length ? nearest + rounder * 0x1p-52 : nearest;
@@ -31,7 +32,7 @@ struct ArcPacking {
     // A carry into the exponent is what rounding up means.
     return ((bits + ~length_mask) & length_mask) | directed(target, sector);
   }
-  /// The same arc from its other end, where it leaves in `sector`.
+  /// Returns the same arc from its other end, where it leaves in `sector`.
   SADDLEBACK_HOST_DEVICE std::uint64_t reversed(std::int32_t source, int sector, std::uint64_t word) const {
     return (word & length_mask) | directed(source, sector);
   }

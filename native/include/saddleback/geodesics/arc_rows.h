@@ -13,7 +13,7 @@
 
 namespace saddleback {
 
-/// How long the ways on a mesh are.
+/// Holds how long the ways on a mesh are.
 struct PathBounds {
   double longest;        ///< bounds every finite distance from above
   double shortest_edge;  ///< no edge is shorter
@@ -40,7 +40,7 @@ class ArcCodec {
   /// \throw InputError where lengths differ by more than their exponents hold.
   ArcCodec(Index vertex_count, double mean_edge, const PathBounds& bounds);
 
-  /// Up to a multiple of the quantum, of what is no arc; never zero. What an arc's length is stays as it is.
+  /// Rounds up to a multiple of the quantum, of what is no arc; never zero. What an arc's length is stays as it is.
   double round(double length) const {
     // What is long takes the coarser quantum of meshes without short edges: sums of long ones are exact on any mesh.
     constexpr double k_long = 1.0 / (1 << 20);
@@ -58,7 +58,7 @@ class ArcCodec {
   std::uint64_t length_bits(std::uint64_t word) const { return word & packing_.length_mask; }  ///< order as lengths do
   std::uint64_t target_mask() const { return packing_.target_mask; }
 
-  /// For loops over whole rows: a double's bits are ((word & length_mask) >> k_length_shift) + length_bias.
+  /// Serves loops over whole rows: a double's bits are ((word & length_mask) >> k_length_shift) + length_bias.
   static constexpr int k_exponent_bits = 6;  ///< at the top of the word, where a double has a sign and 11
   static constexpr int k_length_shift = 12 - k_exponent_bits;
   std::uint64_t length_mask() const { return packing_.length_mask; }

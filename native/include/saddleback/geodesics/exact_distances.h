@@ -22,8 +22,8 @@ namespace saddleback {
 std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& sources,
                                     double limit = std::numeric_limits<double>::infinity(), Job* job = nullptr);
 
-/// As exact_distances, and which source is nearest. Of sources at the same distance, up to a relative 1e-12, the one of
-/// the smaller index.
+/// Works as exact_distances, and tells which source is nearest. Of sources at the same distance, up to a relative
+/// 1e-12, the one of the smaller index.
 NearestField exact_nearest(const Mesh& mesh, const SurfacePoints& sources,
                            double limit = std::numeric_limits<double>::infinity(), Job* job = nullptr);
 
@@ -33,7 +33,7 @@ class ExactField {
  public:
   /// The mesh must outlive the field. Errors as exact_distances.
   ExactField(const Mesh& mesh, const SurfacePoints& sources, Job* job = nullptr);
-  /// The same as a part of other work.
+  /// Does the same as a part of other work.
   ExactField(const Mesh& mesh, const SurfacePoints& sources, const JobStage& stage);
   ~ExactField();
   ExactField(ExactField&&) noexcept;
@@ -64,14 +64,14 @@ class ExactField {
   /// The sources that reach a point's face, by number, each with the shortest way that is known there: of the nearest
   /// source its distance, of others no less than that. O(windows about its face).
   void ways_at(const SurfacePoint& point, std::vector<Way>& ways) const;
-  /// In the plane of its face, which some source must reach.
+  /// Returns the place of a point in the plane of its face, which some source must reach.
   Vec2 place_of(const SurfacePoint& point) const;
 
   /// The shortest path from the nearest source to a point: straight in faces, bent only at saddle and boundary
   /// vertices, as long as the distance. O(faces crossed). \throw InputError for a point off the mesh or that no source
   /// reaches.
   GeodesicPath path(const SurfacePoint& target) const;
-  /// The same for several points. \throw InputError naming the first that is wrong; Cancelled.
+  /// Does the same for several points. \throw InputError naming the first that is wrong; Cancelled.
   std::vector<GeodesicPath> paths(const SurfacePoints& targets, Job* job = nullptr) const;
 
   std::int64_t window_count() const;  ///< windows propagated: the work done

@@ -35,8 +35,8 @@ struct GeodesicPaths {
 GeodesicPath shortest_path(const SaddleVertexGraph& graph, const SurfacePoint& a, const SurfacePoint& b,
                            const PathOptions& options = {}, Job* job = nullptr);
 
-/// From each target's nearest source to the target, by one distance field. \throw as above, but for targets that no
-/// source reaches: theirs are empty.
+/// Leads each path from each target's nearest source to the target, by one distance field. \throw as above, but for
+/// targets that no source reaches: theirs are empty.
 GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints& sources, const SurfacePoints& targets,
                              const PathOptions& options = {}, Job* job = nullptr);
 

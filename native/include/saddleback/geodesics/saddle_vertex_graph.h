@@ -22,7 +22,7 @@ class Unfolding;
 struct ArcHint;
 struct WaveKernel;
 
-/// How a graph is built: by one of k, accuracy and exact; by k_default_accuracy when none is given.
+/// Holds how a graph is built: by one of k, accuracy and exact; by k_default_accuracy when none is given.
 struct SaddleVertexGraphOptions {
   Index k = 0;                         ///< vertices per geodesic disk, not counting the center
   double accuracy = 0;                 ///< largest relative error of a distance that is accepted
@@ -44,7 +44,7 @@ struct QueryOptions {
   int cuda_device = -1;
 };
 
-/// Where distances are measured from. Sources are counted points first, then curves.
+/// Holds where distances are measured from. Sources are counted points first, then curves.
 struct QuerySources {
   SurfacePoints points;
   std::vector<const SurfaceCurve*> curves;  ///< on the graph's mesh: the distance is to the curve, not to its points
@@ -88,7 +88,7 @@ class SaddleVertexGraph {
   /// or accuracy out of range, several of k, accuracy and exact, or when memory would not do for the exact graph;
   /// Cancelled. Time O(V) times the windows of a disk (about 250 for the default); 8 bytes an arc.
   explicit SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options = {}, Job* job = nullptr);
-  /// The same as a part of other work.
+  /// Does the same as a part of other work.
   SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOptions& options, const JobStage& stage);
   ~SaddleVertexGraph();
   SaddleVertexGraph(SaddleVertexGraph&&) noexcept;
@@ -121,9 +121,9 @@ class SaddleVertexGraph {
   std::span<const Index> vertices() const { return vertices_; }  ///< of the nodes
   /// Rows and targets are nodes.
   const ArcRows& arcs() const { return arcs_; }
-  /// What unfold_arc needs to find the faces of an arc of `node`.
+  /// Returns what unfold_arc needs to find the faces of an arc of `node`.
   ArcHint hint(Index node, std::int64_t arc) const;
-  /// What fans of points are found with: the instructions that the graph was built by.
+  /// Returns what fans of points are found with: the instructions that the graph was built by.
   const WaveKernel& kernel() const { return *kernel_; }
 
   /// Distance of every vertex from the nearest source: (V,), infinity where none reaches. Points that are not vertices
@@ -132,7 +132,7 @@ class SaddleVertexGraph {
   std::vector<double> distances(const QuerySources& sources, const QueryOptions& options = {},
                                 Job* job = nullptr) const;
 
-  /// As `distances`, and which source it is.
+  /// Works as `distances`, and tells which source it is.
   NearestField nearest(const QuerySources& sources, const QueryOptions& options = {}, Job* job = nullptr) const;
 
   /// A field as `distances` gives for every source alone, over threads (0: all cores). \throw InputError also when
@@ -149,9 +149,9 @@ class SaddleVertexGraph {
   /// bits in both directions. \throw InputError as `distances`; Cancelled. O(arcs).
   std::vector<double> distances_to(const QuerySources& sources, const SurfacePoints& targets, Job* job = nullptr) const;
 
-  /// Whether a CUDA device keeps the arcs, since a query there.
+  /// Tells whether a CUDA device keeps the arcs, since a query there.
   bool is_on_device() const;
-  /// How long the last query by a CUDA device took there; nothing when there was none.
+  /// Returns how long the last query by a CUDA device took there; nothing when there was none.
   std::optional<DeviceTimes> query_times() const;
 
   /// Memory that queries leave to the next.

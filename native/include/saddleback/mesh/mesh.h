@@ -22,7 +22,7 @@ class Mesh {
   /// degenerate face (repeated vertex or no area), a duplicate face, a non-manifold edge or vertex, neighbors of
   /// opposite orientation, an unreferenced vertex, a coordinate beyond 1e60. O(V + F).
   Mesh(std::span<const double> xyz, std::span<const Index> triangles, Job* job = nullptr);
-  /// The same as a part of other work.
+  /// Does the same as a part of other work.
   Mesh(std::span<const double> xyz, std::span<const Index> triangles, const JobStage& stage);
 
   Index vertex_count() const { return static_cast<Index>(positions_.size()); }

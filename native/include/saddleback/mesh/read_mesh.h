@@ -10,7 +10,7 @@
 
 namespace saddleback {
 
-/// What a file holds, its indices in range but else unchecked: fit for `repair`.
+/// Holds what a file holds, its indices in range but else unchecked: fit for `repair`.
 struct MeshArrays {
   std::vector<double> xyz;       ///< three a vertex
   std::vector<Index> triangles;  ///< three a face
@@ -27,10 +27,10 @@ struct MeshArrays {
 MeshArrays read_arrays(const std::string& path, Job* job = nullptr);
 MeshArrays read_arrays(const std::string& path, const JobStage& stage);
 
-/// The same of contents that are in memory; `path` tells the format, and is named in errors.
+/// Does the same of contents that are in memory; `path` tells the format, and is named in errors.
 MeshArrays parse_arrays(const std::string& path, std::string_view contents, const JobStage& stage = {});
 
-/// The same as a Mesh. \throw also MeshError when it is not a valid one; `repair(read_arrays(path))` then helps.
+/// Reads the same as a Mesh. \throw also MeshError when it is not a valid one; `repair(read_arrays(path))` then helps.
 Mesh read_mesh(const std::string& path, Job* job = nullptr);
 
 }  // namespace saddleback

@@ -17,23 +17,24 @@ struct CloseBorders {
   double weld_distance = 0;       ///< that would join all of these
   Index vertices_amid_edges = 0;  ///< border vertices as near to the inside of another border's edge: T-junctions
 
-  /// What would join them, each sentence after "; "; empty where there are none.
+  /// Returns what would join them, each sentence after "; "; empty where there are none.
   std::string text() const;
 };
 
-/// What a repair did. `changes` holds the kinds that happened, with their counts:
-/// faces_with_bad_index, vertices_not_finite, vertices_unreferenced, vertices_welded, faces_repeating_a_vertex,
-/// faces_duplicate, faces_without_area (mended or dropped), faces_dropped (of those and their neighbors, the ones that
-/// could not be mended), edges_non_manifold, vertices_split (copies made), edges_divided (new vertex on the middle),
-/// edges_cut (of a surface without orientation), faces_flipped, edges_stitched, holes_filled and holes_left (open,
-/// where filling was asked for).
+/// Holds what a repair did. `changes` holds the kinds that happened, with their counts: faces_with_bad_index,
+/// vertices_not_finite, vertices_unreferenced, vertices_welded, faces_repeating_a_vertex, faces_duplicate,
+/// faces_without_area (mended or dropped), faces_dropped (of those and their neighbors, the ones that could not be
+/// mended), edges_non_manifold, vertices_split (copies made), edges_divided (new vertex on the middle), edges_cut (of a
+/// surface without orientation), faces_flipped, edges_stitched, holes_filled and holes_left (open, where filling was
+/// asked for).
 struct RepairReport {
   std::map<std::string, Index> changes;
   std::vector<Index> vertex_map;  ///< (old V,) new vertex, the first copy if it was split, or k_none
   std::vector<Index> face_map;    ///< (old F,) new face, the first part if it was divided, or k_none
   CloseBorders close_borders;
 
-  /// For a person: "2 vertices welded, 1 duplicate face dropped" or "nothing to mend", and what would close cracks.
+  /// Tells, for a person: "2 vertices welded, 1 duplicate face dropped" or "nothing to mend", and what would close
+  /// cracks.
   std::string text() const;
 };
 

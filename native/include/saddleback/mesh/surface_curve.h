@@ -31,7 +31,7 @@ class SurfaceCurve {
   const SurfacePoints& points() const { return points_; }
   bool closed() const { return closed_; }
   double length() const { return length_; }
-  /// In order, without those of no length.
+  /// Lists them in order, without those of no length.
   std::span<const CurveSegment> segments() const { return segments_; }
 
  private:

@@ -17,7 +17,8 @@ struct SurfacePoint {
 
 using SurfacePoints = std::vector<SurfacePoint>;
 
-/// What counts as rounding in given barycentric coordinates: they often come as float32 (relative 6e-8), or from sums.
+/// Bounds what counts as rounding in given barycentric coordinates: they often come as float32 (relative 6e-8), or from
+/// sums.
 inline constexpr double k_barycentric_tolerance = 1e-6;
 
 /// Position in space.
@@ -39,7 +40,7 @@ SurfacePoints surface_points(std::span<const Index> faces, std::span<const doubl
 /// not summing to 1 (beyond rounding, k_barycentric_tolerance).
 void check_surface_points(const Mesh& mesh, const SurfacePoints& points, const char* argument);
 
-/// The same for one point.
+/// Does the same for one point.
 void check_surface_point(const Mesh& mesh, const SurfacePoint& point, const char* argument);
 
 /// Coordinates with the rounding removed: negative ones set to 0, then scaled to sum 1. A point within rounding of a

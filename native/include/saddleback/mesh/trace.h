@@ -21,7 +21,7 @@ struct TraceResult {
   bool hit_boundary = false;
 };
 
-/// Where a curve ends, for callers that need no polyline.
+/// Holds where a curve ends, for callers that need no polyline.
 struct TraceEnd {
   SurfacePoint point;
   double angle = 0;   ///< direction of arrival in the chart of the point's face (radians)
@@ -39,9 +39,9 @@ struct TraceEnd {
 /// \throw Cancelled. O(faces crossed).
 TraceResult trace(const Mesh& mesh, const SurfacePoint& start, double angle, double length, Job* job = nullptr);
 
-/// As above, the direction given as a vector in space, projected onto the surface at the start: onto the face's plane
-/// or, at a vertex, to the nearest direction among those of the faces around it. \throw InputError as well for a vector
-/// that is not finite or has no part along the surface.
+/// Works as above, with the direction given as a vector in space, projected onto the surface at the start: onto the
+/// face's plane or, at a vertex, to the nearest direction among those of the faces around it. \throw InputError as well
+/// for a vector that is not finite or has no part along the surface.
 TraceResult trace(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction, double length,
                   Job* job = nullptr);
 
@@ -52,9 +52,10 @@ TraceEnd trace_end(const Mesh& mesh, const SurfacePoint& start, const Vec3& dire
 /// The angle by which `trace` would set out in that direction.
 double start_angle(const Mesh& mesh, const SurfacePoint& start, const Vec3& direction);
 
-/// For a point that is exactly a vertex: the angle about the vertex (as `trace` takes it) of a direction given in the
-/// chart of point.face; for any other point the angle itself. A direction that points out of the face is measured as if
-/// the face's plane went on, which is what a reversed or transported direction of arrival needs only when it points in.
+/// Returns, for a point that is exactly a vertex: the angle about the vertex (as `trace` takes it) of a direction given
+/// in the chart of point.face; for any other point the angle itself. A direction that points out of the face is
+/// measured as if the face's plane went on, which is what a reversed or transported direction of arrival needs only
+/// when it points in.
 double angle_about(const Mesh& mesh, const SurfacePoint& point, double chart_angle);
 
 }  // namespace saddleback

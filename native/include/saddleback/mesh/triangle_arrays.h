@@ -54,7 +54,7 @@ struct CellBoundary {
   std::vector<std::array<Index, 2>> cells;     ///< beside each
 };
 
-/// Where the cells (T,) of triangles meet; the border of the mesh is no boundary of a cell. O(V + T).
+/// Returns where the cells (T,) of triangles meet; the border of the mesh is no boundary of a cell. O(V + T).
 CellBoundary cell_boundary(std::span<const Triangle> triangles, std::span<const Index> triangle_cell,
                            Index vertex_count);
 

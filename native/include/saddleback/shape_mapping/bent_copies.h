@@ -33,7 +33,7 @@ struct BentCopies {
 
 struct BendOptions {
   MapShapesOptions mapping;
-  /// How far edges and faces may leave the surface that their vertices lie on (or stand above), as a share of the
+  /// Says how far edges and faces may leave the surface that their vertices lie on (or stand above), as a share of the
   /// copy's circumradius; 0: solids keep their vertices.
   double tolerance = 0.01;
 };

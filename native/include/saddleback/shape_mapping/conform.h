@@ -26,7 +26,7 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh);
 /// The smooth normal at a point: those of the corners by their weights.
 Vec3 normal_at(const Mesh& mesh, std::span<const Vec3> vertex_normals, const SurfacePoint& point);
 
-/// Where anchored points are on this mesh: the one of the anchors, or the same one with other positions.
+/// Returns where anchored points are on this mesh: the one of the anchors, or the same one with other positions.
 std::vector<Vec3> positions_of(const Mesh& mesh, std::span<const Vec3> vertex_normals, const SurfacePoints& anchors,
                                std::span<const double> heights);
 

@@ -24,12 +24,12 @@ enum class MapFailure : std::uint8_t {
   stretched,  ///< somewhere it is longer or shorter than the limits allow
 };
 
-/// By how much lengths may change from the plane to the surface: bounds of the singular values of the map.
+/// Bounds by how much lengths may change from the plane to the surface: the singular values of the map.
 struct MapLimits {
   double smallest = 0.5, largest = 2;
 };
 
-/// Where the plane is laid and which part of it is wanted.
+/// Holds where the plane is laid and which part of it is wanted.
 struct PlaneBox {
   Vec2 low, high;  ///< contains the origin
 };
@@ -59,8 +59,9 @@ class ShapeMap {
   void about_point(const SurfacePoint& center, double angle, const PlaneBox& box,
                    double reach = std::numeric_limits<double>::infinity(), const Watch& watch = {});
 
-  /// Along a curve of the same mesh, whose point at arc length `origin` becomes the origin, the x axis along it. Where
-  /// the curve is shorter than the box the plane is laid on straight beyond its ends. O(n log n + segments).
+  /// Lays the plane along a curve of the same mesh, whose point at arc length `origin` becomes the origin, the x axis
+  /// along it. Where the curve is shorter than the box the plane is laid on straight beyond its ends. O(n log n +
+  /// segments).
   void along_curve(const SurfaceCurve& curve, double origin, const PlaneBox& box);
 
   const Mesh& mesh() const { return *mesh_; }
@@ -70,7 +71,7 @@ class ShapeMap {
   bool has(Index vertex) const { return nodes_[vertex].stamp == stamp_; }
   /// Has coordinates that were found on the way, not laid out beside others.
   bool is_settled(Index vertex) const { return has(vertex) && nodes_[vertex].state == State::settled; }
-  /// Of a vertex that has some.
+  /// Returns the coordinates of a vertex vertex that has some.
   const Vec2& coordinates(Index vertex) const { return nodes_[vertex].place; }
   /// All vertices that have coordinates, in no particular order.
   std::span<const Index> vertices() const { return reached_; }
@@ -82,7 +83,7 @@ class ShapeMap {
   /// it comes to: O(faces on the way). Leaves `face` where it got stuck when the answer is a failure.
   MapFailure find(const Vec2& point, Index& face);
 
-  /// Whether a point of the plane lies in a face whose corners are laid out.
+  /// Tells whether a point of the plane lies in a face whose corners are laid out.
   bool is_in(const Vec2& point, Index face) const;
 
   /// The surface point at a point of the plane that lies in the face; rounding outside of it is removed.

@@ -18,7 +18,7 @@ struct OutlinePiece {
   Vec2 plane_end;  ///< where the end comes from in the shape's plane, in its own units
 };
 
-/// What one shape covers.
+/// Holds what one shape covers.
 struct SurfaceOutline {
   std::vector<OutlinePiece> pieces;      ///< loop by loop, in order
   std::vector<std::size_t> loop_begins;  ///< and at the end the number of pieces
@@ -48,12 +48,12 @@ class OutlineMapper {
   MapFailure map(std::span<const Loop> loops, const Placement& placement, SurfaceOutline& outline,
                  const MapLimits& limits = {});
 
-  /// The same along a center line of the placement's: the shape bends with the line, and placement.angle does not
+  /// Does the same along a center line of the placement's: the shape bends with the line, and placement.angle does not
   /// count.
   MapFailure map_along(std::span<const Loop> loops, const Placement& placement, const CenterLine& line,
                        SurfaceOutline& outline, const MapLimits& limits = {});
 
-  /// Where a point of a shape's plane lies in the plane that was laid last.
+  /// Returns where a point of a shape's plane lies in the plane that was laid last.
   Vec2 laid(const Vec2& point) const {
     const Vec2 scaled(point.x() * scale_.x(), point.y() * scale_.y());
     return {turn_.x() * scaled.x() - turn_.y() * scaled.y(), turn_.y() * scaled.x() + turn_.x() * scaled.y()};

@@ -38,7 +38,7 @@ class Shape {
   /// Radius of the largest disk about the origin that lies within; 0 when the origin does not.
   double inradius() const { return inradius_; }
   double area() const { return area_; }
-  /// Whether half a turn about the origin changes nothing (corners within 1e-9 of the circumradius).
+  /// Tells whether half a turn about the origin changes nothing (corners within 1e-9 of the circumradius).
   bool has_half_turn() const { return has_half_turn_; }
   /// Exact; the outline itself counts as either. O(m).
   bool contains(const Vec2& point) const;

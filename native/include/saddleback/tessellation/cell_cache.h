@@ -24,9 +24,10 @@ class CellCache {
   /// Forgets what is kept.
   void clear();
 
-  /// For the library: cells that a relaxation looked at last, and those that it showed of its result.
+  /// Tells two uses of the library apart: cells that a relaxation looked at last, and those that it showed of its
+  /// result.
   enum class Cells { relaxed, shown };
-  /// What is kept, and nothing from then on; and something to keep. Null is nothing.
+  /// Returns what is kept, and nothing from then on; and something to keep. Null is nothing.
   std::unique_ptr<Content> take(Cells which);
   void put(Cells which, std::unique_ptr<Content> content);
 

@@ -14,23 +14,23 @@ namespace saddleback {
 
 enum class RelaxationMethod { lbfgs, lloyd };
 
-/// Where a relaxation begins.
+/// Says where a relaxation begins.
 struct RelaxationStart {
-  /// Where sites come from when only their number is given: relaxed cells of a quarter of the number, with a site more
-  /// on each boundary between two of them (few irregular cells remain; samples where coarse cells are no disks or meet
-  /// twice), or a sample by density and seed. Automatic: from coarse cells for runs long enough to be worth it.
+  /// Says where sites come from when only their number is given: relaxed cells of a quarter of the number, with a site
+  /// more on each boundary between two of them (few irregular cells remain; samples where coarse cells are no disks or
+  /// meet twice), or a sample by density and seed. Automatic: from coarse cells for runs long enough to be worth it.
   enum class From { automatic, coarse_to_fine, sample };
   From from = From::automatic;
   std::uint64_t seed = 0;  ///< of the sample
-  /// Only for a number of cells: so many relaxations, by the seeds from the given one on, of which the one with the
-  /// least energy is the result. Where a relaxation ends depends on where it began.
+  /// Counts relaxations, only for a number of cells: so many relaxations, by the seeds from the given one on, of which
+  /// the one with the least energy is the result. Where a relaxation ends depends on where it began.
   int starts = 1;
-  /// So many steps of simulated annealing before the iterations, each as long as one of those: ends with less energy
+  /// Counts steps of simulated annealing before the iterations, each as long as one of those: ends with less energy
   /// than any number of iterations; 300 are many. Sites that would end with more energy are left as they were.
   int annealing = 0;
 };
 
-/// What sites may not do.
+/// Says what sites may not do.
 struct RelaxationConstraints {
   std::span<const Index> fixed;  ///< sites that stay where they are
   /// Curves that sites slide along instead of leaving them: features, the mesh's boundary.
@@ -40,7 +40,7 @@ struct RelaxationConstraints {
   std::span<const Index> held;
 };
 
-/// When a relaxation ends.
+/// Says when a relaxation ends.
 struct RelaxationStop {
   int max_iterations = 100;  ///< of each start
   double tolerance = 1e-6;   ///< stop when the energy falls by less than this share of itself
@@ -57,7 +57,7 @@ struct CentroidalVoronoiOptions {
   RelaxationStart start;
   RelaxationConstraints constraints;
   RelaxationStop stop;
-  /// Whether sites are moved afterwards from where they are least needed to where the cells break the closed-ball
+  /// Says whether sites are moved afterwards from where they are least needed to where the cells break the closed-ball
   /// property (see DualIssue), and all relaxed again as far as nothing breaks it: `count` sites then have a
   /// triangulation of the surface as their dual. Where no site can be spared, or 40 rounds of moving some do not help,
   /// or ten do not leave fewer faults, they are left as they were, and `issues` tells so.
@@ -74,8 +74,8 @@ struct CentroidalVoronoi {
   SurfacePoints sites;
   std::vector<Index> held;  ///< (n,) the curve that each site is held on, k_none for free ones; empty: all are free
   GeodesicVoronoi cells;
-  /// Of the (annealed) start and after each iteration; never rises. After an exchange of sites those of the relaxation
-  /// that followed, which may end above where the first one did; so `iterations`.
+  /// Holds the energies of the (annealed) start and after each iteration; never rises. After an exchange of sites those
+  /// of the relaxation that followed, which may end above where the first one did; so `iterations`.
   std::vector<double> energy;
   int iterations = 0;
   bool converged = false;
@@ -107,8 +107,8 @@ SurfacePoints initial_sites(const Mesh& mesh, Index count, std::span<const doubl
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                      const CentroidalVoronoiOptions& options = {}, Job* job = nullptr);
 
-/// The same for a number of cells. Without iterations the sites are the sample's. With curves the first sites lie on
-/// them, as far apart as neighbors are, the ends of open ones fixed; the others are the sample's, and those of them
+/// Does the same for a number of cells. Without iterations the sites are the sample's. With curves the first sites lie
+/// on them, as far apart as neighbors are, the ends of open ones fixed; the others are the sample's, and those of them
 /// whose cells reach across a curve are put onto it, before the relaxation that is reported. \throw InputError also as
 /// `initial_sites`, and for fewer cells than the curves need.
 CentroidalVoronoi centroidal_voronoi(const SaddleVertexGraph& graph, Index count,

@@ -9,15 +9,15 @@
 
 namespace saddleback {
 
-/// What to do where the cells are too large for a triangulation in the usual sense.
+/// Says what to do where the cells are too large for a triangulation in the usual sense.
 enum class DualPolicy {
   strict,  ///< keep the sites; corners of triangles and ends of edges may repeat; every violation is listed
   repair,  ///< add sites until there is no violation
   fail,    ///< refuse
 };
 
-/// Where cells break the closed-ball property [edelsbrunner1997], without which the dual is not a triangulation of the
-/// surface.
+/// Holds where cells break the closed-ball property [edelsbrunner1997], without which the dual is not a triangulation
+/// of the surface.
 struct DualIssue {
   enum class Kind {
     not_a_disk,         ///< a cell with a handle or several borders, or that is in several parts
@@ -57,9 +57,9 @@ DualMesh dual_mesh(const Mesh& mesh, const GeodesicVoronoi& cells);
 DualMesh dual_mesh(const SaddleVertexGraph& graph, const GeodesicVoronoi& cells, DualPolicy policy, int threads = 0,
                    Job* job = nullptr);
 
-/// How long the edges of `dual_mesh(mesh, cells)` are, in its order: the straightest geodesic from site to site across
-/// the boundary; where none can be aimed, vertices being in the way, the shortest way over the boundary, as the cells'
-/// distances say. As `dual_edge_paths` within the accuracy of those. \throw Cancelled. O(faces crossed) each.
+/// Returns how long the edges of `dual_mesh(mesh, cells)` are, in its order: the straightest geodesic from site to site
+/// across the boundary; where none can be aimed, vertices being in the way, the shortest way over the boundary, as the
+/// cells' distances say. As `dual_edge_paths` within the accuracy of those. \throw Cancelled. O(faces crossed) each.
 std::vector<double> dual_edge_lengths(const Mesh& mesh, const GeodesicVoronoi& cells, int threads = 0,
                                       Job* job = nullptr);
 

@@ -20,8 +20,8 @@ struct RelaxationStep {
 class RelaxationWatch {
  public:
   virtual ~RelaxationWatch() = default;
-  /// Of a relaxation, after each iteration that was accepted: the energy never rises, but where the iterations
-  /// begin again. O(sites).
+  /// Shows a relaxation after each iteration that was accepted: the energy never rises, but where the iterations begin
+  /// again. O(sites).
   virtual void show(RelaxationStep step);
   /// Null before the first step.
   std::shared_ptr<const RelaxationStep> latest() const;

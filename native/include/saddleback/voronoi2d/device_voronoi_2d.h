@@ -24,7 +24,7 @@ struct DeviceArray {
   void copy_to(void* host) const;
 };
 
-/// As Voronoi2d has them; of triangles alone the others are empty.
+/// Holds the arrays as Voronoi2d has them; of triangles alone the others are empty.
 struct DeviceVoronoi2d {
   DeviceArray vertices, edges, edge_sites, site_of;
   /// The cell of site i is [offsets[p], offsets[p + 1]) of `corner_vertices` and `side_edges` where p is

@@ -35,7 +35,7 @@ class SteppedSweep {
     bool is_finished;  ///< else it still grows, at its end or at both
   };
 
-  /// With weights one for each site, or none. \throw InputError as voronoi_2d does. O(n log n).
+  /// Takes the sites, with weights one for each site, or none. \throw InputError as voronoi_2d does. O(n log n).
   SteppedSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights = {});
   ~SteppedSweep();  // NOLINT(performance-trivially-destructible): State is known in the .cpp only
   SteppedSweep(SteppedSweep&&) noexcept;
@@ -89,7 +89,7 @@ class SweepCircles {
   /// That of all circles, or where this one stopped; minus infinity for one to which no site is nearest.
   double radius(Index circle) const;
   bool is_done(Index circle) const;
-  /// As those of SteppedSweep.
+  /// Returns the same as of SteppedSweep.
   std::vector<SteppedSweep::Arc> arcs(Index circle) const;
   std::vector<Vec2> beach_curve(Index circle, Index samples) const;
   std::vector<SteppedSweep::Edge> edges(Index circle) const;

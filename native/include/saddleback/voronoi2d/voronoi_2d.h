@@ -21,7 +21,7 @@ struct Voronoi2dOptions {
   /// Numbers of CUDA devices that share the work, whose module must be loaded (`cuda_module.h`); none: the processor.
   /// The result does not depend on it.
   std::vector<int> cuda_devices = {};
-  /// Whether what CUDA devices find comes into pinned memory (`pinned_memory.h`): for one diagram after the other.
+  /// Says whether what CUDA devices find comes into pinned memory (`pinned_memory.h`): for one diagram after the other.
   bool is_pinned = false;
 };
 
@@ -31,7 +31,7 @@ struct CellRows {
   std::vector<Index> vertices;  ///< counter-clockwise; -1 where a cell is open
 };
 
-/// What lies of each cell in a domain.
+/// Holds what lies of each cell in a domain.
 struct ClippedCells {
   std::vector<Vec2> points;         ///< (P) the corners of all loops, one after another
   std::vector<Index> loop_offsets;  ///< (L + 1) loop i is [offsets[i], offsets[i + 1])
@@ -92,8 +92,8 @@ struct Voronoi2d {
   std::vector<Vec2> centroids() const;
   /// The cells within a domain. O(n) plus, for cells at the domain's edges, O(corners of the domain). \throw Cancelled
   ClippedCells clip(const PlanarDomain& domain, int threads = 0, Job* job = nullptr) const;
-  /// The same as a part of other work. \throw InputError for lengths that are negative or not finite, and for a gap
-  /// between curved edges.
+  /// Does the same as a part of other work. \throw InputError for lengths that are negative or not finite, and for a
+  /// gap between curved edges.
   ClippedCells clip(const PlanarDomain& domain, const ClipOptions& options, const JobStage& stage) const;
   /// (m) nearest site of each point, exactly; of equally near ones the smallest index. O(m + n) expected.
   /// \throw InputError for a point that is not finite, and without sites. Cancelled
@@ -107,9 +107,9 @@ struct Voronoi2d {
 /// more) that products of four cannot be told exactly; for negative options. Cancelled.
 /// O(n log n) time, O(n) memory.
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options = {}, Job* job = nullptr);
-/// The same; the diagram takes the sites over.
+/// Finds the same; the diagram takes the sites over.
 Voronoi2d voronoi_2d(LargeArray<Vec2>&& sites, const Voronoi2dOptions& options = {}, Job* job = nullptr);
-/// The same as a part of other work.
+/// Does the same as a part of other work.
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options, const JobStage& stage);
 
 /// Additively weighted Voronoi diagram: of disks with the weights, which may be negative, as radii. A point belongs to

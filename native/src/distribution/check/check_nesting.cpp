@@ -10,7 +10,7 @@
 namespace saddleback {
 namespace {
 
-/// How often one outline crosses an edge inwards, seen along its smaller half-edge, less outwards.
+/// Holds how often one outline crosses an edge inwards, seen along its smaller half-edge, less outwards.
 struct EdgeCount {
   Index edge;
   int sum;
@@ -65,7 +65,7 @@ class Nesting {
     Index vertex, shape;
   };
 
-  /// From vertices that the outline's crossings show to be inside, over edges that it does not cross.
+  /// Spreads from vertices that the outline's crossings show to be inside, over edges that it does not cross.
   void spread(Index shape) {
     const std::vector<EdgeCount> counts = count_crossings(mesh_, mapped_[shape].outline);
     front_.clear();
@@ -88,7 +88,7 @@ class Nesting {
     }
   }
 
-  /// Whether one end of the edge is inside and one is not.
+  /// Tells whether one end of the edge is inside and one is not.
   bool is_rim(const std::vector<EdgeCount>& counts, Index h) const {
     const Index twin = mesh_.twin(h), edge = twin == k_none ? h : std::min(h, twin);
     const auto at = std::lower_bound(counts.begin(), counts.end(), edge,

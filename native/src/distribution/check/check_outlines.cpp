@@ -41,7 +41,7 @@ bool is_fault(const CheckedPiece& p, const CheckedPiece& q, Meeting meeting) {
   return meeting == Meeting::cross && p.previous != q.number && q.previous != p.number;
 }
 
-/// The same point in the face across the edge that the piece leaves by.
+/// Moves on to the same point in the face across the edge that the piece leaves by.
 bool leads_on(const Mesh& mesh, const OutlinePiece& piece, const OutlinePiece& next) {
   if (piece.exit == k_none) return next.face == piece.face && next.begin == piece.end;
   const Index twin = mesh.twin(piece.exit);

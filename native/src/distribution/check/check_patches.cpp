@@ -157,7 +157,7 @@ class PatchCheck {
     report_.largest = std::max(report_.largest, std::sqrt(values.eigenvalues()[1]));
   }
 
-  /// 1 when the point lies in a patch, else 0.
+  /// Returns 1 when the point lies in a patch, else 0.
   static int look(const PatchTriangles& patches, Index face, const Vec2& w, std::vector<std::size_t>& hits,
                   FaultList& found) {
     hits.clear();

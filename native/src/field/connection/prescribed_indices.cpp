@@ -11,7 +11,7 @@
 namespace saddleback {
 namespace {
 
-/// "1/2" for 2 units of symmetry 4.
+/// Writes "1/2" for 2 units of symmetry 4.
 std::string as_fraction(std::int64_t units, int symmetry) {
   const std::int64_t divisor = std::gcd(units, static_cast<std::int64_t>(symmetry));
   return divisor == symmetry ? message(units / symmetry) : message(units / divisor, "/", symmetry / divisor);

@@ -18,7 +18,7 @@ struct ShapeOperator {
 /// \throw Cancelled.
 ShapeOperator shape_operator(const Mesh& mesh, const JobStage& stage = {});
 
-/// Of a face, the mean of its corners' operators in its plane.
+/// Holds the bending of a face, the mean of its corners' operators in its plane.
 struct FaceBending {
   /// Largest less smallest curvature (>= 0) times e^{2 i angle}, the angle in the FaceChart of the largest's direction.
   std::complex<double> difference;

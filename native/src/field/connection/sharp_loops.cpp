@@ -8,7 +8,7 @@
 namespace saddleback {
 namespace {
 
-/// How far faces have to be turned about, from 0 downwards, and across which half-edge that was found.
+/// Holds how far faces have to be turned about, from 0 downwards, and across which half-edge that was found.
 class TurnSearch {
  public:
   TurnSearch(const Mesh& mesh, double limit, std::span<const double> turns)

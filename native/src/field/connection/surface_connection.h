@@ -12,11 +12,12 @@ namespace saddleback {
 double chart_angle(const Mesh& mesh, Index h);
 
 struct SurfaceConnection {
-  /// Of each half-edge, 0 on the boundary: what is added to the angle of a direction in the chart of its face to have
-  /// the same direction in the chart of its twin's face (Levi-Civita). Opposite for the twin.
+  /// Holds for each half-edge, 0 on the boundary: what is added to the angle of a direction in the chart of its face to
+  /// have the same direction in the chart of its twin's face (Levi-Civita). Opposite for the twin.
   std::vector<double> transport;
-  /// Of each half-edge: length of the dual edge over that of the edge (half the sum of the cotangents), kept within a
-  /// factor k_weight_range of 1. Equal for both twins. Indices of fields do not depend on it, only how they turn.
+  /// Holds for each half-edge: length of the dual edge over that of the edge (half the sum of the cotangents), kept
+  /// within a factor k_weight_range of 1. Equal for both twins. Indices of fields do not depend on it, only how they
+  /// turn.
   std::vector<double> weight;
 };
 

@@ -127,7 +127,8 @@ std::vector<double> TrivialConnection::turns(std::span<const Index> units, int s
   return result;
 }
 
-/// Of the form that belongs to a loop: 1 where the loop crosses, less the gradient that makes it free of divergence.
+/// Returns the value of the form that belongs to a loop: 1 where the loop crosses, less the gradient that makes it free
+/// of divergence.
 double TrivialConnection::harmonic(std::size_t loop, Index h) const {
   const std::vector<double>& potential = harmonic_potentials_[loop];
   return potential[filled_.node_of[mesh_.from(h)]] - potential[filled_.node_of[mesh_.to(h)]];

@@ -29,12 +29,12 @@ class TrivialConnection {
   std::vector<double> turns(std::span<const Index> units, int symmetry, const std::vector<std::vector<Index>>& gentle,
                             const JobStage& stage);
 
-  /// How often a loop of half-edges goes round each of the loops around handles, in whole numbers; all 0 where it
-  /// bounds a part of the surface, and the turning along it is nobody's choice. \pre turns() was called. O(loop
+  /// Returns how often a loop of half-edges goes round each of the loops around handles, in whole numbers; all 0 where
+  /// it bounds a part of the surface, and the turning along it is nobody's choice. \pre turns() was called. O(loop
   /// handles).
   std::vector<double> windings_of(const std::vector<Index>& loop) const;
 
-  /// The same, but for units of the nodes in `free`: they may be any reals that sum to what is missing in the
+  /// Finds the same, but for units of the nodes in `free`: they may be any reals that sum to what is missing in the
   /// component. Gives those reals, the ones of least turning.
   std::vector<double> best_units(std::span<const Index> units, const std::vector<Index>& free, int symmetry,
                                  const JobStage& stage) const;

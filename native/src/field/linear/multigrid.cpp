@@ -16,7 +16,7 @@ constexpr double k_dominant = 10;         // a diagonal larger than this many ti
 constexpr double k_enough = 0.25;         // the K-cycle's second step is left out when the first one gains this much
 constexpr Index k_nodes_a_check = 32768;  // about a millisecond between looks at the job
 
-/// What coarsening one level decides: node of the next level and phase of the interpolation.
+/// Holds what coarsening one level decides: node of the next level and phase of the interpolation.
 template <class Scalar>
 struct Aggregates {
   std::vector<Index> of;
@@ -115,7 +115,7 @@ GraphMatrix<Scalar> galerkin(const GraphMatrix<Scalar>& matrix, const Aggregates
   return coarse;
 }
 
-/// As one step what two steps of pairing do.
+/// Appends as one step what two steps of pairing do.
 template <class Scalar>
 void append_step(Aggregates<Scalar>& first, const Aggregates<Scalar>& second) {
   for (std::size_t i = 0; i < first.of.size(); ++i) {

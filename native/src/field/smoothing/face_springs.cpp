@@ -20,7 +20,7 @@ std::vector<bool> held_components(const Mesh& mesh, const FaceSprings<Scalar>& s
   return result;
 }
 
-/// What the faces of each vertex ask of it; fixed where one of them is.
+/// Holds what the faces of each vertex ask of it; fixed where one of them is.
 struct VertexSprings {
   std::vector<double> stiffness, target;
 };

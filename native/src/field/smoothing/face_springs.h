@@ -12,7 +12,7 @@ namespace saddleback {
 
 using PowerGraph = std::vector<GraphEdge<std::complex<double>>>;
 
-/// What draws the value of each face: stiffness 0 for nothing, k_fixed for exactly.
+/// Holds what draws the value of each face: stiffness 0 for nothing, k_fixed for exactly.
 template <class Scalar>
 struct FaceSprings {
   explicit FaceSprings(const Mesh& mesh) : stiffness(mesh.face_count(), 0.0), target(mesh.face_count(), Scalar(0)) {}

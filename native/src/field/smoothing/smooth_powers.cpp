@@ -96,7 +96,7 @@ class Minimizer {
 
   Index component(Index face) const { return mesh_.component_of(mesh_.triangles()[face][0]); }
 
-  /// Of the first `count` of current, search and last.
+  /// Returns the products of the first `count` of current, search and last.
   std::vector<Sums> all_products(int count) const {
     const std::array<const Pair*, 3> vectors{&current_, &search_, &last_};
     std::vector<Sums> result(components_);

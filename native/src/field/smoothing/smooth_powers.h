@@ -8,8 +8,8 @@
 
 namespace saddleback {
 
-/// In each component, of all fields of unit mean square, one of the least energy: the connection Laplacian's first
-/// eigenvector against the faces' areas [knoppel2013], by locally optimal preconditioned conjugate gradients
+/// Finds, in each component, of all fields of unit mean square, one of the least energy: the connection Laplacian's
+/// first eigenvector against the faces' areas [knoppel2013], by locally optimal preconditioned conjugate gradients
 /// [knyazev2001], then evened out. As powers of directions, from `start`. About 10 steps and 3 linear systems. \throw
 /// Cancelled.
 std::vector<std::complex<double>> smoothest_powers(const Mesh& mesh, const PowerGraph& graph,

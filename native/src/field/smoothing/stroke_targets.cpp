@@ -34,12 +34,12 @@ class FacesOfStroke {
     known.stiffness += length;
     known.angle += std::remainder(angle - known.angle, quantum_) * length / known.stiffness;
   }
-  /// Whether it has been in the face before, along another direction.
+  /// Tells whether it has been in the face before, along another direction.
   bool disagrees(Index face, double angle) const {
     const auto at = place_.find(face);
     return at != place_.end() && std::abs(std::remainder(angle - faces_[at->second].angle, quantum_)) > k_agreement;
   }
-  /// With lengths in place of stiffness.
+  /// Returns the faces with lengths in place of stiffness.
   StrokeFaces take() { return std::move(faces_); }
 
  private:

@@ -45,7 +45,7 @@ struct Room {
   static constexpr int Warps =
       warp_bytes * k_most_warps <= k_shared_bytes ? k_most_warps : static_cast<int>(k_shared_bytes / warp_bytes);
 };
-/// By the arcs that are asked for. Fewer windows at once leave room for more sources at once.
+/// Chooses by the arcs that are asked for. Fewer windows at once leave room for more sources at once.
 template <bool All>
 using SmallRoom = Room<All, All ? 80 : 72, All ? 256 : 512, All ? 1 : 2, true, true>;
 template <bool All>
@@ -59,8 +59,8 @@ template <bool All>
 using LastRoom = Room<All, 8192, 1 << 14, 1, false, false>;
 constexpr int k_most_in_last = 1024;
 
-/// Whether there are edges that are none for WarpWaves, nodes that the processor gives a unit of their own, or corners
-/// that it places in another way.
+/// Tells whether there are edges that are none for WarpWaves, nodes that the processor gives a unit of their own, or
+/// corners that it places in another way.
 __global__ void look_for_extremes(DeviceMesh mesh, std::int32_t nodes, int* has_extremes) {
   for (auto node = static_cast<std::int32_t>(blockIdx.x * blockDim.x + threadIdx.x); node < nodes;
        node += static_cast<std::int32_t>(gridDim.x * blockDim.x)) {
@@ -157,7 +157,7 @@ __global__ void __launch_bounds__(32 * Room::Warps, 1)
 }
 
 /// Words that memory is taken for at first; more are found to be needed when they are. By accuracy a third more than
-/// smooth meshes have at half a per cent; arcs become more as the root of what is allowed becomes less. A bound keeps
+/// smooth meshes have at half a percent; arcs become more as the root of what is allowed becomes less. A bound keeps
 /// what is next to exact from being refused for memory that it may not need.
 std::int64_t first_guess(const ArcsRequest& r, IndexRange nodes) {
   constexpr double k_usual = 96, k_usual_excess = 5.2e-3, k_most = 512;
@@ -166,12 +166,12 @@ std::int64_t first_guess(const ArcsRequest& r, IndexRange nodes) {
   return per_row * nodes.count() + 4096;
 }
 
-/// Of all time, at the end of each part.
+/// Holds shares of all time, at the end of each part.
 struct Share {
   static constexpr double upload = 0.15, find = 0.55, unite = 0.6;
 };
 
-/// Which part of the work one of a team's devices has.
+/// Says which part of the work one of a team's devices has.
 struct Part {
   int member, device;
   IndexRange nodes;
@@ -219,7 +219,7 @@ class ArcFinder {
     }
   }
   RowStore& rows() { return rows_; }
-  /// While they are being found.
+  /// Returns the rows while they are being found.
   DeviceRows rows_in_making() {
     DeviceRows rows = rows_.view();
     rows.taken = &tally_.data()->words;
@@ -231,10 +231,10 @@ class ArcFinder {
  private:
   /// Rooms that a source may go through.
   static constexpr std::size_t k_passes = 4;
-  /// What kernels count.
+  /// Holds what kernels count.
   struct Tally {
     unsigned long long words;  ///< of all rows
-    /// By pass: sources taken, and those that failed.
+    /// Holds them by pass: sources taken, and those that failed.
     std::int32_t begun[k_passes], failed[k_passes];
   };
 
@@ -270,8 +270,8 @@ class ArcFinder {
     return any_left;
   }
 
-  /// By the processor. What ends the windows of one node there may be those of others of its batch: all have to be
-  /// done.
+  /// Finds the rest by the processor. What ends the windows of one node there may be those of others of its batch: all
+  /// have to be done.
   void find_rest(std::int32_t count, const DeviceBuffer<std::int32_t>& nodes, DeviceTimes& times) {
     std::vector<std::int32_t> failed(static_cast<std::size_t>(count)), left;
     nodes.read(failed);
@@ -293,7 +293,7 @@ class ArcFinder {
   bool is_small() const { return request_.k > 0 ? request_.k <= 50 : request_.excess >= 3e-3; }
   bool is_middle() const { return request_.k <= 110; }
 
-  /// How the warps of a pass are spread over the device.
+  /// Holds how the warps of a pass are spread over the device.
   struct Spread {
     int blocks, warps;
     std::size_t shared;  ///< bytes of a block
@@ -370,7 +370,7 @@ class ArcFinder {
     }
   }
 
-  /// For the passes that were started; whoever asks to stop is not kept waiting by sources that take long.
+  /// Waits for the passes that were started; whoever asks to stop is not kept waiting by sources that take long.
   void wait() {
     try {
       wait_polling(pass_ended_, [&] { report(done_ = std::max(done_, share_begun())); });
@@ -381,7 +381,7 @@ class ArcFinder {
     }
   }
 
-  /// Of all sources. Those that fail in a pass count for a tenth of what was left before it.
+  /// Returns the share of all sources. Those that fail in a pass count for a tenth of what was left before it.
   double share_begun() const {
     Tally tally = tally_.value_at(0, aside_);
     tally.begun[0] += begun_before_;
@@ -419,7 +419,7 @@ class ArcFinder {
     return std::max(1, per_processor) * processors();
   }
 
-  /// What was counted once all that was started is done.
+  /// Returns what was counted once all that was started is done.
   Tally finished() {
     wait();
     return tally_.value_at(0, aside_);
@@ -445,7 +445,7 @@ class ArcFinder {
   double done_ = 0;                ///< share of the sources, as far as is known
 };
 
-/// What a build takes at most of a device that has these nodes, in bytes.
+/// Returns what a build takes at most of a device that has these nodes, in bytes.
 std::uint64_t bytes_needed(const ArcsRequest& r, IndexRange range, std::size_t others) {
   const auto words = static_cast<std::uint64_t>(first_guess(r, range));
   constexpr std::uint64_t k_row_word = 8 + 4 + 1 + 4;  // see DeviceRows
@@ -567,7 +567,7 @@ class Builder {
       if (other != member) ranges.push_back(part(other).nodes);
     return ranges;
   }
-  /// What the others have chosen for a member.
+  /// Returns what the others have chosen for a member.
   std::vector<ArcsThere> arcs_there(int member) const {
     std::vector<ArcsThere> there;
     for (int other = 0; other < team_.members(); ++other) {

@@ -30,8 +30,8 @@ struct ArcsAcross {
   unsigned long long* count;
 };
 
-/// Of the rows of `nodes`, the arcs that end in others' ranges; room for `room` for each. Rows that have none are left
-/// as they are.
+/// Selects, of the rows of `nodes`, the arcs that end in others' ranges; room for `room` for each. Rows that have none
+/// are left as they are.
 __global__ void select_arcs(DeviceRows rows, IndexRange nodes, const ArcsAcross* others, int other_count,
                             std::int64_t room) {
   const int lane = threadIdx.x & 31;
@@ -67,10 +67,10 @@ __global__ void select_arcs(DeviceRows rows, IndexRange nodes, const ArcsAcross*
   }
 }
 
-/// What a device has that others need. Memory is taken when it is made, which may be while rows are found.
+/// Holds what a device has that others need. Memory is taken when it is made, which may be while rows are found.
 class ArcsForOthers {
  public:
-  /// As a guess, of as many arcs of all so many end in another's range: ranges are compact.
+  /// Guesses that of as many arcs of all so many end in another's range: ranges are compact.
   static constexpr std::int64_t k_of_as_many = 16;
 
   /// `ends`: the others' ranges.
@@ -98,7 +98,7 @@ class ArcsForOthers {
     }
   }
   IndexRange nodes() const { return nodes_; }
-  /// What the `other`-th of the others needs: a row for each of nodes(), and the arcs.
+  /// Returns what the `other`-th of the others needs: a row for each of nodes(), and the arcs.
   const RowAcross* rows(std::size_t other) const {
     return rows_.data() + other * static_cast<std::size_t>(nodes_.count());
   }
@@ -107,7 +107,7 @@ class ArcsForOthers {
   }
 
  private:
-  /// Of so many for each of the others.
+  /// Returns the size of so many numbers for each of the others.
   std::size_t size(std::int64_t each) const { return ends_.size() * static_cast<std::size_t>(each); }
   void take_room(std::int64_t room) {
     room_ = room;
@@ -130,7 +130,7 @@ class ArcsForOthers {
   std::vector<unsigned long long> counts_;
 };
 
-/// What another device, which has the rows of `nodes`, has chosen for this one.
+/// Holds what another device, which has the rows of `nodes`, has chosen for this one.
 struct ArcsThere {
   int device;
   IndexRange nodes;

@@ -61,7 +61,7 @@ class LookedThrough {
   const int4* labels_;  ///< the lane's own
   int4 fours_[at_hand ? k_fours : 1];
 };
-/// Between two labels, as if vertices were spread evenly over the disk.
+/// Guesses a label between two, as if vertices were spread evenly over the disk.
 SADDLEBACK_STEP std::int32_t guess_label(std::int32_t low, std::int32_t high, int below, int through, int wanted) {
   const float inner = low < 0 ? 0 : distance_of(low), outer = distance_of(high);
   const float share = Simd::quotient(static_cast<float>(wanted - below), static_cast<float>(through - below));
@@ -161,8 +161,9 @@ class WarpDisk {
   }
   SADDLEBACK_STEP int insert(bool active, std::uint32_t key) { return settle(claim(active, key)); }
 
-  /// Where `seen`. `bends` unless only straight ways are known to go on from there: neighbors then have to be told of
-  /// the label. Lanes that have seen nothing change nothing, each somewhere else: to branch takes longer.
+  /// Lowers the bound where `seen`. `bends` unless only straight ways are known to go on from there: neighbors then
+  /// have to be told of the label. Lanes that have seen nothing change nothing, each somewhere else: to branch takes
+  /// longer.
   SADDLEBACK_STEP void lower(bool seen, int slot, std::int32_t label, bool bends) {
     const std::int32_t before = atomicMin(&table_.labels[seen ? slot : lane_], seen ? label : k_unreached_label);
     if constexpr (All) {
@@ -186,7 +187,8 @@ class WarpDisk {
     return true;
   }
 
-  /// As GeodesicDisks::relax_bends: what bends make of the labels does not depend on the order in which they are told.
+  /// Works as GeodesicDisks::relax_bends: what bends make of the labels does not depend on the order in which they are
+  /// told.
   SADDLEBACK_STEP void relax_bends() {
     if (!is_bounded()) return;
     while (const int count = list_changed()) {
@@ -196,9 +198,9 @@ class WarpDisk {
     }
   }
 
-  /// Of all on the list: rule.offer(disk, whether rule.serves(label), slot of a neighbor, label), with label =
-  /// rule.label(rule.from(slot), length of the edge). By all lanes of the warp, a block each eight; blocks are asked
-  /// for ahead.
+  /// Tells the neighbors of all on the list: rule.offer(disk, whether rule.serves(label), slot of a neighbor, label),
+  /// with label = rule.label(rule.from(slot), length of the edge). By all lanes of the warp, a block each eight; blocks
+  /// are asked for ahead.
   template <class Rule>
   SADDLEBACK_STEP void tell_neighbors(int count, const Rule& rule) {
     if (count == 0) return;
@@ -247,8 +249,8 @@ class WarpDisk {
     __syncwarp();
   }
 
-  /// In one bucket of four, which are filled from the first entry on: what is in none of a bucket that has room is
-  /// nowhere.
+  /// Looks it up in one bucket of four, which are filled from the first entry on: what is in none of a bucket that has
+  /// room is nowhere.
   SADDLEBACK_STEP void look_up(Claim& claim) {
     const uint4 there = reinterpret_cast<const uint4*>(table_.keys)[claim.bucket];
     const bool has_room = there.w == k_no_key;
@@ -279,7 +281,7 @@ class WarpDisk {
     __syncwarp();
     return count;
   }
-  /// What the list has no room for stays marked.
+  /// Leaves marked what the list has no room for.
   SADDLEBACK_STEP int list_word(std::uint32_t word, int at, int count) {
     const int through = warp_sum_through(__popc(word));
     int next = count + through - __popc(word);

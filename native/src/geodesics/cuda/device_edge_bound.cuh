@@ -9,7 +9,7 @@
 namespace saddleback {
 namespace {
 
-/// What is kept for it, in global memory: it is seldom asked for.
+/// Holds what is kept for it, in global memory: it is seldom asked for.
 template <int Slots>
 struct alignas(16) EdgeDistances {
   std::int32_t known[Slots];  ///< bits of the distances by edges

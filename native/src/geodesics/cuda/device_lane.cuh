@@ -21,7 +21,7 @@ struct Simd {
   using Mask = bool;
   SADDLEBACK_STEP static float fill(float value) { return value; }
   SADDLEBACK_STEP static float pick(bool mask, float yes, float no) { return mask ? yes : no; }
-  /// Without a branch.
+  /// Picks without a branch.
   SADDLEBACK_STEP static bool pick(bool mask, bool yes, bool no) { return (mask & yes) | (!mask & no); }
   SADDLEBACK_STEP static bool any(bool mask) { return __any_sync(k_warp, mask); }
   SADDLEBACK_STEP static float min(float a, float b) { return a < b ? a : b; }

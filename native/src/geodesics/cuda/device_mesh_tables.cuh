@@ -241,7 +241,7 @@ class MeshTables {
  private:
   std::size_t per_edge() const { return static_cast<std::size_t>(edges_); }
   std::size_t per_node() const { return static_cast<std::size_t>(nodes_); }
-  /// At most: all but the last of a node's blocks hold seven, and it has one more neighbor than edges.
+  /// Bounds the blocks: all but the last of a node's blocks hold seven, and it has one more neighbor than edges.
   static std::size_t neighbor_blocks(const ArcsRequest& r) {
     const auto nodes = static_cast<std::size_t>(r.node_count);
     return nodes + (static_cast<std::size_t>(r.edge_count) + nodes) / 7;

@@ -25,7 +25,7 @@ SADDLEBACK_STEP int to_sector(float sector) {
   return whole < 0 ? 0 : whole > 255 ? 255 : whole;
 }
 
-/// As GeodesicDisks::choose and DiskRows do it.
+/// Writes rows as GeodesicDisks::choose and DiskRows do it.
 template <class Waves, class Table, int Seats>
 class RowWriter {
   using Best = BestSightings<Table, Seats>;
@@ -93,7 +93,7 @@ class RowWriter {
     return order_in_generation(seen.turns, RootEdge::edge(seen.root()));
   }
 
-  /// Of sightings of the same label it is the processor's first that counts.
+  /// Breaks ties: of sightings of the same label it is the processor's first that counts.
   SADDLEBACK_STEP void break_ties() {
     __syncwarp();
     const Sighting* const draft = waves_.draft();
@@ -125,7 +125,7 @@ class RowWriter {
     return number < waves_.links() ? is_shortest || !stays : is_shortest && stays;
   }
 
-  /// What the source is linked with is in its order already, as if each were a generation.
+  /// Begins with what the source is linked with, which is in its order already, as if each were a generation.
   SADDLEBACK_STEP bool list_kept(int (&counts)[Seats]) {
     bool fits = waves_.arcs() <= k_first_kept;
     int generations = 0, last[Seats] = {};  // so far; of the last that is kept
@@ -162,7 +162,7 @@ class RowWriter {
     float leaving, back, per_radian, per_radian_back;
   };
 
-  /// What all arcs of a source need of the mesh.
+  /// Holds what all arcs of a source need of the mesh.
   struct Source {
     std::int32_t first;  ///< half-edge
     float per_radian;

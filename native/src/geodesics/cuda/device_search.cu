@@ -37,7 +37,7 @@ class StopFlag {
   unsigned* flag_ = nullptr;
 };
 
-/// What a search works with, left to the next.
+/// Holds what a search works with, left to the next.
 struct SearchTools {
   Stream stream;
   Stopwatch watch{stream};
@@ -79,7 +79,7 @@ std::uint64_t bytes_of_field(const CudaGraph& graph, bool with_sources) {
   return 2 * nodes * (with_sources ? 12 : 8) + 8 * (std::uint64_t{1} << graph.graph.word_bits) + sizeof(TeamBoard);
 }
 
-/// How many fields a launch finds, by how many blocks each: all run at once.
+/// Holds how many fields a launch finds, by how many blocks each: all run at once.
 struct Teams {
   std::int32_t fields;
   int blocks;

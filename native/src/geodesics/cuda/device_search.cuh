@@ -39,9 +39,10 @@ struct SearchSeeds {
   const double* distances;
 };
 
-/// What a team's blocks tell one another; all of its bytes are 0 before a field.
+/// Holds what a team's blocks tell one another; all of its bytes are 0 before a field.
 struct TeamBoard {
-  /// Of a round, the one before and the next: the complement of the least that waits. 0: nothing does.
+  /// Holds the least distances of a round, the one before and the next: the complement of the least that waits. 0:
+  /// nothing does.
   DistanceBits waiting[3];
   unsigned arrived;
 };
@@ -127,14 +128,14 @@ class FieldSearch {
     for (std::int64_t i = begin + member_ * blockDim.x + threadIdx.x; i < end; i += stride) visit(i, seeds.nodes[i]);
   }
 
-  /// In the next round.
+  /// Lets it wait in the next round.
   __device__ void wait(std::int32_t node, DistanceBits distance) {
     const std::uint32_t words = graph_.word_count(), word = static_cast<std::uint32_t>(node) & (words - 1);
     atomicOr(waiting_ + ((round_ + 1) & 1) * words + word, 1u << (node >> graph_.word_bits));
     least_mine_ = min(least_mine_, max(distance, DistanceBits{1}));
   }
 
-  /// Whether any node waits: all of the team are here then, and know the least distance of those.
+  /// Tells whether any node waits: all of the team are here then, and know the least distance of those.
   __device__ bool end_round() {
     for (int step = 16; step > 0; step /= 2) least_mine_ = min(least_mine_, __shfl_xor_sync(k_warp, least_mine_, step));
     if (lane() == 0 && least_mine_ != k_far_away) atomicMin(&list_.least, least_mine_);
@@ -151,7 +152,7 @@ class FieldSearch {
     return least_ != k_far_away;
   }
 
-  /// For the first thread. \return the team's.
+  /// Returns it for the first thread. \return the team's.
   __device__ DistanceBits share_least() {
     constexpr unsigned k_rounds_between_looks = 16;
     const int slot = static_cast<int>(round_ % 3), next = static_cast<int>((round_ + 1) % 3);
@@ -308,7 +309,8 @@ __global__ void clear_fields(SearchFields fields, std::size_t count) {
   }
 }
 
-/// In the order of the vertices, of the nodes where those of the vertices are null; infinity for what nothing reached.
+/// Writes them in the order of the vertices, of the nodes where those of the vertices are null; infinity for what
+/// nothing reached.
 __global__ void write_fields(SearchFields fields, const std::int32_t* nodes, std::int32_t node_count, double* distances,
                              std::int32_t* sources) {
   const auto bound = static_cast<DistanceBits>(__double_as_longlong(fields.bound));

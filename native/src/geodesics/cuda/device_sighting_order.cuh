@@ -18,7 +18,7 @@ namespace {
 /// turns, windows get numbers in place of them; sources with more half-edges are left to the processor.
 constexpr int k_root_edge_bits = 12, k_most_turns = 31 - k_root_edge_bits;
 
-/// Which of a generation's sightings, all of one source, comes first: that with the lower number.
+/// Tells which of a generation's sightings, all of one source, comes first: that with the lower number.
 SADDLEBACK_HOST_DEVICE inline std::uint32_t order_in_generation(std::uint32_t turns, int root_edge) {
   return turns << k_root_edge_bits | static_cast<std::uint32_t>(root_edge);
 }
@@ -26,7 +26,7 @@ SADDLEBACK_HOST_DEVICE inline std::uint32_t order_in_generation(std::uint32_t tu
 /// Set in the first of a row that are of a generation.
 constexpr std::uint32_t k_new_generation = std::uint32_t{1} << 31;
 
-/// Where the `i`-th of `count` in a row comes in the processor's order; that of generations is theirs already.
+/// Returns where the `i`-th of `count` in a row comes in the processor's order; that of generations is theirs already.
 __device__ inline int place_in_order(const std::uint32_t* order, int count, int i) {
   const auto rank_of = [&](int j) { return order[j] & ~k_new_generation; };
   const std::uint32_t own = rank_of(i);

@@ -42,7 +42,7 @@ struct DeviceRows {
   std::uint64_t target_mask;
   const std::int32_t* left = nullptr;  ///< nodes whose rows are still to be found; null: none
 
-  /// Whether all were found, and there was room for them.
+  /// Tells whether all were found, and there was room for them.
   __device__ bool are_there() const { return (!left || *left == 0) && static_cast<std::int64_t>(*taken) <= room; }
   /// Place for words, of one row or several. By all lanes of a warp.
   __device__ RowPlace reserve(int count) const {
@@ -78,14 +78,14 @@ struct AddedArcs {
   std::int64_t room;
   std::uint8_t* seen;  ///< per arc of the rows: 1 when it was paired, or found to lack its reverse
 
-  /// Without loads that come later having to wait: nobody reads it before all is paired.
+  /// Notes it without loads that come later having to wait: nobody reads it before all is paired.
   __device__ void note_seen(std::int64_t arc) const {
     asm volatile("st.global.u8 [%0], %1;" ::"l"(seen + arc), "r"(1));
   }
 
-  /// Of the arcs of `Rows` nodes, from the `begin`-th of each on, `32 / Rows` times 32 at most: bit i of `lacking` is
-  /// set where the lane's own of the i-th 32 is to be added. By all threads of a block, of which one counts for all:
-  /// additions to one place wait for one another.
+  /// Adds some of the arcs of `Rows` nodes, from the `begin`-th of each on, `32 / Rows` times 32 at most: bit i of
+  /// `lacking` is set where the lane's own of the i-th 32 is to be added. By all threads of a block, of which one
+  /// counts for all: additions to one place wait for one another.
   template <int Rows>
   __device__ void add(const DeviceRows& rows, const ArcPacking& packing, std::int32_t node, int begin,
                       unsigned lacking) const {
@@ -127,8 +127,8 @@ struct AddedArcs {
 /// Arcs of a row that are looked at before those whose reverses are missing are listed: bits of a word.
 constexpr int k_arcs_at_once = 32 * 32;
 
-/// Where a node is among `count` targets from `first` on, negative if it is not. `targets` is aligned, and a few beyond
-/// the last can be read.
+/// Returns where a node is among `count` targets from `first` on, negative if it is not. `targets` is aligned, and a
+/// few beyond the last can be read.
 __device__ inline std::int64_t find_target(const std::int32_t* targets, std::int64_t first, int count,
                                            std::int32_t node) {
   constexpr int k_at_once = 8;  // what memory gives in one piece
@@ -178,8 +178,8 @@ __device__ unsigned pair_arcs_of(const DeviceRows& rows, const ArcPacking& packi
   return lacking;
 }
 
-/// Whether any of a block's rows, one a warp, has arcs from `begin` on. By all threads of the block, which go through
-/// their rows together: those with short ones wait for the others.
+/// Tells whether any of a block's rows, one a warp, has arcs from `begin` on. By all threads of the block, which go
+/// through their rows together: those with short ones wait for the others.
 __device__ inline bool any_has_more(int begin, int count) { return __syncthreads_or(begin < count ? 1 : 0) != 0; }
 
 __global__ void __launch_bounds__(k_pair_threads)
@@ -198,7 +198,7 @@ __global__ void __launch_bounds__(k_pair_threads)
 
 constexpr int k_unpaired_rows_per_warp = 4;
 
-/// What has not been paired so far has no reverse.
+/// Finds what has not been paired so far, which has no reverse.
 __global__ void find_unpaired(DeviceRows rows, ArcPacking packing, std::int32_t nodes, AddedArcs added) {
   if (!rows.are_there()) return;
   constexpr int k_rows = k_unpaired_rows_per_warp, k_bits = 32 / k_rows;
@@ -233,7 +233,7 @@ struct AddSizes {
     return {a.all + b.all, a.added + b.added};
   }
 };
-/// Of the rows of a range, by number.
+/// Holds the sizes of the rows of a range, by number.
 struct SizesOfRows {
   const std::int32_t *counts, *added;
   IndexRange range;
@@ -252,7 +252,7 @@ __global__ void gather_added(AddedArcs added, const RowSizes* before, std::uint6
   words[before[arc.row].added + arc.number] = arc.word;
 }
 
-/// Where all arcs go.
+/// Holds where all arcs go.
 struct UnitedRows {
   const RowSizes* before;
   const std::uint64_t* others;  ///< that were added, row by row
@@ -267,8 +267,8 @@ __global__ void shift_offsets(std::int64_t* offsets, std::size_t count, std::int
   if (i < count) offsets[i] += by;
 }
 
-/// Of a part of a range, by number. A row's own arcs in the processor's order, then those that were added, sorted; and
-/// where each row begins, and the last ends.
+/// Writes the rows of a part of a range, by number. A row's own arcs in the processor's order, then those that were
+/// added, sorted; and where each row begins, and the last ends.
 __global__ void write_rows(DeviceRows rows, IndexRange range, IndexRange part, UnitedRows united) {
   const int lane = threadIdx.x & 31;
   const std::int32_t row =
@@ -329,12 +329,12 @@ class RowStore {
   std::int64_t room() const { return room_; }
   std::uint64_t target_mask() const { return target_mask_; }
   void set_target_mask(std::uint64_t mask) { target_mask_ = mask; }
-  /// Of all rows. Waits for the stream, unless it is known.
+  /// Returns the words of all rows. Waits for the stream, unless it is known.
   std::int64_t words_wanted() const {
     return wanted_ != k_unknown ? wanted_ : static_cast<std::int64_t>(taken_.value_at(0));
   }
   void note_wanted(std::int64_t words) { wanted_ = words; }
-  /// For `room` words, of which `taken` are there.
+  /// Makes room for `room` words, of which `taken` are there.
   void make_room(std::int64_t taken, std::int64_t room) {
     if (room <= room_) return;
     const auto grow = [&](auto& buffer, std::int64_t size) {
@@ -440,21 +440,21 @@ class DeviceUnion {
     }
     check_cuda(cudaGetLastError(), "writing rows");
   }
-  /// Whether there was room for all words. Waits until they are counted; they are still being written.
+  /// Tells whether there was room for all words. Waits until they are counted; they are still being written.
   bool fits(cudaStream_t aside) {
     check_cuda(cudaEventSynchronize(added_up_), "waiting for the device");
     for (std::size_t p = 0; p <= k_parts; ++p)
       sizes_[p] = before_.value_at(static_cast<std::size_t>(part(p).begin), aside);
     return all().all <= static_cast<std::int64_t>(words_.size()) && all().added <= room_for_added();
   }
-  /// As much as it was seen to take.
+  /// Makes as much as it was seen to take.
   void make_room() {
     take_room(std::max(all().all, static_cast<std::int64_t>(words_.size())), std::max(all().added, room_for_added()));
   }
 
   std::int64_t count() const { return all().all; }
-  /// To a whole graph's arrays, of which `before` words belong to earlier ranges. Words are copied while later ones are
-  /// written.
+  /// Copies to a whole graph's arrays, of which `before` words belong to earlier ranges. Words are copied while later
+  /// ones are written.
   void copy(HostCopies& copies, std::int64_t before, std::int64_t* offsets, std::uint64_t* words) {
     if (before > 0) {
       const auto blocks = static_cast<unsigned>(range_.count() / k_block_threads + 1);
@@ -470,7 +470,7 @@ class DeviceUnion {
   }
 
  private:
-  /// Of the range's rows, which are written one part after the other.
+  /// Counts the parts of the range's rows, which are written one part after the other.
   static constexpr std::size_t k_parts = 4;
   /// Rows by number; the one after the last is empty.
   IndexRange part(std::size_t number) const {

@@ -18,7 +18,7 @@ constexpr std::uint32_t k_no_key = 0xffffffffu;       ///< in entries that are f
 constexpr std::uint32_t k_never_a_key = 0x80000000u;  ///< in no entry: to put something in its place changes nothing
 constexpr std::int32_t k_unreached_label = 0x7f800000;
 
-/// What is known of a node by its entry of the table: whose it is among the sources, and whether it is a saddle.
+/// Holds what is known of a node by its entry of the table: whose it is among the sources, and whether it is a saddle.
 template <int Seats>
 struct DiskKey {
   static constexpr std::uint32_t k_saddle = 1u << 30, k_node = k_saddle - 1;
@@ -95,8 +95,8 @@ struct SightedAt {
   SADDLEBACK_STEP static int generation(int place) { return place >> k_slot_bits; }
 };
 
-/// What belongs to a window, by its indices: its half-edge's record, the slots of the half-edge's ends and, once it is
-/// sighted, of the apex, the RootEdge and the turns.
+/// Holds what belongs to a window, by its indices: its half-edge's record, the slots of the half-edge's ends and, once
+/// it is sighted, of the apex, the RootEdge and the turns.
 struct alignas(16) WindowLinks {
   static constexpr int k_most_edges = RootEdge::k_most_edges;  ///< of a source
   std::int32_t edge;
@@ -112,20 +112,20 @@ struct alignas(16) WindowLinks {
   SADDLEBACK_STEP int apex() const { return static_cast<int>(root_ids >> 16); }
   SADDLEBACK_STEP int root() const { return static_cast<int>(root_ids & 0xffff); }
   SADDLEBACK_STEP std::uint32_t turns() const { return turned; }
-  /// Into the window that it is a copy of.
+  /// Notes it in the window that it is a copy of.
   SADDLEBACK_STEP void note_apex(WindowLinks& there, int slot) const {
     there.root_ids = root_ids | static_cast<std::uint32_t>(slot) << 16;
   }
   SADDLEBACK_STEP void set_turns(std::uint32_t number, int) { turned = number; }
-  /// Of the window behind a side, whose turns have `bits` before that.
+  /// Returns the links of the window behind a side, whose turns have `bits` before that.
   SADDLEBACK_STEP WindowLinks child(std::int32_t behind, int side, int bits) const {
     return {behind, (ends & 0xffffu << 16 * side) | (root_ids >> 16) << 16 * (1 - side), root_ids & 0xffff,
             turned | static_cast<std::uint32_t>(side) << bits};
   }
 };
 
-/// The same in less, with the radius beyond which the window serves nothing. Turns have as many bits as there were
-/// generations.
+/// Holds the same in less, with the radius beyond which the window serves nothing. Turns have as many bits as there
+/// were generations.
 struct alignas(16) DenseLinks {
   static constexpr int k_slot_bits = 10, k_edge_bits = 7, k_generation_bits = 5;
   static constexpr int k_seat = k_edge_bits, k_generation = k_seat + 1, k_turns = k_generation + k_generation_bits;
@@ -153,7 +153,7 @@ struct alignas(16) DenseLinks {
   SADDLEBACK_STEP void note_apex(DenseLinks& there, int slot) const {
     there.slots = slots | static_cast<std::uint32_t>(slot) << 2 * k_slot_bits;
   }
-  /// In place of as many generations as the numbers have bits.
+  /// Sets the turns in place of as many generations as the numbers have bits.
   SADDLEBACK_STEP void set_turns(std::uint32_t number, int bits) {
     origin =
         (origin & ((1u << k_generation) - 1)) | static_cast<std::uint32_t>(bits) << k_generation | number << k_turns;
@@ -190,7 +190,7 @@ struct alignas(16) WindowPool {
   static constexpr bool All = All_, is_dense = !All && Slots <= 1 << DenseLinks::k_slot_bits;
   static constexpr int Windows = Windows_;
   using Links = std::conditional_t<is_dense, DenseLinks, WindowLinks>;
-  /// In the dense one a ring, a power of two.
+  /// Sizes the cones; in the dense one they are a ring, a power of two.
   static constexpr int Cones = is_dense ? (Windows <= 80 ? 128 : 256) : Windows + (All ? Windows / 4 : 3 * Windows / 8);
   static_assert(Windows <= Cone::k_number && Windows % 4 == 0);
   double2 ends[2][Windows];           ///< of the half-edge: start, which is on the left, and end
@@ -221,7 +221,7 @@ SADDLEBACK_STEP std::int32_t label_of(float distance, bool makes_arc) {
   const std::int32_t bits = __float_as_int(distance) & ~1;
   return makes_arc ? bits : bits | 1;
 }
-/// As Eigen's norm.
+/// Computes it as Eigen's norm.
 SADDLEBACK_STEP double norm_of(double x, double y) { return __dsqrt_rn(x * x + y * y); }
 
 }  // namespace

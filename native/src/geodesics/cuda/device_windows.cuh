@@ -93,7 +93,7 @@ class WarpWaves {
     if (!All) count_windows(Pool::is_dense ? k_free_generations * k_windows : count_);  // or fewer
   }
 
-  /// To the last generation. False when the memory did not do.
+  /// Runs to the last generation. False when the memory did not do.
   SADDLEBACK_STEP bool run() {
     if constexpr (All) return run_to_radius();
     if (overflowed()) return false;
@@ -149,8 +149,8 @@ class WarpWaves {
   SADDLEBACK_STEP static int cone_place(int number) { return Pool::is_dense ? number & (Pool::Cones - 1) : number; }
   SADDLEBACK_STEP int window_of_cone(int number) const { return pool_.cones[cone_place(number)] & Cone::k_number; }
 
-  /// When no window and no cone waits any more: those that count_ counts, from a place on, come next, all of one
-  /// generation. \return how many
+  /// Begins the next generation when no window and no cone waits any more: those that count_ counts, from a place on,
+  /// come next, all of one generation. \return how many
   SADDLEBACK_STEP int begin_generation(int place) {
     const int all = count_;
     const bool was_free = stop_ > 0;
@@ -165,7 +165,7 @@ class WarpWaves {
     return all;
   }
 
-  /// Whether windows may be taken in any order.
+  /// Says whether windows may be taken in any order.
   SADDLEBACK_STEP void set_free(bool free) {
     constexpr int k_all = 1 << 20;
     stop_ = free ? min(k_most_turns, turns_ + k_free_generations - generation_) : 0;
@@ -178,7 +178,7 @@ class WarpWaves {
     if (windows_ > k_most_windows / k_batch) overflow_ = 1;  // the processor may stop there
   }
 
-  /// Until the disk becomes no smaller.
+  /// Runs until the disk becomes no smaller.
   SADDLEBACK_STEP bool run_to_radius() {
     for (int begin = 0; !overflowed();) {
       const int all = uniform(count_), behind = in_ring(begin + all);
@@ -250,7 +250,7 @@ class WarpWaves {
     return Key::pack(record.apex, seat, (record.clearances & k_saddle_bit) != 0);
   }
 
-  /// Of a flank that is itself the way there.
+  /// Returns the ray of a flank that is itself the way there.
   SADDLEBACK_STEP static Ray ray_of(float x, float y, float reach) {
     if constexpr (All) {
       return {x, y};
@@ -359,7 +359,8 @@ class WarpWaves {
     return smaller;
   }
 
-  /// In creases fewer than k vertices are in sight: no radius would ever end the windows there.
+  /// Bounds the disk by edges: in creases fewer than k vertices are in sight: no radius would ever end the windows
+  /// there.
   SADDLEBACK_STEP void bound_by_edges() {
     const float radius = radius_by_edges(mesh_.neighbors, mesh_.k, &table_, edges_);
     if (radius < 0) overflow_ = 1;
@@ -457,7 +458,7 @@ class WarpWaves {
     }
   }
 
-  /// What becomes of the cone on a side, in its words.
+  /// Returns what becomes of the cone on a side, in its words.
   SADDLEBACK_STEP ChildWindow look_behind(const Child& child, bool cut, const ApexView& apex, const Ray& near,
                                           const Ray& far, float flip, float way, float clearance, float most) const {
     const Flank flank = flank_at(apex, way);

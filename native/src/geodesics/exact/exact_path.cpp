@@ -72,7 +72,7 @@ Approach ExactTracer::approach_vertex(Index vertex) const {
   return result;
 }
 
-/// Whether the root lies in the face of the half-edge, where `image` is.
+/// Tells whether the root lies in the face of the half-edge, where `image` is.
 bool ExactTracer::is_image_of(Index root, Index halfedge, const Vec2& image) const {
   const EdgeFrame& frame = surface_.frame(halfedge);
   const double reach = k_same_place * (frame.length + frame.left_length + frame.right_length);
@@ -85,8 +85,8 @@ bool ExactTracer::is_image_of(Index root, Index halfedge, const Vec2& image) con
   return false;
 }
 
-/// From a point of the face of line.halfedge back along the line to its root, or to a vertex that it meets on the way;
-/// returns which. Notes down the edges crossed.
+/// Follows the line from a point of the face of line.halfedge back along the line to its root, or to a vertex that it
+/// meets on the way; returns which. Notes down the edges crossed.
 Index ExactTracer::follow(const SightLine& line, const Vec2& from, SurfacePoints& backwards) const {
   const EdgeFrame* frame = &surface_.frame(line.halfedge);
   if (line.crossing <= k_meet * frame->length) return frame->from;

@@ -28,11 +28,11 @@ class ExactTracer {
   /// through an edge is longer than the line from there. A corner is taken as a point of the face like any other.
   template <class Visit>
   void visit_ways(const SurfacePoint& point, Visit&& visit) const;
-  /// In the plane of its face, which some source must reach.
+  /// Returns the place of a point in the plane of its face, which some source must reach.
   Vec2 place_of(const SurfacePoint& point) const {
     return surface_.in_frame(3 * surface_.face_of(point.face), point.barycentric);
   }
-  /// From its source to `target`, which some source must reach. O(windows on the edges crossed).
+  /// Leads from its source to `target`, which some source must reach. O(windows on the edges crossed).
   GeodesicPath path(const SurfacePoint& target) const;
 
  private:

@@ -60,10 +60,10 @@ constexpr Index k_ahead = 4;  ///< windows, enough for memory to answer
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 double squared(double x, double y) { return x * x + y * y; }
 double length_of(double x, double y) { return std::sqrt(squared(x, y)); }
-/// Whether a length, which may be negative, is less than the root of a square.
+/// Tells whether a length, which may be negative, is less than the root of a square.
 bool is_less(double length, double square) { return length < 0 || length * length < square; }
 
-/// Whether the rays from (x, y), y < 0, through two places of the x axis lie no more than that angle apart.
+/// Tells whether the rays from (x, y), y < 0, through two places of the x axis lie no more than that angle apart.
 bool is_within(double angle, double x, double y, double b, double c) {
   const double area = (c - b) * y;
   return area * area <= angle * angle * (squared(b - x, y) * squared(c - x, y));
@@ -95,9 +95,9 @@ void ExactPropagation::run(const JobStage& stage) {
   stage.update(1);
 }
 
-/// Whether some vertex is farther than by an edge from its neighbor. No window that comes to the neighbor went on,
-/// then: it becomes a root, which emits windows all round it. So whatever rounding does, no vertex of a component stays
-/// unreached and no two ends of an edge are farther from each other than it is long.
+/// Tells whether some vertex is farther than by an edge from its neighbor. No window that comes to the neighbor went
+/// on, then: it becomes a root, which emits windows all round it. So whatever rounding does, no vertex of a component
+/// stays unreached and no two ends of an edge are farther from each other than it is long.
 bool ExactPropagation::cover_again() {
   const auto look = [&](Index a, Index b, double length) {
     if (!(std::abs(distances_[a] - distances_[b]) > length)) [[likely]]
@@ -234,7 +234,7 @@ void ExactPropagation::offer(Index vertex, double distance, const Arrival& arriv
     queue_->push({0, 0, 0, 0, distance, ~vertex, k_none}, distance);
 }
 
-/// Whether the first of two arrivals as long as each other belongs to the smaller source.
+/// Tells whether the first of two arrivals as long as each other belongs to the smaller source.
 bool ExactPropagation::owns_before(const Arrival& a, const Arrival& b) const {
   if (a.halfedge == Arrival::k_at_source || b.halfedge == Arrival::k_at_source)
     return a.halfedge == b.halfedge && a.root < b.root;
@@ -250,7 +250,7 @@ Index ExactPropagation::owner(Index root) const {
   return root - surface_.vertex_count();
 }
 
-/// Whether an end of its edge offers every point of the window a shorter way.
+/// Tells whether an end of its edge offers every point of the window a shorter way.
 inline bool ExactPropagation::is_beaten_by_corners(const Window& w) const {
   const EdgeFrame& frame = surface_.frame(w.halfedge);
   const double at_from = distances_[frame.from] * (1 + k_slack) - w.sigma;
@@ -259,7 +259,7 @@ inline bool ExactPropagation::is_beaten_by_corners(const Window& w) const {
          is_less(at_to + (frame.length - w.b0), squared(w.b0 - w.sx, w.sy));
 }
 
-/// Whether the rays have gone all round a tip that they end at.
+/// Tells whether the rays have gone all round a tip that they end at.
 inline bool ExactPropagation::circles_tip(const Window& w) const {
   const EdgeFrame& frame = surface_.frame(w.halfedge);
   return (w.b1 == frame.length && circles(surface_.tangent_of_tip(frame.to), frame.length - w.sx, -w.sy)) ||

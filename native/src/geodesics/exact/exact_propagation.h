@@ -14,9 +14,10 @@
 
 namespace saddleback {
 
-/// How a shortest path comes to a vertex: straight from its root (see Window::root).
+/// Holds how a shortest path comes to a vertex: straight from its root (see Window::root).
 struct Arrival {
-  /// Instead of a half-edge: not reached, from the vertex `root` along an edge, or the vertex is source number `root`.
+  /// Stands instead of a half-edge: not reached, from the vertex `root` along an edge, or the vertex is source number
+  /// `root`.
   static constexpr Index k_unreached = -1, k_along_edge = -2, k_at_source = -3;
   double x, y;     ///< from the root to the vertex, in the frame of the half-edge
   Index halfedge;  ///< through whose face it comes, to the apex
@@ -41,7 +42,7 @@ class ExactPropagation {
   /// Infinity where no source reaches, or only beyond the limit.
   double distance(Index vertex) const { return distances_[vertex] <= options_.limit ? distances_[vertex] : k_far; }
   const Arrival& arrival(Index vertex) const { return arrivals_[vertex]; }
-  /// Which source the root belongs to.
+  /// Tells which source the root belongs to.
   Index owner(Index root) const;
   std::int64_t window_count() const { return window_count_; }
   /// All windows that were propagated, as blocks.

@@ -20,7 +20,7 @@ struct alignas(64) EdgeFrame {
   Index from, to, apex;
   float to_end_rest;  ///< of `length`: what rounding leaves out of length - apex_x, too much for a needle's short side
 
-  /// From the apex to the end, along x.
+  /// Returns the length from the apex to the end, along x.
   double to_end() const { return (length - apex_x) + static_cast<double>(to_end_rest) * length; }
 };
 static_assert(sizeof(EdgeFrame) == 64);
@@ -32,7 +32,7 @@ struct SourceInFace {
   Vec3 barycentric;
 };
 
-/// The same in a face on one of the two sides of a half-edge, in the frame of that.
+/// Holds the same in a face on one of the two sides of a half-edge, in the frame of that.
 struct SourceBeside {
   Vec2 place;
   Index source;
@@ -62,20 +62,21 @@ class ExactSurface {
     if (first_beside_.empty()) return;
     for (Index i = first_beside_[h]; i != k_none; i = beside_[i].next) visit(beside_[i]);
   }
-  /// Where the point of the half-edge's face is, in the frame of the half-edge.
+  /// Returns where the point of the half-edge's face is, in the frame of the half-edge.
   Vec2 in_frame(Index h, const Vec3& barycentric) const;
-  /// Where a shortest path may bend: on the boundary, or the total angle exceeds 2 pi by more than rounding.
+  /// Returns where a shortest path may bend: on the boundary, or the total angle exceeds 2 pi by more than rounding.
   bool may_bend(Index vertex) const { return bends_[vertex] != Bends::never; }
-  /// So near to a source that rounding leaves gaps between rays on their way round it: it emits what a source there
-  /// would.
+  /// Tells whether it is so near to a source that rounding leaves gaps between rays on their way round it: it emits
+  /// what a source there would.
   bool is_beside_source(Index vertex) const { return bends_[vertex] == Bends::all_round; }
 
-  /// Whether the angle of some vertex is less than a right one.
+  /// Tells whether the angle of some vertex is less than a right one.
   bool has_tips() const { return !tip_tangents_.empty(); }
-  /// Of a vertex's total angle; infinity where that is not less than a right one. Only where there are tips.
+  /// Returns the tangent of a vertex's total angle; infinity where that is not less than a right one. Only where there
+  /// are tips.
   double tangent_of_tip(Index vertex) const { return tip_tangents_[vertex]; }
 
-  /// Whether it is on a component with a source.
+  /// Tells whether it is on a component with a source.
   bool holds(Index mesh_face) const { return face_of_[mesh_face] != k_none; }
 
   // Between the mesh's numbers and those here.

@@ -172,7 +172,7 @@ class Union {
     return block.back_sectors[rows_[node].first - rows_[block.first_node].first + at];
   }
 
-  /// By their nodes, each node's sorted: the order in which they were found does not matter.
+  /// Sorts them by their nodes, each node's sorted: the order in which they were found does not matter.
   void sort_missing(int threads, const JobStage& stage) {
     first_missing_.resize(node_count_ + 1);
     std::vector<std::atomic<std::int32_t>> counts(node_count_);

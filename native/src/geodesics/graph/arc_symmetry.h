@@ -21,7 +21,7 @@ struct FoundArcs {
   ReturnedVector<std::uint8_t> back_sectors;  ///< per word: direction back, at the target
 };
 
-/// The same, kept in memory without room to grow.
+/// Holds the same, kept in memory without room to grow.
 struct KeptArcs {
   KeptArcs() = default;
   KeptArcs(const FoundArcs& found, ReturnedPieces& memory);

@@ -12,7 +12,7 @@
 
 namespace saddleback {
 
-/// Where and how arcs are to be found. Arrays are the caller's and live through the call.
+/// Holds where and how arcs are to be found. Arrays are the caller's and live through the call.
 struct ArcsRequest {
   const int* devices = nullptr;  ///< the driver's numbers; one that is named twice takes two parts
   int device_count = 0;
@@ -44,7 +44,7 @@ struct FoundRows {
   std::size_t word_count;
 };
 
-/// What the CUDA module asks of its caller, from any thread, one call at a time. No call throws.
+/// Holds what the CUDA module asks of its caller, from any thread, one call at a time. No call throws.
 struct ArcsCaller {
   void* self = nullptr;
   /// Tells the share done; false: stop.

@@ -237,7 +237,7 @@ void GeodesicDisks::lower_labels(int from, int to) {
   }
 }
 
-/// Whether shortest ways may bend at a slot's vertex, so that its neighbors have to be told of its label.
+/// Tells whether shortest ways may bend at a slot's vertex, so that its neighbors have to be told of its label.
 bool GeodesicDisks::bends(std::int32_t slot, std::int32_t label) const {
   return !makes_arc(label) || mesh_.is_saddle(slot / k_batch);
 }
@@ -271,7 +271,8 @@ void GeodesicDisks::lower_labels_of(int from, int to) {
     touched_[list].resize(static_cast<std::size_t>(ends[list] - touched_[list].data()));
 }
 
-/// In the order in which they were sighted. As in lower_labels, nothing but what is written depends on what is chosen.
+/// Chooses in the order in which they were sighted. As in lower_labels, nothing but what is written depends on what is
+/// chosen.
 ///
 /// An arc that is not the shortest way stays as long as others may rely on it: no distance in the graph exceeds the
 /// shortest by more than the tolerance, so that longer arcs serve nothing.
@@ -369,7 +370,7 @@ void GeodesicDisks::bound_disks() {
   relax_bends();
 }
 
-/// In creases fewer than k vertices are in sight: no radius would ever end the windows there.
+/// Bounds the disk by edges: in creases fewer than k vertices are in sight: no radius would ever end the windows there.
 void GeodesicDisks::bound_blind_disks() {
   std::array<bool, k_batch> blind{};
   for (WindowColumns* side : {&now_->lefts, &now_->rights}) {
@@ -381,8 +382,8 @@ void GeodesicDisks::bound_blind_disks() {
     if (blind[lane] && limits_[lane] == k_infinity) limits_[lane] = radius_by_edges(lane);
 }
 
-/// Of the disk, from above: the k-th distance by mesh edges from the vertices with labels. The largest number where
-/// there are not so many.
+/// Returns the radius of the disk, from above: the k-th distance by mesh edges from the vertices with labels. The
+/// largest number where there are not so many.
 float GeodesicDisks::radius_by_edges(int lane) {
   if (by_edges_.empty()) by_edges_.assign(mesh_.node_count(), k_infinity);
   std::vector<std::pair<float, Index>> queue;
@@ -412,8 +413,9 @@ float GeodesicDisks::radius_by_edges(int lane) {
   return radius;
 }
 
-/// Behind saddle vertices windows bring no distances: there, bounds by edges count the vertices of the disk and end the
-/// windows that serve nothing. Done only where the disk's radius is known: without it this would flood the mesh.
+/// Relaxes bends: behind saddle vertices windows bring no distances: there, bounds by edges count the vertices of the
+/// disk and end the windows that serve nothing. Done only where the disk's radius is known: without it this would flood
+/// the mesh.
 void GeodesicDisks::relax_bends() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < changed_.size(); ++i) {

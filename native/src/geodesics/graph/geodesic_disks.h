@@ -14,23 +14,24 @@
 
 namespace saddleback {
 
-/// What a source keeps of the vertices that it sees: with k > 0 those among the k nearest, otherwise those that no way
-/// by shorter arcs reaches within the tolerance.
+/// Holds what a source keeps of the vertices that it sees: with k > 0 those among the k nearest, otherwise those that
+/// no way by shorter arcs reaches within the tolerance.
 struct DiskRule {
   Index k = 0;
   double tolerance = 0;  ///< relative
-  /// On a lattice what follows an arc has the same detour again, and nothing averages out: each must be smaller.
+  /// Says whether the mesh is a lattice, on which what follows an arc has the same detour again, and nothing averages
+  /// out: each must be smaller.
   Lattice lattice = Lattice::none;
 };
 
-/// What windows of the rule look up: labels and limits are still to be set.
+/// Returns what windows of the rule look up: labels and limits are still to be set.
 WaveScene wave_scene(const EdgeRecord* records, const DiskRule& rule);
-/// What an arc may be longer by than the shortest way found.
+/// Returns what an arc may be longer by than the shortest way found.
 double arc_slack(const DiskRule& rule);
 
-/// By how much the plane of a source is enlarged whose longest edge, in units of the WindowMesh, is that: where all
-/// edges about it are shorter than k_small_edges, single precision would lose them, and bounds that are meant for mean
-/// edges would keep windows for far too long. A power of two, so that nothing is rounded; 1 on nearly all meshes.
+/// Returns by how much the plane of a source is enlarged whose longest edge, in units of the WindowMesh, is that: where
+/// all edges about it are shorter than k_small_edges, single precision would lose them, and bounds that are meant for
+/// mean edges would keep windows for far too long. A power of two, so that nothing is rounded; 1 on nearly all meshes.
 double scale_about(double longest_edge);
 
 /// A source inside a face or on its border, in a plane of its own with the source at the origin.
@@ -55,7 +56,8 @@ class GeodesicDisks {
   enum class Sources { nodes, points };
   void begin(Sources sources);
   void add_node(int lane, Index node);
-  /// What lies beyond `limit` (in units of the WindowMesh) is not looked for, but for the face's corners.
+  /// Adds what is seen from a point; what lies beyond `limit` (in units of the WindowMesh) is not looked for, but for
+  /// the face's corners.
   void add_point(int lane, const FaceSource& source, double limit);
   /// False when windows were so many that it was stopped: no arc is wrong then, but some may be missing. \throw
   /// Cancelled.
@@ -63,10 +65,10 @@ class GeodesicDisks {
   /// The sightings that make a lane's arcs, in the order in which they were sighted, and k_row_padding more entries
   /// that are valid. The links are always among them.
   std::span<const std::int32_t> chosen(int lane) const { return {chosen_[lane].data(), chosen_counts_[lane]}; }
-  /// Of a point, in the same order: the shortest sightings of vertices that no arc is kept to, because a way over
-  /// another vertex will do.
+  /// Returns, of a point, in the same order: the shortest sightings of vertices that no arc is kept to, because a way
+  /// over another vertex will do.
   std::span<const std::int32_t> served(int lane) const { return served_[lane]; }
-  /// Of the places of a lane's sightings.
+  /// Returns the unit of the places of a lane's sightings.
   double unit(int lane) const { return mesh_.unit() / scales_[lane]; }
   SightingRows sightings() { return sightings_.rows(sources_ == Sources::points); }
 
@@ -77,7 +79,7 @@ class GeodesicDisks {
     bool other_side;
   };
   static bool is_link(std::int32_t root) { return root < 0; }
-  /// Of a sighting that is the link of a node.
+  /// Returns the link of a sighting that is the link of a node.
   static Link link_of(const SightingRows& rows, std::int32_t sighting) {
     return {~rows.root[sighting], rows.edge[sighting] != 0};
   }
@@ -112,7 +114,7 @@ class GeodesicDisks {
   void list_served();
 
   bool by_count() const { return rule_.k > 0; }
-  /// How many are nearer than the last vertex of a disk: a node is its own nearest.
+  /// Returns how many are nearer than the last vertex of a disk: a node is its own nearest.
   Index nearest_before() const { return sources_ == Sources::nodes ? rule_.k : rule_.k - 1; }
   bool bound_disk(int lane);
   void finish_disks();

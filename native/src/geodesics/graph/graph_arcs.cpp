@@ -100,7 +100,7 @@ double mean_in_sight(const ArcSearch& search, VisibleVertices& propagator, const
   return large * std::pow(static_cast<double>(count) / disk, power);
 }
 
-/// What is built holds the arcs twice for a while, with the directions back.
+/// Checks that memory will do: what is built holds the arcs twice for a while, with the directions back.
 void check_memory(const ArcSearch& search, VisibleVertices& propagator, const JobStage& stage) {
   constexpr double k_bytes_per_arc = 2 * sizeof(std::uint64_t) + 1;
   const auto count = static_cast<double>(search.vertices.size()), available = static_cast<double>(available_memory());

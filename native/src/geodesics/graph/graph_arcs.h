@@ -10,7 +10,7 @@
 
 namespace saddleback {
 
-/// What waves of windows run on.
+/// Holds what waves of windows run on.
 struct WaveTables {
   WindowMesh mesh;
   WaveSectors sectors;
@@ -26,7 +26,7 @@ struct WaveTables {
 /// \throw InputError for more triangles than slots can be numbered for.
 void check_mesh_size(const Mesh& mesh);
 
-/// Where arcs are looked for.
+/// Holds where arcs are looked for.
 struct ArcSearch {
   const Unfolding& unfolding;
   std::span<const Index> nodes, vertices;  ///< nodes of the vertices, vertices of the nodes
@@ -34,10 +34,10 @@ struct ArcSearch {
   int threads = 0;
 };
 
-/// What a graph of the given options keeps, of vertices and of other points.
+/// Returns what a graph of the given options keeps, of vertices and of other points.
 DiskRule disk_rule(Index k, double accuracy, Lattice lattice = Lattice::none);
 
-/// By waves of windows. \throw Cancelled. O(V) times the windows of a disk.
+/// Finds the arcs by waves of windows. \throw Cancelled. O(V) times the windows of a disk.
 std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, const WaveTables& tables,
                                 const DiskRule& rule, const JobStage& stage);
 

@@ -60,7 +60,7 @@ class Caller {
     words_.resize(words);
   }
 
-  /// In the batches in which disk_arcs finds them: what ends the windows of one is the same then.
+  /// Finds the rows in the batches in which disk_arcs finds them: what ends the windows of one is the same then.
   FoundRows find_rows(std::span<const Index> nodes) {
     if (!tables_)
       tables_.emplace(search_.unfolding, search_.nodes, search_.vertices, search_.threads, stage_.part(0, 0));

@@ -18,20 +18,20 @@ constexpr double k_straight = 1e-5, k_nearly_straight = 0.05;
 constexpr Index k_most_sampled = 1 << 13;
 /// Parts of mechanical shapes are such, too; curved meshes have none but by chance.
 constexpr double k_share = 0.01;
-/// Of what is nearly a lattice. Scans and remeshed models have up to a half.
+/// Bounds the share of what is nearly a lattice. Scans and remeshed models have up to a half.
 constexpr double k_nearly_share = 0.6;
 /// A vertex' longest edge, in its shortest ones, from which on cells are stretched: between those of squares divided by
 /// diagonals and of oblongs of 3 : 1.
 constexpr double k_stretched = 2.5;
 
-/// What a vertex is part of, if only to k_nearly_straight.
+/// Holds what a vertex is part of, if only to k_nearly_straight.
 struct Surroundings {
   Lattice lattice = Lattice::none;
   bool nearly = false;
 };
 
-/// How well another edge goes on from the target of h in the direction in which h arrives, where nothing bends the
-/// surface: angles in radians.
+/// Holds how well another edge goes on from the target of h in the direction in which h arrives, where nothing bends
+/// the surface: angles in radians.
 struct GoingOn {
   double bent = std::numeric_limits<double>::infinity(), turned = std::numeric_limits<double>::infinity();
   bool is_straight(double angle) const { return bent <= angle && turned < angle; }
@@ -74,7 +74,7 @@ std::vector<Spoke> spokes_of(const Unfolding& unfolding, Index vertex) {
   return spokes;
 }
 
-/// Whether two edges go straight on along a side on which all others reach as far: a flat strip one cell wide, as
+/// Tells whether two edges go straight on along a side on which all others reach as far: a flat strip one cell wide, as
 /// between the rims of a lathed cylinder and between the two inmost rows of a torus. Along it the same detour follows
 /// again and again.
 bool is_beside_strip(const Unfolding& unfolding, Index vertex) {

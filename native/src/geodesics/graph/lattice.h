@@ -13,9 +13,9 @@ enum class Lattice {
   stretched,  ///< of longer ones
 };
 
-/// What lattice part of the mesh is, the more stretched one of several: most edges of its vertices go straight on at
-/// the next vertex, where the surface is flat; or its vertices are on the border of a flat strip one cell wide. Looks
-/// at a sample of the vertices. O(1). \throw Cancelled.
+/// Returns what lattice part of the mesh is, the more stretched one of several: most edges of its vertices go straight
+/// on at the next vertex, where the surface is flat; or its vertices are on the border of a flat strip one cell wide.
+/// Looks at a sample of the vertices. O(1). \throw Cancelled.
 Lattice lattice_of(const Unfolding& unfolding, int threads, const JobStage& stage);
 
 }  // namespace saddleback

@@ -16,8 +16,8 @@ namespace {
 
 constexpr Index k_block = 1024;
 
-/// Where the half-edges out of a node lead, counter-clockwise, and their lengths in units of the mean edge. At a border
-/// one way is missing, but there is another about the face.
+/// Holds where the half-edges out of a node lead, counter-clockwise, and their lengths in units of the mean edge. At a
+/// border one way is missing, but there is another about the face.
 struct Neighbors {
   Index count;         ///< of nodes
   const Index* first;  ///< per node, with the number of half-edges at the end
@@ -30,7 +30,7 @@ struct Neighbors {
   }
 };
 
-/// From the root of one piece to that of another.
+/// Leads from the root of one piece to that of another.
 struct Link {
   Index from, to;
   double length;

@@ -14,7 +14,7 @@ namespace saddleback {
 /// An upper bound of every finite geodesic distance on the mesh, rarely more than a few times the longest, and the
 /// length of the shortest edge. They do not depend on the threads. O(V). \throw Cancelled.
 PathBounds path_bounds(const WindowMesh& mesh, int threads, const JobStage& stage);
-/// The same numbers where there are no such tables. `nodes` of the vertices and `vertices` of the nodes.
+/// Returns the same numbers where there are no such tables. `nodes` of the vertices and `vertices` of the nodes.
 PathBounds path_bounds(const Mesh& mesh, std::span<const Index> nodes, std::span<const Index> vertices, int threads,
                        const JobStage& stage);
 

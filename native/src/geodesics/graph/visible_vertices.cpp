@@ -24,8 +24,8 @@ constexpr Index k_windows_at_least = 4096;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Whether the rays from the source through two places of the x axis lie less than that angle apart; not so where the
-/// source itself lies on that axis, in one of the places: that ray leads anywhere.
+/// Tells whether the rays from the source through two places of the x axis lie less than that angle apart; not so where
+/// the source itself lies on that axis, in one of the places: that ray leads anywhere.
 bool is_within(double angle, const Vec2& source, double b, double c) {
   const double area = (c - b) * source.y(), y2 = source.y() * source.y();
   const double to_b = b - source.x(), to_c = c - source.x();

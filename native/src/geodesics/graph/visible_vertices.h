@@ -33,7 +33,7 @@ class VisibleVertices {
   /// Fills `arcs` with the vertices among the k nearest that the vertex sees, and all its neighbors by mesh edges.
   /// \throw Cancelled.
   void from_vertex(Index source, Index k, std::vector<DirectArc>& arcs, const JobStage& stage);
-  /// The same for a point that need not be a vertex; the corners of its face are always among the arcs.
+  /// Does the same for a point that need not be a vertex; the corners of its face are always among the arcs.
   void from_point(const SurfacePoint& source, Index k, std::vector<DirectArc>& arcs, const JobStage& stage);
 
  private:

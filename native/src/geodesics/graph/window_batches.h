@@ -23,7 +23,7 @@ inline constexpr int k_free_generations = 32;
 /// Windows of a batch after which no more are followed. There are 200 to 1,000 a source on any sane mesh; needles by
 /// the thousand round one vertex may exceed that without end, and stopping only costs arcs, never correctness.
 inline constexpr int k_most_windows = 1 << 20;
-/// In mean edges: a source whose edges are all shorter has a unit of its own, see scale_about.
+/// Bounds, in mean edges: a source whose edges are all shorter has a unit of its own, see scale_about.
 inline constexpr double k_small_edges = 1.0 / (1 << 6);
 /// Rows may be read and written so many entries past their end.
 inline constexpr int k_row_padding = 16;
@@ -34,12 +34,13 @@ struct alignas(32) EdgeRecord {
   double a, b;
   std::int32_t left, right;  ///< edge records behind (from, apex) and (apex, to); -1 at the boundary
   std::int32_t apex;         ///< node
-  /// How far it is at least from the edges behind the two sides to the next vertex beyond them: the upper halves of two
-  /// floats, of the left one and the right one. A CUDA device notes in the lowest bit whether the apex is a saddle.
+  /// Says how far it is at least from the edges behind the two sides to the next vertex beyond them: the upper halves
+  /// of two floats, of the left one and the right one. A CUDA device notes in the lowest bit whether the apex is a
+  /// saddle.
   std::uint32_t clearances;
 };
 inline constexpr std::uint32_t k_saddle_bit = 1;
-/// Of clearances, relative: of positions of single precision.
+/// Bounds the rounding of clearances, relative: of positions of single precision.
 inline constexpr double k_clearance_rounding = 1e-3;
 
 /// Windows, a row a quantity. The source is at the origin of a plane of its own; a window emits through the part of a
@@ -56,7 +57,7 @@ struct WindowRows {
   std::int32_t* root;                 ///< record of the source's half-edge whose face the window left
 };
 
-/// What a window sees of its face's far corner; a row a window.
+/// Holds what a window sees of its face's far corner; a row a window.
 struct ApexRows {
   double *x, *y;
   float* way;                           ///< as of flanks
@@ -76,7 +77,7 @@ struct SightingRows {
   std::int32_t *edge, *root;
 };
 
-/// What all windows of a batch look up.
+/// Holds what all windows of a batch look up.
 struct WaveScene {
   const EdgeRecord* edges;
   const std::int32_t* labels;  ///< upper bounds of the distances of all slots
@@ -91,16 +92,16 @@ struct WaveKernel {
   const char* name;
   /// Looks at the far corner of each window's face; appends the corners seen. \return the number of sightings then.
   int (*sight)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const SightingRows&, int sightings);
-  /// The same where every sighting makes an arc.
+  /// Does the same where every sighting makes an arc.
   int (*sight_all)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const SightingRows&, int sightings);
   /// Appends the windows' children that may still serve, whatever the labels are: those behind the left sides, and
   /// those behind the right ones.
   void (*split_free)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const WindowRows& lefts,
                      int* left_count, const WindowRows& rights, int* right_count);
-  /// The same without those that labels tell to be of no use.
+  /// Does the same without those that labels tell to be of no use.
   void (*split)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const WindowRows& lefts,
                 int* left_count, const WindowRows& rights, int* right_count);
-  /// The same with no bound but the disks' limits.
+  /// Does the same with no bound but the disks' limits.
   void (*split_all)(const WaveScene&, const WindowRows&, int count, const ApexRows&, const WindowRows& lefts,
                     int* left_count, const WindowRows& rights, int* right_count);
   /// Lengths of chosen sightings, the angles at which they leave the source, from its half-edge in the root's face, and

@@ -42,7 +42,7 @@ struct Rays {
   Floats right_reach, left_reach;
 };
 
-/// How a window sees the far corner of its face.
+/// Holds how a window sees the far corner of its face.
 struct ApexView {
   Floats x, y, reach;
   Floats from_right, to_left;  ///< offsets from the rays, positive inside
@@ -104,9 +104,9 @@ SADDLEBACK_STEP Floats serving_radius(const Flank& p, const Flank& q, float allo
   return Simd::pick((zero < cosine) & (bound < most), bound, most);
 }
 
-/// How far off a flank's direction it serves all vertices that are at least so far away: the tangent of an angle. With
-/// r, w and k as above, w + k |flank to vertex| <= k D holds where r cos >= w / k + (r^2 - (w / k)^2) / (2 D), and so
-/// for tangents up to the root of twice what that leaves of 1 - cos. Nothing where w exceeds k r.
+/// Returns how far off a flank's direction it serves all vertices that are at least so far away: the tangent of an
+/// angle. With r, w and k as above, w + k |flank to vertex| <= k D holds where r cos >= w / k + (r^2 - (w / k)^2) / (2
+/// D), and so for tangents up to the root of twice what that leaves of 1 - cos. Nothing where w exceeds k r.
 /// `per_detour` is 1 / k.
 SADDLEBACK_STEP Floats serving_tangent(const Flank& flank, Floats distance, float per_detour) {
   const Floats zero = Simd::fill(0), half = Simd::fill(0.5f);
@@ -137,7 +137,7 @@ struct Side {
   Floats apex_off, apex_in;                             ///< offsets of the apex from the two, positive inside
 };
 
-/// What the cone on a side has to tell.
+/// Holds what the cone on a side has to tell.
 struct Child {
   Mask useful;
   Floats begin, end;                    ///< of the cone, from the near end on, as parts of the side
@@ -176,7 +176,7 @@ SADDLEBACK_STEP Child look_at(const Side& side) {
 struct CornerLabels {
   Floats near, far, apex;
 };
-/// Whether a corner of the face offers every point of the cone a shorter way: three filters.
+/// Tells whether a corner of the face offers every point of the cone a shorter way: three filters.
 SADDLEBACK_STEP Mask is_served_by_corner(const Side& side, const Child& child, const CornerLabels& labels) {
   const Floats zero = Simd::fill(0), one = Simd::fill(1), shorter = Simd::fill(k_shorter);
   const Floats length = Simd::sqrt(child.length_squared);
@@ -187,8 +187,8 @@ SADDLEBACK_STEP Mask is_served_by_corner(const Side& side, const Child& child, c
          ((zero < left_over) & (across_2 < square(left_over)));
 }
 
-/// Whether the cone may reach a vertex nearer than `most`: its nearest point on the side, an end or the source's foot,
-/// is nearer by more than how far the next vertex beyond the side is at least.
+/// Tells whether the cone may reach a vertex nearer than `most`: its nearest point on the side, an end or the source's
+/// foot, is nearer by more than how far the next vertex beyond the side is at least.
 SADDLEBACK_STEP Mask is_within(const Child& child, Floats most, Floats clearance) {
   const Floats zero = Simd::fill(0), most_2 = square(Simd::max(most - clearance, zero));
   return Simd::pick(zero < child.begin_ahead, child.begin_squared < most_2,
@@ -196,8 +196,8 @@ SADDLEBACK_STEP Mask is_within(const Child& child, Floats most, Floats clearance
                                child.foot_squared < most_2 * child.length_squared));
 }
 
-/// How far the nearest vertex is at least that the cone may reach: as far as its nearest point on the side, an end or
-/// the source's foot, and from there as far as the next vertex beyond the side is at least.
+/// Returns how far the nearest vertex is at least that the cone may reach: as far as its nearest point on the side, an
+/// end or the source's foot, and from there as far as the next vertex beyond the side is at least.
 SADDLEBACK_STEP Floats nearest_beyond(const Child& child, Floats clearance) {
   const Floats zero = Simd::fill(0), foot_2 = Simd::quotient(child.foot_squared, child.length_squared);
   const Floats least_2 = Simd::pick(zero < child.begin_ahead, child.begin_squared,
@@ -248,8 +248,8 @@ struct ChildWindow {
   Floats most;                     ///< radius beyond which it serves nothing
 };
 
-/// In the words of the left side: flanks are mirrored as the side is. `cut` where the apex divides the window; `most`
-/// is the window's. `allowed` and `per_detour` as for serving_distance and serving_tangent.
+/// Returns it in the words of the left side: flanks are mirrored as the side is. `cut` where the apex divides the
+/// window; `most` is the window's. `allowed` and `per_detour` as for serving_distance and serving_tangent.
 SADDLEBACK_STEP ChildWindow child_behind(const Child& child, Mask cut, const Flank& near, const Flank& far,
                                          const Flank& apex, Floats clearance, Floats most, float allowed,
                                          float per_detour) {
@@ -266,7 +266,7 @@ SADDLEBACK_STEP ChildWindow child_behind(const Child& child, Mask cut, const Fla
   return {useful, last, near_served, last_served, own_most};
 }
 
-/// The same where all that is seen counts, nearer than `most`.
+/// Returns the same where all that is seen counts, nearer than `most`.
 SADDLEBACK_STEP ChildWindow child_in_disk(const Child& child, Mask cut, const Flank& far, const Flank& apex,
                                           Floats clearance, Floats most) {
   const Floats zero = Simd::fill(0);
@@ -275,7 +275,7 @@ SADDLEBACK_STEP ChildWindow child_in_disk(const Child& child, Mask cut, const Fl
   return {useful, last, zero, zero, most};
 }
 
-/// Of a vector in the upper half-plane.
+/// Returns the angle of a vector in the upper half-plane.
 SADDLEBACK_STEP Floats angle_of(Floats x, Floats y) {
   const Floats zero = Simd::fill(0), width = Simd::max(x, zero - x), height = Simd::max(y, zero);
   const Floats least = Simd::min(width, height), most = Simd::max(Simd::max(width, height), Simd::fill(1e-30f));

@@ -63,7 +63,7 @@ class WindowColumns : public WindowBatchColumns<4, 11, 4> {
 
 class ApexColumns : public WindowBatchColumns<2, 4, 4> {
  public:
-  /// From row `first` on.
+  /// Returns the rows from row `first` on.
   ApexRows rows(int first) {
     return {.x = real(0) + first,
             .y = real(1) + first,
@@ -80,7 +80,7 @@ class ApexColumns : public WindowBatchColumns<2, 4, 4> {
 
 class SightingColumns : public WindowBatchColumns<4, 2, 4> {
  public:
-  /// With the places of half-edges or without.
+  /// Returns rows with the places of half-edges or without.
   SightingRows rows(bool with_edges) {
     return {.x = real(0),
             .y = real(1),

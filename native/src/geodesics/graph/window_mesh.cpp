@@ -112,10 +112,10 @@ WindowMesh::WindowMesh(const Unfolding& unfolding, const NodeEdges& edges, std::
   find_clearances(threads, stage.part(k_recorded, 1));
 }
 
-/// From a point of an edge a straight way comes to the corner beyond, or it crosses a side, and with it the faces about
-/// one of the edge's ends. There it comes to a vertex, which is off the edge by the face's angle at that end at least,
-/// or it leaves across an edge opposite the end. Laid flat, the two edges are nearest to each other at an end of one of
-/// them: that is one of those vertices, or one of the first edge's ends and an edge opposite it.
+/// Finds clearances. From a point of an edge a straight way comes to the corner beyond, or it crosses a side, and with
+/// it the faces about one of the edge's ends. There it comes to a vertex, which is off the edge by the face's angle at
+/// that end at least, or it leaves across an edge opposite the end. Laid flat, the two edges are nearest to each other
+/// at an end of one of them: that is one of those vertices, or one of the first edge's ends and an edge opposite it.
 void WindowMesh::find_clearances(int threads, const JobStage& stage) {
   constexpr double k_about = 0.35, k_cleared = 0.9;  // of the time, until then
   const JobStage first = stage.part(0, k_about), second = stage.part(k_about, k_cleared);

@@ -41,7 +41,7 @@ class WindowMesh {
   bool is_saddle(Index node) const { return saddles_[node] != 0; }
   /// The edge's face, seen from the origin with the edge along x: its far corner in units.
   Vec2 apex(Index edge) const { return {records_[edge].a * lengths_[edge], records_[edge].b * lengths_[edge]}; }
-  /// Behind the side opposite the edge's origin; -1 at the boundary.
+  /// Returns the one behind the side opposite the edge's origin; -1 at the boundary.
   Index opposite(Index edge) const { return records_[edge].right; }
   bool has_left(Index edge) const { return records_[edge].left >= 0; }
   /// The edge from one node to another. O(degree).
@@ -63,7 +63,7 @@ class WindowMesh {
   double unit_ = 1;
 };
 
-/// What the arcs of points are found with, and their directions back.
+/// Holds what the arcs of points are found with, and their directions back.
 class FanMesh {
  public:
   /// `nodes` of the vertices and `vertices` of the nodes. \throw Cancelled.
@@ -89,7 +89,7 @@ class WaveSectors {
 
   float sector(Index edge) const { return sectors_[edge]; }                  ///< of the edge at its origin
   float reverse_sector(Index edge) const { return reverse_sectors_[edge]; }  ///< and at its target
-  /// Of the way from its face's apex to its origin.
+  /// Returns the sector of the way from its face's apex to its origin.
   float apex_sector(Index edge) const { return apex_sectors_[edge]; }
   float per_radian(Index node) const { return per_radian_[node]; }
 

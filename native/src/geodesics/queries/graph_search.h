@@ -18,17 +18,17 @@ struct Seed {
   double distance;
 };
 
-/// The same in the graph's own numbering.
+/// Holds the same in the graph's own numbering.
 struct NodeSeed {
   Index node;
   Index source;
   double distance;
 };
 
-/// What a seed takes, in nodes that are expanded in the time.
+/// Measures what a seed takes, in nodes that are expanded in the time.
 inline constexpr double k_cost_of_seed = 0.1;
 
-/// What a search keeps beside the distances.
+/// Says what a search keeps beside the distances.
 enum class SearchLabels { none, sources, sources_and_predecessors };
 
 /// Least distance and, if asked for, among equals the least source of every node. Sums of arcs are exact (see
@@ -46,7 +46,7 @@ class GraphSearch {
   // A part of a search: expands only the nodes from `first` up to `last`. What lies beyond is reached, but goes no
   // farther; whoever has that part goes on from there.
   void begin_part(const SaddleVertexGraph& graph, Index first, Index last);
-  /// From more seeds of the part. \throw Cancelled.
+  /// Goes on from more seeds of the part. \throw Cancelled.
   void continue_part(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const JobStage& stage);
   /// Nodes beyond the part that were reached, or better than before; some more than once. Until it goes on.
   std::span<const Index> crossed() const { return crossed_; }
@@ -57,10 +57,10 @@ class GraphSearch {
   void write_sources(const SaddleVertexGraph& graph, std::span<Index> vertices) const;
   /// Vertices before, k_none straight from a source. Where several would do, which one it is may depend on the method.
   void write_predecessors(const SaddleVertexGraph& graph, std::span<Index> vertices) const;
-  /// The same in the order of the nodes; with no limit, and all reached.
+  /// Returns the same in the order of the nodes; with no limit, and all reached.
   std::span<const double> node_distances() const { return distances_; }
   std::span<const Index> node_sources() const { return sources_; }
-  /// Of a vertex.
+  /// Returns that of a vertex.
   double distance(const SaddleVertexGraph& graph, Index vertex) const;
 
  private:

@@ -18,7 +18,8 @@ constexpr double k_front_step = 8, k_median = 0.5;
 /// The first number beyond a limit.
 double bound_of(double limit) { return std::nextafter(limit, std::numeric_limits<double>::infinity()); }
 
-/// `to` tells where to write; the rest of a request is filled in here. `first`: of each field's seeds, after a 0.
+/// Searches; `to` tells where to write; the rest of a request is filled in here. `first`: of each field's seeds, after
+/// a 0.
 void search(const SaddleVertexGraph& graph, int device, const FlatSeeds& seeds, std::span<const std::int64_t> first,
             double bound, SearchRequest to, const JobStage& stage) {
   DeviceGraphs& graphs = graph.query_cache().device_graphs;

@@ -35,7 +35,7 @@ class DeviceGraphs {
   std::optional<DeviceTimes> last_;
 };
 
-/// Where fields go: in the order of the vertices, one after the other.
+/// Holds where fields go: in the order of the vertices, one after the other.
 struct FieldsTo {
   double* distances;
   Index* sources;  ///< or null

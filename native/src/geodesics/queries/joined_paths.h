@@ -16,7 +16,7 @@ class JoinedPaths {
   explicit JoinedPaths(std::size_t block_count) : ready_(block_count) {}
   /// From any thread; `share` of all paths are this block's. Leaves `part` empty.
   void add(std::size_t block, double share, GeodesicPaths& part);
-  /// When all blocks were added.
+  /// Hands over the paths, when all blocks were added.
   GeodesicPaths take() { return std::move(paths_); }
 
  private:

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
-/// For each component its vertex with the largest value.
+/// Returns for each component its vertex with the largest value.
 std::vector<Seed> largest_in_components(const Mesh& mesh, std::span<const double> values) {
   std::vector<Index> chosen(mesh.component_count(), k_none);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {

@@ -19,14 +19,14 @@ class Landmarks {
   /// A field for each landmark; components share them. \throw Cancelled.
   Landmarks(const SaddleVertexGraph& graph, GraphSearch& search, const JobStage& stage);
 
-  /// What bounds need of a target.
+  /// Holds what bounds need of a target.
   struct Target {
     alignas(64) std::array<float, k_count> least, most;  ///< of the landmarks' distances to the target, in units
     Vec3 position;
   };
   Target target(const PointFan& fan, const Vec3& position) const;
 
-  /// At most the distance in the graph from the node to the target, whatever was rounded.
+  /// Returns at most the distance in the graph from the node to the target, whatever was rounded.
   double bound(Index node, const Target& target) const {
     const float* const own = table_.data() + static_cast<std::size_t>(node) * k_count;
     float most = 0;

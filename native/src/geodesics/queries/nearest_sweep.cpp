@@ -132,7 +132,7 @@ void NearestSweep::expand(Part& part, const JobStage& stage) {
   part.front.clear();
 }
 
-/// Of all threads to the nodes of one.
+/// Takes the offers of all threads to the nodes of one.
 void NearestSweep::take_offers(Index i) {
   for (Part& from : parts_) {
     for (const auto& [node, source, distance] : from.offers[i]) {

@@ -55,7 +55,7 @@ class PartedSearch {
   void for_each_part(Body&& body) {
     parallel_for(static_cast<Index>(searches_.size()), threads_, 1, [&](Index part, int) { body(part); });
   }
-  /// What others have found of a part's nodes and is nearer than what it knows.
+  /// Collects what others have found of a part's nodes and is nearer than what it knows.
   void collect(Index part) {
     seeds_[part].clear();
     const auto distances = search(part).node_distances();

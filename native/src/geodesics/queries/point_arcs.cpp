@@ -137,7 +137,7 @@ void DirectFanFinder::append_row(std::vector<DirectArc>& arcs) {
   arcs.insert(arcs.end(), row_.begin(), row_.end());
 }
 
-/// Whether all windows of a batch ran to their end.
+/// Tells whether all windows of a batch ran to their end.
 bool DirectFanFinder::see(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points,
                           std::span<const double> limits, Batch batch, const JobStage& stage) {
   if (batch.empty()) return true;

@@ -27,7 +27,7 @@ struct SeenNode {
   Vec2 from;      ///< the start of `edge` in the same plane
 };
 
-/// What points see, a row a point, in compressed sparse rows.
+/// Holds what points see, a row a point, in compressed sparse rows.
 template <class Arc>
 struct FanRows {
   std::vector<std::int64_t> offsets{0};  ///< (n + 1,)
@@ -44,7 +44,7 @@ struct FanRows {
 };
 using DirectFans = FanRows<DirectArc>;  ///< each row by vertex
 
-/// What one point sees, where it was found: arcs first, else in no particular order.
+/// Holds what one point sees, where it was found: arcs first, else in no particular order.
 class SeenView {
  public:
   /// The source in a lane of waves that have run; the view lasts until they run again.
@@ -77,7 +77,7 @@ class SeenView {
 /// Takes what the point of an index sees. May be called by several threads at once.
 using UseSeen = std::function<void(Index, const SeenView&)>;
 
-/// Whether the angles of arcs are wanted, which are as much work as all else about an arc.
+/// Says whether the angles of arcs are wanted, which are as much work as all else about an arc.
 enum class FanAngles { none, both };
 
 /// Finds fans by the rule that the graph's own arcs were found by: to the k nearest vertices, to those that no way over
@@ -117,7 +117,7 @@ class DirectFanFinder {
   std::vector<SeenNode> listed_;
 };
 
-/// How many fans could be found in the time that the first ones wait for what all need; 0 when that is there.
+/// Returns how many fans could be found in the time that the first ones wait for what all need; 0 when that is there.
 double fans_a_fan_mesh_costs(const SaddleVertexGraph& graph);
 
 /// Finders for the threads of one call, and what they share.
@@ -138,7 +138,8 @@ using UseFan = std::function<void(Index, std::span<const DirectArc>)>;
 void for_each_fan(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                   FanAngles angles, int threads, const JobStage& stage, const UseFan& use);
 
-/// The same for what points see. No point is a vertex, and those that lie together on the surface best come together.
+/// Does the same for what points see. No point is a vertex, and those that lie together on the surface best come
+/// together.
 void for_each_view(const SaddleVertexGraph& graph, std::span<const SurfacePoint> points, std::span<const double> limits,
                    int threads, const JobStage& stage, const UseSeen& use);
 

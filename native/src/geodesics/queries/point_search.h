@@ -22,7 +22,7 @@ class PointSearch {
                     const PointFan& to, const Vec3& target, double upper, const JobStage& stage);
 
  private:
-  /// What the search keeps of a node that it has met.
+  /// Holds what the search keeps of a node that it has met.
   struct Met {
     double bound = -1;                                           ///< of the distance that is left; negative: not met
     double to_target = std::numeric_limits<double>::infinity();  ///< by an arc of the target's fan

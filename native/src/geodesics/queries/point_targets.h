@@ -17,7 +17,7 @@ double direct_length(const SaddleVertexGraph& graph, const SurfacePoint& a, cons
                      const SurfacePoint& b, const PointFan& b_fan,
                      double upper = std::numeric_limits<double>::infinity());
 
-/// For each of many targets the sources near enough to be seen.
+/// Finds for each of many targets the sources near enough to be seen.
 class NearbySources {
  public:
   /// `fans` begin with those of `points`.

@@ -6,7 +6,7 @@ namespace saddleback {
 
 namespace {
 
-/// Who waits may be cancelled, too.
+/// Waits for the mutex, and may be cancelled, too.
 std::unique_lock<std::timed_mutex> wait_for(std::timed_mutex& mutex, const JobStage& stage) {
   using namespace std::chrono_literals;
   while (!mutex.try_lock_for(20ms)) stage.check();

@@ -25,7 +25,7 @@ struct QueryCache {
 
   /// Found by the first who asks; others wait. \throw Cancelled.
   const Landmarks& landmarks(const SaddleVertexGraph& graph, const JobStage& stage);
-  /// The same for what fans of points are found with.
+  /// Returns the same for what fans of points are found with.
   const FanMesh& fan_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage);
   bool has_fan_mesh() const { return has_fan_mesh_; }
 

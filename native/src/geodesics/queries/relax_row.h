@@ -7,8 +7,8 @@
 
 namespace saddleback {
 
-/// For each of the first `count` <= 64 words of a row: bit i tells whether distance + length is no more than what the
-/// target has in `distances`.
+/// Tells for each of the first `count` <= 64 words of a row: bit i tells whether distance + length is no more than what
+/// the target has in `distances`.
 using FindCandidates = std::uint64_t (*)(const ArcCodec& codec, const std::uint64_t* words, int count, double distance,
                                          const double* distances);
 /// The fastest that this machine runs.
@@ -23,7 +23,7 @@ struct LoweredNodes {
   double before[k_most];
 };
 
-/// What is offered along a row, and where it is written.
+/// Holds what is offered along a row, and where it is written.
 struct RowOffer {
   double distance;      ///< of the row's node
   double* distances;    ///< of all nodes
@@ -31,9 +31,9 @@ struct RowOffer {
   Index label;          ///< of the row's node: at equal distance it takes a node from a larger label
 };
 
-/// For each of the first `count` <= LoweredNodes::k_most words of a row (its targets are distinct): lowers the target's
-/// distance to offer.distance + length where that is less, and lists the targets that the offer wins. At equal distance
-/// a smaller label wins as well. Labels are the caller's to write.
+/// Relaxes for each of the first `count` <= LoweredNodes::k_most words of a row (its targets are distinct): lowers the
+/// target's distance to offer.distance + length where that is less, and lists the targets that the offer wins. At equal
+/// distance a smaller label wins as well. Labels are the caller's to write.
 using RelaxRow = void (*)(const ArcCodec& codec, const std::uint64_t* words, int count, const RowOffer& offer,
                           LoweredNodes& lowered);
 

@@ -36,7 +36,7 @@ struct SearchRequest {
   bool by_node = false;                        ///< they are in the order of the nodes, else in that of the vertices
 };
 
-/// What the CUDA module asks of its caller. It does not throw.
+/// Holds what the CUDA module asks of its caller. It does not throw.
 struct SearchCaller {
   void* self = nullptr;
   /// Tells the share done; false: stop.

@@ -22,7 +22,7 @@ constexpr double k_vertices_a_segment = 1;  ///< at least so many take as long, 
 
 double strip_width(const SaddleVertexGraph& graph) { return k_edges_an_arc * graph.mean_degree(); }
 
-/// Of a curve's faces, the share that it has not been in before: where it runs along itself windows are few.
+/// Returns, of a curve's faces, the share that it has not been in before: where it runs along itself windows are few.
 double share_of_new_faces(const SurfaceCurve& curve) {
   std::vector<Index> faces;
   for (const CurveSegment& segment : curve.segments()) faces.push_back(segment.face);
@@ -42,7 +42,7 @@ void add_corners(const SurfaceCurve& curve, std::vector<PointFan::Arc>& arcs) {
   }
 }
 
-/// By vertex, of several arcs to one vertex the shortest.
+/// Sorts by vertex, of several arcs to one vertex the shortest.
 void sort_arcs(std::vector<PointFan::Arc>& arcs) {
   std::ranges::sort(arcs, [](const PointFan::Arc& a, const PointFan::Arc& b) {
     return a.vertex != b.vertex ? a.vertex < b.vertex : a.length < b.length;

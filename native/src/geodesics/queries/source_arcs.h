@@ -36,7 +36,7 @@ class CurveFanFinder {
   /// \throw Cancelled.
   PointFan find(const SaddleVertexGraph& graph, const SurfaceCurve& curve, const FanOptions& options,
                 const JobStage& stage);
-  /// Of options.places, for the last curve: infinity where none is straight or near.
+  /// Returns distances of options.places, for the last curve: infinity where none is straight or near.
   std::span<const double> place_distances() const { return curve_windows_->place_distances(); }
 
  private:
@@ -58,13 +58,13 @@ struct SourceFans {
 SourceFans find_fans(const SaddleVertexGraph& graph, const QuerySources& sources, const JobStage& stage,
                      const FanOptions& options);
 
-/// What the fans of these sources cost, as a number of nodes that a search expands in the time. The first of points may
-/// have to wait for what all need, unless others come before them.
+/// Says what the fans of these sources cost, as a number of nodes that a search expands in the time. The first of
+/// points may have to wait for what all need, unless others come before them.
 enum class FirstFans { maybe, later };
 double cost_of_fans(const SaddleVertexGraph& graph, const QuerySources& sources);
 double cost_of_fans(const SaddleVertexGraph& graph, const SurfacePoints& points, FirstFans first = FirstFans::maybe);
 
-/// What a search needs at least that begins with the arcs of these points' fans, as above.
+/// Returns what a search needs at least that begins with the arcs of these points' fans, as above.
 double cost_of_seeds(const SaddleVertexGraph& graph, const SurfacePoints& points);
 /// Each fan's arcs as seeds of its own source.
 std::vector<Seed> seeds_of(std::span<const PointFan> fans);

@@ -20,7 +20,7 @@ bool same_length(double found, const ArcHint& hint) {
   return std::abs(found - hint.length) <= hint.tolerance * hint.length;
 }
 
-/// Whether no point of a segment is nearer to the origin.
+/// Tells whether no point of a segment is nearer to the origin.
 bool is_beyond(const Vec2& from, const Vec2& to, double squared_length, double distance) {
   const Vec2 along = to - from;
   const double at = -from.dot(along), squared = distance * distance;
@@ -73,7 +73,7 @@ bool ArcUnfolder::along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const {
   return false;
 }
 
-/// Through the face of a half-edge that leaves the source, in the frame of that half-edge.
+/// Starts through the face of a half-edge that leaves the source, in the frame of that half-edge.
 bool ArcUnfolder::start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) {
   if (target_ && target_->face == Mesh::face_of(halfedge)) return inside_first_face(hint, halfedge, arc);
   const double base = unfolding_.polar(halfedge);
@@ -116,9 +116,9 @@ void ArcUnfolder::push(Index edge, Index depth, const Vec2& from, const Vec2& to
     stack_.push_back({entered, depth, from, to, right, left});
 }
 
-/// Whether a window without width has been there before. Past each vertex on its ray such a window goes on on both
-/// sides: behind many in a row, as on the spokes of a wheel, each side would be followed once for every way that leads
-/// there.
+/// Tells whether a window without width has been there before. Past each vertex on its ray such a window goes on on
+/// both sides: behind many in a row, as on the spokes of a wheel, each side would be followed once for every way that
+/// leads there.
 bool ArcUnfolder::was_followed(const Window& window, double farthest) {
   if (cross(window.right, window.left) > border_) return false;
   const double tolerance = k_same_place * farthest;

@@ -9,7 +9,7 @@
 
 namespace saddleback {
 
-/// What a graph keeps of an arc: enough to find the geodesic again.
+/// Holds what a graph keeps of an arc: enough to find the geodesic again.
 struct ArcHint {
   Index from, to;                 ///< vertices
   double length;                  ///< up to rounding
@@ -17,7 +17,7 @@ struct ArcHint {
   /// Relative: how near its length an arc must be. Two geodesics to one vertex inside one window usually differ by
   /// more.
   double tolerance = 1e-7;
-  /// Whether rounding may be far more than usual: beside edges that are millions of times longer, or where an arc
+  /// Says whether rounding may be far more than usual: beside edges that are millions of times longer, or where an arc
   /// passes a vertex on its other side, by less than the single precision in which it was found.
   bool is_rough = false;
 };
@@ -36,12 +36,12 @@ struct UnfoldedArc {
 /// memory; one a thread.
 class ArcUnfolder {
  public:
-  /// Without angles those of the arcs are not set, where that saves time.
+  /// Unfolds; without angles those of the arcs are not set, where that saves time.
   explicit ArcUnfolder(const Unfolding& unfolding, bool with_angles = true)
       : unfolding_(unfolding), mesh_(unfolding.mesh()), with_angles_(with_angles) {}
   /// \return false when no such geodesic exists (the hint belongs to another mesh). O(faces crossed).
   bool unfold(const ArcHint& hint, UnfoldedArc& arc) { return unfold(hint, nullptr, arc); }
-  /// The same to a point that is no vertex; hint.to is not looked at.
+  /// Does the same to a point that is no vertex; hint.to is not looked at.
   bool unfold(const ArcHint& hint, const SurfacePoint& target, UnfoldedArc& arc) { return unfold(hint, &target, arc); }
 
  private:
@@ -59,7 +59,7 @@ class ArcUnfolder {
   bool unfold(const ArcHint& hint, const SurfacePoint* target, UnfoldedArc& arc);
   bool along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const;
   bool inside_first_face(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) const;
-  /// Where the target lies when it lies in the face of `window`, whose third corner is at `apex`.
+  /// Returns where the target lies when it lies in the face of `window`, whose third corner is at `apex`.
   bool find_target(const ArcHint& hint, const Window& window, const Vec2& apex, Vec2& place) const;
   bool start(const ArcHint& hint, Index halfedge, UnfoldedArc& arc);
   bool search(const ArcHint& hint, double base_angle, UnfoldedArc& arc);

@@ -8,7 +8,7 @@
 
 namespace saddleback {
 
-/// Where a leg begins or ends: a vertex or, at the ends of a path, any point.
+/// Holds where a leg begins or ends: a vertex or, at the ends of a path, any point.
 struct LegEnd {
   Index vertex = k_none;
   SurfacePoint point;  ///< of a vertex any of its faces
@@ -32,7 +32,7 @@ struct StripTurn {
   std::size_t first, last;
 };
 
-/// Where the shortest path along a strip turns, in order: the funnel algorithm [lee1984]. Holds scratch memory.
+/// Holds where the shortest path along a strip turns, in order: the funnel algorithm [lee1984]. Holds scratch memory.
 class Funnel {
  public:
   explicit Funnel(const Unfolding& unfolding) : unfolding_(unfolding) {}

@@ -75,7 +75,7 @@ double LineOfSight::length(const Unfolding& unfolding, const SurfacePoint& a, co
   return upper;
 }
 
-/// Through the three edges of the point's face.
+/// Sets out through the three edges of the point's face.
 void LineOfSight::set_out(const Mesh& mesh, const SurfacePoint& point) {
   stack_.clear();
   const FaceChart chart(mesh, point.face);

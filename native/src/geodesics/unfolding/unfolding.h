@@ -17,13 +17,13 @@ struct UnfoldedFace {
 };
 /// Either of the two ways along x is off by a few roundings of the side there, not of the longest edge.
 UnfoldedFace unfold(const Mesh& mesh, Index h);
-/// Whether a face has an edge that is short beside another: lengths tell too little of its direction.
+/// Tells whether a face has an edge that is short beside another: lengths tell too little of its direction.
 inline bool is_needle(double base, double left, double right) {
   return std::min({base, left, right}) <= std::max({base, left, right}) / 16;
 }
 
-/// For each half-edge h = (v0 -> v1) of face f: where f's third corner lies in the frame with v0 at the origin and v1
-/// on the positive x axis, and in which direction h leaves v0.
+/// Knows, for each half-edge h = (v0 -> v1) of face f: where f's third corner lies in the frame with v0 at the origin
+/// and v1 on the positive x axis, and in which direction h leaves v0.
 class Unfolding {
  public:
   /// \throw Cancelled.
@@ -40,7 +40,7 @@ class Unfolding {
   /// Surface angle of h at its origin: counter-clockwise from first_halfedge, 0 to total_angle, radians.
   const double& polar(Index h) const { return polars_[h]; }
   std::span<const double> polars() const { return polars_; }
-  /// The same for the edge of h seen from to(h): also where h has no twin.
+  /// Returns the same for the edge of h seen from to(h): also where h has no twin.
   double polar_of_reverse(Index h) const {
     const Index t = mesh_->twin(h);
     return t == k_none ? mesh_->total_angle(mesh_->to(h)) : polars_[t];

@@ -144,7 +144,8 @@ void CurveWindows::emit_from_segment(const CurveSegment& segment, int side) {
   }
 }
 
-/// On the side where the curve turns away, rays from the bend fill the wedge between the segments' own.
+/// Emits from a bend: on the side where the curve turns away, rays from the bend fill the wedge between the segments'
+/// own.
 void CurveWindows::emit_from_bend(const CurveSegment& in, const CurveSegment& out, double along) {
   const DirectionsAtPoint star(unfolding_, end_point(out, true));
   const double ahead = direction_of(mesh_, star, out, true);
@@ -167,7 +168,7 @@ void CurveWindows::emit_from_bend(const CurveSegment& in, const CurveSegment& ou
   emit(high + k_right_angle, last, left_between ? -1 : 1);
 }
 
-/// Beyond an end all rays come from it; the curve run straight on tells left from right.
+/// Emits from an end: beyond an end all rays come from it; the curve run straight on tells left from right.
 void CurveWindows::emit_from_end(const CurveSegment& segment, bool is_start, double along) {
   const DirectionsAtPoint star(unfolding_, end_point(segment, is_start));
   const double into = direction_of(mesh_, star, segment, is_start);

@@ -17,7 +17,7 @@ class DirectionsAtPoint {
 
   Index vertex() const { return vertex_; }  ///< k_none when the point is none
   double total_angle() const { return total_; }
-  /// Whether directions go all round: not on the boundary.
+  /// Tells whether directions go all round: not on the boundary.
   bool is_round() const { return round_; }
   /// First direction; the last is begin + total_angle.
   double begin() const { return sectors_.front().begin; }

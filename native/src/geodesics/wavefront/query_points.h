@@ -42,7 +42,7 @@ class WatchedPlaces {
   std::vector<std::pair<Index, Index>> by_face_;  ///< face, index
 };
 
-/// What a wave front has found of them.
+/// Holds what a wave front has found of them.
 class PlaceDistances {
  public:
   void reset(const WatchedPlaces* places) {

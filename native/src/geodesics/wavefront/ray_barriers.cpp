@@ -41,14 +41,14 @@ void RayBarriers::add(Index face, const Vec3& begin, const Vec3& end) {
   first_[face] = static_cast<Index>(pieces_.size()) - 1;
 }
 
-/// In the frame of the window's half-edge.
+/// Returns the place in the frame of the window's half-edge.
 Vec2 RayBarriers::place(const Vec3& b, Index half, Side side) const {
   const double length = mesh_.length(half);
   const Vec2 own = b[(half + 1) % 3] * Vec2(length, 0) + b[(half + 2) % 3] * unfolding_.apex(half);
   return side == Side::entered ? own : Vec2(length - own.x(), -own.y());
 }
 
-/// What the pieces of a face hide of a window, as intervals in order, which do not overlap.
+/// Returns what the pieces of a face hide of a window, as intervals in order, which do not overlap.
 RayBarriers::Intervals RayBarriers::shadows(const RayWindow& window, Index half, Side side) const {
   const double size = mesh_.length(half) + unfolding_.apex(half).norm(), touch = k_touch * size;
   const bool is_parallel = window.rays == Rays::perpendicular;

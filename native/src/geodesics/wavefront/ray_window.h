@@ -7,7 +7,7 @@
 
 namespace saddleback {
 
-/// How the rays of a window run, and what they tell of a place beside its distance.
+/// Says how the rays of a window run, and what they tell of a place beside its distance.
 enum class Rays : std::uint8_t {
   from_point,     ///< out of one point; they tell the angle in which they left it
   from_foot,      ///< out of one point; all tell the same value

@@ -1,5 +1,5 @@
-// See wavefront_distances.h. Sources are rotated from frame to frame, perpendicular rays as a direction and a linear function:
-// distance at p = offset + direction . p, arc length at p = value + tangent . p.
+// See wavefront_distances.h. Sources are rotated from frame to frame, perpendicular rays as a direction and a linear
+// function: distance at p = offset + direction . p, arc length at p = value + tangent . p.
 
 #include "geodesics/wavefront/wavefront_distances.h"
 
@@ -48,7 +48,7 @@ struct Radial {
   static double distance(const RayWindow& w, const Vec2& ray, const Vec2&) {
     return w.offset + length_of(ray.x(), ray.y());
   }
-  /// Whether `length` is less than the distance at x, without a root.
+  /// Tells whether `length` is less than the distance at x, without a root.
   static bool is_less(double length, const RayWindow& w, double x) {
     const double own = length - w.offset, dx = x - w.source.x();
     return own < 0 || own * own < dx * dx + w.source.y() * w.source.y();
@@ -57,7 +57,7 @@ struct Radial {
     if (w.b0 <= w.source.x() && w.source.x() <= w.b1) return w.offset - w.source.y();
     return distance(w, w.source.x() < w.b0 ? w.b0 : w.b1);
   }
-  /// Whether the rays through two places of an edge of that length are no farther from each other.
+  /// Tells whether the rays through two places of an edge of that length are no farther from each other.
   static bool is_within(double angle, const RayWindow& w, double, double b, double c) {
     const double x = w.source.x(), y2 = w.source.y() * w.source.y(), width = c - b;
     return width * width * y2 <= angle * angle * (((b - x) * (b - x) + y2) * ((c - x) * (c - x) + y2));
@@ -219,7 +219,7 @@ void WavefrontDistances::run(const RayLimits& limits, const JobStage& stage, con
                        [this](Index vertex) { return distances_[vertex] <= limits_.radius; });
 }
 
-/// Whether some vertex is farther than by an edge from its neighbor: see ExactPropagation::cover_again.
+/// Tells whether some vertex is farther than by an edge from its neighbor: see ExactPropagation::cover_again.
 bool WavefrontDistances::cover_again() {
   if (std::isfinite(limits_.edges)) return false;  // rays stop on purpose
   for (const Index vertex : reached_) {
@@ -314,7 +314,7 @@ void WavefrontDistances::emit_from(Index vertex, double begin, double end) {
   } while (h != k_none && h != first);
 }
 
-/// Whether the rays have gone all round a tip that they end at: see tips.h.
+/// Tells whether the rays have gone all round a tip that they end at: see tips.h.
 template <class Front>
 bool WavefrontDistances::circles_tip(const RayWindow& w) const {
   const double length = mesh_.length(w.halfedge);
@@ -381,7 +381,7 @@ void WavefrontDistances::reach_apex(const RayWindow& window, const Vec2& ray, do
   improve(mesh_.apex(h), label, ray, h);
 }
 
-/// Of the places in the face that the window enters those that its rays meet.
+/// Reaches, of the places in the face that the window enters those that its rays meet.
 void WavefrontDistances::reach_places(const RayWindow& window) {
   const Index h = window.halfedge;
   const double base = mesh_.length(h), tolerance = k_at_border * base;

@@ -15,7 +15,7 @@
 
 namespace saddleback {
 
-/// What is known of a vertex.
+/// Holds what is known of a vertex.
 struct RayLabel {
   double distance = std::numeric_limits<double>::infinity();
   double value = 0;  ///< angle of departure or arc length of the foot; behind a saddle vertex that vertex's
@@ -51,7 +51,7 @@ class WavefrontDistances {
   void add_source(Index vertex, const RayLabel& label);
   /// Rays whose roots are in the face before the window.
   void add_window(const RayWindow& window);
-  /// What ends rays, to be filled after `begin` and before anything else; none at first.
+  /// Returns what ends rays, to be filled after `begin` and before anything else; none at first.
   RayBarriers& barriers() { return barriers_; }
   /// \throw Cancelled.
   void run(const RayLimits& limits, const JobStage& stage, const ReportRays& report = {});

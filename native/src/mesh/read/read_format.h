@@ -50,7 +50,7 @@ class Scanner {
   /// The next word as a number. `what` says what was wanted.
   double real(const char* what);
   std::int64_t integer(const char* what);
-  /// The same of a number that must be 0 or more.
+  /// Does the same of a number that must be 0 or more.
   std::int64_t count(const char* what);
   /// The next number on this line.
   double real_in_line(const char* what) { return to_real(word_in_line(), what); }
@@ -84,7 +84,7 @@ std::string lower_case(std::string_view word);
 
 inline char small_letter(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
 
-/// Whether a word is this one, which is in small letters, but for capitals.
+/// Tells whether a word is this one, which is in small letters, but for capitals.
 inline bool is_word(std::string_view word, std::string_view wanted) {
   if (word.size() != wanted.size()) return false;
   for (std::size_t i = 0; i < word.size(); ++i)
@@ -92,7 +92,7 @@ inline bool is_word(std::string_view word, std::string_view wanted) {
   return true;
 }
 
-/// What to say of a vertex that a file does not have.
+/// Returns what to say of a vertex that a file does not have.
 std::string no_such_vertex(std::int64_t number, std::int64_t count);
 
 void read_obj(std::string_view text, PolygonSoup& soup);

@@ -20,8 +20,8 @@ struct BorderContact {
   double to_end;    ///< to the nearer end of the edge where that is within reach, else -1
 };
 
-/// What counts as near: within a distance, or within a share of the edge's length, whichever is more. After so many
-/// pairs of a vertex and an edge the search ends.
+/// Holds what counts as near: within a distance, or within a share of the edge's length, whichever is more. After so
+/// many pairs of a vertex and an edge the search ends.
 struct Reach {
   double distance, share;
   std::int64_t most_visits = std::numeric_limits<std::int64_t>::max();
@@ -38,7 +38,7 @@ void stitch_borders(RepairState& state, double weld_distance, const JobStage& st
 /// Divides a face's side at vertices in their order along it; its apex stays a corner of all parts.
 void divide_edge(RepairState& state, Index face, int side, std::span<const Index> amid);
 
-/// What a person should know of borders that nearly meet; nothing is changed.
+/// Returns what a person should know of borders that nearly meet; nothing is changed.
 CloseBorders tell_close_borders(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                 const JobStage& stage);
 

@@ -32,8 +32,8 @@ struct RepairState {
   }
 };
 
-/// For each vertex marked in `used` the vertex that it is welded to: the smallest one at the same place or, with a
-/// distance, the first in order that lies within it. Those that stay are further apart than the distance. O(V)
+/// Finds for each vertex marked in `used` the vertex that it is welded to: the smallest one at the same place or, with
+/// a distance, the first in order that lies within it. Those that stay are further apart than the distance. O(V)
 /// expected.
 std::vector<Index> weld_clusters(std::span<const Vec3> positions, std::span<const std::uint8_t> used, double distance);
 

@@ -135,7 +135,7 @@ class BoundarySearch {
     return nearer;
   }
 
-  /// Along the boundary from the segment found, as long as that comes nearer.
+  /// Follows it along the boundary from the segment found, as long as that comes nearer.
   void follow_boundary(Index vertex) {
     for (Index before = k_none; before != nearest_[vertex];) {
       before = nearest_[vertex];

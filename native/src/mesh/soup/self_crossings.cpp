@@ -89,7 +89,7 @@ class BoxTree {
   std::vector<Node> nodes_;
 };
 
-/// Whether the segment's ends lie on different sides of the triangle's plane, and it passes between its sides.
+/// Tells whether the segment's ends lie on different sides of the triangle's plane, and it passes between its sides.
 bool pierces(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& t) {
   if (orient_3d(t[0], t[1], t[2], from) * orient_3d(t[0], t[1], t[2], to) >= 0) return false;
   const int side = orient_3d(from, to, t[0], t[1]);

@@ -11,7 +11,7 @@
 
 namespace saddleback {
 
-/// For any triangles, whichever way round.
+/// Serves any triangles, whichever way round.
 class CornerTable {
  public:
   /// One corner of a triangle, at the vertex that it is asked for: the triangle's edge from there leads to `next`.
@@ -23,7 +23,7 @@ class CornerTable {
   CornerTable(std::span<const Triangle> triangles, Index vertex_count);
 
   Index vertex_count() const { return static_cast<Index>(first_.size()) - 1; }
-  /// By triangle.
+  /// Lists them by triangle.
   std::span<const Corner> at(Index vertex) const {
     return {corners_.data() + first_[vertex], corners_.data() + first_[vertex + 1]};
   }
@@ -33,7 +33,7 @@ class CornerTable {
   std::vector<Corner> corners_;
 };
 
-/// Whether the edge from a vertex to `next` of one of its corners is one of another's triangle.
+/// Tells whether the edge from a vertex to `next` of one of its corners is one of another's triangle.
 inline bool has_edge(const CornerTable::Corner& corner, const CornerTable::Corner& other) {
   return other.triangle != corner.triangle && (other.previous == corner.next || other.next == corner.next);
 }
@@ -52,7 +52,7 @@ class SharedEdges {
     }
     std::ranges::sort(ends_);
   }
-  /// Whether one of the others with the edge to the corner's `next` is as wanted. They are asked by triangle.
+  /// Tells whether one of the others with the edge to the corner's `next` is as wanted. They are asked by triangle.
   template <class IsWanted>
   bool any(const Corner& corner, IsWanted&& is_wanted) const {
     if (ends_.empty()) {

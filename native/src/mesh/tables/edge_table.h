@@ -24,7 +24,7 @@ struct EdgeTable {
 /// A bucket per smaller vertex (counting sort), each sorted by itself: O(V + F) when valences are bounded.
 EdgeTable build_edge_table(std::span<const Triangle> triangles, Index vertex_count);
 
-/// Where half-edge 3f+i starts and ends.
+/// Returns where half-edge 3f+i starts and ends.
 inline Index halfedge_from(std::span<const Triangle> triangles, Index h) { return triangles[h / 3][h % 3]; }
 inline Index halfedge_to(std::span<const Triangle> triangles, Index h) { return triangles[h / 3][(h % 3 + 1) % 3]; }
 

@@ -16,7 +16,8 @@ struct FlatFace {
   Vec2 last;    ///< from corner 1 to corner 2, where that is short with more digits than their difference
   double size;  ///< bounds the coordinates; the scale of rounding
 
-  /// From positions, not from the three lengths: dot and cross products keep a needle's short side accurate.
+  /// Lays the face out from positions, not from the three lengths: dot and cross products keep a needle's short side
+  /// accurate.
   FlatFace(const Vec3& a, const Vec3& b, const Vec3& c);
   Vec3 to_barycentric(const Vec2& xy) const;
 };

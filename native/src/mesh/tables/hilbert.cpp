@@ -13,8 +13,8 @@ namespace {
 
 constexpr int k_bits = 20;
 
-/// How the curve lies in an octant: the axis that is read as each of three, which of those are upside down, and whether
-/// the curve runs backwards.
+/// Holds how the curve lies in an octant: the axis that is read as each of three, which of those are upside down, and
+/// whether the curve runs backwards.
 struct Frame {
   std::array<int, 3> axis{}, flipped{};
   int backwards = 0;
@@ -32,7 +32,7 @@ struct Frame {
   }
 };
 
-/// What an octant in a frame adds to the key, and the frame inside it.
+/// Holds what an octant in a frame adds to the key, and the frame inside it.
 struct Step {
   std::uint16_t digit, frame;
 };

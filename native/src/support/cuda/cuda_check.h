@@ -7,7 +7,7 @@
 
 namespace saddleback {
 
-/// What the driver says, and during what.
+/// Holds what the driver says, and during what.
 class CudaFailure : public std::runtime_error {
  public:
   CudaFailure(const char* doing, cudaError_t error)

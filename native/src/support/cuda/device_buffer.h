@@ -17,7 +17,7 @@ class DeviceBuffer {
   DeviceBuffer(std::size_t count, cudaStream_t stream) : count_(count), stream_(stream) {
     if (count > 0) check_cuda(cudaMallocAsync(&data_, count * sizeof(Number), stream), "allocating device memory");
   }
-  /// With a copy of what is in host memory; complete when the stream has run.
+  /// Makes one with a copy of what is in host memory; complete when the stream has run.
   DeviceBuffer(std::span<const Number> values, cudaStream_t stream) : DeviceBuffer(values.size(), stream) {
     if (!values.empty())
       check_cuda(cudaMemcpyAsync(data_, values.data(), values.size_bytes(), cudaMemcpyHostToDevice, stream),

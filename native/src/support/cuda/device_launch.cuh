@@ -10,7 +10,7 @@ namespace saddleback {
 namespace {
 
 constexpr int k_threads = 256;
-/// At least one, which finds nothing to do where there is nothing.
+/// Returns at least one, which finds nothing to do where there is nothing.
 inline unsigned blocks_for(std::int64_t count) {
   return static_cast<unsigned>(std::max<std::int64_t>(1, (count + k_threads - 1) / k_threads));
 }

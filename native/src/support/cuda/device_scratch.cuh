@@ -29,7 +29,7 @@ struct Widened {
   }
 };
 
-/// Of each of so many numbers the sum of those before it.
+/// Writes of each of so many numbers the sum of those before it.
 template <class Number, class Sum>
 void add_up(const Number* counts, Sum* sums, std::int32_t count, cudaStream_t stream) {
   const auto add = [&](auto numbers) {

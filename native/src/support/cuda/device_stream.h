@@ -38,7 +38,7 @@ CudaStatus cuda_status(CudaReason& reason, Work&& work) {
   }
 }
 
-/// What several devices took together: of each part, the longest.
+/// Returns what several devices took together: of each part, the longest.
 inline DeviceTimes slowest(const std::vector<DeviceTimes>& parts) {
   DeviceTimes all;
   for (const DeviceTimes& part : parts) {
@@ -73,7 +73,7 @@ class Stopwatch {
     return read();
   }
   void start() { check_cuda(cudaEventRecord(from_, stream_), "recording an event"); }
-  /// Where the stream is now; `read` waits for it.
+  /// Records where the stream is now; `read` waits for it.
   void end() { check_cuda(cudaEventRecord(to_, stream_), "recording an event"); }
   double read() {
     check_cuda(cudaEventSynchronize(to_), "waiting for the device");
@@ -138,8 +138,8 @@ void wait_polling(const Awaited& awaited, Poll&& poll) {
   }
 }
 
-/// The same, with another stream for poll(stream). When that throws, stop(stream) has to see to it that the work ends
-/// soon, and what was thrown goes on once it has.
+/// Does the same, with another stream for poll(stream). When that throws, stop(stream) has to see to it that the work
+/// ends soon, and what was thrown goes on once it has.
 template <class Poll, class Stop>
 void wait_polling(cudaStream_t stream, Poll&& poll, Stop&& stop) {
   std::optional<Stream> other;  // making one takes longer than most waits

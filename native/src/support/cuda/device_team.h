@@ -96,7 +96,8 @@ class DeviceTeam {
     changed_.notify_all();
   }
 
-  /// For a while: who sleeps is woken some tenth of a millisecond late, and most of those waited for come sooner.
+  /// Looks for others for a while: who sleeps is woken some tenth of a millisecond late, and most of those waited for
+  /// come sooner.
   template <class IsOver>
   static void look_for_others(IsOver&& is_over) {
     using Clock = std::chrono::steady_clock;
@@ -142,12 +143,12 @@ class TeamCaller {
   std::vector<double> done_;  ///< by member
 };
 
-/// What all members of a team say at a meeting.
+/// Holds what all members of a team say at a meeting.
 template <class Word>
 class TeamWords {
  public:
   explicit TeamWords(DeviceTeam& team) : team_(team), said_(static_cast<std::size_t>(team.members())) {}
-  /// By all members. \return by member
+  /// Is called by all members. \return by member
   std::vector<Word> say(int member, const Word& word) {
     Said& mine = said_[static_cast<std::size_t>(member)];
     const std::size_t turn = mine.times++ % 2;  // others may still look at what was said before
@@ -179,9 +180,10 @@ class TeamArrays {
  public:
   explicit TeamArrays(DeviceTeam& team) : team_(team), numbers_(team), lists_(team) {}
 
-  /// By all members: the numbers of all.
+  /// Is called by all members: the numbers of all.
   std::vector<std::int64_t> numbers_of_all(int member, std::int64_t number) { return numbers_.say(member, number); }
-  /// By all members: the lists of all. Theirs are to stay as they are until the copies of others have been waited for.
+  /// Is called by all members: the lists of all. Theirs are to stay as they are until the copies of others have been
+  /// waited for.
   template <class Item>
   std::vector<TeamList<Item>> lists_of_all(int member, std::span<const Item> mine) {
     std::vector<TeamList<Item>> lists;
@@ -189,8 +191,8 @@ class TeamArrays {
       lists.push_back({there.device, {static_cast<const Item*>(there.items), there.count}});
     return lists;
   }
-  /// By all members: `mine` is the member's own copy of the array, `begins` tell where the parts begin and where the
-  /// last ends. Complete on return.
+  /// Is called by all members: `mine` is the member's own copy of the array, `begins` tell where the parts begin and
+  /// where the last ends. Complete on return.
   template <class Number>
   void share(int member, Number* mine, std::span<const std::int32_t> begins, cudaStream_t stream) {
     const int members = team_.members();

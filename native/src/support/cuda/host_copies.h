@@ -56,8 +56,8 @@ class HostCopies {
   HostCopies(const HostCopies&) = delete;
   HostCopies& operator=(const HostCopies&) = delete;
 
-  /// Before the first copy: so many bytes will be copied there. Threads begin now, beside the work of the stream, with
-  /// the pages under what is fresh; what is there is lost, until end_laying() or the first copy.
+  /// Is called before the first copy: so many bytes will be copied there. Threads begin now, beside the work of the
+  /// stream, with the pages under what is fresh; what is there is lost, until end_laying() or the first copy.
   void expect(void* to, std::size_t size) {
     if (is_pinned(to)) return;
     const std::lock_guard lock(mutex_);
@@ -75,27 +75,27 @@ class HostCopies {
     fresh_.clear();
     changed_.wait(lock, [&] { return laying_ == 0; });
   }
-  /// To the host, of what the stream has written so far and does not change any more; none to nowhere.
+  /// Copies to the host what the stream has written so far and does not change any more; none to nowhere.
   template <class Number>
   void to_host(const Number* from, std::size_t count, void* to) {
     if (count == 0 || !to) return;
     events_.emplace_back().record(stream_);
     to_host(from, count, to, events_.back());
   }
-  /// The same, of what was written before an event.
+  /// Copies the same, what was written before an event.
   template <class Number>
   void to_host(const Number* from, std::size_t count, void* to, cudaEvent_t written) {
     if (count == 0 || !to) return;
     add({from, to, count * sizeof(Number), cudaMemcpyDeviceToHost, written}, to);
   }
-  /// To the device: complete when finish() returns.
+  /// Copies to the device: complete when finish() returns.
   template <class Number>
   void to_device(const Number* from, std::size_t count, Number* to) {
     if (count == 0) return;
     events_.emplace_back().record(stream_);  // the memory is the stream's from here on
     add({from, to, count * sizeof(Number), cudaMemcpyHostToDevice, events_.back()}, from);
   }
-  /// Whether the device copies from and to there by itself.
+  /// Tells whether the device copies from and to there by itself.
   static bool is_pinned(const void* host) {
     cudaPointerAttributes attributes{};
     if (cudaPointerGetAttributes(&attributes, host) != cudaSuccess) {
@@ -165,8 +165,8 @@ class HostCopies {
     while (pieces > k_few && threads_.size() < std::min(most, pieces)) threads_.emplace_back([this] { work(); });
   }
 
-  /// Of pinned memory nothing is in the way, but what the device has been told to copy it copies: who cancels should
-  /// not wait for much of it.
+  /// Adds copies that the device makes by itself: of pinned memory nothing is in the way, but what the device has been
+  /// told to copy it copies: who cancels should not wait for much of it.
   void add_direct(const Copy& copy) {
     for (std::size_t begin = 0; begin < copy.size; begin += k_direct) {
       const Copy piece{static_cast<const char*>(copy.from) + begin, static_cast<char*>(copy.to) + begin,
@@ -204,7 +204,7 @@ class HostCopies {
     }
   }
 
-  /// Of the pieces, while no thread changes them.
+  /// Returns the share of the pieces, while no thread changes them.
   double copied_share() const { return added_ == 0 ? 0 : 1 - static_cast<double>(open_) / static_cast<double>(added_); }
 
   void close() {

@@ -5,7 +5,7 @@
 
 namespace saddleback {
 
-/// Whether it is, for all devices, from here on.
+/// Tells whether it is, for all devices, from here on.
 bool pin_host_memory(void* memory, std::uint64_t bytes);
 void unpin_host_memory(void* memory);
 

@@ -37,7 +37,7 @@ __device__ inline int warp_sum(int value) {
 #endif
 }
 
-/// Of what the lanes up to this one have.
+/// Returns the sum of what the lanes up to this one have.
 __device__ inline int warp_sum_through(int value) {
   const int lane = threadIdx.x & 31;
 #pragma unroll

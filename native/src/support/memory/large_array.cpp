@@ -38,7 +38,7 @@ constexpr std::size_t k_smallest = k_step;                     // below, an ordi
 constexpr std::size_t k_smallest_kept = std::size_t{1} << 12;  // though such a heap may go back and forth to the system
 constexpr std::size_t k_largest_kept = 7 << 19, k_most_kept = std::size_t{24} << 20;
 
-/// What is had for a size. The last page is huge only where most of it is used: small pages are never kept.
+/// Returns what is had for a size. The last page is huge only where most of it is used: small pages are never kept.
 std::size_t rounded(std::size_t size) {
   if (size < k_smallest) return (size + k_smallest_kept - 1) / k_smallest_kept * k_smallest_kept;
   return std::max((size + k_step - 1) / k_step * k_step, (size + 3 * k_huge / 8) / k_huge * k_huge);

@@ -43,7 +43,8 @@ std::size_t number_in(const std::string& path, const std::string& word = {}) {
   return k_unlimited;
 }
 
-/// What a container's limit leaves, by the files of a control group; caches of files are given back when needed.
+/// Returns what a container's limit leaves, by the files of a control group; caches of files are given back when
+/// needed.
 std::size_t left_in_group(const std::string& folder, const char* limit, const char* usage) {
   const std::size_t most = number_in(folder + limit), used = number_in(folder + usage);
   if (most == k_unlimited || used == k_unlimited) return k_unlimited;
@@ -81,7 +82,7 @@ std::size_t left_of_machine() {
   return pages > 0 && size > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(size) : 0;
 }
 
-/// What `ulimit -v` leaves.
+/// Returns what `ulimit -v` leaves.
 std::size_t left_of_address_space() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return k_unlimited;

@@ -10,8 +10,8 @@
 
 namespace saddleback {
 
-/// As std::memcpy, but past the caches: what is overwritten is not fetched before, which makes a copy of what was just
-/// read from a device half as long.
+/// Copies as std::memcpy, but past the caches: what is overwritten is not fetched before, which makes a copy of what
+/// was just read from a device half as long.
 inline void copy_past_caches(void* to, const void* from, std::size_t size) {
   char* out = static_cast<char*>(to);
   const char* in = static_cast<const char*>(from);

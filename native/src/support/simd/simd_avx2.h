@@ -8,8 +8,8 @@
 namespace saddleback {
 namespace {
 
-/// For every mask of 8 lanes, the lanes it holds one after the other, then the first of them again: what is written
-/// behind the end will be read, too, and must be no worse than what is kept.
+/// Holds, for every mask of 8 lanes, the lanes it holds one after the other, then the first of them again: what is
+/// written behind the end will be read, too, and must be no worse than what is kept.
 struct PackingTable {
   alignas(64) std::int32_t lanes[256][8];
   constexpr PackingTable() : lanes{} {
@@ -23,7 +23,7 @@ struct PackingTable {
 };
 constexpr PackingTable k_packing;
 
-/// The same for 4 lanes of 64 bits, as pairs of 32.
+/// Holds the same for 4 lanes of 64 bits, as pairs of 32.
 struct PairPackingTable {
   alignas(64) std::int32_t lanes[16][8];
   constexpr PairPackingTable() : lanes{} {
@@ -45,7 +45,7 @@ struct Simd : Vectors<8> {
   static constexpr const char* name = "avx2";
 
   static bool any(Mask mask) { return _mm256_movemask_ps(reinterpret_cast<__m256>(mask)) != 0; }
-  /// Which of `width` words from here on hold a number in the bits of a mask, a bit each.
+  /// Tells which of `width` words from here on hold a number in the bits of a mask, a bit each.
   static unsigned matches(const std::uint64_t* words, std::uint64_t mask, std::uint64_t number) {
     const auto four = [&](const std::uint64_t* from) {
       const __m256i bits = _mm256_set1_epi64x(static_cast<std::int64_t>(mask));

@@ -12,7 +12,7 @@ struct Simd : Vectors<16> {
   static constexpr const char* name = "avx512";
 
   static bool any(Mask mask) { return bits(mask) != 0; }
-  /// Which of `width` words from here on hold a number in the bits of a mask, a bit each.
+  /// Tells which of `width` words from here on hold a number in the bits of a mask, a bit each.
   static unsigned matches(const std::uint64_t* words, std::uint64_t mask, std::uint64_t number) {
     const auto eight = [&](const std::uint64_t* from) {
       const __m512i bits = _mm512_set1_epi64(static_cast<std::int64_t>(mask));

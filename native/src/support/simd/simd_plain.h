@@ -14,7 +14,7 @@ struct Simd : Vectors<4> {
 #endif
 
   static bool any(Mask mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
-  /// Which of `width` words from here on hold a number in the bits of a mask, a bit each.
+  /// Tells which of `width` words from here on hold a number in the bits of a mask, a bit each.
   static unsigned matches(const std::uint64_t* words, std::uint64_t mask, std::uint64_t number) {
     unsigned here = 0;
     for (unsigned i = 0; i < 4; ++i) here |= static_cast<unsigned>((words[i] & mask) == number) << i;

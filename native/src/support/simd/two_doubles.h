@@ -17,7 +17,7 @@ struct TwoDoubles {
 
   static TwoDoubles both(double value) { return {Pair{value, value}}; }
   static TwoDoubles of(double first, double second) { return {Pair{first, second}}; }
-  /// From two places in a row.
+  /// Reads from two places in a row.
   static TwoDoubles at(const double* place) {
     Pair pair;
     __builtin_memcpy(&pair, place, sizeof pair);

@@ -76,7 +76,7 @@ struct alignas(k_apart) Worker {
 };
 
 #ifdef SADDLEBACK_POSIX
-/// While it lives, threads that begin receive no signals: those are for the program's own threads.
+/// Lets threads that begin while it lives receive no signals: those are for the program's own threads.
 class SignalsHeldBack {
  public:
   SignalsHeldBack() {
@@ -98,7 +98,7 @@ struct SignalsHeldBack {};
 /// The workers that nobody has borrowed. One for the process, made at the first parallel loop and never destroyed.
 class IdleWorkers {
  public:
-  /// Up to `count` workers, new ones where too few are idle; fewer where the system refuses.
+  /// Borrows up to `count` workers, new ones where too few are idle; fewer where the system refuses.
   void borrow(int count, std::vector<Worker*>& into) {
     {
       const std::lock_guard lock(mutex_);

@@ -6,7 +6,7 @@ namespace saddleback {
 /// Number of processors that this process may use.
 int processor_count();
 
-/// What a member of a team does: a plain function and what it works on.
+/// Holds what a member of a team does: a plain function and what it works on.
 struct TeamWork {
   void (*function)(void* context, int member);
   void* context;

@@ -46,7 +46,7 @@ bool is_inside(const Loop& outline, const Vec2& point) {
   return inside;
 }
 
-/// Where an edge of the domain goes through the outline.
+/// Holds where an edge of the domain goes through the outline.
 struct Passage {
   double share;  ///< of the edge's length
   double place;  ///< on the outline: number of the side, and the share of its length

@@ -18,7 +18,8 @@ class CurvedCells {
   CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, const DomainMap& map, double tolerance,
               const JobStage& stage);
 
-  /// What lies of a cell in the domain. O(points of the cell), times the corners of the domain if these are near.
+  /// Returns what lies of a cell in the domain. O(points of the cell), times the corners of the domain if these are
+  /// near.
   /// \throw Cancelled
   std::vector<Loop> clip(Index site) const;
 

@@ -26,7 +26,7 @@ class DomainMap {
   }
 
   enum class Place { outside, inside, at_edge };
-  /// Where a box lies; `at_edge` when in doubt.
+  /// Returns where a box lies; `at_edge` when in doubt.
   Place place(const Vec2& low, const Vec2& high) const {
     if ((high.array() < lower_.array()).any() || (low.array() > upper_.array()).any()) return Place::outside;
     if ((low.array() < lower_.array()).any() || (high.array() > upper_.array()).any()) return Place::at_edge;

@@ -22,18 +22,20 @@ struct RasterMoments {
   }
 };
 
-/// By Gauss's theorem an integral over a polygon is one along its border, of what lies to the left in the row: sums
-/// from the raster's left side, made once. Within a cell of the raster they are cubic along a straight border, which
-/// Simpson's rule integrates exactly.
+/// Integrates over a polygon by its border: by Gauss's theorem an integral over a polygon is one along its border, of
+/// what lies to the left in the row: sums from the raster's left side, made once. Within a cell of the raster they are
+/// cubic along a straight border, which Simpson's rule integrates exactly.
 class RasterIntegral {
  public:
   /// The raster lies over the domain's bounding box.
   RasterIntegral(const PlanarDomain& domain, const DensityRaster& density);
 
   const Vec2& middle() const { return middle_; }
-  /// Of the power of two that the density is divided by, so that its squares stay among the doubles.
+  /// Returns the exponent of the power of two that the density is divided by, so that its squares stay among the
+  /// doubles.
   int exponent() const { return exponent_; }
-  /// Of a loop in the box: positive inside when it turns counter-clockwise. O(raster cells crossed).
+  /// Integrates along the border of a loop in the box: positive inside when it turns counter-clockwise. O(raster cells
+  /// crossed).
   RasterMoments along(std::span<const Vec2> loop) const;
 
  private:

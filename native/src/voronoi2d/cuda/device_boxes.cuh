@@ -32,7 +32,7 @@ struct DeviceTree {
   int levels;
 };
 
-/// Where a box comes among others; nowhere, when it is not to be visited.
+/// Says where a box comes among others; nowhere, when it is not to be visited.
 constexpr unsigned k_nowhere = ~0u;
 /// The least comes first. What is no number comes somewhere.
 __device__ inline unsigned place_by(double number) {
@@ -40,10 +40,11 @@ __device__ inline unsigned place_by(double number) {
   return min(bits & 0x80000000u ? ~bits : bits | 0x80000000u, k_nowhere - 1);
 }
 
-/// What a visit makes of boxes' places: they are as before, or are to be asked for again, or no more are to be visited.
+/// Says what a visit makes of boxes' places: they are as before, or are to be asked for again, or no more are to be
+/// visited.
 enum class Seen { as_before, anew, enough };
 
-/// By a warp: calls visit(rank of the lane's site, or -1, load(rank)) for every 32 sites in a row, as long as
+/// Is called by a warp: calls visit(rank of the lane's site, or -1, load(rank)) for every 32 sites in a row, as long as
 /// place(level, box) is somewhere for all boxes about them; of each 32 the first comes first. Where visits change
 /// nothing, places are not asked for again, and the sites of several boxes are loaded at a time: else each would wait
 /// for memory.
@@ -117,7 +118,7 @@ __device__ void visit_leaves(const DeviceTree& tree, Place&& place, Load&& load,
   }
 }
 
-/// The same as long as measure(level, box) is not negative, the least first. Every visit may make it so; ends when
+/// Does the same as long as measure(level, box) is not negative, the least first. Every visit may make it so; ends when
 /// visit(rank) is false.
 template <class Measure, class Visit>
 __device__ void visit_leaves(const DeviceTree& tree, Measure&& measure, Visit&& visit) {

@@ -52,7 +52,7 @@ __device__ inline void write_list(const DeviceLists& lists, std::int32_t rank, i
   }
 }
 
-/// By a warp: where a cell's list of any length goes; null when there is no room.
+/// Is called by a warp: where a cell's list of any length goes; null when there is no room.
 __device__ inline std::int32_t* place_for_list(const DeviceLists& lists, std::int32_t rank, int count) {
   std::int32_t* const slots = lists.slots + static_cast<std::int64_t>(rank) * k_slots;
   if (count <= k_slots) return slots;
@@ -65,8 +65,8 @@ __device__ inline std::int32_t* place_for_list(const DeviceLists& lists, std::in
   return lists.pool + begin;
 }
 
-/// How far along the line of centers the circle through the site and n touches another site: surely between two bounds;
-/// infinite for a site to the right.
+/// Holds how far along the line of centers the circle through the site and n touches another site: surely between two
+/// bounds; infinite for a site to the right.
 struct Touch {
   float low, high;
   bool is_doubtful;  ///< neither surely left nor surely out of the way
@@ -102,7 +102,7 @@ class CellBuilder {
  public:
   __device__ explicit CellBuilder(const TileSites& tile) : tile_(tile), memory_(tile.memory()) {}
 
-  /// With the sites that were gathered.
+  /// Begins with the sites that were gathered.
   __device__ void begin() {
     scale_ = __longlong_as_double(static_cast<long long>(1023 - ilogb(tile_.grid_size())) << 52);
   }
@@ -113,7 +113,7 @@ class CellBuilder {
     site_ = memory_.at[own];
     return wind_among<false>(lists) || wind_among<true>(lists);
   }
-  /// The same for cells that are not to be found among the nearest sites.
+  /// Does the same for cells that are not to be found among the nearest sites.
   __device__ bool wind_wide(int own, const DeviceLists& lists) {
     own_ = own;
     site_ = memory_.at[own];
@@ -226,7 +226,7 @@ class CellBuilder {
     return __any_sync(k_warp, is_rivalled) ? -1 : chosen;
   }
 
-  /// To n what the first of some lanes has.
+  /// Gives n what the first of some lanes has.
   __device__ int take(int at, const Near& near, unsigned lanes) {
     const int lane = __ffs(static_cast<int>(lanes)) - 1;
     n_ = {__shfl_sync(k_warp, near.x, lane), __shfl_sync(k_warp, near.y, lane), __shfl_sync(k_warp, near.square, lane)};
@@ -284,7 +284,7 @@ class CellBuilder {
     return best;
   }
 
-  /// Whether all sites in the circles through the site, a lane's neighbor and the next lane's were seen.
+  /// Tells whether all sites in the circles through the site, a lane's neighbor and the next lane's were seen.
   __device__ bool are_covered(const Near& a, int count) const {
     const int lane = threadIdx.x % 32, next = lane + 1 < count ? lane + 1 : 0;
     const float b_x = __shfl_sync(k_warp, a.x, next), b_y = __shfl_sync(k_warp, a.y, next),
@@ -326,7 +326,7 @@ struct TileRange {
     return has_left() ? last : tile;
   }
   __device__ bool has_left() const { return *static_cast<volatile int*>(are_left); }
-  /// After so many other cells.
+  /// Judges after so many other cells.
   __device__ void judge(int far) const { judge(far, first + *static_cast<volatile int*>(taken)); }
 
  private:

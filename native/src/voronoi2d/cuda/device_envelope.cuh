@@ -12,7 +12,7 @@ namespace {
 
 constexpr int k_nobody = -1, k_unknown_rival = -2;
 
-/// As `wave_of`, with nearly all digits where one site nearly hides the other and the squares cancel.
+/// Works as `wave_of`, with nearly all digits where one site nearly hides the other and the squares cancel.
 __device__ inline Wave careful_wave(const WeightedPoint2& here, const WeightedPoint2& other) {
   using namespace predicates;
   constexpr double k_epsilon = detail::k_epsilon, k_enough = 64 * k_epsilon;
@@ -39,10 +39,10 @@ __device__ inline Wave careful_wave(const WeightedPoint2& here, const WeightedPo
 struct Direction {
   double x, y, blur;
 };
-/// Where winding begins: none that sites on a lattice would single out.
+/// Says where winding begins: none that sites on a lattice would single out.
 __device__ constexpr Direction k_start{0.5403023058681398, 0.8414709848078965, 0x1p-51};
 
-/// How far it is from one direction to another, counter-clockwise: from 0 to 4, along the square about them.
+/// Returns how far it is from one direction to another, counter-clockwise: from 0 to 4, along the square about them.
 __device__ inline double turned(const Direction& from, double x, double y) {
   const double across = from.x * y - from.y * x, along = from.x * x + from.y * y;
   const double share = fmin(fabs(across), fabs(along)) / (fabs(across) + fabs(along));
@@ -70,7 +70,7 @@ struct Least {
       others_low = fmin(others_low, other - other_doubt);
     }
   }
-  /// At least so large the warp's least is not.
+  /// Returns a bound that the warp's least does not exceed.
   __device__ float warp_bound() const { return disordered(warp_min(ordered(__double2float_ru(value + doubt)))); }
 
   /// The lane that certainly has the least; k_nobody when none has any, k_unknown_rival when it is not certain.
@@ -89,7 +89,7 @@ struct Least {
   }
 };
 
-/// Of a wave that may rise above the present one: when, to `least`. False when that is not certain.
+/// Decides about a wave that may rise above the present one: when, to `least`. False when that is not certain.
 __device__ inline bool take_rise(const Wave& present, const Direction& from, const Wave& other, int at, Least& least) {
   const WaveCrossing crossing = wave_crossing(present, other);
   if (!(crossing.blur < INFINITY)) return are_apart(present, other) && other.z < present.z;

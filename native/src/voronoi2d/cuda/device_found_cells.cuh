@@ -27,7 +27,7 @@ inline int blocks_of(const void* kernel, int threads, std::size_t shared, int de
 /// The neighbors of the cells, of which every member of a team finds a part.
 class FoundCells {
  public:
-  /// How many neighbors all members' cells have, where there are several.
+  /// Shares how many neighbors all members' cells have, where there are several.
   void share(const PlanePart& part) { part.add_up_all(counts_, offsets_, stream_); }  // the last count is 0
 
   const DeviceBuffer<std::int32_t>& offsets() const { return offsets_; }
@@ -68,8 +68,8 @@ class FoundCells {
     bool are_left;
     std::int32_t sides;
   };
-  /// Of what was started before; waits for it, and calls report(share done of the last cells) now and then, which may
-  /// throw.
+  /// Counts what was started before: waits for it, and calls report(share done of the last cells) now and then, which
+  /// may throw.
   template <class Report>
   Count count(Report&& report) {
     int counters[k_counters];
@@ -135,7 +135,7 @@ class CellFinder : public FoundCells {
         member_(static_cast<std::size_t>(member)),
         may_be_left_(may_be_left) {}
 
-  /// Where the members' cells begin, and the last one's end.
+  /// Returns where the members' cells begin, and the last one's end.
   const std::vector<std::int32_t>& begins() const { return tiles_.bounds(); }
 
   /// Does not wait for the last cells; calls report(share done) in between where there are many.
@@ -145,8 +145,8 @@ class CellFinder : public FoundCells {
     constexpr int k_many = 32;  // of as many one
     find(mine().count() / k_many, report);
   }
-  /// The same where others wait for these cells: waits for all of them. Calls meanwhile() before, and undo() when what
-  /// that did needs memory that is wanted.
+  /// Does the same where others wait for these cells: waits for all of them. Calls meanwhile() before, and undo() when
+  /// what that did needs memory that is wanted.
   template <class Report, class Meanwhile, class Undo>
   void start(int device, Report&& report, Meanwhile&& meanwhile, Undo&& undo) {
     start(device, report);
@@ -171,7 +171,7 @@ class CellFinder : public FoundCells {
   }
 
  private:
-  /// Of all time: until the tiles are done.
+  /// Measures shares of all time: until the tiles are done.
   static constexpr double k_tiles = 0.9;
   template <class Report>
   static auto of_last(Report& report) {

@@ -8,7 +8,7 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-/// Of an edge's two, which are side by side: where it goes, and what leaves the same site next and before,
+/// Holds one of an edge's two, which are side by side: where it goes, and what leaves the same site next and before,
 /// counter-clockwise.
 struct __align__(16) HalfEdge {
   std::int32_t to, next, before;
@@ -77,7 +77,7 @@ class Merger {
     both.last_free = last_free_;
     return !fails_;
   }
-  /// Of the last merge, where it failed.
+  /// Tells, of the last merge, where it failed.
   SADDLEBACK_HOST_DEVICE bool took_too_long() const { return steps_ > mesh_.most_steps; }
 
  private:
@@ -147,7 +147,7 @@ class Merger {
     }
   }
 
-  /// From the edge from right to left, triangle after triangle, to the upper tangent.
+  /// Goes up from the edge from right to left, triangle after triangle, to the upper tangent.
   SADDLEBACK_HOST_DEVICE std::int32_t go_up(std::int32_t base) {
     const HalfEdge* const halves = mesh_.halves;
     base_ = base;
@@ -167,8 +167,8 @@ class Merger {
     return base_;
   }
 
-  /// What doubles do not tell in a step is answered elsewhere, so that it takes no registers here, and then is known
-  /// when the step is begun again.
+  /// Answers elsewhere what doubles do not tell in a step, so that it takes no registers here, and then is known when
+  /// the step is begun again.
   struct Question {
     enum { in_left, in_right, in_side, turn_left, turn_right };
     int asked = 0, answered = 0;

@@ -14,7 +14,7 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-/// What came of merging all.
+/// Says what came of merging all.
 enum class MergeOutcome : int { fully, too_slow, not_told };
 
 /// Ranks in a row, as one part.
@@ -23,7 +23,7 @@ struct MergedRun {
   std::int32_t first, last;
 };
 
-/// Who merges with whom is found on the way up: runs in the order of the places, which differ least. After
+/// Holds who merges with whom, as found on the way up: runs in the order of the places, which differ least. After
 /// [apetrei2014].
 struct MergeTree {
   MergedMesh mesh;
@@ -62,7 +62,7 @@ struct MergeTree {
     }
     return true;
   }
-  /// Who stops because others failed says nothing new.
+  /// Records the first failure: who stops because others failed says nothing new.
   __device__ void fail(MergeOutcome why) const { atomicCAS(failed, 0, static_cast<int>(why)); }
 };
 
@@ -112,7 +112,7 @@ __global__ void __launch_bounds__(k_threads, 2) merge_far_sites(MergeTree tree) 
   }
 }
 
-/// From then on a half-edge of all those from the site, whichever.
+/// Finds for each site a half-edge of all those from it, whichever.
 __global__ void find_leaving(MergedMesh mesh, std::int32_t edges) {
   const std::int32_t edge = thread_number();
   if (edge >= edges) return;

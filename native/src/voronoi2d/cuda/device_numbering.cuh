@@ -39,7 +39,7 @@ struct DeviceCells {
     const double2 p = at[rank];
     return {p.x, p.y};
   }
-  /// By one thread for each cell.
+  /// Is called by one thread for each cell.
   __device__ std::int32_t of_thread() const { return mine.begin + thread_number(); }
   __device__ predicates::WeightedPoint2 weighted(std::int32_t rank) const {
     return {at[rank].x, at[rank].y, weights[rank]};
@@ -137,7 +137,7 @@ __global__ void expect_sum(const std::int32_t* sum, std::int32_t wanted, int* mi
   if (*sum != wanted) *misfits = 1;
 }
 
-/// Whether the neighbors of a cell do, or of an open one no further; see check_open_cells.
+/// Tells whether the neighbors of a cell do, or of an open one no further; see check_open_cells.
 __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell, const DeviceNumbers& numbers) {
   const std::int32_t first = cells.offsets[cell], last = cells.offsets[cell + 1] - 1;
   if (last <= first) return false;
@@ -157,7 +157,7 @@ __device__ inline bool winds_once(const DeviceCells& cells, std::int32_t cell, c
   return is_open ? crossings <= 1 : crossings == 2;
 }
 
-/// What is left to tell of open cells, so that it costs the others nothing.
+/// Tells what is left to tell of open cells, so that it costs the others nothing.
 __global__ void check_open_cells(DeviceCells cells, const std::uint8_t* is_open, int* misfits) {
   const std::int32_t cell = cells.of_thread();
   if (cell >= cells.mine.end || !is_open[cell]) return;
@@ -201,7 +201,7 @@ __global__ void join_sides(DeviceCells cells, const std::int32_t* edges_before, 
   if (!fits) *numbers.misfits_here = 1;
 }
 
-/// From a cell's corner to the same vertex's corner of the next cell about it, and so on.
+/// Walks from a cell's corner to the same vertex's corner of the next cell about it, and so on.
 struct CornerWalk {
   const DeviceCells& cells;
   const std::int32_t* next_corners;
@@ -322,7 +322,7 @@ __global__ void count_triangles(DeviceCells cells, DeviceNumbers numbers, std::i
   counts[cell] = mine;
 }
 
-/// As Voronoi2d::delaunay: vertex after vertex, fans from the site with the smallest index.
+/// Adds triangles as Voronoi2d::delaunay does: vertex after vertex, fans from the site with the smallest index.
 __global__ void add_triangles(DeviceCells cells, const std::int32_t* triangles_before, DeviceNumbers numbers,
                               std::int32_t* triangles) {
   const std::int32_t cell = cells.of_thread();
@@ -385,12 +385,12 @@ class DeviceDiagram {
     }
   }
 
-  /// What no diagram has more of, by Euler's formula.
+  /// Returns what no diagram has more of, by Euler's formula.
   static std::int32_t most_sides(std::int32_t cells) {
     return static_cast<std::int32_t>(
         std::min<std::int64_t>(6 * std::int64_t{cells}, std::numeric_limits<std::int32_t>::max()));
   }
-  /// How many there are; not more than there is memory for. \return whether that can be, by Euler's formula
+  /// Returns how many there are; not more than there is memory for. \return whether that can be, by Euler's formula
   bool has(std::int32_t sides) {
     sides_ = sides;
     edges_ = sides / 2;

@@ -37,7 +37,7 @@ __global__ void place_numbers(const NumberOfSide* items, std::int64_t count, Ind
   if (i < count && sides.holds(items[i].side)) numbers[items[i].side] = items[i].number;
 }
 
-/// What a member of a team tells the others: little, where parts are compact.
+/// Holds what a member of a team tells the others: little, where parts are compact.
 class NumbersElsewhere {
  public:
   NumbersElsewhere(std::int32_t own_sides, cudaStream_t stream)
@@ -59,8 +59,8 @@ class NumbersElsewhere {
       items_ = DeviceBuffer<NumberOfSide>(found_, stream_);
     }
   }
-  /// By all members: to `numbers`, what the others tell of these `sides`. They wait for their streams before this goes
-  /// away.
+  /// Is called by all members: to `numbers`, what the others tell of these `sides`. They wait for their streams before
+  /// this goes away.
   void exchange(TeamArrays& arrays, int member, IndexRange sides, std::int32_t* numbers) {
     const auto lists = arrays.lists_of_all(member, std::span<const NumberOfSide>(items_.data(), found_));
     std::size_t most = 0;
@@ -80,7 +80,7 @@ class NumbersElsewhere {
   }
 
  private:
-  /// As a guess, one of so many sides is told. Few are told once more: they take no time.
+  /// Guesses that one of so many sides is told. Few are told once more: they take no time.
   static constexpr std::size_t k_of_as_many = 64, k_few = 64;
   cudaStream_t stream_;
   DeviceBuffer<NumberOfSide> items_;

@@ -38,13 +38,13 @@ struct Extent {
 };
 constexpr Extent k_nothing{{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY, 0, 1};
 
-/// What the host is told of the sites at once.
+/// Holds what the host is told of the sites at once.
 struct SitesSeen {
   Extent extent;
   int has_full_squares, has_equals;
 };
 
-/// To thread 0: the extent of what all threads of the block have.
+/// Gives thread 0 the extent of what all threads of the block have.
 __device__ inline Extent extent_of_block(Extent mine) {
   __shared__ Extent shared[k_threads / 32];
   const auto gather = [&](int lanes) {
@@ -145,7 +145,7 @@ __global__ void gather_sites(const double2* sites, std::int32_t count, const std
   if (!differs) seen->has_equals = 1;
 }
 
-/// What the processor keeps of the sites, by rank.
+/// Holds what the processor keeps of the sites, by rank.
 struct RankedSites {
   double2* at;
   std::int32_t* original;
@@ -163,7 +163,7 @@ __global__ void rank_sites(const double2* sorted, std::int32_t count, const std:
   ranked.places[rank] = places[i];
 }
 
-/// Where sites are, by index, for those of `share`.
+/// Finds where sites are, by index, for those of `share`.
 __global__ void find_equals(std::int32_t count, const std::int32_t* order, const std::int32_t* firsts_up_to,
                             const std::int32_t* original, IndexRange share, std::int32_t* site_of,
                             std::int32_t* cell_places) {
@@ -174,7 +174,7 @@ __global__ void find_equals(std::int32_t count, const std::int32_t* order, const
   cell_places[order[i]] = rank;
 }
 
-/// The same where no two are equal.
+/// Does the same where no two are equal.
 __global__ void place_distinct(std::int32_t count, const std::int32_t* order, IndexRange share, std::int32_t* site_of,
                                std::int32_t* cell_places) {
   const std::int32_t i = thread_number();
@@ -190,7 +190,7 @@ class DeviceOrder {
 
   enum class Found { order, not_for_the_device };
 
-  /// Of the sites of `share` also finds where they are, see site_of. sort(places, order) is the processor's, see
+  /// Finds where the sites of `share` are as well, see site_of. sort(places, order) is the processor's, see
   /// DiagramCaller; it may throw.
   template <class Sort>
   Found find(const double2* sites, IndexRange share, Sort&& sort) {
@@ -247,14 +247,14 @@ class DeviceOrder {
   const double2* at() const { return at_.data(); }
   const std::int32_t* original() const { return original_.data(); }
   const std::uint32_t* places() const { return ranked_places_.data(); }
-  /// By index; of the share that was asked for.
+  /// Returns them by index; of the share that was asked for.
   const std::int32_t* site_of() const { return site_of_.data(); }
   const std::int32_t* cell_places() const { return cell_places_.data(); }
 
  private:
   std::size_t size() const { return static_cast<std::size_t>(count_); }
 
-  /// From all sites to those that have cells.
+  /// Ranks from all sites to those that have cells.
   void rank(DeviceBuffer<std::uint32_t> places, DeviceBuffer<std::int32_t> order,
             const DeviceBuffer<std::int32_t>& firsts, IndexRange share) {
     const unsigned blocks = blocks_for(count_);

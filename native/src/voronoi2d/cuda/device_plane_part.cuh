@@ -40,7 +40,7 @@ struct PlanePart {
   IndexRange range(std::span<const std::int32_t> bounds) const {
     return {bounds[static_cast<std::size_t>(member)], bounds[static_cast<std::size_t>(member) + 1]};
   }
-  /// Where the members' parts of rows begin. Waits for the stream where there are several.
+  /// Returns where the members' parts of rows begin. Waits for the stream where there are several.
   std::vector<std::int32_t> rows(const DeviceBuffer<std::int32_t>& offsets, std::int32_t total,
                                  cudaStream_t stream) const {
     if (is_all()) return {0, total};
@@ -53,8 +53,8 @@ struct PlanePart {
     return bounds;
   }
 
-  /// Of what all members have counted for their own cells: for each cell the sum of those before it. The last count is
-  /// 0. Counts of less than 256, which nearly all are, go from device to device as bytes.
+  /// Adds up what all members have counted for their own cells: for each cell the sum of those before it. The last
+  /// count is 0. Counts of less than 256, which nearly all are, go from device to device as bytes.
   void add_up_all(DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::int32_t>& sums, cudaStream_t stream) const {
     if (is_all()) return add_up(counts, sums, stream);
     DeviceBuffer<std::uint8_t> bytes(counts.size(), stream);
@@ -74,8 +74,8 @@ struct PlanePart {
     }
   }
 
-  /// Of what a member has counted for its own cells: for each of them the sum of those before it, of its own. The count
-  /// after the last is there, and so is the sum. \return where the members' sums begin, and what all are together
+  /// Adds up what a member has counted for its own cells: for each of them the sum of those before it, of its own. The
+  /// count after the last is there, and so is the sum. \return where the members' sums begin, and what all are together
   std::vector<std::int32_t> add_up_own(const DeviceBuffer<std::int32_t>& counts, DeviceBuffer<std::int32_t>& sums,
                                        cudaStream_t stream) const {
     const IndexRange own = cells();

@@ -23,14 +23,14 @@ SADDLEBACK_HOST_DEVICE inline int quick_turn_sign(const Point2& a, const Point2&
   return (det > 0) - (det < 0);
 }
 
-/// As predicates::orient_2d.
+/// Works as predicates::orient_2d.
 SADDLEBACK_HOST_DEVICE inline int turn_sign(const Point2& a, const Point2& b, const Point2& c) {
   bool is_known;
   const int sign = quick_turn_sign(a, b, c, is_known);
   return is_known ? sign : exact_turn_sign(a, b, c);
 }
 
-/// As predicates::compare_distances.
+/// Works as predicates::compare_distances.
 SADDLEBACK_HOST_DEVICE inline int distance_order(const Point2& p, const Point2& a, const Point2& b) {
   const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
   const double to_a = ax * ax + ay * ay, to_b = bx * bx + by * by, det = to_a - to_b;
@@ -78,7 +78,7 @@ struct TwiceAsLong {
 
 constexpr int k_unknown_sign = 2;
 
-/// With twice as many digits.
+/// Decides with twice as many digits.
 SADDLEBACK_RARE inline int careful_circle_sign(Point2 a, Point2 b, Point2 c, Point2 d) {
   using Long = TwiceAsLong;
   const Long ax = Long::difference(a.x, d.x), ay = Long::difference(a.y, d.y), bx = Long::difference(b.x, d.x),
@@ -123,7 +123,7 @@ SADDLEBACK_RARE inline int exact_circle_sign(Point2 a, Point2 b, Point2 c, Point
   return sum(sum(circle_term(p, q, r), circle_term(q, r, p)), circle_term(r, p, q)).sign();
 }
 
-/// Where doubles do not tell.
+/// Decides where doubles do not tell.
 SADDLEBACK_HOST_DEVICE inline int rare_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
                                                    bool& is_known) {
   int sign = careful_circle_sign(a, b, c, d);
@@ -137,7 +137,8 @@ SADDLEBACK_HOST_DEVICE inline int quick_circle_sign(const Point2& a, const Point
   return circle_sign(a.x - d.x, a.y - d.y, b.x - d.x, b.y - d.y, c.x - d.x, c.y - d.y, false, is_known);
 }
 
-/// As predicates::in_circle, by as few digits as tell it. Unknown where it takes more than `exact_circle_sign` has.
+/// Works as predicates::in_circle, by as few digits as tell it. Unknown where it takes more than `exact_circle_sign`
+/// has.
 SADDLEBACK_HOST_DEVICE inline int known_circle_sign(const Point2& a, const Point2& b, const Point2& c, const Point2& d,
                                                     bool& is_known) {
   const int sign = quick_circle_sign(a, b, c, d, is_known);

@@ -8,7 +8,7 @@
 
 namespace saddleback {
 
-/// Of four points, 2: unknown.
+/// Decides about four points; 2: unknown.
 struct PlaneSigns {
   std::int8_t orient_2d, compare_distances;                  ///< as the predicates say
   std::int8_t turn_sign, known_circle_sign, distance_order;  ///< as diagrams ask for them

@@ -29,8 +29,8 @@ class TileSites {
  public:
   __device__ TileSites(TileMemory& memory, const DeviceTree& tree) : memory_(memory), tree_(tree) {}
 
-  /// With the sites beside the tile as far as `margin`, in mean distances, or less far where they are many. By all
-  /// threads of the block. False when there are too many.
+  /// Gathers, with the sites beside the tile as far as `margin`, in mean distances, or less far where they are many. By
+  /// all threads of the block. False when there are too many.
   __device__ bool gather(std::int32_t begin, std::int32_t end, double margin) {
     begin_ = begin;
     end_ = end;
@@ -141,7 +141,7 @@ class TileSites {
     return memory_.found_count <= k_seen_sites;
   }
 
-  /// Where the box ends outside of all sites, nothing is farther out.
+  /// Notes that nothing is farther out where the box ends outside of all sites.
   __device__ void know_outside() {
     const int top = tree_.levels - 1, lane = threadIdx.x % 32;
     const DeviceBox all = joined(tree_.boxes[top][min(lane, tree_.counts[top] - 1)]);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int32_t k_tile_sites = 160;
 
-/// Whether a rank is the first of its tile. Rectangles shrink by half with each bit of the place.
+/// Tells whether a rank is the first of its tile. Rectangles shrink by half with each bit of the place.
 __device__ inline bool begins_tile(const std::uint32_t* places, std::int32_t count, std::int32_t rank) {
   const std::uint32_t mine = places[rank];
   // The first of the ranks from `from` on, at most `rank`, whose place agrees with mine down to a bit.
@@ -85,7 +85,7 @@ class Tiles {
                                         is_first.data(), begins_.data(), count_.data(), mine.count(), stream);
     });
   }
-  /// Where the sites of each part begin, and where the last ends.
+  /// Returns where the sites of each part begin, and where the last ends.
   const std::vector<std::int32_t>& bounds() const { return bounds_; }
   const std::int32_t* begins() const { return begins_.data(); }
   const std::int32_t* count() const { return count_.data(); }

@@ -18,7 +18,7 @@ namespace {
 
 using namespace voronoi2d;
 
-/// What a diagram takes at most at once, in bytes.
+/// Returns what a diagram takes at most at once, in bytes.
 std::uint64_t bytes_needed(const DiagramRequest& request) {
   const std::uint64_t each = request.weights ? 440 : 360;
   return static_cast<std::uint64_t>(request.count) * each + (1 << 21);
@@ -50,7 +50,7 @@ class Builder {
   }
 
  private:
-  /// Of all time, at the end of each part, as seen with many sites in memory that is not pinned.
+  /// Says the share of all time, at the end of each part, as seen with many sites in memory that is not pinned.
   struct Share {
     static constexpr double upload = 0.11, order = 0.15, find = 0.5, unite = 0.55;
   };
@@ -214,7 +214,7 @@ class Builder {
     return result;
   }
 
-  /// What stays, and its stream, outlive all else.
+  /// Keeps what stays, and its stream, which outlive all else.
   void tell_kept(std::unique_ptr<KeptPlane> kept, const DiagramSizes& sizes) const {
     check_cuda(cudaStreamSynchronize(*kept->stream), "waiting for the device");
     *request_.kept = {kept.get(),

@@ -5,8 +5,8 @@
 
 namespace saddleback {
 
-/// The same diagram as the processor's, to the bit; `left` where it takes the processor. Never throws; `reason` says
-/// why it failed.
+/// Finds the same diagram as the processor's, to the bit; `left` where it takes the processor. Never throws; `reason`
+/// says why it failed.
 CudaStatus find_voronoi_on_device(const DiagramRequest& request, const DiagramCaller& caller, DeviceTimes& times,
                                   CudaReason& reason);
 /// Frees what stayed on a device.

@@ -99,7 +99,7 @@ class ChosenWaves {
   int count_ = 0;
 };
 
-/// By a warp: all that may matter to the sites of a box, within a margin. False when there are too many.
+/// Is called by a warp: all that may matter to the sites of a box, within a margin. False when there are too many.
 __device__ inline bool find_near(const WeightedTree& tree, const DeviceBox& around, double margin, RowMemory& memory) {
   const int lane = threadIdx.x % 32;
   int count = 0;

@@ -131,7 +131,8 @@ __global__ void gather_visible(const std::int32_t* ranks, std::int32_t count, co
 /// The sites that have cells, by rank among these.
 class VisibleSites {
  public:
-  /// Of sites at different places, with weights by index. \throw LeftOver where doubles do not tell which are hidden.
+  /// Makes them of sites at different places, with weights by index. \throw LeftOver where doubles do not tell which
+  /// are hidden.
   VisibleSites(const DeviceOrder& order, const double* weights, cudaStream_t stream) {
     const std::int32_t all = order.cell_count();
     const auto size = static_cast<std::size_t>(all);

@@ -39,7 +39,7 @@ struct DiagramSizes {
   std::int32_t cells, edges, vertices;
 };
 
-/// Where the diagram goes, as Voronoi2d has it.
+/// Holds where the diagram goes, as Voronoi2d has it.
 struct DiagramArrays {
   double* sites;                               ///< two each; null: the caller has them
   std::int32_t *site_of, *cell_places;         ///< by site
@@ -55,7 +55,7 @@ struct RoughVertex {
   std::int32_t vertex, sites[3];
 };
 
-/// What the CUDA module asks of its caller. No call throws.
+/// Holds what the CUDA module asks of its caller. No call throws.
 struct DiagramCaller {
   void* self = nullptr;
   /// Tells the share done; false: stop.

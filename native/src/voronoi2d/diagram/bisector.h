@@ -11,20 +11,20 @@ namespace saddleback::voronoi2d {
 
 using predicates::WeightedPoint2;
 
-/// Where |x - left| - |x - right| is the difference of the weights, as x(t) = middle + p cosh t + q sinh t, t growing
-/// with the left site on the left. \pre Neither site hides the other.
+/// Describes where |x - left| - |x - right| is the difference of the weights, as x(t) = middle + p cosh t + q sinh t, t
+/// growing with the left site on the left. \pre Neither site hides the other.
 class Bisector {
  public:
-  /// In coordinates that count from `origin`.
+  /// Makes it in coordinates that count from `origin`.
   Bisector(const WeightedPoint2& left, const WeightedPoint2& right, const Vec2& origin = Vec2(0, 0));
 
   Vec2 at(double t) const;
-  /// Of a point of the curve.
+  /// Returns the parameter of a point of the curve.
   double parameter(const Vec2& point) const;
   /// Unit vector towards which the curve goes: for t to infinity, or outwards for t to minus infinity.
   Vec2 end_direction(bool forwards) const;
-  /// Beyond a parameter, and beyond the middle of the branch, that of the point which is farther than these from the
-  /// middle by a length.
+  /// Returns the one beyond a parameter, and beyond the middle of the branch, that of the point which is farther than
+  /// these from the middle by a length.
   double parameter_beyond(double t, bool forwards, double length) const;
   /// Appends points between two parameters, the ends left out, so that each point of the curve is within a tolerance of
   /// a chord; one finer than a share of 2^-40 of what the curve spans is taken as that, which some 2^19 points reach at
@@ -42,7 +42,7 @@ class Bisector {
  private:
   Vec2 slope(double t) const;
   double farthest_from_chord(double from, double to) const;
-  /// Of a part of the curve that goes farther than that from its chord.
+  /// Divides a part of the curve that goes farther than that from its chord.
   void divide(double from, double to, double tolerance, std::vector<Vec2>& points) const;
 
   Vec2 middle_, p_, q_;

@@ -104,7 +104,7 @@ bool CellBlock::gather_few(const Triangulation& mesh, const Index* leaving, Inde
   return true;
 }
 
-/// The same where some triangles share their circle.
+/// Does the same where some triangles share their circle.
 void CellBlock::gather_few_flat(const Triangulation& mesh, Index first, Index cell) {
   const Index *const corners = mesh.corners.data(), *const twins = mesh.twins.data();
   Index *const walked = few_half_.data() + k_few * cell, *const others = few_neighbor_.data() + k_few * cell;
@@ -126,7 +126,7 @@ void CellBlock::gather_few_flat(const Triangulation& mesh, Index first, Index ce
   few_lowest_[cell] = least;
 }
 
-/// Whether the cell is open.
+/// Tells whether the cell is open.
 bool CellBlock::gather_any(const Triangulation& mesh, Index first, const JobStage& stage) {
   any_half_.clear();
   any_neighbor_.clear();
@@ -155,7 +155,7 @@ bool CellBlock::gather_any(const Triangulation& mesh, Index first, const JobStag
 
 namespace {
 
-/// Of whatever size the rest is: what lies behind it is written later.
+/// Copies eight at a time, whatever the size of the rest is: what lies behind it is written later.
 void copy_few(Index* to, const Index* from) { std::memcpy(to, from, 8 * sizeof(Index)); }
 
 }  // namespace

@@ -26,13 +26,14 @@ class CellSides {
     return diagram_.sites[left == site_ ? right : left];
   }
 
-  /// Of the diagram, where one side goes on to the other; k_none for sides that are not next to each other.
+  /// Returns the vertex of the diagram, where one side goes on to the other; k_none for sides that are not next to each
+  /// other.
   Index vertex_between(Index j, Index k) const {
     return after(j) == k ? vertices_[j] : after(k) == j ? vertices_[k] : k_none;
   }
 
-  /// Of a place on the line of side j: 1 on the side itself, -1 beyond the vertex where side k follows or comes before,
-  /// 0 elsewhere.
+  /// Compares the order of a place on the line of side j: 1 on the side itself, -1 beyond the vertex where side k
+  /// follows or comes before, 0 elsewhere.
   int compare(const Vec2& place, Index j, Index k) const {
     const Vec2 across = neighbor(j) - mine(), along(-across.y(), across.x());
     const auto passed = [&](Index vertex) { return (place - diagram_.vertices[vertex]).dot(along); };
@@ -42,7 +43,7 @@ class CellSides {
     return (is_past && after(j) == k) || (is_early && before(j) == k) ? -1 : 0;
   }
 
-  /// Where the lines of two sides meet, both moved inwards by a distance.
+  /// Returns where the lines of two sides meet, both moved inwards by a distance.
   Vec2 meeting(Index j, Index k, double distance = 0) const {
     const Index vertex = vertex_between(j, k);
     const auto point = [](const Vec2& site) { return predicates::Point2{site.x(), site.y()}; };

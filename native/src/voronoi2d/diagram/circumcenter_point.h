@@ -32,7 +32,7 @@ SADDLEBACK_HOST_DEVICE inline double careful_difference(double a, double b, doub
   return plus(plus(plus(rest_1, rest_2), rest_3), total);
 }
 
-/// Of b - a and c - a, exact but for the last digit.
+/// Returns the cross product of b - a and c - a, exact but for the last digit.
 SADDLEBACK_RARE inline double summed_cross(predicates::Point2 a, predicates::Point2 b, predicates::Point2 c) {
   using predicates::difference;
   const auto exact =

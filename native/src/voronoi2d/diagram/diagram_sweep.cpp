@@ -110,7 +110,7 @@ void DiagramSweep::for_parts(double radius, Visit&& visit) const {
     if (const auto part = part_within(static_cast<Index>(edge), radius)) visit(*part);
 }
 
-/// To the bit the vertices that have been found.
+/// Returns the ends: to the bit the vertices that have been found.
 std::array<Vec2, 2> DiagramSweep::ends(const Part& part, const Bisector& curve) const {
   const auto [first, last] = diagram_.edges[part.edge];
   return {part.grows_from ? curve.at(part.from) : diagram_.vertices[first],
@@ -143,7 +143,7 @@ std::vector<std::vector<Vec2>> DiagramSweep::polylines(double radius, double tol
   return result;
 }
 
-/// How far from the center a site's ellipse lies.
+/// Returns how far from the center a site's ellipse lies.
 std::optional<double> DiagramSweep::reach(Index site, double radius, const Vec2& direction) const {
   const Vec2 to_site = diagram_.sites[site] - center_;
   const double length = radius + weight_of(diagram_, site), m = length * length - to_site.squaredNorm();

@@ -17,9 +17,9 @@ namespace saddleback::voronoi2d {
 /// site sooner by its weight.
 Voronoi2d weighted_diagram(std::span<const Vec2> sites, std::span<const double> weights);
 
-/// At radius R the points x with |x - c| + |x - s| - w = R form an ellipse about each site s that the circle about c
-/// has touched; the outermost parts of these ellipses are the beach curve, and what lies within is final. So all that a
-/// sweep shows at a radius follows from the diagram.
+/// Sweeps a circle: at radius R the points x with |x - c| + |x - s| - w = R form an ellipse about each site s that the
+/// circle about c has touched; the outermost parts of these ellipses are the beach curve, and what lies within is
+/// final. So all that a sweep shows at a radius follows from the diagram.
 class DiagramSweep {
  public:
   using Event = SteppedSweep::Event;
@@ -29,9 +29,9 @@ class DiagramSweep {
   /// The diagram must outlive this. O(n log n).
   DiagramSweep(const Voronoi2d& diagram, const Vec2& center);
 
-  /// By radius: sites with a cell, and vertices.
+  /// Lists them by radius: sites with a cell, and vertices.
   const std::vector<Event>& events() const { return events_; }
-  /// When the last part of a site's ellipse leaves the beach curve; infinite for open cells.
+  /// Tells when the last part of a site's ellipse leaves the beach curve; infinite for open cells.
   double last_radius(Index site) const { return lasts_[site]; }
 
   /// O(sites touched).

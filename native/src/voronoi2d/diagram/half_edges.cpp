@@ -374,7 +374,7 @@ class Numberer {
     result_.edge_sites.resize(count);
   }
 
-  /// Of the block's cells, when the vertices of all lower cells have their numbers.
+  /// Writes the edges of the block's cells, when the vertices of all lower cells have their numbers.
   void write_edges(const Counts& at, const Scratch& scratch) {
     const CellBlock& cells = scratch.cells;
     const Index *const numbers = result_.corner_vertices.data() + at.corners, *const own = scratch.own_sides.data(),

@@ -40,7 +40,7 @@ struct CurveTable {
 };
 constexpr CurveTable k_curve;
 
-/// As place_of_square, which a processor takes twice as long for, and a device with no tables at hand less.
+/// Works as place_of_square, which a processor takes twice as long for, and a device with no tables at hand less.
 constexpr std::uint32_t place_on_curve(std::uint32_t x, std::uint32_t y) {
   constexpr std::uint32_t k_values = CurveTable::k_values, k_mask = k_values - 1;
   std::uint32_t place = 0, state = 0;
@@ -99,7 +99,7 @@ void for_shares(std::size_t count, Index shares, const JobStage& stage, Work&& w
   });
 }
 
-/// By some bits of their places, from the lowest one on: stable.
+/// Sorts by some bits of their places, from the lowest one on: stable.
 void sort_by_digit(std::span<const Placed> items, std::span<Placed> sorted, int lowest, int bits, Index shares,
                    const JobStage& stage) {
   const std::uint32_t values = 1u << bits;
@@ -160,7 +160,7 @@ class RunSorter {
                       static_cast<double>(end) / static_cast<double>(size));
   }
 
-  /// By two digits of the places: bits from `lowest` on, then those above.
+  /// Sorts by two digits of the places: bits from `lowest` on, then those above.
   static void sort_by_digits(std::span<Placed> items, int lowest, int bits, int bits_above, const JobStage& stage) {
     LargeArray<Placed> other(items.size());
     sort_by_digit(items, other, lowest, bits, 1, stage.part(0, 0.5));
@@ -195,7 +195,7 @@ class RunSorter {
     }
   }
 
-  /// By a curve over the points' own box; equal points end up side by side, the smallest index first.
+  /// Sorts by a curve over the points' own box; equal points end up side by side, the smallest index first.
   void sort(std::span<Placed> items, const JobStage& stage) const {
     const std::uint32_t outer_place = items[0].place;
     sort_inside(items, stage);

@@ -123,7 +123,7 @@ class Gatherer {
   }
 
  private:
-  /// Whether some are equal to the one before them.
+  /// Tells whether some are equal to the one before them.
   bool gather(std::size_t begin, std::size_t end) {
     const std::size_t count = items_.size();
     const Vec2* const sites = sites_.data();

@@ -29,7 +29,7 @@ struct OrderedSites {
 /// size. O(n log n).
 OrderedSites order_sites(std::span<const Vec2> sites, int threads, const JobStage& stage);
 
-/// By index: the smallest index of an equal site.
+/// Returns by index: the smallest index of an equal site.
 LargeArray<Index> smallest_equals(const OrderedSites& sites, int threads, const JobStage& stage);
 
 LargeArray<Vec2> copy_of(std::span<const Vec2> sites, int threads, const JobStage& stage);

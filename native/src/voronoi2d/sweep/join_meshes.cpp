@@ -130,7 +130,7 @@ MeshJoiner::Gap MeshJoiner::gap_between(const Sides& sides) const {
   return {sides.left, sides.right, left, right, k_none};
 }
 
-/// Of the circle through the base and a site above it: where another site is.
+/// Decides about the circle through the base and a site above it: where another site is.
 Sign MeshJoiner::place_in_circle(const Gap& gap, Index tip, Index site) const {
   return predicates::in_circle_by_steps(mesh_.point(gap.left), mesh_.point(gap.right), mesh_.point(tip),
                                         mesh_.point(site));
@@ -208,7 +208,7 @@ void MeshJoiner::note_place(const std::vector<RimEdge>& rim, std::size_t place) 
 }
 std::size_t MeshJoiner::place_of(Index twin) { return static_cast<std::size_t>(k_none - 1 - twin); }
 
-/// Whether the third site of the triangle behind an edge is in the circle through the base and the edge's end.
+/// Tells whether the third site of the triangle behind an edge is in the circle through the base and the edge's end.
 bool MeshJoiner::is_in_the_way(const Gap& gap, const RimEdge& edge, const MeshPart& part) const {
   if (edge.half < 0) return false;
   const Index site = mesh_.triangles[previous_half(edge.half)];

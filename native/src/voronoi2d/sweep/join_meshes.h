@@ -27,8 +27,8 @@ struct MeshPart {
 /// Joins parts that a level or an upright line parts.
 class MeshJoiner {
  public:
-  /// Of the mesh only the arrays matter; bit k of `twins[4 t + 3]` is set where edge k and the one beyond have one
-  /// circle. `leaving`: by site a half-edge from there, along the border for those on it.
+  /// Joins meshes: of the mesh only the arrays matter; bit k of `twins[4 t + 3]` is set where edge k and the one beyond
+  /// have one circle. `leaving`: by site a half-edge from there, along the border for those on it.
   MeshJoiner(const PlanarMesh& mesh, Index* leaving, const JobStage& stage)
       : mesh_(mesh), leaving_(leaving), stage_(stage) {}
 
@@ -40,7 +40,7 @@ class MeshJoiner {
   void restore(std::vector<Index>& doubtful);
 
  private:
-  /// Which of the parts is to the left as seen from somewhere outside.
+  /// Tells which of the parts is to the left as seen from somewhere outside.
   struct Sides {
     MeshPart *left, *right;
     Index left_end, right_end;  ///< the sites of each next to the line that parts them
@@ -59,7 +59,7 @@ class MeshJoiner {
     Index site;  ///< where the way comes to
     Index half;  ///< in the triangle behind it, or ~ the number of a loose edge
   };
-  /// What lies between the parts, and is about to be closed.
+  /// Holds what lies between the parts, and is about to be closed.
   struct Gap {
     const MeshPart *left_part, *right_part;
     Index left, right;  ///< ends of the base

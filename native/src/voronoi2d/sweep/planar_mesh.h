@@ -27,8 +27,8 @@ struct PlanarMesh {
   Index half_end() const { return 4 * triangle_count; }
 };
 
-/// Where the four sites about an edge between two triangles lie: `positive` when the triangles must be exchanged for
-/// the other two, `zero` when they share a Voronoi vertex. Exact.
+/// Returns where the four sites about an edge between two triangles lie: `positive` when the triangles must be
+/// exchanged for the other two, `zero` when they share a Voronoi vertex. Exact.
 predicates::Sign circle_test(const PlanarMesh& mesh, Index half);
 
 /// The circle through three sites, ready to be asked about others: the minors of the determinant of `in_circle` along
@@ -48,7 +48,8 @@ struct CircleTest {
     by_square = by * cx - bx * cy;
     largest_square = b2 > c2 ? b2 : c2;
   }
-  /// For two sites: positive if it is certainly outside the circle, when the three turn counter-clockwise.
+  /// Returns the room for two sites: positive if it is certainly outside the circle, when the three turn
+  /// counter-clockwise.
   TwoDoubles room(const predicates::Point2& d, const predicates::Point2& e) const {
     using Two = TwoDoubles;
     const Two dx = Two::of(d.x, e.x) - Two::both(x), dy = Two::of(d.y, e.y) - Two::both(y), d2 = dx * dx + dy * dy;

@@ -152,7 +152,7 @@ struct Touch {
   double site_x, site_y, x, y;
 };
 
-/// How far out an arc is in the direction of the new site, as a number that grows with that distance.
+/// Holds how far out an arc is in the direction of the new site, as a number that grows with that distance.
 struct Height {
   double along, squared;  ///< p.d and |d|^2
   SADDLEBACK_HOST_DEVICE double value() const { return along / squared; }
@@ -164,9 +164,9 @@ SADDLEBACK_HOST_DEVICE inline Height height(const Touch& p, const Arc& arc) {
 
 enum class Turn { here, ahead, back };
 
-/// For an arc that is further out in the direction of p than both neighbors: whether p hits it, or where to go on. One
-/// ellipse is outside another in one interval of directions, whose middle is m = s w' - s' w with
-/// w = |p|^2 - |s|^2 = 2 p.d - |d|^2: p must come after the middle of the previous arc's and before the next one's.
+/// Returns the turn for an arc that is further out in the direction of p than both neighbors: whether p hits it, or
+/// where to go on. One ellipse is outside another in one interval of directions, whose middle is m = s w' - s' w with w
+/// = |p|^2 - |s|^2 = 2 p.d - |d|^2: p must come after the middle of the previous arc's and before the next one's.
 SADDLEBACK_HOST_DEVICE inline Turn turn_to(const SweepState& s, const Touch& p, const Arc& arc, const Height& here,
                                            const Height& before, const Height& after) {
   const Arc &a = s.arcs[arc.previous], &c = s.arcs[arc.next];
@@ -182,7 +182,7 @@ SADDLEBACK_HOST_DEVICE inline Turn turn_to(const SweepState& s, const Touch& p, 
   return right_of_c ? Turn::back : Turn::ahead;
 }
 
-/// Of all arcs the furthest out: where rounding misleads every walk.
+/// Returns the arc that is the furthest out of all, where rounding misleads every walk.
 SADDLEBACK_HOST_DEVICE inline Index highest_arc(const SweepState& s, const Touch& p, Index from) {
   Index best = from;
   for (Index arc = s.arcs[from].next; arc != from; arc = s.arcs[arc].next)

@@ -37,7 +37,7 @@ class SquareTree {
 
  private:
   static constexpr int k_all_bits = 32;
-  /// Of the sites from `first` on.
+  /// Holds the places of the sites from `first` on.
   struct Places {
     std::span<const std::uint32_t> places;
     Index first;

@@ -20,7 +20,7 @@ struct Triangulation {
   bool is_line = false;       ///< no triangles: all sites are on one line
 };
 
-/// By circles over tiles of up to `tile_size` sites, then joined. Exact. O(n log n). \throw Cancelled
+/// Triangulates by circles over tiles of up to `tile_size` sites, then joined. Exact. O(n log n). \throw Cancelled
 Triangulation triangulate(const OrderedSites& sites, Index tile_size, int threads, const JobStage& stage);
 
 /// Each site's neighbors, counter-clockwise; on a line those before and after it.

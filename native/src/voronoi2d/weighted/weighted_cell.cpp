@@ -52,18 +52,18 @@ bool WeightedCell::open_ring(std::span<const Index> ring) {
   return is_envelope();
 }
 
-/// Whether an arc is certainly less than half a turn, and more than nothing.
+/// Tells whether an arc is certainly less than half a turn, and more than nothing.
 bool WeightedCell::is_narrow(Index arc) const {
   const Begin &u = begins_[arc], &v = begins_[after(arc)];
   return u.x * v.y - u.y * v.x > 4 * (u.blur + v.blur);
 }
 
-/// Whether two waves certainly cross, which those of neighbors in a guess need not.
+/// Tells whether two waves certainly cross, which those of neighbors in a guess need not.
 bool WeightedCell::crosses(Index before, Index after) const {
   return wave_crossing(rivals_[before], rivals_[after]).blur < k_infinity;
 }
 
-/// In `waves_`, those of the ring without such as lie below the next or the last one everywhere.
+/// Keeps in `waves_` those of the ring that do not lie below the next or the last one everywhere.
 bool WeightedCell::drop_lower_waves() {
   waves_.clear();
   for (Index i = 1; i < static_cast<Index>(rivals_.size()); ++i) waves_.push_back(i);
@@ -105,8 +105,8 @@ bool WeightedCell::drop_hidden_arcs() {
   return true;
 }
 
-/// Whether narrow arcs turn once, with a closed cell, and no rival rises above those of others. Next to its own arc a
-/// wave cannot: it would have to cross its neighbor a third time.
+/// Tells whether narrow arcs turn once, with a closed cell, and no rival rises above those of others. Next to its own
+/// arc a wave cannot: it would have to cross its neighbor a third time.
 bool WeightedCell::is_envelope() const {
   const Index arcs = count();
   Index turns = 0;
@@ -163,7 +163,7 @@ WeightedCell::Begin WeightedCell::begin_between(Index before, Index after) const
   return result;
 }
 
-/// Whether a rival is certainly below the envelope everywhere.
+/// Tells whether a rival is certainly below the envelope everywhere.
 ///
 /// Between directions u and v less than half a turn apart a wave n.u + h below 0 at both is nowhere above if it is
 /// below at the corner of the tangents there: if n.u + n.v + 2 h < h (1 - u.v).
@@ -181,7 +181,7 @@ bool WeightedCell::is_below(const Wave& r) const {
   return !rises;
 }
 
-/// How far a rival is above the envelope at the begins, and by how much that may be off.
+/// Tells how far a rival is above the envelope at the begins, and by how much that may be off.
 void WeightedCell::compare(const Wave& rival) const {
   for (Index k = 0; k <= count(); ++k) {
     above_[k] = rival.x * x_[k] + rival.y * y_[k] + (rival.z - height_[k]);
@@ -219,13 +219,13 @@ int WeightedCell::turn_to(Index arc, const Rival& from, const Rival& to) const {
   return static_cast<int>(predicates::turn_from_crossing(points_[site_], crossing(arc), point(from), point(to)));
 }
 
-/// Whether the direction where `to` is farthest above `from` is within an arc. Arcs are less than half a turn.
+/// Tells whether the direction where `to` is farthest above `from` is within an arc. Arcs are less than half a turn.
 bool WeightedCell::holds_top(Index arc, const Rival& from, const Rival& to) const {
   return turn_to(arc, from, to) > 0 && turn_to(after(arc), from, to) < 0;
 }
 
-/// What becomes of an arc. Its own wave and the new one cross at two directions; the new one is above the other on one
-/// part of the circle, around the direction where it is farthest above, and below it on the rest.
+/// Decides what becomes of an arc. Its own wave and the new one cross at two directions; the new one is above the other
+/// on one part of the circle, around the direction where it is farthest above, and below it on the rest.
 void WeightedCell::split(Index arc, Index rival) {
   const Index own = begins_[arc].rival;
   const Rival &mine = rivals_[own], &other = rivals_[rival];
@@ -250,7 +250,7 @@ void WeightedCell::split(Index arc, Index rival) {
   }
 }
 
-/// From pieces to arcs: neighboring ones of the same rival are one, except at the fixed directions.
+/// Makes arcs of the pieces: neighboring ones of the same rival are one, except at the fixed directions.
 void WeightedCell::join_pieces() {
   joined_.clear();
   Index last = pieces_.back().rival;
@@ -293,8 +293,8 @@ void WeightedCell::use_begins() {
   far_ = lowest > 0 ? 1 / lowest : k_infinity;
 }
 
-/// What most rivals do: cut off neighboring corners and the sides between, and nothing else. False when that is not
-/// certain in doubles; then nothing has changed.
+/// Does what most rivals do: cut off neighboring corners and the sides between, and nothing else. False when that is
+/// not certain in doubles; then nothing has changed.
 bool WeightedCell::cut_corners(const Rival& rival) {
   if (has_fixed_) return false;
   const Index arcs = count();
@@ -358,7 +358,7 @@ void WeightedCell::narrow_arcs() {
     if (rival.site >= 0) meet(rival.site);
 }
 
-/// Whether the envelope is 0 where an arc ends.
+/// Tells whether the envelope is 0 where an arc ends.
 bool WeightedCell::is_open_after(Index arc) const {
   const Begin& end = begins_[after(arc)];
   if (rivals_[end.rival].site == k_none || rivals_[begins_[arc].rival].site == k_none) return true;

@@ -31,7 +31,7 @@ class WeightedCell {
 
   /// Cuts off what is nearer to another site. O(arcs).
   void meet(Index other);
-  /// Whether a site has been met, and has or had a side.
+  /// Tells whether a site has been met, and has or had a side.
   bool has_met(Index other) const;
   /// False when no site whose disk lies in this one can cut off anything. O(arcs).
   bool may_meet(double x, double y, double radius) const;
@@ -55,12 +55,12 @@ class WeightedCell {
   struct Rival : Wave {
     Index site;
   };
-  /// Where an arc begins and the rival of the arc before is replaced.
+  /// Holds where an arc begins and the rival of the arc before is replaced.
   struct Begin : WaveCrossing {
     Index rival;  ///< of the arc that begins
     int fixed;    ///< number of the fixed direction, or k_none
   };
-  /// What the envelope is made of when a rival has come: parts of arcs, and of the rival.
+  /// Holds what the envelope is made of when a rival has come: parts of arcs, and of the rival.
   struct Piece {
     Index rival;
     Index begin;  ///< the arc whose begin it shares, or k_none

@@ -173,7 +173,7 @@ void WeightedCells::visit_guess(Index site, Visit&& visit) const {
 
 namespace {
 
-/// Whether a neighbor stands once in both rings, between the same ones.
+/// Tells whether a neighbor stands once in both rings, between the same ones.
 bool fits(Index neighbor, const std::vector<Index>& in_mesh, const std::vector<Index>& in_cell) {
   const auto first = std::find(in_mesh.begin(), in_mesh.end(), neighbor),
              second = std::find(in_cell.begin(), in_cell.end(), neighbor);
@@ -216,7 +216,7 @@ std::vector<Index> WeightedCells::misfits(const std::vector<Index>& found, const
   return result;
 }
 
-/// Where cells of the mesh are next to them, edges and vertices have the mesh's places.
+/// Places the cells; where cells of the mesh are next to them, edges and vertices have the mesh's places.
 void WeightedCells::place_exact_cells(const JobStage& stage) {
   if (mesh_) {
     vertex_place_count_ = mesh_->triangle_count();
@@ -257,7 +257,7 @@ void WeightedCells::place_by_mesh(Index site, Exact& cell, const JobStage& stage
   });
 }
 
-/// The same edge from the other side: of several between the same cells the first here is the last there.
+/// Returns the same edge from the other side: of several between the same cells the first here is the last there.
 Index WeightedCells::twin_of(Index site, const WeightedCell::Side& side) const {
   if (!is_exact(side.neighbor)) fail();
   const std::vector<WeightedCell::Side>& others = exact_[exact_of_[side.neighbor]].sides;
@@ -277,8 +277,8 @@ void WeightedCells::place_edge(Index site, Index side) {
   cell.placed[side].edge = other = edge_place_count_++;
 }
 
-/// From cell to cell about the vertex, counter-clockwise: the corner behind a side of one is the one before that side
-/// in the next.
+/// Places the vertex by going from cell to cell about the vertex, counter-clockwise: the corner behind a side of one is
+/// the one before that side in the next.
 void WeightedCells::place_vertex(Index site, Index side) {
   if (exact_[exact_of_[site]].sides[side].is_open || exact_[exact_of_[site]].placed[side].vertex != k_none) return;
   Index walk = site, corner = side, lowest = far_away();

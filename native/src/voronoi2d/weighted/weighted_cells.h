@@ -29,7 +29,7 @@ class WeightedCells {
   };
   /// A cell by rank, from its lowest neighbor on. O(sides).
   void read(Index site, std::vector<Side>& sides) const;
-  /// Where the vertex of a place lies, times the sites' scale.
+  /// Returns where the vertex of a place lies, times the sites' scale.
   Vec2 position(Index vertex) const;
   Index edge_place_count() const { return edge_place_count_; }
   Index vertex_place_count() const { return vertex_place_count_; }

@@ -31,7 +31,7 @@ Index WeightedMesh::free_triangle(Index from) const {
   return from;
 }
 
-/// Beyond each edge of the border a triangle with the infinitely far.
+/// Adds beyond each edge of the border a triangle with the infinitely far.
 void WeightedMesh::add_far_triangles() {
   Index start = 0;
   while (std::min({mesh_.twins[4 * start], mesh_.twins[4 * start + 1], mesh_.twins[4 * start + 2]}) >= 0 ||
@@ -102,7 +102,7 @@ int WeightedMesh::turn(const Way& from, const Way& to) {
   return static_cast<int>(value > off) - static_cast<int>(value < -off);
 }
 
-/// Whether between the centers beside the edge from one site to another there is a piece of curve.
+/// Tells whether between the centers beside the edge from one site to another there is a piece of curve.
 bool WeightedMesh::is_piece(Index from, Index to, const Center& right, const Center& left) const {
   if (from == far_away()) return turn(way(to, left), way(to, right)) > 0;
   if (to == far_away()) return turn(way(from, right), way(from, left)) > 0;
@@ -129,7 +129,7 @@ void WeightedMesh::ask_for_centers([[maybe_unused]] Index half) const {
 #endif
 }
 
-/// Whether a way that turns with some sign, by less than once, passes the x axis.
+/// Tells whether a way that turns with some sign, by less than once, passes the x axis.
 bool WeightedMesh::passes(const Way& from, const Way& to, int sign) {
   const bool was_low = from.y < 0, is_low = to.y < 0;
   return sign > 0 ? was_low && !is_low : was_low || !is_low;
@@ -220,7 +220,7 @@ bool WeightedMesh::are_neighbors(Index a, Index b) const {
   return result;
 }
 
-/// How often ways pass the x axis between the centers beside and about a half-edge.
+/// Returns how often ways pass the x axis between the centers beside and about a half-edge.
 std::int64_t WeightedMesh::passed_about(Index half) const {
   const Index twin = mesh_.twins[half];
   std::int64_t result = 0;

@@ -24,13 +24,13 @@ namespace saddleback::voronoi2d {
 
 class WeightedMesh {
  public:
-  /// From a triangulation that is no line. No site may have the place of another.
+  /// Makes it from a triangulation that is no line. No site may have the place of another.
   WeightedMesh(Triangulation&& triangulation, std::span<const predicates::WeightedPoint2> points);
 
   /// Exchanges edges, and finds out which cells are certain. O(n + exchanges). \throw Cancelled
   void improve(int threads, const JobStage& stage);
 
-  /// Whether the corners around a site turn once: its cell is right if those of its neighbors are.
+  /// Tells whether the corners around a site turn once: its cell is right if those of its neighbors are.
   bool is_certain(Index site) const { return is_certain_[site] != 0; }
   /// The neighbor at the border's sites that stands for the infinitely far.
   Index far_away() const { return static_cast<Index>(points_.size()); }
@@ -46,12 +46,12 @@ class WeightedMesh {
       half = next_around(half);
     } while (half != first);
   }
-  /// Where a triangle's corner lies, which is not far.
+  /// Returns where a triangle's corner lies, which is not far.
   Vec2 corner(Index triangle) const;
   Index twin(Index half) const { return mesh_.twins[half]; }
   /// The half-edge that `visit_ring` comes to last.
   Index last_in_ring(Index site) const { return next_half(mesh_.twins[mesh_.leaving[site]]); }
-  /// Whether a triangle's corner is at infinity.
+  /// Tells whether a triangle's corner is at infinity.
   bool is_far(Index triangle) const { return centers_[triangle].w == 0; }
   Index triangle_count() const { return static_cast<Index>(centers_.size()); }
 

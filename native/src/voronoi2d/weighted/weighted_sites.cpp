@@ -33,7 +33,7 @@ void check_scaled(std::span<const double> weights, double scale) {
   }
 }
 
-/// At each place the heaviest site, of equal ones the smallest index. `ordered` knows the places.
+/// Finds at each place the heaviest site, of equal ones the smallest index. `ordered` knows the places.
 struct Heaviest {
   LargeArray<Index> original;   ///< by rank of the place
   std::vector<bool> is_hidden;  ///< by index

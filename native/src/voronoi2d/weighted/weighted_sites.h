@@ -15,7 +15,7 @@
 
 namespace saddleback::voronoi2d {
 
-/// By rank, which depends on the sites alone.
+/// Holds sites by rank, which depends on the sites alone.
 struct WeightedSites {
   LargeArray<predicates::WeightedPoint2> points;  ///< times `scale`
   LargeArray<Index> original;                     ///< the smallest index of equal sites
@@ -31,7 +31,7 @@ struct WeightedSites {
 struct WeightedBox {
   double low[2], high[2], lightest;
 
-  /// Of at least one.
+  /// Makes the box of at least one.
   explicit WeightedBox(std::span<const predicates::WeightedPoint2> points)
       : low{points[0].x, points[0].y}, high{low[0], low[1]}, lightest(points[0].weight) {
     for (const predicates::WeightedPoint2& point : points) {
@@ -65,7 +65,7 @@ class DiskTree {
     visit(
         top(), 0, [](Index, Index first, Index) { return first; }, enters, found);
   }
-  /// The same; of each eight disks the one with its center nearest to a point comes first.
+  /// Does the same: of each eight disks the one with its center nearest to a point comes first.
   template <class Enters, class Found>
   void visit_from(double x, double y, Enters&& enters, Found&& found) const {
     const auto nearest = [&](Index level, Index first, Index end) {

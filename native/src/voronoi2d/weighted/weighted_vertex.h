@@ -8,13 +8,13 @@
 
 namespace saddleback::voronoi2d {
 
-/// Of a crossing that is good.
+/// Returns the vertex of a crossing that is good.
 inline Vec2 vertex_at(const predicates::WeightedPoint2& here, const WaveCrossing& crossing) {
   const predicates::Point2 place = crossing_point(here, crossing.x, crossing.y, crossing.height);
   return {place.x, place.y};
 }
 
-/// Of one that is not: in digits enough, however flat the sites lie.
+/// Returns the vertex of one that is not: in digits enough, however flat the sites lie.
 inline Vec2 rough_vertex(const predicates::WeightedPoint2& here, const predicates::WeightedPoint2* before,
                          const predicates::WeightedPoint2* after) {
   const predicates::CrossingPlace found = predicates::crossing_place(here, {before, after});

@@ -16,8 +16,8 @@ struct Wave {
   double x, y, z, size, doubt;
 };
 
-/// Where a wave rises above another. A crossing may be taken for a vertex as it is if it is off by less than this, in
-/// parts of the height and of a full direction.
+/// Bounds crossings: where a wave rises above another. A crossing may be taken for a vertex as it is if it is off by
+/// less than this, in parts of the height and of a full direction.
 inline constexpr double k_good_crossing = 0x1p-36;
 struct WaveCrossing {
   double x, y;    ///< direction
@@ -49,7 +49,7 @@ SADDLEBACK_HOST_DEVICE inline Wave wave_of(const predicates::WeightedPoint2& her
 
 // With m = q_b - q_a, the direction is (-m_z m - sqrt(s) m') / m^2, m' being m turned left and s = m_x^2 + m_y^2 -
 // m_z^2. If m is off by d, the direction is by 2 d / sqrt(s), as long as s is far from 0.
-/// Where b rises above a, counter-clockwise.
+/// Returns where b rises above a, counter-clockwise.
 SADDLEBACK_HOST_DEVICE inline WaveCrossing wave_crossing(const Wave& a, const Wave& b) {
   constexpr double k_epsilon = predicates::detail::k_epsilon, k_infinity = double{INFINITY};
   const double x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
@@ -66,7 +66,7 @@ SADDLEBACK_HOST_DEVICE inline WaveCrossing wave_crossing(const Wave& a, const Wa
   return result;
 }
 
-/// Whether two waves certainly do not cross: one is above the other everywhere.
+/// Tells whether two waves certainly do not cross: one is above the other everywhere.
 SADDLEBACK_HOST_DEVICE inline bool are_apart(const Wave& a, const Wave& b) {
   const double x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
   const double off = a.doubt + b.doubt + predicates::detail::k_epsilon * (a.size + b.size);
