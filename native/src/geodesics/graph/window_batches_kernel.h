@@ -1,5 +1,5 @@
-// The kernel of window_batches.h, included by one source an instruction set, which defines `Simd` (see support/simd_*.h)
-// and SADDLEBACK_WAVE_KERNEL.
+// The kernel of window_batches.h, included by one source an instruction set, which defines `Simd` (see
+// support/simd_*.h) and SADDLEBACK_WAVE_KERNEL.
 
 #include "geodesics/graph/window_batches.h"
 
