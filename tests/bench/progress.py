@@ -214,7 +214,7 @@ def pattern_calls(mesh: sb.Mesh, graph: sb.SaddleVertexGraph) -> Iterator[Case]:
     cells = sb.geodesic_voronoi(graph, sb.sample(mesh, 500))
     field = sb.direction_field(mesh, symmetry=1)
     size = 0.02 * mesh.area**0.5
-    star = sb.shapes.star()
+    star = sb.Shape.star()
     placed = sb.distribute(graph, star, [300], size=size, threads=1).placements
     sites = np.random.default_rng(7).uniform(size=(500_000, 2))
     weights = np.random.default_rng(8).uniform(0, 1e-3, size=50_000)
