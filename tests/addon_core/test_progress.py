@@ -1,5 +1,7 @@
 """Several native calls are told as one rising fraction and stopped by one cancel."""
 
+from itertools import pairwise
+
 import pytest
 
 from saddleback_blender.core.progress import Progress
@@ -35,6 +37,23 @@ def test_stages_map_onto_parts_and_never_fall():
         job.fraction = 0.5
         assert progress.fraction == pytest.approx(0.65)
     assert progress.fraction == pytest.approx(0.9)
+
+
+def test_steps_between_native_calls_move_the_dots(monkeypatch):
+    progress, seconds = Progress(Job, StoppedError), [100.0]
+    monkeypatch.setattr("time.monotonic", lambda: seconds[0])
+    with progress.stage(0.5, "making ribs"):
+        told = []
+        for _ in range(5):
+            progress.check()
+            told += [progress.text, progress.text]  # whoever else reads it
+            seconds[0] += 0.25
+        assert told[::2] == told[1::2] and all(a != b for a, b in pairwise(told[::2]))
+        told = []
+        for _ in range(3):  # nobody works
+            told.append(progress.text)
+            seconds[0] += 0.25
+        assert len(set(told)) == 1
 
 
 def test_a_stage_that_is_left_out_costs_nothing():

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 BLOCK = 1 << 15  # rows between two looks at whether the run is to stop
+BEATS, MOST_DOTS = 4, 3  # dots move so many times a second; as many as a native Job shows
 
 
 class Progress:
@@ -23,6 +25,7 @@ class Progress:
         self._cancelled = False
         self._can_settle = False
         self._text = ""
+        self._beat, self._dots, self._has_checked = 0, 0, False
         self.notes: list[str] = []  # what a person should know when the run is over
 
     @property
@@ -35,8 +38,13 @@ class Progress:
     @property
     def text(self) -> str:
         """What is being done, for a person to read; dots behind it move while work goes on that cannot be counted."""
+        beat = int(BEATS * time.monotonic())
+        if beat != self._beat and self._has_checked:
+            self._dots, self._has_checked = self._dots + 1, False
+        self._beat = beat
         told: str = self._job.text
-        return self._text + told[len(told.rstrip(".")) :] if self._text else ""
+        dots = len(told) - len(told.rstrip(".")) + self._dots
+        return self._text + "." * (dots % (MOST_DOTS + 1)) if self._text else ""
 
     @property
     def cancelled(self) -> bool:
@@ -60,7 +68,8 @@ class Progress:
         self.notes.append(text)
 
     def check(self) -> None:
-        """Raises the library's Cancelled when asked to stop; for the steps between native calls."""
+        """Raises the library's Cancelled when asked to stop; between native calls, where it also moves the dots."""
+        self._has_checked = True
         if self._cancelled:
             raise self._cancelled_error("cancelled")
 
@@ -81,6 +90,7 @@ class Progress:
         self._job = job
         self.check()
         self._text = text
+        self._dots, self._has_checked = 0, False
         self._end = end
         self._can_settle = can_settle
         try:

@@ -25,7 +25,7 @@ from .mesh_edges import border_edges
 # vertex, the strip is a surface everywhere (nowhere two pieces meet in a point), and no triangle is a needle.
 OFF_LEVEL = 0.05
 # Pairs of a point and a segment that are measured at once.
-PAIRS = 1 << 20
+PAIRS = 1 << 17
 # Ribs are this many times as long as wide at most, all together; a solid has about forty triangles for each.
 MOST_STEPS = 100_000
 POSITION, DISTANCE = slice(0, 3), 3
@@ -52,9 +52,11 @@ def rib_surface(name: str, mesh: Any, cells: Any, width: float, progress: Progre
     if length > MOST_STEPS * width:
         raise BadInputError(f"'{name}': ribs of width {width:g} are too narrow for its size; make them wider")
     lines = _Lines(mesh, cells, width)
+    progress.check()
     vertices, triangles = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.triangles, np.int32)
     face = np.arange(len(triangles), dtype=np.int32)
-    distance = lines.distance(vertices, _surface_points(mesh, vertices, triangles, face, 0))
+    points = _surface_points(mesh, vertices, triangles, face, 0)
+    distance = lines.distance(vertices, points, progress)
     fields = np.column_stack([vertices, distance])
     while True:
         progress.check()
@@ -62,15 +64,19 @@ def rib_surface(name: str, mesh: Any, cells: Any, width: float, progress: Progre
         if not marked.any():
             break
         old = len(fields)
+        progress.check()
         cut = split_edges(fields, triangles, marked)
+        progress.check()
         fields, triangles, face = cut.fields, cut.triangles, face[cut.parent]
         added = _surface_points(mesh, fields[:, POSITION], triangles, face, old)
-        fields[old:, DISTANCE] = lines.distance(fields[old:, POSITION], added)
+        fields[old:, DISTANCE] = lines.distance(fields[old:, POSITION], added, progress)
     level = 0.5 * width
     above = fields[:, DISTANCE] - level
     fields[:, DISTANCE] = level + np.where(above < 0, -1, 1) * np.maximum(abs(above), OFF_LEVEL * level)
     fields[~np.isfinite(fields[:, DISTANCE]), DISTANCE] = 2 * width
+    progress.check()
     cut = cut_at_level(fields, triangles, DISTANCE, level)
+    progress.check()
     corner = cut.fields[cut.triangles, DISTANCE]
     return RibSurface(cut.fields[:, POSITION], cut.triangles, corner.min(axis=1) < level)
 
@@ -124,16 +130,18 @@ class _Lines:
         self.begin = np.cumsum(self.count) - self.count
         self.cells = cells
 
-    def distance(self, places: Reals, points: Any) -> Reals:
+    def distance(self, places: Reals, points: Any, progress: Progress) -> Reals:
         """Distance (n,) to the lines around each point's own cell, straight through space; inf where there is none."""
         found = np.full(len(places), np.inf)
         if not len(places):
             return found
+        progress.check()
         own = self.cells.cells_at(points)
         count = self.count[own]
         total = np.cumsum(count)
         cuts = np.searchsorted(total, np.arange(0, int(total[-1]) + PAIRS, PAIRS), side="left")
         for low, high in pairwise(cuts):
+            progress.check()
             part = np.arange(low, min(high + 1, len(places)))
             part = part[count[part] > 0]
             if not len(part):

@@ -39,18 +39,22 @@ def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, p
     they look at no more than MOST_LOOKS times as many triangles as there are.
     """
     surface = sewn(ribs.vertices, ribs.triangles)
+    progress.check()
     direction = _directions(ribs.vertices, surface, thickness, progress)
     vertices, triangles = drop_unused(np.column_stack([ribs.vertices, direction]), surface[ribs.is_rib])
+    progress.check()
     places, direction = vertices[:, :3].copy(), vertices[:, 3:].copy()
     count = len(places)
     share = np.ones(count)
     faces = _closed(triangles, count)
+    progress.check()
     there, extent = np.ones(count, bool), 0.0
     least, least_at, looks, begin = len(faces) + 1, 0, 0, progress.fraction
     for number in range(MOST_TIMES + 1):
         offset = (0.5 * thickness * share)[:, None] * direction
         solid = np.concatenate([places + offset, places - offset])
         moved = np.asarray(there[faces % count].any(axis=1))
+        progress.check()
         extent = max(extent, largest_extent(solid, faces[moved]))
         looked_at = near_faces(solid, faces, moved, extent, progress)
         end = begin + (END - begin) * (number + 1) / (MOST_TIMES + 1)
@@ -67,7 +71,7 @@ def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, p
         share[there] = np.maximum(THINNER * share[there], LEAST_SHARE)
         if number >= FOLDED_AFTER:
             _smooth(places, direction, triangles, there, progress)
-    return LampShell(solid, faces, _pieces(triangles, count), float((share < 1.0).mean()), len(crossing))
+    return LampShell(solid, faces, _pieces(triangles, count, progress), float((share < 1.0).mean()), len(crossing))
 
 
 def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[np.bool_], progress: Progress) -> None:
@@ -78,7 +82,7 @@ def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[
     used, number = np.unique(triangles[around[triangles].all(axis=1)], return_inverse=True)
     near: Indices = number.reshape(-1, 3).astype(np.int32)
     own, moved = there[used], places[used]
-    moved[own] = _Neighbors(near, len(used)).mean(moved)[own]
+    moved[own] = _Neighbors(near, len(used), progress).mean(moved)[own]
     places[used] = moved
     direction[used[own]] = _directions(moved, near, 0.0, progress)[own]
 
@@ -95,8 +99,10 @@ def _directions(vertices: Reals, triangles: Indices, thickness: float, progress:
     normals = vertex_normals(vertices, triangles)
     progress.check()
     start, end = directed_edges(triangles)
+    progress.check()
     mean_edge = float(np.linalg.norm(vertices[end] - vertices[start], axis=1).mean())
-    neighbors = _Neighbors(triangles, len(vertices))
+    progress.check()
+    neighbors = _Neighbors(triangles, len(vertices), progress)
     smooth = normals
     for _ in range(int(np.clip(4 * (thickness / mean_edge) ** 2, 1, MOST_SMOOTHING))):
         progress.check()
@@ -105,6 +111,7 @@ def _directions(vertices: Reals, triangles: Indices, thickness: float, progress:
     corners = vertices[triangles]
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     face = _unit(face, face)
+    progress.check()
     turned = (np.einsum("tij,tj->ti", smooth[triangles], face) < LEAST_COSINE).any(axis=1)
     own = np.zeros(len(vertices), bool)
     own[triangles[turned]] = True
@@ -114,10 +121,13 @@ def _directions(vertices: Reals, triangles: Indices, thickness: float, progress:
 class _Neighbors:
     """Corners of the triangles around each vertex but itself, sorted by vertex: one on two triangles counts twice."""
 
-    def __init__(self, triangles: Indices, count: int) -> None:
+    def __init__(self, triangles: Indices, count: int, progress: Progress) -> None:
         start, end = directed_edges(triangles)
+        progress.check()
         both, other = np.concatenate([start, end]), np.concatenate([end, start])
-        self.other = other[np.argsort(both, kind="stable")]
+        order = np.argsort(both, kind="stable")
+        progress.check()
+        self.other = other[order]
         times = np.bincount(both, minlength=count)
         self.used = np.flatnonzero(times)
         self.times = times[self.used]
@@ -152,11 +162,12 @@ def _beside(triangles: Indices, vertices: NDArray[np.integer], count: int) -> ND
     return chosen
 
 
-def _pieces(triangles: Indices, count: int) -> int:
+def _pieces(triangles: Indices, count: int, progress: Progress) -> int:
     """Number of connected parts: the least vertex of each spreads, in ever longer jumps."""
-    neighbors = _Neighbors(triangles, count)
+    neighbors = _Neighbors(triangles, count, progress)
     label = np.arange(count)
     while True:
+        progress.check()
         spread = neighbors.least(label)
         spread = np.minimum(spread, spread[spread])
         # Who led a part so far tells it what its members have heard.
