@@ -25,12 +25,14 @@ def run(disk, surface=None, cache=None, **settings):
     surface = surface if surface is not None else shapes.grid(12)
     request = DistanceRequest(surface, DistanceSettings(**{"k": 20, **settings}), np.array([0], np.int32), disk=disk)
     progress = runs.new_progress()
-    texts = []
-    type(progress).text = property(lambda self: "", lambda self, text: texts.append(text))
-    try:
-        result = runs.distance(request, progress, cache or Cache(2**30))
-    finally:
-        del type(progress).text
+    texts, stage = [], progress.stage
+
+    def noted_stage(end, text, **more):
+        texts.append(text)
+        return stage(end, text, **more)
+
+    progress.stage = noted_stage
+    result = runs.distance(request, progress, cache or Cache(2**30))
     return result.vertex_distance, progress.notes, texts
 
 
