@@ -255,10 +255,10 @@ def _new_sweep_group(draws_circle: bool) -> bpy.types.NodeTree:
     link(source.outputs["Circle"], info.inputs["Object"])
     radius = nodes.new("ShaderNodeSeparateXYZ")
     begin, end = nodes.new("GeometryNodeInputNamedAttribute"), nodes.new("GeometryNodeInputNamedAttribute")
-    is_early, is_late = nodes.new("FunctionNodeCompare"), nodes.new("FunctionNodeCompare")
+    is_before, is_after = nodes.new("FunctionNodeCompare"), nodes.new("FunctionNodeCompare")
     for node, attribute, compare, operation in (
-        (begin, FROM_ATTRIBUTE, is_early, "GREATER_THAN"),
-        (end, UNTIL_ATTRIBUTE, is_late, "LESS_EQUAL"),
+        (begin, FROM_ATTRIBUTE, is_before, "GREATER_THAN"),
+        (end, UNTIL_ATTRIBUTE, is_after, "LESS_EQUAL"),
     ):
         node.data_type = "FLOAT"
         node.inputs["Name"].default_value = attribute
@@ -270,8 +270,8 @@ def _new_sweep_group(draws_circle: bool) -> bpy.types.NodeTree:
     either.operation = "OR"
     hidden = nodes.new("GeometryNodeDeleteGeometry")
     link(info.outputs["Scale"], radius.inputs[0])
-    link(is_early.outputs["Result"], either.inputs[0])
-    link(is_late.outputs["Result"], either.inputs[1])
+    link(is_before.outputs["Result"], either.inputs[0])
+    link(is_after.outputs["Result"], either.inputs[1])
     link(source.outputs["Geometry"], hidden.inputs["Geometry"])
     link(either.outputs["Boolean"], hidden.inputs["Selection"])
     shown = hidden.outputs["Geometry"]
@@ -286,7 +286,7 @@ def _new_sweep_group(draws_circle: bool) -> bpy.types.NodeTree:
         shown = joined.outputs["Geometry"]
         drawn.location, edges.location, joined.location = (660, -440), (880, -440), (1100, 0)
     link(shown, sink.inputs["Geometry"])
-    lay_out((source, info), (begin, end, radius), (is_early, is_late), either, hidden)
+    lay_out((source, info), (begin, end, radius), (is_before, is_after), either, hidden)
     sink.location = (1320, 0)
     return group
 

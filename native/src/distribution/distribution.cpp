@@ -78,8 +78,8 @@ void check_sizes(const Mesh& mesh, std::span<const Shape> shapes, const Distribu
                                ", larger than the surface, which has ", mesh.area()));
 }
 
-/// That a copy finds room together with half of the gap around it. What holds both has at least the area of a disk
-/// whose radius is that much larger than that of a disk as large as the shape (Brunn and Minkowski).
+/// Checks that a copy finds room together with half of the gap around it. A region that holds both has at least the
+/// area of a disk whose radius is that much larger than that of a disk as large as the shape (Brunn and Minkowski).
 void check_gap(const Mesh& mesh, std::span<const Shape> shapes, const DistributionOptions& options) {
   if (!(options.gap >= 0) || !std::isfinite(options.gap))
     throw InputError(message("gap is ", options.gap, ", but must be finite and not negative"));

@@ -8,10 +8,12 @@
 
 namespace saddleback::distribution {
 
-/// Per vertex the shortest way from any source; infinite beyond `limit`. Dijkstra's algorithm, O(V log V).
+/// Returns each vertex's distance along edges from the nearest source; infinite beyond `limit`. Dijkstra's algorithm,
+/// O(V log V).
 std::vector<double> edge_distances(const Mesh& mesh, std::span<const Index> sources, double limit);
 
-/// Per vertex how far a front has come, 0 to 1, that sets out in each component from one end of it.
+/// Returns for each vertex the share (0 to 1) of the way at which a front passes it that sets out from one end of its
+/// component.
 std::vector<double> sweep_coordinate(const Mesh& mesh);
 
 }  // namespace saddleback::distribution

@@ -1,8 +1,8 @@
-// First it rains: candidates fall evenly all over the surface, and those that find room stay. Then rounds over all open
-// cells: those that are proven covered are dropped; into each of the others a dart is thrown; what remains is split in
-// four. Cells over which a copy can move by less than the tolerance are leaves: one copy is tried at the center, and if
-// it does not fit, nothing fits there with that clearance. How many candidates fall on a face, and where, depends on
-// that face alone: so other triangles elsewhere, or other sheets, change nothing.
+// First come random batches: candidates fall evenly all over the surface, and those that find room stay. Then rounds
+// over all open cells: those that are proven covered are dropped; into each of the others a dart is thrown; what
+// remains is split in four. Cells over which a copy can move by less than the tolerance are leaves: one copy is tried
+// at the center, and if it does not fit, nothing fits there with that clearance. How many candidates fall on a face,
+// and where, depends on that face alone: so other triangles elsewhere, or other sheets, change nothing.
 
 #include "distribution/gap_sampling.h"
 
@@ -333,7 +333,7 @@ bool GapSampling::is_certain(const CellView& view, const Copy& copy, const Motio
   return depth - motion.of(deepest) * (1 + bending(deepest, place)) > rounded;
 }
 
-/// Those that the smallest copies may meet, the nearest first.
+/// Finds the copies that the smallest ones may meet, the nearest first.
 void GapSampling::find_neighbors(const CellView& view, Neighbors& near) const {
   near.clear();
   const SurfacePoint& center = view.center;

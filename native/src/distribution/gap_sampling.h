@@ -92,8 +92,8 @@ class GapSampling {
   Index next_face_ = 0;                    ///< whose cells have not been opened yet
   std::vector<double> front_;              ///< per vertex, for packing
   std::vector<std::uint8_t> near_border_;  ///< per face; empty where there is none
-  /// Per face: near a place where shapes cannot be laid. Cells there that are small enough to be given up are probed,
-  /// as their parts would be one by one.
+  /// Flags of the faces near a place where shapes cannot be laid. Cells there that are small enough to be given up are
+  /// probed, as their parts would be one by one.
   std::vector<std::uint8_t> suspected_;
   std::vector<double> forbidden_depth_;  ///< per vertex: at least so far within what is forbidden
   std::vector<double> kind_weights_;     ///< sums, by which kinds are drawn

@@ -52,14 +52,14 @@ Insertion::Insertion(const Mesh& mesh, const PlacingRules& rules, const Distribu
       shares_(options.density.empty() ? options.shares : std::vector<double>()),
       most_in_vain_(most_in_vain(mesh, rules, options)),
       touched_(static_cast<std::size_t>(mesh.face_count()), 0) {
-  for (const Kind& kind : rules.kinds()) laid_.resize(static_cast<std::size_t>(kind.shape) + 1, 0);
+  for (const Kind& kind : rules.kinds()) inserted_.resize(static_cast<std::size_t>(kind.shape) + 1, 0);
   mappers_.resize(static_cast<std::size_t>(threads_));
   surroundings_.resize(static_cast<std::size_t>(threads_));
 }
 
 bool Insertion::is_any_wanted() const {
-  for (Index shape = 0; shape < static_cast<Index>(laid_.size()); ++shape)
-    if (wanted_.empty() || laid_[shape] < wanted_[shape]) return true;
+  for (Index shape = 0; shape < static_cast<Index>(inserted_.size()); ++shape)
+    if (wanted_.empty() || inserted_[shape] < wanted_[shape]) return true;
   return false;
 }
 
@@ -69,10 +69,10 @@ bool Insertion::is_hopeless() const {
 }
 
 double Insertion::share(Index shape) const {
-  if (!wanted_.empty()) return std::max(0, wanted_[shape] - laid_[shape]);
+  if (!wanted_.empty()) return std::max(0, wanted_[shape] - inserted_[shape]);
   if (shares_.empty()) return 1;
   // Those that are behind are tried much more often than their share.
-  return std::max(0.0, shares_[shape] * (1.1 * inserted_in_all_ + 20) - laid_[shape]);
+  return std::max(0.0, shares_[shape] * (1.1 * inserted_in_all_ + 20) - inserted_[shape]);
 }
 
 bool Insertion::is_foreseen_to_meet(const Copy& copy) const {
@@ -155,7 +155,7 @@ void Insertion::commit(Attempt& attempt) {
     settled_.add(attempt.copy, attempt.outline);
     settled_.add_places(number, attempt.faces);
     pending_.push_back({number, std::move(attempt.plane), attempt.outline.faces});
-    ++laid_[attempt.copy.placement.shape];
+    ++inserted_[attempt.copy.placement.shape];
     ++inserted_in_all_;
     for (const Index face : attempt.outline.faces) touched_[face] = batch_;
   } else if (attempt.outcome != Outcome::not_wanted) {

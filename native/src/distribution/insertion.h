@@ -32,7 +32,9 @@ class Insertion {
   const PlacedShapes& settled() const { return settled_; }
   std::span<const std::int64_t> rejections() const { return rejections_; }
 
-  bool is_wanted(Index shape) const { return (wanted_.empty() || laid_[shape] < wanted_[shape]) && !is_ahead(shape); }
+  bool is_wanted(Index shape) const {
+    return (wanted_.empty() || inserted_[shape] < wanted_[shape]) && !is_ahead(shape);
+  }
   bool is_any_wanted() const;
   /// Tells whether so much was tried in vain on the bare surface that copies, with their gap, find no room at all.
   bool is_hopeless() const;
@@ -66,7 +68,7 @@ class Insertion {
   /// Tells whether another copy would be more than the shape's share.
   bool is_ahead(Index shape) const {
     constexpr double k_slack = 1.01;
-    return !shares_.empty() && laid_[shape] >= k_slack * shares_[shape] * (inserted_in_all_ + 1) + 1;
+    return !shares_.empty() && inserted_[shape] >= k_slack * shares_[shape] * (inserted_in_all_ + 1) + 1;
   }
   void attempt(const Candidate& candidate, Attempt& attempt, int thread) const;
   void test(Attempt& attempt, OutlineMapper& mapper) const;
@@ -78,7 +80,7 @@ class Insertion {
   std::span<const std::uint8_t> forbidden_;
   int threads_;
   PlacedShapes settled_;
-  std::vector<Index> wanted_, laid_;
+  std::vector<Index> wanted_, inserted_;
   std::vector<double> shares_;  ///< sum 1; empty: any
   Index inserted_in_all_ = 0;
   std::array<std::int64_t, k_rejection_count> rejections_{};

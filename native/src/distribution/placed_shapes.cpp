@@ -72,7 +72,7 @@ bool PlacedShapes::is_within_another(const OutlinePiece& piece) const {
   });
 }
 
-/// Whoever lies within begins in a face that the outline holds.
+/// Tells whether another copy lies within: it then begins in a face that the outline holds.
 bool PlacedShapes::holds_another(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const {
   const ShapeMap& plane = mapper.plane();
   for (const Index face : outline.faces)

@@ -22,7 +22,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double k_turn = 2 * std::numbers::pi;
-/// Whatever the accuracy, fields close and fixed faces are met exactly; this is how smooth they are in between.
+/// Accuracy of the solver, which only decides how smooth fields are: they close, and meet fixed faces, exactly at any.
 constexpr MultigridSolver<double>::Accuracy k_stroke_accuracy{.residual = 1e-7};
 constexpr MultigridSolver<Complex>::Accuracy k_power_accuracy{.residual = 1e-6};
 /// Counts how often the branches of curvature directions are chosen anew after the field has turned onto them.
@@ -117,7 +117,8 @@ std::vector<std::vector<Index>> DirectionFieldEditor::Kept::eager_loops(const st
   return result;
 }
 
-/// Those of least turning, with other whole turns around handles where that leaves fewer of such loops.
+/// Returns the turns of least turning, with other whole turns around handles where that leaves fewer loops that turn
+/// fast.
 std::vector<double> DirectionFieldEditor::Kept::gentle_turns(const std::vector<Index>& wanted,
                                                              const JobStage& stage) const {
   constexpr int k_rounds = 12;
@@ -149,7 +150,7 @@ void DirectionFieldEditor::Kept::connect(const DirectionFieldOptions& options, c
   units = std::move(wanted);
 }
 
-/// Per face, the one angle of its component by which the field best fits those powers.
+/// Returns for each face the one angle of its component by which the field best fits those powers.
 std::vector<double> DirectionFieldEditor::Kept::best_constants(const std::vector<Complex>& wanted) const {
   std::vector<Complex> sums(mesh.component_count());
   for (Index f = 0; f < mesh.face_count(); ++f)

@@ -23,9 +23,9 @@
 namespace saddleback {
 namespace {
 
-/// More faces than any curve of use crosses, and about a quarter of a second of work: makes every finite length end. It
-/// cannot be derived from length and mean edge, because a curve may wind round a thin tube any number of times for each
-/// of them.
+/// A bound on the faces that a curve crosses, so that every finite length ends: more than any useful curve has, and
+/// about a quarter of a second of work. It cannot be derived from length and mean edge, because a curve may go around a
+/// thin tube any number of times for each of them.
 constexpr std::int64_t k_max_faces = 1'000'000;
 /// Radians by which a straight border may bend away from a curve that runs along it: rounding of angles.
 constexpr double k_along_border = 1e-9;

@@ -67,7 +67,7 @@ inline Sight sight_of_point(const UnfoldedTriangle& triangle, const Vec2& from, 
   return {direction * (to_apex.norm() / length), miss};
 }
 
-/// Less bend than this over an edge is none: beyond, distances to the center of the bend would lose too many digits.
+/// A bend by less than this over an edge counts as none: the distances to its center would lose too many digits.
 inline constexpr double k_straight = 1e-6;
 
 /// The source is the x axis, which stands for a curve that bends by `curvature` beside the edge. Along a straight one

@@ -21,7 +21,7 @@ constexpr double k_sample_step = 0.8;
 /// Says what samples are held to, as a share of the tolerance: they are seldom at the worst place.
 constexpr double k_sampled = 0.85;
 constexpr int k_search_steps = 12;  ///< a thousandth of the way between samples
-/// Nothing is split nearer to a corner than this share: slivers would not lie better.
+/// The share of an edge nearer to a corner than which nothing is split: slivers would not lie better.
 constexpr double k_margin = 0.08;
 
 double distance_to_plane(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c) {

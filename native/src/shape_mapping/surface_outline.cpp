@@ -41,8 +41,8 @@ OutlineMapper::OutlineMapper(const Mesh& mesh)
       face_stamps_(static_cast<std::size_t>(mesh.face_count()), 0),
       inside_stamps_(static_cast<std::size_t>(mesh.vertex_count()), 0) {}
 
-/// Whatever lies in the shape must be laid out well, so it is looked at while the plane is laid: where the surface
-/// folds that would go on for long.
+/// Maps a shape. Everything in the shape must be laid out well, which is checked while the plane is laid: where the
+/// surface folds, laying it to the end would take long.
 MapFailure OutlineMapper::map(std::span<const Loop> loops, const Placement& placement, SurfaceOutline& outline,
                               const MapLimits& limits) {
   lay_corners(loops, placement, 0);
@@ -254,7 +254,7 @@ MapFailure OutlineMapper::find(const Vec2& point, Index& face) {
   return found;
 }
 
-/// Vertices that are laid into the shape. Their stars are completed, which may lay out more.
+/// Finds the vertices that are laid into the shape. Their stars are completed, which may lay out more.
 void OutlineMapper::find_inside() {
   for (std::size_t i = 0; i < plane_.vertices().size(); ++i) {
     const Index vertex = plane_.vertices()[i];

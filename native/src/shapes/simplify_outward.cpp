@@ -231,7 +231,7 @@ class Simplifier {
     renew(d);
   }
 
-  /// Nothing lies in a hole of three corners whose loop would not have stopped it from getting so small.
+  /// Fills a hole of three corners if nothing lies in it: a loop within would have kept the hole from getting so small.
   void fill(Index b) {
     const Index a = corners_[b].before, c = corners_[b].after;
     if (!is_free({place(a), place(b), place(c)}, place(a), place(c), b, b, {a, c})) return;

@@ -15,11 +15,11 @@
 namespace saddleback {
 
 struct DistributionOptions {
-  /// Per shape how many copies; empty: as many as find room. With shares: one value, how many in all.
+  /// Number of copies of each shape; empty: as many as find room. With shares: one value, the number in all.
   std::vector<Index> counts;
-  /// Per shape its share of the copies, only ratios matter; empty: whatever finds room. None is ever ahead of its share
-  /// by more than a hundredth and one copy, so where one finds no more room the others stop as well. With a density the
-  /// shares are those of the counts.
+  /// Share of each shape in the copies, of which only ratios matter; empty: whatever finds room. No shape is ever ahead
+  /// of its share by more than a hundredth and one copy, so where one finds no more room the others stop as well. With
+  /// a density the shares are those of the counts.
   std::vector<double> shares;
   /// Says where shapes point: x axes along one of the field's directions, chosen at random among those that differ.
   const DirectionField* field = nullptr;
@@ -27,9 +27,9 @@ struct DistributionOptions {
   std::vector<double> size{1.0};
   /// Every copy is scaled by another factor in this range, chosen at random.
   double smallest = 1, largest = 1;
-  /// Per vertex the wanted number of copies per area, only ratios matter; empty: even. Needs counts.
+  /// Density wanted at each vertex, in copies per area, of which only ratios matter; empty: even. Needs counts.
   std::vector<double> density;
-  /// Per face: nothing may touch it. Empty: none.
+  /// Flags of the faces that nothing may touch. Empty: none.
   std::vector<std::uint8_t> forbidden;
   /// Least distance between copies, mesh units; half of it is kept to the border and to what is forbidden.
   double gap = 0;
@@ -66,9 +66,9 @@ enum class Rejection : std::uint8_t {
 };
 inline constexpr std::size_t k_rejection_count = 5;
 
-/// That nothing more fits. The surface is cut into cells. Of each cell either all placements centered in it meet a copy
-/// that lies there, or its center's does and no placement centered in it differs by more than `tolerance`. So whatever
-/// is laid anywhere comes nearer to a copy than the tolerance.
+/// A proof that nothing more fits. The surface is cut into cells. Of each cell either all placements centered in it
+/// meet a copy that lies there, or its center's does and no placement centered in it differs by more than `tolerance`.
+/// So whatever is laid anywhere comes nearer to a copy than the tolerance.
 struct Certificate {
   double tolerance = 0;  ///< mesh units; 0 without a certificate
   std::int64_t cells = 0, leaves = 0;

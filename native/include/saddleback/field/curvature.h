@@ -7,7 +7,8 @@
 
 namespace saddleback {
 
-/// Per vertex, 1 / length, positive where the surface bends away from its normal (a sphere's are 1 / radius).
+/// Curvatures at each vertex, in 1 / length, positive where the surface bends away from its normal (a sphere's are 1 /
+/// radius).
 struct PrincipalCurvatures {
   std::vector<double> smallest, largest;  ///< smallest <= largest
   std::vector<Vec3> direction;            ///< of `largest`, a unit vector in the vertex' tangent plane, up to its sign

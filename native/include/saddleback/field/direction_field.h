@@ -71,7 +71,8 @@ class DirectionField {
   const Mesh* mesh_;
   int symmetry_;
   std::vector<double> angles_, turns_;
-  /// Per half-edge: the field at its begin, seen along it and along the edge before it, less the face's angle.
+  /// Angles for each half-edge: of the field at its begin, seen along it and along the edge before it, less the face's
+  /// angle.
   std::vector<double> along_, before_;
   std::vector<Singularity> singularities_;
   std::vector<Index> loop_units_;
@@ -95,7 +96,8 @@ enum class FieldAlignment : std::uint8_t {
 struct DirectionFieldOptions {
   /// All vertices that shall have an index, or none to let the field choose them.
   std::optional<std::vector<Singularity>> singularities;
-  /// Per boundary loop; none: free to be what turns least. Only together with singularities.
+  /// Turning of the field along each boundary loop; none: free to be what turns least. Only together with
+  /// singularities.
   std::vector<std::optional<Index>> loop_units;
   std::vector<Stroke> strokes;
   FieldAlignment align = FieldAlignment::none;

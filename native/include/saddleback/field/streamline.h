@@ -11,7 +11,7 @@
 
 namespace saddleback {
 
-/// Why a curve ends.
+/// The reason for which a curve ends.
 enum class StreamlineEnd : std::uint8_t {
   length,       ///< it is as long as wanted
   boundary,     ///< the surface ends

@@ -76,7 +76,7 @@ class ArcCodec {
   double quantum_ = 1, longest_ = 1;
 };
 
-/// Whoever fills it touches it first, on a core of its own; huge pages spare those who look rows up here and there.
+/// Words of arcs, in memory that the threads that fill it touch first; huge pages make scattered look-ups cheaper.
 using ArcWords = LargeArray<std::uint64_t>;
 
 /// Rows of arcs, a row a node, in compressed sparse rows.

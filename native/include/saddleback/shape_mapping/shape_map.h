@@ -16,7 +16,7 @@ class CurveBend;
 struct Sight;
 struct UnfoldedTriangle;
 
-/// Why a piece of the plane could not be laid on the surface.
+/// The reason for which a piece of the plane could not be laid on the surface.
 enum class MapFailure : std::uint8_t {
   none,
   boundary,   ///< it leaves the surface
@@ -49,7 +49,8 @@ class ShapeMap {
   ShapeMap(ShapeMap&&) noexcept;
   ShapeMap& operator=(ShapeMap&&) noexcept;
 
-  /// Told of every vertex whose coordinates are found, the nearest first; may throw to end it all.
+  /// A function that is called with each vertex whose coordinates are found, the nearest first; may throw to end it
+  /// all.
   using Watch = std::function<void(Index vertex)>;
 
   /// The exponential map: the center at the origin, the x axis at `angle` in the FaceChart of center.face. At a vertex

@@ -28,7 +28,7 @@ class Shape {
 
   /// All loops, part by part: outlines counter-clockwise, holes clockwise, so that the shape is on the left.
   std::span<const Loop> loops() const { return loops_; }
-  /// Per part the index of its outline among the loops, and at the end the number of loops.
+  /// Returns the index of each part's outline among the loops, and at the end the number of loops.
   std::span<const Index> part_begins() const { return part_begins_; }
   Index part_count() const { return static_cast<Index>(part_begins_.size()) - 1; }
   Index corner_count() const;

@@ -32,7 +32,7 @@ enum class CudaStatus {
   left,  ///< to the processor, for which it is made
 };
 
-/// Why a call of the CUDA module failed: text that needs no common memory manager.
+/// The reason for which a call of the CUDA module failed: text that needs no common memory manager.
 struct CudaReason {
   char text[512] = "";
   CudaReason& operator=(const char* reason) {

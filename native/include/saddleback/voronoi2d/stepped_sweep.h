@@ -86,7 +86,8 @@ class SweepCircles {
 
   Index count() const;
   std::span<const Vec2> centers() const;
-  /// That of all circles, or where this one stopped; minus infinity for one to which no site is nearest.
+  /// Returns the radius of all circles, or the one at which this circle stopped; minus infinity for one whose
+  /// center is the nearest to no site.
   double radius(Index circle) const;
   bool is_done(Index circle) const;
   /// Returns the same as of SteppedSweep.

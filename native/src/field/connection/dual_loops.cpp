@@ -48,7 +48,7 @@ std::vector<Index> grow_trees(const Mesh& mesh, DualLoops& result) {
   return depth;
 }
 
-/// Across h, then back through the tree.
+/// Returns the loop that leads across h and back through the tree.
 std::vector<Index> loop_through(const Mesh& mesh, const DualLoops& trees, const std::vector<Index>& depth, Index h) {
   std::vector<Index> loop{h}, down;
   Index far = Mesh::face_of(mesh.twin(h)), near = Mesh::face_of(h);

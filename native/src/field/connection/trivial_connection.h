@@ -21,10 +21,10 @@ class TrivialConnection {
   TrivialConnection(const Mesh& mesh, const SurfaceConnection& connection, const FilledSurface& filled,
                     const DualLoops& loops, const JobStage& stage);
 
-  /// Per half-edge, what a field turns by (besides the transport) where it crosses from its face to the twin's,
+  /// Returns for each half-edge the angle by which a field turns (besides the transport) from its face to the twin's;
   /// opposite for the twin. `units`: of each node of the filled surface the index times the symmetry; around handles
   /// the turning is the smallest that closes. `gentle`: loops of half-edges around which it shall not turn by more than
-  /// k_told_share of pi / symmetry an edge, where whole turns around handles can see to that. \pre units sum to
+  /// k_told_share of pi / symmetry an edge, where whole turns around handles can prevent that. \pre units sum to
   /// symmetry (2 - 2 genus) in each component. \throw Cancelled.
   std::vector<double> turns(std::span<const Index> units, int symmetry, const std::vector<std::vector<Index>>& gentle,
                             const JobStage& stage);

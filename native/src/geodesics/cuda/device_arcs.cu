@@ -27,7 +27,8 @@ namespace {
 // Sources of a launch at most: systems that draw with a device let nothing run on it for more than seconds.
 constexpr std::int32_t k_sources_per_launch = 1 << 20;
 
-/// Most memory that the warps of a block share, of any device: what fewer have room for is told when it runs.
+/// Most memory that the warps of a block share on any device; what a device with less has room for is found at run
+/// time.
 constexpr std::size_t k_shared_bytes = 227 << 10;
 
 /// Room for the windows of a warp's sources and the vertices that they reach; what is not in shared memory is in global
@@ -528,7 +529,7 @@ class Builder {
     counts_[at] = arcs.count();
     team_.meet();
     if (mine.member == 0) {
-      copies.end_laying();
+      copies.end_populating();
       make_room(std::accumulate(counts_.begin(), counts_.end(), std::int64_t{0}));
     }
     team_.meet();

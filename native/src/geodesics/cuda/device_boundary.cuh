@@ -17,7 +17,7 @@ struct ArcAcross {
   std::uint64_t word;
   std::uint8_t back_sector;
 };
-/// Those of a row, among all that the other needs.
+/// The arcs of one row, among all that the other device needs.
 struct RowAcross {
   std::int64_t first;
   std::int32_t count;

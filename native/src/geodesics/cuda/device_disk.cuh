@@ -127,8 +127,8 @@ class WarpDisk {
   SADDLEBACK_STEP std::int32_t node(int slot) const { return DiskKey<Seats>::node(table_.keys[slot]); }
   SADDLEBACK_STEP int seat(int slot) const { return DiskKey<Seats>::seat(table_.keys[slot]); }
 
-  /// A node whose slot is looked for.
-  struct Claim {
+  /// A search for the slot of a node, by open addressing over buckets of four.
+  struct Probe {
     static constexpr int k_others_were_first = -1, k_is_full = -2;
     bool active;
     std::uint32_t key;
@@ -137,29 +137,29 @@ class WarpDisk {
   };
   /// The slots of the lanes' nodes, made if need be, are found in two steps with room for other work between them,
   /// since memory takes its time. By all lanes of the warp; of no meaning for those that are not active.
-  SADDLEBACK_STEP Claim claim(bool active, std::uint32_t key) {
-    Claim claim{active, key, static_cast<int>(__umulhi(key * 2654435769u, k_slots / 4)), 0};
-    look_up(claim);
-    return claim;
+  SADDLEBACK_STEP Probe probe(bool active, std::uint32_t key) {
+    Probe probe{active, key, static_cast<int>(__umulhi(key * 2654435769u, k_slots / 4)), 0};
+    look_up(probe);
+    return probe;
   }
-  SADDLEBACK_STEP int settle(Claim claim) {
-    claim.active = claim.active && claim.slot < 0;
-    for (int tries = 0; __any_sync(k_warp, claim.active); ++tries) {
+  SADDLEBACK_STEP int settle(Probe probe) {
+    probe.active = probe.active && probe.slot < 0;
+    for (int tries = 0; __any_sync(k_warp, probe.active); ++tries) {
       if (tries > k_slots / 2) {
         overflow_ = 1;
         break;
       }
       __syncwarp();
-      Claim again = claim;
-      if (claim.slot == Claim::k_is_full) again.bucket = claim.bucket + 1 < k_slots / 4 ? claim.bucket + 1 : 0;
+      Probe again = probe;
+      if (probe.slot == Probe::k_is_full) again.bucket = probe.bucket + 1 < k_slots / 4 ? probe.bucket + 1 : 0;
       look_up(again);
-      claim.bucket = again.bucket;
-      claim.slot = claim.active ? again.slot : claim.slot;
-      claim.active = claim.active && again.slot < 0;
+      probe.bucket = again.bucket;
+      probe.slot = probe.active ? again.slot : probe.slot;
+      probe.active = probe.active && again.slot < 0;
     }
-    return max(claim.slot, 0);
+    return max(probe.slot, 0);
   }
-  SADDLEBACK_STEP int insert(bool active, std::uint32_t key) { return settle(claim(active, key)); }
+  SADDLEBACK_STEP int insert(bool active, std::uint32_t key) { return settle(probe(active, key)); }
 
   /// Lowers the bound where `seen`. `bends` unless only straight ways are known to go on from there: neighbors then
   /// have to be told of the label. Lanes that have seen nothing change nothing, each somewhere else: to branch takes
@@ -223,7 +223,7 @@ class WarpDisk {
   }
 
  private:
-  /// Told where shortest ways bend: longer by more than rounding, so that what is collinear stays an arc.
+  /// Offers labels where shortest ways bend: longer by more than rounding, so that what is collinear stays an arc.
   struct Bend {
     const Table& table;
     float limit;
@@ -249,24 +249,24 @@ class WarpDisk {
     __syncwarp();
   }
 
-  /// Looks it up in one bucket of four, which are filled from the first entry on: what is in none of a bucket that has
-  /// room is nowhere.
-  SADDLEBACK_STEP void look_up(Claim& claim) {
-    const uint4 there = reinterpret_cast<const uint4*>(table_.keys)[claim.bucket];
+  /// Looks the key up in one bucket of four, which are filled from the first entry on: what is in none of a bucket that
+  /// has room is nowhere.
+  SADDLEBACK_STEP void look_up(Probe& probe) {
+    const uint4 there = reinterpret_cast<const uint4*>(table_.keys)[probe.bucket];
     const bool has_room = there.w == k_no_key;
-    int at = there.x == claim.key ? 0 : -1;
-    at = there.y == claim.key ? 1 : at;
-    at = there.z == claim.key ? 2 : at;
-    at = there.w == claim.key ? 3 : at;
-    const bool makes = claim.active & (at < 0) & has_room;
+    int at = there.x == probe.key ? 0 : -1;
+    at = there.y == probe.key ? 1 : at;
+    at = there.z == probe.key ? 2 : at;
+    at = there.w == probe.key ? 3 : at;
+    const bool makes = probe.active & (at < 0) & has_room;
     int vacant = there.z == k_no_key ? 2 : 3;
     vacant = there.y == k_no_key ? 1 : vacant;
     vacant = there.x == k_no_key ? 0 : vacant;
     // Others change nothing, each somewhere else: to branch takes longer.
     const std::uint32_t before =
-        atomicCAS(&table_.keys[makes ? 4 * claim.bucket + vacant : lane_], makes ? k_no_key : k_never_a_key, claim.key);
-    at = makes & ((before == k_no_key) | (before == claim.key)) ? vacant : at;
-    claim.slot = at >= 0 ? 4 * claim.bucket + at : has_room ? Claim::k_others_were_first : Claim::k_is_full;
+        atomicCAS(&table_.keys[makes ? 4 * probe.bucket + vacant : lane_], makes ? k_no_key : k_never_a_key, probe.key);
+    at = makes & ((before == k_no_key) | (before == probe.key)) ? vacant : at;
+    probe.slot = at >= 0 ? 4 * probe.bucket + at : has_room ? Probe::k_others_were_first : Probe::k_is_full;
   }
 
   /// Takes slots that are marked as changed into the list of those to do. \return how many

@@ -65,7 +65,7 @@ struct WaitingRow {
   DistanceBits distance;
   std::int32_t node;
 };
-/// Those of a block in one round, in shared memory; more wait for the next.
+/// The rows of a block in one round, in shared memory; more wait for the next.
 struct RowList {
   static constexpr int k_most = 1024;
   WaitingRow rows[k_most];

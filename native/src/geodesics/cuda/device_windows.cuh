@@ -269,7 +269,7 @@ class WarpWaves {
     const double2 from = pool_.ends[0][place], to = pool_.ends[1][place];
     const Ray left = pool_.rays[0][place], right = pool_.rays[1][place];
     const int root = links.root();
-    const auto claim = disk_.claim(active, apex_key(record, Seats > 1 ? RootEdge::seat(root) : 0));
+    const auto probe = disk_.probe(active, apex_key(record, Seats > 1 ? RootEdge::seat(root) : 0));
     const double2 apex = apex_of(record, from, to);
     Rays rays{right.x, right.y, left.x, left.y, 0, 0};
     if constexpr (!All) {
@@ -284,7 +284,7 @@ class WarpWaves {
       direct = direct & (mesh_.detour * view.reach < by_flank);
       way = direct ? view.reach : by_flank;
     }
-    const int slot = disk_.settle(claim);
+    const int slot = disk_.settle(probe);
     const std::int32_t label = label_of(view.reach, direct);
     __syncwarp();  // nobody looks at the last window any more
     if (active) {

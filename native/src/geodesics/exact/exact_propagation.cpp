@@ -169,7 +169,8 @@ void ExactPropagation::drain(WindowBlock* block, const JobStage& stage) {
   }
 }
 
-/// Of the vertices, those that are reached; within a limit the share of the disk that is behind the front.
+/// Returns the share of the vertices that are reached; within a limit, the share of the disk behind the front if
+/// larger.
 double ExactPropagation::share_done() const {
   const double vertices = static_cast<double>(reached_count_) / std::max<Index>(1, surface_.vertex_count());
   const double radius = queue_->reached() / options_.limit;
@@ -266,7 +267,8 @@ inline bool ExactPropagation::circles_tip(const Window& w) const {
          (w.b0 == 0 && circles(surface_.tangent_of_tip(frame.from), w.sx, -w.sy));
 }
 
-/// Most windows that sources beat are beaten by corners as well, which is told sooner.
+/// Propagates the part of a window that sources leave. The corners are asked first: they beat most windows that sources
+/// beat, and their test is cheaper.
 void ExactPropagation::pass_sources(const Window& window) {
   if (is_beaten_by_corners(window)) return;
   const Window part = left_by_sources(window);

@@ -21,7 +21,7 @@ constexpr double k_flat_tolerance = 1e-12;
 constexpr double k_beside = 1e-8;
 constexpr Index k_check = 1 << 12;  ///< vertices or half-edges: less than a millisecond
 
-/// Those of the components with sources, ascending.
+/// Returns the vertices of the components with sources, ascending.
 std::vector<Index> vertices_with_sources(const Mesh& mesh, const SurfacePoints& sources) {
   std::vector<bool> is_held(mesh.component_count(), false);
   for (const SurfacePoint& source : sources) is_held[mesh.component_of(mesh.triangles()[source.face][0])] = true;

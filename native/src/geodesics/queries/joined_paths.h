@@ -14,7 +14,7 @@ namespace saddleback {
 class JoinedPaths {
  public:
   explicit JoinedPaths(std::size_t block_count) : ready_(block_count) {}
-  /// From any thread; `share` of all paths are this block's. Leaves `part` empty.
+  /// Adds a block's paths, which are `share` of all. Any thread may call it. Leaves `part` empty.
   void add(std::size_t block, double share, GeodesicPaths& part);
   /// Hands over the paths, when all blocks were added.
   GeodesicPaths take() { return std::move(paths_); }

@@ -68,7 +68,7 @@ struct Radial {
     const double to_b0 = w.b0 - w.source.x(), to_b1 = w.b1 - w.source.x();
     return k_narrow * (to_b0 * to_b0 + to_b1 * to_b1 + 2 * w.source.y() * w.source.y());
   }
-  /// Near to the root rays are told from each other by less than an edge is rounded to: makes neighbors overlap.
+  /// Makes neighbors overlap near the root, where rays differ by less than the rounding of an edge.
   static void widen(RayWindow& w, double length) {
     const double x = w.source.x(), y2 = w.source.y() * w.source.y();
     const double to_b0 = (w.b0 - x) * (w.b0 - x) + y2, to_b1 = (w.b1 - x) * (w.b1 - x) + y2;

@@ -1,8 +1,8 @@
 #pragma once
 // Copies between a device and host memory that the device cannot reach by itself, which is all memory that nobody
 // pinned. The driver copies such memory with one thread; pinning it for one copy takes longer than the copy. Here a few
-// threads do it, piece by piece, through pinned memory of their own: they also lay the pages under what is fresh. One
-// or two pieces are copied by the caller, who would wait longer for threads to begin and to end, most of all where
+// threads do it, piece by piece, through pinned memory of their own: they also populate the pages under what is fresh.
+// One or two pieces are copied by the caller, who would wait longer for threads to begin and to end, above all where
 // those of the work before still look for more. To and from what is pinned the device copies by itself.
 
 #include <algorithm>
@@ -56,24 +56,26 @@ class HostCopies {
   HostCopies(const HostCopies&) = delete;
   HostCopies& operator=(const HostCopies&) = delete;
 
-  /// Is called before the first copy: so many bytes will be copied there. Threads begin now, beside the work of the
-  /// stream, with the pages under what is fresh; what is there is lost, until end_laying() or the first copy.
+  /// Announces, before the first copy, that `size` bytes will be copied to `to`. Threads begin at once, beside the work
+  /// of the stream, to populate the pages there that are fresh; the bytes there are lost, until end_populating() or the
+  /// first copy.
   void expect(void* to, std::size_t size) {
     if (is_pinned(to)) return;
     const std::lock_guard lock(mutex_);
     is_expected_ = true;
-    laid_ = {static_cast<volatile char*>(to), size};
+    populated_ = {static_cast<volatile char*>(to), size};
     for (std::size_t begin = 0; begin < size; begin += PinnedPieces::k_size)
       fresh_.push_back({static_cast<volatile char*>(to) + begin, std::min(PinnedPieces::k_size, size - begin)});
     start_threads(fresh_.size());
   }
   /// Nobody touches what was expected any more: it may be written or freed by others. Pages that nobody has come to so
-  /// far are laid as they are written.
-  void end_laying() {
+  /// far are populated as they are written.
+  void end_populating() {
     std::unique_lock lock(mutex_);
-    if (!fresh_.empty()) laid_ = laid_.first(static_cast<std::size_t>(fresh_.front().data() - laid_.data()));
+    if (!fresh_.empty())
+      populated_ = populated_.first(static_cast<std::size_t>(fresh_.front().data() - populated_.data()));
     fresh_.clear();
-    changed_.wait(lock, [&] { return laying_ == 0; });
+    changed_.wait(lock, [&] { return populating_ == 0; });
   }
   /// Copies to the host what the stream has written so far and does not change any more; none to nowhere.
   template <class Number>
@@ -146,7 +148,7 @@ class HostCopies {
   }
 
   void add(const Copy& copy, const void* host) {
-    end_laying();
+    end_populating();
     if (is_pinned(host)) return add_direct(copy);
     if (copy.size < k_small) return small_.push_back(copy);  // the driver would make the caller wait
     const std::lock_guard lock(mutex_);
@@ -230,29 +232,30 @@ class HostCopies {
     return piece;
   }
 
-  void lay_pages() {
+  void populate_pages() {
     constexpr std::size_t k_page = std::size_t{1} << 12;
     for (std::unique_lock lock(mutex_); !fresh_.empty();) {
       const std::span<volatile char> memory = fresh_.front();
       fresh_.pop_front();
-      ++laying_;
+      ++populating_;
       lock.unlock();
       for (std::size_t at = 0; at < memory.size(); at += k_page) memory[at] = 0;
       lock.lock();
-      if (--laying_ == 0) changed_.notify_all();
+      if (--populating_ == 0) changed_.notify_all();
     }
   }
 
-  /// Pages that the system clears on the way are in the caches by then: only what was laid before is not.
+  /// Pages that the system clears on the way are in the caches by then: only what was populated before is not.
   void copy_out(void* to, const void* from, std::size_t size) const {
     const std::less<const volatile void*> before;
-    if (!before(to, laid_.data()) && before(to, laid_.data() + laid_.size())) return copy_past_caches(to, from, size);
+    if (!before(to, populated_.data()) && before(to, populated_.data() + populated_.size()))
+      return copy_past_caches(to, from, size);
     std::memcpy(to, from, size);
   }
 
   void work() {
     try {
-      lay_pages();
+      populate_pages();
       check_cuda(cudaSetDevice(device_), "choosing the device");
       copy_pieces();
     } catch (...) {
@@ -303,10 +306,10 @@ class HostCopies {
   std::optional<ScratchPool<PinnedPieces>::Lease> own_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::span<volatile char>> fresh_;  ///< memory whose pages are still to be laid
-  int laying_ = 0;                              ///< threads that are at it
-  std::span<volatile char> laid_;
-  bool is_expected_ = false;  ///< whether anybody said what is to come; threads do not look at laid_ before they copy
+  std::deque<std::span<volatile char>> fresh_;  ///< memory whose pages are still to be populated
+  int populating_ = 0;                          ///< threads that are at it
+  std::span<volatile char> populated_;
+  bool is_expected_ = false;  ///< expect() was called; threads do not read populated_ before they copy
   std::deque<Copy> pieces_;
   std::size_t added_ = 0, open_ = 0;  ///< pieces, and those of them not copied yet
   std::exception_ptr failure_;

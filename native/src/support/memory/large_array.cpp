@@ -54,7 +54,7 @@ void* map_pages(std::size_t size) {
   const std::size_t skipped = (k_huge - reinterpret_cast<std::uintptr_t>(start) % k_huge) % k_huge;
   if (skipped > 0) munmap(start, skipped);
   if (extra > skipped) munmap(start + skipped + size, extra - skipped);
-  madvise(start + skipped, size / k_huge * k_huge, MADV_HUGEPAGE);  // a wish: nothing is lost if it is not granted
+  madvise(start + skipped, size / k_huge * k_huge, MADV_HUGEPAGE);  // advice, which the system may ignore
   return start + skipped;
 }
 
@@ -166,7 +166,7 @@ void give_back_pages(char* memory, std::size_t size) noexcept {
 void free_now(void* memory, std::size_t size) noexcept {
   const std::size_t had = rounded(size);
   if (size >= k_smallest_kept && kept().keep(memory, had)) return;
-  if (had < k_smallest) return std::free(memory);  // as it was had: what is kept is had by any size that it does for
+  if (had < k_smallest) return std::free(memory);  // as it was given: kept memory serves any size that fits
   give_back_pages(static_cast<char*>(memory), had);
 }
 

@@ -53,7 +53,8 @@ std::size_t left_in_group(const std::string& folder, const char* limit, const ch
   return most - std::min(most, needed);
 }
 
-/// Under this process's control group and all that it is in, of version 2 or 1 (Linux, Documentation/admin-guide).
+/// Returns the memory left under this process's control group and all that contain it, of version 2 or 1 (Linux,
+/// Documentation/admin-guide).
 std::size_t left_in_groups() {
   std::size_t least = k_unlimited;
   std::ifstream groups("/proc/self/cgroup");

@@ -90,7 +90,7 @@ class PinnedMemory final : public LargeMemory {
     return best;
   }
 
-  /// Those that have been free the longest, until no more than `most` bytes are.
+  /// Frees the blocks that have been unused the longest, until no more than `most` bytes are unused.
   void drop_free_blocks(std::size_t most) noexcept {
     std::erase_if(blocks_, [&](const Block& block) {
       if (!block.is_free || free_ <= most) return false;

@@ -16,7 +16,7 @@ namespace saddleback {
 /// Bytes that threads fetch from each other's memory together: what only one of them writes lies so far from the rest.
 inline constexpr std::size_t k_apart = 128;
 
-/// More threads than this are never begun, whatever is asked for: they only take memory and turns from each other.
+/// Limits on the threads begun, whatever is asked for: more would only take memory and time from each other.
 inline constexpr int k_threads_per_processor = 4, k_always_allowed_threads = 64;
 
 /// Number of threads to use for a request (0: all cores; far more than there are cores: as many as make sense).

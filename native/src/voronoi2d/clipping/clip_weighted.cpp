@@ -163,7 +163,7 @@ CurvedCells::CurvedCells(const Voronoi2d& diagram, const PlanarDomain& domain, c
   for (const Vec2& point : domain.loops()[0]) low_ = low_.cwiseMin(point), high_ = high_.cwiseMax(point);
 }
 
-/// More than the distance of a site from any point of the domain, so that outlines may be cut short there.
+/// Returns more than the distance of a site from any point of the domain, so that outlines may be cut short there.
 double CurvedCells::reach_from(Index site) const {
   const Vec2& s = diagram_.sites[site];
   return 8 * ((s - low_).cwiseAbs().cwiseMax((s - high_).cwiseAbs())).norm();

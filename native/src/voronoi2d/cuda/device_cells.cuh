@@ -72,7 +72,7 @@ struct Touch {
   bool is_doubtful;  ///< neither surely left nor surely out of the way
 };
 
-/// A site seen from the one whose cell is wound, in single precision.
+/// A site seen from the one whose cell is built, in single precision.
 struct Near {
   float x, y, square;
 };
@@ -108,23 +108,23 @@ class CellBuilder {
   }
 
   /// False when it takes other means.
-  __device__ bool wind(int own, const DeviceLists& lists) {
+  __device__ bool build(int own, const DeviceLists& lists) {
     own_ = own;
     site_ = memory_.at[own];
-    return wind_among<false>(lists) || wind_among<true>(lists);
+    return build_among<false>(lists) || build_among<true>(lists);
   }
   /// Does the same for cells that are not to be found among the nearest sites.
-  __device__ bool wind_wide(int own, const DeviceLists& lists) {
+  __device__ bool build_wide(int own, const DeviceLists& lists) {
     own_ = own;
     site_ = memory_.at[own];
-    return wind_among<true>(lists);
+    return build_among<true>(lists);
   }
 
  private:
   static constexpr int k_each = 2, k_reach = 2;
 
   template <bool All>
-  __device__ bool wind_among(const DeviceLists& lists) {
+  __device__ bool build_among(const DeviceLists& lists) {
     if (All) {
       const DeviceBox& known = tile_.known();
       set_reach(known.low[0], known.high[0], known.low[1], known.high[1]);
@@ -365,7 +365,7 @@ __global__ void __launch_bounds__(k_tile_threads)
     }
     builder.begin();
     for (int i = warp; i < memory.own_count; i += k_tile_warps)
-      if (!builder.wind(memory.own[i], lists)) sites.note_failing(memory.rank[memory.own[i]]);
+      if (!builder.build(memory.own[i], lists)) sites.note_failing(memory.rank[memory.own[i]]);
     __syncthreads();
     if (!sites.has_failing()) continue;
     // These are tried once more, among as many sites as there is room for.
@@ -373,7 +373,7 @@ __global__ void __launch_bounds__(k_tile_threads)
     builder.begin();
     for (int i = warp; is_wide && i < memory.own_count; i += k_tile_warps) {
       const std::int32_t rank = memory.rank[memory.own[i]];
-      if (!sites.is_failing(rank) || builder.wind_wide(memory.own[i], lists)) continue;
+      if (!sites.is_failing(rank) || builder.build_wide(memory.own[i], lists)) continue;
       leave(rank);
       if (__any_sync(k_warp, tiles.has_left())) break;
     }

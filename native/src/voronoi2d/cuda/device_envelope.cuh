@@ -1,5 +1,5 @@
 #pragma once
-// The cell of a weighted site, wound by a warp. What the others make of it is an upper envelope of waves (see
+// The cell of a weighted site, built by a warp. What the others make of it is an upper envelope of waves (see
 // weighted_wave.h): from the wave that is highest in some direction on, counter-clockwise to where the next one rises
 // above it, and so on around. Decided in doubles with error bounds: what these do not tell is not decided here.
 
@@ -39,7 +39,7 @@ __device__ inline Wave careful_wave(const WeightedPoint2& here, const WeightedPo
 struct Direction {
   double x, y, blur;
 };
-/// Says where winding begins: none that sites on a lattice would single out.
+/// Says where building begins: none that sites on a lattice would single out.
 __device__ constexpr Direction k_start{0.5403023058681398, 0.8414709848078965, 0x1p-51};
 
 /// Returns how far it is from one direction to another, counter-clockwise: from 0 to 4, along the square about them.
@@ -110,7 +110,7 @@ struct Rise {
 /// Calls keep(at, WaveCrossing) for those that rise and where they do, in turn, the first one at last; false stops.
 /// False also when something is not certain.
 template <class Candidates, class Keep>
-__device__ bool wind_envelope(Candidates& candidates, Keep&& keep) {
+__device__ bool build_envelope(Candidates& candidates, Keep&& keep) {
   const int first = candidates.highest(k_start);
   if (first == k_unknown_rival) return false;
   Direction from = k_start;

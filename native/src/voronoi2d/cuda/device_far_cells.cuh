@@ -17,7 +17,7 @@ class FarCellBuilder {
  public:
   __device__ FarCellBuilder(const DeviceTree& tree, FarMemory& memory) : tree_(tree), memory_(memory) {}
 
-  __device__ bool wind(std::int32_t rank, const DeviceLists& lists) {
+  __device__ bool build(std::int32_t rank, const DeviceLists& lists) {
     rank_ = rank;
     fails_ = false;
     site_ = point(rank);
@@ -248,7 +248,7 @@ __global__ void __launch_bounds__(k_far_threads, 4) find_far_cells(DeviceTree tr
   __shared__ FarMemory memory[k_far_threads / 32];
   FarCellBuilder builder(tree, memory[threadIdx.x / 32]);
   for (std::int32_t rank = far.take(); rank >= 0; rank = far.take()) {
-    if (!builder.wind(rank, lists) && threadIdx.x % 32 == 0) lists.far[atomicAdd(far.failures, 1)] = rank;
+    if (!builder.build(rank, lists) && threadIdx.x % 32 == 0) lists.far[atomicAdd(far.failures, 1)] = rank;
     __syncwarp();
   }
 }

@@ -247,7 +247,7 @@ class CellFinder : public FoundCells {
   int device_ = 0;
 };
 
-/// Those of weighted sites.
+/// Finds the cells of weighted sites.
 class WeightedCellFinder : public FoundCells {
  public:
   WeightedCellFinder(const VisibleSites& sites, int member, int members, cudaStream_t stream)

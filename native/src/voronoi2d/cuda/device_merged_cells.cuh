@@ -35,7 +35,7 @@ struct MergeTree {
   int *waiting_count, *taken;
   int* failed;  ///< a `MergeOutcome`, the first
 
-  /// Over a border; no two that matter are equal.
+  /// Returns the size of the step over a border; no two that matter are equal.
   __device__ std::uint64_t step(std::int32_t border) const {
     return static_cast<std::uint64_t>(places[border] ^ places[border + 1]) << 32 |
            static_cast<std::uint32_t>(border ^ (border + 1));

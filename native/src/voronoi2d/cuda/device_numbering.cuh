@@ -400,7 +400,7 @@ class DeviceDiagram {
   const std::int32_t* cell_sides() const { return cell_sides_.data(); }
   DiagramSizes sizes() const { return {count_, edges_, vertices_}; }
 
-  /// Nothing is joined or numbered any more, so that the stream soon comes to its end.
+  /// Stops all joining and numbering, so that the stream soon comes to its end.
   void stop(cudaStream_t aside) { (void)cudaMemsetAsync(misfits_.data() + k_before, 1, sizeof(int), aside); }
 
   /// Joins the cells. \throw LeftOver

@@ -20,7 +20,7 @@ struct NumberOfSide {
   std::int32_t side, number;
 };
 
-/// Those, in any order.
+/// A list of sides with their numbers, in any order.
 struct DeviceNumberList {
   NumberOfSide* items;
   unsigned* count;

@@ -69,7 +69,7 @@ __global__ void find_next_tiles(const std::uint32_t* places, std::int32_t count,
   if (rank < count && begins_tile(places, count, rank)) atomicMin(&ranks[blockIdx.x], rank);
 }
 
-/// Those of one of several parts of about as many sites.
+/// The tiles of one of several parts of about as many sites.
 class Tiles {
  public:
   Tiles(const std::uint32_t* places, std::int32_t count, int part, int parts, cudaStream_t stream)

@@ -192,7 +192,7 @@ class Builder {
     return visible;
   }
 
-  /// Whoever wrote them there may still be at it.
+  /// Checks that the sites are on this device, and waits for whoever may still be writing them.
   void expect_sites_on(int device) const {
     cudaPointerAttributes attributes{};
     check_cuda(cudaPointerGetAttributes(&attributes, request_.sites), "looking for the sites");

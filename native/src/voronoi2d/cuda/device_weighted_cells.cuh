@@ -1,6 +1,6 @@
 #pragma once
 // The cells of weighted sites, of 32 in a row at once: a block looks for all that may matter to them, if their cells
-// are not larger than usual, and each of its warps winds some. What cannot be told so is left to
+// are not larger than usual, and each of its warps builds some. A cell that cannot be found so is left to
 // `device_weighted_far_cells.cuh`.
 
 #include "voronoi2d/cuda/device_envelope.cuh"
@@ -26,7 +26,8 @@ class ChosenWaves {
   __device__ ChosenWaves(const RowMemory& memory, std::uint16_t* chosen, const WeightedPoint2& here)
       : memory_(memory), chosen_(chosen), here_(here) {}
 
-  /// Those other than the site's own rank that may cut off a cell within half of `far`. False when there are too many.
+  /// Chooses the sites, other than the one of rank `own`, that may cut off its cell within half of `far`. False when
+  /// there are too many.
   __device__ bool choose(std::int32_t own, double far) {
     const int lane = threadIdx.x % 32;
     count_ = 1;
@@ -138,7 +139,7 @@ class RowBuilder {
   __device__ RowBuilder(const WeightedTree& tree, RowMemory& memory) : tree_(tree), memory_(memory) {}
 
   /// False when it takes other means.
-  __device__ bool wind(std::int32_t rank, double usual_far, const DeviceLists& lists) const {
+  __device__ bool build(std::int32_t rank, double usual_far, const DeviceLists& lists) const {
     const WeightedPoint2 here = tree_.site(rank);
     ChosenWaves waves(memory_, memory_.chosen[threadIdx.x / 32], here);
     const double farthest = memory_.margin + here.weight;  // how far sites are known
@@ -162,7 +163,7 @@ class RowBuilder {
   __device__ static bool find(ChosenWaves& waves, Found& found) {
     const int lane = threadIdx.x % 32;
     double lowest = INFINITY;
-    const bool is_closed = wind_envelope(waves, [&](int at, const WaveCrossing& crossing) {
+    const bool is_closed = build_envelope(waves, [&](int at, const WaveCrossing& crossing) {
       if (at == 0 || found.count == k_slots) return false;
       if (lane == found.count) found.neighbor = waves.rank(at);
       ++found.count;
@@ -174,7 +175,8 @@ class RowBuilder {
     return true;
   }
 
-  /// Those with several sides towards the lowest neighbor are left: it would have to be told where such a cell begins.
+  /// Writes a cell. Leaves those with several sides towards the lowest neighbor: where such a cell begins would have to
+  /// be known.
   __device__ static bool write(std::int32_t rank, const Found& found, const DeviceLists& lists) {
     const int lane = threadIdx.x % 32;
     const unsigned key = lane < found.count ? static_cast<unsigned>(found.neighbor) : ~0u;
@@ -217,7 +219,7 @@ __global__ void __launch_bounds__(k_row_threads)
     }
     __syncthreads();
     for (std::int32_t rank = begin + warp; rank < end; rank += k_row_warps)
-      if (!builder.wind(rank, k_usual * mean, lists) && lane == 0) lists.far[atomicAdd(lists.far_count, 1)] = rank;
+      if (!builder.build(rank, k_usual * mean, lists) && lane == 0) lists.far[atomicAdd(lists.far_count, 1)] = rank;
   }
 }
 

@@ -111,11 +111,11 @@ class FarEnvelopeBuilder {
  public:
   __device__ FarEnvelopeBuilder(const WeightedTree& tree, FarWaveMemory& memory) : tree_(tree), memory_(memory) {}
 
-  __device__ bool wind(std::int32_t rank, const DeviceLists& lists) {
+  __device__ bool build(std::int32_t rank, const DeviceLists& lists) {
     const AllWaves all(tree_, rank);
     count_ = 0;
     const int lane = threadIdx.x % 32;
-    const bool is_found = wind_envelope(all, [&](int at, const WaveCrossing& crossing) {
+    const bool is_found = build_envelope(all, [&](int at, const WaveCrossing& crossing) {
       if (count_ == FarWaveMemory::k_most) return false;
       if (lane == 0) {
         memory_.rank[count_] = at == AllWaves::k_far ? k_nobody : at;
@@ -186,7 +186,7 @@ __global__ void __launch_bounds__(k_far_threads)
   __shared__ FarWaveMemory memory[k_far_threads / 32];
   FarEnvelopeBuilder builder(tree, memory[threadIdx.x / 32]);
   for (std::int32_t rank = far.take(); rank >= 0; rank = far.take()) {
-    if (!builder.wind(rank, lists) && threadIdx.x % 32 == 0) lists.far[atomicAdd(far.failures, 1)] = rank;
+    if (!builder.build(rank, lists) && threadIdx.x % 32 == 0) lists.far[atomicAdd(far.failures, 1)] = rank;
     __syncwarp();
   }
 }

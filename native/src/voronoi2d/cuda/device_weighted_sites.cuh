@@ -62,7 +62,7 @@ class WeightedBoxes {
   DeviceBuffer<double> heaviest_;
 };
 
-/// More than the rounding of a few operations.
+/// A bound on the relative rounding of a few operations.
 constexpr double k_reach_slack = 1e-12;
 
 __device__ inline double square_distance(const DeviceBox& a, const DeviceBox& b) {

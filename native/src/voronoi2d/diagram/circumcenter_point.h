@@ -42,7 +42,7 @@ SADDLEBACK_RARE inline double summed_cross(predicates::Point2 a, predicates::Poi
   return sum;
 }
 
-/// Below this share of its terms a determinant is summed up exactly, so as to keep all its digits but a few.
+/// The share of its terms below which a determinant is summed up exactly, so as to keep all its digits but a few.
 constexpr double k_cancelled = 0x1p-5;
 
 /// The point equally far from three sites, differences counted from the first.

@@ -46,8 +46,8 @@ Numbering strips_of(const OrderedSites& sites, const JobStage& stage) {
 /// Cells in a row, whose numbers follow each other.
 struct Piece {
   Index begin, end;
-  Index corners = 0, vertices = 0, edges = 0;       ///< how many come before
-  std::vector<Index> late_sides{}, late_corners{};  ///< whose numbers are given in other pieces
+  Index corners = 0, vertices = 0, edges = 0;               ///< how many come before
+  std::vector<Index> deferred_sides{}, deferred_corners{};  ///< whose numbers are given in other pieces
 };
 
 class Numberer {
@@ -315,11 +315,11 @@ class Numberer {
   /// Calls work(begin, end, whether some numbers may be given in other pieces) for sides of cells in a row.
   template <class Work>
   static void for_runs(const CellBlock& cells, Index known, Work&& work) {
-    const auto may_be_late = [&](Index cell) { return known > 0 && cells.lowest[cell] < known; };
+    const auto may_be_deferred = [&](Index cell) { return known > 0 && cells.lowest[cell] < known; };
     for (Index cell = 0, end; cell < cells.cell_count; cell = end) {
-      const bool is_late = may_be_late(cell);
-      for (end = cell + 1; end < cells.cell_count && may_be_late(end) == is_late;) ++end;
-      work(cells.starts[cell], cells.starts[end], is_late);
+      const bool is_deferred = may_be_deferred(cell);
+      for (end = cell + 1; end < cells.cell_count && may_be_deferred(end) == is_deferred;) ++end;
+      work(cells.starts[cell], cells.starts[end], is_deferred);
     }
   }
 
@@ -327,12 +327,13 @@ class Numberer {
     const CellBlock& cells = scratch.cells;
     const Index *const half = cells.halves.data(), *const numbers = mesh_.corners.data();
     Index* const to = result_.corner_vertices.data() + corner;
-    for_runs(cells, known, [&](Index begin, Index end, bool may_be_late) {
-      if (!may_be_late) return CellBlock::for_sides(begin, end, stage_, [&](Index i) { to[i] = numbers[half[i] | 3]; });
+    for_runs(cells, known, [&](Index begin, Index end, bool may_be_deferred) {
+      if (!may_be_deferred)
+        return CellBlock::for_sides(begin, end, stage_, [&](Index i) { to[i] = numbers[half[i] | 3]; });
       CellBlock::for_sides(begin, end, stage_, [&](Index i) {
-        const bool is_late = lowest_about(i, scratch) < known;
-        to[i] = is_late ? late(half[i] | 3) : numbers[half[i] | 3];
-        if (is_late) piece.late_corners.push_back(corner + i);
+        const bool is_deferred = lowest_about(i, scratch) < known;
+        to[i] = is_deferred ? deferred(half[i] | 3) : numbers[half[i] | 3];
+        if (is_deferred) piece.deferred_corners.push_back(corner + i);
       });
     });
     for (const Index cell : cells.open) to[cells.starts[cell + 1] - 1] = k_none;
@@ -346,7 +347,7 @@ class Numberer {
     return std::min({cells.sites[corner], cells.neighbors[corner], cells.next_neighbors[corner]});
   }
 
-  static Index late(Index place) { return -2 - place; }
+  static Index deferred(Index place) { return -2 - place; }
 
   void write_sides(Piece& piece, Index known, Counts& at, Scratch& scratch) {
     const CellBlock& cells = scratch.cells;
@@ -356,12 +357,13 @@ class Numberer {
       const Index side = half[scratch.own_sides[k]], twin = twins[side];
       twins[twin < 0 ? side : twin] = ~(at.edges + k);
     });
-    for_runs(cells, known, [&](Index begin, Index end, bool may_be_late) {
-      if (!may_be_late) return CellBlock::for_sides(begin, end, stage_, [&](Index i) { sides[i] = ~twins[half[i]]; });
+    for_runs(cells, known, [&](Index begin, Index end, bool may_be_deferred) {
+      if (!may_be_deferred)
+        return CellBlock::for_sides(begin, end, stage_, [&](Index i) { sides[i] = ~twins[half[i]]; });
       CellBlock::for_sides(begin, end, stage_, [&](Index i) {
-        const bool is_late = neighbor[i] < known;
-        sides[i] = is_late ? half[i] : ~twins[half[i]];
-        if (is_late) piece.late_sides.push_back(at.corners + i);
+        const bool is_deferred = neighbor[i] < known;
+        sides[i] = is_deferred ? half[i] : ~twins[half[i]];
+        if (is_deferred) piece.deferred_sides.push_back(at.corners + i);
       });
     });
     for (Index k = 0; k < scratch.own_side_count; ++k) sides[scratch.own_sides[k]] = at.edges + k;
@@ -395,13 +397,13 @@ class Numberer {
   }
 
   void resolve(const Piece& piece) {
-    for (const Index side : piece.late_sides) {
+    for (const Index side : piece.deferred_sides) {
       Index& edge = result_.side_edges[side];
       edge = ~mesh_.twins[edge];
     }
-    for (const Index corner : piece.late_corners) {
+    for (const Index corner : piece.deferred_corners) {
       Index& vertex = result_.corner_vertices[corner];
-      vertex = mesh_.corners[late(vertex)];
+      vertex = mesh_.corners[deferred(vertex)];
     }
   }
 

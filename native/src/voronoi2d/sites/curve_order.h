@@ -20,7 +20,7 @@ struct Placed {
 /// `threads`: 0: all cores. O(n log n). \throw Cancelled
 LargeArray<Placed> curve_order(std::span<const Vec2> points, int threads, const JobStage& stage);
 
-/// More than `k_curve_run` points that share a square are in the order of a curve over their own box.
+/// Points that share a square are in the order of a curve over their own box if there are more of them than this.
 constexpr std::size_t k_curve_run = 48;
 /// Their places on it; empty if they are not in that order. O(n). \throw Cancelled
 LargeArray<std::uint32_t> places_in_square(std::span<const double> x, std::span<const double> y, const JobStage& stage);

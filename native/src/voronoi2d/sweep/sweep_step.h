@@ -354,8 +354,8 @@ SADDLEBACK_HOST_DEVICE inline Index touch(SweepState& s, const SweptSite& site, 
   const Touch p{site.x, site.y, site.x - s.center_x, site.y - s.center_y};
   const Index sector = sector_of(s, p.x, p.y);
   Index left = hit_arc(s, p, arc_near(s, p, sector));
-  for (Index late = overdue_at(s, left, radius); late != k_none; late = overdue_at(s, left, radius))
-    left = hit_arc(s, p, settle(s, late, radius));
+  for (Index overdue = overdue_at(s, left, radius); overdue != k_none; overdue = overdue_at(s, left, radius))
+    left = hit_arc(s, p, settle(s, overdue, radius));
   const Index middle = new_arc(s);
   Arc& l = s.arcs[left];
   Arc& m = s.arcs[middle];

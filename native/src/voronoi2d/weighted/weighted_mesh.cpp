@@ -176,7 +176,7 @@ void WeightedMesh::find_centers(Index begin, Index end) {
 /// Finds all centers, and half-edges that are no sides. Returns how often the ways of all sites pass the x axis.
 std::int64_t WeightedMesh::find_sides(std::vector<Index>& bad, int threads, const JobStage& stage) {
   struct Worker {
-    std::vector<Index> bad{}, late{};  ///< half-edges; `late` lead from block to block
+    std::vector<Index> bad{}, deferred{};  ///< half-edges; `deferred` lead from block to block
     std::int64_t passed = 0;
   };
   std::vector<Worker> workers(thread_count(threads));
@@ -191,7 +191,7 @@ std::int64_t WeightedMesh::find_sides(std::vector<Index>& bad, int threads, cons
       for (Index half = 4 * triangle; half < 4 * triangle + 3; ++half) {
         if (mesh_.twins[half] < half) continue;
         if (mesh_.twins[half] >= 4 * end) {
-          worker.late.push_back(half);
+          worker.deferred.push_back(half);
         } else if (!is_side(half, worker.passed)) {
           worker.bad.push_back(half);
         }
@@ -201,10 +201,10 @@ std::int64_t WeightedMesh::find_sides(std::vector<Index>& bad, int threads, cons
   std::int64_t passed = 0;
   for (Worker& worker : workers) {
     stage.check();
-    const std::size_t late_count = worker.late.size();
-    for (std::size_t i = 0; i < late_count; ++i) {
-      ask_for_centers(worker.late[std::min(i + k_ahead, late_count - 1)]);
-      const Index half = worker.late[i];
+    const std::size_t deferred_count = worker.deferred.size();
+    for (std::size_t i = 0; i < deferred_count; ++i) {
+      ask_for_centers(worker.deferred[std::min(i + k_ahead, deferred_count - 1)]);
+      const Index half = worker.deferred[i];
       if (!is_side(half, worker.passed)) bad.push_back(half);
     }
     bad.insert(bad.end(), worker.bad.begin(), worker.bad.end());
