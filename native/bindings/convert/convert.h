@@ -45,11 +45,11 @@ double as_real(const py::object& value, const char* name);    ///< a float or in
 Index as_integer(const py::object& value, const char* name);  ///< an int (not a float), numpy's too
 /// Works as as_integer, for seeds: 0 to 2^64 - 1.
 std::uint64_t as_seed(const py::object& value, const char* name);
-/// Any str, bytes or os.PathLike, in the bytes that the operating system knows the file by.
+/// Converts a str, bytes or os.PathLike to the bytes that the operating system knows the file by.
 std::string as_path(const py::object& value, const char* name);
 /// A saddleback.Job. Calls take their argument `job` as a JobIn instead.
 Job* as_job(const py::object& value);
-/// True when the array-like's elements are integers, which means vertex indices where points are taken.
+/// Tells whether the array-like's elements are integers, which means vertex indices where points are taken.
 bool holds_integers(const py::object& value);
 
 /// numpy array that owns the moved vector.

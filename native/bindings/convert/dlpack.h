@@ -14,7 +14,7 @@ namespace saddleback::bindings {
 
 constexpr int k_dlpack_cuda = 2;
 
-/// Laid out as the standard has it.
+/// A tensor in the layout of the DLPack standard.
 struct DlpackTensor {
   void* data;
   std::int32_t device_type, device_id;

@@ -26,7 +26,7 @@ PointsIn as_points(const py::object& value, const Mesh& mesh, const char* argume
 /// Works as as_points, when it does not matter how they were given.
 SurfacePoints as_surface_points(const py::object& value, const Mesh& mesh, const char* argument);
 
-/// Exactly one point.
+/// Converts exactly one point.
 SurfacePoint as_surface_point(const py::object& value, const Mesh& mesh, const char* argument);
 
 /// The mesh of an argument. \throw InputError when it is anything else.

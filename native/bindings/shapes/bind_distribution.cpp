@@ -158,7 +158,8 @@ py::list shapes_of(const Distribution& self) {
   return shapes;
 }
 
-/// Made when first asked for: the outlines that were tested take much more memory than the placements.
+/// Returns the mapped shapes, made when first asked for: the outlines that were tested take much more memory than the
+/// placements.
 py::object mapped_of(Distribution& self) {
   if (!self.mapped)
     self.mapped = py::cast(make_mapped(self.mesh, shapes_of(self), py::cast(Placements(self.result.placements)),

@@ -21,8 +21,8 @@ double twice_area(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Two triangles are apart if and only if the line of one of their sides parts them (exact). Else how deep the one is
-/// in the other, along the side where that is least.
+/// Two triangles are apart if and only if the line of one of their sides parts them (exact). Otherwise tells how deep
+/// the one is in the other, along the side where that is least.
 double overlap(const Vec2* a, const Vec2* b) {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [mine, other] : {std::pair(a, b), std::pair(b, a)}) {

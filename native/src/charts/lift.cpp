@@ -173,7 +173,8 @@ class Builder {
     }
   }
 
-  /// Both cells tell the same of their common side; where rounding left only one of them, that one.
+  /// Adds the segments between cells. Both cells agree on their common side; where rounding left only one of them, that
+  /// one counts.
   void add_segments() {
     std::sort(face_sides_.begin(), face_sides_.end(), [](const FaceSide& a, const FaceSide& b) {
       return std::pair(a.edge, !a.is_left) < std::pair(b.edge, !b.is_left);

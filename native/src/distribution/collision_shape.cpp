@@ -31,7 +31,7 @@ double beyond(const std::vector<Disk>& disks, const Vec2& point) {
   return nearest;
 }
 
-/// Always the disk that reaches farthest beyond those there are: large ones first, then those into corners.
+/// Adds, again and again, the disk that reaches farthest beyond the others: large ones first, then those in corners.
 void add_inner_disks(const Shape& shape, const SignedDistance& distance, std::vector<Disk>& disks) {
   const double radius = shape.circumradius();
   std::vector<Disk> places;

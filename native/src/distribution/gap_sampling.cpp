@@ -99,7 +99,7 @@ void GapSampling::flag_borders() {
   }
 }
 
-/// Larger cells are hardly ever covered as a whole.
+/// Returns the radius of the base cells: larger cells are hardly ever covered as a whole.
 double GapSampling::base_radius() const { return 0.5 * rules_->smallest_radius(); }
 
 /// Makes the base cells of the next faces, as many as are looked at together.

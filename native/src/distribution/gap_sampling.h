@@ -36,7 +36,7 @@ class GapSampling {
     std::uint64_t free = 0;   ///< those of them of which a copy at the center seems to have room
     std::uint64_t asked = 0;  ///< kinds of which a copy at the center is to be tried
     std::int64_t tests = 0, leaves = 0;
-    bool is_lost = false;                       ///< some kind cannot be told
+    bool is_lost = false;                       ///< some kind cannot be decided
     bool has_dart = false, is_central = false;  ///< the dart is wanted at the center
     Candidate dart;
   };

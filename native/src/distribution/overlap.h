@@ -29,7 +29,7 @@ struct Overlap {
   Vec2 other_point = Vec2::Zero();        ///< where it lies, in the other shape's plane laid out
 };
 
-/// False only if the boxes of the two have no common point, so that the shapes have none.
+/// Returns false only if the boxes of the two have no common point, so that the shapes have none.
 bool boxes_meet(const CollisionShape& body, const Pose& pose, const CollisionShape& other, double other_scale);
 
 /// Holds what is looked for: places deeper than `least`; the search stops at the first that is deeper than `enough`,

@@ -34,7 +34,7 @@ class PlacedShapes {
   const Mesh& mesh() const { return *mesh_; }
   std::span<const Copy> copies() const { return copies_; }
 
-  /// Exact: whether the outline has no common point with those that lie there and neither lies within the other.
+  /// Tells exactly whether the outline has no common point with those that lie there and neither lies within the other.
   /// `mapper` has just mapped it.
   bool is_free(const Copy& copy, const SurfaceOutline& outline, const OutlineMapper& mapper) const;
 

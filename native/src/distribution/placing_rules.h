@@ -60,7 +60,7 @@ class PlacingRules {
            3;
   }
 
-  /// All but the angle and its spread, which `turn` adds: most cells can be told without.
+  /// Finds all but the angle and its spread, which `turn` adds: most cells are decided without them.
   CellView view(const Cell& cell) const;
   void turn(const Cell& cell, CellView& view) const;
   double size_at(Index face, const Vec2& weights) const;

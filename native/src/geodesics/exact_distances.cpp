@@ -13,7 +13,7 @@
 namespace saddleback {
 namespace {
 
-// Barycentric. Rays from nearer to a vertex cannot be told from its own.
+// A barycentric distance: rays from nearer to a vertex cannot be told apart from its own.
 constexpr double k_at_vertex = 1e-12;
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr const char* k_text = "Measuring exact distances";

@@ -72,7 +72,7 @@ void write_header(NumberFileWriter& file, const FileHeader& header) {
   each_field(header, [&](auto field) { file.write(field); });
 }
 
-/// Returns what a file with that header must be told before anything else is read of it.
+/// Reads and checks the header before anything else of its file is read.
 FileHeader read_header(NumberFileReader& file, const std::string& path) {
   FileHeader header;
   header.magic = {};

@@ -16,7 +16,7 @@
 namespace saddleback {
 namespace {
 
-// Barycentric. From nearer to a vertex rays past it on both sides cannot be told from each other.
+// A barycentric distance: from nearer to a vertex, rays past it on both sides cannot be told apart.
 constexpr double k_at_vertex = 1e-10;
 // Of the time; then what is found is sorted and written down.
 constexpr double k_measured = 0.97;

@@ -24,7 +24,7 @@ SADDLEBACK_HOST_DEVICE inline Sign to_sign(double value) {
   return value > 0 ? Sign::positive : value < 0 ? Sign::negative : Sign::zero;
 }
 
-/// Exact (p.x q.y - p.y q.x) of two differences.
+/// Returns p.x q.y - p.y q.x of two differences, exactly.
 SADDLEBACK_HOST_DEVICE inline Expansion<16> cross(const Expansion<2>& px, const Expansion<2>& py,
                                                   const Expansion<2>& qx, const Expansion<2>& qy) {
   return sum(product(px, qy), product(py, qx), -1);
@@ -46,7 +46,8 @@ SADDLEBACK_HOST_DEVICE inline Sign in_circle_exact(const Point2& a, const Point2
 
 }  // namespace detail
 
-/// Positive if a, b, c turn counter-clockwise, zero if they lie on one line. O(1).
+/// Returns exactly whether a, b, c turn counter-clockwise (positive), clockwise (negative), or lie on one line (zero).
+/// O(1).
 SADDLEBACK_HOST_DEVICE inline Sign orient_2d(const Point2& a, const Point2& b, const Point2& c) {
   const double left = times(plus(a.x, -c.x), plus(b.y, -c.y)), right = times(plus(a.y, -c.y), plus(b.x, -c.x));
   const double det = plus(left, -right);
@@ -54,7 +55,8 @@ SADDLEBACK_HOST_DEVICE inline Sign orient_2d(const Point2& a, const Point2& b, c
   return detail::orient_2d_exact(a, b, c);
 }
 
-/// Positive if d lies inside the circle through a, b, c (counter-clockwise; negated if clockwise), zero if on it. O(1).
+/// Returns exactly whether d lies inside the circle through a, b, c (positive; negated if these turn clockwise) or on
+/// it (zero). O(1).
 SADDLEBACK_HOST_DEVICE inline Sign in_circle(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
   const double ax = plus(a.x, -d.x), ay = plus(a.y, -d.y), bx = plus(b.x, -d.x), by = plus(b.y, -d.y),
                cx = plus(c.x, -d.x), cy = plus(c.y, -d.y);

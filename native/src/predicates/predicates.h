@@ -7,7 +7,8 @@
 
 namespace saddleback::predicates {
 
-/// True if three points in space lie on one line: then, and only then, their shadows along all three axes do. O(1).
+/// Tells exactly whether three points in space lie on one line: then, and only then, their shadows along all three axes
+/// do. O(1).
 inline bool collinear_3d(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;

@@ -101,7 +101,7 @@ void ConstrainedTriangulation::split_face(Index t, Index point) {
   suspects_.insert(suspects_.end(), {3 * t, second, third});
 }
 
-/// Both triangles of the edge, or the only one at the rim, become two.
+/// Splits both triangles of the edge, or the only one at the rim, in two.
 void ConstrainedTriangulation::split_edge(Index h, Index point) {
   const Index twin = twins_[h], b = to(h), c = apex(h);
   const Index bc = twins_[next(h)];

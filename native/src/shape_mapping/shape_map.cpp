@@ -21,7 +21,7 @@ constexpr Index k_most_steps = 1'000'000;
 
 Vec2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-/// Both ends beyond the same side of the box: what is seen through the edge is no part of what is wanted.
+/// Tells whether both ends lie beyond the same side of the box: nothing seen through the edge is wanted then.
 bool is_beyond(const PlaneBox& box, const Vec2& a, const Vec2& b) {
   return (a.x() < box.low.x() && b.x() < box.low.x()) || (a.x() > box.high.x() && b.x() > box.high.x()) ||
          (a.y() < box.low.y() && b.y() < box.low.y()) || (a.y() > box.high.y() && b.y() > box.high.y());

@@ -40,7 +40,7 @@ class SurfaceFit {
   double deviation() const { return deviation_; }  ///< the largest that was found and left, mesh units
 
  private:
-  /// Both faces of an edge ask the same node, so they split it alike.
+  /// An edge or a part of one. Both its faces ask this one node, so that they split it alike.
   struct Edge {
     Index begin, end;
     int depth;

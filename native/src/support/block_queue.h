@@ -76,7 +76,8 @@ class BlockQueue {
 
   double width() const { return width_; }                 ///< of a bucket
   std::int64_t blocks_in_use() const { return in_use_; }  ///< those taken and neither kept nor given back, too
-  /// No item taken from now on has a lesser key, but for those whose place in the order rounding or the ring changed.
+  /// Returns a bound below which no item taken from now on has its key, except those whose place in the order rounding
+  /// or the ring changed.
   double reached() const { return static_cast<double>(current_) * width_; }
 
  private:

@@ -31,7 +31,7 @@ CudaDevices cuda_devices() {
   int count = 0;
   const cudaError_t status = cudaGetDeviceCount(&count);
   if (status != cudaSuccess) {
-    (void)cudaGetLastError();  // a machine without CUDA must not look like a failed call to whoever asks next
+    (void)cudaGetLastError();  // a machine without CUDA must not look like a failed call to the next check
     result.reason = std::string("CUDA finds no device: ") + cudaGetErrorString(status);
     return result;
   }

@@ -27,7 +27,7 @@ struct Scaled {
     return {diagram.sites[i].x() * scale, diagram.sites[i].y() * scale, diagram.weights[i] * scale};
   }
 
-  /// Negative if a is nearer than b (exact).
+  /// Returns exactly whether a (negative) or b (positive) is nearer.
   predicates::Sign compare(const predicates::Point2& point, Index a, Index b) const {
     if (diagram.weights.empty()) return predicates::compare_distances(point, site(a), site(b));
     return predicates::compare_weighted_distances(point, weighted(a), weighted(b));

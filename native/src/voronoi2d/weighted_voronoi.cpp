@@ -106,7 +106,7 @@ class Numberer {
   LargeArray<Index> edge_at_, vertex_at_;
 };
 
-/// None where it takes the processor, which then also says what is wrong.
+/// Returns the diagram found on the device; none where it takes the processor, which then also says what is wrong.
 std::optional<Voronoi2d> found_on_device(std::span<const Vec2> sites, std::span<const double> weights,
                                          const Voronoi2dOptions& options, const JobStage& stage) {
   constexpr std::size_t k_fewest = 3;

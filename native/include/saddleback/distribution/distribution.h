@@ -72,7 +72,7 @@ inline constexpr std::size_t k_rejection_count = 5;
 struct Certificate {
   double tolerance = 0;  ///< mesh units; 0 without a certificate
   std::int64_t cells = 0, leaves = 0;
-  /// Area of the cells about which this could not be told: around singularities of the field, and where the surface
+  /// Area of the cells for which this could not be decided: around singularities of the field, and where the surface
   /// bends too much for the shapes.
   double uncertified_area = 0;
   SurfacePoints uncertified;  ///< centers of those cells

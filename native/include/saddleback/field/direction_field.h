@@ -82,7 +82,8 @@ class DirectionField {
 /// A curve that the field shall follow.
 struct Stroke {
   SurfaceCurve curve;
-  /// Met exactly in every face that the curve crosses; otherwise as a spring of `weight` would.
+  /// Says whether the stroke is met exactly in every face that the curve crosses; otherwise it pulls as a spring of
+  /// `weight`.
   bool is_hard = false;
   double weight = 1;
 };

@@ -40,7 +40,7 @@ class ArcCodec {
   /// \throw InputError where lengths differ by more than their exponents hold.
   ArcCodec(Index vertex_count, double mean_edge, const PathBounds& bounds);
 
-  /// Rounds up to a multiple of the quantum, of what is no arc; never zero. What an arc's length is stays as it is.
+  /// Rounds a length that is no arc's up to a multiple of the quantum; never zero. Lengths of arcs stay as they are.
   double round(double length) const {
     // What is long takes the coarser quantum of meshes without short edges: sums of long ones are exact on any mesh.
     constexpr double k_long = 1.0 / (1 << 20);
@@ -89,7 +89,7 @@ class ArcRows {
   std::int64_t count() const { return static_cast<std::int64_t>(words_.size()); }
   std::int64_t first(Index node) const { return offsets_[node]; }  ///< row of a node: [first(node), first(node + 1))
   Index target(std::int64_t arc) const { return codec_.target(words_[arc]); }
-  /// Equal to the bit for an arc and its reverse.
+  /// Returns an arc's length, equal to the bit for its reverse.
   double length(std::int64_t arc) const { return codec_.length(words_[arc]); }
   int sector(std::int64_t arc) const { return codec_.sector(words_[arc]); }
   /// The arc from one node to another, -1 when they are not linked. O(degree).

@@ -16,8 +16,8 @@ namespace saddleback {
 
 /// Distance of every vertex from the nearest source, exact up to rounding: (V,), mesh units, infinity where no source
 /// reaches or only beyond `limit`. Sources lie anywhere on the surface; one within 1e-12 (barycentric) of a vertex
-/// counts as at it. Right on flat and regular meshes, needles, boundaries and several components. \throw InputError for
-/// no sources, a source off the mesh, limit < 0 or not a number; Cancelled. About O(V^1.5) time, some 600 bytes a
+/// counts as at it. Correct on flat and regular meshes, needles, boundaries and several components. \throw InputError
+/// for no sources, a source off the mesh, limit < 0 or not a number; Cancelled. About O(V^1.5) time, some 600 bytes a
 /// vertex while it runs. After [chen1990] and [xin2009].
 std::vector<double> exact_distances(const Mesh& mesh, const SurfacePoints& sources,
                                     double limit = std::numeric_limits<double>::infinity(), Job* job = nullptr);

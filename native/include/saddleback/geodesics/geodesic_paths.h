@@ -10,7 +10,8 @@
 namespace saddleback {
 
 struct PathOptions {
-  /// Straighten bends that no shortest path has (at vertices with less than pi on one side) to a local geodesic.
+  /// Says whether bends that no shortest path has (at vertices with less than pi on one side) are straightened to a
+  /// local geodesic.
   bool shorten = false;
   int threads = 0;  ///< 0: all cores; the result does not depend on it
 };

@@ -40,17 +40,17 @@ class Shape {
   double area() const { return area_; }
   /// Tells whether half a turn about the origin changes nothing (corners within 1e-9 of the circumradius).
   bool has_half_turn() const { return has_half_turn_; }
-  /// Exact; the outline itself counts as either. O(m).
+  /// Tells exactly whether a point lies inside; a point of the outline itself may count as either. O(m).
   bool contains(const Vec2& point) const;
 
   /// The shape with y negated.
   Shape mirrored() const;
-  /// Scaled, then turned counter-clockwise, then shifted. \throw InputError for a scale that is not positive, or what
-  /// leaves the range of coordinates.
+  /// Returns the shape scaled, then turned counter-clockwise, then shifted. \throw InputError for a scale that is not
+  /// positive, or what leaves the range of coordinates.
   Shape moved(double scale, double angle, const Vec2& shift) const;
-  /// Exact: whether the two have a common point, outlines included. O(m n) for m and n corners.
+  /// Tells exactly whether the two have a common point, outlines included. O(m n) for m and n corners.
   bool overlaps(const Shape& other) const;
-  /// Moved so that the smallest circle around it is about the origin, and scaled to a circumradius of `radius`.
+  /// Returns the shape with the smallest circle around it moved to the origin and scaled to `radius`.
   Shape centered(double radius = 1) const;
 
  private:

@@ -65,7 +65,7 @@ struct CudaModule {
 /// Tells the library of the CUDA module's functions, which stay valid until the process ends. \throw DeviceError for
 /// another version.
 void set_cuda_module(const CudaModule* module);
-/// Null until they are told.
+/// Returns the functions set; null until then.
 const CudaModule* cuda_module();
 
 /// Bytes that the library may take of a device's memory, for all that is called from now on; 0: what is free.

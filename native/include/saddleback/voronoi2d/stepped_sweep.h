@@ -15,8 +15,8 @@ class DiagramSweep;
 namespace saddleback {
 
 /// The step that computes Voronoi diagrams, one event at a time and from any center. Positions are rounded and so is
-/// the order of nearly simultaneous events; `voronoi_2d` gives the exact diagram. With weights the events are told from
-/// that diagram; hidden sites have none, and a vertex of many cells is one event.
+/// the order of nearly simultaneous events; `voronoi_2d` gives the exact diagram. With weights the events are derived
+/// from that diagram; hidden sites have none, and a vertex of many cells is one event.
 class SteppedSweep {
  public:
   struct Event {

@@ -104,8 +104,7 @@ struct Voronoi2d {
 
 /// Voronoi diagram of points of the plane, by sweep circles that grow from among the sites. Duplicates share a cell.
 /// \throw InputError for a coordinate that is not finite; for coordinates so different in size (a factor of 1e100 and
-/// more) that products of four cannot be told exactly; for negative options. Cancelled.
-/// O(n log n) time, O(n) memory.
+/// more) that products of four are not exact; for negative options. Cancelled. O(n log n) time, O(n) memory.
 Voronoi2d voronoi_2d(std::span<const Vec2> sites, const Voronoi2dOptions& options = {}, Job* job = nullptr);
 /// Finds the same; the diagram takes the sites over.
 Voronoi2d voronoi_2d(LargeArray<Vec2>&& sites, const Voronoi2dOptions& options = {}, Job* job = nullptr);

@@ -35,7 +35,8 @@ Meeting meeting_of(const CheckedPiece& p, const CheckedPiece& q) {
   return touches ? Meeting::touch : Meeting::none;
 }
 
-/// Rounding may insert an outline along itself; one that crosses itself has neighbors that do not follow each other.
+/// Tells whether a meeting of pieces is a fault. Rounding may lay an outline along itself; one that crosses itself has
+/// pieces that meet and do not follow each other.
 bool is_fault(const CheckedPiece& p, const CheckedPiece& q, Meeting meeting) {
   if (p.shape != q.shape) return meeting != Meeting::none;
   return meeting == Meeting::cross && p.previous != q.number && q.previous != p.number;

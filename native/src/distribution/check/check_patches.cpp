@@ -105,7 +105,8 @@ class PatchCheck {
     }
   }
 
-  /// Even by area: the k-th of n samples lies in the k-th of n parts of the surface, in the order of the faces.
+  /// Checks samples that are even by area: the k-th of n samples lies in the k-th of n parts of the surface, in the
+  /// order of the faces.
   void check_samples(const CheckOptions& options, const JobStage& stage) {
     const PatchTriangles triangles = by_face(mesh_, patches_);
     std::vector<double> ends(static_cast<std::size_t>(mesh_.face_count()));

@@ -11,7 +11,8 @@ struct DualLoops {
   /// Faces from each component's smallest face outwards; each but those is entered across the half-edge `entered_by`
   /// (a half-edge of the face it is entered from), k_none for those.
   std::vector<Index> order, entered_by;
-  /// Two genus loops a component: the half-edges that each crosses, in order, every one of the face being left.
+  /// Loops, 2 genus of them for each component: the half-edges that each crosses, in order, every one of the face being
+  /// left.
   std::vector<std::vector<Index>> loops;
   std::vector<Index> component_of_loop;
 };

@@ -16,7 +16,7 @@ constexpr double k_turn = 2 * std::numbers::pi;
 /// Stiffness of a soft stroke of weight 1 that runs right through a face, against about 1.7 to each neighbor: fields
 /// meet such strokes to within a degree or two.
 constexpr double k_stroke_stiffness = 30;
-/// Two hard strokes that differ by less in a face agree: rounding of curves drawn twice.
+/// Bounds the difference of two hard strokes in a face that agree: the rounding of curves drawn twice.
 constexpr double k_agreement = 1e-6;
 
 /// Collects what a stroke does in each face: the mean of its directions there, each turned by less than half a quantum.
@@ -70,7 +70,7 @@ StrokeFaces faces_of(const Mesh& mesh, const Stroke& stroke, std::size_t number,
   return result;
 }
 
-/// Fixed; where a face has two boundary edges, a spring to the mean.
+/// Returns the faces along a loop: fixed to it; those with two boundary edges have a spring to the mean.
 StrokeFaces faces_of_loop(const Mesh& mesh, const std::vector<Index>& loop, int symmetry) {
   FacesOfStroke faces(k_turn / symmetry);
   std::map<Index, int> edges;

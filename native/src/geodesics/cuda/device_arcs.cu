@@ -201,7 +201,7 @@ class ArcFinder {
     check_cuda(cudaGetLastError(), "looking at edges");
   }
 
-  /// Lets the device begin; it need not have finished what it was told before.
+  /// Lets the device begin; it need not have finished its work before.
   void start() {
     rows_.clear();
     tally_.fill_bytes(0);
@@ -371,7 +371,7 @@ class ArcFinder {
     }
   }
 
-  /// Waits for the passes that were started; whoever asks to stop is not kept waiting by sources that take long.
+  /// Waits for the passes that were started; a cancel does not wait for sources that take long.
   void wait() {
     try {
       wait_polling(pass_ended_, [&] { report(done_ = std::max(done_, share_begun())); });
@@ -496,7 +496,7 @@ class Builder {
     DeviceUnion arcs(request_.node_count, mine.nodes, first_guess(request_, mine.nodes), stream);
     ArcFinder finder(request_, mine, caller_, stream, aside, [&] { return packing(mine.member); });
     watch.end();
-    // The device is told of what comes next while it is at what came before.
+    // The device gets its next work while it still does the last.
     finder.start();
     times.upload = watch.read();
     watch.end();

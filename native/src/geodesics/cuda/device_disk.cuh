@@ -161,9 +161,9 @@ class WarpDisk {
   }
   SADDLEBACK_STEP int insert(bool active, std::uint32_t key) { return settle(probe(active, key)); }
 
-  /// Lowers the bound where `seen`. `bends` unless only straight ways are known to go on from there: neighbors then
-  /// have to be told of the label. Lanes that have seen nothing change nothing, each somewhere else: to branch takes
-  /// longer.
+  /// Lowers the bound where `seen`. `bends` unless only straight ways are known to go on from there: the label then has
+  /// to be offered to neighbors. Lanes that have seen nothing change nothing, each at another address: a branch would
+  /// take longer.
   SADDLEBACK_STEP void lower(bool seen, int slot, std::int32_t label, bool bends) {
     const std::int32_t before = atomicMin(&table_.labels[seen ? slot : lane_], seen ? label : k_unreached_label);
     if constexpr (All) {

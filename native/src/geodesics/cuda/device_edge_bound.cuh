@@ -26,7 +26,7 @@ class EdgeFront {
   SADDLEBACK_STEP EdgeFront(const DeviceMesh& mesh, Table& table, EdgeDistances<k_slots>& distances)
       : wanted_(mesh.k + 1), table_(table), distances_(distances), disk_(mesh, table), lane_(threadIdx.x & 31) {}
 
-  /// Negative when the table has too little room.
+  /// Returns the radius; negative when the table has too little room.
   SADDLEBACK_STEP float radius() {
     for (int i = lane_; i < k_slots; i += 32) {
       distances_.known[i] = table_.labels[i];

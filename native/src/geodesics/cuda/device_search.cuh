@@ -31,7 +31,7 @@ struct DeviceGraph {
 /// Positive doubles are in the order of their bits.
 using DistanceBits = unsigned long long;
 constexpr DistanceBits k_far_away = ~DistanceBits{0};
-constexpr DistanceBits k_stop = ~DistanceBits{0};  ///< on a board; the complement of a distance that none is told as
+constexpr DistanceBits k_stop = ~DistanceBits{0};  ///< on a board; the complement of a distance that none has
 
 struct SearchSeeds {
   const std::int64_t* first;
@@ -224,8 +224,8 @@ class FieldSearch {
     for (int i = part; i < count; i += parts) visit(list_.rows[i], std::integral_constant<int, Lanes>());
   }
 
-  /// Offers along a row's arcs, several at a time: what a lane waits for is memory. `lower` is told a target, what it
-  /// is offered and what it has, and answers with what the target had when it took the offer, or 0.
+  /// Offers along a row's arcs, several at a time: what a lane waits for is memory. `lower` gets a target, what it is
+  /// offered and what it has, and answers with what the target had when it took the offer, or 0.
   template <int Lanes, class Before, class Lower, class IsWon>
   __device__ void offer_along(const WaitingRow& row, Lower&& lower, IsWon&& is_won) {
     constexpr int k_at_a_time = Lanes == 32 ? 3 : 5;

@@ -212,7 +212,7 @@ struct alignas(16) WaveTable {
   static_assert(Slots % 128 == 0);
   std::int32_t labels[Slots];
   std::uint32_t keys[Slots];                    ///< nodes, and whose they are
-  std::uint32_t changed[All ? Slots / 32 : 1];  ///< bits: neighbors may have to be told of the label
+  std::uint32_t changed[All ? Slots / 32 : 1];  ///< bits: the label may have to be offered to neighbors
   std::uint16_t todo[All ? Todo : 1];
 };
 

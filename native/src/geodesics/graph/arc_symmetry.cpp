@@ -10,7 +10,7 @@
 namespace saddleback {
 namespace {
 
-/// An arc that only its target's end was told of, or told of better.
+/// An arc that only its target's end has, or has with a shorter length.
 class MissingArc {
  public:
   enum class Kind { added, replaces };  ///< what replaces another has the same ends and is shorter

@@ -237,7 +237,7 @@ void GeodesicDisks::lower_labels(int from, int to) {
   }
 }
 
-/// Tells whether shortest ways may bend at a slot's vertex, so that its neighbors have to be told of its label.
+/// Tells whether shortest ways may bend at a slot's vertex, so that its label has to be offered to its neighbors.
 bool GeodesicDisks::bends(std::int32_t slot, std::int32_t label) const {
   return !makes_arc(label) || mesh_.is_saddle(slot / k_batch);
 }

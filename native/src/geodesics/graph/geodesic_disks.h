@@ -59,7 +59,7 @@ class GeodesicDisks {
   /// Adds what is seen from a point; what lies beyond `limit` (in units of the WindowMesh) is not looked for, but for
   /// the face's corners.
   void add_point(int lane, const FaceSource& source, double limit);
-  /// False when windows were so many that it was stopped: no arc is wrong then, but some may be missing. \throw
+  /// Returns false when windows were so many that it was stopped: no arc is wrong then, but some may be missing. \throw
   /// Cancelled.
   bool run(const JobStage& stage);
   /// The sightings that make a lane's arcs, in the order in which they were sighted, and k_row_padding more entries
@@ -143,7 +143,7 @@ class GeodesicDisks {
   int sighting_count_ = 0, generation_ = 0, window_count_ = 0;
   alignas(64) std::array<float, k_batch> limits_{};
   std::array<double, k_batch> scales_{};  ///< of the lanes' planes, see scale_about
-  std::vector<std::int32_t> changed_;     ///< slots whose neighbors may have to be told of their labels
+  std::vector<std::int32_t> changed_;     ///< slots whose labels may have to be offered to neighbors
   std::vector<float> radii_;
   std::vector<float> by_edges_;  ///< per node, where a disk was bounded by edges; infinite in between
   std::array<std::vector<std::int32_t>, k_batch> chosen_;  ///< with room behind what was chosen

@@ -81,7 +81,7 @@ void append_row(const ArcSearch& search, const ArcCodec& codec, Index vertex, co
 std::string in_gigabytes(double bytes) { return message(std::max(0.1, std::round(bytes / 1e8) / 10), " GB"); }
 
 /// Vertices in sight of one, in the mean of a few all over the mesh. Their number grows like a power of that of the
-/// vertices looked at, which is told from disks of two sizes.
+/// vertices looked at, which is estimated from disks of two sizes.
 double mean_in_sight(const ArcSearch& search, VisibleVertices& propagator, const JobStage& stage) {
   constexpr Index k_samples = 16, k_disk = 4000, k_ratio = 4;
   const auto count = static_cast<Index>(search.vertices.size());

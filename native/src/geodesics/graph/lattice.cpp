@@ -59,7 +59,7 @@ struct Spoke {
   double angle, length;
 };
 
-/// Counter-clockwise. O(degree)
+/// Returns the edges out of a vertex, counter-clockwise. O(degree)
 std::vector<Spoke> spokes_of(const Unfolding& unfolding, Index vertex) {
   const Mesh& mesh = unfolding.mesh();
   std::vector<Spoke> spokes;

@@ -8,7 +8,7 @@
 
 namespace saddleback {
 
-/// New entries are zero: indices among them are valid, whoever reads past the end.
+/// New entries are zero, so that indices read past the end are valid.
 template <int Reals, int Floats, int Ints>
 class WindowBatchColumns {
  public:

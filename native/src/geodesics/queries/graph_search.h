@@ -44,7 +44,7 @@ class GraphSearch {
            SearchLabels labels, const JobStage& stage);
 
   // A part of a search: expands only the nodes from `first` up to `last`. What lies beyond is reached, but goes no
-  // farther; whoever has that part goes on from there.
+  // farther; the search of that part goes on from there.
   void begin_part(const SaddleVertexGraph& graph, Index first, Index last);
   /// Goes on from more seeds of the part. \throw Cancelled.
   void continue_part(const SaddleVertexGraph& graph, std::span<const NodeSeed> seeds, const JobStage& stage);

@@ -32,7 +32,7 @@ class PartedSearch {
       search(part).continue_part(graph_, seeds_[part], stage);
     });
   }
-  /// False when no search has found anything nearer for another.
+  /// Returns false when no search has found anything nearer for another.
   bool go_on(const JobStage& stage) {
     for_each_part([&](Index part) { collect(part); });
     if (std::ranges::all_of(seeds_, [](const auto& seeds) { return seeds.empty(); })) return false;

@@ -23,7 +23,7 @@ struct QueryCache {
   ScratchPool<CurveFanFinder> curve_fan_finders;
   DeviceGraphs device_graphs;
 
-  /// Found by the first who asks; others wait. \throw Cancelled.
+  /// Returns the landmarks, found in the first call, for which others wait. \throw Cancelled.
   const Landmarks& landmarks(const SaddleVertexGraph& graph, const JobStage& stage);
   /// Returns the same for what fans of points are found with.
   const FanMesh& fan_mesh(const SaddleVertexGraph& graph, int threads, const JobStage& stage);

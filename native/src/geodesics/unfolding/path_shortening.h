@@ -7,7 +7,7 @@
 
 namespace saddleback {
 
-/// Straight pieces that meet at vertices: leg i runs from ends[i] to ends[i + 1].
+/// A chain of straight pieces that meet at vertices: leg i runs from ends[i] to ends[i + 1].
 struct LegChain {
   std::vector<LegEnd> ends;
   std::vector<UnfoldedArc> legs;  ///< only the first leg_count are in use: the rest keeps its memory

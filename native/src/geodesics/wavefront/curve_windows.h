@@ -26,7 +26,7 @@ class CurveWindows {
       : unfolding_(unfolding), mesh_(unfolding.mesh()), field_(unfolding) {}
 
   /// The vertices within limits.radius, in any order. Exact: each has its shortest distance, unless limits.edges says
-  /// otherwise. The stage is told how far it is until the first windows run, then `report` is asked. \throw Cancelled.
+  /// otherwise. The stage is advanced until the first windows run, then `report` is asked. \throw Cancelled.
   void from_curve(const SurfaceCurve& curve, const RayLimits& limits, std::vector<CurveFoot>& feet,
                   const JobStage& stage = {}, const WatchedPlaces* places = nullptr, const ReportRays& report = {});
   /// Distances of the last call's places: of those that see the curve, or a saddle vertex with one that does, within

@@ -32,7 +32,7 @@ inline Index halfedge_to(std::span<const Triangle> triangles, Index h) { return 
 inline Index halfedge_apex(std::span<const Triangle> triangles, Index h) { return triangles[h / 3][(h % 3 + 2) % 3]; }
 
 /// Calls visit(first, repeat) for each face that has the same three vertices as an earlier one, among those `around`
-/// one edge. Equal faces meet in three edges and are told only at the one between their two smaller vertices.
+/// one edge. Equal faces meet in three edges and are reported only at the one between their two smaller vertices.
 template <class Visit>
 void for_each_duplicate(std::span<const Triangle> triangles, std::span<const Index> around, Visit&& visit) {
   const Index a = halfedge_from(triangles, around[0]), b = halfedge_to(triangles, around[0]);

@@ -28,7 +28,7 @@ struct FaceShape {
 /// [kahan2014].
 FaceShape measure_face(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// True for a face without area: collinear corners (decided exactly) or a height within k_degenerate_height.
+/// Tells whether a face has no area: collinear corners (decided exactly) or a height within k_degenerate_height.
 bool is_degenerate_face(const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace saddleback

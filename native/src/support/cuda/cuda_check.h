@@ -16,7 +16,7 @@ class CudaFailure : public std::runtime_error {
 
 inline void check_cuda(cudaError_t error, const char* doing) {
   if (error == cudaSuccess) return;
-  (void)cudaGetLastError();  // or whoever asks next takes it for its own
+  (void)cudaGetLastError();  // or the next check takes it for its own
   throw CudaFailure(doing, error);
 }
 

@@ -148,7 +148,7 @@ template <class Word>
 class TeamWords {
  public:
   explicit TeamWords(DeviceTeam& team) : team_(team), said_(static_cast<std::size_t>(team.members())) {}
-  /// Is called by all members. \return by member
+  /// Gives each member's word to all; all members call it. \return by member
   std::vector<Word> say(int member, const Word& word) {
     Said& mine = said_[static_cast<std::size_t>(member)];
     const std::size_t turn = mine.times++ % 2;  // others may still look at what was said before
@@ -180,10 +180,10 @@ class TeamArrays {
  public:
   explicit TeamArrays(DeviceTeam& team) : team_(team), numbers_(team), lists_(team) {}
 
-  /// Is called by all members: the numbers of all.
+  /// Returns the numbers of all members; all members call it.
   std::vector<std::int64_t> numbers_of_all(int member, std::int64_t number) { return numbers_.say(member, number); }
-  /// Is called by all members: the lists of all. Theirs are to stay as they are until the copies of others have been
-  /// waited for.
+  /// Returns the lists of all members; all members call it. Theirs are to stay as they are until the copies of others
+  /// have been waited for.
   template <class Item>
   std::vector<TeamList<Item>> lists_of_all(int member, std::span<const Item> mine) {
     std::vector<TeamList<Item>> lists;

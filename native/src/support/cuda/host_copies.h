@@ -36,7 +36,7 @@ class PinnedPieces {
   PinnedPieces(const PinnedPieces&) = delete;
   PinnedPieces& operator=(const PinnedPieces&) = delete;
   char* piece(int number) const { return static_cast<char*>(memory_) + static_cast<std::size_t>(number) * k_size; }
-  /// Left to the next call: pinning takes milliseconds.
+  /// Pinned pieces that are left to the next call: pinning takes milliseconds.
   static ScratchPool<PinnedPieces>& pool() {
     static ScratchPool<PinnedPieces> pieces;
     return pieces;
@@ -68,8 +68,8 @@ class HostCopies {
       fresh_.push_back({static_cast<volatile char*>(to) + begin, std::min(PinnedPieces::k_size, size - begin)});
     start_threads(fresh_.size());
   }
-  /// Nobody touches what was expected any more: it may be written or freed by others. Pages that nobody has come to so
-  /// far are populated as they are written.
+  /// Ends all access to the memory that was expected: others may write or free it. Pages that are not populated so far
+  /// are populated as they are written.
   void end_populating() {
     std::unique_lock lock(mutex_);
     if (!fresh_.empty())
@@ -307,7 +307,7 @@ class HostCopies {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::span<volatile char>> fresh_;  ///< memory whose pages are still to be populated
-  int populating_ = 0;                          ///< threads that are at it
+  int populating_ = 0;                          ///< threads that populate pages
   std::span<volatile char> populated_;
   bool is_expected_ = false;  ///< expect() was called; threads do not read populated_ before they copy
   std::deque<Copy> pieces_;

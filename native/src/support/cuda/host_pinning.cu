@@ -6,7 +6,7 @@ namespace saddleback {
 
 bool pin_host_memory(void* memory, std::uint64_t bytes) {
   if (cudaHostRegister(memory, bytes, cudaHostRegisterPortable) == cudaSuccess) return true;
-  (void)cudaGetLastError();  // the caller has another way: whoever asks next must not see it
+  (void)cudaGetLastError();  // the caller has another way: the next check must not see it
   return false;
 }
 

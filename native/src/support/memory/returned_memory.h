@@ -46,8 +46,8 @@ class ReturnedPieces {
   Owner piece_;
 };
 
-/// Frees what a cancelled call leaves behind: a gigabyte of pages goes back in longer than whoever cancelled should
-/// have to wait, most of all of small pages.
+/// Frees what a cancelled call leaves behind: returning a gigabyte of pages, small ones above all, takes longer than a
+/// user who cancelled should have to wait.
 template <class T>
 void free_in_background(T abandoned) noexcept {
   try {

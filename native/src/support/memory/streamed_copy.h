@@ -29,7 +29,7 @@ inline void copy_past_caches(void* to, const void* from, std::size_t size) {
       for (int i = 0; i < 4; ++i) quarters[i] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(in) + i);
       for (int i = 0; i < 4; ++i) _mm_stream_si128(reinterpret_cast<__m128i*>(out) + i, quarters[i]);
     }
-    _mm_sfence();  // whoever is told that the copy is done has to find it
+    _mm_sfence();  // a thread that learns that the copy is done has to find it
   }
 #endif
   std::memcpy(out, in, size);

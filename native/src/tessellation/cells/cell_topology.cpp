@@ -161,8 +161,8 @@ class IssueFinder {
     }
   }
 
-  /// A cell needs three corners to have a triangle; ends at the mesh's boundary are some. A cell without any is told of
-  /// by what else is wrong, but for one that has all of a disk.
+  /// A cell needs three corners to have a triangle; ends at the mesh's boundary are some. A cell without any is
+  /// reported by what else is wrong, but for one that has all of a disk.
   void look_at_corners() {
     std::vector<Index> corners(cells_.sites.size(), 0);
     std::vector<std::uint8_t> has_border(cells_.sites.size(), 0);

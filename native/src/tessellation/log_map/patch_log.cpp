@@ -211,8 +211,8 @@ void PatchLog::see_across(Index local, int edge) {
   const EdgeShape& shape = edges_[across];
   if (to_a < k_far && to_b < k_far) {
     if (const auto [x, depth_2] = foot_of_center(shape, to_a, to_b); depth_2 > 0) {
-      // Ways along the edges are no shorter than the ray, and most rays are no shorter than the way that is known:
-      // that is told without roots. A ray's square is the sum below and twice the height times the root of depth_2.
+      // Ways along the edges are no shorter than the ray, and most rays are no shorter than the way that is known: that
+      // is decided without roots. A ray's square is the sum below and twice the height times the root of depth_2.
       const double beside = shape.apex.x() - x, height = shape.apex.y();
       const double room = known * known - (beside * beside + height * height + depth_2);
       if (!(room > 0 && room * room > 4 * height * height * depth_2)) return;

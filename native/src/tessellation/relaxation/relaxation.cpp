@@ -64,7 +64,7 @@ bool Relaxation::revive_empty_cells(const JobStage& stage) {
   SurfacePoints sites = state_.sites;
   for (std::size_t i = 0; i < std::min(empty.size(), rich.size()); ++i) sites[empty[i]] = far_place(known, rich[i]);
   RelaxationState next = evaluate(std::move(sites), state_.along, stage);
-  if (!(next.energy < state_.energy)) return false;  // nothing is far enough to be told apart
+  if (!(next.energy < state_.energy)) return false;  // no place is far enough from its site to lower it
   state_ = std::move(next);
   memory_.forget();
   return true;

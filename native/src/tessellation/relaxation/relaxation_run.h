@@ -22,7 +22,7 @@ RelaxationLog log_of_start(const Relaxation& relaxation);
 /// One step, or the reason why there is none. \throw Cancelled, nothing changed.
 void take_step(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage,
                RelaxationLog& log);
-/// Shows the sites to whoever watches.
+/// Shows the sites to the watch.
 void show(const Relaxation& relaxation, const CentroidalVoronoiOptions& options, const RelaxationLog& log);
 /// All steps, each shown. \throw Cancelled, the log as of the last step.
 void relax(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage, RelaxationLog& log);

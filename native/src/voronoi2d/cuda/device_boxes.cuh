@@ -44,7 +44,7 @@ __device__ inline unsigned place_by(double number) {
 /// visited.
 enum class Seen { as_before, anew, enough };
 
-/// Is called by a warp: calls visit(rank of the lane's site, or -1, load(rank)) for every 32 sites in a row, as long as
+/// Calls, for a whole warp, visit(rank of the lane's site, or -1, load(rank)) for every 32 sites in a row, as long as
 /// place(level, box) is somewhere for all boxes about them; of each 32 the first comes first. Where visits change
 /// nothing, places are not asked for again, and the sites of several boxes are loaded at a time: else each would wait
 /// for memory.

@@ -52,7 +52,7 @@ __device__ inline void write_list(const DeviceLists& lists, std::int32_t rank, i
   }
 }
 
-/// Is called by a warp: where a cell's list of any length goes; null when there is no room.
+/// Returns to a whole warp where a cell's list of any length goes; null when there is no room.
 __device__ inline std::int32_t* place_for_list(const DeviceLists& lists, std::int32_t rank, int count) {
   std::int32_t* const slots = lists.slots + static_cast<std::int64_t>(rank) * k_slots;
   if (count <= k_slots) return slots;
@@ -107,7 +107,7 @@ class CellBuilder {
     scale_ = __longlong_as_double(static_cast<long long>(1023 - ilogb(tile_.grid_size())) << 52);
   }
 
-  /// False when it takes other means.
+  /// Builds the cell of a site; false when it takes other means.
   __device__ bool build(int own, const DeviceLists& lists) {
     own_ = own;
     site_ = memory_.at[own];
@@ -233,7 +233,7 @@ class CellBuilder {
     return __shfl_sync(k_warp, at, lane);
   }
 
-  /// The neighbor after n, counter-clockwise, to n; -1 when it cannot be told.
+  /// Returns the neighbor after n, counter-clockwise, to n; -1 when it cannot be decided.
   template <bool All>
   __device__ int next_after(int n) {
     int mine_at = -1;

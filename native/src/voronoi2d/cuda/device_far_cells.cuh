@@ -229,7 +229,7 @@ struct FarCells {
   int* failures;
   int most_failures;
 
-  /// Is called by a warp: the next of them, -1 when there is none.
+  /// Returns to a whole warp the next of them, -1 when there is none.
   __device__ std::int32_t take() const {
     const int all = *count;
     int i = 0;

@@ -10,7 +10,7 @@
 
 namespace saddleback {
 
-/// Freed in the order of its own stream, which is the last to go.
+/// A diagram that stays on the device. Its memory is freed in the order of its own stream, which is the last to go.
 struct KeptPlane {
   KeptPlane(std::unique_ptr<Stream> own_stream, int on_device) : stream(std::move(own_stream)), device(on_device) {}
 

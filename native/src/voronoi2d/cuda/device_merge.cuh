@@ -51,7 +51,7 @@ class Merger {
     return {site, site, site, site, first, first + MergedMesh::k_edges - 1};
   }
 
-  /// False when something cannot be told, or takes too long.
+  /// Merges two neighbors; false when something cannot be decided, or takes too long.
   SADDLEBACK_HOST_DEVICE bool merge(const MergedPart& a, const MergedPart& b, MergedPart& both) {
     steps_ = 0;
     fails_ = false;

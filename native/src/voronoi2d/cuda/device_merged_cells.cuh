@@ -127,7 +127,7 @@ class CellLister {
  public:
   __device__ CellLister(const MergedMesh& mesh, std::int32_t rank) : mesh_(mesh), rank_(rank), at_(mesh.point(rank)) {}
 
-  /// False when something cannot be told, or there are too many.
+  /// Returns false when something cannot be decided, or there are too many.
   __device__ bool list(int most, const DeviceLists& lists) {
     const std::int32_t leaving = mesh_.leaving[rank_];
     if (leaving < 0) return false;

@@ -19,7 +19,7 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-/// A side is told by the neighbor; negative where the corner behind it is at infinity. No side: nobody's neighbor.
+/// A side is known by the neighbor; negative where the corner behind it is at infinity. No side: nobody's neighbor.
 constexpr std::int32_t k_no_side = std::numeric_limits<std::int32_t>::min();
 __device__ constexpr std::int32_t open_side(std::int32_t neighbor) { return ~neighbor; }
 __device__ constexpr std::int32_t neighbor_of(std::int32_t side) { return side < 0 ? ~side : side; }
@@ -39,7 +39,7 @@ struct DeviceCells {
     const double2 p = at[rank];
     return {p.x, p.y};
   }
-  /// Is called by one thread for each cell.
+  /// Returns the cell of this thread, of one thread for each cell.
   __device__ std::int32_t of_thread() const { return mine.begin + thread_number(); }
   __device__ predicates::WeightedPoint2 weighted(std::int32_t rank) const {
     return {at[rank].x, at[rank].y, weights[rank]};
@@ -107,7 +107,7 @@ struct DeviceNumbers {
 };
 
 /// Sides row after row; also counts the edges of a cell, which are those to higher ranks. Rows next to cells that are
-/// gathered elsewhere are told to others, and theirs are not known yet.
+/// gathered elsewhere are sent to others, and theirs are not known yet.
 template <bool HasOthers>
 __global__ void gather_rows(DeviceLists lists, IndexRange cells, const std::int32_t* offsets, std::int32_t* sides,
                             std::int32_t* edge_counts, DeviceNumbers numbers, DeviceNumberList told) {

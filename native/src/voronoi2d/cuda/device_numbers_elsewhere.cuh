@@ -59,8 +59,8 @@ class NumbersElsewhere {
       items_ = DeviceBuffer<NumberOfSide>(found_, stream_);
     }
   }
-  /// Is called by all members: to `numbers`, what the others tell of these `sides`. They wait for their streams before
-  /// this goes away.
+  /// Writes to `numbers` what the other members know of these `sides`; all members call it. They wait for their streams
+  /// before this goes away.
   void exchange(TeamArrays& arrays, int member, IndexRange sides, std::int32_t* numbers) {
     const auto lists = arrays.lists_of_all(member, std::span<const NumberOfSide>(items_.data(), found_));
     std::size_t most = 0;
@@ -80,7 +80,7 @@ class NumbersElsewhere {
   }
 
  private:
-  /// Guesses that one of so many sides is told. Few are told once more: they take no time.
+  /// Guesses that one of this many sides is sent. Sending a few once more takes no time.
   static constexpr std::size_t k_of_as_many = 64, k_few = 64;
   cudaStream_t stream_;
   DeviceBuffer<NumberOfSide> items_;

@@ -38,7 +38,7 @@ struct Extent {
 };
 constexpr Extent k_nothing{{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY, 0, 1};
 
-/// Holds what the host is told of the sites at once.
+/// Holds what the host learns of the sites in one copy.
 struct SitesSeen {
   Extent extent;
   int has_full_squares, has_equals;
@@ -93,7 +93,7 @@ __global__ void __launch_bounds__(k_threads) see_all(const Extent* parts, std::i
   if (threadIdx.x == 0) *seen = {all, 0, 0};
 }
 
-/// Anywhere where they are not finite or all the same.
+/// Writes each site's place on the curve; any place where sites are not finite or all the same.
 __global__ void place_sites(const double2* sites, std::int32_t count, const SitesSeen* seen, std::uint32_t* places,
                             std::int32_t* order) {
   const std::int32_t i = thread_number();

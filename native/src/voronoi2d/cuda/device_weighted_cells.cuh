@@ -100,7 +100,7 @@ class ChosenWaves {
   int count_ = 0;
 };
 
-/// Is called by a warp: all that may matter to the sites of a box, within a margin. False when there are too many.
+/// Finds, for a whole warp, all that may matter to the sites of a box, within a margin. False when there are too many.
 __device__ inline bool find_near(const WeightedTree& tree, const DeviceBox& around, double margin, RowMemory& memory) {
   const int lane = threadIdx.x % 32;
   int count = 0;
@@ -138,7 +138,7 @@ class RowBuilder {
  public:
   __device__ RowBuilder(const WeightedTree& tree, RowMemory& memory) : tree_(tree), memory_(memory) {}
 
-  /// False when it takes other means.
+  /// Builds the cell of a site; false when it takes other means.
   __device__ bool build(std::int32_t rank, double usual_far, const DeviceLists& lists) const {
     const WeightedPoint2 here = tree_.site(rank);
     ChosenWaves waves(memory_, memory_.chosen[threadIdx.x / 32], here);

@@ -31,7 +31,7 @@ struct DiagramRequest {
   const double* weights = nullptr;  ///< (count), or null where all weigh the same; of a diagram that comes back
   std::int32_t count = 0;
   bool sites_are_there = false;  ///< in the memory of the one device
-  DevicePlane* kept = nullptr;   ///< where the diagram is told that stays on the one device; null: it comes back
+  DevicePlane* kept = nullptr;   ///< receives the diagram that stays on the one device; null: it comes back
   bool only_triangles = false;   ///< of what stays
 };
 

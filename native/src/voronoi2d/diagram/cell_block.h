@@ -45,7 +45,7 @@ class CellBlock {
  private:
   static constexpr Index k_few = 8;       ///< triangles about most sites
   static constexpr Index k_together = 2;  ///< cells
-  /// Some cells in a row: their numbers of sides, 0 where there are more than a few. False, and all 0, if one is open.
+  /// Counts the sides of some cells in a row, 0 where there are more than a few. False, and all 0, if one is open.
   template <Index Together>
   bool gather_few(const Triangulation& mesh, const Index* leaving, Index cell);
   void gather_few_flat(const Triangulation& mesh, Index first, Index cell);

@@ -167,7 +167,7 @@ class RunSorter {
     sort_by_digit(other, items, lowest + bits, bits_above, 1, stage.part(0.5, 1));
   }
 
-  /// Stable: items are by index.
+  /// Sorts items by place, those of one place by index, in which they come.
   static void sort_by_place(std::span<Placed> items) {
     constexpr std::size_t k_few = 16;
     if (items.size() > k_few) {

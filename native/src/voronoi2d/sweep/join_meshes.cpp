@@ -114,7 +114,7 @@ void MeshJoiner::close_gap(MeshPart& result, const Sides& sides) {
   leaving_[gap.right] = gap.base;
 }
 
-/// Its first base: a tangent below both.
+/// Returns the gap with its first base: a tangent below both.
 MeshJoiner::Gap MeshJoiner::gap_between(const Sides& sides) const {
   Index left = sides.left_end, right = sides.right_end;
   while (true) {

@@ -32,8 +32,8 @@ class MeshJoiner {
   MeshJoiner(const PlanarMesh& mesh, Index* leaving, const JobStage& stage)
       : mesh_(mesh), leaving_(leaving), stage_(stage) {}
 
-  /// True when `result` is Delaunay's triangulation of both; false when nothing was done, because neither has triangles
-  /// or no line parts them. O(changes) and as much as the borders. \throw Cancelled
+  /// Returns true when `result` is Delaunay's triangulation of both; false when nothing was done, because neither has
+  /// triangles or no line parts them. O(changes) and as much as the borders. \throw Cancelled
   bool join(MeshPart& first, MeshPart& second, MeshPart& result);
   /// Makes a triangulation Delaunay's [lawson1977]. `doubtful`: half-edges among whose edges are all that do not pass
   /// the circle test or whose triangles share a circle; used up. \throw Cancelled

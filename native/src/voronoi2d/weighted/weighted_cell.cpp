@@ -36,7 +36,7 @@ void WeightedCell::open_plane() {
   use_begins();
 }
 
-/// True if at least some of the ring are the whole envelope of these.
+/// Returns true if at least some of the ring are the whole envelope of these.
 bool WeightedCell::open_ring(std::span<const Index> ring) {
   constexpr std::size_t k_few = 32;
   if (ring.size() < 3 || ring.size() > k_few) return false;
@@ -366,7 +366,8 @@ bool WeightedCell::is_open_after(Index arc) const {
   return predicates::compare_at_crossing(points_[site_], crossing(after(arc)), nullptr) != Sign::negative;
 }
 
-/// Computed from the two sites beside it, so that it does not depend on what the cell met in which order.
+/// Returns the corner, computed from the two sites beside it, so that it does not depend on what the cell met in which
+/// order.
 Vec2 WeightedCell::corner_after(Index arc) const {
   const WeightedPoint2& here = points_[site_];
   const Begin& last = begins_[after(arc)];

@@ -33,7 +33,7 @@ class WeightedCell {
   void meet(Index other);
   /// Tells whether a site has been met, and has or had a side.
   bool has_met(Index other) const;
-  /// False when no site whose disk lies in this one can cut off anything. O(arcs).
+  /// Returns false when no site whose disk lies in this one can cut off anything. O(arcs).
   bool may_meet(double x, double y, double radius) const;
   /// Twice the distance to the farthest point of the cell, infinite for an open one. Only sites whose weighted distance
   /// from this one's circle is less can cut off anything.
@@ -51,7 +51,7 @@ class WeightedCell {
   void read(std::vector<Side>& sides) const;
 
  private:
-  /// Another site from here.
+  /// Another site as it is seen from this one.
   struct Rival : Wave {
     Index site;
   };

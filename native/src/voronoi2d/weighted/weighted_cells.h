@@ -18,7 +18,8 @@ namespace saddleback::voronoi2d {
 
 class WeightedCells {
  public:
-  /// Exact. By up to `tile_size` sites at once; the cells do not depend on it. O(n log n) expected. \throw Cancelled
+  /// Finds the cells exactly, for up to `tile_size` sites at once; the cells do not depend on it. O(n log n) expected.
+  /// \throw Cancelled
   WeightedCells(const WeightedSites& sites, Index tile_size, int threads, const JobStage& stage);
 
   /// A side and the corner behind it, counter-clockwise. What two cells share has one place, to leave its number there.

@@ -70,7 +70,7 @@ class WeightedMesh {
   /// The corners around a site in turn.
   struct Ring {
     Index turns;   ///< how often the ways to them pass the x axis
-    Index begins;  ///< sides towards the lowest neighbor: with several it would have to be told where a cell begins
+    Index begins;  ///< sides towards the lowest neighbor: with several, where a cell begins is open
   };
   struct Exchanges {
     std::vector<Index> bad{};       ///< half-edges that are no sides
