@@ -19,8 +19,8 @@ namespace {
 constexpr double k_hit = 1e-9;  // relative to the length: a geodesic this near to its aim has met it
 constexpr int k_most_shots = 20;
 
-/// Where a dual edge crosses the boundary, how far its sites are from there, and in which direction of the face the
-/// left one lies.
+/// The place where a dual edge crosses the boundary, the distance of its sites from there, and the direction of the
+/// face in which the left one lies.
 struct Crossing {
   SurfacePoint point;
   double distance = 0, angle = 0;
@@ -28,7 +28,7 @@ struct Crossing {
   bool is_aimed = false;        ///< some bit is long enough to tell a direction
 };
 
-/// Where the boundary is nearest to its sites.
+/// Returns the crossing where the boundary is nearest to its sites.
 Crossing crossing_of(const Mesh& mesh, const GeodesicVoronoi& cells, Index polyline) {
   const Index first = cells.edge_points[cells.edge_offsets[polyline]];
   Crossing best{.point = cells.points[first], .distance = cells.point_distance[first]};
@@ -85,7 +85,7 @@ bool aim(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& target,
   return false;
 }
 
-/// As long as its polyline is.
+/// Returns the path with its length measured along its polyline.
 GeodesicPath measured(GeodesicPath path) {
   path.length = 0;
   for (std::size_t i = 1; i < path.points.size(); ++i) path.length += (path.points[i] - path.points[i - 1]).norm();

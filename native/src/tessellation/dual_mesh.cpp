@@ -71,7 +71,7 @@ DualMesh dual_of(const Mesh& mesh, const GeodesicVoronoi& cells, const JobStage&
   return result;
 }
 
-/// Those of places that are no site yet, each once: two cells may have been told the same corner.
+/// Returns the places that are no site yet, each once: two cells may have been given the same corner.
 SurfacePoints new_places(const Mesh& mesh, const SurfacePoints& sites, const SurfacePoints& places) {
   const auto key = [&](const SurfacePoint& point) {
     const Vec3 place = position(mesh, point);

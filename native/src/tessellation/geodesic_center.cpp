@@ -93,7 +93,7 @@ class Gathering {
     }
     return sum / mass;
   }
-  /// Of the place of the last step: how far the farthest point is, and the sum that is to be least.
+  /// Return, for the place of the last step, the distance of the farthest point, and the sum that is to be least.
   double spread() const { return spread_; }
   double energy() const { return energy_; }
 

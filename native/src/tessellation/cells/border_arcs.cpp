@@ -8,7 +8,7 @@
 namespace saddleback {
 namespace {
 
-/// What one meets on the way along a boundary loop: its vertices, and the ends of the boundaries between cells.
+/// A stop on the way along a boundary loop: one of its vertices, or an end of a boundary between cells.
 struct Stop {
   Index vertex = k_none, point = k_none;
 };
@@ -102,7 +102,7 @@ class Walk {
     return arc;
   }
 
-  /// Between two ends on one edge.
+  /// Returns the arc between two ends on one edge.
   BorderArc short_arc(Index cell, Index a, Index b) const {
     const SurfacePoint &begin = cells_.points[a], &end = cells_.points[b];
     const SurfacePoint middle{begin.face, normalized_barycentric(0.5 * (begin.barycentric + end.barycentric))};

@@ -19,8 +19,9 @@ struct BorderArc {
 /// All arcs of all loops. O(V + boundaries).
 std::vector<BorderArc> border_arcs(const Mesh& mesh, const GeodesicVoronoi& cells, const PointStars& stars);
 
-/// Where one more site parts each cell from a part of the boundary, by cell: of a loop that it has whole, the point
-/// farthest from its site; else, of the arcs but the nearest, the point nearest to it. None for cells with fewer arcs.
+/// Returns for each cell where one more site would part it from a part of the boundary: on a loop that lies in it as a
+/// whole, the point farthest from its site; otherwise the nearest point of its arcs other than the nearest arc. None
+/// for cells with fewer arcs.
 std::vector<std::optional<SurfacePoint>> places_on_borders(const Mesh& mesh, const GeodesicVoronoi& cells,
                                                            const PointStars& stars);
 

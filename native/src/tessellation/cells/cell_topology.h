@@ -38,8 +38,8 @@ std::vector<DualIssue> find_dual_issues(const Mesh& mesh, const GeodesicVoronoi&
 /// One place for each cell concerned: neighbors' complaints have often one cause.
 SurfacePoints places_to_mend(const std::vector<DualIssue>& issues, Index cell_count);
 
-/// Whether a point lies on the mesh's boundary. A site that parts a cell from the boundary does so only there: in the
-/// middle of its own cell it would meet both sides of a narrow strip again.
+/// Tells whether a point lies on the mesh's boundary. A site that parts a cell from the boundary does so only there: in
+/// the middle of its own cell it would meet both sides of a narrow strip again.
 bool is_on_boundary(const Mesh& mesh, const SurfacePoint& place);
 
 }  // namespace saddleback

@@ -11,8 +11,9 @@ bool is_lower(double value, const EdgeLine& of, double other_value, const EdgeLi
   return value != other_value ? value < other_value : of.site < other.site;
 }
 
-/// Of two lines that cross below the current one, whether `a` does so first. Where all three meet in one point the line
-/// of the greatest site lies highest: the others cross it too late or, when it is the current one, in order of slope.
+/// Tells whether `a` is the first of two lines to cross below the current one. Where all three meet in one point the
+/// line of the greatest site lies highest: the others cross it too late or, when it is the current one, in order of
+/// slope.
 bool crosses_sooner(const EdgeLine& current, const EdgeLine& a, const EdgeLine& b) {
   const auto point = [](const EdgeLine& line) { return predicates::Point2{line.at_start, line.at_end}; };
   const predicates::Sign turn = predicates::orient_2d(point(current), point(a), point(b));

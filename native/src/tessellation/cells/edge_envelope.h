@@ -14,7 +14,7 @@ struct EdgeLine {
   double at_start, at_end;
 };
 
-/// From `begin` (0 for the first) on, up to the next piece's begin, `site` is nearest.
+/// A piece of an edge to which `site` is nearest: from `begin` (0 for the first) up to the next piece's begin.
 struct EdgePiece {
   Index site;
   double begin;

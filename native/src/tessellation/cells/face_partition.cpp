@@ -21,7 +21,8 @@ int common_side(const FacePartition::Vertex& a, const FacePartition::Vertex& b) 
 
 Vec3 corners_of(const FacePlane& plane) { return Vec3(plane.at_corner.data()); }
 
-/// To about 1, by a power of 2: so that products of three are numbers. Signs stay as they are.
+/// Scales planes to about 1 by a power of 2, so that products of three neither overflow nor vanish. Signs stay as they
+/// are.
 void scale(std::vector<FacePlane>& planes) {
   double most = 0;
   for (const FacePlane& plane : planes) most = std::max(most, *std::ranges::max_element(plane.at_corner));
@@ -67,8 +68,8 @@ bool FacePartition::insert(Index plane) {
   return true;
 }
 
-/// Whether a plane that comes after the envelope's is below it at a vertex. A tie is none: it stays with the smaller
-/// site.
+/// Tells whether a plane that comes after the envelope's is below it at a vertex. A tie is none: it stays with the
+/// smaller site.
 bool FacePartition::is_below(const FacePlane& plane, Index vertex) const {
   const Vertex& at = vertices_[vertex];
   if (at.planes[0] == k_none) return false;
@@ -122,7 +123,8 @@ Index FacePartition::crossing(Index a, Index b, Index site, Index plane) {
   return index;
 }
 
-/// Those that are least at both vertices, the piece's and, inside, the one on the right of its loop; and the new one.
+/// Returns the planes that are least at both vertices (the piece's and, inside, the one on the right of its loop) and
+/// the new one.
 std::array<Index, 3> FacePartition::planes_at_crossing(Index a, Index b, Index site, Index plane) const {
   Index left = k_none, right = k_none;
   const auto& of_b = vertices_[b].planes;
@@ -134,8 +136,8 @@ std::array<Index, 3> FacePartition::planes_at_crossing(Index a, Index b, Index s
   return below_[a] ? std::array{right, left, plane} : std::array{left, right, plane};
 }
 
-/// Where a vertex's planes meet. Inside, two of their differences tell it; the smaller ones have lost least to
-/// rounding.
+/// Returns where a vertex's planes meet. Inside, it follows from two of their differences; the smaller ones have lost
+/// least to rounding.
 Vec3 FacePartition::meeting_place(const Vertex& vertex) const {
   const auto difference = [&](int i, int j) -> Vec3 {
     return corners_of(planes_[vertex.planes[j]]) - corners_of(planes_[vertex.planes[i]]);

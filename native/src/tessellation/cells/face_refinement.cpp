@@ -22,7 +22,7 @@ FaceRefinement::FaceRefinement(const Mesh& mesh) : mesh_(&mesh) {
   }
 }
 
-/// The same from both sides: of edges as long as each other, one by its ends.
+/// Returns the longest edge, the same one from both sides: edges of equal length are told apart by their ends.
 int FaceRefinement::longest_edge(const Part& part) const {
   const auto key = [&](int i) {
     const Index a = part.corner[i], b = part.corner[(i + 1) % 3];

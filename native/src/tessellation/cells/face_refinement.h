@@ -29,7 +29,7 @@ class FaceRefinement {
   const Mesh& mesh() const { return *mesh_; }
   const std::vector<Part>& parts() const { return parts_; }
   Index vertex_count() const { return mesh_->vertex_count() + static_cast<Index>(added_.size()); }
-  /// Where vertex V + i lies, in one face or in the two beside an edge.
+  /// The place of vertex V + i, in one face or in the two beside an edge.
   struct Added {
     std::array<SurfacePoint, 2> at;
     int faces;

@@ -46,7 +46,8 @@ void PatchLog::begin(std::span<const Index> faces) {
   }
 }
 
-/// Those before a vertex's own are counted one place ahead, where the next ones are put then.
+/// Lists the faces around each vertex. The begin of each list is counted one place ahead, and moves on as faces are put
+/// in.
 void PatchLog::list_faces_around() {
   first_.assign(vertices_.size() + 2, 0);
   for (const auto& corners : corners_)
@@ -57,7 +58,7 @@ void PatchLog::list_faces_around() {
     for (const Index vertex : corners_[face]) around_[first_[vertex + 1]++] = face;
 }
 
-/// In the order in which faces name them.
+/// Numbers the vertices in the order in which faces name them.
 void PatchLog::number_vertices() {
   const std::size_t size = std::bit_ceil(4 * faces_.size() + 1);
   table_.assign(size, k_none);
@@ -151,7 +152,7 @@ void PatchLog::start_at_vertex(Index vertex) {
   }
 }
 
-/// Than the vertex is by the ways so far, by more than rounding.
+/// Tells whether a distance is less than the vertex's by the ways so far, by more than rounding.
 bool PatchLog::is_nearer(Index vertex, double distance) const {
   return distance < (1 - std::max(k_rounding, gains_[vertex])) * distances_[vertex];
 }
@@ -172,8 +173,8 @@ void PatchLog::offer(const Way& way, const Vec2& place, double distance) {
   std::push_heap(heap_.begin(), heap_.end());
 }
 
-/// From a vertex across its two edges of a face, unless that was done from their other ends, from the same places, or
-/// the corner beyond is nearer than both ends.
+/// Goes from a vertex across its two edges of a face, unless that was done from their other ends, from the same places,
+/// or the corner beyond is nearer than both ends.
 void PatchLog::visit_face(Index local, Index vertex) {
   const auto& corners = corners_[local];
   const int at = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2, next = (at + 1) % 3, last = (at + 2) % 3;

@@ -53,7 +53,7 @@ VertexRings::VertexRings(const SaddleVertexGraph& graph, int threads) : first_(g
   });
 }
 
-/// By their first node.
+/// Orders the faces by their first node.
 void VertexRings::order_faces(const SaddleVertexGraph& graph, int threads) {
   const Mesh& mesh = graph.mesh();
   const auto first_node = [&](Index face) {

@@ -47,11 +47,11 @@ class VertexRings {
   Index index(const Wedge& wedge) const { return static_cast<Index>(&wedge - wedges_.data()); }
   Index face_count() const { return static_cast<Index>(faces_.size()); }
   const Face& face(Index face) const { return faces_[face]; }
-  /// Of a face of the mesh.
+  /// Returns the number that a face of the mesh has here.
   Index face_of(Index mesh_face) const { return places_[mesh_face]; }
   /// The half-edge of the mesh that a side is.
   Index halfedge(Index side) const { return 3 * faces_[side / 3].in_mesh + side % 3; }
-  /// Whether paths that bend at the vertex spread from there.
+  /// Tells whether paths that bend at the vertex spread from there.
   static bool bends_much(const Mesh& mesh, Index vertex);
 
  private:

@@ -51,7 +51,7 @@ std::vector<std::uint8_t> others_than(std::vector<std::uint8_t> sites) {
   return sites;
 }
 
-/// Also the neighbors, where all were marked before.
+/// Marks the cells with issues, and their neighbors where all of them were marked before.
 void mark_more(const GeodesicVoronoi& cells, const std::vector<DualIssue>& issues, std::vector<std::uint8_t>& marked) {
   const std::vector<std::uint8_t> before = marked;
   mark(issues, marked);

@@ -5,7 +5,7 @@
 
 namespace saddleback {
 
-/// What became of the faults.
+/// The outcome of an exchange of sites: which faults are left.
 struct Exchange {
   Index moved = 0;              ///< sites
   std::vector<DualIssue> left;  ///< empty: the dual is a triangulation

@@ -8,7 +8,7 @@
 
 namespace saddleback {
 
-/// How far a relaxation has come.
+/// The record of a relaxation so far.
 struct RelaxationLog {
   std::vector<double> energy;  ///< of the start and after each step
   int iterations = 0;
@@ -17,7 +17,7 @@ struct RelaxationLog {
   std::string stop_reason;  ///< as CentroidalVoronoi's; empty while there may be another step
 };
 
-/// Of sites that have not moved yet.
+/// Returns the log of sites that have not moved yet.
 RelaxationLog log_of_start(const Relaxation& relaxation);
 /// One step, or the reason why there is none. \throw Cancelled, nothing changed.
 void take_step(Relaxation& relaxation, const CentroidalVoronoiOptions& options, const JobStage& stage,

@@ -9,7 +9,7 @@
 namespace saddleback {
 namespace {
 
-/// Which cells meet which, and in threes. Beyond the mesh's boundary lies one more cell, so that the dual has none.
+/// The pairs and triples of cells that meet. Beyond the mesh's boundary lies one more cell, so that the dual has none.
 class Neighborhoods {
  public:
   explicit Neighborhoods(const GeodesicVoronoi& cells) : neighbors_(cells.sites.size() + 1) {
@@ -57,7 +57,7 @@ class Neighborhoods {
     neighbors_[a].push_back(b);
     neighbors_[b].push_back(a);
   }
-  /// Where more than three meet, any three do.
+  /// Adds the triples of the cells about a point: where more than three meet, any three do.
   void add_triples(const std::vector<Index>& around) {
     for (std::size_t i = 0; i < around.size(); ++i) {
       for (std::size_t j = i + 1; j < around.size(); ++j) {
@@ -75,7 +75,7 @@ class Neighborhoods {
     std::ranges::sort(triple);
     return std::ranges::binary_search(triples_, triple);
   }
-  /// Whether two neighbors of a cell meet a fourth one that does not meet it.
+  /// Tells whether two neighbors of a cell meet a fourth one that does not meet it.
   bool meet_beyond(Index cell, Index a, Index b) const {
     const auto outside = static_cast<Index>(neighbors_.size()) - 1;
     return std::ranges::any_of(of(a == outside ? b : a), [&](Index other) {

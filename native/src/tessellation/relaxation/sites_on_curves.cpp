@@ -114,7 +114,7 @@ std::vector<double> HeldSites::move(const std::vector<double>& along, const Surf
 
 namespace {
 
-/// Along a curve in units of what neighbors in even cells are apart, at the ends of its segments.
+/// Returns positions along a curve, at the ends of its segments, in units of the distance of neighbors in even cells.
 std::vector<double> wanted_spacings(const SurfaceCurve& curve, std::span<const double> density, double mass,
                                     Index count) {
   const Mesh& mesh = curve.mesh();

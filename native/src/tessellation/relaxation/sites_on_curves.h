@@ -10,8 +10,8 @@
 
 namespace saddleback {
 
-/// Which sites are held on which curves, and how they move there. Where on its curve each site is, is told by its arc
-/// length: `along`, (n,), unused for sites that are free.
+/// The sites that are held on curves, and how they move there. A site's place on its curve is given by its arc length:
+/// `along`, (n,), unused for sites that are free.
 class HeldSites {
  public:
   /// No curves: all sites are free. The curves must outlive this object. \throw InputError for curves of another mesh,
