@@ -11,7 +11,7 @@ fraction then starts from 0. Once cancelled it stays cancelled.)")
       .def(py::init([] { return std::make_unique<Job>(); }))
       .def_property_readonly("fraction", &Job::fraction,
                              "Share of the work done, 0 to 1, never falling during one call.")
-      .def_property_readonly("text", &Job::text, "What is being done, for a person to read.")
+      .def_property_readonly("text", &Job::text, "The work being done, for a person to read.")
       .def_property_readonly("cancelled", &Job::cancelled, "True once `cancel` was called.")
       .def("cancel", &Job::cancel, "Ask the work to stop: within 0.1 s its call raises `Cancelled`.")
       .def("__repr__", [](const Job& job) {

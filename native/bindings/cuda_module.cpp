@@ -64,7 +64,7 @@ PYBIND11_MODULE(_saddleback_cuda, module) {
   module.attr("functions") = py::capsule(&functions);
   module.def("cuda_devices", &saddleback::cuda_devices, py::call_guard<py::gil_scoped_release>());
   module.def("plane_signs", &plane_signs, py::arg("points"), py::arg("device") = 0,
-             R"(What a device decides of each four points; for tests.
+             R"(Returns what a device decides about each four points; for tests.
 
 Parameters
 ----------

@@ -91,7 +91,7 @@ def warnings_of(laid: Laid, mapped: Any, settings: DistributeSettings) -> tuple[
 
 
 def no_room(laid: Laid) -> str:
-    """Why not one shape is there, and what to do."""
+    """Says why not one shape is there, and what to do."""
     causes = _causes(laid)
     return (
         f"no shape found room at a radius of {laid.size:.3g}{f' (tries refused: {causes})' if causes else ''}; make "
@@ -100,7 +100,7 @@ def no_room(laid: Laid) -> str:
 
 
 def too_small(size: float) -> str:
-    """Why shapes of such a size are not laid."""
+    """Says why shapes of such a size are not laid."""
     return (
         f"at a radius of {size:.3g} there is room for more than {MOST_ROOM / 1e6:.0f} million shapes, too many to look "
         "for; make them larger, or vary their sizes less"
@@ -130,7 +130,7 @@ def refusal(text: str, templates: Sequence[ShapeTemplate]) -> str:
 
 
 def outline_refusal(text: str) -> str:
-    """Why the library takes no outline or image, in the artist's words."""
+    """Says why the library takes no outline or image, in the artist's words."""
     if "meets the edge" in text:
         return "its outline crosses or touches itself, or another of its outlines; pull them apart"
     if "no pixel is over" in text:

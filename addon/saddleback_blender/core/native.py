@@ -31,7 +31,7 @@ def load() -> Any:
 
 
 def problem() -> str:
-    """Why the native library cannot be used, or "" when it can."""
+    """Says why the native library cannot be used, or "" when it can."""
     try:
         load()
     except NativeMissingError as error:

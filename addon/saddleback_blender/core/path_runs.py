@@ -75,7 +75,7 @@ class _Ways(Protocol):
 
 
 class _GraphWays:
-    """Over the arcs of a distance graph, pulled straight where that is asked for."""
+    """Finds ways over the arcs of a distance graph, pulled straight where that is asked for."""
 
     def __init__(self, graph: Any, shorten: bool) -> None:
         self._graph, self._shorten = graph, shorten

@@ -37,7 +37,7 @@ class Progress:
 
     @property
     def text(self) -> str:
-        """What is being done, for a person to read; dots behind it move while work goes on that cannot be counted."""
+        """Returns the work being done, for a person to read; dots behind it move during work that cannot be counted."""
         beat = int(BEATS * time.monotonic())
         if beat != self._beat and self._has_checked:
             self._dots, self._has_checked = self._dots + 1, False

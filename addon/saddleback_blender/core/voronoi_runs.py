@@ -69,7 +69,7 @@ class _Sites:
         return cls(space.chart.corners[corner], (corner // 3).astype(np.int32), np.eye(3)[corner % 3])
 
     def moved(self, space: Space, places: Reals) -> _Sites:
-        """Those that stay on the surface go to their new places, the others stay."""
+        """Moves the sites that stay on the surface to their new places; the others stay."""
         found, inside = space.chart.locate(places)
         kept = np.where(inside[:, None], places, self.places)
         if self.faces is None or self.barycentric is None:

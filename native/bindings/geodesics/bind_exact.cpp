@@ -43,7 +43,7 @@ One core; about O(V^1.5) time, some 600 bytes a vertex while it runs. J. Chen, Y
 1990; S.-Q. Xin, G.-J. Wang: Improving Chen and Han's algorithm on the discrete geodesic problem, ACM Transactions on
 Graphics 28(4), 2009.)";
 
-constexpr const char* k_nearest_doc = R"(As exact_distances, and which source is nearest.
+constexpr const char* k_nearest_doc = R"(Returns exact distances, and which source is nearest.
 
 Returns
 -------

@@ -170,10 +170,10 @@ void bind_graph(py::module_& m) {
             return graph.accuracy() > 0 ? py::object(py::float_(graph.accuracy())) : py::none();
           },
           "Largest relative error accepted; None when built otherwise.")
-      .def_property_readonly("is_exact", &SaddleVertexGraph::is_exact, "Whether distances between vertices are exact.")
+      .def_property_readonly("is_exact", &SaddleVertexGraph::is_exact, "True if distances between vertices are exact.")
       .def_property_readonly(
           "device", [](const SaddleVertexGraph& graph) { return graph.built_by_cuda() ? "cuda" : "cpu"; },
-          "Which device found the arcs: \"cpu\" or \"cuda\".")
+          "The device that found the arcs: \"cpu\" or \"cuda\".")
       .def_property_readonly(
           "device_times",
           [](const SaddleVertexGraph& graph) -> py::object {

@@ -94,7 +94,7 @@ Notes:
     O(n sqrt(n) log n) for n vertices within the radius.
 )";
 
-constexpr const char* k_exp_map_doc = R"(Where straightest geodesics from a point end: the inverse of `log_map`.
+constexpr const char* k_exp_map_doc = R"(Returns where straightest geodesics from a point end: the inverse of `log_map`.
 
 Args:
     center: a vertex or one surface point.
@@ -186,7 +186,7 @@ void bind_geodesic_paths(py::module_& m) {
       .def_property_readonly("points", view_of_member(&GeodesicPaths::points),
                              "(n, 3) float64: points of all paths in space.")
       .def_property_readonly(
-          "surface", [](const GeodesicPaths& paths) { return paths.surface; }, "The same points as a SurfacePoints.")
+          "surface", [](const GeodesicPaths& paths) { return paths.surface; }, "These points as a SurfacePoints.")
       .def_property_readonly("offsets", view_of_member(&GeodesicPaths::offsets), "(paths + 1,) int64.")
       .def_property_readonly("lengths", view_of_member(&GeodesicPaths::lengths),
                              "(paths,) float64: mesh units; inf where no source reaches.")
@@ -329,7 +329,7 @@ void bind_curve(py::module_& m) {
       .def(py::init(&make_curve), py::arg("mesh"), py::arg("points"), py::arg("closed") = false, py::keep_alive<1, 2>())
       .def_property_readonly(
           "points", [](const SurfaceCurve& curve) { return curve.points(); }, "The points as a SurfacePoints.")
-      .def_property_readonly("closed", &SurfaceCurve::closed, "Whether the curve runs on to its first point.")
+      .def_property_readonly("closed", &SurfaceCurve::closed, "True if the curve runs on to its first point.")
       .def_property_readonly("length", &SurfaceCurve::length, "Mesh units.")
       .def("__len__", [](const SurfaceCurve& curve) { return curve.points().size(); })
       .def("__repr__", [](const SurfaceCurve& curve) {

@@ -59,7 +59,7 @@ Interactive Hausdorff distance computation for general polygonal models, 2009.)"
 
 void bind_hausdorff_distance(py::module_& m) {
   py::class_<Hausdorff>(m, "HausdorffDistance", py::module_local(),
-                        "How far two surfaces are from each other; made by `hausdorff_distance`.")
+                        "The distance of two surfaces from each other; made by `hausdorff_distance`.")
       .def_property_readonly("distance", &Hausdorff::distance, "The greater of the two.")
       .def_property_readonly(
           "from_first", [](const Hausdorff& h) { return h.of_first.distance; },

@@ -68,7 +68,7 @@ after [barequet1995].)";
 
 void bind_repair(py::module_& m) {
   py::class_<RepairReport, std::shared_ptr<RepairReport>>(m, "RepairReport", py::module_local(),
-                                                          "What a repair did; `str` of it is a sentence.")
+                                                          "The changes of a repair; `str` of it is a sentence.")
       .def_property_readonly(
           "changes", &changes_of,
           "dict of str to int: how often each kind of change was made; kinds that did not occur are absent.")

@@ -205,7 +205,7 @@ void bind_paths(py::module_& m) {
           },
           "(n, 3) float64: points in space.")
       .def_property_readonly(
-          "surface", [](const GeodesicPath& path) { return path.surface; }, "The same points as a SurfacePoints.")
+          "surface", [](const GeodesicPath& path) { return path.surface; }, "These points as a SurfacePoints.")
       .def_readonly("length", &GeodesicPath::length, "Length of the curve, mesh units.")
       .def("__repr__", [](const GeodesicPath& path) {
         return message("<GeodesicPath: ", path.points.size(), " points, length ", path.length, ">");

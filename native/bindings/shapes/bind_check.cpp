@@ -8,7 +8,7 @@
 namespace saddleback::bindings {
 namespace {
 
-constexpr const char* k_check_doc = R"(Whether shapes on a surface collide, found out in other ways than they were laid.
+constexpr const char* k_check_doc = R"(Finds whether shapes on a surface collide, in other ways than they were laid.
 
 Outlines: all pairs of pieces in each face by exact predicates; a common point of two shapes is a fault. Nesting: which
 shape each vertex lies in, spread from the edges that outlines cross, and on which side a point of every other outline is.
@@ -121,7 +121,7 @@ std::string text_of(const Checked& self) {
 
 void bind_check(py::module_& m) {
   py::class_<Checked>(m, "CheckReport", py::module_local(),
-                      "What `check_distribution` found; true when nothing is wrong.")
+                      "The findings of `check_distribution`; true when nothing is wrong.")
       .def_property_readonly(
           "ok", [](const Checked& self) { return self.report.fault_count == 0; }, "No fault at all.")
       .def_property_readonly(
@@ -130,7 +130,7 @@ void bind_check(py::module_& m) {
           "1000 at most. Kinds: \"crossing\", \"nesting\", \"covered_twice\" of two shapes; "
           "\"not_laid\", \"open\", \"overturned\", \"incomplete\" of one.")
       .def_property_readonly(
-          "fault_count", [](const Checked& self) { return self.report.fault_count; }, "How many there are.")
+          "fault_count", [](const Checked& self) { return self.report.fault_count; }, "Number of these.")
       .def_property_readonly(
           "coverage", [](const Checked& self) { return self.report.coverage; },
           "Share of the surface that lies in shapes, by the samples.")
@@ -139,7 +139,7 @@ void bind_check(py::module_& m) {
           "Its standard deviation, were the samples independent.")
       .def_property_readonly(
           "patch_coverage", [](const Checked& self) { return self.report.patch_coverage; },
-          "The same share by the areas of the patches.")
+          "This share by the areas of the patches.")
       .def_property_readonly(
           "stretch", [](const Checked& self) { return py::make_tuple(self.report.smallest, self.report.largest); },
           "Smallest and largest singular value of the maps, by the triangles of the patches.")

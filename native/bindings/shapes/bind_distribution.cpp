@@ -195,15 +195,17 @@ py::dict rejections_of(const Distribution& self) {
 }
 
 void bind_certificate(py::module_& m) {
-  py::class_<Certificate>(m, "Certificate", py::module_local(),
-                          "That nothing more fits: whatever is laid anywhere comes nearer to a copy than `tolerance`.")
+  py::class_<Certificate>(
+      m, "Certificate", py::module_local(),
+      "A proof that nothing more fits: whatever is laid anywhere comes nearer to a copy than `tolerance`.")
       .def_readonly("tolerance", &Certificate::tolerance,
                     "Mesh units: of the largest shape where sizes are largest; elsewhere it is less.")
       .def_readonly("cells", &Certificate::cells, "Tests of a cell of the surface.")
       .def_readonly("leaves", &Certificate::leaves,
                     "Cells over which a copy can move by the tolerance at most, and at whose center none fits.")
-      .def_readonly("uncertified_area", &Certificate::uncertified_area,
-                    "Of cells that it cannot tell about: around singularities, and where the surface bends too much.")
+      .def_readonly(
+          "uncertified_area", &Certificate::uncertified_area,
+          "Area of the cells that it cannot decide: around singularities, and where the surface bends too much.")
       .def_readonly("uncertified", &Certificate::uncertified, "SurfacePoints: the centers of those cells.")
       .def("__repr__", [](const Certificate& self) {
         return message("<Certificate: tolerance ", self.tolerance, ", ", self.cells, " cells, ", self.leaves,

@@ -140,7 +140,7 @@ Notes:
     After [botsch2004], with one constraint a place.
 )";
 
-constexpr const char* k_curvature_doc = R"(How the surface bends at each vertex.
+constexpr const char* k_curvature_doc = R"(Finds how the surface bends at each vertex.
 
 From the change of vertex normals over each face, averaged about vertices [rusinkiewicz2004]. O(F).
 
@@ -364,7 +364,7 @@ void bind_direction_field(py::module_& m) {
            "(n, 3) float64: the field at vertices or SurfacePoints, unit vectors in the planes of the points' faces; "
            "continuous but at vertices, about which it turns evenly (there a mean is given).")
       .def("turned", &DirectionField::turned, py::arg("angle"), py::keep_alive<0, 1>(),
-           "The same field turned everywhere by an angle, radians counter-clockwise.")
+           "Returns the field turned everywhere by an angle, radians counter-clockwise.")
       .def("__repr__", [](const DirectionField& field) {
         return message("<DirectionField: symmetry ", field.symmetry(), ", ", field.angles().size(), " faces, ",
                        field.singularities().size(), " singularities>");
@@ -378,8 +378,8 @@ void bind_strokes(py::module_& m) {
              return Stroke{py::cast<const SurfaceCurve&>(curve), hard, as_real(weight, "weight")};
            }),
            py::arg("curve"), py::arg("hard") = false, py::arg("weight") = 1.0, py::keep_alive<1, 2>())
-      .def_readonly("hard", &Stroke::is_hard, "Whether it is met exactly.")
-      .def_readonly("weight", &Stroke::weight, "Of a soft stroke.");
+      .def_readonly("hard", &Stroke::is_hard, "True if it is met exactly.")
+      .def_readonly("weight", &Stroke::weight, "Weight of a soft stroke.");
 }
 
 /// A curve that knows why it ends.
@@ -420,10 +420,10 @@ void bind_streamline(py::module_& m) {
       .def_readonly("start", &StreamlinePath::start, "Index of the point that it was started from.")
       .def_property_readonly(
           "begin_reason", [](const StreamlinePath& line) { return name_of(line.begin_reason); },
-          "Why it goes no farther back: \"length\", \"boundary\" or \"singularity\".")
+          "The reason why it goes no farther back: \"length\", \"boundary\" or \"singularity\".")
       .def_property_readonly(
           "end_reason", [](const StreamlinePath& line) { return name_of(line.end_reason); },
-          "Why it goes no farther ahead.");
+          "The reason why it goes no farther ahead.");
   m.def("streamline", &follow, py::arg("mesh"), py::arg("field"), py::arg("start"), py::arg("length"),
         py::arg("both") = false, py::kw_only(), py::arg("heading") = py::none(),
         py::arg("max_curvature") = std::numeric_limits<double>::infinity(), py::arg("job") = py::none(),
@@ -468,7 +468,7 @@ void bind_fields(py::module_& m) {
            py::arg("mesh"), py::arg("symmetry") = 1)
       .def("field", &edit, py::arg("singularities") = py::none(), py::arg("strokes") = py::tuple(),
            py::arg("align") = "none", py::kw_only(), py::arg("loop_indices") = py::none(),
-           py::arg("align_weight") = 1.0, py::arg("job") = py::none(), "As `direction_field`.");
+           py::arg("align_weight") = 1.0, py::arg("job") = py::none(), "Finds a field as `direction_field` does.");
   m.def("direction_field", &field_of, py::arg("mesh"), py::arg("symmetry") = 1, py::arg("singularities") = py::none(),
         py::arg("strokes") = py::tuple(), py::arg("align") = "none", py::kw_only(),
         py::arg("loop_indices") = py::none(), py::arg("align_weight") = 1.0, py::arg("job") = py::none(),

@@ -16,7 +16,7 @@ Placements as_placements(const py::object& value, const Mesh& mesh, std::size_t 
 
 namespace {
 
-constexpr const char* k_placements_doc = R"(Where copies of shapes lie on a surface.
+constexpr const char* k_placements_doc = R"(The places of copies of shapes on a surface.
 
 A point (x, y) of a shape's plane is laid at the distance scale * |(x, y)| from the center, in the direction
 angle + atan2(y, x).

@@ -8,7 +8,7 @@ namespace saddleback::bindings {
 namespace {
 
 constexpr const char* k_table_doc =
-    R"(From which distance on two shapes in the plane are certainly apart, at any angles and scales.
+    R"(Distances from which on two shapes in the plane are certainly apart, at any angles and scales.
 
 Two shapes slid together from afar first meet where their fronts do. The table keeps fronts over whole ranges of angles (720
 to a turn) and strips (256 to a shape), so that what it tells can only be too large: by about one percent, by up to

@@ -78,7 +78,7 @@ Raises:
     Cancelled: the job was.
 )";
 
-constexpr const char* k_attributes_doc = R"(What each vertex of the mesh knows of the shapes.
+constexpr const char* k_attributes_doc = R"(Returns attributes of the mesh's vertices by the shapes near them.
 
 Args:
     reach: distance from the outlines, mesh units, up to which vertices outside of shapes count, too.
@@ -483,7 +483,8 @@ void bind_products(py::module_& m) {
             return view_of(std::span<const Index>(py::cast<const CutSurface&>(self).cut.triangle_shape), self);
           },
           "(m,) int32: placement whose shape it lies in, -1 outside of all.");
-  py::class_<ShapeAttributes>(m, "ShapeAttributes", py::module_local(), "What vertices know of the shapes about them.")
+  py::class_<ShapeAttributes>(m, "ShapeAttributes", py::module_local(),
+                              "Attributes of vertices by the shapes near them.")
       .def_property_readonly(
           "placement",
           [](const py::object& self) {
@@ -521,7 +522,7 @@ void bind_shape_maps(py::module_& m) {
       .def("outline", &outline_points, py::arg("i"),
            "List of (k, 3) float64: the loops of a placement's outline on the surface, closed, straight in every face.")
       .def("outline_surface", &outline_surface, py::arg("i"),
-           "The same as SurfacePoints; consecutive points share the face of the first.")
+           "These points as SurfacePoints; consecutive ones share the face of the first.")
       .def("conform", &conform_one, py::arg("vertices"), py::arg("i"), k_conform_doc)
       .def("bend", &bend_all, py::arg("solids"), py::arg("tolerance") = 0.01, py::kw_only(), py::arg("threads") = 0,
            py::arg("job") = py::none(), k_bend_doc)

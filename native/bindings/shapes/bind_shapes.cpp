@@ -24,7 +24,7 @@ std::vector<Shape> as_shapes(const py::object& value, const char* argument) {
 namespace {
 
 constexpr const char* k_shape_doc =
-    R"(What is laid on a surface: a flat outline of one or several parts, with or without holes.
+    R"(A shape to lay on a surface: a flat outline of one or several parts, with or without holes.
 
 The origin of its plane lies at the center of a placement, its x axis points along the field.
 
@@ -173,9 +173,9 @@ void bind_shapes(py::module_& m) {
       .def_property_readonly("circumradius", &Shape::circumradius, "Distance of the farthest corner from the origin.")
       .def_property_readonly("inradius", &Shape::inradius,
                              "Radius of the largest disk about the origin within; 0 when the origin is outside.")
-      .def_property_readonly("area", &Shape::area, "Of all parts, holes left out.")
+      .def_property_readonly("area", &Shape::area, "Area of all parts, holes left out.")
       .def_property_readonly("has_half_turn", &Shape::has_half_turn,
-                             "Whether half a turn about the origin changes nothing.")
+                             "True if half a turn about the origin changes nothing.")
       .def("contains", &contains, py::arg("points"), "(n,) bool for (n, 2) points of the plane.")
       .def(
           "moved",
@@ -184,12 +184,12 @@ void bind_shapes(py::module_& m) {
             return self.moved(as_real(scale, "scale"), as_real(angle, "angle"), {by.values[0], by.values[1]});
           },
           py::arg("scale") = 1.0, py::arg("angle") = 0.0, py::arg("shift") = py::make_tuple(0.0, 0.0),
-          "Scaled, then turned counter-clockwise (radians), then shifted.")
+          "Returns the shape scaled, then turned counter-clockwise (radians), then shifted.")
       .def(
           "overlaps",
           [](const Shape& self, const py::object& other) { return self.overlaps(as_shape(other, "other")); },
-          py::arg("other"), "Whether the two have a common point, outlines included; exact.")
-      .def("mirrored", &Shape::mirrored, "The shape with y negated.")
+          py::arg("other"), "Tells exactly whether the two have a common point, outlines included.")
+      .def("mirrored", &Shape::mirrored, "Returns the shape with y negated.")
       .def(
           "centered",
           [](const Shape& self, const py::object& radius) { return self.centered(as_real(radius, "radius")); },

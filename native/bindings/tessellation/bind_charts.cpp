@@ -138,7 +138,7 @@ void bind_lifted(py::module_& m) {
           "(m, 3) float64: the points of all edges' polylines, one after another.")
       .def_property_readonly(
           "edge_surface", [](const Lifted& l) { return taken(l.result.points, l.result.edge_points); },
-          "The same as SurfacePoints; consecutive ones of a polyline share a face.")
+          "These points as SurfacePoints; consecutive ones of a polyline share a face.")
       .def_property_readonly("edge_offsets", &array<&LiftedVoronoi::edge_offsets>,
                              "(e + 1,) int32: polyline i is [offsets[i], offsets[i + 1]).")
       .def_property_readonly("edge_of", &array<&LiftedVoronoi::edge_of>,

@@ -37,7 +37,7 @@ TriangleQuality measure(const py::object& vertices, const py::object& triangles)
 }
 
 void bind_issue(py::module_& m) {
-  py::class_<DualIssue>(m, "DualIssue", py::module_local(), "Where cells have no triangulation as their dual.")
+  py::class_<DualIssue>(m, "DualIssue", py::module_local(), "A place where cells have no triangulation as their dual.")
       .def_property_readonly(
           "kind", [](const DualIssue& issue) { return to_string(issue.kind); },
           "\"not_a_disk\", \"two_borders\", \"closed_boundary\", \"double_boundary\", \"cell_meets_itself\" or "
@@ -88,7 +88,7 @@ void bind_dual(py::module_& m) {
                              "cells' distances say. As `GeodesicVoronoi.dual_paths` within the accuracy of those. "
                              "Found when first asked for, O(faces crossed) each.")
       .def_readonly("issues", &Dual::issues, "List of DualIssue; empty: a triangulation of the surface.")
-      .def_readonly("added", &Dual::added, "How many sites repair added.")
+      .def_readonly("added", &Dual::added, "Number of sites that repair added.")
       .def_readonly("euler_characteristic", &Dual::euler_characteristic, "Vertices - edges + triangles.")
       .def("__iter__",
            [](const py::object& self) {
@@ -117,9 +117,9 @@ void bind_dual_mesh(py::module_& m) {
       .def_readonly("irregular", &Quality::irregular,
                     "Share of vertices whose valence is not 6 (on the boundary not 4).")
       .def_property_readonly(
-          "mean_quality", [](const Quality& q) { return mean(q.quality); }, "Of the triangles.")
+          "mean_quality", [](const Quality& q) { return mean(q.quality); }, "Mean quality of the triangles.")
       .def_property_readonly(
-          "min_quality", [](const Quality& q) { return least(q.quality); }, "Of the triangles.")
+          "min_quality", [](const Quality& q) { return least(q.quality); }, "Least quality of the triangles.")
       .def_property_readonly(
           "mean_angle", [](const Quality& q) { return mean(q.least_angle); }, "Mean of the least angles, radians.")
       .def_property_readonly(

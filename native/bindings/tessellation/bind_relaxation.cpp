@@ -206,9 +206,10 @@ void bind_relaxation(py::module_& m) {
       .def_property_readonly(
           "sites", [](const RelaxationStep& step) { return step.sites; }, "(n,) SurfacePoints.")
       .def_property_readonly(
-          "iterations", [](const RelaxationStep& step) { return step.iterations; }, "How many were done; 0: the start.")
+          "iterations", [](const RelaxationStep& step) { return step.iterations; },
+          "Number of iterations done; 0: the start.")
       .def_property_readonly(
-          "energy", [](const RelaxationStep& step) { return step.energy; }, "As in `CentroidalVoronoi.energy`.");
+          "energy", [](const RelaxationStep& step) { return step.energy; }, "Energy as in `CentroidalVoronoi.energy`.");
   py::class_<RelaxationWatch>(m, "RelaxationWatch", py::module_local(),
                               R"(Shows the sites of a relaxation while it goes on in another thread.
 
@@ -254,10 +255,10 @@ the same to the bit. About 1 KB a vertex, and the graph, are kept.)")
           "\"closed_ball\" where no more steps kept the dual a triangulation.")
       .def_property_readonly(
           "exchanged", [](const Relaxed& r) { return r.result.exchanged; },
-          "How many sites `closed_ball` moved to where the dual's topology needs them.")
+          "Number of sites that `closed_ball` moved to where the dual's topology needs them.")
       .def_property_readonly(
           "issues", [](const Relaxed& r) { return r.result.issues; },
-          "With `closed_ball`, a list of DualIssue: where the cells' dual is no triangulation all the same.")
+          "List of DualIssue, with `closed_ball`: where the cells' dual is no triangulation all the same.")
       .def_property_readonly(
           "held",
           [](const Relaxed& r) {

@@ -309,7 +309,7 @@ void bind_tessellation(py::module_& m) {
           },
           "(m, 3) float64: positions along the polyline; a closed one repeats its first point.")
       .def_property_readonly(
-          "surface", [](const VoronoiEdge& e) { return e.surface; }, "The same as SurfacePoints.")
+          "surface", [](const VoronoiEdge& e) { return e.surface; }, "These points as SurfacePoints.")
       .def_property_readonly(
           "cells", [](const VoronoiEdge& e) { return py::make_tuple(e.cells[0], e.cells[1]); },
           "The cells on the left and on the right.")
@@ -348,7 +348,7 @@ void bind_tessellation(py::module_& m) {
                              "(V,) int32: nearest site; ties: the smaller.")
       .def_property_readonly(
           "device", [](const Cells& c) { return c.by_cuda ? "cuda" : "cpu"; },
-          "Which device found the vertices' nearest sites: \"cpu\" or \"cuda\".")
+          "The device that found the vertices' nearest sites: \"cpu\" or \"cuda\".")
       .def_property_readonly("vertex_distance", &array_of<&GeodesicVoronoi::vertex_distance>,
                              "(V,) float64: distance to it, mesh units.")
       .def_property_readonly("areas", &array_of<&GeodesicVoronoi::areas>, "(n,) float64: they sum to the mesh's area.")
@@ -358,7 +358,7 @@ void bind_tessellation(py::module_& m) {
           "(m, 3) float64: the points of all edges, one after another.")
       .def_property_readonly(
           "edge_surface", [](const Cells& c) { return points_at(c.diagram, c.diagram.edge_points); },
-          "The same as SurfacePoints.")
+          "These points as SurfacePoints.")
       .def_property_readonly("edge_offsets", &array_of<&GeodesicVoronoi::edge_offsets>,
                              "(e + 1,) int32: edge i is [offsets[i], offsets[i + 1]).")
       .def_property_readonly(

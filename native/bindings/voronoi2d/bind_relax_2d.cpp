@@ -116,8 +116,8 @@ void bind_relax_2d(py::module_& m) {
           [](const py::object& self) { return view_of(std::span(py::cast<const Relaxation2d&>(self).energy), self); },
           "(iterations + 1,) float64: of the start and after each iteration; never rises.")
       .def_readonly("iterations", &Relaxation2d::iterations, "Steps done.")
-      .def_readonly("converged", &Relaxation2d::converged, "Whether the sites rest.")
-      .def_readonly("stop_reason", &Relaxation2d::stop_reason, "Why it ended.")
+      .def_readonly("converged", &Relaxation2d::converged, "True if the sites rest.")
+      .def_readonly("stop_reason", &Relaxation2d::stop_reason, "The reason why it ended.")
       .def("__repr__", [](const Relaxation2d& r) {
         return message("<saddleback.Relaxation2d of ", r.sites.size(), " sites after ", r.iterations, " iterations>");
       });

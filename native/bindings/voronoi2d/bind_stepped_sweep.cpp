@@ -113,7 +113,7 @@ constexpr const char* k_edges_doc =
 }  // namespace
 
 void bind_stepped_sweep(py::module_& m) {
-  py::class_<Event>(m, "SweepEvent", py::module_local(), "What happened in a step of a SweepCircle.")
+  py::class_<Event>(m, "SweepEvent", py::module_local(), "An event in a step of a SweepCircle.")
       .def_property_readonly(
           "kind", [](const Event& e) { return e.is_touch ? "touch" : "vanish"; },
           "\"touch\": the circle reached a site. \"vanish\": an arc shrank to a vertex.")

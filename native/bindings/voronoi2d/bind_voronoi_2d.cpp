@@ -281,7 +281,7 @@ void bind_voronoi_2d(py::module_& m) {
           py::arg("edge"), py::arg("tolerance"), py::arg("extent") = 0.0, k_polyline_doc)
       .def_property_readonly(
           "device", [](const Diagram& d) { return d.result.device_times ? "cuda" : "cpu"; },
-          "Which device found the diagram: \"cpu\" or \"cuda\".")
+          "The device that found the diagram: \"cpu\" or \"cuda\".")
       .def_property_readonly(
           "device_times",
           [](const Diagram& d) {

@@ -26,7 +26,7 @@ def active_object(context: bpy.types.Context) -> Any:
 
 
 def why_not(context: bpy.types.Context) -> str:
-    """Why no operator can run on the active object, or "". Cheap enough to be asked at every redraw."""
+    """Says why no operator can run on the active object, or "". Cheap enough to be asked at every redraw."""
     active = active_object(context)
     if active is None:
         return "Choose a mesh object first: there is no active object"
