@@ -20,7 +20,7 @@ constexpr double k_tolerance = 5e-6;
 // 1e-4 of its distance at most. Of sites that are nearer to each other rounding alone would say which is nearest.
 constexpr double k_same_place = 1e-10;
 
-/// Of each component, times the extent in space.
+/// Returns for each component the distance within which places count as one: a share of its extent in space.
 std::vector<double> limits_of_places(const Mesh& mesh) {
   std::vector<Eigen::AlignedBox3d> boxes(mesh.component_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) boxes[mesh.component_of(v)].extend(mesh.position(v));
@@ -66,7 +66,8 @@ Mesh mesh_of(const ExactParts& parts, const JobStage& stage) {
   return {xyz, triangles, stage};
 }
 
-/// From points and pieces of the parts to those of the faces. Added vertices of the parts come last among the points.
+/// Leads from points and pieces of the parts to those of the faces. Added vertices of the parts come last among the
+/// points.
 class InFaces {
  public:
   InFaces(const ExactParts& parts, GeodesicVoronoi& diagram)
@@ -108,7 +109,8 @@ class InFaces {
   static SurfacePoint in_face(const FaceRefinement::Part& part, const Vec3& x) {
     return {part.face, x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2]};
   }
-  /// In the parts: the mesh's vertices, the added ones, the points. In the faces: the points before the added ones.
+  /// Returns a vertex's number among the faces. The parts number the mesh's vertices, the added ones, then the points;
+  /// the faces number the points before the added ones.
   Index vertex_of(Index vertex) const {
     const Index of_mesh = mesh_.vertex_count(), of_parts = parts_.refinement().vertex_count();
     if (vertex < of_mesh) return vertex;

@@ -142,7 +142,8 @@ void copy_claims(const FaceClaims& claims, GeodesicVoronoi& out) {
   }
 }
 
-/// By how much the squared distance to a point of a face is below the interpolation of its values at the corners.
+/// Returns by how much the squared distance to a point of a face is below the interpolation of its values at the
+/// corners.
 double bulge_at(const Mesh& mesh, const SurfacePoint& point) {
   double bulge = 0;
   for (int i = 0; i < 3; ++i) {

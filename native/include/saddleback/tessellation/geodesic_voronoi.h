@@ -25,7 +25,7 @@ struct SplitMesh {
   std::vector<Index> vertex_origin;  ///< vertex of the original mesh, k_none for added ones
 };
 
-/// Where a point of the surface belongs.
+/// The cell to which a point of the surface belongs.
 struct CellAt {
   Index cell;
   double distance;  ///< from the cell's site
@@ -51,8 +51,8 @@ struct GeodesicVoronoi {
   std::vector<double> vertex_distance;  ///< (V,) from it
   std::vector<double> areas;            ///< (n,) they sum to the mesh's area
 
-  /// Where cell boundaries cross mesh edges or meet; of exact cells also where they are bent, and where faces are
-  /// divided.
+  /// The points where cell boundaries cross mesh edges or meet; for exact cells also where boundaries bend and where
+  /// faces are divided.
   SurfacePoints points;
   std::vector<Vec3> positions;         ///< of the points
   std::vector<double> point_distance;  ///< of the points, from the sites that meet there
@@ -92,13 +92,12 @@ struct GeodesicVoronoi {
 GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePoints& sites,
                                  const GeodesicVoronoiOptions& options = {}, Job* job = nullptr);
 
-/// The same by exact distances, as a reference: no graph, and slow. Bisectors are divided so finely that at no point of
-/// a cell another site is nearer by more than 1e-5 of the size of a cell (the square root of the area per site), a
-/// tenth of that where no shortest way bends; straight bisectors are right but for rounding.
+/// Finds the cells by exact distances, as a reference: without a graph, and slowly. Bisectors are divided so finely
+/// that at no point of a cell another site is nearer by more than 1e-5 of the size of a cell (the square root of the
+/// area per site), a tenth of that where no shortest way bends; straight bisectors are right but for rounding.
 /// `vertex_cell` and `locate` are exact up to rounding. Two ways to a site that are equally long may be told apart by
-/// rounding. Sites within 1e-10 of the extent of their part of the mesh of each other are one: the first has
-/// the cell. \throw as
-/// geodesic_voronoi. About O(V^1.5 + points) time.
+/// rounding. Sites within 1e-10 of the extent of their part of the mesh of each other are one: the first has the cell.
+/// \throw as geodesic_voronoi. About O(V^1.5 + points) time.
 GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job = nullptr);
 
 }  // namespace saddleback

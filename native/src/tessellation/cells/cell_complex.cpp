@@ -74,7 +74,7 @@ void CellComplex::divide(Index shared, FacePartition& partition) const {
   partition.build_star({side_of(face, 0), side_of(face, 1), side_of(face, 2)});
 }
 
-/// What the edge says about the face's side, in the face's own direction.
+/// Returns what the edge says about the face's side, in the face's own direction.
 FacePartition::Side CellComplex::side_of(Index face, int side) const {
   const Index h = 3 * face + side, along = edge_halfedge(h);
   const auto& pieces = edges_[edge_index_[along]].pieces;

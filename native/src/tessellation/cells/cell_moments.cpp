@@ -217,7 +217,7 @@ void SharedFace::integrate_two(const FaceShape& shape, const CellClaim& a, const
 /// One straight cut: a corner on one side of it, two on the other.
 template <class Add>
 void SharedFace::cut_in_two(const ClaimedFace& first, const ClaimedFace& second, Add&& add) {
-  constexpr double k_most_of_it = 0.9;  // a smaller rest would lose its digits in a difference
+  constexpr double k_most_of_it = 0.9;  // what is left is too little to be told from a difference
   const FaceShape& shape = first.shape;
   const Vec3 lead = first.squared_distance - second.squared_distance;
   const Cut cut = cut_where_zero(lead);

@@ -38,7 +38,7 @@ class CellIntegrals {
   };
 
  private:
-  /// The same about a node: a third of each face's.
+  /// The integrals about a node: a third of each face's.
   struct Node {
     double weight = 0, bulge = 0, area = 0;
   };

@@ -24,7 +24,8 @@ class FacePartition {
   struct Vertex {
     Vec3 barycentric = Vec3::Zero();
     int side = k_inside;
-    /// That are least here: one at a corner, two on a side in order along it, three inside counter-clockwise.
+    /// The planes that are least here: one at a corner, two on a side in order along it, three inside
+    /// counter-clockwise.
     std::array<Index, 3> planes{k_none, k_none, k_none};
   };
   static constexpr int k_corner = -2, k_inside = -1;  ///< otherwise 0..2: on the side from corner i to corner i+1

@@ -18,11 +18,11 @@ class PatchLog {
   /// Begins with other faces, in increasing order, in the memory of the last. Mesh and faces must outlive it. O(n).
   void begin(std::span<const Index> faces);
 
-  /// From a point of a face of the patch; false when that is none of its faces. O(n log n).
+  /// Finds the log map about a point of a face of the patch; false when the face is not one of the patch's. O(n log n).
   bool run(const SurfacePoint& center);
-  /// From a point near the last one, to all vertices by the ways that led there last: those to a few might be shorter
-  /// on the other side of a vertex, by a square of what the point has moved. False, and then run must be called, where
-  /// the ways are not known to go on from there. O(n).
+  /// Finds the log map about a point near the last one, to all vertices by the ways that led there last: those to a few
+  /// might be shorter on the other side of a vertex, by a square of the point's move. False where the ways are not
+  /// known to go on from the new point; then run must be called. O(n).
   bool run_again(const SurfacePoint& center);
   /// Where the corners of the i-th face lie in the plane, with the axes of SiteMaps. After run.
   const Vec2& log(Index i, int corner) const { return places_[corners_[i][corner]]; }
@@ -42,7 +42,7 @@ class PatchLog {
   struct Foot {
     double x, depth_squared;
   };
-  /// How a vertex was placed.
+  /// The way in which a vertex was placed.
   struct Way {
     Index vertex, edge;  ///< edge: as in edges_, opposite it in a face; k_none: it was known from the start
     Index from;          ///< the vertex before, along a side of the face; k_none: none, straight across the edge

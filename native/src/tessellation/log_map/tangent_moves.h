@@ -11,7 +11,7 @@ namespace saddleback {
 /// A vector in the tangent plane of each site (axes as SiteMaps).
 using TangentField = std::vector<Vec2>;
 
-/// Where sites came to rest, and what the way did to directions.
+/// The places where sites came to rest, and the turns of directions along the way.
 struct Moved {
   SurfacePoints sites;
   TangentField steps;  ///< as made (a boundary may have stopped them), in the new tangent planes

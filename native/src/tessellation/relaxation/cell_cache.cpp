@@ -16,7 +16,8 @@ PointKey key_of(const SurfacePoint& point) {
   return {point.face, point.barycentric[0], point.barycentric[1], point.barycentric[2]};
 }
 
-/// Of each site, the number of one that was at the same place before, in increasing order; k_none where there is none.
+/// Returns for each site the number of one that was at the same place before, in increasing order; k_none where there
+/// is none.
 std::vector<Index> numbers_before(const SurfacePoints& before, const SurfacePoints& now) {
   std::multimap<PointKey, Index> places;
   for (Index i = 0; i < static_cast<Index>(before.size()); ++i) places.emplace(key_of(before[i]), i);

@@ -143,7 +143,7 @@ void Relaxation::go_to(SurfacePoints sites, std::vector<double> along, const Job
   revive_empty_cells(stage);
 }
 
-/// Of the energy by the sites' places: minus twice the first moment. Fixed sites have none.
+/// Returns the gradient of the energy by the sites' places: minus twice the first moment. Fixed sites have none.
 TangentField Relaxation::gradient(const RelaxationState& state) const {
   TangentField field(state.sites.size(), Vec2::Zero());
   for (std::size_t i = 0; i < field.size(); ++i) field[i] = -2 * state.moments[i].moment;

@@ -28,25 +28,25 @@ class Relaxation {
   const SaddleVertexGraph& graph() const { return graph_; }
   const Mesh& mesh() const { return graph_.mesh(); }
   const RelaxationState& state() const { return state_; }
-  /// Neither fixed nor held on a curve.
+  /// Tells whether a site is neither fixed nor held on a curve.
   bool is_free(Index site) const { return !is_fixed_[site] && !held_.is_held(site); }
-  /// From now on these sites, (n,), stay as the fixed ones do, until others are named.
+  /// Keeps these sites, (n,), where they are from now on, as fixed ones, until others are named.
   void rest(std::vector<std::uint8_t> sites);
   /// Of the state's sites: found again where others were looked at last. \throw Cancelled.
   const CellClaims& cells(const JobStage& stage);
   /// Whether the last step that was refused would have moved no site by least_move.
   bool is_at_rest() const { return is_at_rest_; }
-  /// One step that lowers the energy; false when there is none. \throw Cancelled, the state as it was.
+  /// Takes a step that lowers the energy; false when there is none. \throw Cancelled, the state as it was.
   bool advance(const JobStage& stage);
-  /// The same by a step of Lloyd's, whatever the method is.
+  /// Takes a step of Lloyd's that lowers the energy, whatever the method is.
   bool advance_to_centers(const JobStage& stage);
 
-  /// To the center of each cell; none for fixed sites, along their curves for held ones.
+  /// Returns the move of each site to the center of its cell; none for fixed sites, along their curves for held ones.
   TangentField lloyd_direction() const;
   /// Goes along the steps whatever the energy does then: no site out of its cell, fixed ones not at all, held ones
   /// along their curves. Tells the steps as made. \throw Cancelled, the state as it was.
   TangentField go(TangentField steps, const JobStage& stage);
-  /// To other places, of held sites with `along`. \throw Cancelled, the state as it was.
+  /// Moves the sites to other places, held ones with `along`. \throw Cancelled, the state as it was.
   void go_to(SurfacePoints sites, std::vector<double> along, const JobStage& stage);
 
  private:
