@@ -1,5 +1,5 @@
 #pragma once
-// Which device a call runs on.
+// The choice of the device on which a call runs.
 
 #include <string>
 #include <vector>

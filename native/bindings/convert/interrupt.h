@@ -1,5 +1,5 @@
 #pragma once
-// What a call does about jobs and Ctrl-C.
+// The response of calls to jobs and Ctrl-C.
 
 #include <csignal>
 #include <pybind11/pybind11.h>

@@ -5,7 +5,7 @@
 namespace saddleback::bindings {
 namespace {
 
-// What Python's gzip makes of a file: every Python has it, so the library needs none of its own.
+// Uncompresses a file by Python's gzip: every Python has it, so the library needs none of its own.
 std::string uncompressed(const std::string& path, const JobStage& stage) {
   constexpr std::size_t k_block = std::size_t{1} << 20;
   try {

@@ -1,5 +1,6 @@
 #pragma once
-// What can go wrong. Every message is one sentence that names the culprit: which argument, index and value.
+// The errors that the library throws. Every message is one sentence that names the culprit: which argument, index and
+// value.
 
 #include <sstream>
 #include <stdexcept>

@@ -375,7 +375,7 @@ bool GapSampling::is_covered(const CellView& view, const Copy& copy, const Motio
     for (const Neighbor& neighbor : near) {
       const Copy& there = insertion_->settled().copies()[neighbor.copy];
       const Pose pose{neighbor.origin + neighbor.turn * view.place, neighbor.turn * own};
-      // What the grids cannot tell, their distances being rounded up, the exact ones may.
+      // Exact distances may decide what the grids cannot, whose distances are rounded up.
       const double slack =
           std::max(scale * copy.body->distance.slack(), there.placement.scale * there.body->distance.slack());
       const double drift = k_drift * there.bend * scale;

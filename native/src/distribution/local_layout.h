@@ -1,5 +1,5 @@
 #pragma once
-// Where the faces about a copy lie in its plane.
+// The places of the faces about a copy in its plane.
 
 #include <cstdint>
 #include <span>

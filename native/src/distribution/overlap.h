@@ -1,5 +1,5 @@
 #pragma once
-// Whether two shapes, one of which may move a little, certainly have a common point.
+// Tests whether two shapes, one of which may move a little, certainly have a common point.
 
 #include <Eigen/Core>
 

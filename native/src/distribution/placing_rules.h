@@ -1,5 +1,5 @@
 #pragma once
-// What may be laid at a point: which kinds of copies, how turned, how large.
+// The rules for what may be laid at a point: which kinds of copies, how turned, how large.
 
 #include <algorithm>
 #include <memory>

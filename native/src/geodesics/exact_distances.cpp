@@ -17,7 +17,7 @@ namespace {
 constexpr double k_at_vertex = 1e-12;
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr const char* k_text = "Measuring exact distances";
-// Of the time, until the surface is laid out, and until windows are propagated where they are sorted afterwards.
+// Shares of the time until the surface is laid out, and until windows are propagated where they are sorted afterwards.
 constexpr double k_laid_out = 0.05, k_propagated = 0.75;
 
 SurfacePoints snapped_to_vertices(SurfacePoints points) {

@@ -25,7 +25,7 @@ namespace {
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // An arc's stored length is rounded to this; a looser search follows for graphs that round more.
 constexpr double k_rounding = 2e-9;
-// What is laid out beyond an edge 10^12 times shorter is known to so much of its length.
+// The relative error of lengths laid out beyond an edge that is 10^12 times shorter.
 constexpr double k_behind_short_edges = 1e-3;
 // Direction and length of an end's own arc are known to rounding.
 constexpr double k_angle_margin = 1e-7;
@@ -256,7 +256,7 @@ GeodesicPaths shortest_paths(const SaddleVertexGraph& graph, const SurfacePoints
   check_surface_points(graph.mesh(), targets, "targets");
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
   const JobStage stage(job, "Finding paths");
-  // By numbers of nodes that a search expands in the time: a field's, and what a path takes.
+  // The cost of a path, in nodes that the search of a field expands in the same time.
   constexpr double k_cost_of_path = 100;
   const double field_cost = cost_of_fans(graph, sources) + graph.mesh().vertex_count(),
                target_cost = cost_of_fans(graph, targets) + k_cost_of_path * static_cast<double>(targets.size()),

@@ -1,5 +1,5 @@
 #pragma once
-// Whether numbers from a file describe a graph that a builder could have made.
+// Checks whether numbers from a file describe a graph that a builder could have made.
 
 #include <span>
 #include <string>

@@ -18,7 +18,7 @@ namespace {
 
 // A barycentric distance: from nearer to a vertex, rays past it on both sides cannot be told apart.
 constexpr double k_at_vertex = 1e-10;
-// Of the time; then what is found is sorted and written down.
+// The share of the time until all is measured; the results are then sorted and written.
 constexpr double k_measured = 0.97;
 
 /// The center of a map: a vertex where it is as good as one.

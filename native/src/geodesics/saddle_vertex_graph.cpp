@@ -42,11 +42,12 @@ void check_options(const Mesh& mesh, const SaddleVertexGraphOptions& options) {
   if (options.threads < 0) throw InputError(message("threads: wanted 0 (all) or more, got ", options.threads));
 }
 
-// Of the time in which tables are laid, until the end of each: angles unfolded, nodes ordered, tables for waves, the
-// bound of paths. The rest takes the search for a lattice.
+// Shares of the time in which tables are laid, until the end of each: angles unfolded, nodes ordered, tables for waves,
+// the bound of paths. The rest takes the search for a lattice.
 constexpr double k_unfolded = 0.1, k_ordered = 0.16, k_laid_for_waves = 0.86, k_bounded = 0.93;
 
-// Of the time of a build, until tables are laid and until arcs are found; the rest joins them with their reverses.
+// Shares of the time of a build, until tables are laid and until arcs are found; the rest joins them with their
+// reverses.
 constexpr double k_laid = 0.15, k_found = 0.85;
 
 }  // namespace

@@ -11,7 +11,7 @@ Sign turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return orient_2d({a.x(), a.y()}, {b.x(), b.y()}, {c.x(), c.y()});
 }
 
-// Whether c, on the line through a and b, lies between them.
+// Tells whether c, on the line through a and b, lies between them.
 bool is_between(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (c.array() >= a.array().min(b.array())).all() && (c.array() <= a.array().max(b.array())).all();
 }
@@ -27,7 +27,7 @@ struct Edge {
 
 bool is_next(const Edge& e, const Edge& f) { return e.loop == f.loop && (e.corner + 1) % e.corner_count == f.corner; }
 
-// Of two edges that share a corner: whether the second goes back over the first.
+// Tells, of two edges that share a corner, whether the second goes back over the first.
 bool folds_back(const Edge& e, const Edge& f) {
   if (turn(e.a, e.b, f.b) != Sign::zero) return false;
   return is_between(e.a, e.b, f.b) || is_between(f.a, f.b, e.a);

@@ -1,5 +1,5 @@
 #pragma once
-// How a curve on a surface bends within it.
+// The bending of a curve on a surface within it.
 
 #include <span>
 #include <vector>

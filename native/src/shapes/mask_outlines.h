@@ -1,5 +1,5 @@
 #pragma once
-// Where an image passes one half.
+// The outlines along which an image passes one half.
 
 #include <vector>
 

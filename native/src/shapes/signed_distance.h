@@ -1,5 +1,5 @@
 #pragma once
-// How far a point of the plane is from a shape.
+// The distance of a point of the plane from a shape.
 
 #include <vector>
 

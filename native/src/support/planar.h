@@ -23,7 +23,7 @@ double distance_to_segment(const Vector& point, const Vector& from, const Vector
 /// has come to, and moves on. An edge that lies on the way is met where the way is already, and none beyond the target:
 /// where a way passes a vertex by less than rounding, its edges may lead there.
 inline double crossed_share(const Vec2& from, const Vec2& to, const Vec2& target, Vec2& at) {
-  // Of the square of the way: what rounding makes of the area of a triangle of places on it.
+  // The rounding of the area of a triangle of places on a way, as a share of the square of its length.
   constexpr double k_no_area = 16 * std::numeric_limits<double>::epsilon();
   const Vec2 along = to - from;
   const double squared = along.squaredNorm();

@@ -1,5 +1,5 @@
 #pragma once
-// How far work is that goes through a known number of things.
+// The progress of work that goes through a known number of things.
 
 #include <atomic>
 

@@ -18,7 +18,7 @@
 namespace saddleback {
 namespace {
 
-// Of a step, relative to the size of the cell: the maps themselves are right to 1e-4 or so.
+// The tolerance of a step, relative to the size of the cell: the maps themselves are right to 1e-4 or so.
 constexpr double k_tolerance = 1e-6;
 constexpr int k_most_steps = 50;
 // A step this short, relative to the size of the cell, leaves the ways to all corners but a few as they are.

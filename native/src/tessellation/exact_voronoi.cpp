@@ -13,8 +13,8 @@
 namespace saddleback {
 namespace {
 
-// Of distances, relative to the size of a cell: where straight bits stand for hyperbolas. Bits are as many as its root
-// has digits: some ten a face that a bisector crosses.
+// The tolerance of distances, relative to the size of a cell, where straight bits stand for hyperbolas. Bits are as
+// many as its root has digits: some ten a face that a bisector crosses.
 constexpr double k_tolerance = 5e-6;
 // Relative to the extent of the part of the mesh: rounding of distances, some 1e-14 of it, then moves a bisector by
 // 1e-4 of its distance at most. Of sites that are nearer to each other rounding alone would say which is nearest.

@@ -1,5 +1,5 @@
-// From cell to cell towards the point: a site that is not the nearest has a neighbor that is nearer, with weights or
-// without. Each point starts at a site next to it on a space-filling curve through sites and points alike.
+// Walks from cell to cell towards the point: a site that is not the nearest has a neighbor that is nearer, with weights
+// or without. Each point starts at a site next to it on a space-filling curve through sites and points alike.
 
 #include <algorithm>
 #include <cmath>

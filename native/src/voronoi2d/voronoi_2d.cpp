@@ -1,4 +1,4 @@
-// From sites to the numbered diagram: order, sweep, stitch, place the vertices.
+// Leads from sites to the numbered diagram: orders, sweeps, stitches, places the vertices.
 
 #include "saddleback/voronoi2d/voronoi_2d.h"
 

@@ -1,4 +1,4 @@
-// From weighted sites to the numbered diagram: order, find the cells, number what they share.
+// Leads from weighted sites to the numbered diagram: orders them, finds the cells, numbers what these share.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #pragma once
-// Whether shapes on a surface do what was promised of them, found out in other ways than they were laid.
+// A check of what is promised about shapes on a surface, made in other ways than they were laid.
 
 #include "saddleback/shape_mapping/cut_shapes.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// From which distance on two shapes in the plane are certainly apart.
+// Distances from which on two shapes in the plane are certainly apart.
 
 #include <cstdint>
 #include <span>

@@ -1,5 +1,5 @@
 #pragma once
-// How a surface bends.
+// The bending of a surface.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// How an arc becomes one word, for the processor and for CUDA devices alike; see ArcCodec.
+// The packing of an arc into one word, for the processor and for CUDA devices alike; see ArcCodec.
 
 #include <bit>
 #include <cstdint>
@@ -26,7 +26,8 @@ struct ArcPacking {
     return nearest < length ? nearest + rounder * 0x1p-52 : nearest;
   }
   SADDLEBACK_HOST_DEVICE std::uint64_t pack(std::int32_t target, int sector, double length) const {
-    // What is longer by rounding alone must not go up to the next number: on regular meshes many are equally long.
+    // A length that is greater by rounding alone must not go up to the next number: on regular meshes many are equally
+    // long.
     constexpr double k_as_long = 1 - 0x1p-43;
     const std::uint64_t bits = (bits_of(round(k_as_long * length)) - bias) << kept_shift;
     // A carry into the exponent is what rounding up means.

@@ -42,7 +42,7 @@ class ArcCodec {
 
   /// Rounds a length that is no arc's up to a multiple of the quantum; never zero. Lengths of arcs stay as they are.
   double round(double length) const {
-    // What is long takes the coarser quantum of meshes without short edges: sums of long ones are exact on any mesh.
+    // Long arcs take the coarser quantum of meshes without short edges: sums of long ones are exact on any mesh.
     constexpr double k_long = 1.0 / (1 << 20);
     return length < k_long * longest_ ? packing_.round(length) : ArcPacking::round_up(length, longest_);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// How far two surfaces are from each other.
+// The distance of two surfaces from each other.
 
 #include "saddleback/job.h"
 #include "saddleback/mesh/surface_points.h"

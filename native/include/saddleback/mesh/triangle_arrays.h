@@ -1,5 +1,5 @@
 #pragma once
-// What is asked of plain triangle arrays, such as those that `split` gives: no Mesh need be made of them.
+// Functions of plain triangle arrays, such as those that `split` gives: no Mesh need be made of them.
 
 #include <array>
 #include <span>

@@ -1,5 +1,5 @@
 #pragma once
-// What each vertex of the surface knows of the shapes that lie on it.
+// Attributes of the surface's vertices by the shapes that lie on it.
 
 #include "saddleback/shape_mapping/map_shapes.h"
 

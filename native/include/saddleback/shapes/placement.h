@@ -1,5 +1,5 @@
 #pragma once
-// Where on a surface a shape lies.
+// The place of a shape on a surface.
 
 #include <span>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// What is laid on a surface: a flat outline of one or several parts, with or without holes.
+// A shape to lay on a surface: a flat outline of one or several parts, with or without holes.
 
 #include <cstdint>
 #include <span>

@@ -1,5 +1,5 @@
 #pragma once
-// Which CUDA devices this machine has. Belongs to the separate CUDA part of the library, which may be missing.
+// The CUDA devices of this machine. Belongs to the separate CUDA part of the library, which may be missing.
 
 #include <cstdint>
 #include <string>

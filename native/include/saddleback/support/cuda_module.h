@@ -1,6 +1,6 @@
 #pragma once
-// What the separate CUDA module offers to the library, which neither links nor needs it: a table of functions, handed
-// over at run time.
+// The functions of the separate CUDA module, which the library neither links nor needs: a table handed over at run
+// time.
 
 #include <cstdint>
 #include <cstdio>

@@ -1,5 +1,5 @@
 #pragma once
-// What functions need to be called that a CUDA device runs as well as the processor.
+// Attributes of functions that run on a CUDA device as well as on the processor.
 
 #ifdef __CUDACC__
 #define SADDLEBACK_HOST_DEVICE __host__ __device__

@@ -1,5 +1,5 @@
 #pragma once
-// Where the sites are while they are being relaxed, for another thread to show.
+// The places of sites while they are being relaxed, for another thread to show.
 
 #include <memory>
 #include <mutex>

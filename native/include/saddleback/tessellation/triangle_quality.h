@@ -1,5 +1,5 @@
 #pragma once
-// How near the triangles of a mesh are to equilateral ones, and its vertices to six neighbors.
+// Measures of how near the triangles of a mesh are to equilateral ones, and its vertices to six neighbors.
 
 #include <span>
 #include <vector>

@@ -1,4 +1,4 @@
-// Which shapes each vertex lies in, found from the edges that outlines cross; then whether a loop of an outline begins
+// Finds which shapes each vertex lies in, from the edges that outlines cross; then whether a loop of an outline begins
 // within another shape.
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-// How directions are carried from face to face, and how much neighboring faces count.
+// The transport of directions from face to face, and the weights of neighboring faces.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What strokes and the boundary ask of the faces that they run through.
+// The directions that strokes and the boundary demand of the faces that they run through.
 
 #include <span>
 #include <vector>

@@ -1,5 +1,6 @@
 #pragma once
-// What a warp knows of the vertices about its sources: labels by slot, and, where disks end by count, their radius.
+// The knowledge of a warp about the vertices near its sources: labels by slot, and, where disks end by count, their
+// radius.
 
 #include <cstdint>
 

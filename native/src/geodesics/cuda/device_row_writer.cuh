@@ -1,5 +1,5 @@
 #pragma once
-// From what a warp's sources have seen to their rows of arcs.
+// The rows of arcs of a warp's sources, from what these have seen.
 
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the windows of a warp's sources are kept in.
+// The memory of the windows of a warp's sources.
 //
 // What a source sees of the mesh is in a hash table, since it reaches a hundred vertices or two of all there are; a
 // *slot* is an entry of that table.

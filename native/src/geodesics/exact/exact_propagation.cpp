@@ -39,7 +39,7 @@ namespace saddleback {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-// What a filter must win by, relative to the distance: rounding over thousands of faces stays below it.
+// The margin by which a filter must win, relative to the distance: rounding over thousands of faces stays below it.
 constexpr double k_slack = 1e-11;
 // Two sources this close, relative to the distance, are equally near.
 constexpr double k_tie = 1e-12;

@@ -13,7 +13,7 @@
 namespace saddleback {
 namespace {
 
-// What the source must win by, relative to the distance, as in the propagation.
+// The margin by which the source must win, relative to the distance, as in the propagation.
 constexpr double k_slack = 1e-11;
 constexpr int k_steps = 4;
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a source leaves of another one's window.
+// The part of a window that another source leaves.
 
 #include "saddleback/types.h"
 

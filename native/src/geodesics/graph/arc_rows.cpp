@@ -18,7 +18,7 @@ constexpr std::size_t k_words_apart = k_apart / sizeof(std::uint64_t);
 // Lengths from 2^-40 to 2^24 mean edges, and some less where edges are as short as that: shorter arcs count as the
 // shortest, longer ones do not occur.
 constexpr int k_octaves = 1 << ArcCodec::k_exponent_bits, k_octaves_below_mean = 40, k_octaves_below_shortest = 8;
-// What rounding leaves of the shortest edge.
+// The digits that rounding leaves of the shortest edge.
 constexpr int k_bits_of_shortest = 24;
 
 /// The lengths' exponents begin there.

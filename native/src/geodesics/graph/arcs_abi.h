@@ -1,6 +1,6 @@
 #pragma once
-// What passes between a graph's construction and the CUDA module: plain data and calls back, since the two
-// belong to modules that are not linked with one another.
+// The interface between a graph's construction and the CUDA module: plain data and calls back, since the two belong to
+// modules that are not linked with one another.
 
 #include <cstddef>
 #include <cstdint>

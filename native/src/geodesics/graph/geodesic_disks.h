@@ -1,5 +1,5 @@
 #pragma once
-// What sources see of the vertices about them, found for several sources at a time by whole generations of windows.
+// The vertices that sources see about them, found for several sources at a time by whole generations of windows.
 
 #include <array>
 #include <limits>

@@ -60,7 +60,7 @@ std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, const JobStage& st
   return found;
 }
 
-// Of the time in which tables for waves are laid, until the end of each.
+// Shares of the time in which tables for waves are laid, until the end of each.
 constexpr double k_with_edges = 0.08, k_with_mesh = 0.87;
 
 int sector_of(double angle, double total_angle) {

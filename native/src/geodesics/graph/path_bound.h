@@ -1,5 +1,5 @@
 #pragma once
-// How long a shortest path can be, and how short an edge is.
+// Bounds on the length of a shortest path, and on that of the shortest edge.
 
 #include <span>
 

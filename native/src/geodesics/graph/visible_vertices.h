@@ -1,5 +1,5 @@
 #pragma once
-// Which vertices a point of the surface sees along one straight geodesic, and how far they are.
+// The vertices that a point of the surface sees along one straight geodesic, and their distances.
 
 #include <cstdint>
 #include <vector>

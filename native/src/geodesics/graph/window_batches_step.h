@@ -1,8 +1,8 @@
 #pragma once
-// What one window does, for as many at a time as `Simd` has lanes: shared by the vector kernels (window_waves_kernel.h)
-// and the CUDA kernel, whose lanes are threads. The including source defines `Simd`, and SADDLEBACK_STEP as what its
-// functions need to be called. Multiplications and additions are not fused and roots and quotients are IEEE's, so that
-// every machine gives the same bits.
+// The step of one window, for as many at a time as `Simd` has lanes: shared by the vector kernels
+// (window_waves_kernel.h) and the CUDA kernel, whose lanes are threads. The including source defines `Simd`, and
+// SADDLEBACK_STEP as what its functions need to be called. Multiplications and additions are not fused and roots and
+// quotients are IEEE's, so that every machine gives the same bits.
 //
 // Windows and their filters: [xin2009]. To keep an arc only where no way over a flank will do, and to end windows
 // there: [adikusuma2020]. Their rule allows every detour the same share of the whole way, and such shares add up where
@@ -12,8 +12,8 @@
 // factor found by measuring.
 //
 // By the same inequality, at the distances that are still ahead of it, the cone of a window is narrowed to what its
-// flanks do not serve: a quarter fewer windows, among needles a third, and the same arcs but for one in two hundred.
-// A flank is taken to see all of what it serves, so that this, too, is a window's end, and measured.
+// flanks do not serve: a quarter fewer windows, among needles a third, and the same arcs but for one in two hundred. A
+// flank is taken to see all of what it serves, so that this, too, is a window's end, and measured.
 
 namespace saddleback {
 namespace {
@@ -23,13 +23,13 @@ using Doubles = Simd::Doubles;
 using Ints = Simd::Ints;
 using Mask = Simd::Mask;
 
-// Of the sine between two directions: what float arithmetic cannot tell from a vertex on the ray itself.
+// The sine between two directions below which float arithmetic cannot tell a vertex from one on the ray itself.
 constexpr float k_on_ray = 1e-6f;
 // Squares must differ by more than rounding before a filter removes a window.
 constexpr float k_shorter = (1 - 1e-6f) * (1 - 1e-6f);
-// Of the half-edge: narrower windows serve no further vertex.
+// The share of the half-edge below which a window is too narrow to reach another vertex.
 constexpr float k_narrow = 1e-6f;
-// Of a record's clearances: the left one.
+// The bits of a record's left clearance.
 constexpr std::int32_t k_upper_half = ~0xffff;
 
 SADDLEBACK_STEP Floats square(Floats a) { return a * a; }

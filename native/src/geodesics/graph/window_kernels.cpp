@@ -1,4 +1,4 @@
-// Which instruction sets this machine has.
+// Chooses kernels by the instruction sets of this machine.
 
 #include <array>
 

@@ -1,5 +1,5 @@
 #pragma once
-// How long the steps of a search through a graph are.
+// The lengths of the steps of a search through a graph.
 
 #include "saddleback/geodesics/arc_rows.h"
 

@@ -15,7 +15,7 @@ namespace saddleback {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-// Of the median node's shortest arc. Measured: flat between 1 and 3.
+// The width in shortest arcs of the median node. Measured: times are flat between 1 and 3.
 constexpr double k_bucket_width = 2;
 constexpr double k_median = 0.5;
 // How many entries ahead a row's place, and then the row itself, is fetched; of long rows the beginning, by which the

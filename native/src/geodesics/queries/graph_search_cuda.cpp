@@ -12,7 +12,7 @@
 namespace saddleback {
 namespace {
 
-// Of the median node's shortest arc.
+// The step of the front, in units of the shortest arc of the median node.
 constexpr double k_front_step = 8, k_median = 0.5;
 
 /// The first number beyond a limit.

@@ -17,7 +17,7 @@
 namespace saddleback {
 namespace {
 
-// Of the time that one fan takes, for each vertex of the mesh.
+// The share of the time of one fan that the fan mesh takes for each vertex of the mesh.
 constexpr double k_fan_mesh_cost = 0.07;
 // Points a thread takes at a time, fewer where each has only so many chunks.
 constexpr Index k_most_at_once = 8 * k_batch, k_chunks_a_thread = 4;

@@ -1,5 +1,5 @@
 #pragma once
-// From distances at vertices to distances at any point.
+// Distances at any point from distances at vertices.
 
 #include <functional>
 #include <limits>

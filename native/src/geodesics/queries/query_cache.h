@@ -1,5 +1,5 @@
 #pragma once
-// What queries of one graph keep for the next query.
+// The memory that queries of one graph keep for the next query.
 
 #include <atomic>
 #include <memory>

@@ -1,5 +1,5 @@
 #pragma once
-// From points and curves of the surface to vertices of the graph.
+// Arcs from points and curves of the surface to vertices of the graph.
 
 #include <limits>
 #include <memory>

@@ -11,7 +11,7 @@ namespace {
 // Geodesics may run through vertices: they lie on the border of their windows, up to rounding.
 constexpr double k_on_border = 1e-9, k_on_rough_border = 1e-5;
 
-// Of the longest length: what rounding makes of one place.
+// The share of the longest length by which rounding moves one place.
 constexpr double k_same_place = 1e-11;
 // In a region that is millions of times smaller than its distance the ways in all directions have no end.
 constexpr Index k_most_faces = 1 << 16;

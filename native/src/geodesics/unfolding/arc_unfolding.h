@@ -1,5 +1,5 @@
 #pragma once
-// From an arc of the graph back to the faces that it runs over.
+// The faces that an arc of the graph runs over.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// How long edges usually are.
+// The usual length of edges.
 
 #include "saddleback/mesh/mesh.h"
 

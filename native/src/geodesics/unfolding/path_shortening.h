@@ -1,5 +1,5 @@
 #pragma once
-// From a chain of straight pieces to a local geodesic.
+// The local geodesic near a chain of straight pieces.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What ends rays: the curve itself, beyond which all is nearer to where they meet it.
+// Barriers that end rays: the curve itself, beyond which all is nearer to where they meet it.
 
 #include <utility>
 #include <vector>

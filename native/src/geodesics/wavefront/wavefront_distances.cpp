@@ -19,9 +19,9 @@ constexpr double k_pi = std::numbers::pi;
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // A distance replaces another only if it is shorter by more than rounding: keeps ties on regular grids from cycling.
 constexpr double k_shorter = 1 - 1e-12;
-// Of ways that are equally long but for rounding the one without a bend is kept.
+// The rounding of equal lengths: of two such ways the one without a bend is kept.
 constexpr double k_as_short = 1 + 1e-12;
-// What a filter must win by, relative to the distance: rounding over thousands of faces stays below it.
+// The margin by which a filter must win, relative to the distance: rounding over thousands of faces stays below it.
 constexpr double k_slack = 1 + 1e-11;
 // Radians, or of parallel rays a share of the edge: narrower windows are not made, and a ray to an apex that misses its
 // window by no more counts with the detour round the window's end. See exact_propagation.cpp.

@@ -89,7 +89,7 @@ void Scanner::skip_to_line_end() {
   at_ = static_cast<std::size_t>(at - text_.data());
 }
 
-// Whether a continuation stands there, the last of its line.
+// Tells whether a continuation stands there, the last of its line.
 bool Scanner::is_continued(std::size_t at) const {
   return continuation_ && text_[at] == continuation_ && at + 1 < text_.size() && is_line_end(text_[at + 1]);
 }

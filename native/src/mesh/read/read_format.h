@@ -1,5 +1,6 @@
 #pragma once
-// What the readers of all file formats share: the text of a file, word by word, and the polygons that come out of it.
+// The code that the readers of all file formats share: the text of a file, word by word, and the polygons that come out
+// of it.
 //
 // OpenMesh has readers for the same formats, but they keep coordinates in single precision, share state between
 // threads, print to stderr and trust the counts that a file claims.

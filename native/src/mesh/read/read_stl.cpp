@@ -21,8 +21,8 @@ std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// What the header says; where it says nothing (0), what there is room for. Other bytes may follow the faces, but whole
-// faces more mean that the count is wrong.
+// Returns the count that the header says; where it says none (0), the one that there is room for. Other bytes may
+// follow the faces, but whole faces more mean that the count is wrong.
 std::size_t face_count(std::string_view bytes) {
   if (bytes.size() < k_header) throw MeshError(message("it is no STL file: ", bytes.size(), " bytes"));
   const std::size_t count = little_endian(bytes, 80), expected = k_header + k_face * count;

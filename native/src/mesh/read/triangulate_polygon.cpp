@@ -209,7 +209,7 @@ bool PolygonTriangulator::is_ear(Index corner) const {
   return turn(ear[0], ear[1], ear[2]) == Sign::positive && is_free(1, ear);
 }
 
-// Whether no corner in the box is in the way.
+// Tells whether no corner in the box is in the way.
 bool PolygonTriangulator::is_free(Index box, const std::array<Index, 3>& ear) const {
   if (boxes_[box].left == 0 || misses(boxes_[box], ear)) return true;
   if (box < first_leaf_) return is_free(2 * box, ear) && is_free(2 * box + 1, ear);
@@ -219,7 +219,7 @@ bool PolygonTriangulator::is_free(Index box, const std::array<Index, 3>& ear) co
   return true;
 }
 
-// Whether the box lies wholly on the outer side of a line along the ear.
+// Tells whether the box lies wholly on the outer side of a line along the ear.
 bool PolygonTriangulator::misses(const Box& box, const std::array<Index, 3>& ear) const {
   for (int i = 0; i < 3; ++i) {
     const Point &a = plane_[ear[i]], &b = plane_[ear[(i + 1) % 3]];
@@ -309,7 +309,7 @@ bool PolygonTriangulator::is_better_flipped(Index h) const {
   return predicates::in_circle(plane_[p], plane_[q], plane_[r], plane_[s]) == Sign::positive;
 }
 
-// From the triangles pqr and qps to srp and rsq.
+// Turns the triangles pqr and qps into srp and rsq.
 void PolygonTriangulator::flip(Index h) {
   const Index g = twins_[h], h1 = next_in_face(h), h2 = prev_in_face(h), g1 = next_in_face(g), g2 = prev_in_face(g);
   const Index p = origins_[h], q = origins_[g], r = origins_[h2], s = origins_[g2];

@@ -103,7 +103,7 @@ struct Seam {
   std::array<Index, 2> faces;  // in the state; the second may be k_none
 };
 
-// Of each set of edges with the same two vertices all but the first.
+// Returns, of each set of edges with the same two vertices, all but the first.
 std::vector<Seam> surplus_edges(const Sheets& sheets, Index vertex_count) {
   std::vector<Seam> result;
   const EdgeTable edges = build_edge_table(sheets.fine, vertex_count);

@@ -1,5 +1,5 @@
-// Which way closed bodies face: by which lie within which. Boxes only choose what to try; whether a body lies within
-// another is found by the other's winding number at one of its corners [vanoosterom1983].
+// Finds which way closed bodies face, by which lie within which. Boxes only choose what to try; whether a body lies
+// within another is found by the other's winding number at one of its corners [vanoosterom1983].
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-// What all callers of the CUDA module share: exceptions do not cross the border between modules.
+// The code that all callers of the CUDA module share: exceptions do not cross the border between modules.
 
 #include <exception>
 #include <string>

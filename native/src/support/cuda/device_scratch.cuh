@@ -1,5 +1,5 @@
 #pragma once
-// What cub does with memory for the time being.
+// Scratch memory for calls of cub.
 
 #include <cstddef>
 #include <cstdint>

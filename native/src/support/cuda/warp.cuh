@@ -1,5 +1,5 @@
 #pragma once
-// What the lanes of a warp find together: one instruction from compute capability 8.0 on.
+// Reductions over the lanes of a warp: one instruction from compute capability 8.0 on.
 
 namespace saddleback {
 

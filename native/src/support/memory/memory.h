@@ -1,5 +1,5 @@
 #pragma once
-// How much memory can be had.
+// The memory that is free.
 
 #include <cstddef>
 

@@ -1,5 +1,5 @@
 #pragma once
-// How cells share the mesh's boundary.
+// The arcs in which cells share the mesh's boundary.
 
 #include <optional>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Whether cells are disks that meet as they should.
+// Checks whether cells are disks that meet as they should.
 
 #include <vector>
 

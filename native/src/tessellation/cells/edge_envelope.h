@@ -1,5 +1,5 @@
 #pragma once
-// Which of several sites is nearest along a mesh edge.
+// The nearest of several sites along a mesh edge: a lower envelope.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// How the cells of several sites share one face.
+// The partition of one face among the cells of several sites.
 
 #include <array>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// What relaxations on one graph can take over from each other.
+// The cells that relaxations on one graph can take over from each other.
 
 #include <memory>
 #include <vector>

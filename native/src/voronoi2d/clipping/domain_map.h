@@ -1,5 +1,5 @@
 #pragma once
-// Which parts of the plane are far from a domain's edges.
+// A map of the parts of the plane that are far from a domain's edges.
 
 #include <algorithm>
 #include <limits>

@@ -14,7 +14,8 @@
 namespace saddleback::voronoi2d {
 namespace {
 
-// How far about a tile sites are looked at, in mean distances, at first and for cells that need more.
+// The distances about a tile up to which sites are looked at, in mean distances: at first, and for cells that need
+// more.
 constexpr double k_margin = 2.75, k_wide_margin = 4.25;
 constexpr int k_slots = 16;  ///< room for a cell's neighbors; the lists of larger ones are in the pool
 

@@ -1,5 +1,5 @@
 #pragma once
-// What stays of a diagram on the device.
+// The part of a diagram that stays on the device.
 
 #include <cstdint>
 #include <memory>

@@ -1,5 +1,5 @@
 #pragma once
-// What one of several devices tells the others of sides: neighbors, and numbers of edges and vertices.
+// The exchange about sides between several devices: neighbors, and numbers of edges and vertices.
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// What one of several devices finds of a diagram, and what it learns of the others'.
+// The part of a diagram that one of several devices finds, and what it learns of the others' parts.
 
 #include <algorithm>
 #include <cstdint>

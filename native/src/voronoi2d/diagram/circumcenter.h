@@ -1,5 +1,5 @@
 #pragma once
-// Where a Voronoi vertex lies.
+// The place of a Voronoi vertex.
 
 #include "saddleback/types.h"
 

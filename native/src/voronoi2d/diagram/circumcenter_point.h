@@ -1,5 +1,5 @@
 #pragma once
-// Where a Voronoi vertex lies, for the processor and for devices.
+// The place of a Voronoi vertex, for the processor and for devices.
 
 #include "predicates/plane_predicates.h"
 

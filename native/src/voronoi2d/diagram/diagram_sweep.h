@@ -1,5 +1,5 @@
 #pragma once
-// What a sweep circle has found of a diagram that is known, with weights or without.
+// The part of a known diagram that a sweep circle has found, with weights or without.
 
 #include <array>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// What every way to a diagram of the plane asks of its options.
+// The checks of options that all ways to a diagram of the plane share.
 
 #include <cstddef>
 

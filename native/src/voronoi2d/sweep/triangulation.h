@@ -1,5 +1,5 @@
 #pragma once
-// From sites to their triangulation, by one sweep circle or many.
+// The triangulation of sites, by one sweep circle or many.
 
 #include <vector>
 

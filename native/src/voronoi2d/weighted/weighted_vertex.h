@@ -1,5 +1,5 @@
 #pragma once
-// Where a vertex of a weighted diagram lies, seen from the lowest of its sites.
+// The place of a vertex of a weighted diagram, seen from the lowest of its sites.
 
 #include "saddleback/types.h"
 

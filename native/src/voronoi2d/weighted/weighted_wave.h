@@ -1,6 +1,6 @@
 #pragma once
-// What one weighted site sees of others, in doubles with error bounds; see predicates/weighted_2d.h. For the processor
-// and for devices, which compute the same to the bit.
+// The view of one weighted site of others, in doubles with error bounds; see predicates/weighted_2d.h. For the
+// processor and for devices, which compute the same to the bit.
 
 #include <cmath>
 
