@@ -61,8 +61,8 @@ SADDLEBACK_RARE inline Expansion<2> difference(double a, double b) {
   return {{has_rest ? rest : sum, sum}, has_rest ? 2 : sum != 0 ? 1 : 0};
 }
 
-/// a + factor * b for a factor of 1 or -1: terms of both in the order of size, summed up (Shewchuk's fast expansion
-/// sum).
+/// Returns a + factor * b for a factor of 1 or -1: the terms of both in the order of size, summed up (fast expansion
+/// sum [shewchuk1997]).
 template <int A, int B>
 SADDLEBACK_RARE Expansion<A + B> sum(const Expansion<A>& a, const Expansion<B>& b, double factor = 1) {
   Expansion<A + B> result;

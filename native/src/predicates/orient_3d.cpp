@@ -23,7 +23,7 @@ std::array<ExactNumber, 3> exact_difference(const Vec3& a, const Vec3& b) {
 
 int orient_3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   constexpr double k_epsilon = std::numeric_limits<double>::epsilon() / 2;
-  constexpr double k_bound = (7 + 56 * k_epsilon) * k_epsilon;  // Shewchuk's o3derrboundA
+  constexpr double k_bound = (7 + 56 * k_epsilon) * k_epsilon;  // o3derrboundA [shewchuk1997]
   const auto difference = [](const Vec3& u, const Vec3& v) {
     return std::array<double, 3>{u.x() - v.x(), u.y() - v.y(), u.z() - v.z()};
   };

@@ -270,7 +270,7 @@ void VisibleVertices::add_child(const Window& parent, const Side& side, double b
   }
 }
 
-/// The three filters of Xin and Wang: some corner of the face offers every point of the child a shorter way.
+/// The three filters of Xin and Wang [xin2009]: some corner of the face offers every point of the child a shorter way.
 bool VisibleVertices::is_useless(const Side& side, const Vec2& source, double q0, double q1, Index apex,
                                  double base) const {
   const double to_q0 = (source - Vec2(q0, 0)).norm(), to_q1 = (source - Vec2(q1, 0)).norm();

@@ -398,8 +398,8 @@ void WavefrontDistances::reach_places(const RayWindow& window) {
 }
 
 /// Makes the part of `parent` between `begin` and `end` (coordinates of the side) emit on the side's edge, unless some
-/// corner of the face offers every point of it a shorter way: the three filters of Xin and Wang. They hold for
-/// perpendicular rays as well: all they need is that nothing is nearer than the rays say.
+/// corner of the face offers every point of it a shorter way: the three filters of Xin and Wang [xin2009]. They hold
+/// for perpendicular rays as well: all they need is that nothing is nearer than the rays say.
 template <class Front>
 void WavefrontDistances::add_child(const RayWindow& parent, const Side& side, double begin, double end, bool to_apex) {
   const Index entered = mesh_.twin(side.edge);

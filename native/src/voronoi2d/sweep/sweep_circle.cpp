@@ -56,9 +56,9 @@ void SweepCircle::sort_sites(std::span<const double> x, std::span<const double> 
   for (Place& place : order_) place.radius = std::sqrt(place.radius);
 }
 
-/// All arcs that should have vanished by now, but for a few. In rounds: those that are sooner than both neighbors
-/// vanish, then is said anew when the ones beside them do. So none waits for the roots of the one before, nor is a
-/// branch foretold wrongly for each of them. Returns whether there were any.
+/// Removes the arcs that should have vanished by now, but for a few. Works in rounds: arcs that vanish before both
+/// neighbors do are removed together, then the events of the arcs beside them are computed anew. So no arc waits for
+/// the roots of the one before, and no branch is mispredicted for each of them. Returns whether there were any.
 bool SweepCircle::vanish_until(double radius) {
   const std::size_t count = state_.arcs_used;
   if (2 * count > overdue_.size()) {
