@@ -59,7 +59,7 @@ bool MeshJoiner::join(MeshPart& first, MeshPart& second, MeshPart& result) {
   return true;
 }
 
-/// The half-edge along the border that ends where this one, along the border, begins.
+/// Returns the half-edge of the border that ends where this one, also of the border, begins.
 Index MeshJoiner::before_on_border(Index half) const {
   Index last = previous_half(half);
   while (mesh_.twins[last] >= 0) last = previous_half(mesh_.twins[last]);
@@ -136,7 +136,7 @@ Sign MeshJoiner::place_in_circle(const Gap& gap, Index tip, Index site) const {
                                         mesh_.point(site));
 }
 
-/// A triangle on the base, with its tip at the next site of a rim. \return its half-edge along the base.
+/// Adds a triangle on the base, with its tip at the next site of a rim. \return its half-edge along the base.
 Index MeshJoiner::close_further(MeshPart& result, Gap& gap, bool is_left) {
   std::vector<RimEdge>& rim = is_left ? left_rim_ : right_rim_;
   const RimEdge edge = rim.back();

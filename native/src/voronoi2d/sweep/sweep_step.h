@@ -66,8 +66,9 @@ struct SweptSite {
 
 constexpr double k_never = DBL_MAX, k_latest = 0.5 * DBL_MAX;  ///< events lie before `k_latest`, or never
 
-/// An arc b with the arcs a and c before and after it, as nearly flat ones are looked at: when it vanishes. Between two
-/// parts of one ellipse an arc stays; three sites nearly on one line meet later than anything that matters, if ever.
+/// Returns when an arc b vanishes between the arcs a and c before and after it, where the sign of their turn must be
+/// exact: the last radius of all, or never. Between two parts of one ellipse an arc stays; three sites nearly on one
+/// line meet later than anything that matters, if ever.
 SADDLEBACK_HOST_DEVICE inline double radius_of_flat(const Arc& a, const Arc& b, const Arc& c) {
   if (a.site == c.site) return k_never;
 #ifdef __CUDA_ARCH__
@@ -78,8 +79,8 @@ SADDLEBACK_HOST_DEVICE inline double radius_of_flat(const Arc& a, const Arc& b, 
   return turn == predicates::Sign::negative ? k_latest : k_never;
 }
 
-/// Says anew when two arcs vanish: at the radius |v - center| + |v - b|, v being the circumcenter, if the three sites
-/// turn clockwise.
+/// Computes anew when two arcs vanish: at the radius |v - center| + |v - b|, v being the circumcenter, if the three
+/// sites turn clockwise.
 SADDLEBACK_HOST_DEVICE inline void schedule(SweepState& s, Index first, Index second) {
   Arc* const arcs = s.arcs;
   Arc &b0 = arcs[first], &b1 = arcs[second];
@@ -112,7 +113,7 @@ SADDLEBACK_HOST_DEVICE inline Index new_arc(SweepState& s) {
   return arc;
 }
 
-/// One closed arc about the first site.
+/// Begins with one closed arc about the first site.
 SADDLEBACK_HOST_DEVICE inline void start(SweepState& s, const SweptSite& first) {
   s.arcs[0] = {first.x, first.y, k_never, first.site, 0, 0, k_none, k_none};
   s.arcs_used = 1;
@@ -121,8 +122,8 @@ SADDLEBACK_HOST_DEVICE inline void start(SweepState& s, const SweptSite& first) 
   for (Index i = 0; i < s.near_count; ++i) s.near[i] = 0;
 }
 
-/// Arcs about `count` sites, three or more, which are equally far from the center and in counter-clockwise order about
-/// it: the center is a Voronoi vertex, their polygon a fan of triangles.
+/// Begins with arcs about `count` sites, three or more, which are equally far from the center and in counter-clockwise
+/// order about it: the center is a Voronoi vertex, their polygon a fan of triangles.
 SADDLEBACK_HOST_DEVICE inline void start_about_vertex(SweepState& s, const SweptSite* sites, Index count) {
   start(s, sites[0]);
   for (Index i = 0; i < count; ++i)
@@ -257,8 +258,8 @@ SADDLEBACK_HOST_DEVICE inline Index sector_of(const SweepState& s, double x, dou
   return sector < s.near_count ? sector : s.near_count - 1;
 }
 
-/// An arc alive that was seen in about this direction: of those to both sides the one further out there, since on the
-/// beach it may be a long way from one to the other.
+/// Returns a live arc that was seen in about this direction: of those on both sides the one further out there, since
+/// the way along the beach from one to the other may be long.
 SADDLEBACK_HOST_DEVICE inline Index arc_near(const SweepState& s, const Touch& p, Index sector) {
   const Index mask = s.near_count - 1;
   if (s.arcs[s.near[sector]].sector == sector) {
@@ -292,7 +293,7 @@ SADDLEBACK_HOST_DEVICE inline void join(SweepState& s, Index edge, Index half) {
   s.twins[half] = edge < 0 ? k_none : edge;
 }
 
-/// Takes an arc out of the ring and adds its triangle. When the two beside it vanish is to be said anew.
+/// Takes an arc out of the ring and adds its triangle. The events of the two beside it are then to be computed anew.
 SADDLEBACK_HOST_DEVICE inline void remove(SweepState& s, Index arc) {
   Arc& b = s.arcs[arc];
   const Index before = b.previous, after = b.next;
@@ -339,7 +340,7 @@ SADDLEBACK_HOST_DEVICE inline Index settle(SweepState& s, Index arc, double radi
   return arc;
 }
 
-/// An arc that should have vanished up to a radius, this one or one beside it, or k_none.
+/// Returns an arc that should have vanished up to a radius: this one, one beside it, or k_none.
 SADDLEBACK_HOST_DEVICE inline Index overdue_at(const SweepState& s, Index arc, double radius) {
   const Arc& b = s.arcs[arc];
   if (b.radius <= radius) return arc;

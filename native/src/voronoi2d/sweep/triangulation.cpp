@@ -209,7 +209,7 @@ class TileSweeper {
   std::vector<Index> border_, doubtful_;
 };
 
-/// All tiles and pairs. Pairs are joined right after their parts, while these are in a core's cache.
+/// The work on all tiles and pairs. Pairs are joined right after their parts, while these are in a core's cache.
 class TileWork {
  public:
   TileWork(const OrderedSites& sites, std::vector<Square>& squares, Triangulation& result, int threads,
@@ -317,7 +317,7 @@ Triangulation triangulate(const OrderedSites& sites, Index tile_size, int thread
 
 namespace {
 
-/// Ranks of sites that are all on one line, from one end to the other.
+/// Returns the ranks of sites that are all on one line, from one end to the other.
 std::vector<Index> along_line(const OrderedSites& sites, const JobStage& stage) {
   std::vector<Index> along(sites.count());
   std::iota(along.begin(), along.end(), 0);
