@@ -113,10 +113,10 @@ class Splines {
       system(i, constant) = system(constant, i) = 1;
       right[i] = values[i];
     }
-    // Places that say the same give way a little and meet at a mean.
+    // Places that say the same give way a little and meet at a mean: a share of what each bends, for components of
+    // other proportions bend by very different amounts.
     constexpr double k_give = 1e-9;
-    const double scale = system.topLeftCorner(count, count).diagonal().cwiseAbs().maxCoeff();
-    for (Eigen::Index i = 0; i < count; ++i) system(i, i) += k_give * scale;
+    for (Eigen::Index i = 0; i < count; ++i) system(i, i) *= 1 + k_give;
     const Eigen::VectorXd factors = system.fullPivLu().solve(right);
     std::vector<double> result(mesh_.vertex_count());
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
@@ -135,6 +135,13 @@ class Splines {
            point.barycentric[2] * values[t[2]];
   }
 
+  double mean_of(const std::vector<double>& values, Index component) const {
+    double mean = 0;
+    for (Index v = 0; v < mesh_.vertex_count(); ++v)
+      if (mesh_.component_of(v) == component) mean += areas_[v] * values[v];
+    return mean;
+  }
+
   std::vector<double> bend_of(Index place, const MultigridSolver<double>& solver, const JobStage& first,
                               const JobStage& second) const {
     const SurfacePoint& point = places_[place];
@@ -144,12 +151,14 @@ class Splines {
       if (mesh_.component_of(v) == component) right[v] = -areas_[v];
     for (int k = 0; k < 3; ++k) right[mesh_.triangles()[point.face][k]] += point.barycentric[k];
     std::vector<double> once = solver.solve(right, {}, k_accuracy, first);
-    double mean = 0;
-    for (Index v = 0; v < mesh_.vertex_count(); ++v)
-      if (mesh_.component_of(v) == component) mean += areas_[v] * once[v];
+    double mean = mean_of(once, component);
     for (Index v = 0; v < mesh_.vertex_count(); ++v)
       right[v] = mesh_.component_of(v) == component ? areas_[v] * (once[v] - mean) : 0;
-    return solver.solve(right, {}, k_accuracy, second);
+    std::vector<double> bend = solver.solve(right, {}, k_accuracy, second);
+    mean = mean_of(bend, component);  // Constants are free, so that of the vertex that was held must not matter.
+    for (Index v = 0; v < mesh_.vertex_count(); ++v)
+      if (mesh_.component_of(v) == component) bend[v] -= mean;
+    return bend;
   }
 
   const Mesh& mesh_;

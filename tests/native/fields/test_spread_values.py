@@ -52,6 +52,19 @@ def test_places_inside_faces_and_places_that_say_the_same() -> None:
     np.testing.assert_allclose(harmonic, 2)
 
 
+def test_places_at_the_first_vertex_meet_at_their_mean() -> None:
+    spread = sb.spread_values(sb.Mesh(*meshes.icosphere(2)), [0, 0], [1, 3.0])
+    np.testing.assert_allclose(spread, 2)
+
+
+def test_a_long_strip_beside_it_does_not_loosen_a_sphere() -> None:
+    strip, sphere = meshes.grid(1001, 2), meshes.icosphere(2)
+    mesh = sb.Mesh(*meshes.merge((strip[0] * (1000, 1, 1), strip[1]), (sphere[0] + [0, 0, 50], sphere[1])))
+    first = len(strip[0])
+    places, values = np.array([0, 1000, first, first + 1, first + 100]), np.array([0, 1, 0, 1, 0.5])
+    np.testing.assert_allclose(sb.spread_values(mesh, places, values)[places], values, atol=1e-6)
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_components_without_a_place_have_the_mean(method: str) -> None:
     mesh = sb.Mesh(*meshes.two_components())

@@ -21,8 +21,8 @@ struct SpreadOptions {
 };
 
 /// (V,) values that meet `values` at `places` and never leave their range. Harmonic values hold at the corners of a
-/// place's face; of places that share a vertex (biharmonic: that say the same of the surface) a mean is met. Components
-/// without a place have the mean of all values.
+/// place's face; of places that share a vertex (biharmonic: that lie within a thousandth of the surface's size) a mean
+/// is met, or nearly. Components without a place have the mean of all values.
 /// \throw InputError for no place, one off the mesh, another number of values than places, a value that is not finite;
 /// Cancelled. About O(V) a system.
 std::vector<double> spread_values(const Mesh& mesh, const SurfacePoints& places, std::span<const double> values,
