@@ -94,7 +94,7 @@ Index SurfaceFit::add(const Vec3& given) {
 }
 
 Index SurfaceFit::add_edge(Index begin, Index end, int depth) {
-  edges_.push_back({begin, end, depth, tolerance_ <= 0 || depth >= k_most_depth, k_none, k_none});
+  edges_.push_back({begin, end, depth, tolerance_ <= 0, k_none, k_none});
   return static_cast<Index>(edges_.size()) - 1;
 }
 
@@ -165,7 +165,7 @@ Index SurfaceFit::middle_of(Index number) {
     const int depth = edges_[number].depth + 1;
     const Vertex a = vertices_[begin], b = vertices_[end];
     const Peak peak = peak_of_edge(a, b);
-    if (peak.height <= tolerance_) {
+    if (peak.height <= tolerance_ || depth > k_most_depth) {
       deviation_ = std::max(deviation_, peak.height);
     } else {
       const Index middle = add((1 - peak.along) * a.given + peak.along * b.given);

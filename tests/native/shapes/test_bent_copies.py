@@ -204,6 +204,23 @@ def test_pieces_know_where_in_the_solid_they_lie() -> None:
         np.testing.assert_allclose(shares, 1, rtol=1e-9)  # all of each triangle, once
 
 
+def test_edges_that_are_not_split_any_more_are_told() -> None:
+    """The middles of all edges are as near to the surface as `deviations` says, also where that is not near enough."""
+    mapped = sb.map_shapes(
+        sb.Mesh(*meshes.icosphere(3)),
+        sb.Shape.disk(8),
+        sb.Placements([0], sb.SurfacePoints([5], [[0.3, 0.3, 0.4]]), [0.0], [0.5]),
+    )
+    corners = np.array([[0.5, 0, 0], [-0.5, 0.1, 5], [0.1, 0.5, 0]])
+    bent = mapped.bend([(corners, [[0, 1, 2]])], 1e-5)
+    given = bent.weights @ corners
+    middles = mapped.conform(((given + np.roll(given, -1, axis=1)) / 2).reshape(-1, 3), 0).points
+    begins, ends = (bent.vertices[np.roll(bent.triangles, -i, axis=1)].reshape(-1, 3) for i in range(2))
+    along = (ends - begins) / np.linalg.norm(ends - begins, axis=1)[:, None]
+    left = np.linalg.norm(np.cross(middles - begins, along), axis=1).max() / 0.5
+    assert 1e-5 < left <= bent.deviations[0] * (1 + 1e-9)
+
+
 def test_they_follow_a_surface_that_moves() -> None:
     mesh = rough()
     bent = placed(mesh, 12, 0.25).bend([flat(shape) for shape in SHAPES])
