@@ -7,7 +7,7 @@
 
 #include "saddleback/mesh/surface_curve.h"
 
-#include "tessellation/cells/exact_claims.h"
+#include "tessellation/cells/exact_candidates.h"
 #include "tessellation/relaxation/diagram.h"
 
 namespace saddleback {
@@ -151,8 +151,8 @@ GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job*
   auto field = std::make_shared<const ExactField>(mesh, sources, stage.part(0, 0.3));
   const ExactParts parts(*field, kept, k_tolerance * size, stage.part(0.3, 0.8));
   const Mesh divided = mesh_of(parts, stage.part(0.8, 0.85));
-  const ExactClaims claims(parts, divided, static_cast<Index>(sites.size()));
-  GeodesicVoronoi diagram = subdivision(CellComplex(claims, 1, stage.part(0.85, 0.95)), sites, stage);
+  const ExactCandidates candidates(parts, divided, static_cast<Index>(sites.size()));
+  GeodesicVoronoi diagram = subdivision(CellComplex(candidates, 1, stage.part(0.85, 0.95)), sites, stage);
   InFaces(parts, diagram).tell();
   for (const SurfacePoint& point : diagram.points) diagram.point_distance.push_back(field->nearest_at(point).distance);
   diagram.exact_field = std::move(field);

@@ -130,15 +130,15 @@ class Chains {
   GeodesicVoronoi& out_;
 };
 
-void copy_claims(const FaceClaims& claims, GeodesicVoronoi& out) {
-  out.face_claims.assign(1, 0);
-  for (Index face = 0; face < claims.mesh().face_count(); ++face) {
-    if (const Index shared = claims.shared_index(face); shared != k_none) {
-      for (const FaceClaim& claim : claims.claims(shared)) {
-        out.claims.push_back({claim.site, claim.squared_distance});
+void copy_candidates(const FaceCandidates& candidates, GeodesicVoronoi& out) {
+  out.face_candidates.assign(1, 0);
+  for (Index face = 0; face < candidates.mesh().face_count(); ++face) {
+    if (const Index shared = candidates.shared_index(face); shared != k_none) {
+      for (const FaceCandidate& candidate : candidates.candidates(shared)) {
+        out.candidates.push_back({candidate.site, candidate.squared_distance});
       }
     }
-    out.face_claims.push_back(static_cast<Index>(out.claims.size()));
+    out.face_candidates.push_back(static_cast<Index>(out.candidates.size()));
   }
 }
 
@@ -153,8 +153,9 @@ double bulge_at(const Mesh& mesh, const SurfacePoint& point) {
   return bulge;
 }
 
-/// The claim that is least at a point, and the distance that it tells: the face's interpolation of squared distances.
-CellAt claim_at(const GeodesicVoronoi& cells, const Mesh& mesh, const SurfacePoint& point) {
+/// The candidate that is least at a point, and the distance that it tells: the face's interpolation of squared
+/// distances.
+CellAt candidate_at(const GeodesicVoronoi& cells, const Mesh& mesh, const SurfacePoint& point) {
   const auto at_point = [&](const std::array<double, 3>& squared) {
     return squared[0] * point.barycentric[0] + squared[1] * point.barycentric[1] + squared[2] * point.barycentric[2];
   };
@@ -166,9 +167,9 @@ CellAt claim_at(const GeodesicVoronoi& cells, const Mesh& mesh, const SurfacePoi
     for (int i = 0; i < 3; ++i) squared[i] = cells.vertex_distance[t[i]] * cells.vertex_distance[t[i]];
     least = at_point(squared);
   }
-  for (Index i = cells.face_claims[point.face]; i < cells.face_claims[point.face + 1]; ++i) {
-    const double squared = at_point(cells.claims[i].squared_distance);
-    if (squared < least) least = squared, result.cell = cells.claims[i].cell;
+  for (Index i = cells.face_candidates[point.face]; i < cells.face_candidates[point.face + 1]; ++i) {
+    const double squared = at_point(cells.candidates[i].squared_distance);
+    if (squared < least) least = squared, result.cell = cells.candidates[i].cell;
   }
   result.distance = std::sqrt(std::max(0.0, least - bulge_at(mesh, point)));
   return result;
@@ -190,7 +191,7 @@ double way_over_corner(const GeodesicVoronoi& cells, const Mesh& mesh, const Sur
 }  // namespace
 
 Index GeodesicVoronoi::cell_at(const Mesh& mesh, const SurfacePoint& point) const {
-  return exact_field ? exact_sites[exact_field->nearest_at(point).source] : claim_at(*this, mesh, point).cell;
+  return exact_field ? exact_sites[exact_field->nearest_at(point).source] : candidate_at(*this, mesh, point).cell;
 }
 
 std::vector<CellAt> GeodesicVoronoi::locate(const SaddleVertexGraph& graph, const SurfacePoints& places,
@@ -211,10 +212,11 @@ std::vector<CellAt> GeodesicVoronoi::locate(const SaddleVertexGraph& graph, cons
   std::vector<double> known;
   for (const SurfacePoint& place : places) {
     if (result.size() % 256 == 0) stage.check();
-    result.push_back({claim_at(*this, mesh, place).cell, 0});
+    result.push_back({candidate_at(*this, mesh, place).cell, 0});
     known.push_back(way_over_corner(*this, mesh, place));
     rivals.push_back(result.back().cell);
-    for (Index i = face_claims[place.face]; i < face_claims[place.face + 1]; ++i) rivals.push_back(claims[i].cell);
+    for (Index i = face_candidates[place.face]; i < face_candidates[place.face + 1]; ++i)
+      rivals.push_back(candidates[i].cell);
   }
   std::ranges::sort(rivals);
   const auto repeated = std::ranges::unique(rivals);
@@ -239,19 +241,19 @@ GeodesicVoronoi geodesic_voronoi(const SaddleVertexGraph& graph, const SurfacePo
 GeodesicVoronoi find_cells(const SaddleVertexGraph& graph, const SurfacePoints& sites, int threads, int cuda_device,
                            const JobStage& stage) {
   const VertexRings rings(graph, threads);
-  CellClaims cells(graph, rings, CellLengths::of_ways, threads, cuda_device);
+  CellCandidates cells(graph, rings, CellLengths::of_ways, threads, cuda_device);
   cells.find(sites, stage.part(0.05, 0.7));
-  const ClaimsOfCells claims(cells);
-  GeodesicVoronoi result = make_diagram(CellComplex(claims, threads, stage.part(0.7, 0.9)), sites, stage);
+  const CandidatesOfCells candidates(cells);
+  GeodesicVoronoi result = make_diagram(CellComplex(candidates, threads, stage.part(0.7, 0.9)), sites, stage);
   stage.update(1);
   return result;
 }
 
 GeodesicVoronoi make_diagram(const CellComplex& complex, const SurfacePoints& sites, const JobStage& stage) {
   GeodesicVoronoi result = subdivision(complex, sites, stage);
-  copy_claims(complex.claims(), result);
+  copy_candidates(complex.candidates(), result);
   for (const SurfacePoint& point : result.points)
-    result.point_distance.push_back(claim_at(result, complex.mesh(), point).distance);
+    result.point_distance.push_back(candidate_at(result, complex.mesh(), point).distance);
   return result;
 }
 

@@ -35,7 +35,7 @@ struct CellAt {
 struct GeodesicVoronoi {
   /// A site that may own a part of a shared face: its squared distances from the face's corners. Inside, squared
   /// distances are what a site in the face's plane would have.
-  struct Claim {
+  struct Candidate {
     Index cell;
     std::array<double, 3> squared_distance;
   };
@@ -63,18 +63,18 @@ struct GeodesicVoronoi {
   std::vector<std::uint8_t> edge_closed;
   std::vector<Index> branch_points;  ///< points where three or more cells meet
 
-  std::vector<Index> face_cell;                   ///< (F,) the cell that owns a face whole, k_none where it is divided
-  std::vector<Piece> pieces;                      ///< of the divided faces
-  std::vector<Index> piece_vertices;              ///< corners of the pieces: mesh vertices, or V + i for points[i]
-  std::vector<Vec3> piece_barycentric;            ///< the same in their faces
-  std::vector<Claim> claims;                      ///< on the shared faces, by face and cell
-  std::vector<Index> face_claims;                 ///< (F + 1,) those on face f are [face_claims[f], face_claims[f + 1])
-  std::shared_ptr<const ExactField> exact_field;  ///< of exact cells, in place of claims
+  std::vector<Index> face_cell;         ///< (F,) the cell that owns a face whole, k_none where it is divided
+  std::vector<Piece> pieces;            ///< of the divided faces
+  std::vector<Index> piece_vertices;    ///< corners of the pieces: mesh vertices, or V + i for points[i]
+  std::vector<Vec3> piece_barycentric;  ///< the same in their faces
+  std::vector<Candidate> candidates;    ///< on the shared faces, by face and cell
+  std::vector<Index> face_candidates;   ///< (F + 1,) those on face f are [face_candidates[f], face_candidates[f + 1])
+  std::shared_ptr<const ExactField> exact_field;  ///< of exact cells, in place of candidates
   std::vector<Index> exact_sites;                 ///< the sites that are its sources: one of each place
 
   /// Cuts the mesh along the boundaries. O(V + F).
   SplitMesh split(const Mesh& mesh) const;
-  /// The cell of a point of the surface, ties to the smaller. O(claims on the face).
+  /// The cell of a point of the surface, ties to the smaller. O(candidates on the face).
   Index cell_at(const Mesh& mesh, const SurfacePoint& point) const;
   /// The cells of points of the surface, as cell_at, and the distances from the nearest site: of cells by a graph,
   /// which must be theirs, the lengths of ways in it, never shorter than the surface's and longer by no more than its

@@ -13,8 +13,8 @@ void reverse(std::vector<EdgeLine>& lines) {
 
 }  // namespace
 
-CellComplex::CellComplex(const FaceClaims& claims, int threads, const JobStage& stage)
-    : claims_(claims), mesh_(claims.mesh()) {
+CellComplex::CellComplex(const FaceCandidates& candidates, int threads, const JobStage& stage)
+    : candidates_(candidates), mesh_(candidates.mesh()) {
   break_edges();
   stage.update(0.3);
   divide_faces(threads, stage.part(0.3, 0.9));
@@ -31,14 +31,14 @@ Index CellComplex::edge_halfedge(Index h) const {
 void CellComplex::break_edges() {
   edge_index_.assign(mesh_.halfedge_count(), k_none);
   std::vector<EdgeLine> lines;
-  for (Index shared = 0; shared < claims_.shared_count(); ++shared) {
-    const Index face = claims_.face(shared);
+  for (Index shared = 0; shared < candidates_.shared_count(); ++shared) {
+    const Index face = candidates_.face(shared);
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
       const Index along = edge_halfedge(h);
       if (edge_index_[along] != k_none) continue;
       edge_index_[along] = static_cast<Index>(edges_.size());
       EdgeBreaks& edge = edges_.emplace_back();
-      claims_.lines_along(shared, h, lines);
+      candidates_.lines_along(shared, h, lines);
       if (h != along) reverse(lines);
       lower_envelope(lines, edge.pieces);
       edge.first_vertex = mesh_.vertex_count() + static_cast<Index>(added_.size());
@@ -53,23 +53,23 @@ void CellComplex::break_edges() {
 }
 
 void CellComplex::divide_faces(int threads, const JobStage& stage) {
-  const Index count = claims_.shared_count();
+  const Index count = candidates_.shared_count();
   constexpr Index k_block = 4096;  // partitions are kept for a block at a time and then numbered in order
   std::vector<FacePartition> partitions(std::min(count, k_block));
   for (Index begin = 0; begin < count; begin += k_block) {
     const Index size = std::min(k_block, count - begin);
     parallel_for(size, threads, 64, [&](Index i, int) { divide(begin + i, partitions[i]); });
-    for (Index i = 0; i < size; ++i) add_pieces(claims_.face(begin + i), partitions[i]);
+    for (Index i = 0; i < size; ++i) add_pieces(candidates_.face(begin + i), partitions[i]);
     stage.update(static_cast<double>(begin + size) / count);
   }
 }
 
 void CellComplex::divide(Index shared, FacePartition& partition) const {
   std::vector<FacePlane> planes;
-  for (const FaceClaim& claim : claims_.claims(shared)) {
-    planes.push_back({claim.site, claim.squared_distance});
+  for (const FaceCandidate& candidate : candidates_.candidates(shared)) {
+    planes.push_back({candidate.site, candidate.squared_distance});
   }
-  const Index face = claims_.face(shared);
+  const Index face = candidates_.face(shared);
   if (partition.build(planes) && agrees_with_edges(face, partition)) return;
   partition.build_star({side_of(face, 0), side_of(face, 1), side_of(face, 2)});
 }
@@ -140,8 +140,8 @@ void CellComplex::label_vertices() {
   vertex_site_.resize(mesh_.vertex_count());
   vertex_distance_.resize(mesh_.vertex_count());
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    vertex_site_[v] = claims_.label(v);
-    vertex_distance_[v] = claims_.distance(v);
+    vertex_site_[v] = candidates_.label(v);
+    vertex_distance_[v] = candidates_.distance(v);
   }
 }
 

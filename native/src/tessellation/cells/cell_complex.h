@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tessellation/cells/cell_claims.h"
+#include "tessellation/cells/face_candidates.h"
 #include "tessellation/cells/face_partition.h"
 
 namespace saddleback {
@@ -18,14 +18,14 @@ class CellComplex {
     Index first, count;  ///< in `loop` and `loop_barycentric`
   };
 
-  /// The claims must outlive the complex. \throw Cancelled.
-  CellComplex(const FaceClaims& claims, int threads, const JobStage& stage);
+  /// The candidates must outlive the complex. \throw Cancelled.
+  CellComplex(const FaceCandidates& candidates, int threads, const JobStage& stage);
 
   const Mesh& mesh() const { return mesh_; }
-  const FaceClaims& claims() const { return claims_; }
-  Index site_count() const { return claims_.site_count(); }
+  const FaceCandidates& candidates() const { return candidates_; }
+  Index site_count() const { return candidates_.site_count(); }
   /// The cell of a face that one cell owns whole, else k_none.
-  Index face_site(Index face) const { return claims_.face_site(face); }
+  Index face_site(Index face) const { return candidates_.face_site(face); }
   /// Pieces of the shared faces, ordered by face.
   const std::vector<Piece>& pieces() const { return pieces_; }
   const std::vector<Index>& loop() const { return loop_; }
@@ -50,7 +50,7 @@ class CellComplex {
   void label_vertices();
   Index edge_halfedge(Index h) const;
 
-  const FaceClaims& claims_;
+  const FaceCandidates& candidates_;
   const Mesh& mesh_;
   std::vector<Index> edge_index_;  ///< per half-edge, into edges_
   std::vector<EdgeBreaks> edges_;

@@ -38,30 +38,31 @@ struct FaceShape {
   }
 };
 
-Vec3 squared_distances(const CellClaim& claim) {
-  return {claim.squared_distance(0), claim.squared_distance(1), claim.squared_distance(2)};
+Vec3 squared_distances(const CellCandidate& candidate) {
+  return {candidate.squared_distance(0), candidate.squared_distance(1), candidate.squared_distance(2)};
 }
 
-struct ClaimedFace {
+struct CandidateFace {
   const FaceShape& shape;
-  const CellClaim& claim;
+  const CellCandidate& candidate;
   const Vec3& squared_distance;
 };
 
 template <std::size_t Count>
-void integrate(const ClaimedFace& face, const std::array<QuadraturePoint, Count>& rule, double area, const Vec3& a,
+void integrate(const CandidateFace& face, const std::array<QuadraturePoint, Count>& rule, double area, const Vec3& a,
                const Vec3& b, const Vec3& c, CellMoments& sum) {
   for (const QuadraturePoint& q : rule) {
     const Vec3 x = at(q, a, b, c);
     const double weight = area * q.weight * face.shape.weight(x);
     sum.mass += weight;
-    sum.moment += weight * (x[0] * face.claim.corner[0] + x[1] * face.claim.corner[1] + x[2] * face.claim.corner[2]);
+    sum.moment +=
+        weight * (x[0] * face.candidate.corner[0] + x[1] * face.candidate.corner[1] + x[2] * face.candidate.corner[2]);
     sum.energy += weight * (face.squared_distance.dot(x) - face.shape.bulge(x));
   }
 }
 
 /// Adds the integrals over the triangle a, b, c (barycentric coordinates in the face).
-void add_triangle(const ClaimedFace& face, const Vec3& a, const Vec3& b, const Vec3& c, CellMoments& sum) {
+void add_triangle(const CandidateFace& face, const Vec3& a, const Vec3& b, const Vec3& c, CellMoments& sum) {
   const double area = face.shape.face.area * a.dot(b.cross(c));
   sum.area += area;
   if (face.shape.uniform) {
@@ -71,11 +72,11 @@ void add_triangle(const ClaimedFace& face, const Vec3& a, const Vec3& b, const V
   }
 }
 
-void add_whole(const ClaimedFace& face, CellMoments& sum) {
+void add_whole(const CandidateFace& face, CellMoments& sum) {
   const Face& whole = face.shape.face;
   for (int i = 0; i < 3; ++i) {
     sum.mass += whole.weight[i];
-    sum.moment += whole.weight[i] * face.claim.corner[i];
+    sum.moment += whole.weight[i] * face.candidate.corner[i];
     sum.energy += whole.weight[i] * face.squared_distance[i];
   }
   sum.energy -= whole.bulge;
@@ -95,7 +96,7 @@ unsigned positive(const Vec3& v) {
   return static_cast<unsigned>(v[0] > 0) | static_cast<unsigned>(v[1] > 0) << 1 | static_cast<unsigned>(v[2] > 0) << 2;
 }
 
-/// `lead`: above 0 where the second of two claims is nearer; not so at all corners, nor at none.
+/// `lead`: above 0 where the second of two candidates is nearer; not so at all corners, nor at none.
 Cut cut_where_zero(const Vec3& lead) {
   constexpr std::array<int, 8> k_lone{-1, 0, 1, 2, 2, 1, 0, -1};  // which corner it is cannot be foretold
   const int lone = k_lone[positive(lead)], left = (lone + 1) % 3, right = (lone + 2) % 3;
@@ -114,12 +115,12 @@ class Tip {
     bulge_ = (l * (1 - l) * left_side + r * (1 - r) * right_side) / 3 + sides / 12;
   }
   double area() const { return area_; }
-  CellMoments moments(const ClaimedFace& face) const {
+  CellMoments moments(const CandidateFace& face) const {
     Vec3 share;  // of each corner of the face in the tip's mean
     share[cut_.lone] = (3 - cut_.on_left - cut_.on_right) / 3;
     share[cut_.left] = cut_.on_left / 3;
     share[cut_.right] = cut_.on_right / 3;
-    const auto& corner = face.claim.corner;
+    const auto& corner = face.candidate.corner;
     const Vec2 mean = share[0] * corner[0] + share[1] * corner[1] + share[2] * corner[2];
     return {area_, area_, area_ * mean, area_ * (share.dot(face.squared_distance) - bulge_)};
   }
@@ -134,7 +135,7 @@ class SharedFace {
  public:
   /// Calls add(site, moments) for every part.
   template <class Add>
-  void integrate(const FaceShape& shape, std::span<const CellClaim> claims, Add&& add);
+  void integrate(const FaceShape& shape, std::span<const CellCandidate> candidates, Add&& add);
 
  private:
   struct Corner {
@@ -142,26 +143,26 @@ class SharedFace {
     double lead;
   };
   template <class Add>
-  static void integrate_two(const FaceShape& shape, const CellClaim& a, const CellClaim& b, Add&& add);
+  static void integrate_two(const FaceShape& shape, const CellCandidate& a, const CellCandidate& b, Add&& add);
   template <class Add>
-  static void cut_in_two(const ClaimedFace& first, const ClaimedFace& second, Add&& add);
-  bool is_beaten(std::span<const CellClaim> claims, std::size_t claim) const;
-  CellMoments part_of(const FaceShape& shape, std::span<const CellClaim> claims, Index rival);
+  static void cut_in_two(const CandidateFace& first, const CandidateFace& second, Add&& add);
+  bool is_beaten(std::span<const CellCandidate> candidates, std::size_t candidate) const;
+  CellMoments part_of(const FaceShape& shape, std::span<const CellCandidate> candidates, Index rival);
   void clip(const Vec3& lead);
 
-  std::vector<Vec3> squared_distances_;  ///< of all claims
-  std::vector<Index> rivals_;            ///< claims that are nearest somewhere, as far as corners tell
+  std::vector<Vec3> squared_distances_;  ///< of all candidates
+  std::vector<Index> rivals_;            ///< candidates that are nearest somewhere, as far as corners tell
   std::vector<Corner> polygon_, clipped_;
 };
 
-/// Whether a claim is nowhere nearer than one of the others.
-bool SharedFace::is_beaten(std::span<const CellClaim> claims, std::size_t claim) const {
-  const Vec3& own = squared_distances_[claim];
-  for (std::size_t other = 0; other < claims.size(); ++other) {
+/// Whether a candidate is nowhere nearer than one of the others.
+bool SharedFace::is_beaten(std::span<const CellCandidate> candidates, std::size_t candidate) const {
+  const Vec3& own = squared_distances_[candidate];
+  for (std::size_t other = 0; other < candidates.size(); ++other) {
     const Vec3& theirs = squared_distances_[other];
-    if (other == claim || own[0] < theirs[0] || own[1] < theirs[1] || own[2] < theirs[2]) continue;
+    if (other == candidate || own[0] < theirs[0] || own[1] < theirs[1] || own[2] < theirs[2]) continue;
     const bool ties = own[0] == theirs[0] && own[1] == theirs[1] && own[2] == theirs[2];
-    if (!ties || claims[other].site < claims[claim].site) return true;
+    if (!ties || candidates[other].site < candidates[candidate].site) return true;
   }
   return false;
 }
@@ -183,31 +184,31 @@ CellMoments& operator-=(CellMoments& sum, const CellMoments& part) {
 }
 
 template <class Add>
-void SharedFace::integrate(const FaceShape& shape, std::span<const CellClaim> claims, Add&& add) {
-  if (claims.size() == 2) return integrate_two(shape, claims[0], claims[1], add);
+void SharedFace::integrate(const FaceShape& shape, std::span<const CellCandidate> candidates, Add&& add) {
+  if (candidates.size() == 2) return integrate_two(shape, candidates[0], candidates[1], add);
   squared_distances_.clear();
-  for (const CellClaim& claim : claims) squared_distances_.push_back(squared_distances(claim));
+  for (const CellCandidate& candidate : candidates) squared_distances_.push_back(squared_distances(candidate));
   rivals_.clear();
-  for (std::size_t i = 0; i < claims.size(); ++i)
-    if (!is_beaten(claims, i)) rivals_.push_back(static_cast<Index>(i));
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (!is_beaten(candidates, i)) rivals_.push_back(static_cast<Index>(i));
   if (rivals_.size() == 1) {
     CellMoments all;
-    add_whole({shape, claims[rivals_.front()], squared_distances_[rivals_.front()]}, all);
-    add(claims[rivals_.front()].site, all);
+    add_whole({shape, candidates[rivals_.front()], squared_distances_[rivals_.front()]}, all);
+    add(candidates[rivals_.front()].site, all);
   } else if (rivals_.size() == 2) {
     const Index a = rivals_[0], b = rivals_[1];
-    cut_in_two({shape, claims[a], squared_distances_[a]}, {shape, claims[b], squared_distances_[b]}, add);
+    cut_in_two({shape, candidates[a], squared_distances_[a]}, {shape, candidates[b], squared_distances_[b]}, add);
   } else {
-    for (const Index rival : rivals_) add(claims[rival].site, part_of(shape, claims, rival));
+    for (const Index rival : rivals_) add(candidates[rival].site, part_of(shape, candidates, rival));
   }
 }
 
-/// Most faces have two claims, by site: of ties the first has all.
+/// Most faces have two candidates, by site: of ties the first has all.
 template <class Add>
-void SharedFace::integrate_two(const FaceShape& shape, const CellClaim& a, const CellClaim& b, Add&& add) {
+void SharedFace::integrate_two(const FaceShape& shape, const CellCandidate& a, const CellCandidate& b, Add&& add) {
   const Vec3 of_a = squared_distances(a), of_b = squared_distances(b);
   const bool has_a = positive(of_b - of_a) != 0, has_b = positive(of_a - of_b) != 0;
-  const ClaimedFace first{shape, a, of_a}, second{shape, b, of_b};
+  const CandidateFace first{shape, a, of_a}, second{shape, b, of_b};
   if (has_a && has_b) return cut_in_two(first, second, add);
   CellMoments all;
   add_whole(has_b ? second : first, all);
@@ -216,13 +217,13 @@ void SharedFace::integrate_two(const FaceShape& shape, const CellClaim& a, const
 
 /// One straight cut: a corner on one side of it, two on the other.
 template <class Add>
-void SharedFace::cut_in_two(const ClaimedFace& first, const ClaimedFace& second, Add&& add) {
+void SharedFace::cut_in_two(const CandidateFace& first, const CandidateFace& second, Add&& add) {
   constexpr double k_most_of_it = 0.9;  // what is left is too little to be told from a difference
   const FaceShape& shape = first.shape;
   const Vec3 lead = first.squared_distance - second.squared_distance;
   const Cut cut = cut_where_zero(lead);
   const bool second_is_lone = lead[cut.lone] > 0;
-  const ClaimedFace &lone = second_is_lone ? second : first, &rest = second_is_lone ? first : second;
+  const CandidateFace &lone = second_is_lone ? second : first, &rest = second_is_lone ? first : second;
   CellMoments of_lone, of_rest;
   if (shape.uniform && cut.on_left * cut.on_right < k_most_of_it) {
     const Tip tip(shape, cut);
@@ -235,13 +236,13 @@ void SharedFace::cut_in_two(const ClaimedFace& first, const ClaimedFace& second,
     add_triangle(rest, on_left, Vec3::Unit(cut.left), Vec3::Unit(cut.right), of_rest);
     add_triangle(rest, on_left, Vec3::Unit(cut.right), on_right, of_rest);
   }
-  add(lone.claim.site, of_lone);
-  add(rest.claim.site, of_rest);
+  add(lone.candidate.site, of_lone);
+  add(rest.candidate.site, of_rest);
 }
 
 /// What the other rivals leave of the face.
-CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const CellClaim> claims, Index rival) {
-  const ClaimedFace face{shape, claims[rival], squared_distances_[rival]};
+CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const CellCandidate> candidates, Index rival) {
+  const CandidateFace face{shape, candidates[rival], squared_distances_[rival]};
   polygon_.resize(3);
   for (int i = 0; i < 3; ++i) polygon_[i].at = Vec3::Unit(i);
   for (const Index other : rivals_)
@@ -252,7 +253,7 @@ CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const CellClai
   return sum;
 }
 
-/// Leaves of the polygon where another claim does not lead.
+/// Leaves of the polygon where another candidate does not lead.
 void SharedFace::clip(const Vec3& lead) {
   for (Corner& corner : polygon_) corner.lead = lead.dot(corner.at);
   clipped_.clear();
@@ -329,38 +330,38 @@ CellIntegrals::CellIntegrals(const SaddleVertexGraph& graph, const VertexRings& 
 }
 
 /// Asks memory for what the first nodes of a cell need.
-void CellIntegrals::fetch_cell(const CellClaims& claims, Index site) const {
-  const std::span<const Index> own = claims.maps().nodes(site);
+void CellIntegrals::fetch_cell(const CellCandidates& candidates, Index site) const {
+  const std::span<const Index> own = candidates.labels().nodes(site);
   for (const Index node : own.first(std::min(own.size(), k_ahead))) {
-    claims.maps().fetch(node);
+    candidates.maps().fetch(node);
     __builtin_prefetch(&nodes_[node]);
   }
 }
 
 /// All faces about those of a cell's own vertices that are not at its border.
-CellMoments CellIntegrals::within(const CellClaims& claims, Index site) const {
+CellMoments CellIntegrals::within(const CellCandidates& candidates, Index site) const {
   CellMoments sum;
-  const std::span<const Index> own = claims.maps().nodes(site);
+  const std::span<const Index> own = candidates.labels().nodes(site);
   for (std::size_t i = 0; i < own.size(); ++i) {
     if (i + k_ahead < own.size()) {
       __builtin_prefetch(&nodes_[own[i + k_ahead]]);
-      claims.maps().fetch(own[i + k_ahead]);
+      candidates.maps().fetch(own[i + k_ahead]);
     }
     const Index node = own[i];
-    if (!claims.is_at_border(node)) add_about(nodes_[node], claims.maps().own(node), sum);
+    if (!candidates.rows().is_at_border(node)) add_about(nodes_[node], candidates.maps().own(node), sum);
   }
   return sum;
 }
 
 /// A face that one cell owns whole: the parts about those of its corners that are at the cell's border.
-bool CellIntegrals::add_at_border(const CellClaims& claims, Index face, CellMoments& sum) const {
+bool CellIntegrals::add_at_border(const CellCandidates& candidates, Index face, CellMoments& sum) const {
   bool any = false;
   for (int i = 0; i < 3; ++i) {
     const Index node = rings_.face(face).nodes[i];
-    if (!claims.is_at_border(node)) continue;
+    if (!candidates.rows().is_at_border(node)) continue;
     any = true;
     const Face& whole = faces_[face];
-    add_about({whole.weight[i], whole.bulge / 3, whole.area / 3}, claims.maps().own(node), sum);
+    add_about({whole.weight[i], whole.bulge / 3, whole.area / 3}, candidates.maps().own(node), sum);
   }
   return any;
 }
@@ -372,15 +373,16 @@ void CellIntegrals::add_about(const Node& about, const SiteVector& seen, CellMom
   sum.area += about.area;
 }
 
-std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::vector<CellMoments> before,
+std::vector<CellMoments> CellIntegrals::moments(const CellCandidates& candidates, std::vector<CellMoments> before,
                                                 const JobStage& stage) {
   std::vector<CellMoments> cells = std::move(before);
-  cells.resize(claims.site_count());
-  parallel_for(claims.site_count(), threads_, 16, [&](Index i, int) {
+  cells.resize(candidates.labels().site_count());
+  parallel_for(candidates.labels().site_count(), threads_, 16, [&](Index i, int) {
     stage.check();
-    const Index site = claims.maps().sites_along_curve()[i];
-    if (i + 1 < claims.site_count()) fetch_cell(claims, claims.maps().sites_along_curve()[i + 1]);
-    if (!claims.is_as_before(site)) cells[site] = within(claims, site);
+    const Index site = candidates.labels().sites_along_curve()[i];
+    if (i + 1 < candidates.labels().site_count())
+      fetch_cell(candidates, candidates.labels().sites_along_curve()[i + 1]);
+    if (!candidates.is_as_before(site)) cells[site] = within(candidates, site);
   });
   // By stretches of faces that are always the same: sums depend neither on the number of threads nor on other cells.
   constexpr Index k_stretch = 4096;
@@ -394,13 +396,14 @@ std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::v
   parallel_for(stretches, threads_, 1, [&](Index stretch, int thread) {
     stage.check();
     auto& [shared_face, stretch_sums] = workers[thread];
-    stretch_sums.begin(claims.site_count());
+    stretch_sums.begin(candidates.labels().site_count());
     const auto integrate = [&](Index first, Index last) {
       for (Index shared = first; shared < last; ++shared) {
-        const auto rivals = claims.claims(shared);
-        if (std::ranges::all_of(rivals, [&](const CellClaim& claim) { return claims.is_as_before(claim.site); }))
+        const auto rivals = candidates.rows().candidates(shared);
+        if (std::ranges::all_of(
+                rivals, [&](const CellCandidate& candidate) { return candidates.is_as_before(candidate.site); }))
           continue;
-        const Index face = claims.face(shared);
+        const Index face = candidates.rows().face(shared);
         const FaceShape shape(faces_[face], density_.empty() ? nullptr : &density_[face]);
         shared_face.integrate(shape, rivals,
                               [&](Index site, const CellMoments& part) { stretch_sums.add(site, part); });
@@ -408,19 +411,19 @@ std::vector<CellMoments> CellIntegrals::moments(const CellClaims& claims, std::v
     };
     const Index first = stretch * k_stretch, last = std::min(rings_.face_count(), first + k_stretch);
     for (Index face = first; face < last; ++face) {
-      if (claims.shared_index(face) != k_none) continue;
-      const Index site = claims.maps().label(rings_.face(face).nodes[0]);
+      if (candidates.rows().shared_index(face) != k_none) continue;
+      const Index site = candidates.labels().label(rings_.face(face).nodes[0]);
       CellMoments part;
-      if (!claims.is_as_before(site) && add_at_border(claims, face, part)) stretch_sums.add(site, part);
+      if (!candidates.is_as_before(site) && add_at_border(candidates, face, part)) stretch_sums.add(site, part);
     }
-    const CellClaims::Stretch shared = claims.shared_within(first, last);
+    const CandidateRows::Stretch shared = candidates.rows().within(first, last);
     integrate(shared.first, shared.last);
     integrate(shared.first_late, shared.last_late);
     sums[stretch] = stretch_sums.entries();
   });
   for (const auto& entries : sums) {
     for (const auto& [site, part] : entries)
-      if (!claims.is_as_before(site)) cells[site] += part;
+      if (!candidates.is_as_before(site)) cells[site] += part;
   }
   return cells;
 }

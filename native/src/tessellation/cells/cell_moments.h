@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tessellation/cells/cell_claims.h"
+#include "tessellation/cells/cell_candidates.h"
 
 namespace saddleback {
 
@@ -24,9 +24,10 @@ class CellIntegrals {
   CellIntegrals(const SaddleVertexGraph& graph, const VertexRings& rings, std::span<const double> density, int threads);
 
   /// By cell. Integrals of density^2 times squared distance (both quadratic in a flat face) are exact. The same for any
-  /// number of threads. `before`: those of the claims before their last `find`; cells that are as before keep theirs.
-  /// \throw Cancelled. O(V + pieces), of the other cells.
-  std::vector<CellMoments> moments(const CellClaims& claims, std::vector<CellMoments> before, const JobStage& stage);
+  /// number of threads. `before`: those of the candidates before their last `find`; cells that are as before keep
+  /// theirs. \throw Cancelled. O(V + pieces), of the other cells.
+  std::vector<CellMoments> moments(const CellCandidates& candidates, std::vector<CellMoments> before,
+                                   const JobStage& stage);
 
   /// A flat face. Integrals over all of it: density^2 with the barycentric coordinates, and with what squared distances
   /// fall short of their corners' interpolation.
@@ -42,9 +43,9 @@ class CellIntegrals {
   struct Node {
     double weight = 0, bulge = 0, area = 0;
   };
-  void fetch_cell(const CellClaims& claims, Index site) const;
-  CellMoments within(const CellClaims& claims, Index site) const;
-  bool add_at_border(const CellClaims& claims, Index face, CellMoments& sum) const;
+  void fetch_cell(const CellCandidates& candidates, Index site) const;
+  CellMoments within(const CellCandidates& candidates, Index site) const;
+  bool add_at_border(const CellCandidates& candidates, Index face, CellMoments& sum) const;
   static void add_about(const Node& about, const SiteVector& seen, CellMoments& sum);
 
   const VertexRings& rings_;

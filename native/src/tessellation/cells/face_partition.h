@@ -46,7 +46,7 @@ class FacePartition {
 
   /// Replaces the pieces by a star: each run of the boundary is joined to one inner vertex, in the middle of where
   /// pieces met before. Used where the subdivision's sides do not agree with what the edges say: the faces beside an
-  /// edge may know different claims.
+  /// edge may know different candidates.
   struct Side {
     std::vector<double> breaks;  ///< from corner i, 0 to 1
     std::vector<Index> sites;    ///< one more than breaks

@@ -1,5 +1,7 @@
 // Method: labels by shortest paths in the graph, from the vertices that sites see.
 
+#include "tessellation/log_map/site_labels.h"
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -8,25 +10,77 @@
 #include "geodesics/queries/parted_search.h"
 #include "support/threads/parallel.h"
 #include "tessellation/log_map/relabeling.h"
-#include "tessellation/log_map/site_maps.h"
 
 namespace saddleback {
+namespace {
 
-void SiteMaps::label_all(int threads, const JobStage& stage) {
-  bare_.clear();
-  if (cuda_device_ >= 0) {
-    cuda_nearest_sources(graph_, cuda_device_, flat_seeds(threads), stage, distance_, label_);
-  } else {
-    label_what_is_seen(threads);
-    if (!sweep_labels(threads, stage)) search_labels(threads, stage);
-  }
-  group_nodes(threads);
+/// Lists what all sites see, one after the other, in memory that is kept: fresh pages take longer than the seeds.
+void list_seeds(const SeenFromSites& sites, Index site_count, int threads, FlatSeeds& seeds) {
+  std::vector<std::size_t> first{0};
+  for (Index site = 0; site < site_count; ++site)
+    first.push_back(first.back() + sites.of(site).arc_count + (sites.of(site).center != k_none ? 1 : 0));
+  seeds.resize(first.back());
+  parallel_for(site_count, threads, 64, [&](Index site, int) {
+    std::size_t at = first[site];
+    const SeenVertices& seen = sites.of(site);
+    for (std::size_t i = 0; i < seen.arc_count; ++i) seeds.set(at++, {seen.nodes[i], site, seen.rounded[i]});
+    if (seen.center != k_none) seeds.set(at, {seen.center, site, 0});
+  });
 }
 
-/// The nearest of the sites that have an arc to a node. Each thread has a stretch of the nodes.
-void SiteMaps::label_what_is_seen(int threads) {
+/// Sorts sites along the curve of the faces. The order of the last time has what is next to each other now nearly in
+/// order already.
+void order_sites(const SurfacePoints& sites, const VertexRings& rings, std::vector<Index>& order) {
+  if (order.size() != sites.size()) {
+    order.resize(sites.size());
+    std::iota(order.begin(), order.end(), 0);
+  }
+  std::vector<std::pair<Index, Index>> keys;
+  keys.reserve(order.size());
+  for (const Index site : order) keys.emplace_back(rings.face_of(sites[site].face), site);
+  std::ranges::sort(keys);
+  std::ranges::transform(keys, order.begin(), &std::pair<Index, Index>::second);
+}
+
+}  // namespace
+
+void SiteLabels::begin(const SurfacePoints& sites, const std::optional<std::vector<Index>>& others) {
+  keeps_any_ = others && 2 * others->size() <= sites.size();  // else labels are found as soon from the start
+  sites_ = sites;
+  order_sites(sites_, rings_, order_);
+  is_kept_.assign(sites.size(), keeps_any_);
+  if (keeps_any_)
+    for (const Index site : *others) is_kept_[site] = 0;
+}
+
+void SiteLabels::find(const SeenFromSites& seen, const std::optional<std::vector<Index>>& others, int threads,
+                      const JobStage& stage) {
+  if (keeps_any_) return label_again(seen, *others, stage);
+  label_all(seen, threads, stage);
+}
+
+void SiteLabels::label_all(const SeenFromSites& seen, int threads, const JobStage& stage) {
+  bare_.clear();
+  if (cuda_device_ >= 0) {
+    list_seeds(seen, site_count(), threads, seeds_);
+    cuda_nearest_sources(graph_, cuda_device_, seeds_, stage, distance_, label_);
+  } else {
+    label_what_is_seen(seen, threads);
+    if (!sweep(threads, stage)) {
+      const auto seeds_of = [&](Index first, Index last, std::vector<NodeSeed>& seeds) {
+        for (Index node = first; node < last; ++node)
+          if (label_[node] != k_none) seeds.push_back({node, label_[node], distance_[node]});
+      };
+      nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
+    }
+  }
+  group_all(threads);
+}
+
+/// Labels a node with the nearest of the sites that have an arc to it. Each thread has a stretch of the nodes.
+void SiteLabels::label_what_is_seen(const SeenFromSites& sites, int threads) {
   constexpr Index k_least_stretch = 4096;
-  const Index count = mesh_.vertex_count();
+  const Index count = graph_.mesh().vertex_count();
   const Index stretches = std::clamp(count / k_least_stretch, 1, thread_count(threads));
   distance_.resize(count);
   label_.resize(count);
@@ -42,48 +96,25 @@ void SiteMaps::label_what_is_seen(int threads) {
       label_[node] = site;
     };
     for (const Index site : order_) {
-      const Fan& fan = fans_[site];
-      if (fan.center != k_none) offer(fan.center, site, 0);
-      if (fan.last < first || fan.first >= last) continue;  // of another part of the surface
-      for (std::size_t i = 0; i < fan.arc_count; ++i) offer(fan.nodes[i], site, fan.rounded[i]);
+      const SeenVertices& seen = sites.of(site);
+      if (seen.center != k_none) offer(seen.center, site, 0);
+      if (seen.last < first || seen.first >= last) continue;  // of another part of the surface
+      for (std::size_t i = 0; i < seen.arc_count; ++i) offer(seen.nodes[i], site, seen.rounded[i]);
     }
   });
 }
 
-/// False where it does not pay, or has not led everywhere.
-bool SiteMaps::sweep_labels(int threads, const JobStage& stage) {
+/// Labels by sweeps along the nodes. False where it does not pay, or has not led everywhere.
+bool SiteLabels::sweep(int threads, const JobStage& stage) {
   constexpr Index k_most_nodes = 32;  // a site: cells of more are found sooner from bucket to bucket
-  if (std::int64_t{k_most_nodes} * site_count() < mesh_.vertex_count()) return false;
+  if (std::int64_t{k_most_nodes} * site_count() < graph_.mesh().vertex_count()) return false;
   if (!std::exchange(has_labeled_, true)) return false;  // the tables pay from the second time on
   if (!sweep_) sweep_.emplace(graph_, threads, stage);
   return sweep_->run(distance_, label_, stage);
 }
 
-/// From what has a label.
-void SiteMaps::search_labels(int threads, const JobStage& stage) {
-  const auto seeds_of = [&](Index first, Index last, std::vector<NodeSeed>& seeds) {
-    for (Index node = first; node < last; ++node)
-      if (label_[node] != k_none) seeds.push_back({node, label_[node], distance_[node]});
-  };
-  nearest_sources(graph_, seeds_of, threads, stage, distance_, label_);
-}
-
-/// All fans', one after the other, in memory that is kept: fresh pages take longer than the seeds.
-const FlatSeeds& SiteMaps::flat_seeds(int threads) {
-  std::vector<std::size_t> first{0};
-  for (const Fan& fan : fans_) first.push_back(first.back() + fan.arc_count + (fan.center != k_none ? 1 : 0));
-  seeds_.resize(first.back());
-  parallel_for(site_count(), threads, 64, [&](Index site, int) {
-    std::size_t at = first[site];
-    const Fan& fan = fans_[site];
-    for (std::size_t i = 0; i < fan.arc_count; ++i) seeds_.set(at++, {fan.nodes[i], site, fan.rounded[i]});
-    if (fan.center != k_none) seeds_.set(at, {fan.center, site, 0});
-  });
-  return seeds_;
-}
-
-/// What was nearest to sites that have moved, and what is nearer to them now.
-void SiteMaps::label_again(std::span<const Index> moved, const JobStage& stage) {
+/// Labels anew what was nearest to sites that have moved, and what is nearer to them now.
+void SiteLabels::label_again(const SeenFromSites& sites, std::span<const Index> moved, const JobStage& stage) {
   std::vector<Index> loose = std::exchange(bare_, {});
   for (const Index site : moved) {
     const auto own = nodes(site);
@@ -92,9 +123,9 @@ void SiteMaps::label_again(std::span<const Index> moved, const JobStage& stage) 
   Relabeling search(graph_, distance_, label_);
   search.loosen(loose);
   for (Index site = 0; site < site_count(); ++site) {
-    const Fan& fan = fans_[site];
-    if (fan.center != k_none) search.offer(fan.center, site, 0);
-    for (std::size_t i = 0; i < fan.arc_count; ++i) search.offer(fan.nodes[i], site, fan.rounded[i]);
+    const SeenVertices& seen = sites.of(site);
+    if (seen.center != k_none) search.offer(seen.center, site, 0);
+    for (std::size_t i = 0; i < seen.arc_count; ++i) search.offer(seen.nodes[i], site, seen.rounded[i]);
   }
   std::vector<std::uint8_t> moves(site_count(), 0);  // its nodes, away or here
   for (const Index site : moved) moves[site] = 1;
@@ -108,8 +139,8 @@ void SiteMaps::label_again(std::span<const Index> moved, const JobStage& stage) 
   group_again(moving);
 }
 
-/// All nodes of cells that are made anew are `moving`.
-void SiteMaps::group_again(std::span<const Index> moving) {
+/// Groups the nodes anew; `moving` are those of cells that are made anew.
+void SiteLabels::group_again(std::span<const Index> moving) {
   std::vector<Index> first(site_count() + 1, 0), grouped(label_.size());
   for (const Index node : moving) ++first[label_[node] + 1];
   for (Index site = 0; site < site_count(); ++site)
@@ -122,19 +153,15 @@ void SiteMaps::group_again(std::span<const Index> moving) {
   nodes_.swap(grouped);
 }
 
-void SiteMaps::renumber(std::span<const Index> before) {
+void SiteLabels::renumber(std::span<const Index> before) {
   const auto count = static_cast<Index>(before.size());
   std::vector<Index> now(sites_.size(), k_none), first{0}, grouped;
   SurfacePoints sites(count, {k_none, Vec3::Zero()});
-  std::vector<Fan> fans(count);
-  std::vector<double> limits(count, 0);
   grouped.reserve(nodes_.size());
   for (Index site = 0; site < count; ++site) {
     if (const Index old = before[site]; old != k_none) {
       now[old] = site;
       sites[site] = sites_[old];
-      fans[site] = std::move(fans_[old]);
-      limits[site] = limits_[old];
       const auto own = nodes(old);
       grouped.insert(grouped.end(), own.begin(), own.end());
     }
@@ -150,17 +177,16 @@ void SiteMaps::renumber(std::span<const Index> before) {
   for (Index site = 0; site < count; ++site)
     if (before[site] == k_none) order_.push_back(site);
   sites_.swap(sites);
-  fans_.swap(fans);
-  limits_.swap(limits);
   first_node_.swap(first);
   nodes_.swap(grouped);
 }
 
-/// Each thread counts, and later places, its own stretch of the nodes: a label's nodes are in their order.
-void SiteMaps::group_nodes(int threads) {
+/// Groups the nodes by label. Each thread counts, and later places, its own stretch of the nodes: a label's nodes are
+/// in their order.
+void SiteLabels::group_all(int threads) {
   constexpr Index k_least_stretch = 1 << 14;
   const auto sites = static_cast<std::size_t>(site_count());
-  const Index count = mesh_.vertex_count(), worth_it = count / std::max(k_least_stretch, site_count());
+  const Index count = graph_.mesh().vertex_count(), worth_it = count / std::max(k_least_stretch, site_count());
   const Index stretches = std::clamp(worth_it, 1, thread_count(threads));
   const auto begin = [&](Index stretch) { return static_cast<Index>(std::int64_t{count} * stretch / stretches); };
   std::vector<Index> cursors(static_cast<std::size_t>(stretches) * sites, 0);
@@ -181,17 +207,11 @@ void SiteMaps::group_nodes(int threads) {
   in_stretches([&](Index node, Index& cursor) { nodes_[cursor++] = node; });
 }
 
-/// The order of the last time has what is next to each other now nearly in order already.
-void SiteMaps::order_sites() {
-  if (order_.size() != sites_.size()) {
-    order_.resize(sites_.size());
-    std::iota(order_.begin(), order_.end(), 0);
-  }
-  std::vector<std::pair<Index, Index>> keys;
-  keys.reserve(order_.size());
-  for (const Index site : order_) keys.emplace_back(rings_.face_of(sites_[site].face), site);
-  std::ranges::sort(keys);
-  std::ranges::transform(keys, order_.begin(), &std::pair<Index, Index>::second);
+std::span<const Index> SiteLabels::sort_by_distance(Index site) {
+  const std::span<Index> own{nodes_.data() + first_node_[site], nodes_.data() + first_node_[site + 1]};
+  std::ranges::sort(
+      own, [&](Index a, Index b) { return distance_[a] != distance_[b] ? distance_[a] < distance_[b] : a < b; });
+  return own;
 }
 
 }  // namespace saddleback

@@ -8,7 +8,7 @@
 
 namespace saddleback {
 
-/// A vector in the tangent plane of each site (axes as SiteMaps).
+/// A vector in the tangent plane of each site (axes as CellLogMaps).
 using TangentField = std::vector<Vec2>;
 
 /// The places where sites came to rest, and the turns of directions along the way.

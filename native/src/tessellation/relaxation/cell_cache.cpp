@@ -60,7 +60,7 @@ KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> d
       cuda_device_(cuda_device),
       rings_(graph, threads),
       integrals_(graph, rings_, density_, threads),
-      claims_(graph, rings_, lengths, threads, cuda_device) {}
+      candidates_(graph, rings_, lengths, threads, cuda_device) {}
 
 bool KnownCells::fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads,
                       int cuda_device) const {
@@ -69,11 +69,12 @@ bool KnownCells::fits(const SaddleVertexGraph& graph, std::span<const double> de
 }
 
 void KnownCells::match(const SurfacePoints& sites) {
-  const SurfacePoints& before = claims_.maps().sites();
+  const SurfacePoints& before = candidates_.labels().sites();
   if (!is_whole_) return;
   const std::vector<Index> numbers = numbers_before(before, sites);
-  if (2 * std::ranges::count(numbers, k_none) > std::ssize(numbers)) claims_.forget();  // others may be far away now
-  claims_.renumber(numbers);
+  if (2 * std::ranges::count(numbers, k_none) > std::ssize(numbers))
+    candidates_.forget();  // others may be far away now
+  candidates_.renumber(numbers);
   std::vector<CellMoments> moments(sites.size());
   for (std::size_t i = 0; i < sites.size(); ++i)
     if (numbers[i] != k_none) moments[i] = moments_[numbers[i]];
@@ -81,17 +82,17 @@ void KnownCells::match(const SurfacePoints& sites) {
 }
 
 const std::vector<CellMoments>& KnownCells::find(const SurfacePoints& sites, const JobStage& stage) {
-  if (!std::exchange(is_whole_, false)) claims_.forget();
-  claims_.find(sites, stage.part(0, 0.8));
-  moments_ = integrals_.moments(claims_, std::move(moments_), stage);
+  if (!std::exchange(is_whole_, false)) candidates_.forget();
+  candidates_.find(sites, stage.part(0, 0.8));
+  moments_ = integrals_.moments(candidates_, std::move(moments_), stage);
   is_whole_ = true;
   return moments_;
 }
 
 void KnownCells::look_farther(const JobStage& stage) {
   is_whole_ = false;
-  claims_.look_farther(stage);
-  moments_ = integrals_.moments(claims_, std::move(moments_), stage);
+  candidates_.look_farther(stage);
+  moments_ = integrals_.moments(candidates_, std::move(moments_), stage);
   is_whole_ = true;
 }
 

@@ -6,7 +6,7 @@
 
 #include "saddleback/tessellation/cell_cache.h"
 
-#include "tessellation/cells/cell_claims.h"
+#include "tessellation/cells/cell_candidates.h"
 #include "tessellation/cells/cell_moments.h"
 
 namespace saddleback {
@@ -15,12 +15,12 @@ namespace saddleback {
 /// sites move.
 class KnownCells {
  public:
-  /// The graph must outlive it. `lengths`, `cuda_device` as for SiteMaps.
+  /// The graph must outlive it. `lengths`, `cuda_device` as for CellLogMaps.
   KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, CellLengths lengths, int threads,
              int cuda_device);
 
   bool fits(const SaddleVertexGraph& graph, std::span<const double> density, int threads, int cuda_device) const;
-  const CellClaims& claims() const { return claims_; }
+  const CellCandidates& candidates() const { return candidates_; }
   /// False before the first `find` and after one that was cancelled.
   bool is_whole() const { return is_whole_; }
   /// Gives sites that are where some were before those one's numbers. Sites that are not in the same order as before
@@ -28,7 +28,7 @@ class KnownCells {
   void match(const SurfacePoints& sites);
   /// \throw Cancelled, DeviceError, and then all cells are found anew the next time.
   const std::vector<CellMoments>& find(const SurfacePoints& sites, const JobStage& stage);
-  /// As CellClaims::look_farther.
+  /// As CellCandidates::look_farther.
   void look_farther(const JobStage& stage);
 
  private:
@@ -37,7 +37,7 @@ class KnownCells {
   const int threads_, cuda_device_;
   const VertexRings rings_;
   CellIntegrals integrals_;
-  CellClaims claims_;
+  CellCandidates candidates_;
   std::vector<CellMoments> moments_;
   bool is_whole_ = false;  ///< nothing was cancelled
 };

@@ -36,14 +36,14 @@ void Relaxation::rest(std::vector<std::uint8_t> sites) {
   memory_.forget();
 }
 
-const CellClaims& Relaxation::cells(const JobStage& stage) {
-  const SurfacePoints& last = cells_->claims().maps().sites();
+const CellCandidates& Relaxation::cells(const JobStage& stage) {
+  const SurfacePoints& last = cells_->candidates().labels().sites();
   const auto same = [](const SurfacePoint& a, const SurfacePoint& b) {
     return a.face == b.face && a.barycentric == b.barycentric;
   };
   if (!cells_->is_whole() || !std::ranges::equal(last, state_.sites, same)) cells_->find(state_.sites, stage);
   cells_->look_farther(stage);
-  return cells_->claims();
+  return cells_->candidates();
 }
 
 /// Puts sites without a cell into the cells with the most energy, one each. False when there is nothing to do.
@@ -60,7 +60,7 @@ bool Relaxation::revive_empty_cells(const JobStage& stage) {
     const double of_a = state_.moments[a].energy, of_b = state_.moments[b].energy;
     return of_a != of_b ? of_a > of_b : a < b;
   });
-  const CellClaims& known = cells(stage);
+  const CellCandidates& known = cells(stage);
   SurfacePoints sites = state_.sites;
   for (std::size_t i = 0; i < std::min(empty.size(), rich.size()); ++i) sites[empty[i]] = far_place(known, rich[i]);
   RelaxationState next = evaluate(std::move(sites), state_.along, stage);
@@ -71,8 +71,8 @@ bool Relaxation::revive_empty_cells(const JobStage& stage) {
 }
 
 /// Far from the site, in its cell: the last of its vertices, else on the way to a corner of its face.
-SurfacePoint Relaxation::far_place(const CellClaims& cells, Index site) const {
-  const auto nodes = cells.maps().nodes(site);
+SurfacePoint Relaxation::far_place(const CellCandidates& cells, Index site) const {
+  const auto nodes = cells.labels().nodes(site);
   if (!nodes.empty()) {
     const Index farthest = graph_.vertex_of(nodes.back());
     if (vertex_at(graph_.mesh(), state_.sites[site]) != farthest) return at_vertex(graph_.mesh(), farthest);
@@ -109,8 +109,8 @@ bool Relaxation::advance_by(TangentField direction, const TangentField& slope, c
   for (int halving = 0; halving <= k_most_halvings; ++halving, length /= 2) {
     TangentField steps = direction;
     for (Vec2& step : steps) step *= length;
-    Moved moved =
-        move_sites(graph_.mesh(), state_.sites, steps, options_.threads, cells_->claims().maps().sites_along_curve());
+    Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads,
+                             cells_->candidates().labels().sites_along_curve());
     std::vector<double> along = held_.move(state_.along, state_.sites, steps, moved);
     RelaxationState next = evaluate(moved.sites, std::move(along), stage);
     if (!(next.energy <= state_.energy + k_least_share * length * promise)) continue;
@@ -130,8 +130,8 @@ bool Relaxation::advance_by(TangentField direction, const TangentField& slope, c
 TangentField Relaxation::go(TangentField steps, const JobStage& stage) {
   hold(state_, steps);
   shorten(steps);
-  Moved moved =
-      move_sites(graph_.mesh(), state_.sites, steps, options_.threads, cells_->claims().maps().sites_along_curve());
+  Moved moved = move_sites(graph_.mesh(), state_.sites, steps, options_.threads,
+                           cells_->candidates().labels().sites_along_curve());
   std::vector<double> along = held_.move(state_.along, state_.sites, steps, moved);
   go_to(std::move(moved.sites), std::move(along), stage);
   return std::move(moved.steps);

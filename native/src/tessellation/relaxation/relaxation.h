@@ -33,7 +33,7 @@ class Relaxation {
   /// Keeps these sites, (n,), where they are from now on, as fixed ones, until others are named.
   void rest(std::vector<std::uint8_t> sites);
   /// Of the state's sites: found again where others were looked at last. \throw Cancelled.
-  const CellClaims& cells(const JobStage& stage);
+  const CellCandidates& cells(const JobStage& stage);
   /// Whether the last step that was refused would have moved no site by least_move.
   bool is_at_rest() const { return is_at_rest_; }
   /// Takes a step that lowers the energy; false when there is none. \throw Cancelled, the state as it was.
@@ -52,7 +52,7 @@ class Relaxation {
  private:
   RelaxationState evaluate(SurfacePoints sites, std::vector<double> along, const JobStage& stage);
   bool revive_empty_cells(const JobStage& stage);
-  SurfacePoint far_place(const CellClaims& cells, Index site) const;
+  SurfacePoint far_place(const CellCandidates& cells, Index site) const;
   bool advance_by(TangentField direction, const TangentField& gradient, const JobStage& stage);
   TangentField gradient(const RelaxationState& state) const;
   TangentField quasi_newton_direction(const TangentField& gradient) const;

@@ -1,9 +1,9 @@
 #pragma once
-// Claims by exact distances, on faces divided so finely that squared distances are what one plane would say.
+// Candidates by exact distances, on faces divided so finely that squared distances are what one plane would say.
 
 #include "saddleback/geodesics/exact_distances.h"
 
-#include "tessellation/cells/cell_claims.h"
+#include "tessellation/cells/face_candidates.h"
 #include "tessellation/cells/face_refinement.h"
 
 namespace saddleback {
@@ -26,7 +26,7 @@ class ExactParts {
   const std::vector<Index>& order() const { return order_; }
   const ExactField::Sight& nearest(Index vertex) const { return nearest_[vertex]; }
   /// The sites that may own something of a part, by site.
-  void find_claims(const FaceRefinement::Part& part, std::vector<FaceClaim>& claims) const;
+  void find_candidates(const FaceRefinement::Part& part, std::vector<FaceCandidate>& candidates) const;
 
  private:
   using Way = ExactField::Way;
@@ -45,15 +45,16 @@ class ExactParts {
   void add_distances(const SurfacePoint& place, Distances& distances) const;
   void set_nearest(Index vertex);
   Corners corners_of(const FaceRefinement::Part& part) const;
-  void find_claims(const FaceRefinement::Part& part, const Corners& corners, std::vector<FaceClaim>& claims) const;
+  void find_candidates(const FaceRefinement::Part& part, const Corners& corners,
+                       std::vector<FaceCandidate>& candidates) const;
   void divide(Index part);
   bool is_looked_at(Index part) const;
   bool is_right(const FaceRefinement::Part& part);
-  bool fits(const FaceRefinement::Part& part, const std::vector<FaceClaim>& claims, const Ways* straight,
+  bool fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, const Ways* straight,
             double tolerance) const;
-  Ways ways_seen(const std::vector<FaceClaim>& claims) const;
+  Ways ways_seen(const std::vector<FaceCandidate>& candidates) const;
   bool explain(const FaceRefinement::Part& part, const Ways& ways, std::span<const Vec3> places) const;
-  bool straighten(const FaceRefinement::Part& part, const std::vector<FaceClaim>& claims, double tolerance);
+  bool straighten(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, double tolerance);
 
   const ExactField& field_;
   const std::vector<Index>& sites_;
@@ -68,11 +69,11 @@ class ExactParts {
   std::vector<Index> order_;
 };
 
-/// The same as claims on a mesh whose faces are the parts, in their order.
-class ExactClaims final : public FaceClaims {
+/// The same as candidates on a mesh whose faces are the parts, in their order.
+class ExactCandidates final : public FaceCandidates {
  public:
-  /// Both must outlive the claims.
-  ExactClaims(const ExactParts& parts, const Mesh& mesh, Index site_count);
+  /// Both must outlive the candidates.
+  ExactCandidates(const ExactParts& parts, const Mesh& mesh, Index site_count);
   Index label(Index vertex) const override { return parts_.nearest(vertex).source; }
   double distance(Index vertex) const override { return parts_.nearest(vertex).distance; }
 

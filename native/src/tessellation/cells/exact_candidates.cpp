@@ -1,4 +1,4 @@
-#include "tessellation/cells/exact_claims.h"
+#include "tessellation/cells/exact_candidates.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,11 +19,11 @@ constexpr double k_unbent = 0.1;
 // Of the tolerance: a way that is the shortest is as long as the distance, but for rounding.
 constexpr double k_explained = 1e-3;
 
-/// Whether another claim is nearer at all corners: then it is in the whole part.
-bool is_beaten(const FaceClaim& claim, const std::vector<FaceClaim>& claims) {
-  return std::ranges::any_of(claims, [&](const FaceClaim& other) {
+/// Whether another candidate is nearer at all corners: then it is in the whole part.
+bool is_beaten(const FaceCandidate& candidate, const std::vector<FaceCandidate>& candidates) {
+  return std::ranges::any_of(candidates, [&](const FaceCandidate& other) {
     for (int i = 0; i < 3; ++i)
-      if (!(other.squared_distance[i] < claim.squared_distance[i])) return false;
+      if (!(other.squared_distance[i] < candidate.squared_distance[i])) return false;
     return true;
   });
 }
@@ -45,22 +45,22 @@ SurfacePoint point_in(const FaceRefinement::Part& part, const Vec3& x) {
 }
 
 /// What the squared distances at the corners say in between, as for a point in the plane.
-double distance_at(const FaceRefinement::Part& part, const FaceClaim& claim, const Vec3& x) {
+double distance_at(const FaceRefinement::Part& part, const FaceCandidate& candidate, const Vec3& x) {
   double squared = 0;
   for (int i = 0; i < 3; ++i)
-    squared += x[i] * claim.squared_distance[i] - x[i] * x[(i + 1) % 3] * part.length[i] * part.length[i];
+    squared += x[i] * candidate.squared_distance[i] - x[i] * x[(i + 1) % 3] * part.length[i] * part.length[i];
   return std::sqrt(std::max(0.0, squared));
 }
 
 /// Beside the bisectors in a part, on all sides of them; barycentric in the part.
-std::vector<Vec3> places_by_bisectors(const std::vector<FaceClaim>& claims) {
+std::vector<Vec3> places_by_bisectors(const std::vector<FaceCandidate>& candidates) {
   constexpr double k_aside = 0.1;
   std::vector<EdgeLine> lines;
   std::vector<EdgePiece> pieces;
   std::vector<Vec3> on_bisectors, places;
   for (Index side = 0; side < 3; ++side) {
     lines.clear();
-    for (const FaceClaim& claim : claims) lines.push_back(claim.line_along(side));
+    for (const FaceCandidate& candidate : candidates) lines.push_back(candidate.line_along(side));
     lower_envelope(lines, pieces);
     for (std::size_t i = 1; i < pieces.size(); ++i)
       on_bisectors.push_back((1 - pieces[i].begin) * Vec3::Unit(side) + pieces[i].begin * Vec3::Unit((side + 1) % 3));
@@ -164,18 +164,18 @@ ExactParts::Corners ExactParts::corners_of(const FaceRefinement::Part& part) con
   return {&distances_[part.corner[0]], &distances_[part.corner[1]], &distances_[part.corner[2]]};
 }
 
-void ExactParts::find_claims(const FaceRefinement::Part& part, std::vector<FaceClaim>& claims) const {
-  find_claims(part, corners_of(part), claims);
+void ExactParts::find_candidates(const FaceRefinement::Part& part, std::vector<FaceCandidate>& candidates) const {
+  find_candidates(part, corners_of(part), candidates);
 }
 
 /// A distance changes by no more than the way between two points: a site that is far behind at a corner owns nothing.
-void ExactParts::find_claims(const FaceRefinement::Part& part, const Corners& corners,
-                             std::vector<FaceClaim>& claims) const {
-  claims.clear();
+void ExactParts::find_candidates(const FaceRefinement::Part& part, const Corners& corners,
+                                 std::vector<FaceCandidate>& candidates) const {
+  candidates.clear();
   for (const Distances* const at_corner : corners) {
     for (const Known& known_here : *at_corner) {
-      if (std::ranges::find(claims, known_here.source, &FaceClaim::site) != claims.end()) continue;
-      FaceClaim claim{part.face, known_here.source, {}};
+      if (std::ranges::find(candidates, known_here.source, &FaceCandidate::site) != candidates.end()) continue;
+      FaceCandidate candidate{part.face, known_here.source, {}};
       std::array<double, 3> distance;
       for (int i = 0; i < 3; ++i) {
         const Known* const known = find_source(*corners[i], known_here.source);
@@ -190,75 +190,76 @@ void ExactParts::find_claims(const FaceRefinement::Part& part, const Corners& co
         may_own = may_own && lead <= 2 * std::max(to_next, to_last);
         // Whatever rounding says of ties, all parts about a vertex agree on whose it is.
         const double of_nearest = nearest.distance * nearest.distance;
-        claim.squared_distance[i] =
-            nearest.source == claim.site ? of_nearest : std::max(least * least, std::nextafter(of_nearest, k_infinity));
-        is_nearest = is_nearest || nearest.source == claim.site;
+        candidate.squared_distance[i] = nearest.source == candidate.site
+                                            ? of_nearest
+                                            : std::max(least * least, std::nextafter(of_nearest, k_infinity));
+        is_nearest = is_nearest || nearest.source == candidate.site;
       }
-      if (may_own || is_nearest) claims.push_back(claim);
+      if (may_own || is_nearest) candidates.push_back(candidate);
     }
   }
-  std::ranges::sort(claims, {}, &FaceClaim::site);
+  std::ranges::sort(candidates, {}, &FaceCandidate::site);
 }
 
 bool ExactParts::is_right(const FaceRefinement::Part& part) {
   if (std::ranges::max(part.length) <= k_unbent * tolerance_ / 2) return true;
-  std::vector<FaceClaim> claims;
-  find_claims(part, claims);
-  if (claims.size() == 1) return true;
+  std::vector<FaceCandidate> candidates;
+  find_candidates(part, candidates);
+  if (candidates.size() == 1) return true;
   const std::array<Vec3, 4> samples = samples_of_part();
   for (std::size_t i = 0; i < samples.size(); ++i) find_ways(point_in(part, samples[i]), at_samples_[i]);
   const auto is_rival = [&](const Way& way) {
-    const auto claim = std::ranges::find(claims, way.source, &FaceClaim::site);
-    return claim != claims.end() && !is_beaten(*claim, claims);
+    const auto candidate = std::ranges::find(candidates, way.source, &FaceCandidate::site);
+    return candidate != candidates.end() && !is_beaten(*candidate, candidates);
   };
   const bool bends = std::ranges::any_of(at_samples_, [&](const Ways& ways) {
     return std::ranges::any_of(ways, [&](const Way& way) { return way.before > 0 && is_rival(way); });
   });
   if (bends && std::ranges::max(part.length) <= tolerance_ / 2) return true;
   const double tolerance = bends ? tolerance_ : k_unbent * tolerance_;
-  return fits(part, claims, nullptr, tolerance) || straighten(part, claims, tolerance);
+  return fits(part, candidates, nullptr, tolerance) || straighten(part, candidates, tolerance);
 }
 
 /// Looks at what the sites' distances at the samples are more than the corners say. Among sites that own something
 /// there it must be the same: what it is moves no bisector. Others may be behind by less, but by no more than half of
 /// what they are farther away. `straight`: the ways by which the former go, else each by its shortest.
-bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceClaim>& claims, const Ways* straight,
-                      double tolerance) const {
+bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates,
+                      const Ways* straight, double tolerance) const {
   std::vector<std::uint8_t> is_rival;
-  for (const FaceClaim& claim : claims) is_rival.push_back(!is_beaten(claim, claims));
+  for (const FaceCandidate& candidate : candidates) is_rival.push_back(!is_beaten(candidate, candidates));
   const std::array<Vec3, 4> samples = samples_of_part();
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Vec3& x = samples[s];
     double first = k_infinity, least = k_infinity, most = -k_infinity;
-    for (std::size_t i = 0; i < claims.size(); ++i) {
-      const Way* const way = find_source(straight ? *straight : at_samples_[s], claims[i].site);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Way* const way = find_source(straight ? *straight : at_samples_[s], candidates[i].site);
       if (straight && is_rival[i] && !way) return false;
       if (!is_rival[i] || !way) continue;
       const double distance = straight ? way->straight_to(field_.place_of(point_in(part, x))) : way->distance;
-      const double expected = distance_at(part, claims[i], x);
+      const double expected = distance_at(part, candidates[i], x);
       first = std::min(first, expected);
       least = std::min(least, distance - expected);
       most = std::max(most, distance - expected);
     }
     if (most - least > tolerance) return false;
-    for (std::size_t i = 0; i < claims.size(); ++i) {
-      const Way* const way = find_source(at_samples_[s], claims[i].site);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Way* const way = find_source(at_samples_[s], candidates[i].site);
       if (is_rival[i] || !way) continue;
-      const double expected = distance_at(part, claims[i], x), more = way->distance - expected;
+      const double expected = distance_at(part, candidates[i], x), more = way->distance - expected;
       if (most - more > std::max(tolerance, (expected - first) / 2)) return false;
     }
   }
   return true;
 }
 
-/// Of each claim's site the way at the sample where the site is nearest, or least behind the nearest.
-ExactParts::Ways ExactParts::ways_seen(const std::vector<FaceClaim>& claims) const {
+/// Of each candidate's site the way at the sample where the site is nearest, or least behind the nearest.
+ExactParts::Ways ExactParts::ways_seen(const std::vector<FaceCandidate>& candidates) const {
   Ways seen;
-  for (const FaceClaim& claim : claims) {
+  for (const FaceCandidate& candidate : candidates) {
     double least = k_infinity;
     const Way* best = nullptr;
     for (const Ways& ways : at_samples_) {
-      const Way* const way = find_source(ways, claim.site);
+      const Way* const way = find_source(ways, candidate.site);
       if (!way) continue;
       const double lead = way->distance - std::ranges::min(ways, {}, &Way::distance).distance;
       if (lead < least) least = lead, best = way;
@@ -282,11 +283,12 @@ bool ExactParts::explain(const FaceRefinement::Part& part, const Ways& ways, std
 
 /// Tells how far sites are from the part's corners, where they are not nearest, as if the surface went on; only if the
 /// part is right then.
-bool ExactParts::straighten(const FaceRefinement::Part& part, const std::vector<FaceClaim>& claims, double tolerance) {
-  Ways ways = ways_seen(claims);
+bool ExactParts::straighten(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates,
+                            double tolerance) {
+  Ways ways = ways_seen(candidates);
   std::erase_if(ways, [&](const Way& way) {
-    const auto claim = std::ranges::find(claims, way.source, &FaceClaim::site);
-    return is_beaten(*claim, claims);
+    const auto candidate = std::ranges::find(candidates, way.source, &FaceCandidate::site);
+    return is_beaten(*candidate, candidates);
   });
   if (!explain(part, ways, samples_of_part())) return false;
   std::array<Distances, 3> told;
@@ -305,8 +307,8 @@ bool ExactParts::straighten(const FaceRefinement::Part& part, const std::vector<
         *known = {way.source, distance, true};
     }
   }
-  std::vector<FaceClaim> straight;
-  find_claims(part, {&told[0], &told[1], &told[2]}, straight);
+  std::vector<FaceCandidate> straight;
+  find_candidates(part, {&told[0], &told[1], &told[2]}, straight);
   if (!fits(part, straight, &ways, tolerance) || !explain(part, ways, places_by_bisectors(straight))) return false;
   ++clock_;
   for (int i = 0; i < 3; ++i) {
@@ -318,16 +320,16 @@ bool ExactParts::straighten(const FaceRefinement::Part& part, const std::vector<
   return true;
 }
 
-ExactClaims::ExactClaims(const ExactParts& parts, const Mesh& mesh, Index site_count)
-    : FaceClaims(mesh, site_count), parts_(parts) {
+ExactCandidates::ExactCandidates(const ExactParts& parts, const Mesh& mesh, Index site_count)
+    : FaceCandidates(mesh, site_count), parts_(parts) {
   std::vector<Index> first{0};
-  std::vector<FaceClaim> all, claims;
+  std::vector<FaceCandidate> all, candidates;
   for (Index face = 0; face < mesh.face_count(); ++face) {
     const FaceRefinement::Part& part = parts.refinement().parts()[parts.order()[face]];
-    parts.find_claims(part, claims);
-    for (FaceClaim& claim : claims) {
-      claim.face = face;
-      if (!is_beaten(claim, claims)) all.push_back(claim);
+    parts.find_candidates(part, candidates);
+    for (FaceCandidate& candidate : candidates) {
+      candidate.face = face;
+      if (!is_beaten(candidate, candidates)) all.push_back(candidate);
     }
     first.push_back(static_cast<Index>(all.size()));
   }
@@ -352,8 +354,8 @@ ExactClaims::ExactClaims(const ExactParts& parts, const Mesh& mesh, Index site_c
     if (!is_shared[face]) continue;
     shared_index_[face] = shared_count();
     faces_.push_back(face);
-    claims_.insert(claims_.end(), all.begin() + first[face], all.begin() + first[face + 1]);
-    first_.push_back(claim_count());
+    candidates_.insert(candidates_.end(), all.begin() + first[face], all.begin() + first[face + 1]);
+    first_.push_back(candidate_count());
   }
 }
 

@@ -1,0 +1,194 @@
+#include "tessellation/log_map/vertices_beside.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace saddleback {
+
+VerticesBeside::VerticesBeside(CellLogMaps& maps)
+    : maps_(maps),
+      labels_(maps.labels()),
+      arcs_(maps.graph().arcs()),
+      placer_(maps),
+      beside_(k_beside),
+      table_(maps.graph().mesh().vertex_count()) {}
+
+void VerticesBeside::forget() {
+  site_ = k_none;
+  ++age_;
+}
+
+void VerticesBeside::place_cell(Index site) {
+  site_ = site;
+  ++round_;
+  answers_.clear();
+  const std::vector<Index>& nodes = maps_.seen().of(site).nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) table_[nodes[i]] = {round_, static_cast<Index>(i)};
+  placer_.place(site);
+}
+
+/// Which of those that a site sees a node is; sooner for the site that was placed last.
+Index VerticesBeside::find_seen(Index site, Index node) const {
+  if (site_ != site) return maps_.seen().of(site).find(node);
+  const Known known = table_[node];
+  return known.round == round_ && known.at >= 0 ? known.at : k_none;
+}
+
+bool VerticesBeside::find(Index site, Index node, SiteVector& vector) {
+  const SeenVertices& seen_vertices = maps_.seen().of(site);
+  if (labels_.label(node) == site) {
+    vector = maps_.own(node);
+    return true;
+  }
+  if (node == seen_vertices.center) {  // two sites on one vertex
+    vector = {};
+    return true;
+  }
+  if (site_ == site) {
+    const Known known = table_[node];
+    if (known.round == round_ && known.at < 0) {
+      vector = answers_[~known.at].vector;
+      return answers_[~known.at].found;
+    }
+  }
+  if (const Index seen = find_seen(site, node); seen != k_none) {
+    const PackedVec2& place = seen_vertices.places[seen];
+    vector = {place, place.norm()};
+    return true;
+  }
+  const bool found = place_near(site, node, vector);
+  if (site_ == site) {
+    table_[node] = {round_, ~static_cast<Index>(answers_.size())};
+    answers_.push_back({found, vector});
+  }
+  return found;
+}
+
+/// Places a node that is not seen by an arc.
+bool VerticesBeside::place_near(Index site, Index node, SiteVector& vector) {
+  if (maps_.seen().find_corner(node, site, labels_.sites()[site], vector)) return true;
+  VertexPlace place;
+  if (!place_by_cell(node, site, place)) return false;
+  vector = maps_.vector_of(place);
+  return true;
+}
+
+/// Places a node next to vertices of the site's own cell, if it has any.
+bool VerticesBeside::place_by_cell(Index node, Index site, VertexPlace& place) {
+  if (labels_.nodes(site).empty()) return false;
+  const bool is_seen = place_across_own(node, site, place) || place_across(node, site, true, place);
+  const double straight = is_seen ? place.distance : std::numeric_limits<double>::infinity();
+  if (!place_by_arc(node, site, is_seen, place)) return straight < std::numeric_limits<double>::infinity();
+  place.distance = std::min(place.distance, straight);
+  return true;
+}
+
+/// Tells where the site sees an end of an edge: a node of its cell or, where `deep`, any that can be placed beside its
+/// own. Null where there is none.
+const VertexPlace* VerticesBeside::end_of_edge(Index node, Index site, bool deep, VertexPlace& place) {
+  if (labels_.label(node) == site) return &maps_.place(node);
+  return deep && place_across_own(node, site, place) ? &place : nullptr;
+}
+
+/// Places a node beyond edges of the site's own cell; remembered.
+bool VerticesBeside::place_across_own(Index node, Index site, VertexPlace& place) {
+  Beside& entry = beside_[slot_of(site, node) % k_beside];
+  if (entry.age != age_ || entry.node != node || entry.site != site) {
+    entry.age = age_;
+    entry.node = node;
+    entry.site = site;
+    entry.found = place_across(node, site, false, entry.place);
+  }
+  place = entry.place;
+  return entry.found;
+}
+
+/// Places a node beyond the edge across which the site is seen best: between the edge's ends if there is one, else
+/// least beside them; among equals the shortest way, of several the first.
+bool VerticesBeside::place_across(Index node, Index site, bool deep, VertexPlace& place) {
+  EdgeSight best;
+  const VertexRings::Wedge* best_wedge = nullptr;
+  VertexPlace best_from, best_to;
+  for (const VertexRings::Wedge& wedge : maps_.rings().around(node)) {
+    const bool owns_from = labels_.label(wedge.from) == site, owns_to = labels_.label(wedge.to) == site;
+    if (deep ? !owns_from && !owns_to : !owns_from || !owns_to) continue;
+    VertexPlace from_memory, to_memory;
+    const VertexPlace* const from = end_of_edge(wedge.from, site, deep, from_memory);
+    const VertexPlace* const to = from ? end_of_edge(wedge.to, site, deep, to_memory) : nullptr;
+    EdgeSight found;
+    if (!to || !see(wedge, *from, *to, found)) continue;
+    const double nearer = std::abs(best.beyond) - std::abs(found.beyond);
+    const bool better =
+        !best_wedge || nearer > k_hit || (nearer >= -k_hit && found.distance < best.distance * (1 - k_arc_rounding));
+    if (better) best = found, best_wedge = &wedge, best_from = *from, best_to = *to;
+  }
+  if (!best_wedge) return false;
+  const double to_anchor = maps_.anchor_distance(best_from);
+  best.is_flat = best.is_flat && is_straight(best_from.at, best_from.distance - to_anchor) &&
+                 is_straight(best_to.at, best_to.distance - to_anchor);
+  place = placer_.place_beyond(best, *best_wedge, best_from, best_to);
+  return true;
+}
+
+/// Gives a place the length of the shortest way over a graph neighbor that the site owns or, where it owns hardly one,
+/// sees, and, unless it has one, the direction of that way. False where there is none.
+bool VerticesBeside::place_by_arc(Index node, Index site, bool has_direction, VertexPlace& place) {
+  constexpr int k_enough = 2;
+  double shortest = std::numeric_limits<double>::infinity();
+  Index before = k_none, seen_before = k_none;
+  int count = 0;
+  for (std::int64_t arc = arcs_.first(node); arc < arcs_.first(node + 1); ++arc) {
+    const Index other = arcs_.target(arc);
+    if (labels_.label(other) != site) continue;
+    ++count;
+    const double distance = maps_.place(other).distance + arcs_.length(arc);
+    if (distance < shortest) shortest = distance, before = other;
+  }
+  for (std::int64_t arc = arcs_.first(node); count < k_enough && arc < arcs_.first(node + 1); ++arc) {
+    const Index seen = find_seen(site, arcs_.target(arc));
+    if (seen == k_none) continue;
+    const double distance = maps_.seen().of(site).places[seen].norm() + arcs_.length(arc);
+    if (distance < shortest) shortest = distance, seen_before = seen;
+  }
+  if (shortest == std::numeric_limits<double>::infinity()) return false;
+  if (!has_direction)
+    place = before != k_none ? placer_.place_after(node, before) : place_after_seen(node, site, seen_before);
+  place.distance = shortest;
+  if (lies_flat(node, site, place, count < k_enough)) place.distance = maps_.anchor_distance(place) + place.at.norm();
+  return true;
+}
+
+/// Places a node where a way over another that the site sees leads, straight from the site unless it bends there for
+/// good.
+VertexPlace VerticesBeside::place_after_seen(Index node, Index site, Index seen) {
+  const Index before = maps_.seen().of(site).nodes[seen];
+  const VertexPlace at_seen = VertexPlace::straight(maps_.seen().of(site).places[seen]);
+  const VertexPlace place = placer_.place_after(node, before, at_seen, maps_.seen().direction_back(site, seen));
+  return place.anchor == before ? at_seen : place;
+}
+
+/// Whether the arcs from all of the site's nodes, and, where wanted, from those that it sees, end where the node was
+/// placed: then nothing there bends the surface.
+bool VerticesBeside::lies_flat(Index node, Index site, const VertexPlace& place, bool with_seen) const {
+  int count = 0;
+  for (std::int64_t arc = arcs_.first(node); arc < arcs_.first(node + 1); ++arc) {
+    const Index other = arcs_.target(arc);
+    Vec2 at;
+    if (labels_.label(other) == site) {
+      at = maps_.place(other).at;
+      if (maps_.place(other).anchor != place.anchor) return false;
+      if (!is_straight(at, maps_.place(other).distance - maps_.anchor_distance(place))) return false;
+    } else {
+      const Index seen = with_seen && place.anchor == k_none ? find_seen(site, other) : k_none;
+      if (seen == k_none) continue;
+      at = maps_.seen().of(site).places[seen];
+    }
+    const double length = arcs_.length(arc);
+    if (std::abs((place.at - at).norm() - length) > k_arc_rounding * length) return false;
+    ++count;
+  }
+  return count > 1;
+}
+
+}  // namespace saddleback
