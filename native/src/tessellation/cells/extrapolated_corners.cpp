@@ -60,9 +60,11 @@ ExtrapolatedCorners::Search ExtrapolatedCorners::begin(Index site) const {
   const SeenVertices& seen = maps_.seen().of(site);
   if (seen.center != k_none) push(seen.center, PackedVec2(PackedVec2::Zero()));
   for (std::size_t i = 0; i < seen.nodes.size(); ++i) push(seen.nodes[i], seen.places[i]);
-  SiteVector vector;
-  for (const Index node : seen.corners)
-    if (maps_.seen().find_corner(node, site, maps_.labels().sites()[site], vector)) push(node, vector.log);
+  if (seen.center != k_none) return search;
+  const SurfacePoint& place = maps_.labels().sites()[site];
+  const FaceChart chart(maps_.graph().mesh(), place.face);
+  for (std::size_t i = 0; i < 3; ++i)
+    push(seen.corners[i], PackedVec2(chart.corner[i] - chart.to_plane(place.barycentric)));
   return search;
 }
 

@@ -35,17 +35,18 @@ enum class CellLengths { of_ways, smooth };
 ///                      straight where the line to the anchor is traced
 ///   5. detour          the same, longer than the way in the graph by less than the slack: shortened to it
 ///   6. after another   after the vertex before on the shortest way, its bend developed; or that vertex is its anchor
-///   7. end of the way  no vertex of the cell is before, since an arc is shorter than the rounding of the whole way
+///   7. end of the way  no vertex of the cell is nearer, since an arc is shorter than the rounding of the whole way: at
+///                      its distance, in any direction
 /// A vertex beside the cell (VerticesBeside), whose label is another, by the first of these:
 ///   1. center          it is the site: two sites on one vertex
-///   2. seen            an arc of the site's own leads there
-///   3. corner          it is a corner of the site's face, which every point of the face sees
-///   4. across an edge  beyond an edge of the cell, the one across which the site is seen best
-///   5. beside an edge  beyond an edge with one end in the cell, the other placed by 4
-///   6. after an arc    after the cell's vertex before on the shortest way: a direction where 4 and 5 have none, and
+///   2. seen            an arc of the site's own leads there, as one does to each corner of its face
+///   3. across an edge  beyond an edge of the cell, the one across which the site is seen best
+///   4. beside an edge  beyond an edge with one end in the cell, the other placed by 3
+///   5. after an arc    after the cell's vertex before on the shortest way: a direction where 3 and 4 have none, and
 ///   the
 ///                      length, unless the straight one is known
-///   7. after a seen    the same after a vertex that the site sees, where the cell has hardly a vertex beside it
+///   6. after a seen    the same after a vertex that the site sees, where the cell has hardly a vertex beside it
+/// Each of them is taken in tests/native/tessellation; the seventh in test_cells_of_few_sites.py, on edges of 1e-17.
 /// What is left, corners of long faces that cells without vertices cross, is extrapolated (ExtrapolatedCorners).
 class CellLogMaps {
  public:

@@ -41,6 +41,9 @@ bool is_anchor(const Mesh& mesh, Index vertex, double back, double out) {
   return VertexRings::bends_much(mesh, vertex) && std::abs(turn_at(mesh, vertex, back, out)) <= k_least_turn;
 }
 
+/// Places a node which the way to it reaches from somewhere nearer by less than rounding tells.
+VertexPlace end_of_way(double distance) { return {Vec2(distance, 0), distance, k_none, VertexPlace::k_end_of_way}; }
+
 }  // namespace
 
 CellPlacer::CellPlacer(CellLogMaps& maps)
@@ -71,7 +74,7 @@ void CellPlacer::place(Index site) {
     VertexPlace place;
     if (!place_across(*node, site, place)) {
       const Index previous = node_before(*node, site);
-      place = previous != k_none ? place_after(*node, previous) : VertexPlace::straight(Vec2(distance, 0));
+      place = previous != k_none ? place_after(*node, previous) : end_of_way(distance);
     }
     // Beside short edges what an arc is when it is laid out may be longer than the arc.
     if (place.distance > distance * (1 + k_arc_rounding)) place.distance = distance;
@@ -152,7 +155,7 @@ VertexPlace CellPlacer::place_after(Index node, Index previous, const VertexPlac
 /// Tells the surface angle at a placed node towards its anchor. Few are asked for it.
 double CellPlacer::direction_back(Index node) {
   const VertexPlace& place = maps_.place(node);
-  if (place.found_by == VertexPlace::k_center) return 0;
+  if (place.found_by == VertexPlace::k_center || place.found_by == VertexPlace::k_end_of_way) return 0;
   if (place.found_by == VertexPlace::k_straight) {
     const Index site = labels_.label(node);
     return maps_.seen().direction_back(site, maps_.seen().of(site).find(node));

@@ -23,7 +23,7 @@ struct VertexPlace {
   double distance = 0;     ///< from the site, never less than it is
   Index anchor = k_none;   ///< node from which it is seen straight on; k_none: the site
   Index found_by = 0;      ///< a wedge across whose edge it was placed, or one of the below
-  static constexpr Index k_unplaced = -1, k_straight = -2, k_after_another = -3, k_center = -4;
+  static constexpr Index k_unplaced = -1, k_straight = -2, k_after_another = -3, k_center = -4, k_end_of_way = -5;
   /// As it is seen from the site itself.
   static VertexPlace straight(const Vec2& place) { return {place, place.norm(), k_none, k_straight}; }
 };

@@ -118,17 +118,6 @@ double SeenFromSites::direction_back(Index site, Index seen) const {
                                     {all.nodes[seen], edge, true, all.places[seen].norm(), all.places[seen], from});
 }
 
-bool SeenFromSites::find_corner(Index node, Index site, const SurfacePoint& place, SiteVector& vector) const {
-  if (seen_[site].center != k_none) return false;
-  const auto& corners = seen_[site].corners;
-  const auto corner = std::ranges::find(corners, node);
-  if (corner == corners.end()) return false;
-  const FaceChart chart(graph_.mesh(), place.face);
-  vector.log = chart.corner[corner - corners.begin()] - chart.to_plane(place.barycentric);
-  vector.distance = vector.log.norm();
-  return true;
-}
-
 void SeenFromSites::fetch(Index site) const {
   constexpr std::size_t k_fetched = 48, k_line = 64;
   const SeenVertices& seen = seen_[site];

@@ -67,8 +67,6 @@ class SeenFromSites {
   double limit(Index site) const { return limits_[site]; }
   /// Surface angle at a node that the site sees straight, the `seen`-th of them, towards the site.
   double direction_back(Index site, Index seen) const;
-  /// The corners of its face a site sees straight, even where none of its arcs leads there.
-  bool find_corner(Index node, Index site, const SurfacePoint& place, SiteVector& vector) const;
   /// Asks memory for the first that are looked up.
   void fetch(Index site) const;
 

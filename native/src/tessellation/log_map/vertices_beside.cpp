@@ -57,7 +57,9 @@ bool VerticesBeside::find(Index site, Index node, SiteVector& vector) {
     vector = {place, place.norm()};
     return true;
   }
-  const bool found = place_near(site, node, vector);
+  VertexPlace place;
+  const bool found = place_by_cell(node, site, place);
+  if (found) vector = maps_.vector_of(place);
   if (site_ == site) {
     table_[node] = {round_, ~static_cast<Index>(answers_.size())};
     answers_.push_back({found, vector});
@@ -65,21 +67,13 @@ bool VerticesBeside::find(Index site, Index node, SiteVector& vector) {
   return found;
 }
 
-/// Places a node that is not seen by an arc.
-bool VerticesBeside::place_near(Index site, Index node, SiteVector& vector) {
-  if (maps_.seen().find_corner(node, site, labels_.sites()[site], vector)) return true;
-  VertexPlace place;
-  if (!place_by_cell(node, site, place)) return false;
-  vector = maps_.vector_of(place);
-  return true;
-}
-
-/// Places a node next to vertices of the site's own cell, if it has any.
+/// Places a node next to vertices of the site's own cell, if it has any. A node across or beside an edge of theirs has
+/// an arc to one of them: edges of the mesh are arcs.
 bool VerticesBeside::place_by_cell(Index node, Index site, VertexPlace& place) {
   if (labels_.nodes(site).empty()) return false;
   const bool is_seen = place_across_own(node, site, place) || place_across(node, site, true, place);
   const double straight = is_seen ? place.distance : std::numeric_limits<double>::infinity();
-  if (!place_by_arc(node, site, is_seen, place)) return straight < std::numeric_limits<double>::infinity();
+  if (!place_by_arc(node, site, is_seen, place)) return false;
   place.distance = std::min(place.distance, straight);
   return true;
 }

@@ -48,7 +48,6 @@ class VerticesBeside {
     SiteVector vector;
   };
   Index find_seen(Index site, Index node) const;
-  bool place_near(Index site, Index node, SiteVector& vector);
   bool place_by_cell(Index node, Index site, VertexPlace& place);
   bool place_across(Index node, Index site, bool deep, VertexPlace& place);
   bool place_across_own(Index node, Index site, VertexPlace& place);
