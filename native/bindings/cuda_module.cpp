@@ -1,16 +1,15 @@
 // The optional module `_saddleback_cuda`: everything that needs CUDA, and nothing that works without.
 
-#include "saddleback/support/cuda_module.h"
+#include "support/cuda/cuda_module.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <stdexcept>
 
-#include "saddleback/support/cuda_devices.h"
-
 #include "geodesics/cuda/device_arcs.h"
 #include "geodesics/cuda/device_search.h"
+#include "support/cuda/cuda_devices.h"
 #include "support/cuda/host_pinning.h"
 #include "voronoi2d/cuda/device_signs.h"
 #include "voronoi2d/cuda/device_voronoi.h"

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <utility>
 
-#include "saddleback/version_error.h"
+#include "saddleback/error.h"
 
 #include "convert/convert.h"
 #include "convert/interrupt.h"

@@ -17,7 +17,7 @@ set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
 add_library(saddleback_cuda STATIC
   src/geodesics/cuda/device_arcs.cu
   src/geodesics/cuda/device_search.cu
-  src/support/cuda_devices.cu
+  src/support/cuda/cuda_devices.cu
   src/support/cuda/host_pinning.cu
   src/voronoi2d/cuda/device_signs.cu
   src/voronoi2d/cuda/device_voronoi.cu

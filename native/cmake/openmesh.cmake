@@ -1,4 +1,4 @@
-# OpenMesh's core as a static library with its asserts off.
+# OpenMesh's core with its asserts off, as objects that become a part of our library.
 #
 # Debian's package is a shared library whose asserts abort the process, which inside Blender would cost the artist's
 # work. PyPI's source package of the OpenMesh bindings carries the C++ sources, and pip is a registry we can count on.
@@ -20,7 +20,7 @@ if(NOT SADDLEBACK_OPENMESH_SOURCE)
 endif()
 
 set(_core ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src/OpenMesh/Core)
-add_library(OpenMeshCore STATIC
+add_library(OpenMeshCore OBJECT
   ${_core}/IO/BinaryHelper.cc
   ${_core}/IO/IOManager.cc
   ${_core}/IO/OMFormat.cc

@@ -139,7 +139,7 @@ def test_native_headers_know_neither_python_nor_openmesh():
 ROOMS = ROOT / "native/src"
 # From the ground up: a subfolder includes itself and those before it.
 SUBFOLDERS = {
-    "support": ["threads", "memory", "simd", "cuda"],
+    "support": ["threads", "memory", "cuda", "simd"],
     "mesh": ["tables", "read", "repair", "soup"],
     "voronoi2d": ["sites", "sweep", "diagram", "clipping", "weighted", "cuda"],
     "geodesics": ["unfolding", "graph", "exact", "wavefront", "queries", "cuda"],

@@ -5,10 +5,9 @@
 #include <pybind11/stl.h>
 #include <string_view>
 
-#include "saddleback/support/cuda_module.h"
-#include "saddleback/support/pinned_memory.h"
-
 #include "convert/convert.h"
+#include "support/cuda/cuda_module.h"
+#include "support/cuda/pinned_memory.h"
 
 namespace saddleback::bindings {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "saddleback/geodesics/saddle_vertex_graph.h"
-#include "saddleback/support/cuda_module.h"
 
 #include "convert/convert.h"
+#include "support/cuda/cuda_module.h"
 
 namespace saddleback::bindings {
 

@@ -6,9 +6,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "saddleback/voronoi2d/device_voronoi_2d.h"
-
 #include "convert/convert.h"
+#include "voronoi2d/device_voronoi_2d.h"
 
 namespace saddleback::bindings {
 

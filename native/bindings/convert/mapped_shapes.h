@@ -18,8 +18,8 @@ struct MappedShapes {
   MapLimits limits;
   std::vector<MappedShape> mapped;
   std::vector<Vec3> normals;
-  std::mutex mutex;  ///< of the mapper
-  std::unique_ptr<OutlineMapper> mapper;
+  std::mutex mutex;  ///< of the conformer
+  std::unique_ptr<Conformer> conformer;
 
   const Mesh& mesh() const;
   const DirectionField* field() const;

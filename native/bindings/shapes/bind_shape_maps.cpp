@@ -226,9 +226,9 @@ Conformed conform_one(MappedShapes& self, const py::object& vertices, const py::
   const DirectionField* const field = self.field();
   return without_gil([&] {
     const std::lock_guard lock(self.mutex);
-    if (!self.mapper) self.mapper = std::make_unique<OutlineMapper>(mesh);
+    if (!self.conformer) self.conformer = std::make_unique<Conformer>(mesh);
     Conformed result;
-    result.points = conform(*self.mapper, self.shape(i), self.placements[i], field, points, self.limits);
+    result.points = self.conformer->conform(self.shape(i), self.placements[i], field, points, self.limits);
     result.positions = positions_of(mesh, self.normals, result.points.anchors, result.points.heights);
     return result;
   });

@@ -2,10 +2,9 @@
 
 #include <pybind11/stl.h>
 
-#include "saddleback/voronoi2d/device_voronoi_2d.h"
-
 #include "convert/devices.h"
 #include "convert/dlpack.h"
+#include "voronoi2d/device_voronoi_2d.h"
 
 namespace saddleback::bindings {
 namespace {

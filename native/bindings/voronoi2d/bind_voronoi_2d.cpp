@@ -4,6 +4,7 @@
 
 #include "convert/devices.h"
 #include "convert/planar.h"
+#include "support/memory/large_memory.h"
 
 namespace saddleback::bindings {
 namespace {

@@ -23,6 +23,11 @@ struct InputError : Error {
   using Error::Error;
 };
 
+/// A file that a newer version of this library wrote: nothing is wrong with it, but it cannot be read.
+struct VersionError : InputError {
+  using InputError::InputError;
+};
+
 /// The caller's Job was cancelled.
 struct Cancelled : Error {
   Cancelled() : Error("cancelled") {}

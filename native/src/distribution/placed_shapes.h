@@ -6,12 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "saddleback/shape_mapping/surface_outline.h"
-
 #include "distribution/collision_shape.h"
 #include "distribution/face_buckets.h"
 #include "distribution/flat_faces.h"
 #include "distribution/local_layout.h"
+#include "shape_mapping/outline_mapper.h"
 
 namespace saddleback::distribution {
 

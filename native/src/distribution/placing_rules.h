@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "saddleback/distribution/distribution.h"
-#include "saddleback/shape_mapping/center_line.h"
 
 #include "distribution/cell.h"
 #include "distribution/collision_shape.h"
 #include "distribution/flat_faces.h"
 #include "distribution/overlap.h"
 #include "distribution/placed_shapes.h"
+#include "shape_mapping/center_line.h"
 
 namespace saddleback::distribution {
 

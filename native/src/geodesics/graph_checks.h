@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "saddleback/geodesics/arc_rows.h"
 #include "saddleback/job.h"
 #include "saddleback/mesh/mesh.h"
+
+#include "geodesics/graph/arc_rows.h"
 
 namespace saddleback {
 

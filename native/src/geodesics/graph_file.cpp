@@ -14,7 +14,6 @@
 
 #include "saddleback/error.h"
 #include "saddleback/geodesics/saddle_vertex_graph.h"
-#include "saddleback/version_error.h"
 
 #include "geodesics/graph/graph_arcs.h"
 #include "geodesics/graph/path_bound.h"
@@ -165,18 +164,18 @@ void SaddleVertexGraph::save(const std::string& path, Job* job) const {
   header.accuracy = accuracy_;
   header.flags = exact_ ? k_exact_flag : 0;
   header.build_seconds = build_seconds_;
-  header.target_bits = arcs_.codec().target_bits();
-  header.least_exponent = arcs_.codec().least_exponent();
-  header.quantum = arcs_.codec().quantum();
+  header.target_bits = arcs_->codec().target_bits();
+  header.least_exponent = arcs_->codec().least_exponent();
+  header.quantum = arcs_->codec().quantum();
 
   NumberFileWriter file(path);
   write_header(file, header);
   file.write(std::span<const Index>(vertices_), stage.part(0, 0.03));
   std::vector<std::uint32_t> degrees(vertices_.size());
   for (Index node = 0; node < mesh_->vertex_count(); ++node)
-    degrees[node] = static_cast<std::uint32_t>(arcs_.first(node + 1) - arcs_.first(node));
+    degrees[node] = static_cast<std::uint32_t>(arcs_->first(node + 1) - arcs_->first(node));
   file.write(std::span<const std::uint32_t>(degrees), stage.part(0.03, 0.06));
-  file.write(arcs_.words(), stage.part(0.06, 0.95));
+  file.write(arcs_->words(), stage.part(0.06, 0.95));
   file.write(file.crc());
   stage.update(1);  // the last moment to be cancelled: the old file goes next
   file.commit();
@@ -206,8 +205,8 @@ SaddleVertexGraph SaddleVertexGraph::load(const std::string& path, const Mesh& m
   if (!same_codec(header, codec)) refuse_graph_file(path, "its lengths are in another unit than this mesh needs");
   if (offsets.back() != static_cast<std::int64_t>(words.size()))
     refuse_graph_file(path, message("its rows hold ", offsets.back(), " arcs instead of ", words.size()));
-  graph.arcs_ = ArcRows(codec, std::move(offsets), std::move(words));
-  check_arcs(mesh, graph.arcs_, graph.vertices_, path, stage.part(0.38, 0.93));
+  graph.arcs_ = std::make_unique<ArcRows>(codec, std::move(offsets), std::move(words));
+  check_arcs(mesh, *graph.arcs_, graph.vertices_, path, stage.part(0.38, 0.93));
   graph.unfolding_ = std::make_unique<Unfolding>(mesh, 0, stage.part(0.93, 1));
   graph.k_ = static_cast<Index>(header.k);
   graph.accuracy_ = header.accuracy;

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "saddleback/error.h"
-#include "saddleback/support/pinned_memory.h"
 
 #include "geodesics/graph/arc_symmetry.h"
 #include "geodesics/graph/graph_arcs.h"
@@ -20,6 +19,7 @@
 #include "geodesics/unfolding/arc_unfolding.h"
 #include "mesh/tables/hilbert.h"
 #include "mesh/tables/key_order.h"
+#include "support/cuda/pinned_memory.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {
@@ -83,8 +83,8 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const ArcSearch search{*unfolding_, nodes_, vertices_, *kernel_, options.threads};
   if (on_device) {
     ArcWords room(options.is_pinned ? &pinned_memory() : nullptr);
-    arcs_ = cuda_arcs(search, choose_codec, rule, options.cuda_devices, std::move(room), device_times_,
-                      stage.part(k_laid, 1));
+    arcs_ = std::make_unique<ArcRows>(cuda_arcs(search, choose_codec, rule, options.cuda_devices, std::move(room),
+                                                device_times_, stage.part(k_laid, 1)));
     built_by_cuda_ = true;
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;
@@ -93,7 +93,8 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
   const JobStage finding = stage.part(k_laid, k_found);
   auto found = exact_ ? exact_arcs(search, codec, finding) : disk_arcs(search, codec, *tables, rule, finding);
   tables.reset();
-  arcs_ = unite_with_reverses(codec, *kernel_, found, options.threads, stage.part(k_found, 1));
+  arcs_ =
+      std::make_unique<ArcRows>(unite_with_reverses(codec, *kernel_, found, options.threads, stage.part(k_found, 1)));
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 
@@ -112,18 +113,20 @@ void SaddleVertexGraph::order_nodes(int threads, const JobStage& stage) {
 SaddleVertexGraph::~SaddleVertexGraph() = default;
 SaddleVertexGraph::SaddleVertexGraph(SaddleVertexGraph&&) noexcept = default;
 
+std::int64_t SaddleVertexGraph::arc_count() const { return arcs_->count(); }
+
 std::size_t SaddleVertexGraph::nbytes() const {
-  return arcs_.nbytes() + (nodes_.size() + vertices_.size()) * sizeof(Index);
+  return arcs_->nbytes() + (nodes_.size() + vertices_.size()) * sizeof(Index);
 }
 
 ArcHint SaddleVertexGraph::hint(Index node, std::int64_t arc) const {
   // The angle was known to this many radians and rounded down to a sector: it may lie on the other side of the border.
   constexpr double k_margin = 3e-5;
   const Index vertex = vertices_[node];
-  const double sector = arcs_.sector(arc), width = mesh_->total_angle(vertex) / ArcCodec::k_sectors;
-  ArcHint hint{vertex, vertices_[arcs_.target(arc)], arcs_.length(arc), sector * width - k_margin,
+  const double sector = arcs_->sector(arc), width = mesh_->total_angle(vertex) / ArcCodec::k_sectors;
+  ArcHint hint{vertex, vertices_[arcs_->target(arc)], arcs_->length(arc), sector * width - k_margin,
                (sector + 1) * width + k_margin};
-  hint.tolerance = std::max(hint.tolerance, arcs_.codec().shortest() / hint.length);
+  hint.tolerance = std::max(hint.tolerance, arcs_->codec().shortest() / hint.length);
   return hint;
 }
 

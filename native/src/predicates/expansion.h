@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "saddleback/support/host_device.h"
+#include "support/cuda/host_device.h"
 
 namespace saddleback::predicates {
 

@@ -1,4 +1,4 @@
-#include "saddleback/shape_mapping/center_line.h"
+#include "shape_mapping/center_line.h"
 
 #include <algorithm>
 #include <cmath>

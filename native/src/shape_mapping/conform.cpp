@@ -4,6 +4,8 @@
 
 #include "saddleback/error.h"
 
+#include "shape_mapping/outline_mapper.h"
+
 namespace saddleback {
 namespace {
 
@@ -19,18 +21,23 @@ Vec3 face_normal(const Mesh& mesh, Index face) {
 
 }  // namespace
 
-ConformedPoints conform(OutlineMapper& mapper, const Shape& shape, const Placement& placement,
-                        const DirectionField* field, std::span<const Vec3> points, const MapLimits& limits) {
+Conformer::Conformer(const Mesh& mesh) : mapper_(std::make_unique<OutlineMapper>(mesh)) {}
+Conformer::~Conformer() = default;
+Conformer::Conformer(Conformer&&) noexcept = default;
+Conformer& Conformer::operator=(Conformer&&) noexcept = default;
+
+ConformedPoints Conformer::conform(const Shape& shape, const Placement& placement, const DirectionField* field,
+                                   std::span<const Vec3> points, const MapLimits& limits) {
   check_points(points);
   ConformedPoints result;
   SurfaceOutline outline;
-  result.failure = map_shape(mapper, shape, placement, field, outline, limits);
+  result.failure = map_shape(*mapper_, shape, placement, field, outline, limits);
   if (result.failure != MapFailure::none) return result;
-  const ShapeMap& plane = mapper.plane();
+  const ShapeMap& plane = mapper_->plane();
   Index face = plane.center_face();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec2 place = mapper.laid(points[i].head<2>());
-    if (mapper.find(place, face) == MapFailure::none) {
+    const Vec2 place = mapper_->laid(points[i].head<2>());
+    if (mapper_->find(place, face) == MapFailure::none) {
       result.anchors.push_back(plane.surface_point(place, face));
     } else {
       result.lost.push_back(static_cast<Index>(i));

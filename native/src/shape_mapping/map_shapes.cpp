@@ -17,15 +17,6 @@ void check_mapping(const Mesh& mesh, std::span<const Shape> shapes, std::span<co
                              ", but must be positive, the first at most 1 and the second at least 1"));
 }
 
-MapFailure map_shape(OutlineMapper& mapper, const Shape& shape, const Placement& placement, const DirectionField* field,
-                     SurfaceOutline& outline, const MapLimits& limits) {
-  if (field) {
-    const std::optional<CenterLine> line = center_line(*field, placement, box_of(shape.loops(), placement));
-    if (line) return mapper.map_along(shape.loops(), placement, *line, outline, limits);
-  }
-  return mapper.map(shape.loops(), placement, outline, limits);
-}
-
 std::vector<MappedShape> map_shapes(const Mesh& mesh, std::span<const Shape> shapes,
                                     std::span<const Placement> placements, const MapShapesOptions& options) {
   const JobStage stage(options.job, "Laying shapes on the surface");

@@ -3,8 +3,7 @@
 
 #include <memory>
 
-#include "saddleback/shape_mapping/map_shapes.h"
-
+#include "shape_mapping/outline_mapper.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {

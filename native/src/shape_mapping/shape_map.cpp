@@ -1,7 +1,7 @@
 // Coordinates spread from the source outwards, nearest vertex first, as Dijkstra's algorithm does; a vertex gets its
 // own from the two ends of an edge that are settled, by unfolding the triangle on it (sight.h).
 
-#include "saddleback/shape_mapping/shape_map.h"
+#include "shape_mapping/shape_map.h"
 
 #include <algorithm>
 #include <cmath>

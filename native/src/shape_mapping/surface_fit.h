@@ -5,6 +5,8 @@
 
 #include "saddleback/shape_mapping/bent_copies.h"
 
+#include "shape_mapping/outline_mapper.h"
+
 namespace saddleback {
 
 /// A solid and its edges, for all of its copies.

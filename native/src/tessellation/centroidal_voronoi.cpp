@@ -76,7 +76,7 @@ void show_cells(const SaddleVertexGraph& graph, const CentroidalVoronoiOptions& 
     result.cells = find_cells(graph, result.sites, options.threads, options.cuda_device, showing);
     return;
   }
-  const BorrowedCells cells(options.cache, CellCache::Cells::shown, graph, options.density, options.threads,
+  const BorrowedCells cells(options.cache, CachedCells::shown, graph, options.density, options.threads,
                             options.cuda_device);
   cells->match(result.sites);
   cells->find(result.sites, showing.part(0, 0.7));

@@ -1,6 +1,6 @@
 // Diagrams that stay on the device that found them.
 
-#include "saddleback/voronoi2d/device_voronoi_2d.h"
+#include "voronoi2d/device_voronoi_2d.h"
 
 #include <span>
 

@@ -2,9 +2,8 @@
 
 #include <type_traits>
 
-#include "saddleback/support/pinned_memory.h"
-
 #include "support/cuda/cuda_callbacks.h"
+#include "support/cuda/pinned_memory.h"
 #include "voronoi2d/cuda/diagram_abi.h"
 #include "voronoi2d/sites/curve_order.h"
 #include "voronoi2d/sites/site_order.h"

@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "saddleback/geodesics/arc_rows.h"
 #include "saddleback/job.h"
 #include "saddleback/mesh/mesh.h"
 #include "saddleback/mesh/surface_curve.h"
 #include "saddleback/mesh/surface_points.h"
-#include "saddleback/support/cuda_module.h"
+#include "saddleback/support/device_times.h"
 
 namespace saddleback {
 
+class ArcRows;
 class QueryCache;
 class Unfolding;
 struct ArcHint;
@@ -29,7 +29,7 @@ struct SaddleVertexGraphOptions {
   bool exact = false;                  ///< all straight geodesics: exact between vertices, and much larger
   int threads = 0;                     ///< 0: all cores; the result does not depend on it
   std::vector<int> cuda_devices = {};  ///< numbers of those that find the arcs, a part each; none: the processor does
-  bool is_pinned = false;              ///< whether arcs that those find come into pinned memory: `pinned_memory.h`
+  bool is_pinned = false;              ///< whether arcs that those find come into pinned memory, which is kept
   std::string instructions = "auto";   ///< "avx512", "avx2", "plain", "neon": the result does not depend on it
   static constexpr double k_default_accuracy = 5e-3;
 };
@@ -106,7 +106,7 @@ class SaddleVertexGraph {
   Index k() const { return k_; }                 ///< 0 when built otherwise
   double accuracy() const { return accuracy_; }  ///< 0 when built otherwise
   bool is_exact() const { return exact_; }
-  std::int64_t arc_count() const { return arcs_.count(); }
+  std::int64_t arc_count() const;
   double mean_degree() const { return static_cast<double>(arc_count()) / mesh_->vertex_count(); }
   /// Memory of the arcs and the order of the nodes.
   std::size_t nbytes() const;
@@ -120,7 +120,7 @@ class SaddleVertexGraph {
   std::span<const Index> nodes() const { return nodes_; }        ///< of the vertices
   std::span<const Index> vertices() const { return vertices_; }  ///< of the nodes
   /// Rows and targets are nodes.
-  const ArcRows& arcs() const { return arcs_; }
+  const ArcRows& arcs() const { return *arcs_; }
   /// Returns what unfold_arc needs to find the faces of an arc of `node`.
   ArcHint hint(Index node, std::int64_t arc) const;
   /// Returns what fans of points are found with: the instructions that the graph was built by.
@@ -168,7 +168,7 @@ class SaddleVertexGraph {
   double accuracy_ = 0;
   bool exact_ = false;
   std::vector<Index> nodes_, vertices_;
-  ArcRows arcs_;
+  std::unique_ptr<ArcRows> arcs_;
   double build_seconds_ = 0;
   bool built_by_cuda_ = false;
   DeviceTimes device_times_;

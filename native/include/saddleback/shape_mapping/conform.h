@@ -1,9 +1,13 @@
 #pragma once
 // Objects bent onto the surface, and rigid copies that stand on it.
 
+#include <memory>
+
 #include "saddleback/shape_mapping/map_shapes.h"
 
 namespace saddleback {
+
+class OutlineMapper;
 
 /// Points fixed to a surface, so that they follow it when its vertices move.
 struct ConformedPoints {
@@ -13,12 +17,24 @@ struct ConformedPoints {
   std::vector<Index> lost;      ///< points that lie where the plane could not be laid; they are put at the center
 };
 
-/// Bends points of a shape's space onto the surface: x and y by the map of the shape, z along the surface's normal, all
-/// to the placement's scale. Points beside the outline are laid as far as the surface goes on unfolded. \throw
-/// InputError for a point that is not finite. O(m) besides the map, for m points in an order that leads from one to the
-/// next.
-ConformedPoints conform(OutlineMapper& mapper, const Shape& shape, const Placement& placement,
-                        const DirectionField* field, std::span<const Vec3> points, const MapLimits& limits = {});
+/// Bends points onto a mesh, which must outlive it, for shape after shape in the same memory. One thread at a time.
+class Conformer {
+ public:
+  explicit Conformer(const Mesh& mesh);
+  ~Conformer();
+  Conformer(Conformer&&) noexcept;
+  Conformer& operator=(Conformer&&) noexcept;
+
+  /// Bends points of a shape's space onto the surface: x and y by the map of the shape, z along the surface's normal,
+  /// all to the placement's scale. Points beside the outline are laid as far as the surface goes on unfolded. Along the
+  /// field where one is given. \throw InputError for a point that is not finite. O(m) besides the map, for m points in
+  /// an order that leads from one to the next.
+  ConformedPoints conform(const Shape& shape, const Placement& placement, const DirectionField* field,
+                          std::span<const Vec3> points, const MapLimits& limits = {});
+
+ private:
+  std::unique_ptr<OutlineMapper> mapper_;
+};
 
 /// (V,) unit normals, the mean of those of the faces about each vertex by their angles. O(F).
 std::vector<Vec3> vertex_normals(const Mesh& mesh);

@@ -13,10 +13,6 @@ namespace saddleback {
 /// \throw std::bad_alloc
 void* allocate_large(std::size_t size);
 void free_large(void* memory, std::size_t size) noexcept;
-/// Bytes of freed arrays, at most, that stay at hand for others.
-std::size_t most_kept_large();
-/// Copies `size` bytes by `threads` threads (0: all cores) where one takes long, above all to lay fresh pages.
-void copy_large(void* to, const void* from, std::size_t size, int threads);
 
 /// Memory of another kind for large arrays. Outlives all that it gives.
 class LargeMemory {

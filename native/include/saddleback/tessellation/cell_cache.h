@@ -1,9 +1,7 @@
 #pragma once
 // Cells that the next relaxation may begin with.
 
-#include <array>
 #include <memory>
-#include <mutex>
 
 namespace saddleback {
 
@@ -16,7 +14,6 @@ namespace saddleback {
 /// nothing.
 class CellCache {
  public:
-  struct Content;  // of the library
   CellCache();
   ~CellCache();
   CellCache(const CellCache&) = delete;
@@ -24,16 +21,10 @@ class CellCache {
   /// Forgets what is kept.
   void clear();
 
-  /// Tells two uses of the library apart: cells that a relaxation looked at last, and those that it showed of its
-  /// result.
-  enum class Cells { relaxed, shown };
-  /// Returns what is kept, and nothing from then on; and something to keep. Null is nothing.
-  std::unique_ptr<Content> take(Cells which);
-  void put(Cells which, std::unique_ptr<Content> content);
-
  private:
-  std::mutex mutex_;
-  std::array<std::unique_ptr<Content>, 2> contents_;
+  friend class BorrowedCells;
+  class Content;
+  std::unique_ptr<Content> content_;
 };
 
 }  // namespace saddleback

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "saddleback/job.h"
-#include "saddleback/support/cuda_module.h"
+#include "saddleback/support/device_times.h"
 #include "saddleback/support/large_array.h"
 #include "saddleback/types.h"
 #include "saddleback/voronoi2d/planar_domain.h"
@@ -18,10 +18,10 @@ struct Voronoi2dOptions {
   Index circles =
       0;            ///< how many sweep circles share the work; 0: as many as are good. The result does not depend on it
   int threads = 0;  ///< 0: all cores. The result does not depend on it
-  /// Numbers of CUDA devices that share the work, whose module must be loaded (`cuda_module.h`); none: the processor.
+  /// Numbers of CUDA devices that share the work, whose module must be loaded; none: the processor.
   /// The result does not depend on it.
   std::vector<int> cuda_devices = {};
-  /// Says whether what CUDA devices find comes into pinned memory (`pinned_memory.h`): for one diagram after the other.
+  /// Says whether what CUDA devices find comes into pinned memory, which is kept: for one diagram after the other.
   bool is_pinned = false;
 };
 

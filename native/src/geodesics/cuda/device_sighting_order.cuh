@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "saddleback/support/host_device.h"
+#include "support/cuda/host_device.h"
 
 namespace saddleback {
 namespace {

@@ -1,4 +1,4 @@
-#include "saddleback/geodesics/arc_rows.h"
+#include "geodesics/graph/arc_rows.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "saddleback/geodesics/arc_rows.h"
 #include "saddleback/job.h"
 
+#include "geodesics/graph/arc_rows.h"
 #include "geodesics/graph/window_batches.h"
 #include "support/memory/returned_memory.h"
 

@@ -5,10 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "saddleback/geodesics/arc_packing.h"
-#include "saddleback/support/cuda_module.h"
-
+#include "geodesics/graph/arc_packing.h"
 #include "geodesics/graph/window_batches.h"
+#include "support/cuda/cuda_module.h"
 
 namespace saddleback {
 

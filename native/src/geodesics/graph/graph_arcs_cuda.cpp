@@ -6,11 +6,10 @@
 #include <span>
 #include <utility>
 
-#include "saddleback/support/pinned_memory.h"
-
 #include "geodesics/graph/arcs_abi.h"
 #include "geodesics/graph/disk_arcs.h"
 #include "support/cuda/cuda_callbacks.h"
+#include "support/cuda/pinned_memory.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {

@@ -4,9 +4,8 @@
 #include <functional>
 #include <span>
 
-#include "saddleback/support/cuda_module.h"
-
 #include "geodesics/graph/graph_arcs.h"
+#include "support/cuda/cuda_module.h"
 
 namespace saddleback {
 

@@ -3,10 +3,10 @@
 
 #include <span>
 
-#include "saddleback/geodesics/arc_rows.h"
 #include "saddleback/job.h"
 #include "saddleback/mesh/mesh.h"
 
+#include "geodesics/graph/arc_rows.h"
 #include "geodesics/graph/window_mesh.h"
 
 namespace saddleback {

@@ -1,7 +1,7 @@
 #pragma once
 // The lengths of the steps of a search through a graph.
 
-#include "saddleback/geodesics/arc_rows.h"
+#include "geodesics/graph/arc_rows.h"
 
 namespace saddleback {
 

@@ -10,6 +10,7 @@
 #include "saddleback/geodesics/saddle_vertex_graph.h"
 
 #include "geodesics/queries/graph_search.h"
+#include "support/cuda/cuda_module.h"
 
 namespace saddleback {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "saddleback/geodesics/arc_rows.h"
+#include "geodesics/graph/arc_rows.h"
 
 namespace saddleback {
 

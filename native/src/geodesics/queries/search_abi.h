@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "saddleback/geodesics/arc_packing.h"
-#include "saddleback/support/cuda_module.h"
+#include "geodesics/graph/arc_packing.h"
+#include "support/cuda/cuda_module.h"
 
 namespace saddleback {
 

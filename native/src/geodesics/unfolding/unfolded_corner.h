@@ -1,7 +1,7 @@
 #pragma once
 // A face laid flat by the lengths of its edges, on the processor and on a CUDA device alike.
 
-#include "saddleback/support/host_device.h"
+#include "support/cuda/host_device.h"
 
 namespace saddleback {
 

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "saddleback/error.h"
-#include "saddleback/support/cuda_module.h"
+
+#include "support/cuda/cuda_module.h"
 
 namespace saddleback {
 

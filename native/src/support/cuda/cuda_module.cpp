@@ -1,4 +1,4 @@
-#include "saddleback/support/cuda_module.h"
+#include "support/cuda/cuda_module.h"
 
 #include <atomic>
 

@@ -11,9 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "saddleback/support/cuda_module.h"
-
 #include "support/cuda/cuda_check.h"
+#include "support/cuda/cuda_module.h"
 
 namespace saddleback {
 

@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 
+#include "support/memory/large_memory.h"
 #include "support/memory/returned_memory.h"
 #include "support/threads/parallel.h"
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
@@ -172,11 +173,7 @@ void free_now(void* memory, std::size_t size) noexcept {
 
 }  // namespace
 
-std::size_t most_kept_large() { return kept_pages().most(); }
-
 #else
-
-std::size_t most_kept_large() { return 0; }
 
 void* allocate_large(std::size_t size) {
   void* const memory = std::malloc(size ? size : 1);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "saddleback/support/host_device.h"
+#include "support/cuda/host_device.h"
 
 namespace saddleback {
 

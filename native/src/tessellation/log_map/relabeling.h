@@ -6,6 +6,8 @@
 
 #include "saddleback/geodesics/saddle_vertex_graph.h"
 
+#include "geodesics/graph/arc_rows.h"
+
 namespace saddleback {
 
 /// Repairs what nearest_sources found, where that is wrong now. Nodes whose source has moved are loosened; what the

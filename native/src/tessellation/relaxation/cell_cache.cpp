@@ -34,22 +34,17 @@ std::vector<Index> numbers_before(const SurfacePoints& before, const SurfacePoin
 
 }  // namespace
 
-CellCache::CellCache() = default;
+CellCache::CellCache() : content_(std::make_unique<Content>()) {}
 CellCache::~CellCache() = default;
 
 void CellCache::clear() {
-  take(Cells::relaxed);
-  take(Cells::shown);
+  content_->exchange(CachedCells::relaxed, nullptr);
+  content_->exchange(CachedCells::shown, nullptr);
 }
 
-std::unique_ptr<CellCache::Content> CellCache::take(Cells which) {
+std::unique_ptr<KnownCells> CellCache::Content::exchange(CachedCells which, std::unique_ptr<KnownCells> cells) {
   const std::scoped_lock lock(mutex_);
-  return std::move(contents_[static_cast<std::size_t>(which)]);
-}
-
-void CellCache::put(Cells which, std::unique_ptr<Content> content) {
-  const std::scoped_lock lock(mutex_);
-  contents_[static_cast<std::size_t>(which)].swap(content);
+  return std::exchange(cells_[static_cast<std::size_t>(which)], std::move(cells));
 }
 
 KnownCells::KnownCells(const SaddleVertexGraph& graph, std::span<const double> density, CellLengths lengths,
@@ -96,20 +91,18 @@ void KnownCells::look_farther(const JobStage& stage) {
   is_whole_ = true;
 }
 
-BorrowedCells::BorrowedCells(CellCache* cache, CellCache::Cells which, const SaddleVertexGraph& graph,
+BorrowedCells::BorrowedCells(CellCache* cache, CachedCells which, const SaddleVertexGraph& graph,
                              std::span<const double> density, int threads, int cuda_device)
     : cache_(cache), which_(which) {
-  if (auto content = cache ? cache->take(which) : nullptr;
-      content && content->cells->fits(graph, density, threads, cuda_device))
-    cells_ = std::move(content->cells);
-  else
-    cells_ = std::make_unique<KnownCells>(
-        graph, density, which == CellCache::Cells::relaxed ? CellLengths::smooth : CellLengths::of_ways, threads,
-        cuda_device);
+  if (cache) cells_ = cache->content_->exchange(which, nullptr);
+  if (!cells_ || !cells_->fits(graph, density, threads, cuda_device))
+    cells_ = std::make_unique<KnownCells>(graph, density,
+                                          which == CachedCells::relaxed ? CellLengths::smooth : CellLengths::of_ways,
+                                          threads, cuda_device);
 }
 
 BorrowedCells::~BorrowedCells() {
-  if (cache_) cache_->put(which_, std::make_unique<CellCache::Content>(std::move(cells_)));
+  if (cache_) cache_->content_->exchange(which_, std::move(cells_));
 }
 
 }  // namespace saddleback

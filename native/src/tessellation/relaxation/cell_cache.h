@@ -1,7 +1,9 @@
 #pragma once
 // The cells that relaxations on one graph can take over from each other.
 
+#include <array>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "saddleback/tessellation/cell_cache.h"
@@ -42,16 +44,25 @@ class KnownCells {
   bool is_whole_ = false;  ///< nothing was cancelled
 };
 
-struct CellCache::Content {
-  std::unique_ptr<KnownCells> cells;
+/// Cells that a relaxation looked at last, and those that it showed of its result.
+enum class CachedCells { relaxed, shown };
+
+class CellCache::Content {
+ public:
+  /// Keeps cells and returns those that were kept. Null is nothing.
+  std::unique_ptr<KnownCells> exchange(CachedCells which, std::unique_ptr<KnownCells> cells);
+
+ private:
+  std::mutex mutex_;
+  std::array<std::unique_ptr<KnownCells>, 2> cells_;
 };
 
 /// Known cells for a call; those of a cache where they fit, and back into it when the call is done.
 class BorrowedCells {
  public:
   /// `cache` may be null. Both must outlive it.
-  BorrowedCells(CellCache* cache, CellCache::Cells which, const SaddleVertexGraph& graph,
-                std::span<const double> density, int threads, int cuda_device);
+  BorrowedCells(CellCache* cache, CachedCells which, const SaddleVertexGraph& graph, std::span<const double> density,
+                int threads, int cuda_device);
   ~BorrowedCells();
   BorrowedCells(const BorrowedCells&) = delete;
   BorrowedCells& operator=(const BorrowedCells&) = delete;
@@ -60,7 +71,7 @@ class BorrowedCells {
 
  private:
   CellCache* cache_;
-  const CellCache::Cells which_;
+  const CachedCells which_;
   std::unique_ptr<KnownCells> cells_;
 };
 

@@ -10,7 +10,7 @@ Relaxation::Relaxation(const SaddleVertexGraph& graph, const SurfacePoints& site
                        const CentroidalVoronoiOptions& options, const JobStage& stage)
     : graph_(graph),
       options_(options),
-      cells_(options.cache, CellCache::Cells::relaxed, graph, options.density, options.threads, options.cuda_device),
+      cells_(options.cache, CachedCells::relaxed, graph, options.density, options.threads, options.cuda_device),
       is_fixed_(sites.size(), 0),
       is_resting_(sites.size(), 0),
       held_(graph.mesh(), options.constraints.curves, options.constraints.held, sites.size()) {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "saddleback/support/cuda_module.h"
+#include "support/cuda/cuda_module.h"
 
 namespace saddleback {
 

@@ -1,6 +1,6 @@
 #include <cuda_runtime.h>
 
-#include "saddleback/support/cuda_devices.h"
+#include "support/cuda/cuda_devices.h"
 
 namespace saddleback {
 namespace {

@@ -7,9 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "saddleback/geodesics/arc_packing.h"
 #include "saddleback/support/large_array.h"
 #include "saddleback/types.h"
+
+#include "geodesics/graph/arc_packing.h"
 
 namespace saddleback {
 

@@ -6,7 +6,8 @@
 #include <optional>
 
 #include "saddleback/job.h"
-#include "saddleback/support/cuda_module.h"
+
+#include "support/cuda/cuda_module.h"
 
 namespace saddleback {
 

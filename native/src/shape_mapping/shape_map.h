@@ -9,25 +9,13 @@
 #include <vector>
 
 #include "saddleback/mesh/surface_curve.h"
+#include "saddleback/shape_mapping/surface_outline.h"
 
 namespace saddleback {
 
 class CurveBend;
 struct Sight;
 struct UnfoldedTriangle;
-
-/// The reason for which a piece of the plane could not be laid on the surface.
-enum class MapFailure : std::uint8_t {
-  none,
-  boundary,   ///< it leaves the surface
-  fold,       ///< the surface would be covered twice, or turned over
-  stretched,  ///< somewhere it is longer or shorter than the limits allow
-};
-
-/// Bounds by how much lengths may change from the plane to the surface: the singular values of the map.
-struct MapLimits {
-  double smallest = 0.5, largest = 2;
-};
 
 /// Holds where the plane is laid and which part of it is wanted.
 struct PlaneBox {

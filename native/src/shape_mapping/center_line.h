@@ -4,8 +4,9 @@
 #include <optional>
 
 #include "saddleback/field/streamline.h"
-#include "saddleback/shape_mapping/shape_map.h"
 #include "saddleback/shapes/placement.h"
+
+#include "shape_mapping/shape_map.h"
 
 namespace saddleback {
 

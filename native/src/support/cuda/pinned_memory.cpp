@@ -1,12 +1,11 @@
-#include "saddleback/support/pinned_memory.h"
+#include "support/cuda/pinned_memory.h"
 
 #include <algorithm>
 #include <memory>
 #include <mutex>
 #include <vector>
 
-#include "saddleback/support/cuda_module.h"
-
+#include "support/cuda/cuda_module.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {

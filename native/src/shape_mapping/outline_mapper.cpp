@@ -7,7 +7,7 @@
 // And the edges that have one end inside are exactly those that the walk crossed an odd number of times: a second sheet
 // over the shape, or a branch point, would have a rim that the walk has not seen.
 
-#include "saddleback/shape_mapping/surface_outline.h"
+#include "shape_mapping/outline_mapper.h"
 
 #include <algorithm>
 #include <cmath>
@@ -314,6 +314,15 @@ void OutlineMapper::check_crossings() {
     } while (h != first);
   }
   if (mixed != odd) throw Failed(MapFailure::fold);
+}
+
+MapFailure map_shape(OutlineMapper& mapper, const Shape& shape, const Placement& placement, const DirectionField* field,
+                     SurfaceOutline& outline, const MapLimits& limits) {
+  if (field) {
+    const std::optional<CenterLine> line = center_line(*field, placement, box_of(shape.loops(), placement));
+    if (line) return mapper.map_along(shape.loops(), placement, *line, outline, limits);
+  }
+  return mapper.map(shape.loops(), placement, outline, limits);
 }
 
 }  // namespace saddleback
