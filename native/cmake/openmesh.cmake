@@ -38,5 +38,5 @@ add_library(OpenMeshCore OBJECT
   ${_core}/Utils/Endian.cc
   ${_core}/Utils/RandomNumberGenerator.cc)
 target_include_directories(OpenMeshCore SYSTEM PUBLIC ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src)
-target_compile_definitions(OpenMeshCore PUBLIC OM_STATIC_BUILD _USE_MATH_DEFINES PRIVATE NDEBUG)
+target_compile_definitions(OpenMeshCore PUBLIC OM_STATIC_BUILD PRIVATE _USE_MATH_DEFINES NDEBUG)
 target_compile_options(OpenMeshCore PRIVATE -w -O1)  # reading files waits for the disk: -O3 takes minutes to compile and gains nothing

@@ -1,6 +1,7 @@
 // DualMesh and TriangleQuality.
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <pybind11/stl.h>
@@ -126,7 +127,7 @@ void bind_dual_mesh(py::module_& m) {
           "min_angle", [](const Quality& q) { return least(q.least_angle); }, "The least angle of all, radians.")
       .def("__repr__", [](const Quality& q) {
         return message("<saddleback.Quality: mean ", mean(q.quality), ", least ", least(q.quality), ", mean angle ",
-                       mean(q.least_angle) * 180 / M_PI, " degrees, ", 100 * q.irregular, " % irregular>");
+                       mean(q.least_angle) * 180 / std::numbers::pi, " degrees, ", 100 * q.irregular, " % irregular>");
       });
   m.def("triangle_quality", &measure, py::arg("vertices"), py::arg("triangles"),
         R"(Measure how near triangles are to equilateral ones.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "saddleback/error.h"
 
@@ -41,7 +42,7 @@ void place_border(const Mesh& mesh, std::vector<Vec2>& places) {
     until.push_back(until.back() + (mesh.position(next) - mesh.position(loop[i])).norm());
   }
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double angle = 2 * M_PI * until[i] / until.back();
+    const double angle = 2 * std::numbers::pi * until[i] / until.back();
     places[loop[i]] = {std::cos(angle), std::sin(angle)};
   }
 }

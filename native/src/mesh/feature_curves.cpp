@@ -1,6 +1,7 @@
 #include "saddleback/mesh/feature_curves.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "saddleback/error.h"
 
@@ -8,7 +9,8 @@ namespace saddleback {
 namespace {
 
 void check_angle(const char* name, double angle) {
-  if (!(angle >= 0 && angle <= M_PI)) throw InputError(message(name, ": wanted radians from 0 to pi, got ", angle));
+  if (!(angle >= 0 && angle <= std::numbers::pi))
+    throw InputError(message(name, ": wanted radians from 0 to pi, got ", angle));
 }
 
 Vec3 normal(const Mesh& mesh, Index face) {

@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 
 #include "saddleback/error.h"
 
 #include "mesh/read/read_format.h"
 #include "mesh/repair/repair_steps.h"
+#include "support/files.h"
 
 namespace saddleback {
 namespace {
@@ -37,12 +37,13 @@ Reader reader_for(const std::string& path) {
 }
 
 std::string read_file(const std::string& path, const JobStage& stage) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  const std::filesystem::path name = system_path(path);
+  const FileHandle file = open_file(name, "rb");
   if (!file) throw InputError(message("path: ", path, " cannot be opened: ", std::strerror(errno)));
   std::string contents;
   constexpr std::size_t k_block = std::size_t{1} << 20;
   std::error_code unknown;
-  if (const std::uintmax_t size = std::filesystem::file_size(path, unknown); !unknown) contents.reserve(size + k_block);
+  if (const std::uintmax_t size = std::filesystem::file_size(name, unknown); !unknown) contents.reserve(size + k_block);
   for (;;) {
     stage.check();
     const std::size_t old = contents.size();

@@ -29,12 +29,12 @@ bool bring_to_disk(std::FILE* file) {
 }
 
 /// A name that nothing has, in the same folder and so on the same disk; short, however long the other name is.
-std::string name_beside(const fs::path& target) {
+fs::path name_beside(const fs::path& target) {
   std::random_device random;
   const std::uint64_t number = static_cast<std::uint64_t>(random()) << 32 | random();
   char name[48];
   std::snprintf(name, sizeof name, ".saddleback-%016llx.partial", static_cast<unsigned long long>(number));
-  return (target.parent_path() / name).string();
+  return target.parent_path() / name;
 }
 
 /// Returns where a link leads, so that the file is replaced and not the link; it may lead to nothing yet.
@@ -48,18 +48,18 @@ fs::path followed(fs::path path) {
 
 }  // namespace
 
-NumberFileWriter::NumberFileWriter(const std::string& path) : path_(path), target_(followed(path).string()) {
+NumberFileWriter::NumberFileWriter(const std::string& path) : path_(path), target_(followed(system_path(path))) {
   std::error_code error;
   const fs::file_status status = fs::status(target_, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     throw InputError(message("path: ", path, " is ", fs::is_directory(status) ? "a folder" : "no regular file",
                              "; give the name of a file to write"));
   }
-  if (path.empty() || fs::path(path).filename().empty()) {
+  if (system_path(path).filename().empty()) {
     throw InputError(message("path: '", path, "' names no file; give the name of a file to write"));
   }
   partial_ = name_beside(target_);
-  file_.reset(std::fopen(partial_.c_str(), "wbx"));
+  file_ = open_file(partial_, "wbx");
   if (!file_) {
     partial_.clear();
     fail();
@@ -82,7 +82,8 @@ void NumberFileWriter::keep_permissions(fs::perms old) {
 
 NumberFileWriter::~NumberFileWriter() {
   file_.reset();
-  if (!partial_.empty()) std::remove(partial_.c_str());
+  std::error_code error;
+  if (!partial_.empty()) fs::remove(partial_, error);
 }
 
 void NumberFileWriter::fail() const {
@@ -111,14 +112,15 @@ void NumberFileWriter::commit() {
 
 NumberFileReader::NumberFileReader(const std::string& path) : path_(path) {
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
+  const fs::path file = system_path(path);
+  const fs::file_status status = fs::status(file, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     throw InputError(
         message("path: ", path, " is ", fs::is_directory(status) ? "a folder" : "no regular file", "; give a file"));
   }
-  file_.reset(std::fopen(path.c_str(), "rb"));
+  file_ = open_file(file, "rb");
   if (!file_) throw InputError(message("path: ", path, " cannot be opened: ", std::strerror(errno)));
-  size_ = fs::file_size(path, error);
+  size_ = fs::file_size(file, error);
   if (error) throw InputError(message("path: ", path, " cannot be measured: ", error.message()));
 }
 

@@ -9,18 +9,14 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <string>
 
 #include "saddleback/job.h"
 
-namespace saddleback {
+#include "support/files.h"
 
-struct FileCloser {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
+namespace saddleback {
 
 /// A file that takes the place of an old one only when it is whole: it is written beside it under another name, which
 /// `commit` changes. Whatever happens before that (no space, an interruption) leaves the old file as it was. It keeps
@@ -49,9 +45,9 @@ class NumberFileWriter {
   void keep_permissions(std::filesystem::perms old);
   void write_bytes(std::span<const std::byte> bytes);
 
-  std::string path_;     ///< as given, for messages
-  std::string target_;   ///< what it stands for when it is a link
-  std::string partial_;  ///< the file being written, empty once it has moved
+  std::string path_;               ///< as given, for messages
+  std::filesystem::path target_;   ///< what it stands for when it is a link
+  std::filesystem::path partial_;  ///< the file being written, empty once it has moved
   FileHandle file_;
   std::uint32_t crc_ = 0;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "saddleback/error.h"
@@ -66,7 +67,7 @@ struct Miss {
 Miss miss_of(const Mesh& mesh, const TraceEnd& end, const SurfacePoint& target) {
   const Vec3 step = position(mesh, target) - position(mesh, end.point);
   const Vec3 ahead = direction_in_space(mesh, end.point.face, end.angle);
-  const Vec3 left = direction_in_space(mesh, end.point.face, end.angle + M_PI / 2);
+  const Vec3 left = direction_in_space(mesh, end.point.face, end.angle + std::numbers::pi / 2);
   return {step.norm(), step.dot(ahead), step.dot(left)};
 }
 
@@ -130,10 +131,10 @@ Across look_across(const Mesh& mesh, const GeodesicVoronoi& cells, Index polylin
   if (!place) return across;
   const SurfacePoint from{at_left.point.face, *place};
   // Straight to the right site's image, which passes beside a short boundary; else over the crossing.
-  double angle = at_left.angle + M_PI + crossing.turn, length = 2 * crossing.height;
+  double angle = at_left.angle + std::numbers::pi + crossing.turn, length = 2 * crossing.height;
   bool is_met = length > 0 && aim(mesh, from, right, angle, length);
   if (!is_met && crossing.turn != 0) {
-    angle = at_left.angle + M_PI;
+    angle = at_left.angle + std::numbers::pi;
     length = 2 * half;
     is_met = aim(mesh, from, right, angle, length);
   }

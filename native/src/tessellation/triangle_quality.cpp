@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "saddleback/error.h"
 
@@ -44,7 +45,7 @@ std::array<Vec3, 3> scaled_edges(const std::array<Vec3, 3>& corner) {
 
 void measure(const std::array<Vec3, 3>& corner, TriangleQuality& out) {
   const std::array<Vec3, 3> edge = scaled_edges(corner);
-  double perimeter = 0, longest = 0, least = M_PI, greatest = 0;
+  double perimeter = 0, longest = 0, least = std::numbers::pi, greatest = 0;
   for (int i = 0; i < 3; ++i) {
     const Vec3 &a = edge[i], b = -edge[(i + 2) % 3];
     const double length = a.norm(), angle = std::atan2(a.cross(b).norm(), a.dot(b));

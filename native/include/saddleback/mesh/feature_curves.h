@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -11,11 +12,12 @@
 namespace saddleback {
 
 struct FeatureCurveOptions {
-  double angle = 40 * M_PI / 180;  ///< radians: an edge whose faces' normals differ by more is a feature; pi: none is
-  bool boundary = true;            ///< whether the edges of the boundary are features
+  double angle =
+      40 * std::numbers::pi / 180;  ///< radians: an edge whose faces' normals differ more is a feature; pi: none
+  bool boundary = true;             ///< whether the edges of the boundary are features
   std::span<const std::array<Index, 2>> edges;  ///< more of them, each by its two vertices
   /// Radians: where a line turns by more than this it ends, and another begins.
-  double corner_angle = 50 * M_PI / 180;
+  double corner_angle = 50 * std::numbers::pi / 180;
 };
 
 /// The feature edges as curves: as long as can be between the vertices where their number is not two or where they

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace saddleback {
 namespace {
@@ -154,7 +155,7 @@ void VisibleVertices::from_point(const SurfacePoint& source, Index k, std::vecto
       push_window({{-from_end.dot(along), std::min(0.0, -cross(along, from_end))},
                    0,
                    mesh_.length(h),
-                   std::atan2(along.y(), along.x()) - M_PI,
+                   std::atan2(along.y(), along.x()) - std::numbers::pi,
                    entered});
     }
   }

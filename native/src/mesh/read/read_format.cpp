@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#ifndef __cpp_lib_to_chars
+#include <cerrno>
+#include <cmath>
+#include <stdlib.h>
+#include <xlocale.h>
+#endif
 
 #include "saddleback/error.h"
 
@@ -16,6 +22,27 @@ bool is_blank(char c) {
   return static_cast<unsigned char>(c) <= ' ' && (c == ' ' || c == '\t' || c == '\v' || c == '\f');
 }
 bool is_line_end(char c) { return static_cast<unsigned char>(c) <= '\r' && (c == '\n' || c == '\r'); }
+
+#ifdef __cpp_lib_to_chars
+using std::from_chars;
+#else
+/// As the standard's, which libc++ has for real numbers only in the newest systems: what it takes, and no locale's
+/// comma.
+std::from_chars_result from_chars(const char* begin, const char* end, double& value) {
+  static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);
+  const std::string word(begin, end);
+  if (is_blank(word[0]) || is_line_end(word[0]) || word[0] == '+' || word.find_first_of("xX") != word.npos)
+    return {begin, std::errc::invalid_argument};
+  errno = 0;
+  char* rest = nullptr;
+  const double found = strtod_l(word.c_str(), &rest, plain);
+  if (rest == word.c_str()) return {begin, std::errc::invalid_argument};
+  const char* const after = begin + (rest - word.c_str());
+  if (errno == ERANGE && (found == 0 || std::isinf(found))) return {after, std::errc::result_out_of_range};
+  value = found;
+  return {after, std::errc()};
+}
+#endif
 
 }  // namespace
 
@@ -153,7 +180,7 @@ double Scanner::to_real(std::string_view word, const char* what) const {
   if (word.empty()) fail(message("the ", at_ < text_.size() ? "line" : "text", " ends where ", what, " should be"));
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || error == std::errc::invalid_argument)
     fail(message("wanted ", what, ", got ", quoted(word)));
   if (error == std::errc::result_out_of_range) {

@@ -7,7 +7,9 @@
 #include <string>
 
 #if defined(_WIN32)
+#ifndef NOMINMAX  // libstdc++ defines it
 #define NOMINMAX
+#endif
 #include <windows.h>
 #else
 #include <sys/resource.h>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace saddleback {
 namespace {
@@ -13,7 +14,7 @@ bool is_rolled_disk(const Mesh& mesh) {
   constexpr double k_flat = 1e-12;  // radians, of roundings of a vertex's angles
   if (mesh.component_count() > 1 || mesh.genus() > 0 || mesh.boundary_loops().size() != 1) return false;
   for (Index v = 0; v < mesh.vertex_count(); ++v)
-    if (!mesh.is_boundary(v) && std::abs(mesh.total_angle(v) - 2 * M_PI) > k_flat) return false;
+    if (!mesh.is_boundary(v) && std::abs(mesh.total_angle(v) - 2 * std::numbers::pi) > k_flat) return false;
   return true;
 }
 

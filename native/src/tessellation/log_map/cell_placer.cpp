@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "tessellation/log_map/interpolated_direction.h"
 
@@ -23,15 +24,15 @@ constexpr int k_ahead = 8;
 /// developed.
 double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
   if (mesh.is_boundary(vertex)) {  // only one side of the path is surface
-    return out >= back ? std::min(out - back - M_PI, 0.0) : std::max(M_PI - (back - out), 0.0);
+    return out >= back ? std::min(out - back - std::numbers::pi, 0.0) : std::max(std::numbers::pi - (back - out), 0.0);
   }
   const double total = mesh.total_angle(vertex);
   double left_side = out - back;  // counter-clockwise from back to out
   if (left_side < 0) left_side += total;
   if (left_side >= total) left_side -= total;
-  if (total <= 2 * M_PI) return left_side - total / 2;
-  if (left_side < M_PI) return left_side - M_PI;
-  if (total - left_side < M_PI) return M_PI - (total - left_side);
+  if (total <= 2 * std::numbers::pi) return left_side - total / 2;
+  if (left_side < std::numbers::pi) return left_side - std::numbers::pi;
+  if (total - left_side < std::numbers::pi) return std::numbers::pi - (total - left_side);
   return 0;
 }
 

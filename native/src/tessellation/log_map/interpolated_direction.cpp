@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "support/planar.h"
 
@@ -19,8 +20,8 @@ double rough_angle(double x, double y) {
   const double across = std::abs(x), up = std::abs(y);
   const double t = std::min(across, up) / std::max({across, up, std::numeric_limits<double>::min()}), s = t * t;
   double angle = t * (0.9998660 + s * (-0.3302995 + s * (0.1801410 + s * (-0.0851330 + s * 0.0208351))));
-  if (up > across) angle = M_PI / 2 - angle;
-  if (x < 0) angle = M_PI - angle;
+  if (up > across) angle = std::numbers::pi / 2 - angle;
+  if (x < 0) angle = std::numbers::pi - angle;
   return y < 0 ? -angle : angle;
 }
 

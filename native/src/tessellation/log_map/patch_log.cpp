@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 #include "support/planar.h"
 #include "tessellation/log_map/interpolated_direction.h"
@@ -136,7 +137,7 @@ void PatchLog::start_in_face(const SurfacePoint& center, Index local) {
 
 void PatchLog::start_at_vertex(Index vertex) {
   const auto local = static_cast<Index>(std::ranges::find(vertices_, vertex) - vertices_.begin());
-  const double scale = mesh_.is_boundary(vertex) ? 1 : 2 * M_PI / mesh_.total_angle(vertex);
+  const double scale = mesh_.is_boundary(vertex) ? 1 : 2 * std::numbers::pi / mesh_.total_angle(vertex);
   distances_[local] = 0;
   double angle = 0;
   for (Index h = mesh_.first_halfedge(vertex); h != k_none;) {

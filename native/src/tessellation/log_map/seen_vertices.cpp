@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "geodesics/unfolding/arc_unfolding.h"
 #include "support/threads/parallel.h"
@@ -82,7 +83,7 @@ void SeenFromSites::find(const Request& request, int threads, const JobStage& st
 void SeenFromSites::find_from_vertex(SeenVertices& seen) const {
   const Mesh& mesh = graph_.mesh();
   const Index node = seen.center, vertex = graph_.vertex_of(node);
-  const double scale = mesh.is_boundary(vertex) ? 1 : 2 * M_PI / mesh.total_angle(vertex);
+  const double scale = mesh.is_boundary(vertex) ? 1 : 2 * std::numbers::pi / mesh.total_angle(vertex);
   const ArcRows& arcs = graph_.arcs();
   ArcUnfolder unfolder(graph_.unfolding());
   UnfoldedArc unfolded;

@@ -1,6 +1,7 @@
 #include "tessellation/log_map/tangent_moves.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "saddleback/error.h"
 #include "saddleback/mesh/trace.h"
@@ -13,7 +14,7 @@ namespace {
 /// Radians of surface per radian of the tangent plane, which is scaled at vertices inside the mesh.
 double surface_scale(const Mesh& mesh, const SurfacePoint& point) {
   const Index vertex = vertex_at(mesh, point);
-  return vertex == k_none || mesh.is_boundary(vertex) ? 1 : mesh.total_angle(vertex) / (2 * M_PI);
+  return vertex == k_none || mesh.is_boundary(vertex) ? 1 : mesh.total_angle(vertex) / (2 * std::numbers::pi);
 }
 
 Vec2 turned(const Vec2& v, const Vec2& turn) {
@@ -26,7 +27,7 @@ void move_site(const Mesh& mesh, const SurfacePoint& site, const Vec2& step, Ind
   const double length = step.norm();
   if (!(length > 0) || !std::isfinite(length)) return;
   const double heading = std::atan2(step.y(), step.x()), scale = surface_scale(mesh, site);
-  const double angle = scale == 1 ? heading : (heading < 0 ? heading + 2 * M_PI : heading) * scale;
+  const double angle = scale == 1 ? heading : (heading < 0 ? heading + 2 * std::numbers::pi : heading) * scale;
   try {
     const TraceEnd end = trace_end(mesh, site, angle, length);
     moved.sites[i] = end.point;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geodesics/unfolding/unfolding.h"
 #include "support/threads/parallel.h"
@@ -27,7 +28,8 @@ void for_each_out(const Mesh& mesh, Index vertex, Visit&& visit) {
 }  // namespace
 
 bool VertexRings::bends_much(const Mesh& mesh, Index vertex) {
-  return mesh.total_angle(vertex) > (mesh.is_boundary(vertex) ? M_PI : 2 * M_PI) + k_flat_excess;
+  return mesh.total_angle(vertex) >
+         (mesh.is_boundary(vertex) ? std::numbers::pi : 2 * std::numbers::pi) + k_flat_excess;
 }
 
 VertexRings::VertexRings(const SaddleVertexGraph& graph, int threads) : first_(graph.mesh().vertex_count() + 1, 0) {

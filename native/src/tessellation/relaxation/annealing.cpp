@@ -1,6 +1,7 @@
 #include "tessellation/relaxation/annealing.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "saddleback/error.h"
 
@@ -17,7 +18,7 @@ constexpr std::uint64_t k_seed = 3;  // any
 /// Two independent normal numbers of deviation 1 [box1958].
 Vec2 normal_pair(std::uint64_t key, std::uint64_t counter) {
   const double radius = std::sqrt(-2 * std::log1p(-uniform(key, 2 * counter)));
-  const double angle = 2 * M_PI * uniform(key, 2 * counter + 1);
+  const double angle = 2 * std::numbers::pi * uniform(key, 2 * counter + 1);
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
