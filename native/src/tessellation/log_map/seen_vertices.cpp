@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "geodesics/graph/arc_rows.h"
 #include "geodesics/unfolding/arc_unfolding.h"
 #include "support/threads/parallel.h"
 #include "tessellation/log_map/edge_sight.h"
