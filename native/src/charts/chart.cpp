@@ -6,14 +6,13 @@
 
 #include "saddleback/error.h"
 
-#include "charts/box_tree.h"
 #include "charts/turn.h"
+#include "support/box_tree.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {
 namespace {
 
-using charts::Box;
 using charts::turn;
 using predicates::Sign;
 
@@ -52,14 +51,14 @@ std::vector<Vec2> as_corners(const Mesh& mesh, std::span<const Vec2> uv) {
 }  // namespace
 
 struct Chart::Finder {
-  explicit Finder(std::vector<Box> boxes) : tree(std::move(boxes)) {}
-  charts::BoxTree tree;
+  explicit Finder(std::vector<Box<Vec2>> boxes) : tree(std::move(boxes)) {}
+  BoxTree<Vec2> tree;
 };
 
 Chart::Chart(const Mesh& mesh, std::span<const Vec2> uv, Job* job) : mesh_(&mesh), corners_(as_corners(mesh, uv)) {
   const JobStage stage(job, "Checking the map");
   check_faces();
-  std::vector<Box> boxes;
+  std::vector<Box<Vec2>> boxes;
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Vec2 *corner = &corners_[3 * f], &a = corner[0], &b = corner[1], &c = corner[2];
     boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});

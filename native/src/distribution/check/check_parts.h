@@ -8,7 +8,7 @@
 
 #include "saddleback/distribution/check_distribution.h"
 
-#include "charts/box_tree.h"
+#include "support/box_tree.h"
 
 namespace saddleback {
 
@@ -41,7 +41,7 @@ struct CheckedPiece {
   Vec2 begin, end;
 };
 
-inline charts::Box box_around(const Vec2& a, const Vec2& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
+inline Box<Vec2> box_around(const Vec2& a, const Vec2& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
 
 /// Things in faces by the boxes of their weights: in a tree where a face has many.
 class FaceBoxes {
@@ -53,16 +53,16 @@ class FaceBoxes {
     constexpr std::size_t k_few = 32;
     for (std::size_t face = 0; face + 1 < begins_.size(); ++face) {
       if (begins_[face + 1] - begins_[face] <= k_few) continue;
-      std::vector<charts::Box> boxes;
+      std::vector<Box<Vec2>> boxes;
       for (std::size_t i = begins_[face]; i < begins_[face + 1]; ++i) boxes.push_back(box_of(i));
       trees_.resize(begins_.size() - 1);
-      trees_[face] = std::make_unique<charts::BoxTree>(std::move(boxes));
+      trees_[face] = std::make_unique<BoxTree<Vec2>>(std::move(boxes));
     }
   }
 
   /// Calls visit(i) for the things of the face that may meet the box, in any order.
   template <class Visit>
-  void visit(Index face, const charts::Box& box, Visit&& visit) const {
+  void visit(Index face, const Box<Vec2>& box, Visit&& visit) const {
     const std::size_t begin = begins_[face];
     if (!trees_.empty() && trees_[face])
       trees_[face]->visit(box, [&](Index i) { visit(begin + static_cast<std::size_t>(i)); });
@@ -72,7 +72,7 @@ class FaceBoxes {
 
  private:
   std::vector<std::size_t> begins_;
-  std::vector<std::unique_ptr<charts::BoxTree>> trees_;  ///< per face; empty where no face has many
+  std::vector<std::unique_ptr<BoxTree<Vec2>>> trees_;  ///< per face; empty where no face has many
 };
 
 /// All pieces, sorted by face.

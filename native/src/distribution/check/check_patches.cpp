@@ -64,7 +64,7 @@ PatchTriangles by_face(const Mesh& mesh, const CutMesh& patches) {
   }
   result.boxes = FaceBoxes(std::move(begins), [&](std::size_t i) {
     const auto& [a, b, c] = result.triangles[i].weights;
-    return charts::Box{a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+    return Box<Vec2>{a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
   });
   return result;
 }

@@ -2,13 +2,13 @@
 // whether an edge of one passes through the other.
 
 #include <algorithm>
-#include <numeric>
 
 #include "saddleback/error.h"
 #include "saddleback/mesh/triangle_arrays.h"
 
 #include "mesh/tables/corner_table.h"
 #include "predicates/orient_3d.h"
+#include "support/box_tree.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {
@@ -16,78 +16,8 @@ namespace {
 
 using predicates::orient_3d;
 
-constexpr Index k_most_in_leaf = 4;
 // Triangles between two looks at the job, and that a thread takes at a time.
 constexpr Index k_at_once = 256;
-
-struct Box {
-  Vec3 low, high;
-  bool meets(const Box& other) const {
-    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
-  }
-};
-
-class BoxTree {
- public:
-  explicit BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
-    if (!order_.empty()) add_node(0, static_cast<Index>(order_.size()));
-  }
-  const Box& box(Index i) const { return boxes_[i]; }
-
-  /// Calls visit(i) for all whose boxes meet the given one.
-  template <class Visit>
-  void visit_meeting(const Box& box, std::vector<Index>& stack, Visit&& visit) const {
-    stack.assign(nodes_.empty() ? 0 : 1, 0);
-    while (!stack.empty()) {
-      const Node& node = nodes_[stack.back()];
-      stack.pop_back();
-      if (!node.box.meets(box)) continue;
-      if (node.right == k_none) {
-        for (Index i = node.first; i < node.last; ++i)
-          if (boxes_[order_[i]].meets(box)) visit(order_[i]);
-      } else {
-        const Index left = static_cast<Index>(&node - nodes_.data()) + 1;
-        stack.push_back(left);
-        stack.push_back(node.right);
-      }
-    }
-  }
-
- private:
-  struct Node {
-    Box box;
-    Index first, last;
-    Index right;  ///< the left child follows its parent; k_none: a leaf
-  };
-
-  Index add_node(Index first, Index last) {
-    const auto number = static_cast<Index>(nodes_.size());
-    Box all = boxes_[order_[first]];
-    for (Index i = first + 1; i < last; ++i) {
-      all.low = all.low.cwiseMin(boxes_[order_[i]].low);
-      all.high = all.high.cwiseMax(boxes_[order_[i]].high);
-    }
-    nodes_.push_back({all, first, last, k_none});
-    if (last - first <= k_most_in_leaf) return number;
-    int axis = 0;
-    (all.high - all.low).maxCoeff(&axis);
-    const Index middle = first + (last - first) / 2;
-    const auto twice_center = [&](Index i) { return boxes_[i].low[axis] + boxes_[i].high[axis]; };
-    std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last, [&](Index a, Index b) {
-      const double at_a = twice_center(a), at_b = twice_center(b);
-      return at_a != at_b ? at_a < at_b : a < b;
-    });
-    add_node(first, middle);
-    const Index right = add_node(middle, last);
-    nodes_[number].right = right;
-    return number;
-  }
-
-  std::vector<Box> boxes_;
-  std::vector<Index> order_;
-  std::vector<Node> nodes_;
-};
 
 /// Tells whether the segment's ends lie on different sides of the triangle's plane, and it passes between its sides.
 bool pierces(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& t) {
@@ -101,7 +31,7 @@ class Crossings {
   Crossings(std::span<const Vec3> vertices, std::span<const Triangle> triangles)
       : vertices_(vertices), triangles_(triangles) {}
 
-  Box box(Index i) const {
+  Box<Vec3> box(Index i) const {
     const auto [a, b, c] = corners(i);
     return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
   }
@@ -143,18 +73,17 @@ std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices,
     if (!vertices[v].allFinite()) throw InputError(message("vertices: vertex ", v, " is not finite"));
   const Crossings crossings(vertices, triangles);
   const auto count = static_cast<Index>(triangles.size());
-  std::vector<Box> boxes(count);
+  std::vector<Box<Vec3>> boxes(count);
   for (Index i = 0; i < count; ++i) boxes[i] = crossings.box(i);
-  const BoxTree tree(std::move(boxes));
+  const BoxTree<Vec3> tree(std::move(boxes));
   struct alignas(k_apart) Worker {
-    std::vector<Index> stack;
     std::vector<std::array<Index, 2>> found;
   };
   std::vector<Worker> workers(thread_count(threads));
   parallel_for(count, threads, k_at_once, [&](Index i, int thread) {
     if (i % k_at_once == 0) stage.check();
-    auto& [stack, found] = workers[thread];
-    tree.visit_meeting(tree.box(i), stack, [&](Index other) {
+    auto& found = workers[thread].found;
+    tree.visit(tree.box(i), [&](Index other) {
       if (other > i && crossings.cross(i, other)) found.push_back({i, other});
     });
   });
