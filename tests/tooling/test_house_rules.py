@@ -216,7 +216,7 @@ def test_namespaces_are_that_of_the_library_or_those_of_the_rooms():
 
 
 MOST_FILES = 30
-CROWDED = {"docs/images", "native/src/geodesics/queries"}  # on their way down
+CROWDED = {"docs/images"}  # on its way down
 
 
 def test_no_folder_grows_beyond_what_one_can_overlook():

@@ -10,8 +10,8 @@
 #include "saddleback/mesh/surface_curve.h"
 
 #include "geodesics/graph/visible_vertices.h"
+#include "geodesics/queries/graph_search.h"
 #include "geodesics/queries/joined_paths.h"
-#include "geodesics/queries/label_propagation.h"
 #include "geodesics/queries/point_targets.h"
 #include "geodesics/queries/query_cache.h"
 #include "geodesics/unfolding/line_of_sight.h"

@@ -1,4 +1,11 @@
-// The graph's questions and answers: sources become seeds, a search does the rest.
+// The graph's questions and answers: sources become seeds, a search does the rest. All searches find the same bits;
+// which one runs:
+//  - GraphSearch: the fields of this file, by buckets; on demand by Dijkstra's heap, which checks the buckets.
+//  - cuda_search: the same fields where options.cuda_device asks for it.
+//  - PointSearch: the distance between two points, led by landmarks.
+//  - nearest_sources (parted_search.h): the nearest of a tessellation's sites for every vertex, by several threads.
+//  - NearestSweep: the same where sites lie close to each other, some dozen vertices or fewer for each.
+//  - tessellation/log_map/relabeling.h: the same where only some of the sites have moved.
 
 #include <algorithm>
 #include <atomic>
@@ -9,8 +16,8 @@
 #include "saddleback/error.h"
 #include "saddleback/geodesics/saddle_vertex_graph.h"
 
+#include "geodesics/queries/graph_search.h"
 #include "geodesics/queries/graph_search_cuda.h"
-#include "geodesics/queries/label_propagation.h"
 #include "geodesics/queries/point_targets.h"
 #include "geodesics/queries/query_cache.h"
 #include "support/memory/memory.h"

@@ -85,4 +85,16 @@ class GraphSearch {
   BucketQueue buckets_;
 };
 
+/// Fields over the vertices.
+struct LabelField {
+  std::vector<double> distance;  ///< infinity where nothing reaches
+  std::vector<Index> source;     ///< k_none where nothing reaches; ties: the smaller source
+  std::vector<Index>
+      predecessor;  ///< vertex before on the path; k_none: straight from the source. Empty unless asked for
+};
+
+/// Runs one of the graph's searches (see GraphSearch) from seeds at vertices and returns what it found.
+LabelField propagate_labels(const SaddleVertexGraph& graph, std::span<const Seed> seeds, const QueryOptions& options,
+                            bool with_predecessors, const JobStage& stage);
+
 }  // namespace saddleback
