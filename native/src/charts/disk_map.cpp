@@ -8,6 +8,7 @@
 
 #include "charts/sparse_cholesky.h"
 #include "charts/turn.h"
+#include "mesh/tables/outgoing.h"
 
 namespace saddleback {
 namespace {
@@ -67,9 +68,7 @@ Equations set_up(const Mesh& mesh, const std::vector<Vec2>& places) {
   for (const Index v : result.vertices) {
     double sum = 0;
     Vec2 from_border(0, 0);
-    const Index first = mesh.first_halfedge(v);
-    Index h = first;
-    do {
+    for (const Index h : outgoing(mesh, v)) {
       const Index other = mesh.to(h);
       const double w = weight(mesh, h);
       sum += w;
@@ -79,8 +78,7 @@ Equations set_up(const Mesh& mesh, const std::vector<Vec2>& places) {
         result.matrix.columns.push_back(row[other]);
         result.matrix.values.push_back(-w);
       }
-      h = mesh.rotate(h);
-    } while (h != first);
+    }
     result.matrix.offsets.push_back(static_cast<Index>(result.matrix.columns.size()));
     result.matrix.diagonal.push_back(sum);
     result.right.push_back(from_border);

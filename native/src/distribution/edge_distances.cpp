@@ -5,6 +5,8 @@
 #include <limits>
 #include <queue>
 
+#include "mesh/tables/outgoing.h"
+
 namespace saddleback::distribution {
 namespace {
 
@@ -36,13 +38,10 @@ std::vector<double> edge_distances(const Mesh& mesh, std::span<const Index> sour
     const auto [distance, vertex] = queue.top();
     queue.pop();
     if (distance != distances[vertex]) continue;
-    const Index first = mesh.first_halfedge(vertex);
-    Index h = first;
-    do {
+    for (const Index h : outgoing(mesh, vertex)) {
       reach(mesh.to(h), distance + mesh.length(h));
       reach(mesh.apex(h), distance + mesh.length(Mesh::prev(h)));
-      h = mesh.rotate(h);
-    } while (h != k_none && h != first);
+    }
   }
   return distances;
 }

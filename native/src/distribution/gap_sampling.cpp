@@ -15,6 +15,7 @@
 #include "saddleback/mesh/trace.h"
 
 #include "distribution/edge_distances.h"
+#include "mesh/tables/outgoing.h"
 #include "support/random_numbers.h"
 #include "support/threads/parallel.h"
 
@@ -434,12 +435,9 @@ void GapSampling::find_least_stuck() {
 /// The face and those about it.
 void GapSampling::suspect(Index face) {
   for (const Index vertex : mesh_->triangles()[face]) {
-    const Index first = mesh_->first_halfedge(vertex);
-    Index h = first;
-    do {
+    for (const Index h : outgoing(*mesh_, vertex)) {
       suspected_[Mesh::face_of(h)] = 1;
-      h = mesh_->rotate(h);
-    } while (h != k_none && h != first);
+    }
   }
 }
 

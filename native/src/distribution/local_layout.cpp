@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/tables/outgoing.h"
 #include "shape_mapping/sight.h"
 
 namespace saddleback::distribution {
@@ -71,9 +72,7 @@ bool LocalLayout::is_within_reach(const Vec2& from, const Vec2& to) const {
 }
 
 void LocalLayout::look_around(Index vertex) {
-  const Index first = mesh_->first_halfedge(vertex);
-  Index h = first;
-  do {
+  for (const Index h : outgoing(*mesh_, vertex)) {
     const Index face = Mesh::face_of(h);
     if (face_stamps_[face] != stamp_) {
       const bool has_next = has(mesh_->to(h)), has_apex = has(mesh_->apex(h));
@@ -85,8 +84,7 @@ void LocalLayout::look_around(Index vertex) {
           turned_away_.push_back(base);
       }
     }
-    h = mesh_->rotate(h);
-  } while (h != k_none && h != first);
+  }
 }
 
 /// Lays the face of the half-edge beside the places of its ends.

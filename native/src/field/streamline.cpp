@@ -11,6 +11,8 @@
 #include "saddleback/error.h"
 
 #include "field/connection/surface_connection.h"
+#include "mesh/tables/outgoing.h"
+#include "support/planar.h"
 
 namespace saddleback {
 namespace {
@@ -25,8 +27,6 @@ constexpr double k_beside = 1e-9;          // share of an edge by which curves k
 constexpr double k_inward = 1e-6;          // share of a step by which it leaves the edge that it starts on
 constexpr double k_at_singularity = 0.02;  // share of the edges about it within which a curve has come to a vertex
 constexpr double k_bend = 0.1;             // radians a step, of curves whose bending is limited
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 Vec2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
@@ -263,9 +263,7 @@ Departure departure(const DirectionField& field, Index vertex, double offset, co
   const double quantum = 2 * k_pi / field.symmetry();
   Departure best;
   double best_cosine = -2;
-  const Index first = mesh.first_halfedge(vertex);
-  Index h = first;
-  do {
+  for (const Index h : outgoing(mesh, vertex)) {
     const double corner = mesh.corner_angle(h);
     // About the vertex the field is linear in the angle: where is it that angle itself?
     const auto [begin, end] = field.about_corner(h);
@@ -280,8 +278,7 @@ Departure departure(const DirectionField& field, Index vertex, double offset, co
       best = {h, std::clamp(angle, 0.0, corner), direction};
       best_cosine = cosine;
     }
-    h = mesh.rotate(h);
-  } while (h != k_none && h != first);
+  }
   return best;
 }
 

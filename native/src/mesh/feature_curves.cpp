@@ -5,6 +5,8 @@
 
 #include "saddleback/error.h"
 
+#include "mesh/tables/outgoing.h"
+
 namespace saddleback {
 namespace {
 
@@ -23,12 +25,9 @@ double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b
 
 /// The half-edge that speaks for the edge between two vertices, k_none where there is none.
 Index find_edge(const Mesh& mesh, Index a, Index b) {
-  const Index first = mesh.first_halfedge(a);
-  for (Index h = first; h != k_none;) {
+  for (const Index h : outgoing(mesh, a)) {
     if (mesh.to(h) == b) return h;
     if (const Index last = Mesh::prev(h); mesh.from(last) == b) return last;
-    h = mesh.rotate(h);
-    if (h == first) break;
   }
   return k_none;
 }

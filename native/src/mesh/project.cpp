@@ -22,6 +22,7 @@
 #include "mesh/tables/flat_face.h"
 #include "mesh/tables/hilbert.h"
 #include "mesh/tables/key_order.h"
+#include "mesh/tables/outgoing.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {
@@ -78,12 +79,8 @@ SurfacePoint settled(const Mesh& mesh, Index face, const Vec3& barycentric) {
                       mesh.position(mesh.triangles()[face][2]));
   SurfacePoint point{face, snapped(flat, barycentric)};
   if (const Index vertex = vertex_at(mesh, point); vertex != k_none) {
-    const Index first = mesh.first_halfedge(vertex);
-    Index smallest = first, h = first;
-    do {
-      if (h < smallest) smallest = h;
-      h = mesh.rotate(h);
-    } while (h != k_none && h != first);
+    Index smallest = mesh.first_halfedge(vertex);
+    for (const Index h : outgoing(mesh, vertex)) smallest = std::min(smallest, h);
     return {Mesh::face_of(smallest), Vec3::Unit(smallest % 3)};
   }
   for (int i = 0; i < 3; ++i) {

@@ -4,6 +4,8 @@
 
 #include "saddleback/error.h"
 
+#include "mesh/tables/outgoing.h"
+
 namespace saddleback {
 namespace {
 
@@ -24,12 +26,8 @@ bool any_face_of(const Mesh& mesh, const SurfacePoint& point, double tolerance, 
     const bool on_edge = point.barycentric[(i + 2) % 3] <= tolerance;
     if (on_edge && mesh.twin(h) != k_none && visit(Mesh::face_of(mesh.twin(h)))) return true;
     if (point.barycentric[i] < 1 - 2 * tolerance) continue;
-    const Index first = mesh.first_halfedge(mesh.from(h));
-    for (Index g = first; g != k_none;) {
+    for (const Index g : outgoing(mesh, mesh.from(h)))
       if (visit(Mesh::face_of(g))) return true;
-      g = mesh.rotate(g);
-      if (g == first) break;
-    }
   }
   return false;
 }

@@ -19,6 +19,8 @@
 #include "saddleback/error.h"
 
 #include "mesh/tables/flat_face.h"
+#include "mesh/tables/outgoing.h"
+#include "support/planar.h"
 
 namespace saddleback {
 namespace {
@@ -30,8 +32,6 @@ constexpr std::int64_t k_max_faces = 1'000'000;
 /// Radians by which a straight border may bend away from a curve that runs along it: rounding of angles.
 constexpr double k_along_border = 1e-9;
 constexpr std::int64_t k_faces_a_look = 1024;  ///< at the job: a quarter of a millisecond
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Components of v in the frame whose x axis is the unit vector `axis`.
 Vec2 rotated_into(const Vec2& axis, const Vec2& v) { return {axis.dot(v), cross(axis, v)}; }
@@ -345,14 +345,11 @@ struct VertexDirection {
 VertexDirection direction_at_vertex(const Mesh& mesh, Index vertex, const Vec3& unit) {
   NearestDirection best{0, -2, 0, 0};
   double best_fan = 0, fan = 0;
-  const Index first = mesh.first_halfedge(vertex);
-  Index h = first;
-  do {
+  for (const Index h : outgoing(mesh, vertex)) {
     const NearestDirection found = nearest_in_corner(mesh, h, unit);
     if (found.cosine > best.cosine) best = found, best_fan = fan;
     fan += mesh.corner_angle(h);
-    h = mesh.rotate(h);
-  } while (h != k_none && h != first);
+  }
   // Off the rim of the surface: keep the direction that leaves it rather than bend it along the rim.
   const bool off_the_rim = mesh.is_boundary(vertex) && best.angle != best.free_angle &&
                            (best_fan + best.angle == 0 || best_fan + best.angle == fan);

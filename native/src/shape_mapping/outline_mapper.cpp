@@ -13,6 +13,7 @@
 #include <cmath>
 #include <exception>
 
+#include "mesh/tables/outgoing.h"
 #include "shape_mapping/face_weights.h"
 #include "shape_mapping/sides.h"
 #include "shape_mapping/sight.h"
@@ -215,14 +216,11 @@ void OutlineMapper::look_at(Index vertex) {
   const bool is_in = is_in_shape(at);
   if (is_in && mesh_->is_boundary(vertex)) throw Failed(MapFailure::boundary);
   if (is_in) inside_stamps_[vertex] = stamp_;
-  const Index first = mesh_->first_halfedge(vertex);
-  Index h = first;
-  do {
+  for (const Index h : outgoing(*mesh_, vertex)) {
     const Index next = mesh_->to(h), apex = mesh_->apex(h);
     if (plane_.is_settled(next) && plane_.is_settled(apex) && (is_in || has_inside(next) || has_inside(apex)))
       checked(Mesh::face_of(h));
-    h = mesh_->rotate(h);
-  } while (h != k_none && h != first);
+  }
 }
 
 /// The shape touches this face: all of it must be laid out well.
@@ -306,12 +304,9 @@ void OutlineMapper::check_crossings() {
     if (has_inside(mesh_->from(h)) == has_inside(mesh_->to(h))) throw Failed(MapFailure::fold);
   }
   for (const Index vertex : outline_->inside) {
-    const Index first = mesh_->first_halfedge(vertex);
-    Index h = first;
-    do {
+    for (const Index h : outgoing(*mesh_, vertex)) {
       if (!has_inside(mesh_->to(h))) ++mixed;
-      h = mesh_->rotate(h);
-    } while (h != first);
+    }
   }
   if (mixed != odd) throw Failed(MapFailure::fold);
 }

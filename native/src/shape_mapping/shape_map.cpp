@@ -9,6 +9,7 @@
 
 #include "saddleback/mesh/trace.h"
 
+#include "mesh/tables/outgoing.h"
 #include "shape_mapping/curve_bend.h"
 #include "shape_mapping/sides.h"
 #include "shape_mapping/sight.h"
@@ -166,14 +167,11 @@ void ShapeMap::look_about(Index vertex, const PlaneBox& box) {
     return has(other) && nodes_[other].state >= State::source && !is_beyond(box, place, nodes_[other].place) &&
            (is_near || !is_out_of_reach(vertex, other));
   };
-  const Index first = mesh_->first_halfedge(vertex);
-  Index h = first;
-  do {
+  for (const Index h : outgoing(*mesh_, vertex)) {
     const Index next = mesh_->to(h), apex = mesh_->apex(h);
     if (is_open(next)) look_through(vertex, next, apex);
     if (is_open(apex)) look_through(apex, vertex, next);
-    h = mesh_->rotate(h);
-  } while (h != k_none && h != first);
+  }
 }
 
 Sight ShapeMap::sight_through(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) const {

@@ -8,6 +8,7 @@
 
 #include "predicates/planar_loops.h"
 #include "predicates/predicates.h"
+#include "support/planar.h"
 
 namespace saddleback::distribution {
 namespace {
@@ -17,8 +18,6 @@ using predicates::Sign;
 Sign turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return predicates::orient_2d({a.x(), a.y()}, {b.x(), b.y()}, {c.x(), c.y()});
 }
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 struct Corner {
   Vec2 place;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "distribution/check/check_parts.h"
+#include "mesh/tables/outgoing.h"
 #include "predicates/predicates.h"
 
 namespace saddleback {
@@ -77,14 +78,11 @@ class Nesting {
     while (!front_.empty()) {
       const Index vertex = front_.back();
       front_.pop_back();
-      const Index first = mesh_.first_halfedge(vertex);
-      Index h = first;
-      do {
+      for (const Index h : outgoing(mesh_, vertex)) {
         if (!is_rim(counts, h)) own(mesh_.to(h), shape);
         const Index last = Mesh::prev(h);
         if (mesh_.twin(last) == k_none && !is_rim(counts, last)) own(mesh_.from(last), shape);
-        h = mesh_.rotate(h);
-      } while (h != k_none && h != first);
+      }
     }
   }
 

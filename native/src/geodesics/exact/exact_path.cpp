@@ -10,6 +10,8 @@
 
 #include "saddleback/error.h"
 
+#include "support/planar.h"
+
 namespace saddleback {
 namespace {
 
@@ -18,8 +20,6 @@ constexpr double k_meet = 1e-12;
 // Relative to the face: the unfolded image of a root is off its place by rounding and by what the gaps between windows
 // allow (k_miss in the propagation).
 constexpr double k_same_place = 1e-5;
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "mesh/tables/outgoing.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {
@@ -44,13 +45,10 @@ GoingOn going_on(const Unfolding& unfolding, Index h) {
   GoingOn best{std::abs(mesh.total_angle(vertex) - 2 * std::numbers::pi)};
   if (best.bent > k_nearly_straight) return best;
   const double back = unfolding.polar_of_reverse(h);
-  const Index first = mesh.first_halfedge(vertex);
-  Index out = first;
-  do {
+  for (const Index out : outgoing(mesh, vertex)) {
     const double turn = std::abs(unfolding.polar(out) - back);
     best.turned = std::min(best.turned, std::abs(turn - std::numbers::pi));
-    out = mesh.rotate(out);
-  } while (out != k_none && out != first);
+  }
   return best;
 }
 
@@ -104,17 +102,14 @@ Surroundings surroundings_of(const Unfolding& unfolding, Index vertex) {
   const Mesh& mesh = unfolding.mesh();
   int edges = 0, straight = 0, nearly_straight = 0;
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-  const Index first = mesh.first_halfedge(vertex);
-  Index h = first;
-  do {
+  for (const Index h : outgoing(mesh, vertex)) {
     ++edges;
     const GoingOn on = going_on(unfolding, h);
     straight += on.is_straight(k_straight);
     nearly_straight += on.is_straight(k_nearly_straight);
     shortest = std::min(shortest, mesh.length(h));
     longest = std::max(longest, mesh.length(h));
-    h = mesh.rotate(h);
-  } while (h != k_none && h != first);
+  }
   const bool is_strip = is_beside_strip(unfolding, vertex);
   if (2 * nearly_straight < edges && !is_strip) return {};
   return {longest < k_stretched * shortest ? Lattice::even : Lattice::stretched, 2 * straight < edges && !is_strip};

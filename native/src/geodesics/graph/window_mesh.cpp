@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "geodesics/unfolding/unfolded_corner.h"
+#include "mesh/tables/outgoing.h"
 #include "support/planar.h"
 #include "support/threads/parallel.h"
 
@@ -50,12 +51,9 @@ NodeEdges::NodeEdges(const Mesh& mesh, std::span<const Index> vertices, int thre
     out.reserve(8 * k_chunk);
     for (Index node = chunk * k_chunk; node < std::min(count, (chunk + 1) * k_chunk); ++node) {
       const std::size_t before = out.size();
-      const Index start = mesh.first_halfedge(vertices[node]);
-      Index h = start;
-      do {
+      for (const Index h : outgoing(mesh, vertices[node])) {
         out.push_back(h);
-        h = mesh.rotate(h);
-      } while (h != k_none && h != start);
+      }
       first[node + 1] = static_cast<Index>(out.size() - before);
     }
   });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/tables/outgoing.h"
 #include "support/planar.h"
 
 namespace saddleback {
@@ -38,23 +39,18 @@ bool ArcUnfolder::unfold(const ArcHint& hint, const SurfacePoint* target, Unfold
   target_ = target;
   border_ = hint.is_rough ? k_on_rough_border : k_on_border;
   if (!target && along_an_edge(hint, arc)) return true;
-  const Index first = mesh_.first_halfedge(hint.from);
-  Index h = first;
-  do {
+  for (const Index h : outgoing(mesh_, hint.from)) {
     const double begin = unfolding_.polar(h);
     if (begin <= hint.end_angle && begin + mesh_.corner_angle(h) >= hint.begin_angle && start(hint, h, arc))
       return true;
-    h = mesh_.rotate(h);
-  } while (h != k_none && h != first);
+  }
   return false;
 }
 
 bool ArcUnfolder::along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const {
   const double straight = (mesh_.position(hint.to) - mesh_.position(hint.from)).norm();
   if (straight < hint.length * (1 - 2 * hint.tolerance)) return false;
-  const Index first = mesh_.first_halfedge(hint.from);
-  Index h = first;
-  do {
+  for (const Index h : outgoing(mesh_, hint.from)) {
     if (mesh_.to(h) == hint.to && same_length(mesh_.length(h), hint)) {
       arc.length = mesh_.length(h);
       arc.start_angle = unfolding_.polar(h);
@@ -68,8 +64,7 @@ bool ArcUnfolder::along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const {
       arc.end_angle = unfolding_.polar(last);
       return true;
     }
-    h = mesh_.rotate(h);
-  } while (h != k_none && h != first);
+  }
   return false;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/tables/outgoing.h"
+
 namespace saddleback {
 namespace {
 
@@ -93,14 +95,11 @@ bool PathShortener::go_round(const LegChain& chain, std::size_t i, Side side) {
   // path.
   const auto beside = [&](const LegEnd& end, bool arriving) {
     if (!end.is_vertex()) return leaving(end.point.face);
-    const Index first = mesh_.first_halfedge(vertex);
-    Index h = first;
-    do {
+    for (const Index h : outgoing(mesh_, vertex)) {
       const bool own_face = (side == Side::left) != arriving;  // the face on the left of h, which leads away
       if (own_face && mesh_.to(h) == end.vertex) return h;
       if (!own_face && mesh_.from(Mesh::prev(h)) == end.vertex) return h;
-      h = mesh_.rotate(h);
-    } while (h != k_none && h != first);
+    }
     return k_none;
   };
   Index from = in.entered.empty() ? beside(chain.ends[i - 1], true) : Mesh::prev(in.entered.back());

@@ -1,6 +1,7 @@
 #include "geodesics/unfolding/unfolding.h"
 
 #include "geodesics/unfolding/unfolded_corner.h"
+#include "mesh/tables/outgoing.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {
@@ -26,14 +27,11 @@ Unfolding::Unfolding(const Mesh& mesh, int threads, const JobStage& stage)
   });
   parallel_for(mesh.vertex_count(), threads, 1024, [&](Index v, int) {
     stage.check();
-    const Index first = mesh.first_halfedge(v);
     double angle = 0;
-    Index h = first;
-    do {
+    for (const Index h : outgoing(mesh, v)) {
       polars_[h] = angle;
       angle += mesh.corner_angle(h);
-      h = mesh.rotate(h);
-    } while (h != k_none && h != first);
+    }
   });
 }
 

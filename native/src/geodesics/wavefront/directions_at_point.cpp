@@ -6,6 +6,9 @@
 
 #include "saddleback/mesh/surface_curve.h"
 
+#include "mesh/tables/outgoing.h"
+#include "support/planar.h"
+
 namespace saddleback {
 namespace {
 
@@ -14,8 +17,6 @@ constexpr double k_pi = std::numbers::pi;
 constexpr double k_border = 1e-9;
 // A point nearer to an edge than this share of its face is on it.
 constexpr double k_on_edge = 1e-13;
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 double chart_angle(const FaceChart& chart, Index h) {
   const Vec2 along = chart.corner[(h + 1) % 3] - chart.corner[h % 3];
@@ -35,13 +36,10 @@ DirectionsAtPoint::DirectionsAtPoint(const Unfolding& unfolding, const SurfacePo
   if (vertex_ != k_none) {
     total_ = mesh_.total_angle(vertex_);
     round_ = !mesh_.is_boundary(vertex_);
-    const Index first = mesh_.first_halfedge(vertex_);
-    Index h = first;
-    do {
+    for (const Index h : outgoing(mesh_, vertex_)) {
       const Index face = Mesh::face_of(h);
       sectors_.push_back({face, h, unfolding.polar(h), mesh_.corner_angle(h), chart_angle(FaceChart(mesh_, face), h)});
-      h = mesh_.rotate(h);
-    } while (h != k_none && h != first);
+    }
     return;
   }
   total_ = 2 * k_pi;

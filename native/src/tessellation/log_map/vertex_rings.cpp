@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "geodesics/unfolding/unfolding.h"
+#include "mesh/tables/outgoing.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {
@@ -13,17 +14,6 @@ namespace {
 // Less excess of angle than this bends wavefronts so little (its square an eighth, relative to the distance) that what
 // lies behind the vertex may be seen across edges as if straight.
 constexpr double k_flat_excess = 0.1;
-
-/// Visits the half-edges out of a vertex, counter-clockwise.
-template <class Visit>
-void for_each_out(const Mesh& mesh, Index vertex, Visit&& visit) {
-  const Index first = mesh.first_halfedge(vertex);
-  for (Index h = first; h != k_none;) {
-    visit(h);
-    h = mesh.rotate(h);
-    if (h == first) h = k_none;
-  }
-}
 
 }  // namespace
 
@@ -42,7 +32,7 @@ VertexRings::VertexRings(const SaddleVertexGraph& graph, int threads) : first_(g
   wedges_.resize(first_.back());
   parallel_for(mesh.vertex_count(), threads, 1024, [&](Index node, int) {
     Wedge* wedge = &wedges_[first_[node]];
-    for_each_out(mesh, graph.vertex_of(node), [&](Index h) {
+    for (const Index h : outgoing(mesh, graph.vertex_of(node))) {
       const Index edge = Mesh::next(h), a = mesh.from(edge), b = mesh.to(edge);
       *wedge++ = {graph.node_of(a),
                   graph.node_of(b),
@@ -51,7 +41,7 @@ VertexRings::VertexRings(const SaddleVertexGraph& graph, int threads) : first_(g
                   bends_much(mesh, b),
                   mesh.length(edge),
                   graph.unfolding().apex(edge)};
-    });
+    }
   });
 }
 

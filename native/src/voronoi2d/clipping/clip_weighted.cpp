@@ -11,12 +11,11 @@
 #include <numbers>
 
 #include "predicates/predicates.h"
+#include "support/planar.h"
 #include "voronoi2d/diagram/edge_curve.h"
 
 namespace saddleback::voronoi2d {
 namespace {
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 int turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return static_cast<int>(predicates::orient_2d({a.x(), a.y()}, {b.x(), b.y()}, {c.x(), c.y()}));
