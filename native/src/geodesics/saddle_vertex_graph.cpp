@@ -86,6 +86,7 @@ SaddleVertexGraph::SaddleVertexGraph(const Mesh& mesh, const SaddleVertexGraphOp
     arcs_ = std::make_unique<ArcRows>(cuda_arcs(search, choose_codec, rule, options.cuda_devices, std::move(room),
                                                 device_times_, stage.part(k_laid, 1)));
     built_by_cuda_ = true;
+    stage.update(1);
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return;
   }
