@@ -213,8 +213,9 @@ def corners_of_the_plane(mesh: sb.Mesh, rng: Random) -> None:
 
 @guards("spread_values")
 def values_between_places(mesh: sb.Mesh, rng: Random) -> None:
-    """Values meet the given ones, but of places that are nearly the same, and stay within them; they follow a shift and a
-    factor, in any unit; parts without a place have the mean.
+    """Values meet the given ones, but of places that are nearly the same, and stay within them.
+
+    They follow a shift and a factor, in any unit; parts without a place have the mean.
     """
     method = str(rng.choice(["biharmonic", "harmonic"]))
     places = rng.permutation(mesh.vertex_count)[: int(rng.integers(1, 4))].astype(np.int32)
