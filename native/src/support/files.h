@@ -17,7 +17,7 @@ using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
 /// The name as the system takes it. \throw InputError where it is none (Windows: no UTF-8).
 std::filesystem::path system_path(const std::string& path);
 
-/// As std::fopen; null when the file cannot be opened, and errno tells why.
+/// Opens a file like std::fopen; null when the file cannot be opened, and errno tells why.
 FileHandle open_file(const std::filesystem::path& path, const char* mode);
 
 }  // namespace saddleback

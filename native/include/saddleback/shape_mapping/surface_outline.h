@@ -9,7 +9,7 @@
 
 namespace saddleback {
 
-/// Why a piece of the plane could not be laid on the surface.
+/// The reason for which a piece of the plane could not be laid on the surface.
 enum class MapFailure : std::uint8_t {
   none,
   boundary,   ///< it leaves the surface

@@ -26,8 +26,8 @@ bool is_line_end(char c) { return static_cast<unsigned char>(c) <= '\r' && (c ==
 #ifdef __cpp_lib_to_chars
 using std::from_chars;
 #else
-/// As the standard's, which libc++ has for real numbers only in the newest systems: what it takes, and no locale's
-/// comma.
+/// Replaces the standard's, which libc++ has for real numbers only in the newest systems: what it takes, and no
+/// locale's comma.
 std::from_chars_result from_chars(const char* begin, const char* end, double& value) {
   static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);
   const std::string word(begin, end);

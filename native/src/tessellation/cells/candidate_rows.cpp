@@ -48,9 +48,9 @@ void CandidateRows::begin(const SiteLabels& labels_of, int threads) {
     next.candidates += labels;
     mark_border(face);
   });
-  constexpr Index k_late_share = 8;  // one late candidate for so many others there is room for
+  constexpr Index k_later_share = 8;  // one late candidate for so many others there is room for
   if (candidates_.capacity() < static_cast<std::size_t>(all.candidates))
-    candidates_.reserve(all.candidates + all.candidates / k_late_share);
+    candidates_.reserve(all.candidates + all.candidates / k_later_share);
   candidates_.resize(all.candidates);
 }
 

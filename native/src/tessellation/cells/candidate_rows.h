@@ -45,7 +45,7 @@ class CandidateRows {
   Index face(Index shared) const { return rows_[shared].face; }
   /// Number of a face among the shared ones, k_none for others.
   Index shared_index(Index face) const { return shared_index_[face]; }
-  /// Of a shared face, by site. Their corners are the face's.
+  /// Candidates of a shared face, by site. Their corners are the face's.
   std::span<const CellCandidate> candidates(Index shared) const {
     return {candidates_.data() + rows_[shared].first, static_cast<std::size_t>(rows_[shared].count)};
   }
@@ -53,12 +53,12 @@ class CandidateRows {
   std::span<CellCandidate> of(const Row& row) {
     return {candidates_.data() + row.first, static_cast<std::size_t>(row.count)};
   }
-  /// Of any face; none where it is not shared.
+  /// Candidates of any face; none where it is not shared.
   std::span<const CellCandidate> on(Index face) const {
     if (shared_index_.empty() || shared_index_[face] == k_none) return {};
     return candidates(shared_index_[face]);
   }
-  /// Whether a face about the node is shared.
+  /// Tells whether a face about the node is shared.
   bool is_at_border(Index node) const { return at_border_[node] != 0; }
   /// The shared faces from one face up to another, by their numbers: in order, the mixed ones, then those that cells
   /// without a vertex of theirs cross.

@@ -34,9 +34,9 @@ class CellCandidates {
   void look_farther(const JobStage& stage);
   /// The next `find` keeps nothing.
   void forget() { is_complete_ = false; }
-  /// As SiteLabels::renumber. The next `find` must be of as many sites.
+  /// Renumbers as SiteLabels::renumber does. The next `find` must be of as many sites.
   void renumber(std::span<const Index> before);
-  /// Whether the last `find` left the cell, the parts of faces that it owns and how it sees them, as it was.
+  /// Tells whether the last `find` left the cell, the parts of faces that it owns and how it sees them, as it was.
   bool is_as_before(Index site) const { return is_as_before_[site] != 0; }
 
   const CellLogMaps& maps() const { return maps_; }

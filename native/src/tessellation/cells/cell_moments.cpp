@@ -28,7 +28,8 @@ struct FaceShape {
       : face(the_face), squared_edges(the_face.squared_edges.data()), density(Vec3::Ones()), uniform(!densities) {
     if (densities) density = Vec3(densities->data());
   }
-  /// By how much the squared distance to a point of the plane is below the interpolation of its values at the corners.
+  /// The amount by which the squared distance to a point of the plane is below the interpolation of its values at the
+  /// corners.
   double bulge(const Vec3& x) const {
     return x[1] * x[2] * squared_edges[0] + x[2] * x[0] * squared_edges[1] + x[0] * x[1] * squared_edges[2];
   }
@@ -83,7 +84,7 @@ void add_whole(const CandidateFace& face, CellMoments& sum) {
   sum.area += whole.area;
 }
 
-/// Where a straight cut parts one corner from the others.
+/// The places where a straight cut parts one corner from the others.
 struct Cut {
   int lone, left, right;
   double on_left, on_right;  ///< as shares of the sides from the lone corner
@@ -155,7 +156,7 @@ class SharedFace {
   std::vector<Corner> polygon_, clipped_;
 };
 
-/// Whether a candidate is nowhere nearer than one of the others.
+/// Tells whether a candidate is nowhere nearer than one of the others.
 bool SharedFace::is_beaten(std::span<const CellCandidate> candidates, std::size_t candidate) const {
   const Vec3& own = squared_distances_[candidate];
   for (std::size_t other = 0; other < candidates.size(); ++other) {
@@ -240,7 +241,7 @@ void SharedFace::cut_in_two(const CandidateFace& first, const CandidateFace& sec
   add(rest.candidate.site, of_rest);
 }
 
-/// What the other rivals leave of the face.
+/// The part that the other rivals leave of the face.
 CellMoments SharedFace::part_of(const FaceShape& shape, std::span<const CellCandidate> candidates, Index rival) {
   const CandidateFace face{shape, candidates[rival], squared_distances_[rival]};
   polygon_.resize(3);

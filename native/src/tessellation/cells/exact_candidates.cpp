@@ -19,7 +19,7 @@ constexpr double k_unbent = 0.1;
 // Of the tolerance: a way that is the shortest is as long as the distance, but for rounding.
 constexpr double k_explained = 1e-3;
 
-/// Whether another candidate is nearer at all corners: then it is in the whole part.
+/// Tells whether another candidate is nearer at all corners: then it is in the whole part.
 bool is_beaten(const FaceCandidate& candidate, const std::vector<FaceCandidate>& candidates) {
   return std::ranges::any_of(candidates, [&](const FaceCandidate& other) {
     for (int i = 0; i < 3; ++i)
@@ -35,7 +35,7 @@ auto find_source(List& list, Index source) {
   return found != list.end() && found->source == source ? &*found : nullptr;
 }
 
-/// Where a part is looked at, barycentric: the middles of its edges and of itself.
+/// The places where a part is looked at, barycentric: the middles of its edges and of itself.
 std::array<Vec3, 4> samples_of_part() {
   return {Vec3(0.5, 0.5, 0), Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(1, 1, 1) / 3};
 }
@@ -44,7 +44,7 @@ SurfacePoint point_in(const FaceRefinement::Part& part, const Vec3& x) {
   return {part.face, x[0] * part.place[0] + x[1] * part.place[1] + x[2] * part.place[2]};
 }
 
-/// What the squared distances at the corners say in between, as for a point in the plane.
+/// Tells what the squared distances at the corners say in between, as for a point in the plane.
 double distance_at(const FaceRefinement::Part& part, const FaceCandidate& candidate, const Vec3& x) {
   double squared = 0;
   for (int i = 0; i < 3; ++i)
@@ -52,7 +52,7 @@ double distance_at(const FaceRefinement::Part& part, const FaceCandidate& candid
   return std::sqrt(std::max(0.0, squared));
 }
 
-/// Beside the bisectors in a part, on all sides of them; barycentric in the part.
+/// Places beside the bisectors in a part, on all sides of them; barycentric in the part.
 std::vector<Vec3> places_by_bisectors(const std::vector<FaceCandidate>& candidates) {
   constexpr double k_aside = 0.1;
   std::vector<EdgeLine> lines;
@@ -252,7 +252,7 @@ bool ExactParts::fits(const FaceRefinement::Part& part, const std::vector<FaceCa
   return true;
 }
 
-/// Of each candidate's site the way at the sample where the site is nearest, or least behind the nearest.
+/// Finds of each candidate's site the way at the sample where the site is nearest, or least behind the nearest.
 ExactParts::Ways ExactParts::ways_seen(const std::vector<FaceCandidate>& candidates) const {
   Ways seen;
   for (const FaceCandidate& candidate : candidates) {
@@ -269,7 +269,7 @@ ExactParts::Ways ExactParts::ways_seen(const std::vector<FaceCandidate>& candida
   return seen;
 }
 
-/// Whether the shortest of straight ways is as long as the distance, at places in the part.
+/// Tells whether the shortest of straight ways is as long as the distance, at places in the part.
 bool ExactParts::explain(const FaceRefinement::Part& part, const Ways& ways, std::span<const Vec3> places) const {
   for (const Vec3& x : places) {
     const SurfacePoint point = point_in(part, x);

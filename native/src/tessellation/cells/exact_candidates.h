@@ -22,7 +22,7 @@ class ExactParts {
   ExactParts(const ExactField& field, const std::vector<Index>& sites, double tolerance, const JobStage& stage);
 
   const FaceRefinement& refinement() const { return refinement_; }
-  /// By face of the mesh.
+  /// Values by face of the mesh.
   const std::vector<Index>& order() const { return order_; }
   const ExactField::Sight& nearest(Index vertex) const { return nearest_[vertex]; }
   /// The sites that may own something of a part, by site.
@@ -31,7 +31,7 @@ class ExactParts {
  private:
   using Way = ExactField::Way;
   using Ways = std::vector<Way>;
-  /// How far a site is from a vertex, in all its faces.
+  /// The distance of a site from a vertex, in all its faces.
   struct Known {
     Index source;
     double distance;
@@ -69,7 +69,7 @@ class ExactParts {
   std::vector<Index> order_;
 };
 
-/// The same as candidates on a mesh whose faces are the parts, in their order.
+/// Gives the same as candidates on a mesh whose faces are the parts, in their order.
 class ExactCandidates final : public FaceCandidates {
  public:
   /// Both must outlive the candidates.

@@ -23,7 +23,7 @@ class ExtrapolatedCorners {
   void complete(CellCandidate& candidate, Index side);
 
  private:
-  /// From one site; goes on from where it was.
+  /// Extrapolates from one site; goes on from where it was.
   struct Search {
     struct Step {
       double distance;

@@ -62,7 +62,7 @@ class FaceCandidates {
   std::vector<FaceCandidate> candidates_;
 };
 
-/// Those of cells that a graph tells. The cells must outlive it.
+/// Candidates of cells that a graph tells. The cells must outlive it.
 class CandidatesOfCells final : public FaceCandidates {
  public:
   explicit CandidatesOfCells(const CellCandidates& cells);

@@ -242,8 +242,8 @@ void CandidateSpread::visit(Index face, const CandidateRows& rows, Visit&& visit
   for (Index i = last_added_[face]; i != k_none; i = added_[i].before) visit(added_[i].candidate);
 }
 
-/// Whether each corner is nearest to its label, which is a candidate of the faces beyond, and no third site is nearest,
-/// or nearly so, between corners.
+/// Tells whether each corner is nearest to its label, which is a candidate of the faces beyond, and no third site is
+/// nearest, or nearly so, between corners.
 bool CandidateSpread::is_settled(Index face, const CandidateRows& rows) const {
   constexpr double k_margin = 1e-9;  // of squared distances
   if (last_added_[face] != k_none) return false;

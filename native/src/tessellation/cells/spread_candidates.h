@@ -10,7 +10,7 @@ namespace saddleback {
 
 class ExtrapolatedCorners;
 
-/// How sites see the corners of the faces of which they are candidates.
+/// Tells of the corners of faces how the sites see them that are candidates there.
 struct CornersOfSites {
   std::vector<double> farthest;               ///< by site: how far; 0 where there are none
   std::vector<std::uint8_t> is_extrapolated;  ///< by site: whether some are laid down; who asks first has a say
@@ -48,7 +48,7 @@ class CandidateSpread {
     Index side;  ///< of the face, beyond which the site is nearest; k_none: it lies in the face
     auto operator<=>(const Request&) const = default;
   };
-  /// What the candidates spread over.
+  /// The tables that candidates spread over.
   struct Ground {
     const CellsBefore& before;
     CandidateRows& rows;

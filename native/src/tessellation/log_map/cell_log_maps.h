@@ -11,9 +11,9 @@
 
 namespace saddleback {
 
-/// What a site's distances to vertices are that it does not see: lengths of ways in the graph, which are never too
-/// short but leap a little where sites move; or, for a relaxation, lengths in its own plane, which do not leap and
-/// differ from those by less than the graph's error, on either side.
+/// Lengths that stand for a site's distances to vertices that it does not see: lengths of ways in the graph, which are
+/// never too short but leap a little where sites move; or, for a relaxation, lengths in its own plane, which do not
+/// leap and differ from those by less than the graph's error, on either side.
 enum class CellLengths { of_ways, smooth };
 
 /// Labels every vertex with its nearest site by the graph and places it in that site's tangent plane.
@@ -43,8 +43,7 @@ enum class CellLengths { of_ways, smooth };
 ///   3. across an edge  beyond an edge of the cell, the one across which the site is seen best
 ///   4. beside an edge  beyond an edge with one end in the cell, the other placed by 3
 ///   5. after an arc    after the cell's vertex before on the shortest way: a direction where 3 and 4 have none, and
-///   the
-///                      length, unless the straight one is known
+///                      the length, unless the straight one is known
 ///   6. after a seen    the same after a vertex that the site sees, where the cell has hardly a vertex beside it
 /// Each of them is taken in tests/native/tessellation; the seventh in test_cells_of_few_sites.py, on edges of 1e-17.
 /// What is left, corners of long faces that cells without vertices cross, is extrapolated (ExtrapolatedCorners).
@@ -55,9 +54,9 @@ class CellLogMaps {
   const SaddleVertexGraph& graph() const { return graph_; }
   const VertexRings& rings() const { return rings_; }
   bool is_smooth() const { return lengths_ == CellLengths::smooth; }
-  /// How far below the graph's a distance may be, relative.
+  /// The share by which a distance may be below the graph's.
   double slack() const { return slack_; }
-  /// Whether the mesh is a flat disk, however it is rolled: whatever fits a plane there is in it.
+  /// Tells whether the mesh is a flat disk, however it is rolled: whatever fits a plane there is in it.
   bool is_flat_disk() const { return is_flat_disk_; }
 
   /// Begins with new sites. `reaches` as for SeenFromSites: most of the work where cells are small; what lies beyond is
@@ -65,7 +64,7 @@ class CellLogMaps {
   /// Cancelled, DeviceError, and then holds nothing to keep. O(sites k log k + arcs), of the cells that are made anew.
   void label_nodes(const SurfacePoints& sites, std::span<const double> reaches,
                    const std::optional<std::vector<Index>>& others, int threads, const JobStage& stage);
-  /// As SiteLabels::renumber.
+  /// Renumbers as SiteLabels::renumber does.
   void renumber(std::span<const Index> before);
   const SiteLabels& labels() const { return labels_; }
   const SeenFromSites& seen() const { return seen_; }
@@ -77,10 +76,10 @@ class CellLogMaps {
   void set_place(Index node, const VertexPlace& place) { places_[node] = place; }
   /// The nodes of a label in the order in which they are placed. Safe for several sites at once.
   std::span<const Index> sort_nodes(Index site) { return labels_.sort_by_distance(site); }
-  /// From the site of its label.
+  /// Places as seen from the site of its label.
   SiteVector own(Index node) const { return vector_of(places_[node]); }
   double own_distance(Index node) const { return places_[node].distance; }
-  /// What lies behind an anchor is seen in its direction.
+  /// The vector to a place; what lies behind an anchor is seen in the anchor's direction.
   SiteVector vector_of(const VertexPlace& place) const;
   /// The anchor's distance from the site.
   double anchor_distance(const VertexPlace& place) const {

@@ -20,7 +20,7 @@ constexpr double k_least_turn = 1e-9;
 // The first of a cell are fetched while the cell before is placed.
 constexpr int k_ahead = 8;
 
-/// By how much a path that comes from direction `back` and goes on in direction `out` turns (left positive) when
+/// The angle by which a path that comes from direction `back` and goes on in direction `out` turns (left positive) when
 /// developed.
 double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
   if (mesh.is_boundary(vertex)) {  // only one side of the path is surface
@@ -36,8 +36,8 @@ double turn_at(const Mesh& mesh, Index vertex, double back, double out) {
   return 0;
 }
 
-/// Whether a path may bend where it comes from `back` and goes on towards `out`, so much that it counts. One that goes
-/// on straight may, too.
+/// Tells whether a path may bend where it comes from `back` and goes on towards `out`, so much that it counts. One that
+/// goes on straight may, too.
 bool is_anchor(const Mesh& mesh, Index vertex, double back, double out) {
   return VertexRings::bends_much(mesh, vertex) && std::abs(turn_at(mesh, vertex, back, out)) <= k_least_turn;
 }

@@ -18,11 +18,11 @@ class CellPlacer {
   /// Asks memory for what `place` looks up: cells have few nodes, so that while one is placed the next is fetched.
   void fetch(Index site) const;
 
-  /// After a node of a cell that is placed: its bend developed, or as seen from there.
+  /// Places after a node of a cell that is placed: its bend developed, or as seen from there.
   VertexPlace place_after(Index node, Index previous);
-  /// The same after a node at another place; `back` leads to the anchor of that.
+  /// Does the same after a node at another place; `back` leads to the anchor of that.
   VertexPlace place_after(Index node, Index previous, const VertexPlace& before, double back);
-  /// Beyond an edge; at an infinite distance unless that is known to be the straight one.
+  /// Places beyond an edge; at an infinite distance unless that is known to be the straight one.
   VertexPlace place_beyond(const EdgeSight& sight, const VertexRings::Wedge& wedge, const VertexPlace& from,
                            const VertexPlace& to) const;
 

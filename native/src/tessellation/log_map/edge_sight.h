@@ -17,14 +17,14 @@ inline constexpr double k_arc_rounding = 2e-9;
 // An edge's end that a ray passes by less than this share of the edge's length is hit, but for rounding.
 inline constexpr double k_hit = 1e-9;
 
-/// Where a vertex lies, seen from its anchor: the site or the last vertex at which the way from there bends for good.
+/// Place of a vertex, seen from its anchor: the site or the last vertex at which the way from there bends for good.
 struct VertexPlace {
   Vec2 at = Vec2::Zero();  ///< from the anchor, in its plane
   double distance = 0;     ///< from the site, never less than it is
   Index anchor = k_none;   ///< node from which it is seen straight on; k_none: the site
   Index found_by = 0;      ///< a wedge across whose edge it was placed, or one of the below
   static constexpr Index k_unplaced = -1, k_straight = -2, k_after_another = -3, k_center = -4, k_end_of_way = -5;
-  /// As it is seen from the site itself.
+  /// Gives the place as it is seen from the site itself.
   static VertexPlace straight(const Vec2& place) { return {place, place.norm(), k_none, k_straight}; }
 };
 
@@ -40,11 +40,11 @@ struct EdgeSight {
 /// of the edge, where the lengths make no triangle, or where the ray passes an end that is not nearly flat.
 bool see(const VertexRings::Wedge& wedge, const VertexPlace& from, const VertexPlace& to, EdgeSight& sight);
 
-/// Whether an edge of this length fits between two places in a plane: where anything bends the surface between, sides
-/// fit by an accident alone.
+/// Tells whether an edge of this length fits between two places in a plane: where anything bends the surface between,
+/// sides fit by an accident alone.
 bool fits(const Vec2& from, const Vec2& to, double length);
 
-/// Whether a place at this distance from its anchor is seen straight: a way that bends to it is longer.
+/// Tells whether a place at this distance from its anchor is seen straight: a way that bends to it is longer.
 bool is_straight(const Vec2& at, double distance);
 
 /// Measures the straight line that leads from `corner`, opposite a half-edge, across it to `end`, which is expected at

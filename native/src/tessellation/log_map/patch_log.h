@@ -24,7 +24,7 @@ class PatchLog {
   /// might be shorter on the other side of a vertex, by a square of the point's move. False where the ways are not
   /// known to go on from the new point; then run must be called. O(n).
   bool run_again(const SurfacePoint& center);
-  /// Where the corners of the i-th face lie in the plane, with the axes of CellLogMaps. After run.
+  /// Places of the corners of the i-th face in the plane, with the axes of CellLogMaps. After run.
   const Vec2& log(Index i, int corner) const { return places_[corners_[i][corner]]; }
 
  private:

@@ -14,7 +14,7 @@
 
 namespace saddleback {
 
-/// Where a vertex lies, seen from a site.
+/// Place of a vertex, seen from a site.
 struct SiteVector {
   PackedVec2 log = PackedVec2::Zero();  ///< in the site's tangent plane; as long as the distance, to rounding
   double distance = 0;
@@ -39,7 +39,7 @@ struct SeenVertices {
   void set(std::size_t i, const SeenNode& node, double length_rounded);
   /// The first `count` are arcs.
   void set_arcs(std::ptrdiff_t count);
-  /// Which of them a node is; k_none for none. O(nodes).
+  /// The number among them that a node has; k_none for none. O(nodes).
   Index find(Index node) const;
 };
 
@@ -48,22 +48,22 @@ class SeenFromSites {
  public:
   SeenFromSites(const SaddleVertexGraph& graph, const VertexRings& rings) : graph_(graph), rings_(rings) {}
 
-  /// What is asked for.
+  /// Sites, and how far to look about each.
   struct Request {
     const SurfacePoints& sites;
     std::span<const Index> order;           ///< of the sites
     std::span<const std::uint8_t> is_kept;  ///< by site: what it sees is known
     bool keeps_any;
-    /// By site: how far it is asked for arcs of its own, or somewhat farther; empty: without end.
+    /// Radii by site: how far it is asked for arcs of its own, or somewhat farther; empty: without end.
     std::span<const double> reaches;
   };
-  /// Of the sites that are not kept. \throw Cancelled. O(sites k log k).
+  /// Finds those of the sites that are not kept. \throw Cancelled. O(sites k log k).
   void find(const Request& request, int threads, const JobStage& stage);
-  /// As SiteLabels::renumber.
+  /// Renumbers as SiteLabels::renumber does.
   void renumber(std::span<const Index> before);
 
   const SeenVertices& of(Index site) const { return seen_[site]; }
-  /// How far a site was asked for arcs.
+  /// The radius within which a site was asked for arcs.
   double limit(Index site) const { return limits_[site]; }
   /// Surface angle at a node that the site sees straight, the `seen`-th of them, towards the site.
   double direction_back(Index site, Index seen) const;

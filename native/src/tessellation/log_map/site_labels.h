@@ -39,13 +39,13 @@ class SiteLabels {
   Index site_count() const { return static_cast<Index>(sites_.size()); }
   /// The sites in an order in which cells one after the other use the same memory.
   const std::vector<Index>& sites_along_curve() const { return order_; }
-  /// Whether the cell is as it was before the last sites.
+  /// Tells whether the cell is as it was before the last sites.
   bool is_kept(Index site) const { return is_kept_[site] != 0; }
   std::span<const std::uint8_t> kept() const { return is_kept_; }
   bool keeps_any() const { return keeps_any_; }
   /// The nearest site; ties: the smaller.
   Index label(Index node) const { return label_[node]; }
-  /// From there, in the graph.
+  /// Distance from there, in the graph.
   double distance(Index node) const { return distance_[node]; }
   /// The nodes of a label.
   std::span<const Index> nodes(Index site) const {

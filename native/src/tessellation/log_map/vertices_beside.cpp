@@ -28,7 +28,7 @@ void VerticesBeside::place_cell(Index site) {
   placer_.place(site);
 }
 
-/// Which of those that a site sees a node is; sooner for the site that was placed last.
+/// Finds which of those that a site sees a node is; sooner for the site that was placed last.
 Index VerticesBeside::find_seen(Index site, Index node) const {
   if (site_ != site) return maps_.seen().of(site).find(node);
   const Known known = table_[node];
@@ -162,8 +162,8 @@ VertexPlace VerticesBeside::place_after_seen(Index node, Index site, Index seen)
   return place.anchor == before ? at_seen : place;
 }
 
-/// Whether the arcs from all of the site's nodes, and, where wanted, from those that it sees, end where the node was
-/// placed: then nothing there bends the surface.
+/// Tells whether the arcs from all of the site's nodes, and, where wanted, from those that it sees, end where the node
+/// was placed: then nothing there bends the surface.
 bool VerticesBeside::lies_flat(Index node, Index site, const VertexPlace& place, bool with_seen) const {
   int count = 0;
   for (std::int64_t arc = arcs_.first(node); arc < arcs_.first(node + 1); ++arc) {

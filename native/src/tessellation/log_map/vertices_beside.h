@@ -15,17 +15,17 @@ class VerticesBeside {
  public:
   /// The maps must outlive it.
   explicit VerticesBeside(CellLogMaps& maps);
-  /// Before other sites are labeled.
+  /// Forgets all; to be called before other sites are labeled.
   void forget();
-  /// As CellPlacer::place. What is asked for this site next is found faster.
+  /// Places as CellPlacer::place does. What is asked for this site next is found faster.
   void place_cell(Index site);
   void fetch_cell(Index site) const { placer_.fetch(site); }
-  /// From a site that has been placed, near whose cell the node lies. Depends on the node and the site alone: faces
-  /// that share an edge get the same bits. False where the node is neither seen straight from the site nor next to a
-  /// node of its label.
+  /// Places from a site that has been placed, near whose cell the node lies. Depends on the node and the site alone:
+  /// faces that share an edge get the same bits. False where the node is neither seen straight from the site nor next
+  /// to a node of its label.
   bool find(Index site, Index node, SiteVector& vector);
 
-  /// For tables of what is known of a site and a node: those next to each other fall into different slots.
+  /// A hash for tables of what is known of a site and a node: those next to each other fall into different slots.
   static std::size_t slot_of(Index site, Index node) {
     return static_cast<std::size_t>(node) + 97 * static_cast<std::size_t>(site);
   }
@@ -38,7 +38,7 @@ class VerticesBeside {
     bool found = false;
     VertexPlace place;
   };
-  /// What is known of the nodes about the last site: which of those that it sees they are or, below 0, ~ of the answer.
+  /// Answers known of the nodes about the last site: which of those that it sees they are or, below 0, ~ of the answer.
   struct Known {
     std::uint32_t round = 0;
     Index at = 0;

@@ -30,7 +30,7 @@ class KnownCells {
   void match(const SurfacePoints& sites);
   /// \throw Cancelled, DeviceError, and then all cells are found anew the next time.
   const std::vector<CellMoments>& find(const SurfacePoints& sites, const JobStage& stage);
-  /// As CellCandidates::look_farther.
+  /// Passes on to CellCandidates::look_farther.
   void look_farther(const JobStage& stage);
 
  private:

@@ -32,9 +32,9 @@ class Relaxation {
   bool is_free(Index site) const { return !is_fixed_[site] && !held_.is_held(site); }
   /// Keeps these sites, (n,), where they are from now on, as fixed ones, until others are named.
   void rest(std::vector<std::uint8_t> sites);
-  /// Of the state's sites: found again where others were looked at last. \throw Cancelled.
+  /// Cells of the state's sites: found again where others were looked at last. \throw Cancelled.
   const CellCandidates& cells(const JobStage& stage);
-  /// Whether the last step that was refused would have moved no site by least_move.
+  /// Tells whether the last step that was refused would have moved no site by least_move.
   bool is_at_rest() const { return is_at_rest_; }
   /// Takes a step that lowers the energy; false when there is none. \throw Cancelled, the state as it was.
   bool advance(const JobStage& stage);
