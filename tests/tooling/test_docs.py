@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
 
 import saddleback
 from tests.tooling.signatures import PAGES, with_signatures
+from tests.tooling.tracked import tracked
 
 ROOT = Path(__file__).resolve().parents[2]
-TRACKED = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n")
+TRACKED = tracked()
 DOCS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BIBLIOGRAPHY = (ROOT / "docs/bibliography.bib").read_text(encoding="utf-8")
 CITATION = re.compile(r"\[([a-z]+(?:18|19|20)\d\d)\](?!\()")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import re
-import subprocess
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +12,7 @@ import pytest
 import tomllib
 
 import saddleback
+from tests.tooling.tracked import tracked
 
 ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addon/saddleback_blender"
@@ -220,15 +220,13 @@ CROWDED = {"docs/images"}  # on its way down
 
 
 def test_no_folder_grows_beyond_what_one_can_overlook():
-    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
-    counts = Counter(str(Path(name).parent) for name in tracked)
+    counts = Counter(str(Path(name).parent) for name in tracked())
     crowded = {folder: count for folder, count in counts.items() if count > MOST_FILES and folder not in CROWDED}
     assert not crowded
 
 
 def test_no_binaries_are_tracked():
-    tracked = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    for name in filter(None, tracked.split("\0")):
+    for name in tracked():
         path = ROOT / name
         if path.suffix not in {".png", ".jpg", ".gif", ".svg", ".blend", ".npz"} and path.is_file():
             assert b"\0" not in path.read_bytes(), f"{name} is a binary"

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.tooling.tracked import git
+
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.executable).parent
 CACHE = ROOT / ".cache/clang-tidy"
@@ -75,10 +77,9 @@ def tidy(file: str) -> str:
 def changed() -> set[Path]:
     """Return what differs from the commit before the last one; with no such commit, what differs from the last."""
     for commit in ("HEAD~1", "HEAD"):
-        command = ["git", "diff", "--name-only", commit]
-        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-        if done.returncode == 0:
-            return {ROOT / name for name in done.stdout.split()}
+        names = git("diff", "--name-only", commit)
+        if names is not None:
+            return {ROOT / name for name in names.split()}
     return set()
 
 
