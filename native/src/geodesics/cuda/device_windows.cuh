@@ -259,7 +259,7 @@ class WarpWaves {
     }
   }
 
-  /// The `taken` windows from a place on look at their apexes, lower the labels, and list their sides that are beam.
+  /// The `taken` windows from a place on look at their apexes, lower the labels, and list their sides that cones cover.
   /// Lanes without a window do what the last does, and write nothing.
   SADDLEBACK_STEP void sight(int first, int taken) {
     const bool active = lane_ < taken;

@@ -17,7 +17,7 @@
 //    through a vertex v, each with its own rounding. Where they overlap, both go on. Where they leave a gap, or where
 //    one narrower than k_narrow is dropped, the gap's rays lie within k_narrow of a ray that is kept: a vertex in it is
 //    an apex of faces that this ray crosses, and takes the detour; an edge in it has ends closer than k_narrow times
-//    the distance, and what is beam through it alone lies in the gap as well. The detour over a ray at the angle a is
+//    the distance, and what is seen through it alone lies in the gap as well. The detour over a ray at the angle a is
 //    longer by a^2 / 2 of the way, or by no more than the gap where the vertex is next to v.
 //  - "One angle, one split" holds for rays that differ; two that are one but for rounding hide nothing.
 //  - What is left is looked for (see cover_again).

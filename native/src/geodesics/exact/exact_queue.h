@@ -5,7 +5,7 @@
 
 namespace saddleback {
 
-/// Part [b0, b1] of a half-edge, about to enter its face, beam from the image of a root at (sx, sy), sy <= 0, in the
+/// Part [b0, b1] of a half-edge, about to enter its face, covered from the image of a root at (sx, sy), sy <= 0, in the
 /// frame of the half-edge (see EdgeFrame). In the queue a window on half-edge ~v stands for vertex v itself.
 struct Window {
   double sx, sy, b0, b1;

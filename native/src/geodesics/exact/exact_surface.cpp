@@ -17,7 +17,7 @@ namespace {
 // gap that it leaves between the windows on its two sides grows with distance.
 constexpr double k_flat_tolerance = 1e-12;
 // Barycentric. Rays from nearer to a vertex, which pass it on both sides, are as far as this from telling all their
-// directions; what is beam from the vertex instead is no more than twice this too far.
+// directions; what is seen from the vertex instead is no more than twice this too far.
 constexpr double k_beside = 1e-8;
 constexpr Index k_check = 1 << 12;  ///< vertices or half-edges: less than a millisecond
 

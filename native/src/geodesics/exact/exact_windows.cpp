@@ -6,22 +6,26 @@
 namespace saddleback {
 namespace {
 
-constexpr double k_slack = 1e-11;  // as in the propagation
+constexpr double k_slack = 1e-11;    // as in the propagation
+constexpr double k_choosing = 0.75;  // the share of the time until windows are copied to their places
 
 double root_distance(const ExactSurface& surface, const ExactPropagation& propagation, Index root) {
   return root < surface.vertex_count() ? propagation.distance(root) : 0.0;
 }
 
-}  // namespace
-
+/// Tells whether some corner of its edge offers all of a window a shorter way, or its root a longer one than it has by
+/// now.
 bool is_needless(const ExactSurface& surface, const ExactPropagation& propagation, const Window& w) {
-  if (w.sigma > root_distance(surface, propagation, w.root)) return true;  // found nearer later on, and beam again
+  if (w.sigma > root_distance(surface, propagation, w.root))
+    return true;  // the root was found nearer later on, and sent windows again
   const EdgeFrame& frame = surface.frame(w.halfedge);
   const double at_from = propagation.distance(frame.from) * (1 + k_slack) - w.sigma;
   const double at_to = propagation.distance(frame.to) * (1 + k_slack) - w.sigma;
   return at_from + w.b1 < std::hypot(w.sx - w.b1, w.sy) ||
          at_to + (frame.length - w.b0) < std::hypot(w.sx - w.b0, w.sy);
 }
+
+}  // namespace
 
 KeptWindows::KeptWindows(const ExactSurface& surface, const ExactPropagation& propagation, const JobStage& stage)
     : surface_(surface), propagation_(propagation), begins_(surface.halfedge_count() + 1, 0) {

@@ -15,13 +15,6 @@ struct KeptWindow {
   double sx, sy, b0, b1;
 };
 
-inline constexpr std::size_t k_bytes_of_kept_window = sizeof(KeptWindow) + sizeof(Index);
-inline constexpr double k_choosing = 0.75;  ///< share of the time of sorting: then windows are copied to their places
-
-/// Tells whether some corner of its edge offers all of a window a shorter way, or its root a longer one than it has by
-/// now.
-bool is_needless(const ExactSurface& surface, const ExactPropagation& propagation, const Window& window);
-
 /// A straight line from a root through a half-edge to a point of the face beyond it.
 struct SightLine {
   double distance = std::numeric_limits<double>::infinity();  ///< of the point, the root's included

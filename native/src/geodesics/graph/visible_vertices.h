@@ -37,7 +37,8 @@ class VisibleVertices {
   void from_point(const SurfacePoint& source, Index k, std::vector<DirectArc>& arcs, const JobStage& stage);
 
  private:
-  /// Part [b0, b1] of half-edge h, about to enter h's face, beam by the source at `source` (y <= 0) in the frame of h.
+  /// Part [b0, b1] of half-edge h, about to enter h's face, covered by the source at `source` (y <= 0) in the frame of
+  /// h.
   struct Window {
     Vec2 source;
     double b0, b1;

@@ -102,7 +102,6 @@ class KeptPages {
  public:
   KeptPages() : most_(find_most()), pages_(std::make_unique<char*[]>(most_)) {}
 
-  std::size_t most() const { return most_ * k_huge; }
   /// Puts pages in the place of the first ones of fresh memory.
   void lay(void* memory, std::size_t size) {
     const std::lock_guard lock(mutex_);
