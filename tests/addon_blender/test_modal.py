@@ -119,6 +119,23 @@ def test_a_run_ends_with_the_same_result_as_a_script(item):
     np.testing.assert_array_equal(attribute(item, "saddleback_cell"), found)
 
 
+def test_the_panel_measures_from_the_cursor_and_shows_it(item):
+    """The first press on a mesh just added, all of which is selected."""
+    select(item, range(len(item.data.vertices)))
+    settings = item.saddleback.distance
+    assert (settings.sources, settings.make_isolines, settings.make_preview) == ("CURSOR", True, True)
+    operator, context = press(SADDLEBACK_OT_distance, DistanceSettings(), k=10)
+    operator.invoke(context, None)
+    assert run_to_end(operator, context) == {"FINISHED"}
+    assert attribute(item, "saddleback_distance")[-1] == pytest.approx(np.sqrt(2), rel=1e-3)
+    assert item.active_material is not None and "Grid Isolines" in bpy.data.objects
+    select(item, [len(item.data.vertices) - 1])
+    bpy.ops.saddleback.distance()  # a call that names nothing repeats it
+    assert attribute(item, "saddleback_distance")[0] == 0.0
+    bpy.ops.saddleback.distance(sources="SELECTED")
+    assert attribute(item, "saddleback_distance")[0] > 1.0
+
+
 def test_progress_rises_and_is_told(item):
     operator, context = pressed_tessellate(count=60, iterations=40, k=40)
     operator.invoke(context, None)

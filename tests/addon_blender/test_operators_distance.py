@@ -276,3 +276,11 @@ def test_curves_that_are_none():
 def test_too_many_isolines():
     select(grid(n=4), [0])
     refuse("'Grid': isolines every 1e-06 up to", make_isolines=True, isolines_by="SPACING", isoline_spacing=1e-6, k=8)
+
+
+def test_all_vertices_are_no_source():
+    item = grid(n=4)
+    select(item, range(25))
+    refuse("'Grid': all its 25 vertices are selected, so all distances are 0", "choose the 3D Cursor")
+    item.vertex_groups.new(name="All").add(range(25), 1.0, "REPLACE")
+    refuse("'Grid': all its 25 vertices are in the group", sources="VERTEX_GROUP")

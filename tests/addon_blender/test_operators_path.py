@@ -202,3 +202,36 @@ def test_what_cannot_be_done_is_refused_and_nothing_changes():
     refuse("no vertex has a weight above 0.5 in vertex group 'Bare'", points="VERTEX_GROUP")
     refuse("no empty is parented to 'Two'", points="EMPTIES")
     refuse("no collection 'Gone'", points="EMPTIES", points_collection="Gone")
+
+
+def test_a_selection_by_mistake_is_refused_at_once():
+    item = grid(n=30)
+    everything = "'Grid': all its 961 vertices are selected"
+    select(item, range(961))
+    refuse(everything, "choose the 3D Cursor")
+    refuse(everything, from_cursor=True)
+    select(item, range(600))
+    refuse("'Grid': a path through 600 points is more than the 500 that are allowed")
+    item.vertex_groups.new(name="All").add(range(961), 1.0, "REPLACE")
+    refuse("all its 961 vertices are in the group", points="VERTEX_GROUP")
+
+
+def test_from_the_cursor_to_the_farthest_point():
+    item = grid(n=10)
+    bpy.context.scene.cursor.location = (0.9, 1.2, 0.3)
+    for quality in ("NORMAL", "EXACT"):
+        assert bpy.ops.saddleback.path(points="CURSOR", quality=quality) == {"FINISHED"}
+        ((points, closed),) = splines(find_output(item, "paths"))
+        assert not closed
+        np.testing.assert_allclose(points[[0, -1]], [[0.9, 1.0, 0.0], [0.0, 0.0, 0.0]], atol=1e-6)
+        assert length(points) == pytest.approx(np.hypot(0.9, 1.0), rel=1e-3)
+
+
+def test_the_panel_begins_at_the_cursor_and_scripts_with_what_is_selected():
+    item = grid(n=10)
+    assert item.saddleback.path.points == "CURSOR"
+    select(item, [0, 10])
+    bpy.ops.saddleback.path()
+    ((points, _),) = splines(find_output(item, "paths"))
+    np.testing.assert_allclose(points[[0, -1]], [[0, 0, 0], [1, 0, 0]], atol=1e-6)
+    assert item.saddleback.path.points == "SELECTED"  # the panel shows what was run, and repeats it

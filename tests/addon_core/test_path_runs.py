@@ -147,3 +147,9 @@ def test_cancelled_on_the_way():
 
     with pytest.raises(native.load().Cancelled):
         path_runs.paths(PathRequest(shapes.grid(10), PathSettings(), PLACES), progress, Cache(2**30))
+
+
+def test_more_points_than_memory_has_room_for_are_refused(monkeypatch):
+    monkeypatch.setattr(path_runs, "MOST_LINE_POINTS", 20)
+    with pytest.raises(BadInputError, match="'Shape': the paths would have more than 20 points; choose fewer places"):
+        paths(shapes.grid(15), PLACES)

@@ -20,6 +20,8 @@ from .surfaces.normals import normals_at
 from .surfaces.surface_places import compact_points, surface_points
 
 MOST_PAIRS = 20_000  # more lines than that hide what they should show
+MOST_LINE_POINTS = 1_000_000  # of all lines: they are about half a gigabyte, here and in Blender
+MOST_POINTS = 500  # of a chain: more are no stations on a way but a selection by mistake, and take minutes
 
 
 def paths(request: PathRequest, progress: Progress, cache: Cache | None = None) -> PathsResult:
@@ -32,8 +34,11 @@ def paths(request: PathRequest, progress: Progress, cache: Cache | None = None) 
     chosen = compact_points(surface, request.points, "point")
     mesh = mesh_of_surface(surface, progress, cache)
     points = surface_points(mesh, chosen)
-    order = _different(mesh, points, settings.connect == "LOOP")
-    _check(surface, mesh, points, order, settings.connect)
+    is_to_farthest = settings.points == "CURSOR"
+    connect = "CHAIN" if is_to_farthest else settings.connect
+    order = _different(mesh, points, connect == "LOOP")
+    if not is_to_farthest:
+        _check(surface, mesh, points, order, connect)
     choice = GraphChoice(settings.quality, settings.k)
     ways: _Ways
     if choice.is_exact:
@@ -43,13 +48,16 @@ def paths(request: PathRequest, progress: Progress, cache: Cache | None = None) 
         ways = _GraphWays(graph, settings.shorten)
 
     def solve() -> PathsResult:
-        legs = list(_legs(ways, points, order, settings.connect, progress))
-        if settings.connect == "PAIRS":
+        if is_to_farthest:
+            return _result(mesh, [_to_farthest(ways, mesh, points, progress)], False)
+        legs = list(_bounded(surface, _legs(ways, points, order, connect, progress)))
+        if connect == "PAIRS":
             return _result(mesh, legs, False)
-        closed = settings.connect == "LOOP" and len(order) > 2
+        closed = connect == "LOOP" and len(order) > 2
         return _result(mesh, [_joined(legs, closed)], closed)
 
-    key = ("paths", choice.name(surface), digest(chosen, settings.connect, settings.shorten and not choice.is_exact))
+    how = connect, is_to_farthest, settings.shorten and not choice.is_exact
+    key = ("paths", choice.name(surface), digest(chosen, *how))
     result = cache.get(key, solve, lambda result: result.nbytes)
     progress.check()
     return result
@@ -73,6 +81,9 @@ class _Ways(Protocol):
     def paths(self, source: Any, targets: Any, job: Any) -> list[Any]:
         """One path of the library's from the source to each of the targets."""
 
+    def distances(self, source: Any, job: Any) -> Reals:
+        """Distance (V,) of the mesh's vertices, inf where no path leads."""
+
 
 class _GraphWays:
     """Finds ways over the arcs of a distance graph, pulled straight where that is asked for."""
@@ -85,6 +96,10 @@ class _GraphWays:
             return [self._graph.path(source[0], targets[0], shorten=self._shorten, job=job)]
         return list(self._graph.paths(source, targets, shorten=self._shorten, job=job))
 
+    def distances(self, source: Any, job: Any) -> Reals:
+        values: Reals = self._graph.distances(source, job=job)
+        return values
+
 
 class _ExactWays:
     """Back through the windows of an exact field, a new one for each source."""
@@ -94,6 +109,21 @@ class _ExactWays:
 
     def paths(self, source: Any, targets: Any, job: Any) -> list[Any]:
         return list(native.load().ExactField(self._mesh, source, job=job).paths(targets))
+
+    def distances(self, source: Any, job: Any) -> Reals:
+        values: Reals = native.load().exact_distances(self._mesh, source, job=job)
+        return values
+
+
+def _to_farthest(ways: _Ways, mesh: Any, source: Any, progress: Progress) -> _Line:
+    """The path from a point to the vertex that is farthest from it."""
+    with progress.stage(0.8, "looking for the farthest point") as job:
+        distances = ways.distances(source, job)
+    farthest = np.argmax(np.where(np.isfinite(distances), distances, -1.0))
+    face, corner = np.unravel_index(np.argmax(mesh.triangles == farthest), mesh.triangles.shape)
+    target = native.load().SurfacePoints(np.array([face], np.int32), np.eye(3)[[corner]])
+    with progress.stage(0.98, "following the shortest paths") as job:
+        return _Line.of(ways.paths(source, target, job)[0])
 
 
 def _legs(ways: _Ways, points: Any, order: NDArray[np.int64], connect: str, progress: Progress) -> Iterator[_Line]:
@@ -108,6 +138,19 @@ def _legs(ways: _Ways, points: Any, order: NDArray[np.int64], connect: str, prog
         with progress.stage(_share(begin, number + 1, len(steps)), "following the shortest paths") as job:
             found = ways.paths(_take(points, source), _take(points, targets), job)
         yield from (_Line.of(path) for path in found)
+
+
+def _bounded(surface: Surface, legs: Iterator[_Line]) -> Iterator[_Line]:
+    """The paths as long as there is room for them."""
+    count = 0
+    for leg in legs:
+        count += len(leg.points)
+        if count > MOST_LINE_POINTS:
+            raise BadInputError(
+                f"'{surface.name}': the paths would have more than {MOST_LINE_POINTS:,} points; choose fewer places to "
+                "connect, or connect them as a chain"
+            )
+        yield leg
 
 
 def _take(points: Any, chosen: NDArray[np.int64]) -> Any:
@@ -162,6 +205,11 @@ def _check(surface: Surface, mesh: Any, points: Any, order: NDArray[np.int64], c
         raise BadInputError(
             f"'{surface.name}': a path needs two points at different places, and there is "
             f"{'only one' if len(points) == 1 else 'one place only'}; choose another one, too"
+        )
+    if connect != "PAIRS" and count > MOST_POINTS:
+        raise BadInputError(
+            f"'{surface.name}': a path through {count:,} points is more than the {MOST_POINTS} that are allowed; "
+            "choose fewer: the ends, and where it shall turn"
         )
     pairs = count * (count - 1) // 2
     if connect == "PAIRS" and pairs > MOST_PAIRS:

@@ -97,7 +97,7 @@ class DistanceSettings:
 class PathSettings:
     """All properties of `saddleback.path`; lengths are world units."""
 
-    points: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES
+    points: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES, CURSOR
     points_group: str = ""
     points_collection: str = ""
     from_cursor: bool = False  # the 3D cursor is a point, too: the first

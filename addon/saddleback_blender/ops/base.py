@@ -140,7 +140,7 @@ class SurfaceOperator(PolledOperator):
     ) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
         self._began, self._is_by_hand = perf_counter(), is_by_hand
         source = usable_source(context)
-        self._called = fill_operator(self, source, self.settings_name)
+        self._called = fill_operator(self, source, self.settings_name, is_by_hand)
         native.load()
         return source, self.gather(context, source)
 

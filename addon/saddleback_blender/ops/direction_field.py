@@ -68,7 +68,7 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
             write_streamlines(context, source, result, settings.streamline_radius)
         else:
             remove_output(source, STREAMLINES_ROLE)
-        keep_settings(settings, source.saddleback.direction_field)
+        keep_settings(settings, "direction_field", source)
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {KINDS[result.symmetry]}, {_told(result)}"

@@ -73,7 +73,7 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
             show_preview(surface, settings.distance_attribute, farthest, spacing)
         else:
             hide_preview(surface)
-        keep_settings(settings, source.saddleback.distance)
+        keep_settings(settings, "distance", source)
         if warning:
             self.report({"WARNING"}, warning)
         lines = "" if result.isolines is None else f", {_count(len(set(result.isolines.level)), 'isoline')}"

@@ -90,7 +90,7 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
             write_cut(context, source, result, self._templates, settings)
         else:
             remove_output(source, CUT_ROLE)
-        keep_settings(settings, source.saddleback.distribute)
+        keep_settings(settings, "distribute", source)
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {result.text}"

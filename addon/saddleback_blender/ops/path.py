@@ -49,7 +49,7 @@ class SADDLEBACK_OT_path(SurfaceOperator, bpy.types.Operator):
         """Writes the result into Blender."""
         settings = settings_of(self, PathSettings)
         write_paths(context, source, result, settings.path_radius, settings.lift)
-        keep_settings(settings, source.saddleback.path)
+        keep_settings(settings, "path", source)
         return f"'{source.name}': {_told(result)}"
 
 

@@ -44,7 +44,7 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: RepairResult) -> str:
         """Changes the mesh in place, or nothing where nothing is wrong."""
-        keep_settings(settings_of(self, RepairSettings), source.saddleback.repair)
+        keep_settings(settings_of(self, RepairSettings), "repair", source)
         jobs.state.needs_repair = ""
         warning = shared_mesh_warning(source)
         if not result.changes or not _apply(source, result):

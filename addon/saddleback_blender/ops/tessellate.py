@@ -82,7 +82,7 @@ class CellsOperator(SurfaceOperator):
                 write(context, source, result, settings)
             else:
                 remove_output(source, role)
-        keep_settings(settings, source.saddleback.tessellate)
+        keep_settings(settings, "tessellate", source)
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(source)}{_added(result)}"

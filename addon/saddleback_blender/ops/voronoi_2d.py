@@ -75,7 +75,7 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
             write_sweep(context, source, result.sweep, settings)
         else:
             remove_sweep(source)
-        keep_settings(settings, source.saddleback.voronoi_2d)
+        keep_settings(settings, "voronoi_2d", source)
         return f"'{source.name}': {_told(result)}{_lost(source)}"
 
 

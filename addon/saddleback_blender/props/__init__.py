@@ -25,9 +25,9 @@ from ..core.settings import (
 )
 from . import overrides
 from .direction_field import DIRECTION_FIELD
-from .distance import DISTANCE
+from .distance import DISTANCE, DISTANCE_BEGIN
 from .distribute import DISTRIBUTE
-from .path import PATH
+from .path import PATH, PATH_BEGIN
 from .repair import REPAIR
 from .tessellate import TESSELLATE
 from .voronoi_2d import VORONOI_2D
@@ -66,10 +66,13 @@ PROPERTIES = {
     "distribute": DISTRIBUTE,
     "repair": REPAIR,
 }
+# What the panel begins with where that is better than what a script gets that names nothing: its defaults never change.
+BEGIN: dict[str, dict[str, Any]] = {"distance": DISTANCE_BEGIN, "path": PATH_BEGIN}
 
 
-def _kept(properties: dict[str, Any]) -> dict[str, Any]:
+def _kept(settings_name: str) -> dict[str, Any]:
     """Makes the same properties for an object to keep: named objects, collections and images become pointers."""
+    begin = BEGIN.get(settings_name, {})
     pointers = (
         dict.fromkeys(OBJECT_NAMES, bpy.types.Object)
         | dict.fromkeys(COLLECTION_NAMES, bpy.types.Collection)
@@ -78,11 +81,13 @@ def _kept(properties: dict[str, Any]) -> dict[str, Any]:
     kept = {
         CALL: StringProperty(name="From a Call", description="Values that a script's call left", options={"HIDDEN"})
     }
-    for name, prop in properties.items():
+    for name, prop in PROPERTIES[settings_name].items():
         if name in pointers:
             kept[name] = PointerProperty(
                 type=pointers[name], name=prop.keywords["name"], description=prop.keywords["description"]
             )
+        elif name in begin:
+            kept[name] = prop.function(**(prop.keywords | {"default": begin[name]}))
         else:
             kept[name] = prop
     return kept
@@ -91,43 +96,43 @@ def _kept(properties: dict[str, Any]) -> dict[str, Any]:
 class SaddlebackTessellateProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.tessellate`."""
 
-    __annotations__ = _kept(TESSELLATE)
+    __annotations__ = _kept("tessellate")
 
 
 class SaddlebackDistanceProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.distance`."""
 
-    __annotations__ = _kept(DISTANCE)
+    __annotations__ = _kept("distance")
 
 
 class SaddlebackPathProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.path`."""
 
-    __annotations__ = _kept(PATH)
+    __annotations__ = _kept("path")
 
 
 class SaddlebackVoronoi2dProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.voronoi_2d`."""
 
-    __annotations__ = _kept(VORONOI_2D)
+    __annotations__ = _kept("voronoi_2d")
 
 
 class SaddlebackDirectionFieldProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.direction_field`."""
 
-    __annotations__ = _kept(DIRECTION_FIELD)
+    __annotations__ = _kept("direction_field")
 
 
 class SaddlebackDistributeProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.distribute`."""
 
-    __annotations__ = _kept(DISTRIBUTE)
+    __annotations__ = _kept("distribute")
 
 
 class SaddlebackRepairProps(bpy.types.PropertyGroup):
     """Settings of `saddleback.repair`."""
 
-    __annotations__ = _kept(REPAIR)
+    __annotations__ = _kept("repair")
 
 
 class SaddlebackObjectProps(bpy.types.PropertyGroup):
@@ -156,13 +161,20 @@ CLASSES = (
 )
 
 
-def fill_operator(operator: bpy.types.Operator, source: bpy.types.Object, settings_name: str) -> tuple[str, ...]:
+def fill_operator(
+    operator: bpy.types.Operator, source: bpy.types.Object, settings_name: str, is_by_hand: bool
+) -> tuple[str, ...]:
     """Gives the operator's properties that the caller did not set the object's values; returns those that he did set.
 
     A caller who sets none asks for what was last run. One who sets some means them, and the panel's values for the
-    others, but never what an earlier call set and nobody chose since.
+    others, but never what an earlier call set and nobody chose since. What nobody ever set is as the panel shows it
+    where a person asks, and as it always was where a script does.
     """
     called = tuple(name for name in PROPERTIES[settings_name] if operator.properties.is_property_set(name))
+    if is_by_hand:
+        for name, value in BEGIN.get(settings_name, {}).items():
+            if name not in called:
+                setattr(operator, name, value)
     group = _existing_group(source, settings_name)
     if group is None:
         return called
@@ -188,12 +200,14 @@ def note_call(source: bpy.types.Object, settings_name: str, called: tuple[str, .
         setattr(group, CALL, text)
 
 
-def keep_settings(settings: Settings, group: bpy.types.PropertyGroup) -> None:
-    """Writes the settings of a run to the object, so that tomorrow's run is the same."""
+def keep_settings(settings: Settings, settings_name: str, source: bpy.types.Object) -> None:
+    """Writes the settings of a run to the object, so that tomorrow's run is the same, whoever asks for it."""
+    group, begin = getattr(source.saddleback, settings_name), BEGIN.get(settings_name, {})
     for field in fields(settings):
         # Default values stay unset, so that an object carries no more than what was chosen for it.
         value = getattr(settings, field.name)
-        if _plain(group, field.name) != value:
+        is_open = field.name in begin and not group.is_property_set(field.name)
+        if is_open or _plain(group, field.name) != value:
             rollback.remember_setting(group, field.name)
             _set_plain(group, field.name, value)
 

@@ -53,3 +53,4 @@ DISTANCE: dict[str, Any] = {
     "preview_lines": switch("Lines", "Show lines of equal distance in the preview, too", True),
     "distance_attribute": name_of("Attribute", "Where distances are written", "saddleback_distance"),
 }
+DISTANCE_BEGIN: dict[str, Any] = {"sources": "CURSOR", "make_isolines": True, "make_preview": True}

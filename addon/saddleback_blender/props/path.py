@@ -7,7 +7,10 @@ from typing import Any
 from .distance import DISTANCE_SOURCES
 from .kinds import EXACT_QUALITY, QUALITIES, choice, detail, length, name_of, on_disk, quality, switch, use_modifiers
 
-PATH_POINTS = DISTANCE_SOURCES[:3]
+PATH_POINTS = (
+    *DISTANCE_SOURCES[:3],
+    ("CURSOR", "3D Cursor", "From the point nearest to the 3D cursor to the one that is farthest from it"),
+)
 PATH_CONNECTIONS = (
     ("CHAIN", "Chain", "From each point to the next: in the order of selection where it is known, empties by name"),
     ("LOOP", "Closed Chain", "From each point to the next, and from the last back to the first"),
@@ -28,3 +31,4 @@ PATH: dict[str, Any] = {
     "path_radius": length("Radius", "Half the thickness of the paths", 0.01),
     "lift": length("Lift", "How far the paths run above the surface", 0.0),
 }
+PATH_BEGIN: dict[str, Any] = {"points": "CURSOR"}

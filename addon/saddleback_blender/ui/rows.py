@@ -288,8 +288,9 @@ def draw_path_points(layout: bpy.types.UILayout, settings: Any, item: bpy.types.
         layout.prop_search(settings, "points_group", item, "vertex_groups", text="Group", icon="GROUP_VERTEX")
     elif settings.points == "EMPTIES":
         draw_collection(layout, settings, "points_collection")
-    layout.prop(settings, "from_cursor")
-    layout.prop(settings, "connect")
+    if settings.points != "CURSOR":
+        layout.prop(settings, "from_cursor")
+        layout.prop(settings, "connect")
 
 
 def draw_collection(layout: bpy.types.UILayout, settings: Any, name: str) -> None:

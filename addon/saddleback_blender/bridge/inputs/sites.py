@@ -36,14 +36,18 @@ def read_sources(
 ) -> Points | tuple[Polyline, ...]:
     """Returns where distances are measured from."""
     if settings.sources == "VERTEX_GROUP":
-        return group_vertices(source, mesh, settings.sources_group, "choose another source")
+        vertices = group_vertices(source, mesh, settings.sources_group, "choose another source")
+        return _some(source, mesh, vertices, "in the group, so all distances are 0; measure from fewer")
     if settings.sources == "EMPTIES":
         return empty_points(context, source, settings.sources_collection)
     if settings.sources == "CURVES":
         return read_curves(source, settings.sources_object, settings.sources_collection)
     if settings.sources == "CURSOR":
         return cursor_point(context)
-    return selected_vertices(source, mesh)
+    vertices = selected_vertices(source, mesh)
+    return _some(
+        source, mesh, vertices, "selected, so all distances are 0; select fewer in Edit Mode, or choose the 3D Cursor"
+    )
 
 
 def read_path_points(
@@ -51,12 +55,19 @@ def read_path_points(
 ) -> Points:
     """Returns what paths run through, in order."""
     points: Points
+    if settings.points == "CURSOR":
+        return cursor_point(context)
     if settings.points == "VERTEX_GROUP":
         points = group_vertices(source, mesh, settings.points_group, "choose other points")
+        points = _some(source, mesh, points, "in the group, and a path leads from point to point; choose fewer")
     elif settings.points == "EMPTIES":
         points = empty_points(context, source, settings.points_collection)
     else:
         points = selected_vertices(source, mesh)
+        points = _some(
+            source, mesh, points,
+            "selected, and a path leads from point to point; select fewer in Edit Mode, or choose the 3D Cursor",
+        )  # fmt: skip
         if len(points) > 2 and settings.connect != "PAIRS" and not settings.use_modifiers:
             points = compat.in_order_of_selection(mesh, points)
     if not settings.from_cursor:
@@ -64,6 +75,13 @@ def read_path_points(
     if points.ndim == 1:
         points = to_world(source, compat.read_positions(mesh)[points])
     return np.concatenate([cursor_point(context), points])
+
+
+def _some(source: bpy.types.Object, mesh: bpy.types.Mesh, vertices: NDArray[np.int32], what: str) -> NDArray[np.int32]:
+    """The vertices, which must not be all there are: those of a mesh just added or imported are all selected."""
+    if len(vertices) == len(mesh.vertices):
+        raise BadInputError(f"'{source.name}': all its {len(vertices):,} vertices are {what}")
+    return vertices
 
 
 def group_vertices(source: bpy.types.Object, mesh: bpy.types.Mesh, name: str, otherwise: str) -> NDArray[np.int32]:
