@@ -259,9 +259,9 @@ def test_only_what_changed_is_computed():
     assert builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1}
     bpy.ops.saddleback.tessellate(**QUICK, make_cells=True)
     bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, gap=0.01)
-    for inset in (0.01, 0.02):
-        bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, gap=0.01, inset=inset, thickness=0.1)
-    pieces = {"split": 1, "cell pieces": 2}
+    for thickness in (0.1, 0.2):
+        bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, gap=0.01, inset=0.01, thickness=thickness)
+    pieces = {"split": 1, "cell pieces": 3}
     assert builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1, **pieces}
     bpy.ops.saddleback.tessellate(**{**QUICK, "count": 20}, make_cells=False)
     assert builds == {"mesh": 1, "graph": 1, "cells": 2, "dual": 2, **pieces}

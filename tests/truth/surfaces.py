@@ -79,7 +79,15 @@ def counts_and_areas(mesh: sb.Mesh, rng: Random) -> None:
     assert chi == 2 * mesh.component_count - 2 * mesh.genus - len(mesh.boundary_loops)
 
 
-@guards("triangle_edges", "border_edges", "vertex_normals", "cell_boundary", "cell_boundary_distance")
+@guards(
+    "triangle_edges",
+    "border_edges",
+    "vertex_normals",
+    "cell_boundary",
+    "cell_boundary_distance",
+    "refine_to_cell_boundary",
+    "connected_parts",
+)
 def array_functions(mesh: sb.Mesh, rng: Random) -> None:
     """What is told of bare arrays, against plain counting."""
     counts = edge_counts(mesh.triangles)
@@ -87,6 +95,9 @@ def array_functions(mesh: sb.Mesh, rng: Random) -> None:
     assert sorted(tuple(sorted(edge)) for edge in edges.tolist()) == sorted(counts)
     border = sb.border_edges(mesh.triangles, mesh.vertex_count)[0]
     assert {tuple(sorted(edge)) for edge in border.reshape(-1, 2).tolist()} == {e for e, n in counts.items() if n == 1}
+    parts = sb.connected_parts(mesh.triangles, mesh.vertex_count)
+    known = mesh.components[mesh.triangles[:, 0]]
+    assert len(set(zip(parts.tolist(), known.tolist(), strict=True))) == len(set(known.tolist())) == parts.max() + 1
     normals = sb.vertex_normals(mesh.vertices, mesh.triangles)
     lengths = np.linalg.norm(normals, axis=1)
     assert np.isfinite(normals).all()
@@ -94,6 +105,16 @@ def array_functions(mesh: sb.Mesh, rng: Random) -> None:
     cells = rng.integers(0, 3, mesh.face_count).astype(np.int32)
     distance = sb.cell_boundary_distance(mesh.vertices, mesh.triangles, cells)
     assert (distance >= 0).all()
+    fields = np.column_stack([mesh.vertices, np.zeros(mesh.vertex_count)])
+    level = 0.5 * float(distance[np.isfinite(distance)].max(initial=1.0))
+    if level > 0:
+        refined, parts, owners = sb.refine_to_cell_boundary(fields, mesh.triangles, cells, [level], 0.2)
+        np.testing.assert_array_equal(refined[: mesh.vertex_count, 3], distance)
+        a, b, c = (refined[parts[:, i], :3] for i in range(3))
+        areas = np.bincount(owners, np.linalg.norm(np.cross(b - a, c - a), axis=1), minlength=3)
+        a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+        whole = np.bincount(cells, np.linalg.norm(np.cross(b - a, c - a), axis=1), minlength=3)
+        np.testing.assert_allclose(areas, whole, rtol=1e-6)
 
 
 @guards("sample", "SurfacePoints")

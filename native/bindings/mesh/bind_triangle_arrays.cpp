@@ -34,6 +34,12 @@ py::tuple border(const py::object& triangles, const py::object& vertex_count) {
   return py::make_tuple(to_rows<Index>(std::move(found.ends)), to_array(std::move(found.triangles)));
 }
 
+py::array parts_of(const py::object& triangles, const py::object& vertex_count) {
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const Index count = as_integer(vertex_count, "vertex_count");
+  return to_array(without_gil([&] { return connected_parts(triangles_of(indices), count); }));
+}
+
 py::tuple cut(const py::object& fields, const py::object& triangles, const py::object& column,
               const py::object& level) {
   const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(fields);
@@ -65,6 +71,24 @@ py::array boundary_distance(const py::object& vertices, const py::object& triang
   const double farthest = as_real(limit, "limit");
   return to_array(without_gil(
       [&] { return cell_boundary_distance(points_of(xyz), triangles_of(indices), owners.values, farthest); }));
+}
+
+py::tuple refine(const py::object& fields, const py::object& triangles, const py::object& cells,
+                 const py::object& levels, const py::object& tolerance) {
+  const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(fields);
+  if (!rows || rows.ndim() != 2) throw InputError("fields: wanted (V, k) floats");
+  const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const ArrayIn<Index> owners = as_indices(cells, "triangle_cell");
+  const ArrayIn<double> wanted = as_reals(levels, "levels");
+  const double most = as_real(tolerance, "tolerance");
+  const auto width = static_cast<Index>(rows.shape(1));
+  const std::span values(rows.data(), static_cast<std::size_t>(rows.size()));
+  BoundaryRefinement found = without_gil([&] {
+    return refine_to_cell_boundary(values, width, triangles_of(indices), owners.values, wanted.values, most);
+  });
+  const std::vector<py::ssize_t> shape{-1, width};
+  return py::make_tuple(to_array(std::move(found.fields)).reshape(shape), to_array(std::move(found.triangles)),
+                        to_array(std::move(found.cells)));
 }
 
 py::array crossings(const py::object& vertices, const py::object& triangles, const py::object& threads,
@@ -121,6 +145,19 @@ ends : (b, 2) int32
     From and to, in the triangle's orientation.
 triangles : (b,) int32
     The one that uses the edge, in increasing order. O(V + T).)");
+  m.def("connected_parts", &parts_of, py::arg("triangles"), py::arg("vertex_count"),
+        R"(Tell which triangles hang together.
+
+Parameters
+----------
+triangles : (T, 3) int array
+vertex_count : int
+
+Returns
+-------
+(T,) int32
+    The part of each, numbered in the order in which the triangles come upon them: those of one part lead to each other
+    over common vertices. O(V + T).)");
   m.def("cut_at_level", &cut, py::arg("fields"), py::arg("triangles"), py::arg("column"), py::arg("level"),
         R"(Cut triangles along the line where a function that is linear over each equals a level.
 
@@ -181,6 +218,37 @@ Returns
 Notes
 -----
 O(V + T) for a fixed number of rings. A vector distance transform [danielsson1980].)");
+  m.def("refine_to_cell_boundary", &refine, py::arg("fields"), py::arg("triangles"), py::arg("triangle_cell"),
+        py::arg("levels"), py::arg("tolerance"),
+        R"(Refine triangles until lines of equal distance to the boundary of the cells come out right on them.
+
+On triangles as large as the cells the distance is not linear: where all corners lie on the boundary it would be 0 all
+over. An edge is halved where the distance in its middle differs too much from the mean of both ends, and one of the
+levels is crossed.
+
+Parameters
+----------
+fields : (V, k) float array
+    All numbers of a vertex side by side, the position first; new vertices get the means of theirs. The last is filled
+    with the distance, as `cell_boundary_distance` finds it.
+triangles, triangle_cell : (T, 3), (T,) int arrays
+    Every triangle inside one cell, as `split` gives them.
+levels : (n,) float array
+    Distances from the boundary whose lines `cut_at_level` is to find.
+tolerance : float
+    By about which share of its level each may be off.
+
+Returns
+-------
+fields : (W, k) float64
+    The given vertices, then the new ones.
+triangles, triangle_cell : (U, 3), (U,) int32
+    O(V + U) for a fixed number of rings.
+
+Raises
+------
+InputError
+    A wrong number of cells, a tolerance that is not above 0.)");
   m.def("self_crossings", &crossings, py::arg("vertices"), py::arg("triangles"), py::kw_only(), py::arg("threads") = 0,
         py::arg("job") = py::none(),
         R"(Find the triangles that pass through each other.

@@ -95,6 +95,43 @@ def test_distance_is_infinite_in_a_cell_without_a_boundary() -> None:
     assert np.isinf(sb.cell_boundary_distance(vertices, triangles, cell)).all()
 
 
+@pytest.mark.parametrize("level", [0.05, 0.2, 0.4])
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_cells_of_two_triangles_are_refined_for_their_inner_lines(level: float, size: float) -> None:
+    """Nine rectangles, 4 by 1, all of whose corners lie on the boundary; what is left of them is known."""
+    vertices, triangles = synthetic_cells.grid(4, 4, 12 * size, 3 * size)
+    column, row = np.floor(vertices[triangles, :2].mean(axis=1) / [4 * size, size]).astype(np.int32).T
+    fields = np.column_stack([vertices, np.arange(16.0), np.zeros(16)])
+    refined, parts, cell = sb.refine_to_cell_boundary(fields, triangles, 3 * row + column, [level * size], 0.02)
+    np.testing.assert_array_equal(refined[:16, :4], fields[:, :4])
+    ends = refined[sb.border_edges(parts, len(refined))[0], :2] / (12 * size, 3 * size)
+    assert (np.isin(ends, [0.0, 1.0]).all(axis=1)).any(axis=1).all()  # no crack
+    np.testing.assert_allclose(refined[:, 4], sb.cell_boundary_distance(refined[:, :3], parts, cell), atol=1e-9 * size)
+    out, cut, parents, above = sb.cut_at_level(refined, parts, 4, level * size)
+    a, b, c = (out[cut[above, i], :3] / size for i in range(3))
+    left = np.bincount(cell[parents[above]], 0.5 * np.cross(b - a, c - a)[:, 2], minlength=9)
+    assert left[4] == pytest.approx((4 - 2 * level) * (1 - 2 * level), rel=0.03)
+
+
+def test_where_the_distance_is_linear_nothing_is_refined() -> None:
+    vertices, triangles = synthetic_cells.grid(9, 9)
+    cell = (vertices[triangles, 0].mean(axis=1) > 0.5).astype(np.int32)
+    fields = np.column_stack([vertices, np.zeros(81)])
+    refined, parts, owners = sb.refine_to_cell_boundary(fields, triangles, cell, [0.1, 0.3], 0.01)
+    np.testing.assert_array_equal(parts, triangles)
+    np.testing.assert_array_equal(owners, cell)
+    np.testing.assert_allclose(refined[:, 3], abs(vertices[:, 0] - 0.5), atol=1e-12)
+
+
+def test_parts_hang_together_over_common_vertices() -> None:
+    vertices, triangles = synthetic_cells.grid(4, 4)
+    alone = np.array([[0, 1, 2], [2, 3, 4]], np.int32)  # two triangles that share a corner
+    both = np.concatenate([alone + len(vertices), triangles, alone + len(vertices) + 5])
+    parts = sb.connected_parts(both, len(vertices) + 10)
+    np.testing.assert_array_equal(parts, [0, 0, *[1] * len(triangles), 2, 2])
+    assert len(sb.connected_parts(np.empty((0, 3), np.int32), 0)) == 0
+
+
 def test_what_is_wrong_is_named() -> None:
     vertices, triangles = synthetic_cells.grid(3, 3)
     bad = triangles.copy()
@@ -104,6 +141,8 @@ def test_what_is_wrong_is_named() -> None:
     with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
         sb.triangle_edges(bad, 9)
     with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
+        sb.connected_parts(bad, 9)
+    with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
         sb.vertex_normals(vertices, bad)
     with pytest.raises(sb.InputError, match="column: wanted 3 to 3, got 4"):
         sb.cut_at_level(np.column_stack([vertices, vertices[:, 0]]), triangles, 4, 0.5)
@@ -111,6 +150,15 @@ def test_what_is_wrong_is_named() -> None:
         sb.cut_at_level(vertices, triangles, 2, 0.5)
     with pytest.raises(sb.InputError, match="triangle_cell: wanted one cell for each of the 8 triangles, got 2"):
         sb.cell_boundary_distance(vertices, triangles, np.zeros(2, np.int32))
+    fields, cells = np.column_stack([vertices, np.zeros(9)]), np.zeros(8, np.int32)
+    with pytest.raises(sb.InputError, match="tolerance: wanted a share above 0, got 0"):
+        sb.refine_to_cell_boundary(fields, triangles, cells, [0.1], 0.0)
+    with pytest.raises(sb.InputError, match="fields: wanted a position and room for a distance, got 3"):
+        sb.refine_to_cell_boundary(vertices, triangles, cells, [0.1], 0.1)
+    with pytest.raises(sb.InputError, match="triangle 4 names vertex 9"):
+        sb.refine_to_cell_boundary(fields, bad, cells, [0.1], 0.1)
+    with pytest.raises(sb.InputError, match="triangle_cell: wanted one cell for each of the 8 triangles, got 2"):
+        sb.refine_to_cell_boundary(fields, triangles, cells[:2], [0.1], 0.1)
 
 
 @pytest.mark.parametrize("level", [0.1, 0.35, 0.4999, 0.5, 0.7])

@@ -81,9 +81,9 @@ def vanished_cells(item: bpy.types.Object) -> int:
 
 
 def _pieces(result: CellsResult, shape: CellShape) -> CellPieces:
-    """The cells with their gap, kept for the next run: it may change no more than inset or thickness."""
+    """The cells with their gap, kept for the next run: it may change no more than the thickness."""
     split = (result.split_vertices, result.split_triangles, result.split_cell)
-    key = ("cell pieces", digest(*split, shape.gap, shape.cuts))
+    key = ("cell pieces", digest(*split, shape.gap, shape.inset))
     return cache.shared.get(key, lambda: cell_pieces(*split, shape), lambda pieces: pieces.nbytes)
 
 

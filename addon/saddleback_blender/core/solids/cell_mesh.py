@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .boundary_distance import boundary_distance, find_boundary
+from .. import native
+from .boundary_distance import find_boundary
 from .cell_solid import raise_surface, vertex_normals
 from .level_cut import cut_at_level, open_chords
 
@@ -20,6 +21,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 POSITION, NORMAL, DISTANCE = slice(0, 3), slice(3, 6), 6
+# A level line is off by this share of its distance from the boundary at most.
+LEVEL_TOLERANCE = 0.2
+CRUMB = 0.02  # of a cell's largest piece: what the gap leaves of a ragged tip that is smaller goes, too
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ class CellMesh:
 
 @dataclass(frozen=True)
 class CellPieces:
-    """Holds what of a split mesh the gap leaves, and what its cells are raised by: all that no inset or thickness
+    """Holds what of a split mesh the gap leaves, and what its cells are raised by: all that no thickness
     changes.
 
     fields (n,7): position, normal, distance to the boundary of the cell; triangles (m,3), the cell of each (m,); the
@@ -93,7 +97,7 @@ def build_cell_mesh(vertices: Floats, triangles: Ints, triangle_cell: Ints, shap
 
 
 def cell_pieces(vertices: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> CellPieces:
-    """Drop what lies within half the gap of a boundary. Of the shape only its `gap` and whether it `cuts` matter."""
+    """Drop what lies within half the gap of a boundary. Of the shape only its `gap` and `inset` matter."""
     triangles = np.ascontiguousarray(triangles, dtype=np.int32)
     cells = np.ascontiguousarray(triangle_cell, dtype=np.int32)
     fields = np.zeros((len(vertices), 7))
@@ -103,12 +107,30 @@ def cell_pieces(vertices: Floats, triangles: Ints, triangle_cell: Ints, shape: C
     if shape.cuts and len(triangles):
         segments, _ = find_boundary(len(fields), triangles, cells)
         opened = open_chords(fields, triangles, segments)
-        fields, triangles, cells = opened.fields, opened.triangles, cells[opened.parent]
-        fields[:, DISTANCE] = boundary_distance(fields[:, POSITION], triangles, cells)
+        levels = [level for level in (shape.rim_start, shape.rim_end) if level > 0.0]
+        fields, triangles, cells = native.load().refine_to_cell_boundary(
+            opened.fields, opened.triangles, cells[opened.parent], levels, LEVEL_TOLERANCE
+        )
         if shape.gap > 0.0:
             outer = cut_at_level(fields, triangles, DISTANCE, shape.rim_start)
             fields, triangles, cells = outer.fields, outer.triangles[outer.above], cells[outer.parent[outer.above]]
+            kept = ~_is_crumb(fields[:, POSITION], triangles, cells)
+            triangles, cells = triangles[kept], cells[kept]
     return CellPieces(*drop_unused(fields, triangles), cells, present)
+
+
+def _is_crumb(positions: Floats, triangles: Ints, cells: Ints) -> NDArray[np.bool_]:
+    """Tells which triangles (m,) belong to a piece that is tiny beside the largest of its cell. O(m)."""
+    if not len(triangles):
+        return np.zeros(0, np.bool_)
+    part = native.load().connected_parts(triangles, len(positions))
+    corners = positions[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.bincount(part, np.sqrt(np.einsum("ij,ij->i", normals, normals)))
+    largest = np.zeros(int(cells.max()) + 1)
+    np.maximum.at(largest, cells, area[part])
+    crumb: NDArray[np.bool_] = area[part] < CRUMB * largest[cells]
+    return crumb
 
 
 def raise_cells(pieces: CellPieces, shape: CellShape) -> CellMesh:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import native
 from ..progress import Progress
 from ..requests import FindCrossings
 from ..results import Indices, LampShell, Reals
@@ -71,7 +72,13 @@ def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, p
         share[there] = np.maximum(THINNER * share[there], LEAST_SHARE)
         if number >= FOLDED_AFTER:
             _smooth(places, direction, triangles, there, progress)
-    return LampShell(solid, faces, _pieces(triangles, count, progress), float((share < 1.0).mean()), len(crossing))
+    return LampShell(
+        solid,
+        faces,
+        int(native.load().connected_parts(triangles, count).max()) + 1,
+        float((share < 1.0).mean()),
+        len(crossing),
+    )
 
 
 def _smooth(places: Reals, direction: Reals, triangles: Indices, there: NDArray[np.bool_], progress: Progress) -> None:
@@ -141,12 +148,6 @@ class _Neighbors:
             means[self.used, axis] = np.add.reduceat(values[:, axis][self.other], self.first) / self.times
         return means
 
-    def least(self, values: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The least (n,) of each vertex's own value and its neighbors'."""
-        least = values.copy()
-        least[self.used] = np.minimum(least[self.used], np.minimum.reduceat(values[self.other], self.first))
-        return least
-
 
 def _unit(vectors: Reals, otherwise: Reals) -> Reals:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
@@ -160,19 +161,3 @@ def _beside(triangles: Indices, vertices: NDArray[np.integer], count: int) -> ND
     chosen[vertices] = True
     chosen[triangles[chosen[triangles].any(axis=1)]] = True
     return chosen
-
-
-def _pieces(triangles: Indices, count: int, progress: Progress) -> int:
-    """Number of connected parts: the least vertex of each spreads, in ever longer jumps."""
-    neighbors = _Neighbors(triangles, count, progress)
-    label = np.arange(count)
-    while True:
-        progress.check()
-        spread = neighbors.least(label)
-        spread = np.minimum(spread, spread[spread])
-        # Who led a part so far tells it what its members have heard.
-        np.minimum.at(spread, label, spread.copy())
-        spread = spread[spread]
-        if np.array_equal(spread, label):
-            return len(np.unique(label))
-        label = spread

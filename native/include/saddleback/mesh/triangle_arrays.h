@@ -32,6 +32,10 @@ struct BorderEdges {
 /// The edges that only one triangle uses, by triangle. O(V + T) for bounded valence.
 BorderEdges border_edges(std::span<const Triangle> triangles, Index vertex_count);
 
+/// The part (T,) of each triangle, numbered in the order in which these come upon them: those of one part lead to each
+/// other over common vertices. O(V + T).
+std::vector<Index> connected_parts(std::span<const Triangle> triangles, Index vertex_count);
+
 /// Triangles refined along a level line.
 struct LevelCut {
   std::vector<double> fields;        ///< (W, k) the given vertices, then the new ones
@@ -68,6 +72,22 @@ CellBoundary cell_boundary(std::span<const Triangle> triangles, std::span<const 
 /// where the nearest segment may be nearest to no vertex on the way. \throw InputError for a wrong number of cells.
 std::vector<double> cell_boundary_distance(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                                            std::span<const Index> triangle_cell, double limit);
+
+struct BoundaryRefinement {
+  std::vector<double> fields;       ///< (W, k) the given vertices, then the new ones
+  std::vector<Triangle> triangles;  ///< (U,)
+  std::vector<Index> cells;         ///< (U,)
+};
+
+/// Halves edges until `cut_at_level` finds the lines of the `levels` of `cell_boundary_distance` to about `tolerance`
+/// times the level: on triangles as large as the cells that distance is not linear; where all corners lie on the
+/// boundary it would be 0 all over. `fields` (V, k) holds all numbers of a vertex side by side, the position first; new
+/// vertices get the means of theirs. The last is filled with the distance. An edge is halved where the distance in its
+/// middle differs by more from the mean of both ends, and the level is crossed. \throw InputError for a wrong number of
+/// cells, and a tolerance that is not above 0. O(V + U) for a fixed number of rings.
+BoundaryRefinement refine_to_cell_boundary(std::span<const double> fields, Index width,
+                                           std::span<const Triangle> triangles, std::span<const Index> triangle_cell,
+                                           std::span<const double> levels, double tolerance);
 
 /// Pairs of triangles that pass through each other, the smaller number first, in order: an edge of one goes from one
 /// side of the other to its other side. Exact for coordinates as they are; triangles that only touch, lie in one plane

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <compare>
+#include <numeric>
 
 #include "saddleback/mesh/triangle_arrays.h"
 
@@ -19,6 +20,30 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> vertices, std::span<const
     if (length > 0) normal /= length;
   }
   return normals;
+}
+
+std::vector<Index> connected_parts(std::span<const Triangle> triangles, Index vertex_count) {
+  check_corners(triangles, vertex_count);
+  std::vector<Index> parent(vertex_count);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](Index v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : triangles)
+    for (const Index v : {t[1], t[2]}) {
+      const auto [low, high] = std::minmax({root(t[0]), root(v)});
+      parent[high] = low;
+    }
+  std::vector<Index> number(vertex_count, k_none), parts;
+  parts.reserve(triangles.size());
+  Index count = 0;
+  for (const Triangle& t : triangles) {
+    Index& mine = number[root(t[0])];
+    if (mine == k_none) mine = count++;
+    parts.push_back(mine);
+  }
+  return parts;
 }
 
 BorderEdges border_edges(std::span<const Triangle> triangles, Index vertex_count) {

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
+#include <unordered_map>
 
 #include "saddleback/error.h"
 #include "saddleback/mesh/triangle_arrays.h"
@@ -93,12 +96,54 @@ class BoundarySearch {
     }
   }
 
+  struct Nearest {
+    Index segment;
+    double squared;
+  };
+
+  /// The segment nearest to a place amid some vertices of a cell, of those that they know on along the boundary.
+  Nearest nearest_amid(const Vec3& middle, std::span<const Index> around, Index cell) const {
+    Nearest best{k_none, std::numeric_limits<double>::infinity()};
+    const auto offer_one = [&](Index segment) {
+      const auto& [from, to] = boundary_.segments[segment];
+      const double found = squared_distance_to(middle, vertices_[from], vertices_[to]);
+      if (found < best.squared) best = {segment, found};
+    };
+    const auto offer_all_at = [&](Index vertex) {
+      for (Index i = first_[vertex]; i < first_[vertex + 1]; ++i)
+        if (bounds(at_[i], cell)) offer_one(at_[i]);
+    };
+    for (const Index v : around) {
+      if (nearest_[v] != k_none)
+        offer_one(nearest_[v]);
+      else if (v < static_cast<Index>(vertices_.size()))
+        offer_all_at(v);
+    }
+    for (Index before = k_none; before != best.segment;) {
+      before = best.segment;
+      for (const Index end : boundary_.segments[before]) offer_all_at(end);
+    }
+    return best;
+  }
+
+  /// Makes room for a vertex inside a cell.
+  void add_vertex(const Nearest& nearest) {
+    nearest_.push_back(nearest.segment);
+    squared_.push_back(nearest.squared);
+  }
+
+  double distance(Index vertex) const { return std::sqrt(squared_[vertex]); }
+
   std::vector<double> distances() {
     for (double& value : squared_) value = std::sqrt(value);
     return std::move(squared_);
   }
 
  private:
+  bool bounds(Index segment, Index cell) const {
+    return boundary_.cells[segment][0] == cell || boundary_.cells[segment][1] == cell;
+  }
+
   bool touches(Index vertex) const { return first_[vertex] < first_[vertex + 1]; }
 
   template <class Visit>
@@ -121,10 +166,8 @@ class BoundarySearch {
   /// The segments at a vertex of the boundary that bound the other's own cell.
   bool offer_segments_at(Index vertex, Index on_boundary) {
     bool nearer = false;
-    for (Index i = first_[on_boundary]; i < first_[on_boundary + 1]; ++i) {
-      const auto& [left, right] = boundary_.cells[at_[i]];
-      if (left == cells_[vertex] || right == cells_[vertex]) nearer = offer(vertex, at_[i]) || nearer;
-    }
+    for (Index i = first_[on_boundary]; i < first_[on_boundary + 1]; ++i)
+      if (bounds(at_[i], cells_[vertex])) nearer = offer(vertex, at_[i]) || nearer;
     return nearer;
   }
 
@@ -151,6 +194,140 @@ class BoundarySearch {
   std::vector<Index> first_, at_;  ///< segments at each vertex
 };
 
+/// Halves edges, round after round, each only where the one before has changed something.
+class BoundaryRefiner {
+ public:
+  BoundaryRefiner(std::span<const double> fields, Index width, std::span<const Triangle> triangles,
+                  std::span<const Index> triangle_cell, std::span<const double> levels, double tolerance)
+      : width_(width),
+        levels_(levels),
+        tolerance_(tolerance),
+        given_(positions_of(fields, width)),
+        places_(given_),
+        search_(given_, triangles, triangle_cell) {
+    search_.spread(std::numeric_limits<double>::infinity());
+    out_.fields.assign(fields.begin(), fields.end());
+    out_.triangles.assign(triangles.begin(), triangles.end());
+    out_.cells.assign(triangle_cell.begin(), triangle_cell.end());
+    for (Index v = 0; v < static_cast<Index>(given_.size()); ++v) row(v)[width_ - 1] = search_.distance(v);
+  }
+
+  BoundaryRefinement run() {
+    std::vector<Index> active(out_.triangles.size()), next;
+    std::iota(active.begin(), active.end(), 0);
+    for (int round = 0; round < k_most_rounds && !active.empty(); ++round) {
+      middles_.clear();
+      next.clear();
+      for (const Index t : active) split(t, next);
+      active.swap(next);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  static std::vector<Vec3> positions_of(std::span<const double> fields, Index width) {
+    std::vector<Vec3> result(fields.size() / width);
+    for (std::size_t v = 0; v < result.size(); ++v)
+      result[v] = Eigen::Map<const Vec3>(fields.data() + v * static_cast<std::size_t>(width));
+    return result;
+  }
+
+  double* row(Index vertex) { return out_.fields.data() + static_cast<std::size_t>(vertex) * width_; }
+
+  void split(Index t, std::vector<Index>& next) {
+    const Triangle corners = out_.triangles[t];
+    const Index cell = out_.cells[t];
+    const auto put = [&](Index a, Index b, Index c, bool is_first = false) {
+      next.push_back(is_first ? t : static_cast<Index>(out_.triangles.size()));
+      if (is_first) return void(out_.triangles[t] = {a, b, c});
+      out_.triangles.push_back({a, b, c});
+      out_.cells.push_back(cell);
+    };
+    std::array<Index, 3> middle;  // of the side that begins at the corner
+    int count = 0;
+    for (int i = 0; i < 3; ++i) count += (middle[i] = middle_of(corners[i], corners[(i + 1) % 3], cell)) != k_none;
+    if (count == 0) {  // linear along its sides, it may still have a ridge inside
+      const Index center = amid(corners, cell);
+      if (center == k_none) return;
+      for (int i = 0; i < 3; ++i) put(corners[i], corners[(i + 1) % 3], center, i == 0);
+      return;
+    }
+    // Turned so that the marked side comes first, and the one that is not marked last.
+    int turn = 0;
+    while (count < 3 && (middle[turn] == k_none || middle[(turn + 2) % 3] != k_none)) ++turn;
+    const Index a = corners[turn], b = corners[(turn + 1) % 3], c = corners[(turn + 2) % 3];
+    const Index ab = middle[turn], bc = middle[(turn + 1) % 3], ca = middle[(turn + 2) % 3];
+    if (count == 1) {
+      put(a, ab, c, true);
+      put(ab, b, c);
+    } else if (count == 2) {
+      put(ab, b, bc, true);
+      const bool is_short = (places_[a] - places_[bc]).squaredNorm() <= (places_[ab] - places_[c]).squaredNorm();
+      put(a, ab, is_short ? bc : c);
+      put(is_short ? a : ab, bc, c);
+    } else {
+      put(ab, bc, ca, true);
+      put(a, ab, ca);
+      put(ab, b, bc);
+      put(ca, bc, c);
+    }
+  }
+
+  /// The new vertex in the middle of an edge that is to be halved; k_none for any other.
+  Index middle_of(Index a, Index b, Index cell) {
+    if (a > b) std::swap(a, b);
+    const std::uint64_t key = static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
+    if (const auto found = middles_.find(key); found != middles_.end()) return found->second;
+    const Index added = amid(std::array{a, b}, cell);
+    if (added != k_none) middles_.emplace(key, added);
+    return added;
+  }
+
+  /// A new vertex amid two or three of a cell, where the distance is not linear between them and a level runs there.
+  template <std::size_t Count>
+  Index amid(const std::array<Index, Count>& around, Index cell) {
+    constexpr double share = 1.0 / Count;
+    Vec3 middle = Vec3::Zero();
+    double mean = 0, lowest = std::numeric_limits<double>::infinity(), highest = 0, most = 0;
+    for (const Index v : around) {
+      const double distance = row(v)[width_ - 1];
+      middle += share * places_[v], mean += share * distance;
+      lowest = std::min(lowest, distance), highest = std::max(highest, distance);
+    }
+    // A distance changes by no more than the way.
+    for (const Index v : around) most = std::max(most, (places_[v] - middle).norm());
+    const auto is_in_reach = [&](double level) {
+      return most > tolerance_ * level && lowest < level && level < mean + most;
+    };
+    if (!std::isfinite(mean) || std::ranges::none_of(levels_, is_in_reach)) return k_none;
+    const BoundarySearch::Nearest nearest = search_.nearest_amid(middle, around, cell);
+    const double found = std::sqrt(nearest.squared);
+    lowest = std::min(lowest, found), highest = std::max(highest, found);
+    const auto is_off = [&](double level) {
+      return std::abs(found - mean) > tolerance_ * level && lowest < level && level < highest;
+    };
+    if (std::ranges::none_of(levels_, is_off)) return k_none;
+    const auto added = static_cast<Index>(places_.size());
+    places_.push_back(middle);
+    search_.add_vertex(nearest);
+    out_.fields.resize(out_.fields.size() + width_);
+    for (const Index v : around)
+      for (Index i = 0; i < width_ - 1; ++i) row(added)[i] += share * row(v)[i];
+    row(added)[width_ - 1] = found;
+    return added;
+  }
+
+  static constexpr int k_most_rounds = 12;
+  const Index width_;
+  const std::span<const double> levels_;
+  const double tolerance_;
+  const std::vector<Vec3> given_;
+  std::vector<Vec3> places_;
+  BoundarySearch search_;
+  std::unordered_map<std::uint64_t, Index> middles_;  ///< of the edges halved in this round
+  BoundaryRefinement out_;
+};
+
 }  // namespace
 
 CellBoundary cell_boundary(std::span<const Triangle> triangles, std::span<const Index> triangle_cell,
@@ -165,6 +342,16 @@ std::vector<double> cell_boundary_distance(std::span<const Vec3> vertices, std::
   BoundarySearch search(vertices, triangles, triangle_cell);
   search.spread(limit);
   return search.distances();
+}
+
+BoundaryRefinement refine_to_cell_boundary(std::span<const double> fields, Index width,
+                                           std::span<const Triangle> triangles, std::span<const Index> triangle_cell,
+                                           std::span<const double> levels, double tolerance) {
+  if (width < 4) throw InputError(message("fields: wanted a position and room for a distance, got ", width));
+  check_cells(triangles, triangle_cell);
+  if (!(tolerance > 0)) throw InputError(message("tolerance: wanted a share above 0, got ", tolerance));
+  check_corners(triangles, static_cast<Index>(fields.size() / width));
+  return BoundaryRefiner(fields, width, triangles, triangle_cell, levels, tolerance).run();
 }
 
 }  // namespace saddleback
