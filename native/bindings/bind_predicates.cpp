@@ -2,6 +2,7 @@
 
 #include "convert/convert.h"
 #include "predicates/predicates.h"
+#include "support/hypotenuse.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -44,6 +45,13 @@ py::array collinear_3d(const py::object& a, const py::object& b, const py::objec
   return to_array(std::move(flags));
 }
 
+py::array lengths_2d(const py::object& vectors) {
+  const ArrayIn<double> v = as_points2(vectors, "vectors");
+  std::vector<double> lengths;
+  for (Index i = 0; i < v.count; ++i) lengths.push_back(hypotenuse(v.values[2 * i], v.values[2 * i + 1]));
+  return to_array(std::move(lengths));
+}
+
 }  // namespace
 
 void bind_predicates(py::module_& m) {
@@ -51,6 +59,7 @@ void bind_predicates(py::module_& m) {
   sub.def("orient_2d", &orient_2d, py::arg("a"), py::arg("b"), py::arg("c"));
   sub.def("in_circle", &in_circle, py::arg("a"), py::arg("b"), py::arg("c"), py::arg("d"));
   sub.def("collinear_3d", &collinear_3d, py::arg("a"), py::arg("b"), py::arg("c"));
+  sub.def("lengths_2d", &lengths_2d, py::arg("vectors"));
 }
 
 }  // namespace saddleback::bindings

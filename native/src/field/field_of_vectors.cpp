@@ -7,6 +7,7 @@
 #include "saddleback/field/direction_field.h"
 
 #include "field/connection/surface_connection.h"
+#include "support/hypotenuse.h"
 
 namespace saddleback {
 namespace {
@@ -20,7 +21,7 @@ double angle_within(const Mesh& mesh, Index face, const Vec3& vector) {
   const Vec3 across = direction_in_space(mesh, face, std::numbers::pi / 2);
   const double x = vector.dot(along), y = vector.dot(across);
   if (!vector.allFinite()) throw InputError(message("vectors: the one of face ", face, " is not finite"));
-  if (!(std::hypot(x, y) > k_least_part * vector.norm()))
+  if (!(hypotenuse(x, y) > k_least_part * vector.norm()))
     throw InputError(message("vectors: the one of face ", face, " has no direction within the face"));
   return std::atan2(y, x);
 }

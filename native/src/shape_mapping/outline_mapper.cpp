@@ -17,6 +17,7 @@
 #include "shape_mapping/face_weights.h"
 #include "shape_mapping/sides.h"
 #include "shape_mapping/sight.h"
+#include "support/hypotenuse.h"
 
 namespace saddleback {
 namespace {
@@ -203,7 +204,7 @@ OutlineMapper::Stretch OutlineMapper::checked(Index face) const {
   const double scale = 1 / cross(u1, u2);
   const Vec3 x = scale * (u2.y() * e1 - u1.y() * e2), y = scale * (u1.x() * e2 - u2.x() * e1);
   const double xx = x.squaredNorm(), yy = y.squaredNorm();
-  const double largest = std::sqrt(0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), x.dot(y)));
+  const double largest = std::sqrt(0.5 * (xx + yy) + hypotenuse(0.5 * (xx - yy), x.dot(y)));
   const Stretch stretch{x.cross(y).norm() / largest, largest};
   if (!(stretch.smallest >= limits_.smallest && stretch.largest <= limits_.largest))
     throw Failed(MapFailure::stretched);

@@ -13,6 +13,7 @@
 #include "saddleback/error.h"
 #include "saddleback/job.h"
 
+#include "support/hypotenuse.h"
 #include "voronoi2d/diagram/circumcenter.h"
 #include "voronoi2d/diagram/diagram_sweep.h"
 #include "voronoi2d/sites/site_order.h"
@@ -81,7 +82,7 @@ void SteppedSweep::State::sort_sites(const Vec2& scaled_center) {
   std::iota(order.begin(), order.end(), 0);
   std::vector<double> distances(count);
   for (Index i = 0; i < count; ++i)
-    distances[i] = std::hypot(ordered.x[i] - scaled_center.x(), ordered.y[i] - scaled_center.y());
+    distances[i] = hypotenuse(ordered.x[i] - scaled_center.x(), ordered.y[i] - scaled_center.y());
   std::sort(order.begin(), order.end(),
             [&](Index a, Index b) { return distances[a] != distances[b] ? distances[a] < distances[b] : a < b; });
   const auto point = [&](Index i) { return predicates::Point2{ordered.x[i], ordered.y[i]}; };

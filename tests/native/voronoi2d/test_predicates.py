@@ -76,3 +76,12 @@ def test_grid_of_neighboring_doubles_about_a_circle():
     expected = [sign(in_circle(*points)) for points in zip(a, b, c, near, strict=True)]
     assert predicates.in_circle(a, b, c, near).tolist() == expected
     assert {-1, 0, 1} <= set(expected)
+
+
+@given(points2, st.integers(-1000, 500))
+def test_lengths_are_right_to_the_last_place(vector, exponent):
+    x, y = (float(np.ldexp(value, exponent)) for value in vector)
+    length = Fraction(float(predicates.lengths_2d([(x, y)])[0]))
+    unit = Fraction(2) ** -52 * length + Fraction(5e-324)
+    square = Fraction(x) ** 2 + Fraction(y) ** 2
+    assert max(length - unit, Fraction(0)) ** 2 <= square <= (length + unit) ** 2

@@ -5,6 +5,8 @@
 
 #include "saddleback/field/curvature.h"
 
+#include "support/hypotenuse.h"
+
 namespace saddleback {
 namespace {
 
@@ -113,7 +115,7 @@ PrincipalCurvatures principal_curvatures(const Mesh& mesh) {
     Eigen::Matrix<double, 3, 2> axes;
     axes << x, shape.normals[v].cross(x);
     const Eigen::Matrix2d flat = axes.transpose() * shape.operators[v] * axes;
-    const double mean = 0.5 * flat.trace(), half = std::hypot(0.5 * (flat(0, 0) - flat(1, 1)), flat(0, 1));
+    const double mean = 0.5 * flat.trace(), half = hypotenuse(0.5 * (flat(0, 0) - flat(1, 1)), flat(0, 1));
     const double angle = 0.5 * std::atan2(2 * flat(0, 1), flat(0, 0) - flat(1, 1));
     result.smallest.push_back(mean - half);
     result.largest.push_back(mean + half);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/hypotenuse.h"
+
 namespace saddleback {
 namespace {
 
@@ -21,8 +23,8 @@ bool is_needless(const ExactSurface& surface, const ExactPropagation& propagatio
   const EdgeFrame& frame = surface.frame(w.halfedge);
   const double at_from = propagation.distance(frame.from) * (1 + k_slack) - w.sigma;
   const double at_to = propagation.distance(frame.to) * (1 + k_slack) - w.sigma;
-  return at_from + w.b1 < std::hypot(w.sx - w.b1, w.sy) ||
-         at_to + (frame.length - w.b0) < std::hypot(w.sx - w.b0, w.sy);
+  return at_from + w.b1 < hypotenuse(w.sx - w.b1, w.sy) ||
+         at_to + (frame.length - w.b0) < hypotenuse(w.sx - w.b0, w.sy);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "predicates/expansion.h"
+#include "support/hypotenuse.h"
 
 namespace saddleback::voronoi2d {
 
@@ -84,7 +85,7 @@ double Bisector::farthest_from_chord(double from, double to) const {
   for (const double end : {from, to}) {
     if (!(slope(end).dot(along) < 0)) continue;
     const double ratio = q_length_ / p_length_, turn = std::atanh(-ratio * ratio / std::tanh(middle));
-    return std::hypot(distance, (at(turn) - at(end)).dot(along));
+    return hypotenuse(distance, (at(turn) - at(end)).dot(along));
   }
   return distance;
 }
