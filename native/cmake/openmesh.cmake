@@ -1,22 +1,18 @@
 # OpenMesh's core with its asserts off, as objects that become a part of our library.
 #
 # Debian's package is a shared library whose asserts abort the process, which inside Blender would cost the artist's
-# work. PyPI's source package of the OpenMesh bindings carries the C++ sources, and pip is a registry we can count on.
+# work. PyPI's source package of the OpenMesh bindings carries the C++ sources.
 set(SADDLEBACK_OPENMESH_VERSION 1.2.1)
 set(SADDLEBACK_OPENMESH_SOURCE "" CACHE PATH "Folder of the unpacked openmesh source package; empty: fetched with pip")
 
 if(NOT SADDLEBACK_OPENMESH_SOURCE)
-  find_package(Python 3.10 REQUIRED COMPONENTS Interpreter)
-  set(_deps ${CMAKE_BINARY_DIR}/_deps)
-  set(SADDLEBACK_OPENMESH_SOURCE ${_deps}/openmesh-${SADDLEBACK_OPENMESH_VERSION})
-  if(NOT EXISTS ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src)
-    message(STATUS "Fetching the sources of openmesh ${SADDLEBACK_OPENMESH_VERSION} with pip")
-    execute_process(
-      COMMAND ${Python_EXECUTABLE} -m pip download --quiet --no-deps --no-binary :all: --dest ${_deps}
-        openmesh==${SADDLEBACK_OPENMESH_VERSION}
-      COMMAND_ERROR_IS_FATAL ANY)
-    file(ARCHIVE_EXTRACT INPUT ${_deps}/openmesh-${SADDLEBACK_OPENMESH_VERSION}.tar.gz DESTINATION ${_deps})
-  endif()
+  set(SADDLEBACK_OPENMESH_SOURCE ${SADDLEBACK_DEPS}/openmesh-${SADDLEBACK_OPENMESH_VERSION})
+  fetch_from_pypi(openmesh==${SADDLEBACK_OPENMESH_VERSION} openmesh-${SADDLEBACK_OPENMESH_VERSION}.tar.gz
+    6fd3fa41a68148e4a7523f562426aa9758bf65ccc6642abcf79c37bae9c6af3c openmesh-${SADDLEBACK_OPENMESH_VERSION}
+    --no-binary :all:)
+elseif(NOT EXISTS ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src)
+  message(FATAL_ERROR "SADDLEBACK_OPENMESH_SOURCE=${SADDLEBACK_OPENMESH_SOURCE} holds no OpenMesh/src: "
+    "name the unpacked source package, openmesh-${SADDLEBACK_OPENMESH_VERSION}.")
 endif()
 
 set(_core ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src/OpenMesh/Core)
