@@ -2,14 +2,15 @@
 
 python addon/make_packages.py WHEEL...
 
-The second half of addon/package. The same files in give the same bytes out.
+The second half of addon/package. The wheels are of one platform; what dist/ holds for others stays. The same files in
+give the same bytes out.
 """
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
-import sysconfig
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,31 +21,53 @@ ROOT = Path(__file__).resolve().parents[1]
 ADDON = ROOT / "addon/saddleback_blender"
 DIST = ROOT / "dist"
 MANIFEST = "blender_manifest.toml"
-EXTENSION_PLATFORMS = {"linux-x86_64": "linux-x64", "linux-aarch64": "linux-arm64"}
-"""What Blender's manifest calls the platforms of `sysconfig.get_platform()`."""
+EXTENSION_PLATFORMS = {
+    "linux_x86_64": "linux-x64",
+    "linux_aarch64": "linux-arm64",
+    "macosx_arm64": "macos-arm64",
+    "macosx_x86_64": "macos-x64",
+    "win_amd64": "windows-x64",
+}
+"""What Blender's manifest calls the platforms of wheels."""
+LEGACY_PYTHONS = ("cp310", "cp311")
+EXTENSION_PYTHONS = ("cp311", "cp313")
 
 
 def main(wheels: list[Path]) -> None:
-    """Replace what dist/ holds by packages with these wheels."""
+    """Replace what dist/ holds for a platform by packages with its wheels."""
     manifest = (ADDON / MANIFEST).read_text(encoding="utf-8")
     version = tomllib.loads(manifest)["version"]
-    platform = sysconfig.get_platform()
-    name = platform.replace("-", "_").replace(".", "_")
+    (of_wheels,) = {platform_of(wheel) for wheel in wheels}
+    platform = EXTENSION_PLATFORMS[of_wheels]
+    name = platform.replace("-", "_")  # as Blender's --split-platforms writes it
     DIST.mkdir(exist_ok=True)
-    for stale in [*DIST.glob("saddleback-*.zip"), *DIST.glob("saddleback-*.whl")]:
-        stale.unlink()
-    legacy = legacy_zip(DIST / f"saddleback-{version}-legacy-{name}.zip", wheels)
-    extension = extension_zip(
-        DIST / f"saddleback-{version}-{name}.zip", wheels, manifest, EXTENSION_PLATFORMS[platform]
-    )
+    for stale in [*DIST.glob(f"saddleback-*-{name}.zip"), *DIST.glob("saddleback-*.whl")]:
+        if stale.suffix == ".zip" or platform_of(stale) == of_wheels:
+            stale.unlink()
     copies = [Path(shutil.copy2(wheel, DIST)) for wheel in wheels]
+    legacy = legacy_zip(DIST / f"saddleback-{version}-legacy-{name}.zip", chosen(wheels, LEGACY_PYTHONS))
+    extension = extension_zip(
+        DIST / f"saddleback-{version}-{name}.zip", chosen(wheels, EXTENSION_PYTHONS), manifest, platform
+    )
     for path in (legacy, extension, *copies):
         print(f"-- {path.relative_to(ROOT)} ({path.stat().st_size / 1024:.0f} KiB)")
 
 
+def platform_of(wheel: Path) -> str:
+    """Read it from a wheel's name, whatever the age of the systems: manylinux_2_28_x86_64 is linux_x86_64."""
+    tag = wheel.stem.rsplit("-", 1)[1].split(".")[0]
+    return re.sub(r"^(?:many)?(linux|macosx)_\d+_\d+", r"\1", tag)
+
+
+def chosen(wheels: list[Path], pythons: tuple[str, ...]) -> list[Path]:
+    """Those for these Pythons, as far as they were made."""
+    return [wheel for wheel in wheels if wheel.name.split("-")[2] in pythons]
+
+
 def legacy_zip(path: Path, wheels: list[Path]) -> Path:
-    """Writes the package for Blender 3.4 to 4.1, with the wheels unpacked in its lib/, where core/native.py looks."""
+    """Writes the package for Blender 3.4 to 4.1, with the wheels unpacked in its lib/."""
     contents = {f"saddleback_blender/{name}": data for name, data in addon_files() if name != MANIFEST}
+    contents["saddleback_blender/__init__.py"] += b"\n\n" + (ROOT / "addon/legacy_init.py").read_bytes()
     for wheel in wheels:
         with zipfile.ZipFile(wheel) as archive:
             for item in archive.infolist():
@@ -78,12 +101,12 @@ def completed_manifest(manifest: str, wheels: list[str], platform: str) -> str:
 
 
 def addon_files() -> Iterator[tuple[str, bytes]]:
-    """Yield name and content of what belongs to the add-on, the licence included."""
+    """Yield name and content of what belongs to the add-on, the licenses included."""
     for path in sorted(ADDON.rglob("*")):
-        relative = path.relative_to(ADDON)
-        if path.is_file() and "__pycache__" not in relative.parts and relative.parts[0] != "lib":
-            yield relative.as_posix(), path.read_bytes()
-    yield "LICENSE", (ROOT / "LICENSE").read_bytes()
+        if path.is_file() and "__pycache__" not in path.parts:
+            yield path.relative_to(ADDON).as_posix(), path.read_bytes()
+    for path in [ROOT / "LICENSE", *sorted((ROOT / "licenses").iterdir())]:
+        yield path.relative_to(ROOT).as_posix(), path.read_bytes()
 
 
 def write_zip(path: Path, contents: dict[str, bytes]) -> Path:

@@ -96,7 +96,7 @@ set_up_bpy() {
   local interpreter=$python extra=()
   install_packages "the bpy wheels" "${bpy_packages[@]}"
   if needs_newer_python "$1"; then
-    interpreter=$(command -v python3.13)
+    interpreter=$(find_interpreter 3.13)
     extra=("pybind11>=3.0,<4")  # a build of its own, for its own Python
   fi
   fill_venv ".cache/bpy-$1" "Blender $1" "$interpreter" "bpy==$1.*" "pytest>=8.3,<10" "hypothesis>=6.100,<7" "${extra[@]}"
@@ -108,5 +108,14 @@ set_up_bpy() {
 # needs_newer_python VERSION: Blender went on to Python 3.13 with 5.1.
 needs_newer_python() { case $1 in 5.[1-9]*) ;; *) return 1 ;; esac; }
 
-# has_python313: whether a python3.13 is found and runs.
-has_python313() { python3.13 -c '' 2>/dev/null; }
+# find_interpreter VERSION: prints the path of a python of that version which one can build for, from PATH or from pyenv.
+find_interpreter() {
+  local candidate
+  for candidate in "$(command -v "python$1")" "${PYENV_ROOT:-$HOME/.pyenv}/versions/$1".*/"bin/python$1"; do
+    if "$candidate" -c 'import ensurepip, os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null; then
+      echo "$candidate"
+      return
+    fi
+  done
+  return 1
+}

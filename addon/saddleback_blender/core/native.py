@@ -1,6 +1,6 @@
 """Finds the native library when it is first needed, so that Blender starts, updates and removes the add-on without it.
 
-In the extension the library is a wheel that Blender installs; in the legacy zip it lies in `lib/` beside this package.
+In the extension the library is a wheel that Blender installs; in the legacy zip it lies in a folder beside this package.
 """
 
 from __future__ import annotations
@@ -8,13 +8,11 @@ from __future__ import annotations
 import importlib
 import platform
 import sys
-import sysconfig
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+VERSION = "0.1.0"
 REQUIRED_VERSION = (0, 1)  # major and minor of the library that this add-on was written against
-LIBRARY_FOLDER = Path(__file__).resolve().parent.parent / "lib"
 
 
 class NativeMissingError(Exception):
@@ -51,17 +49,28 @@ def description() -> str:
 
 
 def _import() -> ModuleType:
-    if LIBRARY_FOLDER.is_dir() and str(LIBRARY_FOLDER) not in sys.path:
-        sys.path.append(str(LIBRARY_FOLDER))
     try:
         return importlib.import_module("saddleback")
     except ImportError as error:
-        suffix = sysconfig.get_config_var("EXT_SUFFIX")
+        wrong_package = error.name in ("saddleback", "saddleback._saddleback")
         raise NativeMissingError(
-            f"Saddleback's native library does not load ({error}): install the package made for {platform.system()} "
-            f"{platform.machine()} and Python {sys.version_info.major}.{sys.version_info.minor} (it holds "
-            f"_saddleback{suffix}), then restart Blender"
+            (
+                f"This package of Saddleback is not for Python {sys.version_info.major}.{sys.version_info.minor} on "
+                f"{platform.system()} {platform.machine()}"
+                if wrong_package
+                else f"Saddleback's native library does not load ({error})"
+            )
+            + f": install {right_package()}, then restart Blender"
         ) from error
+
+
+def right_package() -> str:
+    """The file that addon/package makes for this Blender."""
+    system = {"Darwin": "macos"}.get(platform.system(), platform.system().lower())
+    machine = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64"}.get(platform.machine().lower(), platform.machine())
+    # Before 4.2 Blender had Python 3.10, but for 4.1 and Debian's 3.4, and no extensions.
+    legacy = sys.version_info < (3, 11) or (sys.version_info < (3, 12) and not __name__.startswith("bl_ext."))
+    return f"saddleback-{VERSION}-{'legacy-' if legacy else ''}{system}_{machine}.zip"
 
 
 def _check_version(module: ModuleType) -> None:
