@@ -1,5 +1,5 @@
-# What the legacy zip, for Blender 3.4 to 4.1, adds to the end of the package's __init__.py. An extension has a manifest and
-# wheels instead.
+"""What the legacy zip, for Blender 3.4 to 4.1, adds to the package's __init__.py; extensions have a manifest."""
+
 import sys
 from pathlib import Path
 

@@ -91,7 +91,9 @@ def completed_manifest(manifest: str, wheels: list[str], platform: str) -> str:
     """Add the keys that depend on the build, in front of the first table (behind one they would belong to it)."""
     lines = manifest.splitlines()
     table = next((i for i, line in enumerate(lines) if line.startswith("[")), len(lines))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     lines[table:table] = [
+        f'website = "{project["urls"]["Homepage"]}"',
         f'platforms = ["{platform}"]',
         "wheels = [",
         *(f'  "./wheels/{name}",' for name in wheels),

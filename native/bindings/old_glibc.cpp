@@ -1,8 +1,8 @@
 // Lets the module run on glibc 2.28 (2018) and later, though it is linked against a newer one: the linker sends every
 // reference to the names below here (--wrap), and from here they go to the version that old systems have.
 //
-// Which names these are, addon/package tells: it asks for manylinux_2_28, and auditwheel names whatever is newer. The old
-// pow, log and log2 are the new ones in a wrapper that sets errno.
+// Which names these are, addon/package tells: it asks for manylinux_2_28, and auditwheel names whatever is newer. The
+// old pow, log and log2 are the new ones in a wrapper that sets errno.
 #include <cstdint>
 #include <ctime>
 #include <sys/random.h>

@@ -53,3 +53,13 @@ def test_install_use_and_come_back(step, tmp_path):
     said = step("again", file)
     steps = ["reopened", "ran", "undone", "disabled", "enabled"]
     assert [word for word in steps if word in said] == steps
+
+
+@pytest.mark.skipif(not IS_EXTENSION, reason="extensions came with 4.2")
+def test_blender_finds_the_extension_valid():
+    scripts = Path(bpy.utils.system_resource("SCRIPTS"))
+    (validator,) = scripts.glob("addons_core/bl_pkg/cli/blender_ext.py")
+    command = [sys.executable, str(validator), "validate", str(package())]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "warning" not in done.stdout.lower(), done.stdout

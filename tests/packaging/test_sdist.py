@@ -15,7 +15,9 @@ import pytest
 from tests.tooling.tracked import tracked
 
 ROOT = Path(__file__).resolve().parents[2]
-slow = pytest.mark.skipif(os.environ.get("SADDLEBACK_PACKAGING") != "all", reason="takes minutes: SADDLEBACK_PACKAGING=all")
+slow = pytest.mark.skipif(
+    os.environ.get("SADDLEBACK_PACKAGING") != "all", reason="takes minutes: SADDLEBACK_PACKAGING=all"
+)
 
 
 def make_sdist(folder: Path) -> Path:

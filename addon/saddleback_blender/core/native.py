@@ -1,6 +1,6 @@
 """Finds the native library when it is first needed, so that Blender starts, updates and removes the add-on without it.
 
-In the extension the library is a wheel that Blender installs; in the legacy zip it lies in a folder beside this package.
+In the extension the library is a wheel that Blender installs; in the legacy zip it lies in a folder of the package.
 """
 
 from __future__ import annotations

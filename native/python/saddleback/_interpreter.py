@@ -1,4 +1,4 @@
-"""Refuses to load the compiled module where it cannot work: made for another Python or system, or in a sub-interpreter."""
+"""Refuses to load the compiled module where it cannot work: under another Python or system, in a sub-interpreter."""
 
 from __future__ import annotations
 
