@@ -29,6 +29,13 @@ EXTENSION_PLATFORMS = {
     "win_amd64": "windows-x64",
 }
 """What Blender's manifest calls the platforms of wheels."""
+FIND_LIBRARY = b"""
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parent / "lib"))
+"""
+"""What the legacy zip adds to __init__.py; for an extension Blender installs wheels."""
 LEGACY_PYTHONS = ("cp310", "cp311")
 EXTENSION_PYTHONS = ("cp311", "cp313")
 
@@ -67,7 +74,7 @@ def chosen(wheels: list[Path], pythons: tuple[str, ...]) -> list[Path]:
 def legacy_zip(path: Path, wheels: list[Path]) -> Path:
     """Writes the package for Blender 3.4 to 4.1, with the wheels unpacked in its lib/."""
     contents = {f"saddleback_blender/{name}": data for name, data in addon_files() if name != MANIFEST}
-    contents["saddleback_blender/__init__.py"] += b"\n\n" + (ROOT / "addon/legacy_init.py").read_bytes()
+    contents["saddleback_blender/__init__.py"] += FIND_LIBRARY
     for wheel in wheels:
         with zipfile.ZipFile(wheel) as archive:
             for item in archive.infolist():
@@ -81,10 +88,19 @@ def extension_zip(path: Path, wheels: list[Path], manifest: str, platform: str) 
     wheels.
     """
     contents = dict(addon_files())
+    contents["__init__.py"] = without_bl_info(contents["__init__.py"])
     contents[MANIFEST] = completed_manifest(manifest, [wheel.name for wheel in wheels], platform).encode()
     for wheel in wheels:
         contents[f"wheels/{wheel.name}"] = wheel.read_bytes()
     return write_zip(path, contents)
+
+
+def without_bl_info(source: bytes) -> bytes:
+    """Take out what the manifest says instead. In the sources it stays, which Blender 3.4 runs as they are."""
+    kept, count = re.subn(rb"^bl_info = \{\n.*?^\}\n+", b"", source, flags=re.MULTILINE | re.DOTALL)
+    if count != 1:
+        raise ValueError("__init__.py has no bl_info = {...}")
+    return kept
 
 
 def completed_manifest(manifest: str, wheels: list[str], platform: str) -> str:

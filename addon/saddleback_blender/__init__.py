@@ -2,6 +2,16 @@
 
 from __future__ import annotations
 
+bl_info = {
+    "name": "Saddleback",
+    "author": "The Saddleback maintainers",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "3D View > Sidebar > Saddleback",
+    "description": "Geodesic Voronoi cells and even tessellations of painted meshes",
+    "category": "Mesh",
+}
+
 
 def register() -> None:
     """Makes everything of this module known to Blender."""

@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addon/saddleback_blender"
 
 FORBIDDEN_MODULES = re.compile(r"(socket|urllib|http|ftplib|requests|aiohttp|subprocess|pip|ensurepip)(\.|$)")
-FORBIDDEN_NAMES = re.compile(r"(sys\.path|__file__|bl_info|os\.system|os\.popen|exec|eval|__import__)$")
+FORBIDDEN_NAMES = re.compile(r"(sys\.path|__file__|os\.system|os\.popen|exec|eval|__import__)$")
 
 
 def offences(tree: ast.AST):

@@ -238,7 +238,7 @@ def test_every_version_is_the_same():
     assert cuda["version"] == project and cuda["dependencies"] == [f"saddleback=={project}"]
     manifest = tomllib.loads((ADDON / "blender_manifest.toml").read_text())["version"]
     cmake = re.search(r"project\(saddleback VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())
-    bl_info = re.search(r'"version": \((\d+), (\d+), (\d+)\)', (ROOT / "addon/legacy_init.py").read_text())
+    bl_info = re.search(r'"version": \((\d+), (\d+), (\d+)\)', (ADDON / "__init__.py").read_text())
     assert cmake is not None and bl_info is not None
     assert {project, manifest, cmake[1], ".".join(bl_info.groups()), saddleback.__version__} == {project}
 
