@@ -61,3 +61,12 @@ def test_averages_are_means(vertex_count, count, seed):
     for vertex in range(vertex_count):
         mine = values[vertices == vertex]
         np.testing.assert_allclose(means[vertex], mine.mean(axis=0) if len(mine) else 0, atol=1e-12)
+
+
+def test_smaller_by_says_how_much_smaller_cells_are_where_the_paint_is_full():
+    painted = np.array([0.0, 0.5, 1.0])
+    np.testing.assert_allclose(shape(painted, False, 1.0, 1.0, 4.0), [1.0, 2.5**2, 16.0])
+    np.testing.assert_allclose(shape(painted, True, 1.0, 1.0, 4.0), [16.0, 2.5**2, 1.0])
+    np.testing.assert_allclose(shape(5 * painted, False, 1.0, None, 4.0), [1.0, 2.5**2, 16.0])  # of any attribute
+    np.testing.assert_allclose(shape(painted, False, 2.0, 1.0, 3.0), [1.0, 1.5**2, 9.0])
+    np.testing.assert_array_equal(shape(painted, False, 1.0, 1.0), painted)  # as scripts have it: the paint itself

@@ -169,7 +169,7 @@ def adjusted(screen):
     yield from wait_until(lambda: not manager().saddleback_running, "the run from the cache to end")
     builds, radius = dict(cache.shared.builds), tube_vertices()
     operator = manager().operators[-1]
-    operator.properties.edge_radius = 0.05
+    operator.properties.lengths, operator.properties.edge_radius = "ABSOLUTE", 0.05
     operator.properties.make_cells = True
     began = time.perf_counter()
     with screen.override():

@@ -48,7 +48,9 @@ def density_of(
     else:
         values, label = _spread(density, surface, mesh, progress), f"what spreads from {density.label}"
     try:
-        return shape(values, settings.density_invert, settings.density_contrast, upper)
+        # Curvature and distance say themselves how small cells are.
+        smaller_by = settings.density_smaller_by if isinstance(density, SpreadDensity) else 0.0
+        return shape(values, settings.density_invert, settings.density_contrast, upper, smaller_by)
     except DensityError as error:
         raise BadInputError(f"'{surface.name}': {label} {error}") from error
 

@@ -52,6 +52,18 @@ class Surface:
         return digest.hexdigest()
 
     @cached_property
+    def area(self) -> float:
+        """The area of all triangles. O(F)."""
+        corners = self.vertices[self.triangles]
+        doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        return 0.5 * float(np.sqrt(np.einsum("ij,ij->i", doubled, doubled)).sum())
+
+    @property
+    def extent(self) -> float:
+        """The diagonal of the box around all vertices."""
+        return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+
+    @cached_property
     def _compact(self) -> Indices:
         numbers = np.full(self.vertex_count, -1, np.int32)
         numbers[self.used] = np.arange(len(self.vertices), dtype=np.int32)

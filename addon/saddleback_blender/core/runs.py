@@ -15,6 +15,7 @@ from .cache import Cache
 from .density_runs import density_of
 from .fields.curve_points import curves_on_surface, points_along
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
+from .lengths import RIB_SHARE
 from .progress import Progress
 from .requests import DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
 from .results import CellsResult, DistanceResult, Dual, Indices, LampShell, Reals
@@ -28,7 +29,6 @@ from .surfaces.features import feature_lines
 from .surfaces.normals import normals_at
 from .surfaces.surface_places import compact_points, surface_points
 
-RIB_SHARE = 0.125  # of a cell's size: the width of ribs where none is given
 UNSEEN = 1e-3  # of a cell's size: sites that would move by less while they are watched rest
 
 

@@ -21,11 +21,15 @@ class DensitySettings:
     density_beyond: float = 0.1  # the density there, to 1 at the curve
     density_invert: bool = False
     density_contrast: float = 1.0
+    density_smaller_by: float = 0.0  # cells are by this smaller where the paint is full; 0 = the density is the paint
 
 
 @dataclass(frozen=True)
 class TessellateSettings(DensitySettings):
-    """All properties of `saddleback.tessellate`; lengths are world units, objects are given by name ("" = none)."""
+    """All properties of `saddleback.tessellate`; lengths are world units, shares percent of a cell's size.
+
+    Objects are given by name ("" = none).
+    """
 
     count: int = 200
     seed: int = 0
@@ -45,13 +49,18 @@ class TessellateSettings(DensitySettings):
     k: int = 0  # vertices in a neighborhood of the graph; 0 = by quality
     cache_on_disk: bool = False
     use_modifiers: bool = False
+    lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the shares
     make_edges: bool = True
     edge_kind: str = "MESH"  # MESH, CURVE
     edge_radius: float = 0.01
+    edge_radius_share: float = 4.0
     make_cells: bool = False
     gap: float = 0.0
+    gap_share: float = 8.0
     inset: float = 0.0
+    inset_share: float = 10.0
     thickness: float = 0.0
+    thickness_share: float = 8.0
     underside: bool = False
     local_uv: bool = False
     make_centers: bool = False
@@ -62,7 +71,9 @@ class TessellateSettings(DensitySettings):
     keep_count: bool = True  # of vertices of the dual mesh: one for each cell wherever that can be
     make_shell: bool = False
     rib_width: float = 0.0  # 0 = by the cells' size
+    rib_width_share: float = 12.5
     rib_thickness: float = 0.0  # 0 = as wide
+    rib_thickness_share: float = 12.5
     cell_attribute: str = "saddleback_cell"
     distance_attribute: str = "saddleback_distance"
     density_attribute: str = "saddleback_density"
@@ -87,7 +98,9 @@ class DistanceSettings:
     isolines_by: str = "COUNT"  # COUNT, SPACING
     isoline_count: int = 10
     isoline_spacing: float = 0.1
+    lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the share, in percent of the model's extent
     isoline_radius: float = 0.005
+    isoline_radius_share: float = 0.25
     make_preview: bool = False
     preview_lines: bool = True
     distance_attribute: str = "saddleback_distance"
@@ -107,8 +120,11 @@ class PathSettings:
     k: int = 0  # vertices in a neighborhood of the graph; 0 = by quality
     cache_on_disk: bool = False
     use_modifiers: bool = False
+    lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the shares, in percent of the model's extent
     path_radius: float = 0.01
+    path_radius_share: float = 0.4
     lift: float = 0.0  # how far above the surface
+    lift_share: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -126,13 +142,18 @@ class Voronoi2dSettings:
     weights_name: str = ""  # attribute of the vertices that are sites; "" = all weigh the same
     iterations: int = 0
     use_modifiers: bool = False
+    lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the shares, in percent of a cell's size
     make_edges: bool = True
     edge_kind: str = "MESH"  # MESH, CURVE
     edge_radius: float = 0.01
+    edge_radius_share: float = 4.0
     make_cells: bool = True
     gap: float = 0.0
+    gap_share: float = 8.0
     inset: float = 0.0
+    inset_share: float = 10.0
     thickness: float = 0.0
+    thickness_share: float = 8.0
     underside: bool = False
     make_centers: bool = False
     instance_object: str = ""
@@ -167,7 +188,9 @@ class DirectionFieldSettings:
     make_streamlines: bool = False
     streamline_spacing: float = 0.0  # 0 = by the surface's extent
     streamline_length: float = 0.0  # 0 = by the spacing
+    lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the share, in percent of the model's extent
     streamline_radius: float = 0.005
+    streamline_radius_share: float = 0.2
     seed: int = 0
 
 
@@ -182,7 +205,9 @@ class DistributeSettings(DensitySettings):
     size: float = 0.0  # radius of the circle around the largest shapes; 0 = by the count
     size_variation: float = 0.0  # by which share of the largest the smallest are smaller
     size_by_density: bool = False  # small where the density is high, instead of by chance
+    lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the shares, in percent of the place of a shape
     gap: float = 0.0
+    gap_share: float = 0.0
     packing: float = 1.0  # 0 = by chance, 1 = side by side
     maximal: bool = False  # go on until nothing more fits, whatever the count
     mirror: bool = False  # half of them
@@ -199,6 +224,7 @@ class DistributeSettings(DensitySettings):
     follow_surface: bool = True  # where the mesh is deformed later
     make_outlines: bool = False
     outline_radius: float = 0.005
+    outline_radius_share: float = 3.0
     make_cut: bool = False  # a copy of the mesh with the outlines cut in
     write_attributes: bool = False
 

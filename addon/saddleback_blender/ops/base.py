@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from time import perf_counter
 from typing import Any
@@ -15,8 +16,10 @@ from ..bridge.outputs.out_collection import outputs_of
 from ..bridge.outputs.output_surface import has_own_faces
 from ..core import native, runs
 from ..core.errors import BadInputError
+from ..core.lengths import told_lengths, world_lengths
 from ..core.progress import Progress
-from ..props import fill_operator, note_call
+from ..core.requests import Surface
+from ..props import PROPERTIES, Settings, fill_operator, note_call
 
 # Seconds between looks at the thread: a run's end, and a progress step, are seen this late at most. ESC is an event of
 # its own and does not wait for it.
@@ -51,6 +54,8 @@ class SurfaceOperator(PolledOperator):
     keys = "ESC: stop"  # what the status bar says of a run
 
     _task: jobs.Task | None = None
+    _is_by_hand = False  # not by a script
+    _lengths: dict[str, Any]  # in world units, those that are given as shares
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], Any]:
         """Reads everything from Blender; returns the call that computes without it."""
@@ -63,6 +68,11 @@ class SurfaceOperator(PolledOperator):
     def notes(self, result: Any) -> list[str]:
         """Sentences to warn with after a run."""
         return []
+
+    def measured(self, settings: Settings, surface: Surface, count: int = 0) -> Settings:
+        """The settings with all lengths in world units; `count` is the number of cells, where there are cells."""
+        self._lengths = world_lengths(settings, surface, count)
+        return replace(settings, **self._lengths)
 
     def begin_look(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
         """Begins to show a run that goes on in a thread."""
@@ -138,7 +148,7 @@ class SurfaceOperator(PolledOperator):
     def _prepare(
         self, context: bpy.types.Context, is_by_hand: bool
     ) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
-        self._began, self._is_by_hand = perf_counter(), is_by_hand
+        self._began, self._is_by_hand, self._lengths = perf_counter(), is_by_hand, {}
         source = usable_source(context)
         self._called = fill_operator(self, source, self.settings_name, is_by_hand)
         native.load()
@@ -169,7 +179,8 @@ class SurfaceOperator(PolledOperator):
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
-        jobs.state.figures = self.figures(result)
+        labels = {name: prop.keywords["name"] for name, prop in PROPERTIES[self.settings_name].items()}
+        jobs.state.figures = [*told_lengths(self, self._lengths, labels), *self.figures(result)]
         for note in [*progress.notes, *self.notes(result), *_unseen(context, source)]:
             self.report({"WARNING"}, note)
         self.report({"INFO"}, jobs.state.line)

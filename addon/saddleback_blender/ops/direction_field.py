@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import bpy
@@ -45,9 +46,10 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
         names = {"direction_attribute": settings.direction_attribute}
         check_attribute_names(source, names, {"direction_attribute": "FLOAT_VECTOR"}, settings.domain)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
+            surface = read_surface(source, mesh)
             request = DirectionFieldRequest(
-                surface=read_surface(source, mesh),
-                settings=settings,
+                surface=surface,
+                settings=self.measured(settings, surface),
                 strokes=read_strokes(context, source, settings),
                 singularities=read_singularities(context, source, settings),
                 polygons=read_triangle_polygons(mesh) if settings.domain == "FACE" else None,
@@ -56,9 +58,10 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: FieldResult) -> str:
         """Writes the result into Blender."""
-        settings = settings_of(self, DirectionFieldSettings)
+        chosen = settings_of(self, DirectionFieldSettings)
+        settings = replace(chosen, **self._lengths)
         warning = shared_mesh_warning(source)
-        surface = output_surface(context, source, settings.use_modifiers)
+        surface = output_surface(context, source, settings.use_modifiers, "HIDE" if self._is_by_hand else "")
         write_directions(source, surface, settings.direction_attribute, result)
         if result.arrows is not None:
             write_arrows(context, source, result)
@@ -68,7 +71,7 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
             write_streamlines(context, source, result, settings.streamline_radius)
         else:
             remove_output(source, STREAMLINES_ROLE)
-        keep_settings(settings, "direction_field", source)
+        keep_settings(chosen, "direction_field", source)
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {KINDS[result.symmetry]}, {_told(result)}"

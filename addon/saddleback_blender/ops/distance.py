@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import bpy
@@ -46,9 +47,10 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
             source, {"distance_attribute": settings.distance_attribute}, {"distance_attribute": "FLOAT"}
         )
         with mesh_of(context, source, settings.use_modifiers) as mesh:
+            surface = read_surface(source, mesh)
             request = DistanceRequest(
-                surface=read_surface(source, mesh),
-                settings=settings,
+                surface=surface,
+                settings=self.measured(settings, surface),
                 sources=read_sources(context, source, mesh, settings),
                 threads=prefs.threads(context),
                 disk=prefs.disk_cache(context, settings.cache_on_disk),
@@ -57,9 +59,11 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: DistanceResult) -> str:
         """Writes the result into Blender."""
-        settings = settings_of(self, DistanceSettings)
+        chosen = settings_of(self, DistanceSettings)
+        settings = replace(chosen, **self._lengths)
         warning = shared_mesh_warning(source)
-        surface = output_surface(context, source, settings.use_modifiers)
+        aside = ("LIFT" if settings.make_preview else "HIDE") if self._is_by_hand else ""
+        surface = output_surface(context, source, settings.use_modifiers, aside)
         distances = result.vertex_distance
         write_vertex_attributes(surface, {settings.distance_attribute: distances.astype(np.float32)})
         reached = np.isfinite(distances)
@@ -73,7 +77,7 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
             show_preview(surface, settings.distance_attribute, farthest, spacing)
         else:
             hide_preview(surface)
-        keep_settings(settings, "distance", source)
+        keep_settings(chosen, "distance", source)
         if warning:
             self.report({"WARNING"}, warning)
         lines = "" if result.isolines is None else f", {_count(len(set(result.isolines.level)), 'isoline')}"

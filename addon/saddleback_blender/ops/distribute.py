@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import bpy
@@ -63,16 +64,19 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
             names = {"shape_attribute": SHAPE_ATTRIBUTE, "distance_attribute": OUTLINE_DISTANCE, "uv": SHAPE_UV}
             types = {"shape_attribute": "INT", "distance_attribute": "FLOAT", "uv": "FLOAT2"}
             check_attribute_names(source, names, types)
-        request = _request(context, source, settings)
+        request = _request(self, context, source, settings)
         self._templates = request.templates
         return partial(distribute_runs.distribute, request)
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: DistributeResult) -> str:
         """Writes the result into Blender."""
-        settings = settings_of(self, DistributeSettings)
+        chosen = settings_of(self, DistributeSettings)
+        settings = replace(chosen, **self._lengths)
         warning = shared_mesh_warning(source) if settings.write_attributes else ""
         if result.values is not None:
-            write_shape_values(output_surface(context, source, settings.use_modifiers), result)
+            write_shape_values(
+                output_surface(context, source, settings.use_modifiers, "HIDE" if self._is_by_hand else ""), result
+            )
         if result.bent is not None:
             write_bent(context, source, result, self._templates, settings)
         else:
@@ -90,7 +94,7 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
             write_cut(context, source, result, self._templates, settings)
         else:
             remove_output(source, CUT_ROLE)
-        keep_settings(settings, "distribute", source)
+        keep_settings(chosen, "distribute", source)
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {result.text}"
@@ -117,7 +121,7 @@ class SADDLEBACK_OT_check_distribution(SurfaceOperator, bpy.types.Operator):
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CheckResult]:
         """Reads everything from Blender."""
-        return partial(distribute_runs.check, _request(context, source, settings_of(self, DistributeSettings)))
+        return partial(distribute_runs.check, _request(self, context, source, settings_of(self, DistributeSettings)))
 
     def write(self, _context: bpy.types.Context, source: bpy.types.Object, result: CheckResult) -> str:
         """Changes nothing; tells."""
@@ -150,13 +154,15 @@ class SADDLEBACK_OT_make_real(HelperOperator, bpy.types.Operator):
         return f"'{source.name}': {count} objects"
 
 
-def _request(context: bpy.types.Context, source: bpy.types.Object, settings: DistributeSettings) -> DistributeRequest:
+def _request(
+    operator: SurfaceOperator, context: bpy.types.Context, source: bpy.types.Object, settings: DistributeSettings
+) -> DistributeRequest:
     """Reads everything from Blender."""
     with mesh_of(context, source, settings.use_modifiers) as mesh:
         surface = read_surface(source, mesh)
         return DistributeRequest(
             surface=surface,
-            settings=settings,
+            settings=operator.measured(settings, surface, settings.count),
             templates=read_templates(context, source, settings),
             density=read_density(source, mesh, settings),
             field=_read_field(context, source, mesh, settings, surface),

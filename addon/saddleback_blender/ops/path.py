@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import bpy
@@ -36,9 +37,10 @@ class SADDLEBACK_OT_path(SurfaceOperator, bpy.types.Operator):
         """Reads everything from Blender."""
         settings = settings_of(self, PathSettings)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
+            surface = read_surface(source, mesh)
             request = PathRequest(
-                surface=read_surface(source, mesh),
-                settings=settings,
+                surface=surface,
+                settings=self.measured(settings, surface),
                 points=read_path_points(context, source, mesh, settings),
                 threads=prefs.threads(context),
                 disk=prefs.disk_cache(context, settings.cache_on_disk),
@@ -47,9 +49,10 @@ class SADDLEBACK_OT_path(SurfaceOperator, bpy.types.Operator):
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: PathsResult) -> str:
         """Writes the result into Blender."""
-        settings = settings_of(self, PathSettings)
+        chosen = settings_of(self, PathSettings)
+        settings = replace(chosen, **self._lengths)
         write_paths(context, source, result, settings.path_radius, settings.lift)
-        keep_settings(settings, "path", source)
+        keep_settings(chosen, "path", source)
         return f"'{source.name}': {_told(result)}"
 
 

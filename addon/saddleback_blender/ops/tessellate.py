@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -54,13 +55,35 @@ class CellsOperator(SurfaceOperator):
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
         """Reads everything from Blender."""
-        return _gather(context, source, settings_of(self, TessellateSettings))
+        return self._gather(context, source, None)
+
+    def _gather(
+        self, context: bpy.types.Context, source: bpy.types.Object, live: LiveCells | None
+    ) -> Callable[[Progress], CellsResult]:
+        settings = settings_of(self, TessellateSettings)
+        _check(source, settings)
+        with mesh_of(context, source, settings.use_modifiers) as mesh:
+            surface = read_surface(source, mesh)
+            sites = read_sites(context, source, mesh, settings)
+            request = TessellateRequest(
+                surface=surface,
+                settings=self.measured(settings, surface, settings.count if sites is None else len(sites)),
+                density=read_density(source, mesh, settings),
+                sites=sites,
+                marked_edges=read_marked_edges(mesh) if settings.hold_marked else None,
+                threads=prefs.threads(context),
+                disk=prefs.disk_cache(context, settings.cache_on_disk),
+                find_crossings=find_crossings,
+                live=live,
+            )
+        return partial(runs.tessellate, request)
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: CellsResult) -> str:
         """Writes the result into Blender."""
-        settings = settings_of(self, TessellateSettings)
+        chosen = settings_of(self, TessellateSettings)
+        settings = replace(chosen, **self._lengths)
         warning = shared_mesh_warning(source)
-        surface = output_surface(context, source, settings.use_modifiers)
+        surface = output_surface(context, source, settings.use_modifiers, "HIDE" if self._is_by_hand else "")
         values: dict[str, np.ndarray[Any, Any]] = {
             settings.cell_attribute: result.vertex_cell.astype(np.int32, copy=False),
             settings.distance_attribute: result.vertex_distance.astype(np.float32),
@@ -82,7 +105,7 @@ class CellsOperator(SurfaceOperator):
                 write(context, source, result, settings)
             else:
                 remove_output(source, role)
-        keep_settings(settings, "tessellate", source)
+        keep_settings(chosen, "tessellate", source)
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(source)}{_added(result)}"
@@ -121,11 +144,12 @@ class SADDLEBACK_OT_relax_live(CellsOperator, bpy.types.Operator):
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
         """Reads everything from Blender."""
         self._live = LiveCells()
-        return _gather(context, source, settings_of(self, TessellateSettings), self._live)
+        return self._gather(context, source, self._live)
 
     def begin_look(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
         """Makes the object that shows the cells."""
-        self._preview = LivePreview(context, source, self.edge_radius)
+        radius = self._lengths["edge_radius"] if self._lengths else self.edge_radius
+        self._preview = LivePreview(context, source, radius)
 
     def look(self) -> None:
         """Shows the latest cells."""
@@ -140,25 +164,6 @@ class SADDLEBACK_OT_relax_live(CellsOperator, bpy.types.Operator):
     def keeps(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """ENTER, or a click into a 3D view."""
         return _keeps(context, event)
-
-
-def _gather(
-    context: bpy.types.Context, source: bpy.types.Object, settings: TessellateSettings, live: LiveCells | None = None
-) -> Callable[[Progress], CellsResult]:
-    _check(source, settings)
-    with mesh_of(context, source, settings.use_modifiers) as mesh:
-        request = TessellateRequest(
-            surface=read_surface(source, mesh),
-            settings=settings,
-            density=read_density(source, mesh, settings),
-            sites=read_sites(context, source, mesh, settings),
-            marked_edges=read_marked_edges(mesh) if settings.hold_marked else None,
-            threads=prefs.threads(context),
-            disk=prefs.disk_cache(context, settings.cache_on_disk),
-            find_crossings=find_crossings,
-            live=live,
-        )
-    return partial(runs.tessellate, request)
 
 
 def _keeps(context: bpy.types.Context, event: bpy.types.Event) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import bpy
@@ -49,9 +50,14 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
         _check(source, settings)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
             sites, weights = read_voronoi_sites(context, source, mesh, settings)
+            surface = read_surface(source, mesh)
+            sized = self.measured(settings, surface, settings.count if sites is None else len(sites))
+            if weights is not None and settings.lengths == "RELATIVE":  # such cells can have none of these
+                self._lengths |= {"gap": 0.0, "inset": 0.0, "thickness": 0.0}
+                sized = replace(sized, **self._lengths)
             request = Voronoi2dRequest(
-                surface=read_surface(source, mesh),
-                settings=settings,
+                surface=surface,
+                settings=sized,
                 polygons=read_triangle_polygons(mesh),
                 uv=read_uv(source, mesh, settings.uv_name) if settings.space == "UV" else None,
                 is_mirrored=source.matrix_world.determinant() < 0,
@@ -64,7 +70,8 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: Voronoi2dResult) -> str:
         """Writes the result into Blender."""
-        settings = settings_of(self, Voronoi2dSettings)
+        chosen = settings_of(self, Voronoi2dSettings)
+        settings = replace(chosen, **self._lengths)
         _write_edges(context, source, result, settings)
         _write_cells(context, source, result, settings)
         if settings.make_centers:
@@ -75,7 +82,7 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
             write_sweep(context, source, result.sweep, settings)
         else:
             remove_sweep(source)
-        keep_settings(settings, "voronoi_2d", source)
+        keep_settings(chosen, "voronoi_2d", source)
         return f"'{source.name}': {_told(result)}{_lost(source)}"
 
 

@@ -10,10 +10,11 @@ from dataclasses import fields
 from typing import Any, TypeVar
 
 import bpy
-from bpy.props import PointerProperty, StringProperty
+from bpy.props import IntProperty, PointerProperty, StringProperty
 
 from .. import rollback
 from ..blocks import find, name_of
+from ..core.lengths import SHARE
 from ..core.settings import (
     DirectionFieldSettings,
     DistanceSettings,
@@ -23,14 +24,14 @@ from ..core.settings import (
     TessellateSettings,
     Voronoi2dSettings,
 )
-from . import overrides
-from .direction_field import DIRECTION_FIELD
+from . import old_files, overrides
+from .direction_field import DIRECTION_FIELD, DIRECTION_FIELD_BEGIN
 from .distance import DISTANCE, DISTANCE_BEGIN
-from .distribute import DISTRIBUTE
+from .distribute import DISTRIBUTE, DISTRIBUTE_BEGIN
 from .path import PATH, PATH_BEGIN
 from .repair import REPAIR
-from .tessellate import TESSELLATE
-from .voronoi_2d import VORONOI_2D
+from .tessellate import TESSELLATE, TESSELLATE_BEGIN
+from .voronoi_2d import VORONOI_2D, VORONOI_2D_BEGIN
 
 Settings = TypeVar(
     "Settings",
@@ -67,7 +68,14 @@ PROPERTIES = {
     "repair": REPAIR,
 }
 # What the panel begins with where that is better than what a script gets that names nothing: its defaults never change.
-BEGIN: dict[str, dict[str, Any]] = {"distance": DISTANCE_BEGIN, "path": PATH_BEGIN}
+BEGIN: dict[str, dict[str, Any]] = {
+    "tessellate": TESSELLATE_BEGIN,
+    "distance": DISTANCE_BEGIN,
+    "path": PATH_BEGIN,
+    "voronoi_2d": VORONOI_2D_BEGIN,
+    "direction_field": DIRECTION_FIELD_BEGIN,
+    "distribute": DISTRIBUTE_BEGIN,
+}
 
 
 def _kept(settings_name: str) -> dict[str, Any]:
@@ -146,6 +154,7 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
         "direction_field": PointerProperty(type=SaddlebackDirectionFieldProps),
         "distribute": PointerProperty(type=SaddlebackDistributeProps),
         "repair": PointerProperty(type=SaddlebackRepairProps),
+        "layout_number": IntProperty(name="Layout", description="Of these settings", options={"HIDDEN"}),
     }
 
 
@@ -175,7 +184,8 @@ def fill_operator(
         for name, value in BEGIN.get(settings_name, {}).items():
             if name not in called:
                 setattr(operator, name, value)
-    group = _existing_group(source, settings_name)
+    group = existing_group(source, settings_name)
+    called = _with_unit(operator, called)
     if group is None:
         return called
     left = _left_by_call(group) if called else {}
@@ -187,9 +197,21 @@ def fill_operator(
     return called
 
 
+def _with_unit(operator: bpy.types.Operator, called: tuple[str, ...]) -> tuple[str, ...]:
+    """A call that names a length, or a share, and not how lengths are given, says that by the name."""
+    if "lengths" in called:
+        return called
+    shares = [name for name in called if name.endswith(SHARE)]
+    absolute = [name for name in called if hasattr(operator, name + SHARE)]
+    if not shares and not absolute:
+        return called
+    operator.lengths = "ABSOLUTE" if absolute else "RELATIVE"
+    return (*called, "lengths")
+
+
 def note_call(source: bpy.types.Object, settings_name: str, called: tuple[str, ...], is_by_hand: bool) -> None:
     """Notes which of the kept values a script's call has set; none where they were chosen by hand."""
-    group = _existing_group(source, settings_name)
+    group = existing_group(source, settings_name)
     if group is None:
         return
     before = {name: value for name, value in _left_by_call(group).items() if value == _plain(group, name)}
@@ -212,7 +234,7 @@ def keep_settings(settings: Settings, settings_name: str, source: bpy.types.Obje
             _set_plain(group, field.name, value)
 
 
-def _existing_group(source: bpy.types.Object, settings_name: str) -> bpy.types.PropertyGroup | None:
+def existing_group(source: bpy.types.Object, settings_name: str) -> bpy.types.PropertyGroup | None:
     """Asks before it looks: reading a group or a pointer for the first time stores an empty one in the file."""
     if not source.is_property_set("saddleback") or not source.saddleback.is_property_set(settings_name):
         return None
@@ -244,7 +266,7 @@ def _blocks(name: str) -> Any:
 
 def kept_settings(source: bpy.types.Object, settings_name: str, kind: type[Settings]) -> Settings:
     """The settings that the object keeps, or the defaults."""
-    group = _existing_group(source, settings_name)
+    group = existing_group(source, settings_name)
     if group is None:
         return kind()
     return kind(
@@ -259,7 +281,7 @@ def settings_of(operator: bpy.types.Operator, kind: type[Settings]) -> Settings:
 
 def told_settings(source: bpy.types.Object) -> dict[str, dict[str, Any]]:
     """Returns what the object keeps, by operator and name."""
-    groups = {name: _existing_group(source, name) for name in PROPERTIES}
+    groups = {name: existing_group(source, name) for name in PROPERTIES}
     return {
         name: {prop: _plain(group, prop) for prop in (*PROPERTIES[name], CALL) if group.is_property_set(prop)}
         for name, group in groups.items()
@@ -282,10 +304,12 @@ def register() -> None:
         bpy.utils.register_class(cls)
     bpy.types.Object.saddleback = PointerProperty(type=SaddlebackObjectProps)
     overrides.register()
+    old_files.register()
 
 
 def unregister() -> None:
     """Takes it back, in the opposite order."""
+    old_files.unregister()
     overrides.unregister()
     del bpy.types.Object.saddleback
     for cls in reversed(CLASSES):

@@ -42,6 +42,12 @@ DENSITY: dict[str, Any] = {
         max=100.0, soft_max=1.0, options={"SKIP_SAVE"},
     ),
     "density_invert": switch("Invert", "High where little is painted, and low where much is", False),
+    "density_smaller_by": FloatProperty(
+        name="Smaller By",
+        description="Cells are so many times smaller where the paint is full, and as they are without it where nothing "
+        "is painted; 0 makes cells per area proportional to the paint, and none where nothing is painted",
+        default=0.0, min=0.0, max=100.0, soft_max=20.0, precision=1, step=10, options={"SKIP_SAVE"},
+    ),
     "density_contrast": FloatProperty(
         name="Contrast",
         description="Exponent of the density: 1 makes cells per area proportional to the paint, 0 ignores the paint",
@@ -51,3 +57,4 @@ DENSITY: dict[str, Any] = {
         options={"SKIP_SAVE"},
     ),
 }  # fmt: skip
+DENSITY_BEGIN: dict[str, Any] = {"density_smaller_by": 4.0}

@@ -6,7 +6,7 @@ from typing import Any
 
 from bpy.props import FloatProperty, IntProperty
 
-from .kinds import choice, length, name_of, switch, use_modifiers
+from .kinds import choice, length, lengths, name_of, share, switch, use_modifiers
 from .tessellate import TESSELLATE
 
 SYMMETRIES = (
@@ -76,6 +76,9 @@ DIRECTION_FIELD: dict[str, Any] = {
         "Spacing", "Distance between lines; 0 means a fiftieth of the surface's extent", 0.0
     ),
     "streamline_length": length("Longest", "Length of the longest lines; 0 means thirty times their distance", 0.0),
+    "lengths": lengths("the model's extent"),
     "streamline_radius": length("Radius", "Half the thickness of the lines", 0.005),
+    "streamline_radius_share": share("Radius", "Half the thickness of the lines, in percent of the extent", 0.2),
     "seed": TESSELLATE["seed"],
 }  # fmt: skip
+DIRECTION_FIELD_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE"}

@@ -6,7 +6,20 @@ from typing import Any
 
 from bpy.props import IntProperty
 
-from .kinds import EXACT_QUALITY, QUALITIES, choice, detail, length, name_of, on_disk, quality, switch, use_modifiers
+from .kinds import (
+    EXACT_QUALITY,
+    QUALITIES,
+    choice,
+    detail,
+    length,
+    lengths,
+    name_of,
+    on_disk,
+    quality,
+    share,
+    switch,
+    use_modifiers,
+)
 
 DISTANCE_SOURCES = (
     ("SELECTED", "Selected Vertices", "Vertices selected in Edit Mode"),
@@ -48,9 +61,17 @@ DISTANCE: dict[str, Any] = {
         options={"SKIP_SAVE"},
     ),
     "isoline_spacing": length("Spacing", "Distance from one isoline to the next", 0.1, least=1e-6),
+    "lengths": lengths("the model's extent"),
     "isoline_radius": length("Radius", "Half the thickness of the isolines", 0.005),
+    "isoline_radius_share": share("Radius", "Half the thickness of the isolines, in percent of the extent", 0.25),
     "make_preview": switch("Preview", "Show the distances in colors; the object's own materials are kept", False),
     "preview_lines": switch("Lines", "Show lines of equal distance in the preview, too", True),
     "distance_attribute": name_of("Attribute", "Where distances are written", "saddleback_distance"),
 }
-DISTANCE_BEGIN: dict[str, Any] = {"sources": "CURSOR", "make_isolines": True, "make_preview": True}
+DISTANCE_BEGIN: dict[str, Any] = {
+    "sources": "CURSOR",
+    "use_modifiers": True,
+    "make_isolines": True,
+    "make_preview": True,
+    "lengths": "RELATIVE",
+}

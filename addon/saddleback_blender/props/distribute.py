@@ -6,8 +6,8 @@ from typing import Any
 
 from bpy.props import FloatProperty, IntProperty
 
-from .density import DENSITY
-from .kinds import choice, length, name_of, switch, use_modifiers
+from .density import DENSITY, DENSITY_BEGIN
+from .kinds import choice, length, lengths, name_of, share, switch, use_modifiers
 from .tessellate import TESSELLATE
 
 SHAPES = (
@@ -43,7 +43,9 @@ DISTRIBUTE: dict[str, Any] = {
         max=0.95, subtype="FACTOR", options={"SKIP_SAVE"},
     ),
     "size_by_density": switch("Size by Density", "Shapes are small where the density is high", False),
+    "lengths": lengths("the size of the place that a shape has"),
     "gap": length("Gap", "Least distance from shape to shape", 0.0),
+    "gap_share": share("Gap", "Least distance from shape to shape, in percent of the place that one has", 0.0),
     "packing": FloatProperty(
         name="Packing", description="0 scatters shapes by chance, 1 lays them side by side, which makes room for more",
         default=1.0, min=0.0, max=1.0, subtype="FACTOR", options={"SKIP_SAVE"},
@@ -70,6 +72,9 @@ DISTRIBUTE: dict[str, Any] = {
     ),
     "make_outlines": switch("Outlines", "Make a curve object of the shapes' outlines", False),
     "outline_radius": length("Radius", "Half the thickness of the outlines", 0.005),
+    "outline_radius_share": share(
+        "Radius", "Half the thickness of the outlines, in percent of the place that a shape has", 3.0
+    ),
     "make_cut": switch(
         "Cut Mesh", "Make a copy of the mesh with the outlines cut in; its faces know their shape, show its material",
         False,
@@ -78,3 +83,4 @@ DISTRIBUTE: dict[str, Any] = {
         "Attributes", "Write on the mesh whose outline is nearest, how far it is, and where in the shape one is", False
     ),
 }  # fmt: skip
+DISTRIBUTE_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE", **DENSITY_BEGIN}

@@ -60,6 +60,23 @@ def length(label: str, description: str, default: float, least: float = 0.0) -> 
     )  # fmt: skip
 
 
+def share(label: str, description: str, default: float) -> Any:
+    """A length in percent of another."""
+    return FloatProperty(
+        name=label, description=description, default=default, min=0.0, soft_max=100.0, precision=2, step=10,
+        subtype="PERCENTAGE", options={"SKIP_SAVE"},
+    )  # fmt: skip
+
+
+def lengths(of_what: str) -> Any:
+    """How lengths are given."""
+    items = (
+        ("RELATIVE", "Relative", f"In percent of {of_what}"),
+        ("ABSOLUTE", "World Units", "As they are, whatever the size of the model"),
+    )
+    return choice("Lengths", "How widths and heights are given", items, "ABSOLUTE")
+
+
 def switch(label: str, description: str, default: bool) -> Any:
     """Yes or no."""
     return BoolProperty(name=label, description=description, default=default, options={"SKIP_SAVE"})

@@ -5,7 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from .distance import DISTANCE_SOURCES
-from .kinds import EXACT_QUALITY, QUALITIES, choice, detail, length, name_of, on_disk, quality, switch, use_modifiers
+from .kinds import (
+    EXACT_QUALITY,
+    QUALITIES,
+    choice,
+    detail,
+    length,
+    lengths,
+    name_of,
+    on_disk,
+    quality,
+    share,
+    switch,
+    use_modifiers,
+)
 
 PATH_POINTS = (
     *DISTANCE_SOURCES[:3],
@@ -28,7 +41,10 @@ PATH: dict[str, Any] = {
     "k": detail(),
     "cache_on_disk": on_disk(),
     "use_modifiers": use_modifiers(),
+    "lengths": lengths("the model's extent"),
     "path_radius": length("Radius", "Half the thickness of the paths", 0.01),
+    "path_radius_share": share("Radius", "Half the thickness of the paths, in percent of the extent", 0.4),
     "lift": length("Lift", "How far the paths run above the surface", 0.0),
+    "lift_share": share("Lift", "How far the paths run above the surface, in percent of the extent", 0.0),
 }
-PATH_BEGIN: dict[str, Any] = {"points": "CURSOR"}
+PATH_BEGIN: dict[str, Any] = {"points": "CURSOR", "use_modifiers": True, "lengths": "RELATIVE"}

@@ -7,8 +7,8 @@ from typing import Any
 
 from bpy.props import FloatProperty, IntProperty
 
-from .density import DENSITY
-from .kinds import choice, detail, length, name_of, on_disk, quality, switch, use_modifiers
+from .density import DENSITY, DENSITY_BEGIN
+from .kinds import choice, detail, length, lengths, name_of, on_disk, quality, share, switch, use_modifiers
 
 SITES_SOURCES = (
     ("COUNT", "Count", "Place this many sites, by the density"),
@@ -83,13 +83,18 @@ TESSELLATE: dict[str, Any] = {
     "k": detail(),
     "cache_on_disk": on_disk(),
     "use_modifiers": use_modifiers(),
+    "lengths": lengths("a cell's size: the side of a square of its area"),
     "make_edges": switch("Edges", "Make an object of the lines between cells", True),
     "edge_kind": choice("Edge Object", "What the lines between cells become", EDGE_KINDS, "MESH"),
     "edge_radius": length("Radius", "Half the thickness of the lines between cells", 0.01),
+    "edge_radius_share": share("Radius", "Half the thickness of the lines, in percent of a cell's size", 4.0),
     "make_cells": switch("Cells", "Make a mesh of the cells", False),
     "gap": length("Gap", "Width of the gap between neighboring cells", 0.0),
+    "gap_share": share("Gap", "Width of the gap between neighboring cells, in percent of a cell's size", 8.0),
     "inset": length("Bevel", "Width of the sloping rim of each cell; it rises by the thickness", 0.0),
+    "inset_share": share("Bevel", "Width of the sloping rim of each cell, in percent of a cell's size", 10.0),
     "thickness": length("Thickness", "How far the cells stand out of the surface", 0.0),
+    "thickness_share": share("Thickness", "How far the cells stand out, in percent of a cell's size", 8.0),
     "underside": switch("Closed Below", "Close each cell from below, as a 3D printer needs it", False),
     "local_uv": switch("Local UV", "Give each cell of the mesh a UV map of its own, for materials that repeat", False),
     "make_centers": switch("Centers", "Make an object of points at the cells' centers", False),
@@ -114,11 +119,13 @@ TESSELLATE: dict[str, Any] = {
     "rib_width": length(
         "Rib Width", "How wide the ribs of the lamp shell are, along the surface; 0: by the cells' size", 0.0
     ),
+    "rib_width_share": share("Rib Width", "How wide the ribs are, in percent of a cell's size", 12.5),
     "rib_thickness": length(
         "Rib Thickness",
         "How thick the lamp shell is, half of it to either side of the surface; 0: as thick as wide",
         0.0,
     ),
+    "rib_thickness_share": share("Rib Thickness", "How thick the lamp shell is, in percent of a cell's size", 12.5),
     "cell_attribute": name_of("Cell Attribute", "Where each vertex's cell is written", "saddleback_cell"),
     "distance_attribute": name_of("Distance Attribute", "Where distances are written", "saddleback_distance"),
     "density_attribute": name_of("Density Attribute", "Where the density used is written", "saddleback_density"),
@@ -127,3 +134,4 @@ TESSELLATE: dict[str, Any] = {
         "Edge Distance Attribute", "Where distances to the cells' edges are written", "saddleback_edge_distance"
     ),
 }
+TESSELLATE_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE", **DENSITY_BEGIN}

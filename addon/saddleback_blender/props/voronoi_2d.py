@@ -40,13 +40,18 @@ VORONOI_2D: dict[str, Any] = {
         options={"SKIP_SAVE"},
     ),
     "use_modifiers": use_modifiers(),
+    "lengths": TESSELLATE["lengths"],
     "make_edges": TESSELLATE["make_edges"],
     "edge_kind": TESSELLATE["edge_kind"],
     "edge_radius": TESSELLATE["edge_radius"],
+    "edge_radius_share": TESSELLATE["edge_radius_share"],
     "make_cells": switch("Cells", "Make a mesh of the cells", True),
     "gap": TESSELLATE["gap"],
+    "gap_share": TESSELLATE["gap_share"],
     "inset": TESSELLATE["inset"],
+    "inset_share": TESSELLATE["inset_share"],
     "thickness": TESSELLATE["thickness"],
+    "thickness_share": TESSELLATE["thickness_share"],
     "underside": TESSELLATE["underside"],
     "make_centers": switch("Centers", "Make an object of points at the sites", False),
     "instance_object": TESSELLATE["instance_object"],
@@ -59,3 +64,4 @@ VORONOI_2D: dict[str, Any] = {
         name="End", description="Frame in which all edges are there", default=120, options={"SKIP_SAVE"}
     ),
 }
+VORONOI_2D_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE"}

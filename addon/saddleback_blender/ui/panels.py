@@ -119,6 +119,7 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
         rows.draw_sites(layout.column(), settings)
         rows.draw_quality(layout, settings)
         layout.prop(settings, "use_modifiers")
+        layout.prop(settings, "lengths")
 
 
 class SADDLEBACK_PT_density(SaddlebackSubPanel, bpy.types.Panel):
@@ -233,6 +234,7 @@ class SADDLEBACK_PT_distance(SaddlebackSubPanel, bpy.types.Panel):
         rows.draw_distance_sources(layout.column(), settings, item)
         rows.draw_quality(layout, settings)
         layout.prop(settings, "use_modifiers")
+        layout.prop(settings, "lengths")
         layout.prop(settings, "distance_attribute")
 
 
@@ -284,8 +286,9 @@ class SADDLEBACK_PT_path(SaddlebackSubPanel, bpy.types.Panel):
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.path", "CURVE_PATH")
         rows.draw_path_points(layout.column(), settings, item)
-        layout.prop(settings, "path_radius")
-        layout.prop(settings, "lift")
+        layout.prop(settings, "lengths")
+        rows.draw_length(layout, settings, "path_radius")
+        rows.draw_length(layout, settings, "lift")
         row = layout.row()
         row.active = settings.k > 0 or settings.quality != "EXACT"  # exact paths are straight
         row.prop(settings, "shorten")
@@ -307,6 +310,7 @@ class SADDLEBACK_PT_voronoi_2d(SaddlebackSubPanel, bpy.types.Panel):
         _draw_button(layout, context, "saddleback.voronoi_2d", "MESH_GRID")
         rows.draw_plane_sites(layout.column(), settings, item)
         layout.prop(settings, "use_modifiers")
+        layout.prop(settings, "lengths")
 
 
 class SaddlebackPlaneOutputPanel(SaddlebackSubPanel):
@@ -381,6 +385,7 @@ class SADDLEBACK_PT_direction_field(SaddlebackSubPanel, bpy.types.Panel):
         rows.draw_pens(layout)
         rows.draw_field(layout.column(), settings)
         layout.prop(settings, "use_modifiers")
+        layout.prop(settings, "lengths")
         layout.prop(settings, "direction_attribute")
         layout.prop(settings, "domain")
 
@@ -434,6 +439,7 @@ class SADDLEBACK_PT_distribute(SaddlebackSubPanel, bpy.types.Panel):
         _draw_button(layout, context, "saddleback.distribute", "STICKY_UVS_DISABLE")
         rows.draw_shapes(layout.column(), settings, item)
         layout.prop(settings, "use_modifiers")
+        layout.prop(settings, "lengths")
         layout.operator("saddleback.check_distribution", icon="CHECKMARK")
 
 
@@ -472,7 +478,7 @@ class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
         layout.prop(settings, "make_outlines")
         row = layout.row()
         row.active = settings.make_outlines
-        row.prop(settings, "outline_radius")
+        rows.draw_length(row, settings, "outline_radius")
         layout.prop(settings, "make_cut")
         row = layout.row()
         row.active = any((settings.make_bent, settings.make_instances, settings.make_outlines, settings.make_cut))

@@ -66,6 +66,8 @@ def draw_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Obje
         layout.prop(settings, "density_beyond")
     if source in ("COLOR", "IMAGE"):
         layout.prop(settings, "density_channel")
+    if source not in ("UNIFORM", "CURVATURE", "DISTANCE"):
+        layout.prop(settings, "density_smaller_by")
     if source != "UNIFORM":
         layout.prop(settings, "density_invert")
         layout.prop(settings, "density_contrast")
@@ -86,21 +88,31 @@ def draw_pens(layout: bpy.types.UILayout) -> None:
     row.operator("saddleback.draw_strokes", text="Curves", icon="CURVE_BEZCURVE").pen = "CURVE"
 
 
+def is_relative(settings: Any) -> bool:
+    """Tells whether lengths are given as shares."""
+    return bool(settings.lengths == "RELATIVE")
+
+
+def draw_length(layout: bpy.types.UILayout, settings: Any, name: str, text: str | None = None) -> None:
+    """A length in the unit that is chosen."""
+    layout.prop(settings, f"{name}_share" if is_relative(settings) else name, text=text)
+
+
 def draw_edges(layout: bpy.types.UILayout, settings: Any) -> None:
     """The object of the lines between cells."""
     layout.active = settings.make_edges
     layout.prop(settings, "edge_kind", text="Kind")
-    layout.prop(settings, "edge_radius")
+    draw_length(layout, settings, "edge_radius")
 
 
 def draw_cells(layout: bpy.types.UILayout, settings: Any) -> None:
     """The mesh of the cells."""
     layout.active = settings.make_cells
-    layout.prop(settings, "gap")
-    layout.prop(settings, "thickness")
+    draw_length(layout, settings, "gap")
+    draw_length(layout, settings, "thickness")
     column = layout.column()
-    column.active = settings.thickness > 0.0
-    column.prop(settings, "inset")
+    column.active = (settings.thickness_share if is_relative(settings) else settings.thickness) > 0.0
+    draw_length(column, settings, "inset")
     column.prop(settings, "underside")
     if hasattr(settings, "local_uv"):  # cells of the plane have none
         layout.prop(settings, "local_uv")
@@ -125,8 +137,8 @@ def draw_dual(layout: bpy.types.UILayout, settings: Any) -> None:
 def draw_shell(layout: bpy.types.UILayout, settings: Any) -> None:
     """The printable ribs."""
     layout.active = settings.make_shell
-    layout.prop(settings, "rib_width", text="Width")
-    layout.prop(settings, "rib_thickness", text="Thickness")
+    draw_length(layout, settings, "rib_width", "Width")
+    draw_length(layout, settings, "rib_thickness", "Thickness")
 
 
 def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:
@@ -218,7 +230,7 @@ def draw_streamlines(layout: bpy.types.UILayout, settings: Any) -> None:
     layout.active = settings.make_streamlines
     layout.prop(settings, "streamline_spacing")
     layout.prop(settings, "streamline_length")
-    layout.prop(settings, "streamline_radius")
+    draw_length(layout, settings, "streamline_radius")
 
 
 def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
@@ -235,7 +247,7 @@ def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Objec
     column = layout.column(align=True)
     column.prop(settings, "size")
     column.prop(settings, "size_variation")
-    layout.prop(settings, "gap")
+    draw_length(layout, settings, "gap")
     layout.prop(settings, "packing")
     layout.prop(settings, "mirror")
     row = layout.row()
@@ -278,7 +290,7 @@ def draw_isolines(layout: bpy.types.UILayout, settings: Any) -> None:
     layout.prop(settings, "isoline_count" if settings.isolines_by == "COUNT" else "isoline_spacing")
     column = layout.column()
     column.active = settings.make_isolines
-    column.prop(settings, "isoline_radius")
+    draw_length(column, settings, "isoline_radius")
 
 
 def draw_path_points(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:

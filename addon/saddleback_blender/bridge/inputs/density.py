@@ -54,7 +54,9 @@ def read_density(source: bpy.types.Object, mesh: bpy.types.Mesh, settings: Densi
     else:
         values, label = read_mask(source, mesh)
     try:
-        return density_maths.shape(values, settings.density_invert, settings.density_contrast, upper)
+        return density_maths.shape(
+            values, settings.density_invert, settings.density_contrast, upper, settings.density_smaller_by
+        )
     except DensityError as error:
         raise BadInputError(f"'{source.name}': {label} {error}") from error
 

@@ -13,10 +13,17 @@ from .out_attributes import recorded
 from .out_collection import find_output, replace_object
 
 SURFACE_ROLE = "surface"
+HAIR = 5e-4  # of the longest side of the mesh: what is enough for a surface to hide another one
 
 
-def output_surface(context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool) -> bpy.types.Object:
-    """The object whose mesh has the vertices that were read: the source, unless its own are others or are linked."""
+def output_surface(
+    context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool, aside: str = ""
+) -> bpy.types.Object:
+    """The object whose mesh has the vertices that were read: the source, unless its own are others or are linked.
+
+    A new one lies on what the source shows and would fight with it for every pixel: `aside` "HIDE" hides it at first,
+    "LIFT" lifts it by a hair.
+    """
     if is_editable(source.data) and (not use_modifiers or has_own_faces(context, source)):
         return source
     existing = find_output(source, SURFACE_ROLE)
@@ -28,7 +35,13 @@ def output_surface(context: bpy.types.Context, source: bpy.types.Object, use_mod
     mesh = bpy.data.meshes.new_from_object(
         source.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph
     )
-    return replace_object(context, source, SURFACE_ROLE, mesh)
+    item = replace_object(context, source, SURFACE_ROLE, mesh)
+    if aside == "HIDE" and existing is None:
+        item.hide_viewport = item.hide_render = True
+    elif aside == "LIFT" and existing is None:
+        lift = item.modifiers.new("Lift", "DISPLACE")
+        lift.mid_level, lift.strength = 0.0, HAIR * max(np.ptp(compat.read_positions(mesh), axis=0))
+    return item
 
 
 def check_attribute_names(

@@ -38,10 +38,14 @@ def average_to_vertices(
     return means.reshape((vertex_count, *values.shape[1:]))
 
 
-def shape(values: NDArray[np.floating], invert: bool, contrast: float, upper: float | None) -> Reals:
+def shape(
+    values: NDArray[np.floating], invert: bool, contrast: float, upper: float | None, smaller_by: float = 0.0
+) -> Reals:
     """Painted values -> density: inverted within 0 to `upper`, then raised to the power `contrast`.
 
     `upper` is the most that can be painted (1 for weights, masks and colors), None to take the largest value there is.
+    With `smaller_by` cells are so many times smaller, in length, where the most is painted, and the density is 1 where
+    nothing is.
     Raises DensityError for values that are negative, not finite, or zero everywhere.
     """
     density = values.astype(np.float64)
@@ -53,6 +57,9 @@ def shape(values: NDArray[np.floating], invert: bool, contrast: float, upper: fl
     with np.errstate(over="ignore"):
         density = density**contrast
     _check(density, "with this contrast is")
+    if smaller_by > 0.0:
+        most = float(density.max()) if upper is None else max(upper**contrast, float(density.max()))
+        density = (1.0 + (smaller_by - 1.0) * density / most) ** 2
     return density
 
 

@@ -1,0 +1,52 @@
+"""Lengths that are given as shares of a cell, or of the model where there are no cells, in world units."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from .requests import Surface
+from .settings import DistributeSettings, TessellateSettings, Voronoi2dSettings
+
+SHARE = "_share"  # ends the name of the setting that says a length in percent; the length's own name is before it
+RIB_SHARE = 0.125  # of a cell's size: the width of ribs where none is given
+# The switch of the output that a length belongs to.
+OUTPUTS = {
+    "edge_radius": "make_edges",
+    "gap": "make_cells",
+    "inset": "make_cells",
+    "thickness": "make_cells",
+    "rib_width": "make_shell",
+    "rib_thickness": "make_shell",
+    "isoline_radius": "make_isolines",
+    "streamline_radius": "make_streamlines",
+    "outline_radius": "make_outlines",
+}
+
+
+def world_lengths(settings: Any, surface: Surface, count: int) -> dict[str, Any]:
+    """Lengths by name in world units, those that the settings give as shares. `count` is the number of cells."""
+    if settings.lengths == "ABSOLUTE":
+        return {}
+    unit = _unit(settings, surface, count) / 100.0
+    shares = [name for name in vars(settings) if name.endswith(SHARE)]
+    return {name.removesuffix(SHARE): unit * getattr(settings, name) for name in shares}
+
+
+def _unit(settings: Any, surface: Surface, count: int) -> float:
+    """The length that is 100 %: the side of a square as large as a cell, or the diagonal of the model's box."""
+    if isinstance(settings, DistributeSettings) and settings.size > 0.0:
+        return 2.0 * settings.size
+    if isinstance(settings, (TessellateSettings, Voronoi2dSettings, DistributeSettings)):
+        return math.sqrt(surface.area / max(count, 1))
+    return surface.extent
+
+
+def told_lengths(settings: Any, lengths: dict[str, float], labels: dict[str, str]) -> list[str]:
+    """One line that tells the lengths of the outputs that were made, those of 0 left out."""
+    used = [
+        f"{labels[name]} {value:.3g}"
+        for name, value in lengths.items()
+        if value > 0.0 and getattr(settings, OUTPUTS.get(name, ""), True)
+    ]
+    return [f"In world units: {', '.join(used)}"] if used else []

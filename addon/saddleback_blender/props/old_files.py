@@ -1,0 +1,51 @@
+"""Files that version 0.1 wrote: what nobody chose there stays what it was before the panel began with other values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+from bpy.app.handlers import persistent
+
+LAYOUT = 1  # of the kept settings; in version 0.1 there was no number, which reads as 0
+
+
+def _own_objects() -> list[bpy.types.Object]:
+    """Those of this file that keep settings. An override's come from its text."""
+    candidates = (item for item in bpy.data.objects if item.library is None and item.override_library is None)
+    return [item for item in candidates if item.is_property_set("saddleback")]
+
+
+@persistent  # type: ignore[untyped-decorator]
+def mark(*_: Any) -> None:
+    """Says before a file is saved which layout its settings have."""
+    for item in _own_objects():
+        if item.saddleback.layout_number != LAYOUT:
+            item.saddleback.layout_number = LAYOUT
+
+
+@persistent  # type: ignore[untyped-decorator]
+def settle(*_: Any) -> None:
+    """Writes down after a file was opened what version 0.1 would have taken."""
+    from . import BEGIN, PROPERTIES, existing_group
+
+    for item in _own_objects():
+        if item.saddleback.layout_number != 0:
+            continue
+        for settings_name, begin in BEGIN.items():
+            group = existing_group(item, settings_name)
+            for name in begin:
+                if group is not None and not group.is_property_set(name):
+                    setattr(group, name, PROPERTIES[settings_name][name].keywords["default"])
+
+
+def register() -> None:
+    """Makes everything of this module known to Blender."""
+    bpy.app.handlers.save_pre.append(mark)
+    bpy.app.handlers.load_post.append(settle)
+
+
+def unregister() -> None:
+    """Takes it back, in the opposite order."""
+    bpy.app.handlers.load_post.remove(settle)
+    bpy.app.handlers.save_pre.remove(mark)

@@ -1,0 +1,143 @@
+"""What the panel begins with, and that scripts keep what they had: lengths by the cell, objects as they are seen."""
+
+import bpy
+import numpy as np
+import pytest
+from scenes import attribute, positions, select, sphere
+from test_modal import press, pressed_tessellate, run_to_end
+
+from saddleback_blender import jobs
+from saddleback_blender.bridge.outputs.out_collection import find_output
+from saddleback_blender.compat import modifier_input
+from saddleback_blender.core.settings import DistanceSettings, PathSettings
+from saddleback_blender.ops.distance import SADDLEBACK_OT_distance
+from saddleback_blender.ops.path import SADDLEBACK_OT_path
+from saddleback_blender.props import old_files
+
+QUICK = {"count": 40, "iterations": 2, "k": 30}
+
+
+def run(pair):
+    operator, context = pair
+    operator.invoke(context, None)
+    assert run_to_end(operator, context) == {"FINISHED"}, operator.messages
+
+
+def radius(item):
+    return modifier_input(find_output(item, "edges").modifiers[0], "Radius")
+
+
+@pytest.mark.parametrize("size", [0.06, 1.0, 120.0])
+def test_lengths_are_shares_of_a_cell_whatever_the_size_of_the_model(size):
+    item = sphere(radius=size)
+    bpy.context.view_layer.update()
+    run(pressed_tessellate(**QUICK, make_cells=True))
+    cell = np.sqrt(sum(polygon.area for polygon in item.data.polygons) / 40)
+    assert radius(item) == pytest.approx(0.04 * cell, rel=1e-4)
+    far = np.array([vertex.co.length for vertex in find_output(item, "cells").data.vertices]).max()
+    assert far == pytest.approx(size + 0.08 * cell, rel=0.01)
+    told = next(line for line in jobs.state.figures if line.startswith("In world units: "))
+    assert f"Radius {0.04 * cell:.3g}, Gap {0.08 * cell:.3g}" in told and "Rib" not in told
+
+
+def test_a_length_that_a_script_names_is_one_of_the_world():
+    item = sphere()
+    bpy.ops.saddleback.tessellate(**QUICK)
+    assert radius(item) == pytest.approx(0.01)  # as always
+    bpy.ops.saddleback.clear()
+    for group in ("tessellate",):
+        item.saddleback.property_unset(group)
+    run(pressed_tessellate(**QUICK))
+    relative = radius(item)
+    assert item.saddleback.tessellate.lengths == "RELATIVE" and relative > 0.015
+    bpy.ops.saddleback.tessellate()
+    assert radius(item) == relative  # the same again
+    bpy.ops.saddleback.tessellate(edge_radius=0.02)
+    assert radius(item) == pytest.approx(0.02)
+    bpy.ops.saddleback.tessellate(seed=1)  # what the call before named counted for that call only
+    assert radius(item) == pytest.approx(0.01)
+    bpy.ops.saddleback.tessellate(edge_radius_share=8.0)
+    assert radius(item) == pytest.approx(2 * relative, rel=1e-5)
+    bpy.ops.saddleback.tessellate(edge_radius=0.03, lengths="RELATIVE")
+    assert radius(item) == pytest.approx(relative, rel=1e-5)
+
+
+def test_lines_without_cells_are_shares_of_the_model():
+    item = sphere(radius=50.0)
+    run(press(SADDLEBACK_OT_path, PathSettings()))
+    run(press(SADDLEBACK_OT_distance, DistanceSettings()))
+    extent = np.linalg.norm(item.dimensions)
+    assert find_output(item, "paths").data.bevel_depth == pytest.approx(0.004 * extent, rel=1e-5)
+    assert find_output(item, "isolines").data.bevel_depth == pytest.approx(0.0025 * extent, rel=1e-5)
+
+
+def test_an_object_with_modifiers_is_taken_as_it_is_seen_and_its_copy_is_out_of_the_way():
+    item = sphere(subdivisions=2)
+    item.modifiers.new("Smooth", "SUBSURF").levels = 1
+    run(pressed_tessellate(**QUICK, make_edges=True))
+    copy = find_output(item, "surface")
+    assert len(copy.data.vertices) > len(item.data.vertices) and "saddleback_cell" in copy.data.attributes
+    assert copy.hide_viewport and copy.hide_render
+    shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    outermost = np.linalg.norm(positions(shown), axis=1).max()
+    edges = np.linalg.norm(positions(find_output(item, "edges").data), axis=1)
+    assert outermost < 0.98 and edges.max() < outermost + 1e-6  # the object's own vertices are at 1
+    copy.hide_viewport = False  # the artist wants it: it stays so
+    run(pressed_tessellate(**QUICK, seed=3))
+    assert not find_output(item, "surface").hide_viewport
+
+
+def test_colors_of_distances_stand_before_the_surface_that_modifiers_make():
+    item = sphere(subdivisions=2)
+    item.modifiers.new("Smooth", "SUBSURF").levels = 1
+    run(press(SADDLEBACK_OT_distance, DistanceSettings(), k=30))
+    copy = find_output(item, "surface")
+    assert not copy.hide_viewport and copy.active_material is not None
+    shown = copy.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    lift = [
+        after.co.length - before.co.length for after, before in zip(shown.vertices, copy.data.vertices, strict=True)
+    ]
+    assert min(lift) > 2e-4 and max(lift) < 2e-3
+
+
+def test_paint_makes_cells_smaller_there_and_leaves_some_elsewhere():
+    item = sphere(subdivisions=5)
+    top = [vertex.index for vertex in item.data.vertices if vertex.co.z > 0.8]
+    item.vertex_groups.new(name="Painted").add(top, 1.0, "REPLACE")
+    painted = {"count": 200, "iterations": 15, "density_source": "VERTEX_GROUP"}
+    run(pressed_tessellate(**painted))
+    assert item.saddleback.tessellate.density_smaller_by == 4.0
+    cell = attribute(item, "saddleback_cell")
+    inside, outside = len(set(cell[top])), len(set(np.delete(cell, top)))
+    assert 100 < inside < 150 and 60 < outside < 110  # ten percent of the surface, sixteen times as dense
+    bpy.ops.saddleback.tessellate(
+        **painted, density_smaller_by=0.0
+    )  # what scripts always had: all of them in the paint
+    assert len(set(attribute(item, "saddleback_cell")[top])) > 190
+
+
+def test_a_file_of_version_0_1_runs_as_it_did(tmp_path):
+    item = sphere()
+    name = item.name
+    item.saddleback.tessellate.count = 30
+    item.saddleback.tessellate.edge_radius = 0.03
+    item.saddleback.distance.isoline_count = 5
+    select(item, [0])
+    bpy.app.handlers.save_pre.remove(old_files.mark)
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "old.blend"))
+    finally:
+        bpy.app.handlers.save_pre.append(old_files.mark)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "old.blend"))
+    item = bpy.data.objects[name]
+    settings = item.saddleback.tessellate
+    assert (settings.lengths, settings.use_modifiers, settings.density_smaller_by) == ("ABSOLUTE", False, 0.0)
+    assert item.saddleback.distance.sources == "SELECTED"
+    bpy.context.view_layer.objects.active = item
+    run(pressed_tessellate(k=30))
+    assert radius(item) == pytest.approx(0.03)
+    new = sphere("New")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "new.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "new.blend"))
+    assert bpy.data.objects["New"].saddleback.tessellate.lengths == "RELATIVE"
+    assert new is not None and bpy.data.objects[name].saddleback.tessellate.lengths == "ABSOLUTE"
