@@ -51,12 +51,12 @@ def main(wheels: list[Path]) -> None:
     for stale in [*DIST.glob(f"saddleback-*-{name}.zip"), *DIST.glob("saddleback-*.whl")]:
         if stale.suffix == ".zip" or platform_of(stale) == of_wheels:
             stale.unlink()
-    copies = [Path(shutil.copy2(wheel, DIST)) for wheel in wheels]
-    legacy = legacy_zip(DIST / f"saddleback-{version}-legacy-{name}.zip", chosen(wheels, LEGACY_PYTHONS))
-    extension = extension_zip(
-        DIST / f"saddleback-{version}-{name}.zip", chosen(wheels, EXTENSION_PYTHONS), manifest, platform
-    )
-    for path in (legacy, extension, *copies):
+    made = [Path(shutil.copy2(wheel, DIST)) for wheel in wheels]
+    if fitting := chosen(wheels, LEGACY_PYTHONS):
+        made.append(legacy_zip(DIST / f"saddleback-{version}-legacy-{name}.zip", fitting))
+    if fitting := chosen(wheels, EXTENSION_PYTHONS):
+        made.append(extension_zip(DIST / f"saddleback-{version}-{name}.zip", fitting, manifest, platform))
+    for path in made:
         print(f"-- {path.relative_to(ROOT)} ({path.stat().st_size / 1024:.0f} KiB)")
 
 

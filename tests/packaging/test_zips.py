@@ -109,6 +109,11 @@ def test_the_same_bytes_again(dist, wheels):
     assert {path.name: path.read_bytes() for path in dist.iterdir()} == first
 
 
+def test_a_zip_without_a_library_is_not_made(dist, wheels):
+    make_packages.main(wheels(pythons=("cp310", "cp312")))
+    assert [path.name for path in dist.glob("*.zip")] == [f"saddleback-{VERSION}-legacy-linux_x64.zip"]
+
+
 def test_what_was_made_for_other_platforms_stays(dist, wheels):
     make_packages.main(wheels("win_amd64"))
     make_packages.main(wheels())
