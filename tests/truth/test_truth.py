@@ -28,6 +28,20 @@ def test_random_input_meets_the_truths():
     assert done.outcomes["fine"] > 0.5 * sum(done.outcomes.values()), dict(done.outcomes)
 
 
+@pytest.mark.parametrize(
+    ("name", "seed"),
+    [
+        ("cells_exact.check_dual_edges_are_ways", 123034344),  # parts ran out between two sites 6e-5 apart
+        ("shapes.innocent_shapes", 123100773),  # an edge 1e-5 long, seen along
+    ],
+)
+def test_what_a_search_found_stays_mended(name, seed):
+    worker = fuzz.Worker()
+    outcome = worker.run(fuzz.random_case(load_checks()[name], seed))
+    worker.close()
+    assert outcome.word == "fine", outcome.text
+
+
 def test_every_entry_point_has_a_guard():
     empty = [name for name, guards in table.guards_of(load_checks()).items() if not guards]
     assert not empty, "register a check of tests/truth for each of these"

@@ -39,6 +39,9 @@ inline constexpr double k_sight = 1e-9;
 /// The apex counts as out of sight from here on, and is laid beside the edge.
 inline constexpr double k_most_miss = 0.5;
 
+/// An edge as long as the places of its ends say, up to this share of their distances, lies on a flat surface.
+inline constexpr double k_flat = 1e-13;
+
 /// Returns where along an edge of length 1 a line crosses: how far beside it.
 inline double miss_of(double hit) {
   const double miss = hit < 0 ? -hit : hit > 1 ? hit - 1 : 0;
@@ -48,11 +51,19 @@ inline double miss_of(double hit) {
 /// The source is the origin of the plane: it is put where its distances from both ends say, and the apex in the same
 /// place between the directions of the two ends as seen from there, or beside them.
 inline Sight sight_of_point(const UnfoldedTriangle& triangle, const Vec2& from, const Vec2& to) {
-  const double d2_from = from.squaredNorm(), d2_to = to.squaredNorm(), e = triangle.edge;
-  const double x = (d2_from - d2_to + e * e) / (2 * e), y2 = d2_from - x * x;
+  const Vec2 along = to - from;
+  const double e = triangle.edge, product = from.norm() * to.norm(), twice_area = cross(from, along);
+  // By how much the edge is longer than the places say. What rounding may be counts as flat: seen along a short edge
+  // the source would move by the root of it.
+  double bend = e - along.norm();
+  if (std::abs(bend) <= k_flat * (from.norm() + to.norm())) bend = 0;
+  bend *= e + along.norm();
+  // The source's triangle has sides |from|, |to| and e. Differences of squares would lose the digits of a short edge.
+  const double x = (e - along.dot(from + to) / e) / 2;
+  const double y2 = (twice_area * twice_area + bend * (from.dot(to) - bend / 4)) / (e * e);
   const Vec2 aside = beside(triangle, from, to);
-  const bool is_behind = cross(from, to) <= 0;  // the edge lies between the source and the apex
-  if (!is_behind || !(y2 >= -k_sight * d2_from)) return {aside, k_most_miss};
+  const bool is_behind = twice_area <= 0;  // the edge lies between the source and the apex
+  if (!is_behind || !(y2 >= -k_sight * from.squaredNorm())) return {aside, k_most_miss};
   const double y = std::sqrt(std::max(0.0, y2));
   const Vec2 to_apex(triangle.apex.x() - x, triangle.apex.y() + y);
   const double miss = miss_of((x + to_apex.x() * (y / to_apex.y())) / e);
@@ -60,8 +71,8 @@ inline Sight sight_of_point(const UnfoldedTriangle& triangle, const Vec2& from, 
   // The ends and the apex as seen from the source. Where the edge is seen under a wide angle the mean of directions
   // would not be that of the apex; there the surface is nearly flat, or the mesh far too coarse for the shape.
   const Vec2 to_from(-x, y), to_to(e - x, y);
-  const bool is_wide = to_from.dot(to_to) < 0.5 * std::sqrt(d2_from * d2_to);
-  const Vec2 direction = is_wide ? aside : Vec2(cross(to_to, to_apex) * from + cross(to_apex, to_from) * to);
+  const bool is_wide = to_from.dot(to_to) < 0.5 * product;
+  const Vec2 direction = is_wide ? aside : Vec2(e * to_apex.y() * from + cross(to_apex, to_from) * along);
   const double length = direction.norm();
   if (!(length > 0)) return {aside, k_most_miss};
   return {direction * (to_apex.norm() / length), miss};

@@ -85,7 +85,8 @@ ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites,
   double looks = 0;                      // how many parts more will be looked at than there are faces is not known
   for (bool goes_on = true; goes_on;) {  // what is told anew in one part is looked at in those beside
     goes_on = false;
-    for (std::size_t part = 0; part < looked_.size(); ++part) {
+    // What a round adds waits for the next one, so that where parts run out all places are divided alike.
+    for (std::size_t part = 0, end = looked_.size(); part < end; ++part) {
       if (is_looked_at(static_cast<Index>(part))) continue;
       goes_on = true;
       if (std::fmod(looks++, 64) == 0)
