@@ -1,6 +1,7 @@
 // Curves on the surface, paths in the graph, log map and polar coordinates.
 
 #include "saddleback/geodesics/geodesic_paths.h"
+#include "saddleback/geodesics/log_map.h"
 #include "saddleback/geodesics/polar_coordinates.h"
 #include "saddleback/mesh/feature_curves.h"
 #include "saddleback/mesh/surface_curve.h"

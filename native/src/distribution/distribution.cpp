@@ -10,8 +10,8 @@
 #include "saddleback/mesh/trace.h"
 
 #include "distribution/even_places.h"
-#include "distribution/gap_sampling.h"
 #include "distribution/insertion.h"
+#include "distribution/maximal_sampling.h"
 #include "distribution/placing_rules.h"
 #include "support/only_ratios.h"
 #include "support/random_numbers.h"
@@ -243,7 +243,7 @@ DistributionResult distribute(const Mesh& mesh, std::span<const Shape> shapes, c
   if (!options.density.empty()) {
     result.stop = DensityFollower(mesh, rules, insertion, options).run(laid.part(0.05, 1));
   } else {
-    GapSampling search(mesh, rules, insertion, options);
+    MaximalSampling search(mesh, rules, insertion, options);
     result.stop = search.run(laid.part(0.05, 1));
     if (options.maximal) result.certificate = search.certificate();
   }

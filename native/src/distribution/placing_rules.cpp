@@ -14,7 +14,7 @@ namespace {
 
 /// Copies of sizes that differ by no more share the outline that holds the gap, made for the smallest.
 constexpr double k_size_step = 1.15;
-constexpr std::size_t k_most_kinds = 64;  // a bit of a word each, see gap_sampling
+constexpr std::size_t k_most_kinds = 64;  // a bit of a word each, see maximal_sampling
 /// The field is sampled about the corners of a cell; between them it may go a little beyond.
 constexpr double k_field_slack = 1.2;
 /// Corners of a cell, see Cell::weights.

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "saddleback/error.h"
-#include "saddleback/geodesics/polar_coordinates.h"
+#include "saddleback/geodesics/log_map.h"
 #include "saddleback/mesh/surface_curve.h"
 
 #include "geodesics/wavefront/log_about.h"

@@ -1,7 +1,7 @@
 #pragma once
 // The logarithmic map as a part of other work.
 
-#include "saddleback/geodesics/polar_coordinates.h"
+#include "saddleback/geodesics/log_map.h"
 
 #include "geodesics/wavefront/query_points.h"
 

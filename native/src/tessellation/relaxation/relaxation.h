@@ -7,7 +7,7 @@
 #include "saddleback/tessellation/centroidal_voronoi.h"
 
 #include "tessellation/relaxation/cell_cache.h"
-#include "tessellation/relaxation/limited_memory.h"
+#include "tessellation/relaxation/lbfgs.h"
 #include "tessellation/relaxation/sites_on_curves.h"
 
 namespace saddleback {
@@ -66,7 +66,7 @@ class Relaxation {
   std::vector<std::uint8_t> is_fixed_, is_resting_;
   const HeldSites held_;
   RelaxationState state_;
-  LimitedMemory memory_;
+  LbfgsMemory memory_;
   bool is_at_rest_ = false;
 };
 

@@ -9,9 +9,10 @@
 
 namespace saddleback::distribution {
 
-class GapSampling {
+class MaximalSampling {
  public:
-  GapSampling(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion, const DistributionOptions& options);
+  MaximalSampling(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion,
+                  const DistributionOptions& options);
 
   /// Lays copies until every count is met, nothing more fits, or (unless all is wanted) rooms become rare.
   DistributionStop run(const JobStage& stage);

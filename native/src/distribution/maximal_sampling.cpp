@@ -4,7 +4,7 @@
 // at the center, and if it does not fit, nothing fits there with that clearance. How many candidates fall on a face,
 // and where, depends on that face alone: so other triangles elsewhere, or other sheets, change nothing.
 
-#include "distribution/gap_sampling.h"
+#include "distribution/maximal_sampling.h"
 
 #include <algorithm>
 #include <bit>
@@ -61,8 +61,8 @@ Eigen::Matrix2d turn_of(const Copy& copy) {
 
 }  // namespace
 
-GapSampling::GapSampling(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion,
-                         const DistributionOptions& options)
+MaximalSampling::MaximalSampling(const Mesh& mesh, const PlacingRules& rules, Insertion& insertion,
+                                 const DistributionOptions& options)
     : mesh_(&mesh), rules_(&rules), insertion_(&insertion), options_(&options) {
   if (options.packing > 0) front_ = sweep_coordinate(mesh);
   if (options.maximal) {
@@ -73,7 +73,7 @@ GapSampling::GapSampling(const Mesh& mesh, const PlacingRules& rules, Insertion&
   flag_borders();
 }
 
-void GapSampling::flag_borders() {
+void MaximalSampling::flag_borders() {
   std::vector<Index> rim = mesh_->boundary_vertices(), allowed;
   if (!options_->forbidden.empty()) {
     std::vector<std::uint8_t> has_forbidden(static_cast<std::size_t>(mesh_->vertex_count()), 0);
@@ -101,10 +101,10 @@ void GapSampling::flag_borders() {
 }
 
 /// Returns the radius of the base cells: larger cells are hardly ever covered as a whole.
-double GapSampling::base_radius() const { return 0.5 * rules_->smallest_radius(); }
+double MaximalSampling::base_radius() const { return 0.5 * rules_->smallest_radius(); }
 
 /// Makes the base cells of the next faces, as many as are looked at together.
-void GapSampling::make_base_cells(const JobStage& stage) {
+void MaximalSampling::make_base_cells(const JobStage& stage) {
   const std::size_t count = rules_->kinds().size();
   const std::uint64_t all = count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
   while (next_face_ < mesh_->face_count() && open_.size() < k_most_cells) {
@@ -128,7 +128,7 @@ void GapSampling::make_base_cells(const JobStage& stage) {
   }
 }
 
-double GapSampling::order(const SurfacePoint& point, std::uint64_t key) const {
+double MaximalSampling::order(const SurfacePoint& point, std::uint64_t key) const {
   const double chance = uniform(key, 3);
   if (options_->packing <= 0) return chance;
   const Triangle& t = mesh_->triangles()[point.face];
@@ -137,13 +137,13 @@ double GapSampling::order(const SurfacePoint& point, std::uint64_t key) const {
   return (1 - options_->packing) * chance + options_->packing * front;
 }
 
-void GapSampling::weigh_kinds() {
+void MaximalSampling::weigh_kinds() {
   kind_weights_.clear();
   for (const Kind& kind : rules_->kinds())
     kind_weights_.push_back(insertion_->share(kind.shape) * rules_->shape_radius(kind) * rules_->shape_radius(kind));
 }
 
-Index GapSampling::draw_kind(std::uint64_t kinds, double chance) const {
+Index MaximalSampling::draw_kind(std::uint64_t kinds, double chance) const {
   double total = 0;
   for (std::size_t k = 0; k < kind_weights_.size(); ++k)
     if (kinds >> k & 1) total += kind_weights_[k];
@@ -158,15 +158,15 @@ Index GapSampling::draw_kind(std::uint64_t kinds, double chance) const {
   return kind;
 }
 
-double GapSampling::mean_drops(Index face, double per_area) const {
+double MaximalSampling::mean_drops(Index face, double per_area) const {
   const double size = rules_->size_at(face, Vec2::Constant(1.0 / 3));
   return std::min(per_area * mesh_->face_area(face) / (size * size), k_most_drops);
 }
 
 /// Calls visit(key of the drop, its number among random ones, point) for each.
 template <class Visit>
-void GapSampling::draw_candidates(Index face, int try_batch, double per_area, const JobStage& stage,
-                                  Visit&& visit) const {
+void MaximalSampling::draw_candidates(Index face, int try_batch, double per_area, const JobStage& stage,
+                                      Visit&& visit) const {
   constexpr Index k_drops_between_looks = 1 << 14;
   if (!options_->forbidden.empty() && options_->forbidden[face]) return;
   const std::uint64_t own = mixed(mixed(options_->seed, static_cast<std::uint64_t>(try_batch)), face);
@@ -182,7 +182,7 @@ void GapSampling::draw_candidates(Index face, int try_batch, double per_area, co
 }
 
 /// Tries them in the order of their keys, as many at a time as are held.
-void GapSampling::try_batch(int number, double per_area, const JobStage& stage) {
+void MaximalSampling::try_batch(int number, double per_area, const JobStage& stage) {
   constexpr std::size_t k_bins = 4096;
   const auto for_each = [&](auto&& visit) {
     for (Index f = 0; f < mesh_->face_count(); ++f) {
@@ -218,7 +218,7 @@ void GapSampling::try_batch(int number, double per_area, const JobStage& stage) 
 }
 
 /// Goes on until a try_batch lays hardly anything, or all have fallen.
-DistributionStop GapSampling::sample_at_random(const JobStage& stage) {
+DistributionStop MaximalSampling::sample_at_random(const JobStage& stage) {
   std::span<const double> batches = options_->packing > 0 ? std::span<const double>(k_sweeping_batches) : k_batches;
   if (searches()) batches = batches.first(options_->packing > 0 ? k_searching_sweeps : k_searching_batches);
   double area = 0;
@@ -242,7 +242,7 @@ DistributionStop GapSampling::sample_at_random(const JobStage& stage) {
 }
 
 /// Throws darts into every cell whose center seems free, unless that is for numbers alone; in others by their area.
-void GapSampling::throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const {
+void MaximalSampling::throw_dart(const OpenCell& open, const CellView& view, Index number, Look& look) const {
   const std::uint64_t key = mixed(options_->seed + static_cast<std::uint64_t>(rounds_) * 0x9E37, open.cell.key());
   const Index kind = draw_kind(look.free ? look.free : look.open, uniform(key, 0));
   if (kind == k_none) return;
@@ -270,7 +270,7 @@ void GapSampling::throw_dart(const OpenCell& open, const CellView& view, Index n
   look.dart = {order(point, key), kind, number, point, drawn_scale(point, uniform(key, 4))};
 }
 
-bool GapSampling::is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const {
+bool MaximalSampling::is_beyond_border(const CellView& view, const Copy& copy, const Motion& motion) const {
   Index corners = 0;
   const Index stride = 1 + copy.body->shape.corner_count() / k_border_corners;
   for (const Shape::Loop& loop : copy.body->shape.loops())
@@ -290,7 +290,8 @@ bool GapSampling::is_beyond_border(const CellView& view, const Copy& copy, const
 }
 
 /// Returns where a point of the copy at the cell's center lies in the plane of another: it is traced over the surface.
-bool GapSampling::trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other, Vec2& place) const {
+bool MaximalSampling::trace_to(const CellView& view, const Copy& copy, const Vec2& point, Index other,
+                               Vec2& place) const {
   const double length = point.norm() * copy.placement.scale;
   const double angle = copy.placement.angle + std::atan2(point.y(), point.x());
   const TraceEnd end = trace_end(*mesh_, view.center, angle_about(*mesh_, view.center, angle), length);
@@ -306,8 +307,8 @@ bool GapSampling::trace_to(const CellView& view, const Copy& copy, const Vec2& p
 
 /// Tells whether what the flat planes foresee holds: first of the whole disk, whose width the surface may bend, then of
 /// the point of it alone that is deepest in both.
-bool GapSampling::is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found,
-                             const Pose& pose, Index other) const {
+bool MaximalSampling::is_certain(const CellView& view, const Copy& copy, const Motion& motion, const Overlap& found,
+                                 const Pose& pose, Index other) const {
   const Copy& there = insertion_->settled().copies()[other];
   const double scale = copy.placement.scale, other_scale = there.placement.scale;
   const double rounded = k_rounding * (copy.radius() + there.radius());
@@ -335,7 +336,7 @@ bool GapSampling::is_certain(const CellView& view, const Copy& copy, const Motio
 }
 
 /// Finds the copies that the smallest ones may meet, the nearest first.
-void GapSampling::find_neighbors(const CellView& view, Neighbors& near) const {
+void MaximalSampling::find_neighbors(const CellView& view, Neighbors& near) const {
   near.clear();
   const SurfacePoint& center = view.center;
   const double reach = rules_->smallest_factor() * view.size * rules_->largest_body_radius();
@@ -351,7 +352,8 @@ void GapSampling::find_neighbors(const CellView& view, Neighbors& near) const {
 }
 
 /// Kinds of which the disk about the center meets a copy wherever in the cell it is. It does not matter how they turn.
-std::uint64_t GapSampling::centrally_covered(const CellView& view, std::uint64_t kinds, const Neighbors& near) const {
+std::uint64_t MaximalSampling::centrally_covered(const CellView& view, std::uint64_t kinds,
+                                                 const Neighbors& near) const {
   const double scale = rules_->smallest_factor() * view.size;
   std::uint64_t covered = 0;
   for (const Neighbor& neighbor : near) {
@@ -368,8 +370,8 @@ std::uint64_t GapSampling::centrally_covered(const CellView& view, std::uint64_t
   return covered;
 }
 
-bool GapSampling::is_covered(const CellView& view, const Copy& copy, const Motion& motion,
-                             const Neighbors& near) const {
+bool MaximalSampling::is_covered(const CellView& view, const Copy& copy, const Motion& motion,
+                                 const Neighbors& near) const {
   const double scale = copy.placement.scale;
   const Eigen::Matrix2d own = turn_of(copy);
   for (const std::size_t disks : {k_first_disks, std::numeric_limits<std::size_t>::max()})
@@ -389,7 +391,7 @@ bool GapSampling::is_covered(const CellView& view, const Copy& copy, const Motio
   return !near_border_.empty() && near_border_[view.center.face] && is_beyond_border(view, copy, motion);
 }
 
-void GapSampling::look(const OpenCell& open, Index number, Neighbors& near, Look& look) const {
+void MaximalSampling::look(const OpenCell& open, Index number, Neighbors& near, Look& look) const {
   CellView view = rules_->view(open.cell);
   look.tests = std::popcount(open.kinds);
   find_neighbors(view, near);
@@ -420,7 +422,7 @@ void GapSampling::look(const OpenCell& open, Index number, Neighbors& near, Look
 }
 
 /// Finds the rims of places where shapes cannot be laid less finely where many candidates fell on such places.
-void GapSampling::find_least_stuck() {
+void MaximalSampling::find_least_stuck() {
   constexpr double k_fine = 4, k_coarse = 8, k_much = 0.02;
   const auto rejected = insertion_->rejections();
   const auto number = [](Outcome outcome) {
@@ -433,7 +435,7 @@ void GapSampling::find_least_stuck() {
 }
 
 /// The face and those about it.
-void GapSampling::suspect(Index face) {
+void MaximalSampling::suspect(Index face) {
   for (const Index vertex : mesh_->triangles()[face]) {
     for (const Index h : outgoing(*mesh_, vertex)) {
       suspected_[Mesh::face_of(h)] = 1;
@@ -441,12 +443,12 @@ void GapSampling::suspect(Index face) {
   }
 }
 
-void GapSampling::lose(const Cell& cell) {
+void MaximalSampling::lose(const Cell& cell) {
   certificate_.uncertified_area += mesh_->face_area(cell.face) * cell.unit() * cell.unit();
   certificate_.uncertified.push_back(point_at(cell.face, cell.center()));
 }
 
-void GapSampling::round(const JobStage& stage) {
+void MaximalSampling::round(const JobStage& stage) {
   weigh_kinds();
   std::vector<Look> looks(open_.size());
   const JobStage looking = stage.part(0, 0.5);
@@ -509,7 +511,7 @@ void GapSampling::round(const JobStage& stage) {
 }
 
 /// Goes on until none is open, or (unless all is wanted) rooms become rare.
-void GapSampling::search_cells(const JobStage& stage) {
+void MaximalSampling::search_cells(const JobStage& stage) {
   const int first = rounds_;
   for (double done = 0; !open_.empty() && insertion_->is_any_wanted(); done += 0.5 * (1 - done)) {
     round(stage.part(done, done + 0.5 * (1 - done)));
@@ -520,7 +522,7 @@ void GapSampling::search_cells(const JobStage& stage) {
   open_.clear();
 }
 
-DistributionStop GapSampling::run(const JobStage& stage) {
+DistributionStop MaximalSampling::run(const JobStage& stage) {
   constexpr double k_random_share = 0.4;  // of the work, where cells are searched after it
   const DistributionStop random_stop = sample_at_random(stage.part(0, searches() ? k_random_share : 1));
   if (random_stop == DistributionStop::counts || !searches() || insertion_->is_hopeless()) return random_stop;

@@ -1,4 +1,4 @@
-#include "tessellation/relaxation/limited_memory.h"
+#include "tessellation/relaxation/lbfgs.h"
 
 #include <cmath>
 
@@ -11,7 +11,7 @@ void add_scaled(TangentField& sum, double factor, const TangentField& field) {
 
 }  // namespace
 
-TangentField LimitedMemory::direction(const TangentField& gradient, std::span<const double> stiffness) const {
+TangentField LbfgsMemory::direction(const TangentField& gradient, std::span<const double> stiffness) const {
   TangentField q = gradient;
   std::vector<double> alpha(pairs_.size());
   for (std::size_t k = pairs_.size(); k-- > 0;) {
@@ -36,7 +36,7 @@ TangentField LimitedMemory::direction(const TangentField& gradient, std::span<co
   return q;
 }
 
-void LimitedMemory::add(const Moved& moved, TangentField gradient_change) {
+void LbfgsMemory::add(const Moved& moved, TangentField gradient_change) {
   for (Pair& pair : pairs_) {
     transport(moved, pair.step);
     transport(moved, pair.change);

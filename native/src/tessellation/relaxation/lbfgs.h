@@ -12,7 +12,7 @@ namespace saddleback {
 /// tangent planes leave their products as they are.
 ///
 /// After [nocedal1980]; on manifolds, with transported pairs, after [huang2015].
-class LimitedMemory {
+class LbfgsMemory {
  public:
   /// Minus the approximate inverse Hessian times the gradient. `stiffness` is the Hessian's diagonal to begin with, one
   /// a site: for a centroidal tessellation twice the cell's mass, with which the first direction is Lloyd's step.
