@@ -126,9 +126,10 @@ def main() -> int:
     parser.add_argument("--write", type=Path, metavar="FILE", help="a .json file of digests, or .npz of all numbers")
     parser.add_argument("--compare", type=Path, metavar="FILE", help="either of them; by default tests/digests.json")
     parser.add_argument("--only", default="", metavar="TEXT", help="entries whose name contains it")
+    parser.add_argument("--portable", action="store_true", help="only what is promised on every platform")
     parser.add_argument("--list", action="store_true", help="a line for each answer, with its time")
     options = parser.parse_args()
-    questions = [question for question in QUESTIONS if options.only in name_of(question)]
+    questions = [q for q in QUESTIONS if options.only in name_of(q) and q.portable >= options.portable]
     kept = Kept(options.compare or REFERENCE) if options.compare or not options.write else None
     entries: dict[str, Entry] = {}
     numbers: dict[str, NDArray[Any]] = {}
@@ -145,7 +146,7 @@ def main() -> int:
             print(f"{name}, {threads} threads: {entry['digest']} {time.perf_counter() - last:.3f} s")
         numbers.update({f"{name}/{i:04}": array for i, array in enumerate(arrays)} if options.write else {})
         last = time.perf_counter()
-    gone = sorted(kept.names - set(entries)) if kept and not options.only else []
+    gone = sorted(kept.names - set(entries)) if kept and len(questions) == len(QUESTIONS) else []
     for name in gone:
         print(f"{name}: is gone")
     if options.write:

@@ -33,6 +33,29 @@ def tessellate(**settings):
     assert bpy.ops.saddleback.tessellate("EXEC_DEFAULT", True, **{**QUICK, **settings}) == {"FINISHED"}
 
 
+def use_the_others():
+    """Every other operator once, two of them with their graph kept on disk."""
+    ops = bpy.ops.saddleback
+    mesh = bpy.data.objects["Ball"].data
+    chosen = np.zeros(len(mesh.vertices), bool)
+    chosen[[0, 9]] = True
+    mesh.polygons.foreach_set("select", np.zeros(len(mesh.polygons), bool))
+    mesh.vertices.foreach_set("select", chosen)
+    for call in (
+        lambda: ops.distance(k=20, cache_on_disk=True),
+        lambda: ops.path(k=20, cache_on_disk=True),
+        lambda: ops.direction_field(),
+        lambda: ops.distribute(count=5),
+        lambda: ops.repair(),
+    ):
+        assert call() == {"FINISHED"}
+    assert len(list(PROFILE.rglob("*.saddleback"))) == 1, "the graph is not kept on disk, or twice"
+    bpy.ops.mesh.primitive_plane_add()
+    assert ops.voronoi_2d(count=9) == {"FINISHED"}
+    assert ops.clear() == {"FINISHED"}
+    bpy.context.view_layer.objects.active = bpy.data.objects["Ball"]
+
+
 def install(package):
     if "legacy" in package.name:
         bpy.ops.preferences.addon_install(filepath=str(package), overwrite=True)
@@ -56,6 +79,8 @@ def first(package, file):
     assert Path(saddleback.__file__).is_relative_to(PROFILE), saddleback.__file__
     assert set(cells()) == set(range(12))
     print("ran")
+    use_the_others()
+    print("others")
     bpy.ops.wm.save_as_mainfile(filepath=str(file))
     bpy.ops.wm.save_userpref()
     np.save(file.with_suffix(".npy"), cells())

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib
 import os
+import platform
+import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -83,10 +85,15 @@ def _processor_name() -> str:
                     return value.strip()
     except OSError:
         pass
-    return "CPU"
+    return platform.processor() or "CPU"
 
 
 def _processor_memory() -> int:
+    if sys.platform == "win32":
+        import ctypes
+
+        status = (ctypes.c_uint64 * 8)(64)  # MEMORYSTATUSEX: its size, then the memory that there is, then more
+        return status[1] if ctypes.windll.kernel32.GlobalMemoryStatusEx(status) else 0
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):

@@ -3,7 +3,9 @@
 // [shewchuk1997]. No allocation; plain functions, so that device code can use them as well. Exact unless a product
 // over- or underflows.
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "support/cuda/host_device.h"
 
@@ -32,10 +34,25 @@ SADDLEBACK_HOST_DEVICE inline void two_sum(double a, double b, double& sum, doub
   rest = plus(plus(a, -a_part), plus(b, -b_part));
 }
 
+#if defined(_WIN32) && !defined(__CUDA_ARCH__)
+/// Returns a to 26 digits; so many are enough for the rest of it, which may be negative.
+inline double upper_half(double a) {
+  constexpr std::uint64_t k_half_digit = 1ull << 26;
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(a) + k_half_digit) & ~(2 * k_half_digit - 1));
+}
+#endif
+
 /// a * b = product + rest, exactly.
 SADDLEBACK_HOST_DEVICE inline void two_product(double a, double b, double& product, double& rest) {
   product = times(a, b);
+#if defined(_WIN32) && !defined(__CUDA_ARCH__)
+  // The fma of MinGW-w64 counts on 64 digits of long double, of which Windows leaves 53: in halves, as in
+  // [shewchuk1997].
+  const double a_high = upper_half(a), a_low = a - a_high, b_high = upper_half(b), b_low = b - b_high;
+  rest = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+#else
   rest = fma(a, b, -product);
+#endif
 }
 
 // SADDLEBACK_RARE: in line, nvcc 13.0 leaves out stores to small arrays whose places are counted, and decisions come

@@ -50,6 +50,13 @@ bool have_few_digits(const Point2 (&points)[Count]) {
   return are_multiples;
 }
 
+/// Whether long double computes in 64 bits. Windows has processors round it to the 53 of double.
+#ifdef _WIN32
+inline constexpr bool k_has_long_double = false;
+#else
+inline constexpr bool k_has_long_double = std::numeric_limits<long double>::digits == 64;
+#endif
+
 }  // namespace detail
 
 /// Returns what `orient_2d` says. O(1).
@@ -66,7 +73,7 @@ inline Sign in_circle_by_steps(const Point2& a, const Point2& b, const Point2& c
   Sign sign;
   if (detail::find_in_circle<double>(a, b, c, d, sign)) return sign;
   if (detail::have_few_digits<11>({a, b, c, d})) return sign;
-  if constexpr (std::numeric_limits<long double>::digits == 64)
+  if constexpr (detail::k_has_long_double)
     if (detail::find_in_circle<long double>(a, b, c, d, sign)) return sign;
   return detail::in_circle_exact(a, b, c, d);
 }

@@ -1,5 +1,6 @@
 #include "support/files.h"
 
+#include <cerrno>
 #include <cstring>
 
 #include "saddleback/error.h"
@@ -18,8 +19,14 @@ fs::path system_path(const std::string& path) {
   }
 }
 
+// The C library that every Windows has knows no "x" in a mode; and of a name that is too long it says that there is no
+// such file.
 FileHandle open_file(const fs::path& path, const char* mode) {
-  return FileHandle(_wfopen(path.c_str(), std::wstring(mode, mode + std::strlen(mode)).c_str()));
+  constexpr std::size_t k_longest_path = 259;
+  FileHandle file(_wfopen(path.c_str(), std::wstring(mode, mode + std::strcspn(mode, "x")).c_str()));
+  std::error_code error;
+  if (!file && errno == ENOENT && fs::absolute(path, error).native().size() > k_longest_path) errno = ENAMETOOLONG;
+  return file;
 }
 
 #else

@@ -19,14 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool bring_to_disk(std::FILE* file) {
-  if (std::fflush(file) != 0) return false;
 #ifdef _WIN32
-  return _commit(_fileno(file)) == 0;
+bool bring_to_disk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
+bool may_be_written(const fs::path& file) { return _waccess(file.c_str(), 2) == 0; }
 #else
-  return fsync(fileno(file)) == 0;
+bool bring_to_disk(std::FILE* file) { return std::fflush(file) == 0 && fsync(fileno(file)) == 0; }
+bool may_be_written(const fs::path& file) { return access(file.c_str(), W_OK) == 0; }
 #endif
-}
 
 /// A name that nothing has, in the same folder and so on the same disk; short, however long the other name is.
 fs::path name_beside(const fs::path& target) {
@@ -69,9 +68,7 @@ NumberFileWriter::NumberFileWriter(const std::string& path) : path_(path), targe
 
 // The new file is as open to others as the old one, and replaces none that must not be written.
 void NumberFileWriter::keep_permissions(fs::perms old) {
-#ifndef _WIN32
-  if (access(target_.c_str(), W_OK) != 0) fail();
-#endif
+  if (!may_be_written(target_)) fail();
   std::error_code error;
   fs::permissions(partial_, old, error);
   if (error) {
@@ -89,7 +86,10 @@ NumberFileWriter::~NumberFileWriter() {
 void NumberFileWriter::fail() const {
   const int reason = errno;
   const bool is_forbidden = reason == EACCES || reason == EPERM || reason == EROFS;
-  const char* const advice = reason == ENOENT ? "make its folder" : is_forbidden ? "allow it" : "make room";
+  const char* const advice = reason == ENOENT         ? "make its folder"
+                             : reason == ENAMETOOLONG ? "shorten it"
+                             : is_forbidden           ? "allow it"
+                                                      : "make room";
   throw InputError(message("path: ", path_, " cannot be written: ", std::strerror(reason), "; ", advice,
                            " or choose another place (what was there before has not changed)"));
 }

@@ -324,7 +324,7 @@ def test_the_field_is_continuous_across_edges(share: float) -> None:
         return np.arctan2((np.cross(normal, edge) * vectors).sum(axis=1), (edge * vectors).sum(axis=1))
 
     step = angle(here) - angle(there)
-    assert np.abs(np.angle(np.exp(1j * step))).max() < 1e-9
+    assert np.abs(np.angle(np.cos(step) + 1j * np.sin(step))).max() < 1e-9
 
 
 def test_the_field_at_the_center_of_a_face_is_its_vector() -> None:

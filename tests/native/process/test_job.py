@@ -73,7 +73,8 @@ def test_progress_bar_draws_on_a_terminal_only():
 def test_progress_bar_turns_an_interrupt_into_a_cancelled_job():
     before = signal.getsignal(signal.SIGINT)
     vertices, triangles = meshes.grid(300, 300, jitter=0.3)
-    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+    press = signal.raise_signal if os.name == "nt" else lambda number: os.kill(os.getpid(), number)
+    timer = threading.Timer(0.2, press, [signal.SIGINT])
     timer.start()
     with pytest.raises(KeyboardInterrupt), sb.progress_bar(io.StringIO()) as job:
         while True:

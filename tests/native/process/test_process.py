@@ -306,7 +306,7 @@ def test_signals_between_calls_do_not_linger():
         pytest.skip("signals belong to the main thread")
     mesh = sb.Mesh(*meshes.icosphere(3))
     with pytest.raises(KeyboardInterrupt):
-        os.kill(os.getpid(), signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
         time.sleep(1)
     assert sb.SaddleVertexGraph(mesh).arc_count > 0
 

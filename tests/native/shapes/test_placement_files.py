@@ -12,6 +12,8 @@ import pytest
 import saddleback as sb
 from tests import meshes
 
+posix = pytest.mark.skipif(os.name == "nt", reason="Windows has no such limits and modes")
+
 
 @pytest.fixture(scope="module")
 def mesh():
@@ -137,6 +139,7 @@ except OSError as error:
 """
 
 
+@posix
 @pytest.mark.parametrize("room", [0, 100])
 def test_a_full_disk_leaves_the_old_file(tmp_path, room):
     path = tmp_path / "p.json"
@@ -150,6 +153,7 @@ def test_a_full_disk_leaves_the_old_file(tmp_path, room):
     assert os.listdir(tmp_path) == ["p.json"]
 
 
+@posix
 @pytest.mark.parametrize("mode", [0o600, 0o640, 0o664])
 def test_permissions_are_kept(tmp_path, mesh, laid, mode):
     path = tmp_path / "p.json"
@@ -163,6 +167,7 @@ def test_permissions_are_kept(tmp_path, mesh, laid, mode):
     assert sb.SaddleVertexGraph.load(path, mesh).k == 4
 
 
+@posix
 def test_a_new_file_is_as_open_as_others(tmp_path, mesh, laid):
     old = os.umask(0o027)
     try:

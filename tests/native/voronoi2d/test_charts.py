@@ -258,7 +258,8 @@ def test_no_face_flips(arrays):
 
 def test_a_flat_disk_keeps_its_shape():
     """Harmonic functions that are linear on the border are linear inside, up to the weights that were raised."""
-    rings = [(k / 8) * np.exp(2j * np.pi * (np.arange(6 * k) / (6 * k) + 0.01 * k)) for k in range(1, 9)]
+    turns = [2 * np.pi * (np.arange(6 * k) / (6 * k) + 0.01 * k) for k in range(1, 9)]
+    rings = [(k / 8) * (np.cos(turn) + 1j * np.sin(turn)) for k, turn in enumerate(turns, 1)]
     flat = np.concatenate([[0], *rings])
     plane = np.column_stack([flat.real, flat.imag])
     triangles = sb.voronoi_2d(plane).delaunay

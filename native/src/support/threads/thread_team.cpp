@@ -17,6 +17,12 @@
 #include <signal.h>
 #define SADDLEBACK_POSIX
 #endif
+#ifdef _WIN32
+#ifndef NOMINMAX  // libstdc++ defines it
+#define NOMINMAX
+#endif
+#include <windows.h>
+#endif
 
 #include "support/threads/parallel.h"
 
@@ -35,14 +41,29 @@ void pause() {
 #endif
 }
 
+#ifdef _WIN32
+// The system's own: where libstdc++ 12 has no futex, its atomics may sleep through a call.
+void sleep_while(const std::atomic<std::uint32_t>& counter, std::uint32_t seen) {
+  WaitOnAddress(const_cast<std::atomic<std::uint32_t>*>(&counter), &seen, sizeof(seen), INFINITE);
+}
+void wake(std::atomic<std::uint32_t>& counter) { WakeByAddressSingle(&counter); }
+#else
+void sleep_while(const std::atomic<std::uint32_t>& counter, std::uint32_t seen) {
+  counter.wait(seen, std::memory_order_acquire);
+}
+void wake(std::atomic<std::uint32_t>& counter) { counter.notify_one(); }
+#endif
+
 /// Waits until `counter` is no longer `seen`, and returns what it is then.
 std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& counter, std::uint32_t seen) {
   for (int i = 0; i < k_looks; ++i) {
     if (const std::uint32_t now = counter.load(std::memory_order_acquire); now != seen) return now;
     pause();
   }
-  counter.wait(seen, std::memory_order_acquire);
-  return counter.load(std::memory_order_acquire);
+  for (;;) {
+    sleep_while(counter, seen);
+    if (const std::uint32_t now = counter.load(std::memory_order_acquire); now != seen) return now;
+  }
 }
 
 /// A thread that waits to be asked. It is never destroyed: its thread may wait until the program's very end.
@@ -57,7 +78,7 @@ struct alignas(k_apart) Worker {
       seen = wait_for_change(asked, seen);
       work.function(work.context, member);
       answered.store(seen, std::memory_order_release);
-      answered.notify_one();
+      wake(answered);
     }
   }
 
@@ -65,7 +86,7 @@ struct alignas(k_apart) Worker {
     work = wanted;
     member = number;
     asked.fetch_add(1, std::memory_order_release);
-    asked.notify_one();
+    wake(asked);
   }
 
   void wait_until_done() const {
@@ -130,7 +151,7 @@ class IdleWorkers {
     }
     Worker* const worker = new Worker;
     try {
-      const SignalsHeldBack held_back;
+      [[maybe_unused]] const SignalsHeldBack held_back;
       std::thread([worker] { worker->serve(); }).detach();
     } catch (...) {
       delete worker;
