@@ -64,6 +64,7 @@ class State:
 
     def __init__(self) -> None:
         self.task: Task | None = None
+        self.kind = ""  # of the last run: the name of its settings
         self.needs_repair = ""
         self.line = ""
         self.figures: list[str] = []
@@ -87,6 +88,9 @@ WINDOW_MANAGER_PROPERTIES = {
     ),
     "saddleback_text": StringProperty(
         name="Doing", description="What is being done", get=lambda _: state.task.text if state.task is not None else ""
+    ),
+    "saddleback_kind": StringProperty(
+        name="Kind", description="Which settings the last run was of", get=lambda _: state.kind
     ),
     "saddleback_needs_repair": StringProperty(
         name="Needs Repair", description="Object refused by the last run", get=lambda _: state.needs_repair

@@ -65,12 +65,17 @@ def select(item, vertices):
     item.data.vertices.foreach_set("select", chosen)
 
 
-def fingerprint():
-    """Everything in the file that a run could touch: data-blocks, shapes, attributes, settings, links."""
+def fingerprint(told=True):
+    """Everything in the file that a run could touch: data-blocks, shapes, attributes, settings, links.
+
+    Without `told` but for what runs said of their objects.
+    """
     kinds = ("objects", "meshes", "curves", "collections", "node_groups", "materials")
     seen = [(kind, sorted((block.name, block.users) for block in getattr(bpy.data, kind))) for kind in kinds]
     for item in bpy.data.objects:
         settings = {name: repr(value) for name, value in _flat(item.saddleback)}
+        if not told:
+            settings = {name: value for name, value in settings.items() if not name.endswith((".told", ".figures"))}
         seen.append((item.name, tuple(map(tuple, item.matrix_world)), item.modifiers.keys(), sorted(settings.items())))
     for mesh in bpy.data.meshes:
         kinds = [(a.name, a.domain, a.data_type) for a in mesh.attributes]

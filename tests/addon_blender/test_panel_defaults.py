@@ -13,6 +13,7 @@ from saddleback_blender.core.settings import DistanceSettings, PathSettings
 from saddleback_blender.ops.distance import SADDLEBACK_OT_distance
 from saddleback_blender.ops.path import SADDLEBACK_OT_path
 from saddleback_blender.props import old_files
+from saddleback_blender.ui import panels
 
 QUICK = {"count": 40, "iterations": 2, "k": 30}
 
@@ -141,3 +142,30 @@ def test_a_file_of_version_0_1_runs_as_it_did(tmp_path):
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "new.blend"))
     assert bpy.data.objects["New"].saddleback.tessellate.lengths == "RELATIVE"
     assert new is not None and bpy.data.objects[name].saddleback.tessellate.lengths == "ABSOLUTE"
+
+
+def test_what_a_run_said_belongs_to_its_object_and_is_kept_in_the_file(tmp_path):
+    first = sphere("First")
+    run(pressed_tessellate(**QUICK))
+    second = sphere("Second")
+    assert second.saddleback.tessellate.told == ""
+    bpy.ops.saddleback.tessellate(**{**QUICK, "count": 20})
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "told.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "told.blend"))
+    first, second = bpy.data.objects["First"], bpy.data.objects["Second"]
+    line, lengths = first.saddleback.tessellate.told.splitlines()
+    assert line.startswith("'First': 40 cells, 2 iterations") and lengths.startswith("In world units: Radius ")
+    assert first.saddleback.tessellate.figures.startswith("Triangles of the sites")
+    assert second.saddleback.tessellate.told.startswith("'Second': 20 cells")
+    bpy.context.view_layer.objects.active = second
+    bpy.ops.saddleback.clear()
+    assert second.saddleback.tessellate.told == "" == second.saddleback.tessellate.figures
+    assert first.saddleback.tessellate.told
+
+
+def test_the_panels_are_gone_when_the_library_is(monkeypatch):
+    item = sphere()
+    panel = panels.SADDLEBACK_PT_tessellate
+    assert panel.poll(bpy.context) and item is not None
+    monkeypatch.setattr(panels, "_native_problem", lambda: "the library does not load")
+    assert not panel.poll(bpy.context)

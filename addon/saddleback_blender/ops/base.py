@@ -19,7 +19,7 @@ from ..core.errors import BadInputError
 from ..core.lengths import told_lengths, world_lengths
 from ..core.progress import Progress
 from ..core.requests import Surface
-from ..props import PROPERTIES, Settings, fill_operator, note_call
+from ..props import PROPERTIES, Settings, fill_operator, keep_texts, note_call
 
 # Seconds between looks at the thread: a run's end, and a progress step, are seen this late at most. ESC is an event of
 # its own and does not wait for it.
@@ -149,6 +149,7 @@ class SurfaceOperator(PolledOperator):
         self, context: bpy.types.Context, is_by_hand: bool
     ) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
         self._began, self._is_by_hand, self._lengths = perf_counter(), is_by_hand, {}
+        jobs.state.kind = self.settings_name
         source = usable_source(context)
         self._called = fill_operator(self, source, self.settings_name, is_by_hand)
         native.load()
@@ -174,13 +175,15 @@ class SurfaceOperator(PolledOperator):
                     rollback.undo_with(partial(source.property_unset, "saddleback"))
                 line = self.write(context, source, result)
                 note_call(source, self.settings_name, self._called, self._is_by_hand)
+                labels = {name: prop.keywords["name"] for name, prop in PROPERTIES[self.settings_name].items()}
+                lengths, figures = told_lengths(self, self._lengths, labels), self.figures(result)
+                keep_texts(source, self.settings_name, [line, *lengths], figures)
         except Exception as error:
             return self._refuse(error, context)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
-        labels = {name: prop.keywords["name"] for name, prop in PROPERTIES[self.settings_name].items()}
-        jobs.state.figures = [*told_lengths(self, self._lengths, labels), *self.figures(result)]
+        jobs.state.figures = [*lengths, *figures]
         for note in [*progress.notes, *self.notes(result), *_unseen(context, source)]:
             self.report({"WARNING"}, note)
         self.report({"INFO"}, jobs.state.line)

@@ -9,6 +9,7 @@ from ..bridge.inputs.source import usable_source, why_not
 from ..bridge.outputs.out_collection import clear_outputs
 from ..bridge.outputs.preview import hide_preview
 from ..core.errors import BadInputError
+from ..props import forget_texts
 
 
 class SADDLEBACK_OT_clear(bpy.types.Operator):
@@ -36,6 +37,7 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
             return {"CANCELLED"}
         with rollback.all_or_nothing():
             removed = hide_preview(source) + clear_outputs(context, source)
+            forget_texts(source)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
         jobs.state.line = ""

@@ -56,6 +56,7 @@ COLLECTION_NAMES = (
     "shapes_collection",
 )
 IMAGE_NAMES = ("image_name", "density_image", "shapes_image")
+TOLD, FIGURES = "told", "figures"  # on each group: what the last run said of the object, a sentence a line
 CALL = "left_by_call"  # on each group: the values in it that a script's call has set, in JSON
 
 PROPERTIES = {
@@ -87,7 +88,9 @@ def _kept(settings_name: str) -> dict[str, Any]:
         | dict.fromkeys(IMAGE_NAMES, bpy.types.Image)
     )
     kept = {
-        CALL: StringProperty(name="From a Call", description="Values that a script's call left", options={"HIDDEN"})
+        CALL: StringProperty(name="From a Call", description="Values that a script's call left", options={"HIDDEN"}),
+        TOLD: StringProperty(name="Last Run", description="What the last run made", options={"HIDDEN"}),
+        FIGURES: StringProperty(name="Figures", description="Numbers of the last run", options={"HIDDEN"}),
     }
     for name, prop in PROPERTIES[settings_name].items():
         if name in pointers:
@@ -232,6 +235,25 @@ def keep_settings(settings: Settings, settings_name: str, source: bpy.types.Obje
         if is_open or _plain(group, field.name) != value:
             rollback.remember_setting(group, field.name)
             _set_plain(group, field.name, value)
+
+
+def keep_texts(source: bpy.types.Object, settings_name: str, told: list[str], figures: list[str]) -> None:
+    """Writes on the object what a run said of it."""
+    group = getattr(source.saddleback, settings_name)
+    for name, lines in ((TOLD, told), (FIGURES, figures)):
+        if getattr(group, name) != "\n".join(lines):
+            rollback.remember_setting(group, name)
+            setattr(group, name, "\n".join(lines))
+
+
+def forget_texts(source: bpy.types.Object) -> None:
+    """Takes all of that away."""
+    for settings_name in PROPERTIES:
+        group = existing_group(source, settings_name)
+        for name in (TOLD, FIGURES):
+            if group is not None and group.is_property_set(name):
+                rollback.remember_setting(group, name)
+                group.property_unset(name)
 
 
 def existing_group(source: bpy.types.Object, settings_name: str) -> bpy.types.PropertyGroup | None:

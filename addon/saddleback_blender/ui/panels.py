@@ -30,7 +30,7 @@ class SaddlebackSubPanel(SaddlebackPanel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allows it only where something can be done."""
-        return not why_not(context)
+        return not _native_problem() and not why_not(context)
 
     def split_layout(self, context: bpy.types.Context) -> bpy.types.UILayout:
         """Names to the left and values to the right; gray while a run goes on."""
@@ -63,21 +63,36 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
         column = layout.column(align=True)
         column.label(text=item.name, icon="OUTLINER_OB_MESH")
         draw_text(column, context, f"{len(item.data.vertices):,} vertices, {len(item.data.polygons):,} faces", "BLANK1")
-        _draw_state(layout, context, item)
         row = layout.row()
         row.enabled = not context.window_manager.saddleback_running
         row.operator("saddleback.clear", text="Clear Results", icon="TRASH")
+        shading = context.space_data.shading
+        if shading.type == "SOLID":  # which shows the colors of cells and shapes in one of its ways only
+            layout.prop(shading, "color_type", text="Color")
 
 
-def _draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.types.Object) -> None:
-    """The run that goes on; else the way out of an error, or what the last run made."""
-    manager = context.window_manager
+def _draw_button(layout: bpy.types.UILayout, context: bpy.types.Context, operator: str, icon: str) -> None:
+    """The button that starts a run, always in the same place: while one goes on its progress stands there.
+
+    A button that is gray under the mouse stays dead in Blender after it could be pressed again; a new one does not.
+    """
+    row = layout.row()
+    row.scale_y = 1.4
+    if context.window_manager.saddleback_running:
+        compat.draw_progress(row, context.window_manager)
+    else:
+        row.operator(operator, icon=icon)
+
+
+def _draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, kind: str) -> None:
+    """The run that goes on; else the way out of an error, or what the last run of this kind made of the object."""
+    manager, item = context.window_manager, active_object(context)
+    is_last = manager.saddleback_kind == kind
     if manager.saddleback_running:
-        box = layout.box()
-        draw_text(box, context, manager.saddleback_text, "TIME")
-        compat.draw_progress(box, manager)
-        box.label(text="Press ESC to stop", icon="EVENT_ESC")
-    elif manager.saddleback_needs_repair == item.name:
+        if is_last:
+            draw_text(layout, context, manager.saddleback_text, "TIME")
+            layout.label(text="Press ESC to stop", icon="EVENT_ESC")
+    elif is_last and manager.saddleback_needs_repair == item.name:
         box = layout.box()
         box.alert = True
         draw_text(box, context, "This mesh has faults that keep it from being a surface", "ERROR")
@@ -85,23 +100,15 @@ def _draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, item: bp
         row.alert = False
         row.scale_y = 1.3
         row.operator("saddleback.repair", text="Repair Mesh", icon="TOOL_SETTINGS")
-    elif manager.saddleback_line:
-        draw_text(layout, context, manager.saddleback_line, "CHECKMARK")
-        for line in manager.saddleback_figures.splitlines():
-            draw_text(layout, context, line, "BLANK1")
-
-
-def _draw_button(layout: bpy.types.UILayout, context: bpy.types.Context, operator: str, icon: str) -> None:
-    """The button that starts a run. While one goes on a label stands in its place.
-
-    A button that is gray under the mouse stays dead in Blender after it could be pressed again; a new one does not.
-    """
-    row = layout.row()
-    row.scale_y = 1.4
-    if context.window_manager.saddleback_running:
-        row.label(text="Running", icon="TIME")
     else:
-        row.operator(operator, icon=icon)
+        for number, line in enumerate(getattr(item.saddleback, kind).told.splitlines()):
+            draw_text(layout, context, line, "BLANK1" if number else "CHECKMARK")
+
+
+def _draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context, kind: str) -> None:
+    """Numbers of the last run of this kind on the object."""
+    for line in getattr(active_object(context).saddleback, kind).figures.splitlines():
+        draw_text(layout, context, line, "BLANK1")
 
 
 class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
@@ -116,6 +123,7 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
         _draw_button(layout, context, "saddleback.tessellate", "MOD_EXPLODE")
         if not context.window_manager.saddleback_running:
             layout.operator("saddleback.relax_live", icon="PLAY")
+        _draw_state(layout, context, "tessellate")
         rows.draw_sites(layout.column(), settings)
         rows.draw_quality(layout, settings)
         layout.prop(settings, "use_modifiers")
@@ -219,6 +227,18 @@ class SADDLEBACK_PT_attributes(SaddlebackSubPanel, bpy.types.Panel):
         rows.draw_attributes(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
+class SADDLEBACK_PT_info(SaddlebackSubPanel, bpy.types.Panel):
+    """Shows how even the cells are."""
+
+    bl_label = "Info"
+    bl_parent_id = "SADDLEBACK_PT_tessellate"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        _draw_figures(self.layout, context, "tessellate")
+
+
 class SADDLEBACK_PT_distance(SaddlebackSubPanel, bpy.types.Panel):
     """Distances along the surface."""
 
@@ -231,6 +251,7 @@ class SADDLEBACK_PT_distance(SaddlebackSubPanel, bpy.types.Panel):
         settings = item.saddleback.distance
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.distance", "DRIVER_DISTANCE")
+        _draw_state(layout, context, "distance")
         rows.draw_distance_sources(layout.column(), settings, item)
         rows.draw_quality(layout, settings)
         layout.prop(settings, "use_modifiers")
@@ -285,6 +306,7 @@ class SADDLEBACK_PT_path(SaddlebackSubPanel, bpy.types.Panel):
         settings = item.saddleback.path
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.path", "CURVE_PATH")
+        _draw_state(layout, context, "path")
         rows.draw_path_points(layout.column(), settings, item)
         layout.prop(settings, "lengths")
         rows.draw_length(layout, settings, "path_radius")
@@ -308,6 +330,7 @@ class SADDLEBACK_PT_voronoi_2d(SaddlebackSubPanel, bpy.types.Panel):
         settings = item.saddleback.voronoi_2d
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.voronoi_2d", "MESH_GRID")
+        _draw_state(layout, context, "voronoi_2d")
         rows.draw_plane_sites(layout.column(), settings, item)
         layout.prop(settings, "use_modifiers")
         layout.prop(settings, "lengths")
@@ -382,6 +405,7 @@ class SADDLEBACK_PT_direction_field(SaddlebackSubPanel, bpy.types.Panel):
         settings = active_object(context).saddleback.direction_field
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.direction_field", "FORCE_WIND")
+        _draw_state(layout, context, "direction_field")
         rows.draw_pens(layout)
         rows.draw_field(layout.column(), settings)
         layout.prop(settings, "use_modifiers")
@@ -437,6 +461,8 @@ class SADDLEBACK_PT_distribute(SaddlebackSubPanel, bpy.types.Panel):
         settings = item.saddleback.distribute
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.distribute", "STICKY_UVS_DISABLE")
+        _draw_state(layout, context, "distribute")
+        _draw_figures(layout, context, "distribute")
         rows.draw_shapes(layout.column(), settings, item)
         layout.prop(settings, "use_modifiers")
         layout.prop(settings, "lengths")
@@ -496,6 +522,8 @@ class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
         """Draws the panel."""
         layout = self.split_layout(context)
         _draw_button(layout, context, "saddleback.repair", "TOOL_SETTINGS")
+        _draw_state(layout, context, "repair")
+        _draw_figures(layout, context, "repair")
         settings = active_object(context).saddleback.repair
         layout.prop(settings, "weld_distance")
         layout.prop(settings, "close_cracks")
@@ -518,6 +546,7 @@ CLASSES = (
     SADDLEBACK_PT_dual,
     SADDLEBACK_PT_shell,
     SADDLEBACK_PT_attributes,
+    SADDLEBACK_PT_info,
     SADDLEBACK_PT_distance,
     SADDLEBACK_PT_isolines,
     SADDLEBACK_PT_preview,

@@ -319,6 +319,8 @@ def draw_pointer(layout: bpy.types.UILayout, settings: Any, name: str, blocks: s
     """A choice among data-blocks: a pointer on the object's settings, a name on an operator."""
     if _is_name(settings, name):
         layout.prop_search(settings, name, bpy.data, blocks)
+    elif blocks == "images":
+        layout.template_ID(settings, name, open="image.open", text=settings.bl_rna.properties[name].name)
     else:
         layout.prop(settings, name)
 
