@@ -66,6 +66,7 @@ def build_wheel(sdist: Path, folder: Path, *arguments: str) -> Path:
     subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
     (folder / "tmp").mkdir()
     environment = {**os.environ, "TMPDIR": str(folder / "tmp"), "CCACHE_BASEDIR": str(folder)}
+    environment["SOURCE_DATE_EPOCH"] = "1577836800"  # as addon/package and the workflows set it; else files have a date
     if subprocess.run(["which", "ccache"], capture_output=True, check=False).returncode == 0:
         environment["CMAKE_CXX_COMPILER_LAUNCHER"] = "ccache"
     command = [python, "-m", "pip", "wheel", "--no-deps", "--wheel-dir", folder / "out", *arguments, sdist]
