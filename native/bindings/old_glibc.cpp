@@ -42,6 +42,9 @@ int old_fxstat(int version, int file, struct stat*);
 int old_lxstat(int version, const char* path, struct stat*);
 int old_xstat(int version, const char* path, struct stat*);
 
+// The linker's option --wrap asks for these names.
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming)
+
 // What did not exist under any version: "false" is right for every process, and means a lock more.
 char __wrap___libc_single_threaded = 0;
 
@@ -66,4 +69,5 @@ constexpr int k_stat_version = 1;
 int __wrap_fstat64(int file, struct stat* result) { return old_fxstat(k_stat_version, file, result); }
 int __wrap_lstat(const char* path, struct stat* result) { return old_lxstat(k_stat_version, path, result); }
 int __wrap_stat(const char* path, struct stat* result) { return old_xstat(k_stat_version, path, result); }
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 }
