@@ -123,8 +123,9 @@ def addon_files() -> Iterator[tuple[str, bytes]]:
     for path in sorted(ADDON.rglob("*")):
         if path.is_file() and "__pycache__" not in path.parts:
             yield path.relative_to(ADDON).as_posix(), path.read_bytes()
-    for path in [ROOT / "LICENSE", *sorted((ROOT / "licenses").iterdir())]:
-        yield path.relative_to(ROOT).as_posix(), path.read_bytes()
+    yield "LICENSE", (ROOT / "LICENSE").read_bytes()
+    for path in sorted((ROOT / "native/licenses").iterdir()):
+        yield f"licenses/{path.name}", path.read_bytes()
 
 
 def write_zip(path: Path, contents: dict[str, bytes]) -> Path:

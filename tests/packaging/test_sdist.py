@@ -39,7 +39,14 @@ def names(sdist: Path) -> set[str]:
 
 
 def test_holds_what_the_build_reads_and_nothing_else(sdist):
-    needed = ("native/src/", "native/include/", "native/bindings/", "native/python/", "native/cmake/", "licenses/")
+    needed = (
+        "native/src/",
+        "native/include/",
+        "native/bindings/",
+        "native/python/",
+        "native/cmake/",
+        "native/licenses/",
+    )
     wanted = {name for name in tracked() if name.startswith(needed)} - {
         name for name in tracked() if name.startswith("native/cmake/platforms/")
     }
@@ -94,7 +101,7 @@ def test_builds_in_isolation_and_works(wheel, tmp_path):
 @slow
 def test_the_licenses_of_all_that_it_holds_are_in_the_wheel(wheel):
     licenses = {Path(name).name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/licenses/" in name}
-    assert licenses == {"LICENSE", *(path.name for path in (ROOT / "licenses").iterdir())}
+    assert licenses == {"LICENSE", *(path.name for path in (ROOT / "native/licenses").iterdir())}
 
 
 @slow

@@ -37,7 +37,7 @@ def wheels(tmp_path):
 def dist(tmp_path, monkeypatch):
     monkeypatch.setattr(make_packages, "ROOT", tmp_path)
     monkeypatch.setattr(make_packages, "DIST", tmp_path / "dist")
-    for name in ("LICENSE", "licenses", "addon", "pyproject.toml"):
+    for name in ("LICENSE", "native", "addon", "pyproject.toml"):
         (tmp_path / name).symlink_to(ROOT / name)
     return tmp_path / "dist"
 

@@ -13,6 +13,7 @@
 #include "mesh/tables/face_shape.h"
 #include "mesh/tables/offenders.h"
 #include "mesh/tables/validate.h"
+#include "support/disjoint_sets.h"
 #include "support/threads/parallel.h"
 
 namespace saddleback {
@@ -143,19 +144,14 @@ void Mesh::measure() {
 }
 
 void Mesh::find_components() {
-  std::vector<Index> parent(vertex_count());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(vertex_count());
   for (const Triangle& t : triangles_)
-    for (int i = 1; i < 3; ++i) {
-      const Index a = root(t[0]), b = root(t[i]);
-      parent[std::max(a, b)] = std::min(a, b);  // roots are smallest: labels come in the order of first vertices
-    }
+    for (int i = 1; i < 3; ++i) sets.join(t[0], t[i]);
   components_.resize(vertex_count());
-  for (Index v = 0; v < vertex_count(); ++v) components_[v] = root(v) == v ? component_count_++ : components_[root(v)];
+  for (Index v = 0; v < vertex_count(); ++v) {
+    const Index root = sets.root(v);  // not above v: components are numbered by their first vertices
+    components_[v] = root == v ? component_count_++ : components_[root];
+  }
 }
 
 void Mesh::find_boundary_loops() {

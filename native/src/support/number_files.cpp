@@ -57,10 +57,10 @@ NumberFileWriter::NumberFileWriter(const std::string& path) : path_(path), targe
   if (system_path(path).filename().empty()) {
     throw InputError(message("path: '", path, "' names no file; give the name of a file to write"));
   }
-  partial_ = name_beside(target_);
-  file_ = open_file(partial_, "wbx");
+  partial_.path = name_beside(target_);
+  file_ = open_file(partial_.path, "wbx");
   if (!file_) {
-    partial_.clear();
+    partial_.path.clear();
     fail();
   }
   if (fs::exists(status)) keep_permissions(status.permissions());
@@ -70,17 +70,16 @@ NumberFileWriter::NumberFileWriter(const std::string& path) : path_(path), targe
 void NumberFileWriter::keep_permissions(fs::perms old) {
   if (!may_be_written(target_)) fail();
   std::error_code error;
-  fs::permissions(partial_, old, error);
+  fs::permissions(partial_.path, old, error);
   if (error) {
     errno = error.value();
     fail();
   }
 }
 
-NumberFileWriter::~NumberFileWriter() {
-  file_.reset();
+NumberFileWriter::PartialFile::~PartialFile() {
   std::error_code error;
-  if (!partial_.empty()) fs::remove(partial_, error);
+  if (!path.empty()) fs::remove(path, error);
 }
 
 void NumberFileWriter::fail() const {
@@ -102,12 +101,12 @@ void NumberFileWriter::write_bytes(std::span<const std::byte> bytes) {
 void NumberFileWriter::commit() {
   if (!bring_to_disk(file_.get()) || std::fclose(file_.release()) != 0) fail();
   std::error_code error;
-  fs::rename(partial_, target_, error);
+  fs::rename(partial_.path, target_, error);
   if (error) {
     errno = error.value();
     fail();
   }
-  partial_.clear();
+  partial_.path.clear();
 }
 
 NumberFileReader::NumberFileReader(const std::string& path) : path_(path) {

@@ -25,7 +25,6 @@ class NumberFileWriter {
  public:
   /// \throw InputError when the place is taken by something else than a file, or nothing can be written there.
   explicit NumberFileWriter(const std::string& path);
-  ~NumberFileWriter();
   NumberFileWriter(const NumberFileWriter&) = delete;
   NumberFileWriter& operator=(const NumberFileWriter&) = delete;
 
@@ -41,14 +40,22 @@ class NumberFileWriter {
   void commit();
 
  private:
+  /// The file being written, which goes with whatever fails, even in the constructor; no path once it has moved.
+  struct PartialFile {
+    std::filesystem::path path;
+    PartialFile() = default;
+    PartialFile(const PartialFile&) = delete;
+    PartialFile& operator=(const PartialFile&) = delete;
+    ~PartialFile();
+  };
   [[noreturn]] void fail() const;
   void keep_permissions(std::filesystem::perms old);
   void write_bytes(std::span<const std::byte> bytes);
 
-  std::string path_;               ///< as given, for messages
-  std::filesystem::path target_;   ///< what it stands for when it is a link
-  std::filesystem::path partial_;  ///< the file being written, empty once it has moved
-  FileHandle file_;
+  std::string path_;              ///< as given, for messages
+  std::filesystem::path target_;  ///< what it stands for when it is a link
+  PartialFile partial_;
+  FileHandle file_;  ///< closed before the partial file goes
   std::uint32_t crc_ = 0;
 };
 

@@ -1,29 +1,11 @@
 #include "field/connection/dual_loops.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "support/disjoint_sets.h"
 
 namespace saddleback {
 namespace {
-
-/// Sets of nodes that grow together.
-class Forest {
- public:
-  explicit Forest(Index count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  Index root(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  bool join(Index a, Index b) {
-    a = root(a), b = root(b);
-    if (a == b) return false;
-    parent_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 std::vector<Index> grow_trees(const Mesh& mesh, DualLoops& result) {
   std::vector<Index> depth(mesh.face_count(), k_none);
@@ -84,7 +66,7 @@ DualLoops dual_loops(const Mesh& mesh, const FilledSurface& filled) {
       std::any_of(filled.components.begin(), filled.components.end(), [](const auto& c) { return c.genus > 0; });
   if (!has_handles) return result;
   std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.length > b.length; });
-  Forest forest(filled.node_count);
+  DisjointSets forest(filled.node_count);
   for (const Edge& edge : edges) {
     const Index a = filled.node_of[mesh.from(edge.halfedge)], b = filled.node_of[mesh.to(edge.halfedge)];
     if (forest.join(a, b)) continue;

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <compare>
-#include <numeric>
 
 #include "saddleback/mesh/triangle_arrays.h"
 
 #include "mesh/tables/corner_table.h"
+#include "support/disjoint_sets.h"
 
 namespace saddleback {
 
@@ -24,22 +24,14 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> vertices, std::span<const
 
 std::vector<Index> connected_parts(std::span<const Triangle> triangles, Index vertex_count) {
   check_corners(triangles, vertex_count);
-  std::vector<Index> parent(vertex_count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(vertex_count);
   for (const Triangle& t : triangles)
-    for (const Index v : {t[1], t[2]}) {
-      const auto [low, high] = std::minmax({root(t[0]), root(v)});
-      parent[high] = low;
-    }
+    for (const Index v : {t[1], t[2]}) sets.join(t[0], v);
   std::vector<Index> number(vertex_count, k_none), parts;
   parts.reserve(triangles.size());
   Index count = 0;
   for (const Triangle& t : triangles) {
-    Index& mine = number[root(t[0])];
+    Index& mine = number[sets.root(t[0])];
     if (mine == k_none) mine = count++;
     parts.push_back(mine);
   }
