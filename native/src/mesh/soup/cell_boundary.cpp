@@ -99,31 +99,37 @@ class BoundarySearch {
   struct Nearest {
     Index segment;
     double squared;
+    bool operator<(const Nearest& other) const { return squared < other.squared; }
   };
 
-  /// The segment nearest to a place amid some vertices of a cell, of those that they know on along the boundary.
+  /// The segment nearest to a place amid some vertices of a cell: the boundary is followed from what each of them
+  /// knows, for these may be sides of the cell with a farther place between.
   Nearest nearest_amid(const Vec3& middle, std::span<const Index> around, Index cell) const {
     Nearest best{k_none, std::numeric_limits<double>::infinity()};
-    const auto offer_one = [&](Index segment) {
-      const auto& [from, to] = boundary_.segments[segment];
-      const double found = squared_distance_to(middle, vertices_[from], vertices_[to]);
-      if (found < best.squared) best = {segment, found};
-    };
-    const auto offer_all_at = [&](Index vertex) {
-      for (Index i = first_[vertex]; i < first_[vertex + 1]; ++i)
-        if (bounds(at_[i], cell)) offer_one(at_[i]);
-    };
+    Index last = k_none;
     for (const Index v : around) {
+      Nearest start{k_none, std::numeric_limits<double>::infinity()};
       if (nearest_[v] != k_none)
-        offer_one(nearest_[v]);
-      else if (v < static_cast<Index>(vertices_.size()))
-        offer_all_at(v);
-    }
-    for (Index before = k_none; before != best.segment;) {
-      before = best.segment;
-      for (const Index end : boundary_.segments[before]) offer_all_at(end);
+        start = to_segment(middle, nearest_[v]);
+      else if (touches(v))
+        start = nearest_at(middle, v, cell);
+      if (start.segment != last) best = std::min(best, followed(middle, start, cell));
+      last = start.segment;
     }
     return best;
+  }
+
+  /// Takes over what a neighbor knows where that is nearer to an added vertex, for between them the nearest side of the
+  /// cell may change. Returns whether it is.
+  bool offer_from(Index neighbor, Index added, const Vec3& place, Index cell) {
+    const Index segment = nearest_[neighbor];
+    if (segment == k_none || segment == nearest_[added]) return false;
+    const Nearest found = to_segment(place, segment);
+    if (!(found.squared < squared_[added])) return false;
+    const Nearest best = followed(place, found, cell);
+    nearest_[added] = best.segment;
+    squared_[added] = best.squared;
+    return true;
   }
 
   /// Makes room for a vertex inside a cell.
@@ -144,7 +150,32 @@ class BoundarySearch {
     return boundary_.cells[segment][0] == cell || boundary_.cells[segment][1] == cell;
   }
 
-  bool touches(Index vertex) const { return first_[vertex] < first_[vertex + 1]; }
+  /// Whether a vertex lies on the boundary; those that were added do not.
+  bool touches(Index vertex) const {
+    return vertex < static_cast<Index>(vertices_.size()) && first_[vertex] < first_[vertex + 1];
+  }
+
+  Nearest to_segment(const Vec3& place, Index segment) const {
+    const auto& [from, to] = boundary_.segments[segment];
+    return {segment, squared_distance_to(place, vertices_[from], vertices_[to])};
+  }
+
+  /// The nearest of a cell's segments at a vertex of the boundary.
+  Nearest nearest_at(const Vec3& place, Index vertex, Index cell) const {
+    Nearest best{k_none, std::numeric_limits<double>::infinity()};
+    for (Index i = first_[vertex]; i < first_[vertex + 1]; ++i)
+      if (bounds(at_[i], cell)) best = std::min(best, to_segment(place, at_[i]));
+    return best;
+  }
+
+  /// Follows a cell's boundary from a segment, as long as that comes nearer to the place.
+  Nearest followed(const Vec3& place, Nearest best, Index cell) const {
+    for (Index before = k_none; before != best.segment;) {
+      before = best.segment;
+      for (const Index end : boundary_.segments[before]) best = std::min(best, nearest_at(place, end, cell));
+    }
+    return best;
+  }
 
   template <class Visit>
   void visit_neighbors(Index vertex, Visit&& visit) const {
@@ -219,6 +250,7 @@ class BoundaryRefiner {
       middles_.clear();
       next.clear();
       for (const Index t : active) split(t, next);
+      spread(next);
       active.swap(next);
     }
     return std::move(out_);
@@ -233,6 +265,34 @@ class BoundaryRefiner {
   }
 
   double* row(Index vertex) { return out_.fields.data() + static_cast<std::size_t>(vertex) * width_; }
+
+  /// New vertices tell each other what they know, whatever the order in which they came. Beside those that learned
+  /// something all triangles are looked at again, for both sides of an edge must decide alike.
+  void spread(std::vector<Index>& triangles) {
+    std::vector<std::uint8_t> has_learned(places_.size(), 0);
+    bool has_any = false;
+    for (bool goes_on = true; goes_on;) {
+      goes_on = false;
+      for (const Index t : triangles)
+        for (const Index v : out_.triangles[t])
+          if (learn(v, t)) has_learned[v] = 1, goes_on = has_any = true;
+    }
+    if (!has_any) return;
+    std::vector<std::uint8_t> is_listed(out_.triangles.size(), 0);
+    for (const Index t : triangles) is_listed[t] = 1;
+    for (Index t = 0; t < static_cast<Index>(out_.triangles.size()); ++t)
+      if (!is_listed[t] && std::ranges::any_of(out_.triangles[t], [&](Index v) { return has_learned[v] != 0; }))
+        triangles.push_back(t);
+  }
+
+  bool learn(Index vertex, Index triangle) {
+    if (vertex < static_cast<Index>(given_.size())) return false;
+    bool is_nearer = false;
+    for (const Index neighbor : out_.triangles[triangle])
+      is_nearer = search_.offer_from(neighbor, vertex, places_[vertex], out_.cells[triangle]) || is_nearer;
+    if (is_nearer) row(vertex)[width_ - 1] = search_.distance(vertex);
+    return is_nearer;
+  }
 
   void split(Index t, std::vector<Index>& next) {
     const Triangle corners = out_.triangles[t];
