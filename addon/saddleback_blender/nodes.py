@@ -11,12 +11,13 @@ from . import compat, rollback
 
 MARK = "saddleback_made"  # custom property: which of the things below a data-block is
 
-TUBES, INSTANCES, SWEEP, SHAPES, FOLLOW = "tubes", "instances", "sweep", "shapes", "follow"
+TUBES, CURVE_TUBES = "tubes", "curve tubes"
+INSTANCES, SWEEP, SHAPES, FOLLOW = "instances", "sweep", "shapes", "follow"
 CELLS, EDGES, PATHS = "cells", "edges", "paths"
 ARROWS, SOURCES, SADDLES = "arrows", "field sources", "field saddles"
 
 SIZE_ATTRIBUTE = "saddleback_size"
-ROTATION_ATTRIBUTE = "saddleback_rotation"
+ROTATION_ATTRIBUTE, NORMAL_ATTRIBUTE = "saddleback_rotation", "saddleback_normal"
 SCALE_ATTRIBUTE, CLASS_ATTRIBUTE = "saddleback_scale", "saddleback_class"
 COLOR_ATTRIBUTE = "saddleback_color"
 # Radii of a sweep circle from which on, and until which, a vertex is shown.
@@ -45,14 +46,22 @@ def modifier_of(item: bpy.types.Object, kind: str) -> bpy.types.Modifier | None:
 
 
 def set_tubes(item: bpy.types.Object, radius: float, material: bpy.types.Material | None) -> bpy.types.Modifier:
-    """Makes the object's edges into tubes of a radius (object units), which stays live in the modifier."""
-    modifier = modifier_of(item, TUBES)
+    """Makes the object's edges or curves into tubes of a radius (object units), which stays live in the modifier."""
+    kind = CURVE_TUBES if item.type == "CURVE" else TUBES
+    modifier = modifier_of(item, kind)
     if modifier is None:
-        modifier = add_first(item, "Saddleback Tubes", _shared_group(TUBES))
+        modifier = add_first(item, "Saddleback Tubes", _shared_group(kind))
         compat.set_modifier_input(modifier, "Resolution", 8)
         compat.set_modifier_input(modifier, "Material", material)
     set_input(modifier, "Radius", radius)
     return modifier
+
+
+def remove_tubes(item: bpy.types.Object) -> None:
+    """Leaves a curve object a line."""
+    modifier = modifier_of(item, CURVE_TUBES)
+    if modifier is not None:
+        rollback.when_written(partial(remove_modifier, item, modifier))
 
 
 def set_instances(item: bpy.types.Object, instance: bpy.types.Object | None, scale: float) -> bpy.types.Modifier | None:
@@ -86,7 +95,7 @@ def put_group(
         old = modifier.node_group
         rollback.undo_with(partial(_put_back, modifier, old, compat.modifier_inputs(modifier)))
         modifier.node_group = group
-        rollback.when_written(partial(_remove_if_unused, old))
+        rollback.when_written(partial(_remove_if_unused, old.name))
     for label, value in inputs.items():
         compat.set_modifier_input(modifier, label, value)
     return modifier
@@ -98,8 +107,9 @@ def _put_back(modifier: bpy.types.Modifier, group: bpy.types.NodeTree, inputs: d
         compat.set_modifier_input(modifier, label, value)
 
 
-def _remove_if_unused(group: bpy.types.NodeTree) -> None:
-    if group.users == 0:
+def _remove_if_unused(name: str) -> None:
+    group = bpy.data.node_groups.get(name)  # gone where outputs shared it
+    if group is not None and group.users == 0 and is_ours(group):
         bpy.data.node_groups.remove(group)
 
 
@@ -111,9 +121,9 @@ def set_input(modifier: bpy.types.Modifier, name: str, value: Any) -> None:
 
 def remove_modifier(item: bpy.types.Object, modifier: bpy.types.Modifier) -> None:
     """Removes a modifier, and its group unless something else uses it."""
-    group = modifier.node_group
+    name = modifier.node_group.name
     item.modifiers.remove(modifier)
-    _remove_if_unused(group)
+    _remove_if_unused(name)
 
 
 def set_sweep(item: bpy.types.Object, circle: bpy.types.Object, draws_circle: bool) -> bpy.types.Modifier:
@@ -129,8 +139,10 @@ def add_first(item: bpy.types.Object, name: str, group: bpy.types.NodeTree) -> b
     modifier = item.modifiers.new(name, "NODES")
     rollback.undo_with(partial(item.modifiers.remove, modifier))
     modifier.node_group = group
-    if item.modifiers[0] != modifier:
-        compat.move_modifier_first(item, modifier)
+    following = modifier_of(item, FOLLOW)  # which moves what the others make something of
+    for first in (modifier, following):
+        if first is not None and item.modifiers[0] != first:
+            compat.move_modifier_first(item, first)
     return modifier
 
 
@@ -138,7 +150,7 @@ def _shared_group(kind: str) -> bpy.types.NodeTree:
     for group in bpy.data.node_groups:
         if group.get(MARK) == kind and group.library is None:
             return group
-    return _new_tubes_group()
+    return _new_tubes_group() if kind == TUBES else _new_curve_tubes_group()
 
 
 def new_group(name: str, kind: str) -> tuple[bpy.types.NodeTree, Any, Any]:
@@ -160,14 +172,42 @@ def lay_out(*columns: Any) -> None:
             node.location = (220 * x, -220 * y)
 
 
-def _new_tubes_group() -> bpy.types.NodeTree:
-    """Edges to tubes, with a ball at every vertex where a tube ends or several meet, so that joints are closed."""
-    group, source, sink = new_group("Saddleback Tubes", TUBES)
+def _add_tube_inputs(group: bpy.types.NodeTree) -> None:
     radius = compat.new_group_socket(group, "Radius", "INPUT", "NodeSocketFloat")
     radius.default_value, radius.min_value = 0.01, 0.0
     resolution = compat.new_group_socket(group, "Resolution", "INPUT", "NodeSocketInt")
     resolution.default_value, resolution.min_value, resolution.max_value = 8, 3, 64
     compat.new_group_socket(group, "Material", "INPUT", "NodeSocketMaterial")
+
+
+def _new_curve_tubes_group() -> bpy.types.NodeTree:
+    """Curves to tubes, closed at their ends; a mesh, as an artist's bevel makes one of the curve, stays."""
+    group, source, sink = new_group("Saddleback Curve Tubes", CURVE_TUBES)
+    _add_tube_inputs(group)
+    nodes, link = group.nodes, group.links.new
+    circle, sweep = nodes.new("GeometryNodeCurvePrimitiveCircle"), nodes.new("GeometryNodeCurveToMesh")
+    sweep.inputs["Fill Caps"].default_value = True
+    parts, joined = nodes.new("GeometryNodeSeparateComponents"), nodes.new("GeometryNodeJoinGeometry")
+    smooth, painted = nodes.new("GeometryNodeSetShadeSmooth"), nodes.new("GeometryNodeSetMaterial")
+    link(source.outputs["Resolution"], circle.inputs["Resolution"])
+    link(source.outputs["Radius"], circle.inputs["Radius"])
+    link(source.outputs["Geometry"], parts.inputs["Geometry"])
+    link(parts.outputs["Curve"], sweep.inputs["Curve"])
+    link(circle.outputs["Curve"], sweep.inputs["Profile Curve"])
+    link(sweep.outputs["Mesh"], smooth.inputs["Geometry"])
+    link(smooth.outputs["Geometry"], painted.inputs["Geometry"])
+    link(source.outputs["Material"], painted.inputs["Material"])
+    link(painted.outputs["Geometry"], joined.inputs["Geometry"])
+    link(parts.outputs["Mesh"], joined.inputs["Geometry"])
+    link(joined.outputs["Geometry"], sink.inputs["Geometry"])
+    lay_out(source, (circle, parts), sweep, smooth, painted, joined, sink)
+    return group
+
+
+def _new_tubes_group() -> bpy.types.NodeTree:
+    """Edges to tubes, with a ball at every vertex where a tube ends or several meet, so that joints are closed."""
+    group, source, sink = new_group("Saddleback Tubes", TUBES)
+    _add_tube_inputs(group)
     nodes, link = group.nodes, group.links.new
 
     to_curve = nodes.new("GeometryNodeMeshToCurve")

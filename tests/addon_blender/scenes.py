@@ -3,6 +3,8 @@
 import bpy
 import numpy as np
 
+from saddleback_blender import compat, nodes
+
 
 def add_object(name, vertices, faces, active=True):
     """A mesh object in the scene."""
@@ -92,3 +94,12 @@ def _flat(group, prefix=""):
             yield from _flat(value, prefix + name + ".")
         else:
             yield prefix + name, value
+
+
+def tube_radius(item):
+    """The radius of the tubes that show an output's lines."""
+    for kind in (nodes.TUBES, nodes.CURVE_TUBES):
+        modifier = nodes.modifier_of(item, kind)
+        if modifier is not None:
+            return compat.modifier_input(modifier, "Radius")
+    return 0.0

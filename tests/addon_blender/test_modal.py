@@ -304,7 +304,7 @@ def test_a_second_run_uses_what_a_stopped_one_finished():
     operator.modal(context, ESC)
     assert cache.shared.builds["graph"] == 1
     bpy.ops.saddleback.tessellate(count=20, iterations=2)
-    assert cache.shared.builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1}
+    assert cache.shared.builds == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1, "anchors": 1}
 
 
 ENTER = SimpleNamespace(type="RET", value="PRESS", ctrl=False, oskey=False)

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from scenes import add_object, attribute, fingerprint, grid, grid_arrays, positions, select, sphere
+from scenes import add_object, attribute, fingerprint, grid, grid_arrays, positions, select, sphere, tube_radius
 
 from saddleback_blender import jobs
 from saddleback_blender.bridge.inputs.curves_in import polylines_of
@@ -107,7 +107,7 @@ def test_isolines_are_curves_on_the_surface_at_their_levels():
     select(item, [0])
     bpy.ops.saddleback.distance(make_isolines=True, isolines_by="SPACING", isoline_spacing=0.5, isoline_radius=0.03)
     output = find_output(item, "isolines")
-    assert output.name == "Grid Isolines" and output.data.bevel_depth == pytest.approx(0.03)
+    assert output.name == "Grid Isolines" and tube_radius(output) == pytest.approx(0.03)
     assert output.users_collection[0].name == "Saddleback"
     assert len(output.data.splines) == 5  # 0.5 to 2.5, the diagonal is 2.83
     for number, spline in enumerate(output.data.splines, 1):

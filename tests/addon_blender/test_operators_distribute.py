@@ -107,7 +107,7 @@ def test_shapes_of_a_collection_keep_materials_scale_and_center():
     assert sorted(output.name for output in outputs_of(item)) == names
     groups = len(bpy.data.node_groups)
     bpy.ops.saddleback.distribute(fit=0.0, seed=4, **settings, **FEW)
-    assert len(bpy.data.node_groups) == groups == 2  # of instances, of bent copies
+    assert len(bpy.data.node_groups) == groups == 3  # of instances, and what lets both outputs follow
     bpy.ops.saddleback.distribute(fit=0.0, **settings | {"make_instances": False}, **FEW)
     assert find_output(item, "shape instances") is None
     assert item.saddleback.distribute.shapes_collection.name == "Shapes"
@@ -228,7 +228,7 @@ def test_everything_goes_with_clear_and_nothing_else():
     before = fingerprint()
     bpy.ops.saddleback.distribute(make_instances=True, make_outlines=True, write_attributes=True, **FEW)
     # One of them is what instances show, one what outlines know of the surface.
-    assert len(outputs_of(item)) == 5
+    assert len(outputs_of(item)) == 4
     distance = attribute(item, "saddleback_outline_distance")
     assert 0.2 < (distance < 0).mean() < 0.6 and (attribute(item, "saddleback_shape")[distance < 0] >= 0).all()
     assert len(find_output(item, "shape outlines").data.splines) == 20
@@ -401,8 +401,9 @@ def test_bent_copies_and_outlines_stay_on_a_mesh_that_is_stretched():
         assert low < radius.min() and radius.max() < high
     # Where they stay, and where the mesh is another one.
     bpy.ops.saddleback.distribute(make_outlines=True, shapes="MOSAIC", follow_surface=False, **FEW)
-    assert not bodies.modifiers and not find_output(item, "shape outlines").modifiers
-    assert [group.name for group in bpy.data.node_groups] == []
+    assert not bodies.modifiers
+    assert [modifier.name for modifier in find_output(item, "shape outlines").modifiers] == ["Saddleback Tubes"]
+    assert [group.name for group in bpy.data.node_groups] == ["Saddleback Curve Tubes"]
 
 
 def test_faces_of_bent_copies_are_divided_until_they_lie_on_the_surface():

@@ -4,7 +4,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from scenes import add_object, fingerprint, grid, grid_arrays, positions, select, sphere
+from scenes import add_object, fingerprint, grid, grid_arrays, positions, select, sphere, tube_radius
 
 from saddleback_blender import jobs
 from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
@@ -52,7 +52,7 @@ def test_a_path_between_two_vertices():
     select(item, [0, 120])
     assert bpy.ops.saddleback.path(path_radius=0.02) == {"FINISHED"}
     (output,) = outputs_of(item)
-    assert output.type == "CURVE" and output.name == "Grid Paths" and output.data.bevel_depth == pytest.approx(0.02)
+    assert output.type == "CURVE" and output.name == "Grid Paths" and tube_radius(output) == pytest.approx(0.02)
     assert output.users_collection[0].name == "Saddleback"
     ((points, closed),) = splines(output)
     assert not closed and length(points) == pytest.approx(np.sqrt(2), rel=1e-5)

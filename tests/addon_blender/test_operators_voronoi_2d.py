@@ -69,7 +69,7 @@ def test_cells_of_a_flat_mesh():
     cells, areas = faces(find_output(item, CELLS))
     assert sorted(cells) == list(range(50)) and areas.sum() == pytest.approx(4.0, rel=1e-5)
     edges = find_output(item, EDGES)
-    assert edges.modifiers[0].node_group.get(nodes.MARK) == nodes.TUBES
+    assert [modifier.node_group.get(nodes.MARK) for modifier in edges.modifiers] == [nodes.FOLLOW, nodes.TUBES]
     both = [np.empty(len(edges.data.edges), np.int32) for _ in range(2)]
     for values, name in zip(both, ("saddleback_cell_a", "saddleback_cell_b"), strict=True):
         edges.data.attributes[name].data.foreach_get("value", values)

@@ -14,7 +14,7 @@ from output_scenes import (
     triangles_of,
     world_positions,
 )
-from scenes import add_object, grid
+from scenes import add_object, grid, tube_radius
 
 from saddleback_blender import compat, nodes
 from saddleback_blender.bridge.outputs.out_attributes import clear_attributes, write_vertex_attributes
@@ -202,7 +202,7 @@ def test_curve_object_holds_the_same_lines(hard):
     item = write_edges(bpy.context, source, result, TessellateSettings(edge_kind="CURVE", edge_radius=0.03))
     bpy.context.view_layer.update()
     assert item.type == "CURVE"
-    assert item.data.bevel_depth == pytest.approx(0.03)
+    assert tube_radius(item) == pytest.approx(0.03)
     assert {spline.type for spline in item.data.splines} == {"POLY"}
     assert len(item.data.splines) < 0.7 * len(result.edge_closed)
     places = []

@@ -3,12 +3,11 @@
 import bpy
 import numpy as np
 import pytest
-from scenes import attribute, positions, select, sphere
+from scenes import attribute, positions, select, sphere, tube_radius
 from test_modal import press, pressed_tessellate, run_to_end
 
 from saddleback_blender import jobs
 from saddleback_blender.bridge.outputs.out_collection import find_output
-from saddleback_blender.compat import modifier_input
 from saddleback_blender.core.settings import DistanceSettings, PathSettings
 from saddleback_blender.ops.distance import SADDLEBACK_OT_distance
 from saddleback_blender.ops.path import SADDLEBACK_OT_path
@@ -25,7 +24,7 @@ def run(pair):
 
 
 def radius(item):
-    return modifier_input(find_output(item, "edges").modifiers[0], "Radius")
+    return tube_radius(find_output(item, "edges"))
 
 
 @pytest.mark.parametrize("size", [0.06, 1.0, 120.0])
@@ -68,8 +67,8 @@ def test_lines_without_cells_are_shares_of_the_model():
     run(press(SADDLEBACK_OT_path, PathSettings()))
     run(press(SADDLEBACK_OT_distance, DistanceSettings()))
     extent = np.linalg.norm(item.dimensions)
-    assert find_output(item, "paths").data.bevel_depth == pytest.approx(0.004 * extent, rel=1e-5)
-    assert find_output(item, "isolines").data.bevel_depth == pytest.approx(0.0025 * extent, rel=1e-5)
+    assert tube_radius(find_output(item, "paths")) == pytest.approx(0.004 * extent, rel=1e-5)
+    assert tube_radius(find_output(item, "isolines")) == pytest.approx(0.0025 * extent, rel=1e-5)
 
 
 def test_an_object_with_modifiers_is_taken_as_it_is_seen_and_its_copy_is_out_of_the_way():

@@ -48,6 +48,12 @@ class LampShell:
     crossing: int  # triangles that still pass through others; not 0 only where the surface itself does
 
     @property
+    def feet(self) -> Reals:
+        """(n, 3) where on the surface the vertices stand: half-way between one outside and its like inside."""
+        outside, inside = np.split(self.vertices, 2)
+        return np.tile(0.5 * (outside + inside), (2, 1))
+
+    @property
     def nbytes(self) -> int:
         """Memory of the arrays."""
         return _nbytes(self)
@@ -220,11 +226,11 @@ class PlacedShapes:
 
 @dataclass(frozen=True)
 class Anchors:
-    """Points as seen from triangles of the surface, so that they go with them when those move and turn."""
+    """Where points stand on triangles of the surface, so that they go with them when those move and turn."""
 
     corners: Indices  # (n, 3) the triangles' vertices, numbered as in the Blender mesh
     barycentric: Reals  # (n, 3)
-    shift: Reals  # (n, 3) from there to the points, by the triangles' axes: lengths of the world
+    offset: Reals  # (n, 3) from there to the points, in the world
 
 
 @dataclass(frozen=True)

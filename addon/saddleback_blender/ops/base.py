@@ -12,6 +12,7 @@ import bpy
 
 from .. import jobs, rollback
 from ..bridge.inputs.source import Source, active_object, usable_source, why_not
+from ..bridge.outputs.following import Follower
 from ..bridge.outputs.out_collection import outputs_of
 from ..bridge.outputs.output_surface import has_own_faces
 from ..core import native, runs
@@ -56,6 +57,8 @@ class SurfaceOperator(PolledOperator):
     _task: jobs.Task | None = None
     _is_by_hand = False  # not by a script
     _lengths: dict[str, Any]  # in world units, those that are given as shares
+    _surface: Surface  # that the run is made on
+    _follower: Follower | None = None
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], Any]:
         """Reads everything from Blender; returns the call that computes without it."""
@@ -65,13 +68,18 @@ class SurfaceOperator(PolledOperator):
         """Writes the result into Blender; returns one line that tells it."""
         raise NotImplementedError
 
+    def follower(self, context: bpy.types.Context, source: bpy.types.Object) -> Follower:
+        """Returns what lets the outputs follow the source when it is deformed."""
+        self._follower = Follower(context, source, self._surface, getattr(self, "use_modifiers", False))
+        return self._follower
+
     def notes(self, result: Any) -> list[str]:
         """Sentences to warn with after a run."""
         return []
 
     def measured(self, settings: Settings, surface: Surface, count: int = 0) -> Settings:
         """The settings with all lengths in world units; `count` is the number of cells, where there are cells."""
-        self._lengths = world_lengths(settings, surface, count)
+        self._surface, self._lengths = surface, world_lengths(settings, surface, count)
         return replace(settings, **self._lengths)
 
     def begin_look(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
@@ -184,7 +192,8 @@ class SurfaceOperator(PolledOperator):
             jobs.state.needs_repair = ""
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
         jobs.state.figures = [*lengths, *figures]
-        for note in [*progress.notes, *self.notes(result), *_unseen(context, source)]:
+        followed = [] if self._follower is None else self._follower.notes()
+        for note in [*progress.notes, *self.notes(result), *followed, *_unseen(context, source)]:
             self.report({"WARNING"}, note)
         self.report({"INFO"}, jobs.state.line)
         return {"FINISHED"}
@@ -242,8 +251,10 @@ class SurfaceOperator(PolledOperator):
 
 def _unseen(context: bpy.types.Context, source: bpy.types.Object) -> list[str]:
     """A sentence where outputs are there, but not in this view layer."""
-    layer = context.view_layer.objects
-    names = sorted(item.name for item in outputs_of(source) if item.users_collection and item.name not in layer)
+    items = [item for item in outputs_of(source) if item.users_collection]
+    if any(item.name not in context.view_layer.objects for item in items):
+        context.view_layer.update()  # which does not know of new objects yet
+    names = sorted(item.name for item in items if item.name not in context.view_layer.objects)
     if not names:
         return []
     told = " and ".join(f"'{name}'" for name in names)

@@ -61,14 +61,16 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
         chosen = settings_of(self, DirectionFieldSettings)
         settings = replace(chosen, **self._lengths)
         warning = shared_mesh_warning(source)
-        surface = output_surface(context, source, settings.use_modifiers, "HIDE" if self._is_by_hand else "")
+        follower = self.follower(context, source)
+        aside = "HIDE" if self._is_by_hand else ""
+        surface = output_surface(context, source, settings.use_modifiers, aside, follower)
         write_directions(source, surface, settings.direction_attribute, result)
         if result.arrows is not None:
-            write_arrows(context, source, result)
+            write_arrows(context, source, result, follower)
         else:
             remove_output(source, ARROWS_ROLE)
         if result.streamlines is not None:
-            write_streamlines(context, source, result, settings.streamline_radius)
+            write_streamlines(context, source, result, settings.streamline_radius, follower)
         else:
             remove_output(source, STREAMLINES_ROLE)
         keep_settings(chosen, "direction_field", source)

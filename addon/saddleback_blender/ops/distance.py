@@ -62,14 +62,15 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
         chosen = settings_of(self, DistanceSettings)
         settings = replace(chosen, **self._lengths)
         warning = shared_mesh_warning(source)
+        follower = self.follower(context, source)
         aside = ("LIFT" if settings.make_preview else "HIDE") if self._is_by_hand else ""
-        surface = output_surface(context, source, settings.use_modifiers, aside)
+        surface = output_surface(context, source, settings.use_modifiers, aside, follower)
         distances = result.vertex_distance
         write_vertex_attributes(surface, {settings.distance_attribute: distances.astype(np.float32)})
         reached = np.isfinite(distances)
         farthest = float(distances[reached].max(initial=0.0))
         if result.isolines is not None:
-            write_isolines(context, source, result.isolines, settings.isoline_radius)
+            write_isolines(context, source, result.isolines, settings.isoline_radius, follower)
         else:
             remove_output(source, ISOLINES_ROLE)
         if settings.make_preview:

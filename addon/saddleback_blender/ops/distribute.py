@@ -23,10 +23,10 @@ from ..bridge.outputs.out_shapes import (
     BENT_ROLE,
     INSTANCES_ROLE,
     OUTLINE_DISTANCE,
+    OUTLINES_ROLE,
     SHAPE_ATTRIBUTE,
     SHAPE_UV,
     make_real,
-    remove_outlines,
     remove_templates,
     write_bent,
     write_instances,
@@ -73,25 +73,25 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
         chosen = settings_of(self, DistributeSettings)
         settings = replace(chosen, **self._lengths)
         warning = shared_mesh_warning(source) if settings.write_attributes else ""
+        follower = self.follower(context, source)
         if result.values is not None:
-            write_shape_values(
-                output_surface(context, source, settings.use_modifiers, "HIDE" if self._is_by_hand else ""), result
-            )
+            aside = "HIDE" if self._is_by_hand else ""
+            write_shape_values(output_surface(context, source, settings.use_modifiers, aside, follower), result)
         if result.bent is not None:
-            write_bent(context, source, result, self._templates, settings)
+            write_bent(context, source, result, self._templates, settings, follower)
         else:
             remove_output(source, BENT_ROLE)
         if settings.make_instances:
-            write_instances(context, source, result, self._templates, settings)
+            write_instances(context, source, result, self._templates, settings, follower)
         else:
             remove_output(source, INSTANCES_ROLE)
             remove_templates(source)
         if result.outlines is not None:
-            write_outlines(context, source, result, settings)
+            write_outlines(context, source, result, settings, follower)
         else:
-            remove_outlines(source)
+            remove_output(source, OUTLINES_ROLE)
         if result.cut is not None:
-            write_cut(context, source, result, self._templates, settings)
+            write_cut(context, source, result, self._templates, settings, follower)
         else:
             remove_output(source, CUT_ROLE)
         keep_settings(chosen, "distribute", source)

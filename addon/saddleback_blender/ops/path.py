@@ -51,7 +51,7 @@ class SADDLEBACK_OT_path(SurfaceOperator, bpy.types.Operator):
         """Writes the result into Blender."""
         chosen = settings_of(self, PathSettings)
         settings = replace(chosen, **self._lengths)
-        write_paths(context, source, result, settings.path_radius, settings.lift)
+        write_paths(context, source, result, settings.path_radius, settings.lift, self.follower(context, source))
         keep_settings(chosen, "path", source)
         return f"'{source.name}': {_told(result)}"
 

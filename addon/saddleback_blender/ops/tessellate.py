@@ -83,7 +83,9 @@ class CellsOperator(SurfaceOperator):
         chosen = settings_of(self, TessellateSettings)
         settings = replace(chosen, **self._lengths)
         warning = shared_mesh_warning(source)
-        surface = output_surface(context, source, settings.use_modifiers, "HIDE" if self._is_by_hand else "")
+        follower = self.follower(context, source)
+        aside = "HIDE" if self._is_by_hand else ""
+        surface = output_surface(context, source, settings.use_modifiers, aside, follower)
         values: dict[str, np.ndarray[Any, Any]] = {
             settings.cell_attribute: result.vertex_cell.astype(np.int32, copy=False),
             settings.distance_attribute: result.vertex_distance.astype(np.float32),
@@ -93,7 +95,7 @@ class CellsOperator(SurfaceOperator):
         if result.edge_distance is not None:
             values[settings.edge_distance_attribute] = result.edge_distance.astype(np.float32)
         write_vertex_attributes(surface, values)
-        outputs = (
+        outputs: tuple[tuple[bool, Callable[..., object], str], ...] = (
             (settings.make_edges, write_edges, EDGES_ROLE),
             (settings.make_cells, write_cells, CELLS_ROLE),
             (settings.make_centers, write_centers, CENTERS_ROLE),
@@ -102,7 +104,7 @@ class CellsOperator(SurfaceOperator):
         )
         for wanted, write, role in outputs:
             if wanted:
-                write(context, source, result, settings)
+                write(context, source, result, settings, follower=follower)
             else:
                 remove_output(source, role)
         keep_settings(chosen, "tessellate", source)

@@ -13,6 +13,7 @@ from .. import prefs
 from ..blocks import find
 from ..bridge.inputs.mesh_in import mesh_of, read_surface, read_triangle_polygons
 from ..bridge.inputs.voronoi_in import read_darkness, read_uv, read_voronoi_sites
+from ..bridge.outputs.following import Follower
 from ..bridge.outputs.out_cells import vanished_cells, write_cells, write_polygons
 from ..bridge.outputs.out_centers import write_centers
 from ..bridge.outputs.out_collection import find_output, remove_output
@@ -72,10 +73,11 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
         """Writes the result into Blender."""
         chosen = settings_of(self, Voronoi2dSettings)
         settings = replace(chosen, **self._lengths)
-        _write_edges(context, source, result, settings)
-        _write_cells(context, source, result, settings)
+        follower = self.follower(context, source)
+        _write_edges(context, source, result, settings, follower)
+        _write_cells(context, source, result, settings, follower)
         if settings.make_centers:
-            write_centers(context, source, result.cells, settings, CENTERS_ROLE)
+            write_centers(context, source, result.cells, settings, CENTERS_ROLE, follower)
         else:
             remove_output(source, CENTERS_ROLE)
         if result.sweep is not None:
@@ -87,26 +89,35 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
 
 
 def _write_edges(
-    context: bpy.types.Context, source: bpy.types.Object, result: Voronoi2dResult, settings: Voronoi2dSettings
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: Voronoi2dResult,
+    settings: Voronoi2dSettings,
+    follower: Follower,
 ) -> None:
     if not settings.make_edges:
         remove_output(source, EDGES_ROLE)
     elif result.flat is not None:
-        write_network(context, source, _network(result.flat), settings, EDGES_ROLE)
+        write_network(context, source, _network(result.flat), settings, EDGES_ROLE, follower)
     else:
-        write_edges(context, source, result.cells, settings, EDGES_ROLE)
+        write_edges(context, source, result.cells, settings, EDGES_ROLE, follower)
 
 
 def _write_cells(
-    context: bpy.types.Context, source: bpy.types.Object, result: Voronoi2dResult, settings: Voronoi2dSettings
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: Voronoi2dResult,
+    settings: Voronoi2dSettings,
+    follower: Follower,
 ) -> None:
     if not settings.make_cells:
         remove_output(source, CELLS_ROLE)
     elif result.flat is not None and result.polygons is not None:
         neighbors = result.flat.edge_cells
-        write_polygons(context, source, result.polygons, result.cells.count, neighbors, result.vanished, CELLS_ROLE)
+        count = result.cells.count
+        write_polygons(context, source, result.polygons, count, neighbors, result.vanished, CELLS_ROLE, follower)
     else:
-        write_cells(context, source, result.cells, settings, CELLS_ROLE)
+        write_cells(context, source, result.cells, settings, CELLS_ROLE, follower)
 
 
 def _network(flat: FlatCells) -> EdgeNetwork:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from ... import compat
 from ...core.results import Indices, Reals
 from ...core.surfaces.carried import Anchors
+from ...follow_nodes import REST_POSITION
 from ...rollback import ELEMENTS
-from ...shape_nodes import REST_POSITION
 from ..outputs.out_attributes import KINDS, recorded
 from .groups_in import group_numbers
 from .mesh_in import read_triangles

@@ -10,6 +10,7 @@ from ...blocks import find
 from ...core.errors import BadInputError
 from ...core.requests import Polyline
 from ...core.solids.edge_chains import chains
+from ...nodes import CURVE_TUBES, modifier_of
 from ..tokens import SOURCE
 from .evaluated import evaluated
 from .mesh_in import to_world
@@ -85,6 +86,9 @@ def _modified(item: bpy.types.Object, plain: bpy.types.Curve) -> list[Polyline] 
     scene = bpy.context.scene.collection
     holder = item.copy()
     holder.data, holder.hide_viewport = plain, False
+    tubes = modifier_of(holder, CURVE_TUBES)
+    if tubes is not None:  # our own lines count as lines
+        holder.modifiers.remove(tubes)
     scene.objects.link(holder)
     try:
         shown = holder.evaluated_get(bpy.context.evaluated_depsgraph_get())

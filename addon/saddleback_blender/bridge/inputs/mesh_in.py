@@ -77,6 +77,30 @@ def read_marked_edges(mesh: bpy.types.Mesh) -> Indices:
     return compat.read_edge_vertices(mesh)[is_sharp]
 
 
+def read_vertex_normals(mesh: bpy.types.Mesh) -> Reals:
+    """(V, 3) unit normals of the shape, whatever an artist made of them: from 4.5 on Blender's own tell that."""
+    flat = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("normal", flat)
+    if not mesh.has_custom_normals:
+        return flat.reshape(-1, 3).astype(np.float64)
+    count, vertices = compat.read_numbers(mesh.polygons, "loop_total"), compat.read_corner_vertices(mesh)
+    size, first = np.repeat(count, count), np.repeat(compat.read_numbers(mesh.polygons, "loop_start"), count)
+    step = np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
+    places = compat.read_positions(mesh).astype(np.float64)[vertices]
+    sides = [_unit(places[first + (step + way) % size] - places[first + step]) for way in (1, -1)]
+    angle = np.arccos(np.clip(np.einsum("ij,ij->i", *sides), -1.0, 1.0))
+    faces = np.empty(3 * len(mesh.polygons), np.float32)
+    mesh.polygons.foreach_get("normal", faces)
+    normals = np.zeros((len(mesh.vertices), 3))
+    np.add.at(normals, vertices[first + step], angle[:, None] * np.repeat(faces.reshape(-1, 3), count, axis=0))
+    return _unit(normals)
+
+
+def _unit(vectors: Reals) -> Reals:
+    units: Reals = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), np.finfo(np.float64).tiny)
+    return units
+
+
 def to_world(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals:
     """(n, 3) object-space positions -> world space, in double precision."""
     matrix = np.array(source.matrix_world, np.float64)

@@ -17,6 +17,7 @@ from ...core.shapes.local_places import local_uv
 from ...core.solids.cell_mesh import CellMesh, CellPieces, CellShape, cell_pieces, raise_cells
 from ...core.solids.mesh_edges import triangle_edges
 from ...core.surfaces.cell_colors import cell_colors, linear_to_srgb
+from .following import Follower
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
 
@@ -35,6 +36,7 @@ def write_cells(
     result: CellsResult,
     settings: TessellateSettings | Voronoi2dSettings,
     role: str = CELLS_ROLE,
+    follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Makes or replaces the source's cells object; gap, inset and thickness are in world units."""
     shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
@@ -48,6 +50,8 @@ def write_cells(
         )
         mesh.uv_layers.new(name=LOCAL_UV).data.foreach_set("uv", places.astype(np.float32).ravel())
     item = _shown(context, source, role, mesh, place)
+    if follower is not None:
+        follower.take(item, place, cells.vertices, cells.feet)
     item[VANISHED] = len(cells.vanished)
     return item
 
@@ -60,6 +64,7 @@ def write_polygons(
     neighbors: Indices,
     vanished: int,
     role: str,
+    follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Makes or replaces the source's cells object from polygons; `neighbors` (e, 2) get colors unlike each other."""
     place = level_place(source)
@@ -71,6 +76,8 @@ def write_polygons(
     set_attribute(mesh, CELL_ATTRIBUTE, "FACE", cells.polygon_cell)
     _write_colors(mesh, colors, np.repeat(cells.polygon_cell, np.diff(cells.offsets)))
     item = _shown(context, source, role, mesh, place)
+    if follower is not None:
+        follower.take(item, place, cells.vertices)
     item[VANISHED] = vanished
     return item
 

@@ -11,11 +11,12 @@ from ...core.errors import BadInputError
 from ...core.results import CellsResult
 from ...core.settings import TessellateSettings, Voronoi2dSettings
 from ...core.surfaces.centers import cell_size, euler_to_normal
+from .following import Follower
 from .out_attributes import set_attribute
 from .out_collection import directions_to_place, find_output, level_place, replace_object, to_place
 
 CENTERS_ROLE = "centers"
-CELL_ATTRIBUTE, AREA_ATTRIBUTE, NORMAL_ATTRIBUTE = "saddleback_cell", "saddleback_area", "saddleback_normal"
+CELL_ATTRIBUTE, AREA_ATTRIBUTE = "saddleback_cell", "saddleback_area"
 
 
 def write_centers(
@@ -24,6 +25,7 @@ def write_centers(
     result: CellsResult,
     settings: TessellateSettings | Voronoi2dSettings,
     role: str = CENTERS_ROLE,
+    follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Makes or replaces the source's centers object, with the chosen object on every center.
 
@@ -37,18 +39,21 @@ def write_centers(
     mesh.vertices.add(count)
     mesh.vertices.foreach_set("co", to_place(place, result.sites_position).astype(np.float32).ravel())
     normal = directions_to_place(place, result.sites_normal)
+    rotations = euler_to_normal(normal)
     columns: dict[str, np.ndarray] = {
         CELL_ATTRIBUTE: np.arange(count, dtype=np.int32),
         AREA_ATTRIBUTE: result.cell_area,
-        NORMAL_ATTRIBUTE: normal,
+        nodes.NORMAL_ATTRIBUTE: normal,
         nodes.SIZE_ATTRIBUTE: cell_size(result.cell_area),
-        nodes.ROTATION_ATTRIBUTE: euler_to_normal(normal),
+        nodes.ROTATION_ATTRIBUTE: rotations,
     }
     for name, values in columns.items():
         set_attribute(mesh, name, "POINT", values)
     mesh.update()
     item = replace_object(context, source, role, mesh, place)
     nodes.set_instances(item, instance, settings.instance_scale)
+    if follower is not None:
+        follower.take(item, place, result.sites_position, rotations=rotations)
     return item
 
 

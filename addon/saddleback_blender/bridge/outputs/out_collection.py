@@ -27,6 +27,8 @@ MATERIALS = "saddleback_materials"  # on outputs: the names of the materials tha
 COLLECTION = "saddleback_outputs"  # on our collections
 
 COLLECTION_NAME = "Saddleback"
+# Of the role of an object that keeps where the points of a curve stand.
+KEEPER_ENDING = " anchors"
 
 
 def output_collection(context: bpy.types.Context, source: bpy.types.Object) -> bpy.types.Collection:
@@ -112,6 +114,11 @@ def directions_to_place(place: Matrix, directions: np.ndarray) -> np.ndarray:
 
 def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
     """Returns what we made for the source and still exists, one object for each role."""
+    return [item for item in _all_of(source) if not str(item[ROLE]).endswith(KEEPER_ENDING)]
+
+
+def _all_of(source: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns the outputs, and what keeps where points of theirs stand."""
     token = token_of(source)
     if not token or not owns(source, token):
         return []
@@ -125,12 +132,14 @@ def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
 
 def find_output(source: bpy.types.Object, role: str) -> bpy.types.Object | None:
     """The source's output of a role, None where there is none."""
-    return next((item for item in outputs_of(source) if item[ROLE] == role), None)
+    return next((item for item in _all_of(source) if item[ROLE] == role), None)
 
 
 def remove_output(source: bpy.types.Object, role: str) -> bool:
     """Removes the output of one role, when its kind is no longer wanted; says whether there was one."""
-    item = find_output(source, role)
+    item, keeper = find_output(source, role), find_output(source, role + KEEPER_ENDING)
+    if keeper is not None:
+        remove_object(keeper)
     if item is None:
         return False
     collections = list(item.users_collection)
@@ -141,9 +150,9 @@ def remove_output(source: bpy.types.Object, role: str) -> bool:
 
 def clear_outputs(context: bpy.types.Context, source: bpy.types.Object) -> int:
     """Removes all that we made for the source and nothing else; returns how many objects and attributes went."""
-    items = outputs_of(source)
+    items, every = outputs_of(source), _all_of(source)
     collections = [collection for item in items for collection in item.users_collection]
-    for item in items:
+    for item in every:
         remove_object(item)
     rollback.when_written(partial(_remove_empty, collections))
     rollback.when_written(nodes.remove_unused)

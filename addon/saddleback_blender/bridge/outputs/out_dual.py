@@ -12,6 +12,7 @@ from ..inputs.carried_in import Carried, read_carried
 from ..inputs.materials_in import shown_materials
 from ..inputs.mesh_in import from_world, mesh_of
 from .carried_out import write_groups
+from .following import Follower
 from .out_attributes import set_attribute
 from .out_collection import replace_object
 
@@ -19,7 +20,11 @@ DUAL_ROLE = "dual"
 
 
 def write_dual(
-    context: bpy.types.Context, source: bpy.types.Object, result: CellsResult, settings: TessellateSettings
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: CellsResult,
+    settings: TessellateSettings,
+    follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Makes or replaces the source's dual object, in the source's own space.
 
@@ -39,6 +44,8 @@ def write_dual(
         mesh.materials.append(material)
     item = replace_object(context, source, DUAL_ROLE, mesh)
     write_groups(item, carried)
+    if follower is not None:
+        follower.take(item, source.matrix_world, dual.vertices)
     return item
 
 

@@ -1,4 +1,4 @@
-"""The lines between cells as an object: an edge mesh with tubes, or a curve with a bevel."""
+"""The lines between cells as an object: an edge mesh or a curve, both with tubes."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from ... import compat, nodes
 from ...core.results import CellsResult
 from ...core.settings import TessellateSettings, Voronoi2dSettings
 from ...core.solids.edge_network import EdgeNetwork, edge_network, long_lines
+from .following import Follower
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
-from .out_curves import new_curve
+from .out_curves import Lines, write_lines
 
 EDGES_ROLE = "edges"
 # Attributes of the edges: the cells on both sides.
@@ -26,10 +27,11 @@ def write_edges(
     result: CellsResult,
     settings: TessellateSettings | Voronoi2dSettings,
     role: str = EDGES_ROLE,
+    follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Makes or replaces the source's edges object; the radius is in world units whatever the source's scale."""
     network = edge_network(result.edge_points, result.edge_offsets, result.edge_cells, result.edge_closed)
-    return write_network(context, source, network, settings, role)
+    return write_network(context, source, network, settings, role, follower)
 
 
 def write_network(
@@ -38,21 +40,21 @@ def write_network(
     network: EdgeNetwork,
     settings: TessellateSettings | Voronoi2dSettings,
     role: str,
+    follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Writes the same from lines that are joined already, in the world."""
-    place = level_place(source)
-    network = replace(network, vertices=to_place(place, network.vertices))
+    material = nodes.edges_material()
     if settings.edge_kind == "CURVE":
         # Few and long splines, because Blender's cost is by the spline.
-        lines = ((network.vertices[vertices], is_closed) for vertices, is_closed in long_lines(network))
-        data: bpy.types.ID = new_curve("Saddleback Edges", lines, settings.edge_radius)
-        data.materials.append(nodes.edges_material())
-        return replace_object(context, source, role, data, place)
-    data = _edge_mesh(network)
-    material = nodes.edges_material()
+        lines = Lines.of((network.vertices[vertices], is_closed) for vertices, is_closed in long_lines(network))
+        return write_lines(context, source, role, lines, settings.edge_radius, material, follower)
+    place = level_place(source)
+    data = _edge_mesh(replace(network, vertices=to_place(place, network.vertices)))
     data.materials.append(material)
     item = replace_object(context, source, role, data, place)
     nodes.set_tubes(item, settings.edge_radius, material)
+    if follower is not None:
+        follower.take(item, place, network.vertices)
     return item
 
 

@@ -8,9 +8,10 @@ import numpy as np
 from ... import compat, nodes
 from ...core.fields.arrow_mesh import arrow_mesh
 from ...core.results import FieldResult, Reals
+from .following import Follower
 from .out_attributes import write_attributes
 from .out_collection import level_place, replace_object, to_place
-from .out_curves import new_curve
+from .out_curves import Lines, write_lines
 
 ARROWS_ROLE, STREAMLINES_ROLE = "arrows", "streamlines"
 SYMMETRY = "saddleback_symmetry"  # custom property of the mesh: how many directions the attribute stands for
@@ -24,7 +25,9 @@ def write_directions(source: bpy.types.Object, surface: bpy.types.Object, name: 
         surface.data[SYMMETRY] = result.symmetry
 
 
-def write_arrows(context: bpy.types.Context, source: bpy.types.Object, result: FieldResult) -> bpy.types.Object:
+def write_arrows(
+    context: bpy.types.Context, source: bpy.types.Object, result: FieldResult, follower: Follower | None = None
+) -> bpy.types.Object:
     """Makes or replaces the source's arrows object, singularities with it."""
     place = level_place(source)
     arrows = arrow_mesh(result)
@@ -37,20 +40,23 @@ def write_arrows(context: bpy.types.Context, source: bpy.types.Object, result: F
     mesh.update(calc_edges=True)
     for material in nodes.field_materials():
         mesh.materials.append(material)
-    return replace_object(context, source, ARROWS_ROLE, mesh, place)
+    item = replace_object(context, source, ARROWS_ROLE, mesh, place)
+    if follower is not None:
+        follower.take(item, place, arrows.vertices, arrows.feet)
+    return item
 
 
 def write_streamlines(
-    context: bpy.types.Context, source: bpy.types.Object, result: FieldResult, radius: float
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: FieldResult,
+    radius: float,
+    follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Makes or replaces the source's streamlines object; the radius is in world units."""
     assert result.streamlines is not None
-    place, lines = level_place(source), result.streamlines
-    points = to_place(place, lines.points)
-    ends = zip(lines.offsets[:-1], lines.offsets[1:], strict=True)
-    curve = new_curve("Saddleback Streamlines", ((points[begin:end], False) for begin, end in ends), radius)
-    curve.materials.append(nodes.edges_material())
-    return replace_object(context, source, STREAMLINES_ROLE, curve, place)
+    lines = Lines.between(result.streamlines.points, result.streamlines)
+    return write_lines(context, source, STREAMLINES_ROLE, lines, radius, nodes.edges_material(), follower)
 
 
 def _own_directions(source: bpy.types.Object, directions: Reals) -> Reals:

@@ -12,15 +12,15 @@ from ...core.results import DistributeResult
 from ...core.settings import DistributeSettings
 from ...core.shapes.shape_colors import random_of
 from ...core.shapes.shape_templates import ShapeTemplate
-from ...shape_nodes import Host, set_following, stop_following
+from ...follow_nodes import stop_following
 from ..inputs.carried_in import read_carried
 from ..inputs.materials_in import shown_materials
 from ..inputs.mesh_in import mesh_of
 from .carried_out import write_groups
+from .following import Follower
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
-from .out_shapes import RANDOM_ATTRIBUTE, SHAPE_ATTRIBUTE, SHAPE_UV, add_materials, write_anchors
-from .rest_places import read_rest
+from .out_shapes import RANDOM_ATTRIBUTE, SHAPE_ATTRIBUTE, SHAPE_UV, add_materials
 
 CUT_ROLE = "shape cut"
 
@@ -31,6 +31,7 @@ def write_cut(
     result: DistributeResult,
     templates: Sequence[ShapeTemplate],
     settings: DistributeSettings,
+    follower: Follower,
 ) -> bpy.types.Object:
     """Makes or replaces the source's cut mesh, which may follow the source.
 
@@ -69,14 +70,11 @@ def write_cut(
     firsts = add_materials(mesh, templates)
     slots = np.where(cut.copy >= 0, firsts[cut.shape], corners.material[::3]).astype(np.int32)
     mesh.polygons.foreach_set("material_index", slots)
-    rest = read_rest(context, source, settings.use_modifiers, result.vertex_count) if settings.follow_surface else None
-    if result.cut_anchors is not None:
-        write_anchors(mesh, result.cut_anchors, rest)
     mesh.update()
     item = replace_object(context, source, CUT_ROLE, mesh, place)
     write_groups(item, carried)
     if result.cut_anchors is not None:
-        set_following(item, Host.of(source, place, result.vertex_count, rest is not None))
+        follower.take_anchored(item, place, result.cut_anchors)
     else:
         stop_following(item)
     return item

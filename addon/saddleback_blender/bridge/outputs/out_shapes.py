@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import bpy
 import numpy as np
-from mathutils import Matrix
 
 from ... import compat, nodes
 from ...blocks import find
@@ -15,41 +14,27 @@ from ...core.results import Anchors, DistributeResult, Indices, PlacedShapes, Re
 from ...core.settings import DistributeSettings
 from ...core.shapes.shape_colors import random_of, shape_colors
 from ...core.shapes.shape_templates import ShapeTemplate
-from ...core.surfaces.local_frames import in_frames, triangle_frames
-from ...core.surfaces.quaternions import euler_of, quaternions_of, turned
-from ...shape_nodes import (
-    CORNER_ATTRIBUTES,
-    SHIFT_ATTRIBUTE,
-    WEIGHTS_ATTRIBUTE,
-    X_ATTRIBUTE,
-    Z_ATTRIBUTE,
-    Host,
-    Tubes,
-    set_following,
-    set_shapes,
-    stop_following,
-)
+from ...core.surfaces.quaternions import axes_of, euler_of, quaternions_of, turned
+from ...follow_nodes import WEIGHTS_ATTRIBUTE, stop_following
+from ...shape_nodes import set_shapes
 from ..inputs.materials_in import shown_materials
 from ..inputs.mesh_in import modified
 from ..tokens import SOURCE, source_token
+from .following import Follower
 from .out_attributes import set_attribute, write_vertex_attributes
 from .out_collection import (
     NAME,
     ROLE,
     directions_to_place,
-    find_output,
     level_place,
     outputs_of,
     remove_object,
-    remove_output,
     replace_object,
     to_place,
 )
-from .out_curves import new_curve
-from .rest_places import read_rest, write_rest
+from .out_curves import Lines, write_lines
 
 BENT_ROLE, INSTANCES_ROLE, OUTLINES_ROLE = "shapes", "shape instances", "shape outlines"
-KEEPER_ROLE = "shape outline anchors"
 TEMPLATE_ROLE = "shape template"  # and a number: objects of ours that instances show, in no collection
 SHAPE_ATTRIBUTE, RANDOM_ATTRIBUTE, UV_NAME = "saddleback_shape", "saddleback_random", "UVMap"
 OUTLINE_DISTANCE, SHAPE_UV = "saddleback_outline_distance", "saddleback_shape_uv"
@@ -64,6 +49,7 @@ def write_bent(
     result: DistributeResult,
     templates: Sequence[ShapeTemplate],
     settings: DistributeSettings,
+    follower: Follower,
 ) -> bpy.types.Object:
     """Makes or replaces the source's shapes object: all bent copies as one mesh, which may follow the source.
 
@@ -85,25 +71,13 @@ def write_bent(
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
     firsts = add_materials(mesh, templates)
     compat.write_numbers(mesh.polygons, "material_index", bent.material + firsts[bent.polygon_shape])
-    rest = read_rest(context, source, settings.use_modifiers, result.vertex_count) if settings.follow_surface else None
-    if result.bent_anchors is not None:
-        write_anchors(mesh, result.bent_anchors, rest)
     mesh.update()
     item = replace_object(context, source, BENT_ROLE, mesh, place)
     if result.bent_anchors is not None:
-        set_following(item, Host.of(source, place, result.vertex_count, rest is not None))
+        follower.take_anchored(item, place, result.bent_anchors)
     else:
         stop_following(item)
     return item
-
-
-def write_anchors(mesh: bpy.types.Mesh, anchors: Anchors, rest: Reals | None) -> None:
-    """Writes what `set_following` asks of a mesh: where its vertices stand on the source."""
-    for i, name in enumerate(CORNER_ATTRIBUTES):
-        set_attribute(mesh, name, "POINT", np.ascontiguousarray(anchors.corners[:, i]))
-    set_attribute(mesh, WEIGHTS_ATTRIBUTE, "POINT", anchors.barycentric)
-    set_attribute(mesh, SHIFT_ATTRIBUTE, "POINT", anchors.shift)
-    write_rest(mesh, rest, anchors.corners, anchors.barycentric)
 
 
 def write_instances(
@@ -112,6 +86,7 @@ def write_instances(
     result: DistributeResult,
     templates: Sequence[ShapeTemplate],
     settings: DistributeSettings,
+    follower: Follower,
 ) -> bpy.types.Object:
     """Makes or replaces the source's instances object: a point for each shape, and a node group that shows it there."""
     placed, place = result.placed, level_place(source)
@@ -123,86 +98,51 @@ def write_instances(
     mesh = bpy.data.meshes.new("Saddleback Shapes")
     mesh.vertices.add(len(points))
     mesh.vertices.foreach_set("co", to_place(place, points).astype(np.float32).ravel())
+    rotations = euler_of(_to_place(place, placed.rotations))
     columns = {
         nodes.CLASS_ATTRIBUTE: placed.shape,
-        nodes.ROTATION_ATTRIBUTE: euler_of(_to_place(place, placed.rotations)),
+        nodes.ROTATION_ATTRIBUTE: rotations,
+        nodes.NORMAL_ATTRIBUTE: axes_of(rotations)[1],
         nodes.SCALE_ATTRIBUTE: scales,
         RANDOM_ATTRIBUTE: random_of(len(points), settings.seed),
         FACE_ATTRIBUTE: placed.faces,
         WEIGHTS_ATTRIBUTE: placed.barycentric,
-        **_by_triangles(place, placed, points),
     }
     for name, values in columns.items():
         set_attribute(mesh, name, "POINT", values)
-    rest = read_rest(context, source, settings.use_modifiers, result.vertex_count) if settings.follow_surface else None
-    write_rest(mesh, rest, placed.corners, placed.barycentric)
     mesh.update()
     item = replace_object(context, source, INSTANCES_ROLE, mesh, place)
     remove_templates(source)
-    host = Host.of(source, place, result.vertex_count, rest is not None) if settings.follow_surface else None
-    shown = [_shown_object(source, number, template) for number, template in enumerate(templates)]
-    set_shapes(item, shown, host)
-    return item
-
-
-def _by_triangles(place: Matrix, placed: PlacedShapes, points: Reals) -> dict[str, np.ndarray]:
-    """Returns where the shapes stand and how they are turned, as seen from the triangles that they stand on."""
-    frames = triangle_frames(placed.corner_points)
-    feet = np.einsum("ni,nij->nj", placed.barycentric, placed.corner_points)
-    x, z = (turned(placed.rotations, np.tile(axis, (len(points), 1))) for axis in ([1.0, 0, 0], [0, 0, 1.0]))
-    columns: dict[str, np.ndarray] = {
-        name: np.ascontiguousarray(placed.corners[:, i]) for i, name in enumerate(CORNER_ATTRIBUTES)
-    }
-    # Lengths are those of the world: an output's place has no scale.
-    for name, vectors in ((SHIFT_ATTRIBUTE, points - feet), (X_ATTRIBUTE, x), (Z_ATTRIBUTE, z)):
-        columns[name] = in_frames(frames, vectors)
-    return columns
-
-
-def write_outlines(
-    context: bpy.types.Context, source: bpy.types.Object, result: DistributeResult, settings: DistributeSettings
-) -> bpy.types.Object:
-    """Makes or replaces the source's outlines object, which may follow the source; radii are in world units."""
-    lines = result.outlines
-    assert lines is not None
-    place, radius = level_place(source), settings.outline_radius
-    points = to_place(place, lines.points)
-    ends = zip(lines.offsets[:-1], lines.offsets[1:], strict=True)
-    is_followed, material = result.outline_anchors is not None, nodes.edges_material()
-    own_radius = 0.0 if is_followed else radius
-    curve = new_curve("Saddleback Outlines", ((points[begin:end], True) for begin, end in ends), own_radius)
-    curve.materials.append(material)
-    item = replace_object(context, source, OUTLINES_ROLE, curve, place)
-    _remove_keeper(source)
-    if result.outline_anchors is not None:
-        rest = read_rest(context, source, settings.use_modifiers, result.vertex_count)
-        tubes = Tubes(_keeper(source, result.outline_anchors, rest), radius, material)
-        set_following(item, Host.of(source, place, result.vertex_count, rest is not None), tubes)
+    set_shapes(item, [_shown_object(source, number, template) for number, template in enumerate(templates)])
+    if settings.follow_surface:
+        follower.take_anchored(item, place, _anchors(placed, points), rotations)
     else:
         stop_following(item)
     return item
 
 
-def _keeper(source: bpy.types.Object, anchors: Anchors, rest: Reals | None) -> bpy.types.Object:
-    """An object in no collection that knows where the points of the outlines stand, which curves cannot."""
-    mesh = bpy.data.meshes.new("Saddleback Outline Anchors")
-    mesh.vertices.add(len(anchors.corners))
-    write_anchors(mesh, anchors, rest)
-    item = bpy.data.objects.new(mesh.name, mesh)
-    item[ROLE], item[NAME], item[SOURCE] = KEEPER_ROLE, item.name, source_token(source)
+def _anchors(placed: PlacedShapes, points: Reals) -> Anchors:
+    """Where points (n, 3) that belong to the shapes stand."""
+    feet = np.einsum("ni,nij->nj", placed.barycentric, placed.corner_points)
+    return Anchors(placed.corners, placed.barycentric, points - feet)
+
+
+def write_outlines(
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: DistributeResult,
+    settings: DistributeSettings,
+    follower: Follower,
+) -> bpy.types.Object:
+    """Makes or replaces the source's outlines object, which may follow the source; radii are in world units."""
+    assert result.outlines is not None
+    lines = Lines.between(result.outlines.points, result.outlines)
+    item = write_lines(context, source, OUTLINES_ROLE, lines, settings.outline_radius, nodes.edges_material())
+    if result.outline_anchors is not None:
+        follower.take_anchored(item, level_place(source), result.outline_anchors)
+    else:
+        stop_following(item)
     return item
-
-
-def _remove_keeper(source: bpy.types.Object) -> None:
-    item = find_output(source, KEEPER_ROLE)
-    if item is not None:
-        remove_object(item)
-
-
-def remove_outlines(source: bpy.types.Object) -> None:
-    """Removes the outlines object, if there is one, and what belongs to it."""
-    remove_output(source, OUTLINES_ROLE)
-    _remove_keeper(source)
 
 
 def write_shape_values(surface: bpy.types.Object, result: DistributeResult) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from ... import compat, nodes
 from ...core.results import CellsResult
 from ...core.settings import TessellateSettings
+from .following import Follower
 from .out_collection import level_place, replace_object, to_place
 
 SHELL_ROLE = "shell"
@@ -17,7 +18,11 @@ CREASE_ANGLE = math.radians(50.0)  # of the ribs' sides against their faces
 
 
 def write_shell(
-    context: bpy.types.Context, source: bpy.types.Object, result: CellsResult, settings: TessellateSettings
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    result: CellsResult,
+    settings: TessellateSettings,
+    follower: Follower | None = None,
 ) -> bpy.types.Object:
     """Makes or replaces the source's lamp shell; its lengths are world units whatever the source's scale."""
     assert result.shell is not None
@@ -29,4 +34,7 @@ def write_shell(
     mesh.update(calc_edges=True)
     compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
     mesh.materials.append(nodes.edges_material())
-    return replace_object(context, source, SHELL_ROLE, mesh, place)
+    item = replace_object(context, source, SHELL_ROLE, mesh, place)
+    if follower is not None:
+        follower.take(item, place, shell.vertices, shell.feet)
+    return item

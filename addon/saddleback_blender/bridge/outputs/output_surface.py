@@ -9,6 +9,7 @@ from ... import compat
 from ...blocks import is_editable
 from ...core.errors import BadInputError
 from ..inputs.mesh_in import mesh_of
+from .following import Follower
 from .out_attributes import recorded
 from .out_collection import find_output, replace_object
 
@@ -17,7 +18,11 @@ HAIR = 5e-4  # of the longest side of the mesh: what is enough for a surface to 
 
 
 def output_surface(
-    context: bpy.types.Context, source: bpy.types.Object, use_modifiers: bool, aside: str = ""
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    use_modifiers: bool,
+    aside: str = "",
+    follower: Follower | None = None,
 ) -> bpy.types.Object:
     """The object whose mesh has the vertices that were read: the source, unless its own are others or are linked.
 
@@ -29,18 +34,21 @@ def output_surface(
     existing = find_output(source, SURFACE_ROLE)
     if existing is not None and _same_shape(context, source, existing, use_modifiers):
         return existing  # with the other operators' results on it
-    if not use_modifiers:
-        return replace_object(context, source, SURFACE_ROLE, source.data.copy())
-    depsgraph = context.evaluated_depsgraph_get()
-    mesh = bpy.data.meshes.new_from_object(
-        source.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph
-    )
+    if use_modifiers:
+        depsgraph = context.evaluated_depsgraph_get()
+        mesh = bpy.data.meshes.new_from_object(
+            source.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph
+        )
+    else:
+        mesh = source.data.copy()
     item = replace_object(context, source, SURFACE_ROLE, mesh)
-    if aside == "HIDE" and existing is None:
+    if use_modifiers and aside == "HIDE" and existing is None:
         item.hide_viewport = item.hide_render = True
-    elif aside == "LIFT" and existing is None:
+    elif use_modifiers and aside == "LIFT" and existing is None:
         lift = item.modifiers.new("Lift", "DISPLACE")
         lift.mid_level, lift.strength = 0.0, HAIR * max(np.ptp(compat.read_positions(mesh), axis=0))
+    if follower is not None:
+        follower.take_all(item, source.matrix_world)
     return item
 
 

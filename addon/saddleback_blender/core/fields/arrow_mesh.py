@@ -24,6 +24,7 @@ class ArrowMesh:
     """Polygon i runs through corners[offsets[i]:offsets[i + 1]]."""
 
     vertices: Reals
+    feet: Reals  # where on the surface the arrow or ball of each vertex stands
     corners: Indices
     offsets: Indices
     materials: Indices  # (p,)
@@ -46,6 +47,9 @@ def arrow_mesh(field: FieldResult) -> ArrowMesh:
     sizes = np.concatenate([np.full(count, sides), np.full(len(first) * len(quads), 4)])
     return ArrowMesh(
         vertices=np.concatenate([vertices.reshape(-1, 3), balls.reshape(-1, 3)]),
+        feet=np.concatenate(
+            [np.repeat(arrows.points, sides, axis=0), np.repeat(field.singular_points, len(ball), axis=0)]
+        ),
         corners=np.concatenate([np.arange(count * sides), (first[:, None, None] + quads).ravel()]).astype(np.int32),
         offsets=np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32),
         materials=np.concatenate([np.full(count, ARROW), np.repeat(kinds, len(quads))]).astype(np.int32),

@@ -59,9 +59,12 @@ class CellShape:
 
 @dataclass(frozen=True)
 class CellMesh:
-    """Vertices (n,3), triangles (m,3), the cell of each (m,), and the cells (k,) that the gap swallowed whole."""
+    """Vertices (n,3), where on the surface they stand (n,3), triangles (m,3), the cell of each (m,), and the cells (k,)
+    that the gap swallowed whole.
+    """
 
     vertices: Floats
+    feet: Floats
     triangles: Ints
     triangle_cell: Ints
     vanished: Ints
@@ -145,10 +148,11 @@ def raise_cells(pieces: CellPieces, shape: CellShape) -> CellMesh:
     if shape.thickness > 0.0:
         share = _plateau_share(fields[:, DISTANCE], shape)
         solid = raise_surface(fields[:, :6], triangles, shape.thickness * share, shape.underside)
-        positions, triangles, cells = solid.vertices, solid.triangles, cells[solid.parent]
-    else:
-        positions = fields[:, POSITION]
-    return CellMesh(*drop_unused(positions, triangles), cells, vanished)
+        placed, triangles = drop_unused(np.column_stack([solid.vertices, solid.feet]), solid.triangles)
+        positions, feet = np.ascontiguousarray(placed[:, :3]), np.ascontiguousarray(placed[:, 3:])
+        return CellMesh(positions, feet, triangles, cells[solid.parent], vanished)
+    positions, triangles = drop_unused(fields[:, POSITION], triangles)
+    return CellMesh(positions, positions, triangles, cells, vanished)
 
 
 def _plateau_share(distance: Floats, shape: CellShape) -> Floats:

@@ -17,9 +17,12 @@ Ints = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class Solid:
-    """Vertices (n,3), some of them unused, triangles (m,3), and the input triangle that each comes from (m,)."""
+    """Vertices (n,3), some of them unused, where on the input they stand (n,3), triangles (m,3), and the input triangle
+    that each comes from (m,).
+    """
 
     vertices: Floats
+    feet: Floats
     triangles: Ints
     parent: Ints
 
@@ -74,4 +77,9 @@ def raise_surface(fields: Floats, triangles: Ints, height: Floats, underside: bo
     if underside:
         pieces.append(foot[triangles[:, ::-1]])
         parents.append(parent)
-    return Solid(np.concatenate([raised, base[stands]]), np.concatenate(pieces), np.concatenate(parents))
+    return Solid(
+        np.concatenate([raised, base[stands]]),
+        np.concatenate([base, base[stands]]),
+        np.concatenate(pieces),
+        np.concatenate(parents),
+    )

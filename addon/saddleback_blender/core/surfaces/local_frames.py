@@ -1,4 +1,6 @@
-"""Places and directions told by the triangle that they belong to, so that they go with it when it moves and turns."""
+"""Places and directions told by the surface about the place that they belong to, so that they go with it when it moves
+and turns.
+"""
 
 from __future__ import annotations
 
@@ -11,29 +13,30 @@ from ..results import Anchors, Indices, Reals
 REST_STEP = 0.1  # of a triangle's shortest side
 
 
-def triangle_frames(corners: Reals) -> Reals:
-    """(n, 3, 3) rows: along the first side, in the plane at right angles to it, along the normal, each of length 1.
+def frames_along(first: Reals, normals: Reals) -> Reals:
+    """(n, 3, 3) rows: along the first side at right angles to the normal, across both, along the normal; of length 1.
 
-    `corners` (n, 3, 3) counter-clockwise from outside. O(n).
+    `first` (n, 3), `normals` (n, 3) of any length; zero where these have no directions. O(n).
     """
-    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    normal = np.cross(first, second)
-    x, z = (v / np.linalg.norm(v, axis=1, keepdims=True) for v in (first, normal))
+    z = _unit(normals)
+    x = _unit(first - np.einsum("ni,ni->n", first, z)[:, None] * z)
     frames: Reals = np.stack([x, np.cross(z, x), z], axis=1)
     return frames
 
 
-def rest_anchors(rest: Reals, corners: Indices, barycentric: Reals) -> tuple[Reals, Reals, Reals]:
-    """Returns where points (n,) stand on a mesh at rest, and steps from there along the first two axes of their
-    triangles.
+def rest_anchors(rest: Reals, corners: Indices, barycentric: Reals, has_steps: bool) -> tuple[Reals, ...]:
+    """Returns where points (n,) stand on a mesh at rest and, where asked for, steps from there along the first sides of
+    their triangles.
 
     `rest` (V, 3) its vertices' places, `corners` (n, 3) of the triangles, `barycentric` (n, 3). O(n).
     """
     places = rest[corners]
-    sides = np.linalg.norm(places - np.roll(places, 1, axis=1), axis=2)
-    frames = triangle_frames(places) * (REST_STEP * sides.min(axis=1))[:, None, None]
     feet: Reals = np.einsum("ni,nij->nj", barycentric, places)
-    return feet, frames[:, 0], frames[:, 1]
+    if not has_steps:
+        return (feet,)
+    sides = np.linalg.norm(places - np.roll(places, 1, axis=1), axis=2)
+    steps: Reals = REST_STEP * sides.min(axis=1)[:, None] * _unit(places[:, 1] - places[:, 0])
+    return feet, steps
 
 
 def in_frames(frames: Reals, vectors: Reals) -> Reals:
@@ -45,16 +48,21 @@ def in_frames(frames: Reals, vectors: Reals) -> Reals:
 def anchored(
     surface: Surface, triangles: Indices, faces: Indices, barycentric: Reals, points: Reals, progress: Progress
 ) -> Anchors:
-    """Points (n, 3) as seen from the triangles of the surface that they stand on. O(n).
+    """Points (n, 3), and where on the triangles of the surface they stand. O(n).
 
     `triangles` are the library's, of which `faces` (n,) counts.
     """
     corners = triangles[faces]
-    shift = np.empty((len(faces), 3))
+    offset = np.empty((len(faces), 3))
     for rows in progress.blocks(len(faces)):
-        places = surface.vertices[corners[rows]]
-        feet = np.einsum("ni,nij->nj", barycentric[rows], places)
-        shift[rows] = in_frames(triangle_frames(places), points[rows] - feet)
+        feet = np.einsum("ni,nij->nj", barycentric[rows], surface.vertices[corners[rows]])
+        offset[rows] = points[rows] - feet
     return Anchors(
-        corners=corners if surface.used is None else surface.used[corners], barycentric=barycentric, shift=shift
+        corners=corners if surface.used is None else surface.used[corners], barycentric=barycentric, offset=offset
     )
+
+
+def _unit(vectors: Reals) -> Reals:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    units: Reals = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
+    return units

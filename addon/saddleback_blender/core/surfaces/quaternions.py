@@ -1,4 +1,4 @@
-"""Turns as quaternions -> Euler angles, as every version of Blender reads them from attributes."""
+"""Turns as quaternions and as Euler angles, as every version of Blender reads them from attributes."""
 
 from __future__ import annotations
 
@@ -19,6 +19,14 @@ def euler_of(quaternions: Reals) -> Reals:
     yaw = np.where(locked, np.arctan2(2 * (w * z - x * y), 1 - 2 * (x * x + z * z)), yaw)
     euler: Reals = np.column_stack([roll, pitch, yaw])
     return euler
+
+
+def axes_of(euler: Reals) -> tuple[Reals, Reals]:
+    """Returns where Euler angles XYZ (n, 3), radians, take the X axis and the Z axis: (n, 3) each."""
+    (a, b, c), (d, e, f) = np.cos(euler.T), np.sin(euler.T)
+    x = np.column_stack([c * b, f * b, -e])
+    z = np.column_stack([a * e * c + d * f, a * e * f - d * c, a * b])
+    return x, z
 
 
 def turned(quaternions: Reals, vectors: Reals) -> Reals:

@@ -1,0 +1,239 @@
+"""Node groups that take points along with a mesh that is deformed.
+
+Each point knows the triangle of the mesh that it stands on: its three vertices, where in it the point is, and how it is
+shifted (and turned) as seen from there: along the triangle's first side, along the mesh's smooth normal, and across
+both. The group looks up where those vertices are now, after all modifiers. A mesh that has another number of vertices
+by then, say of another subdivision level in the render than in the viewport, is asked by places instead: where is now
+what was there at rest? Blender keeps the places at rest as an attribute of the mesh. Where it does not, the points stay
+where they were put. Points of meshes carry what they know as attributes; curve objects cannot, so that for them a
+hidden mesh keeps it, in order.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from . import compat, rollback
+from .nodes import (
+    FOLLOW,
+    NORMAL_ATTRIBUTE,
+    ROTATION_ATTRIBUTE,
+    lay_out,
+    modifier_of,
+    new_group,
+    put_group,
+    remove_modifier,
+)
+from .wiring import Wiring
+
+# Of the points: the vertices of the triangle, the weights of each, and vectors as seen from there.
+CORNER_ATTRIBUTES = ("saddleback_corner_a", "saddleback_corner_b", "saddleback_corner_c")
+WEIGHTS_ATTRIBUTE, SHIFT_ATTRIBUTE = "saddleback_barycentric", "saddleback_shift"
+X_ATTRIBUTE, Z_ATTRIBUTE = "saddleback_axis_x", "saddleback_axis_z"
+# Of the points: where they stand on the mesh at rest, and a step from there along the triangle's first side.
+REST_ATTRIBUTES = ("saddleback_rest", "saddleback_rest_x")
+REST_POSITION = "rest_position"  # Blender's own, of the mesh
+# Of the mesh, within the groups: where its vertices are now, and their normals, as seen from the points.
+NOW_POSITION, NOW_NORMAL = "saddleback_now", "saddleback_normal_now"
+# Inputs of the groups.
+HOST, KEEPER = "Surface", "Anchors"
+KEY = "saddleback_key"  # on the groups: all that they were made from
+
+# How points find their place on a mesh of another number of vertices: by where they stand at rest; by the numbers of
+# its vertices, of which the first are those that were read; not at all.
+BY_PLACE, BY_NUMBER, NOT_AT_ALL = "place", "number", "nothing"
+
+Read = Callable[[str, str], Any]  # of an attribute's name and type: the socket that gives it
+
+
+@dataclass(frozen=True)
+class Host:
+    """The mesh that points follow, as seen from the object with the points, whose origin is the same."""
+
+    item: bpy.types.Object
+    axes: tuple[tuple[float, ...], ...]  # three: where its unit vectors lead
+    vertex_count: int
+    otherwise: str  # BY_PLACE, BY_NUMBER, NOT_AT_ALL
+
+    @property
+    def normal_axes(self) -> tuple[tuple[float, ...], ...]:
+        """What its unit normals become."""
+        return tuple(map(tuple, np.linalg.inv(np.array(self.axes)).T.tolist()))
+
+    @classmethod
+    def of(cls, item: bpy.types.Object, place: Matrix, vertex_count: int, otherwise: str) -> Host:
+        """Returns it as seen from an object whose world matrix is `place`."""
+        own, world = (np.array(matrix, np.float64)[:3, :3] for matrix in (place, item.matrix_world))
+        seen = np.linalg.inv(own) @ world
+        # Rounding goes, so that runs of objects of the same scale share a group.
+        axes = np.round(seen, 6 - math.ceil(math.log10(np.abs(seen).max())))
+        return cls(item, tuple(map(tuple, axes.T.tolist())), vertex_count, otherwise)
+
+
+@dataclass(frozen=True)
+class Known:
+    """Tells what points know beside the place where they stand."""
+
+    is_shifted: bool = True  # SHIFT_ATTRIBUTE: they are not on the surface
+    is_turned: bool = False  # X_ATTRIBUTE, Z_ATTRIBUTE: what is put on them turns
+    keeper: bpy.types.Object | None = None  # whose mesh has a vertex with the attributes for each point
+
+
+def set_following(item: bpy.types.Object, host: Host, known: Known) -> bpy.types.Modifier:
+    """Takes the points of a mesh, or of a curve object, along with the host."""
+    key = repr((host.axes, host.vertex_count, host.otherwise))
+    key += repr((known.is_shifted, known.is_turned, known.keeper is not None))
+    group = next((group for group in bpy.data.node_groups if group.get(KEY) == key and group.library is None), None)
+    if group is None:
+        group = _new_follow_group(host, known)
+        group[KEY] = key
+    inputs = {HOST: host.item} if known.keeper is None else {HOST: host.item, KEEPER: known.keeper}
+    return put_group(item, FOLLOW, "Saddleback Follow", group, inputs)
+
+
+def stop_following(item: bpy.types.Object) -> None:
+    """Leaves the points where they are."""
+    modifier = modifier_of(item, FOLLOW)
+    if modifier is not None:
+        rollback.when_written(partial(remove_modifier, item, modifier))
+
+
+def _new_follow_group(host: Host, known: Known) -> bpy.types.NodeTree:
+    group, source, sink = new_group("Saddleback Follow", FOLLOW)
+    for name in (HOST,) if known.keeper is None else (HOST, KEEPER):
+        compat.new_group_socket(group, name, "INPUT", "NodeSocketObject")
+    wiring = Wiring(group)
+    read: Read = wiring.attribute
+    is_whole = None
+    if known.keeper is not None:
+        info = wiring.node("GeometryNodeObjectInfo")
+        wiring.link(source.outputs[KEEPER], info.inputs["Object"])
+        kept = info.outputs["Geometry"]
+        read = wiring.kept_by(kept)
+        # An artist's bevel makes a mesh of the curve, of whose vertices nothing is known.
+        is_whole = wiring.compared(
+            wiring.count(source.outputs["Geometry"], "CURVE"), "EQUAL", wiring.count(kept, "MESH")
+        )
+    now = _triangle_now(wiring, source, host, known, read, is_whole)
+    shown = source.outputs["Geometry"]
+    if known.is_turned:
+        for name, value in (
+            (ROTATION_ATTRIBUTE, _turn_of(wiring, now, wiring.attribute(ROTATION_ATTRIBUTE, "FLOAT_VECTOR"))),
+            (NORMAL_ATTRIBUTE, _normal_of(wiring, now, wiring.attribute(NORMAL_ATTRIBUTE, "FLOAT_VECTOR"))),
+        ):
+            shown = wiring.stored(shown, name, value)
+    moved = group.nodes.new("GeometryNodeSetPosition")
+    wiring.link(shown, moved.inputs["Geometry"])
+    wiring.link(_place_of(wiring, now, read if known.is_shifted else None), moved.inputs["Position"])
+    wiring.link(moved.outputs["Geometry"], sink.inputs["Geometry"])
+    lay_out((source,), moved, sink)
+    return group
+
+
+@dataclass(frozen=True)
+class _TriangleNow:
+    """Sockets about the triangle that a point stands on."""
+
+    is_known: Any  # where the point is on the mesh by now
+    own: Any  # where the point was put
+    foot: Any  # where on the triangle it stands by now
+    axes: tuple[Any, Any, Any] | None  # there, for points that are shifted or turned
+
+
+def _triangle_now(wiring: Wiring, source: Any, host: Host, known: Known, read: Read, is_whole: Any) -> _TriangleNow:
+    info = wiring.node("GeometryNodeObjectInfo")
+    wiring.link(source.outputs[HOST], info.inputs["Object"])
+    mesh = info.outputs["Geometry"]
+    count = wiring.count(mesh, "MESH")
+    is_same = is_known = wiring.compared(count, "EQUAL", host.vertex_count)
+
+    # All of the mesh as seen from the points, of which three vertices are looked up.
+    own = wiring.node("GeometryNodeInputPosition").outputs["Position"]
+    seen = wiring.combined(own, host.axes)
+    corners = [wiring.sampled(mesh, "FLOAT_VECTOR", seen, read(name, "INT")) for name in CORNER_ATTRIBUTES]
+    foot = wiring.combined(read(WEIGHTS_ATTRIBUTE, "FLOAT_VECTOR"), corners)
+    has_axes = known.is_shifted or known.is_turned
+    if has_axes:
+        side = wiring.vector("SUBTRACT", corners[1], corners[0])
+        upward = wiring.combined(wiring.normal(), host.normal_axes)
+        normals = [wiring.sampled(mesh, "FLOAT_VECTOR", upward, read(name, "INT")) for name in CORNER_ATTRIBUTES]
+        normal = wiring.combined(read(WEIGHTS_ATTRIBUTE, "FLOAT_VECTOR"), normals)
+    if host.otherwise == BY_PLACE:
+        rest = _RestMesh(wiring, mesh, {NOW_POSITION: seen, NOW_NORMAL: upward} if has_axes else {NOW_POSITION: seen})
+        place = read(REST_ATTRIBUTES[0], "FLOAT_VECTOR")
+        foot = wiring.chosen(is_same, rest.now(NOW_POSITION, place), foot)
+        if has_axes:
+            step = read(REST_ATTRIBUTES[1], "FLOAT_VECTOR")
+            back, ahead = (rest.now(NOW_POSITION, wiring.vector(sign, place, step)) for sign in ("SUBTRACT", "ADD"))
+            side = wiring.chosen(is_same, wiring.vector("SUBTRACT", ahead, back), side)
+            normal = wiring.chosen(is_same, rest.now(NOW_NORMAL, place), normal)
+        is_known = wiring.boolean("OR", is_same, rest.is_there)
+    elif host.otherwise == BY_NUMBER:
+        is_known = wiring.compared(count, "GREATER_EQUAL", host.vertex_count)
+    if is_whole is not None:
+        is_known = wiring.boolean("AND", is_known, is_whole)
+    if not has_axes:
+        return _TriangleNow(is_known, own, foot, None)
+    z = wiring.vector("NORMALIZE", normal)
+    y = wiring.vector("NORMALIZE", wiring.vector("CROSS_PRODUCT", z, side))
+    return _TriangleNow(is_known, own, foot, (wiring.vector("CROSS_PRODUCT", y, z), y, z))
+
+
+class _RestMesh:
+    """The mesh with its vertices where they are at rest, and for each of those places what is there now."""
+
+    def __init__(self, wiring: Wiring, mesh: Any, values: dict[str, Any]) -> None:
+        self._wiring = wiring
+        places = wiring.attribute(REST_POSITION, "FLOAT_VECTOR")
+        extent = wiring.node("GeometryNodeAttributeStatistic")
+        extent.data_type = "FLOAT_VECTOR"
+        wiring.link(mesh, extent.inputs["Geometry"])
+        wiring.link(places, wiring.enabled(extent.inputs, "Attribute"))
+        self.is_there = wiring.is_long(wiring.enabled(extent.outputs, "Range"))  # what is not there reads as zeros
+        laid = wiring.node("GeometryNodeSetPosition")
+        for name, value in values.items():
+            mesh = wiring.stored(mesh, name, value)
+        wiring.link(mesh, laid.inputs["Geometry"])
+        wiring.link(places, laid.inputs["Position"])
+        self._mesh = laid.outputs["Geometry"]
+
+    def now(self, name: str, place: Any) -> Any:
+        """Returns one of the values at the place of the surface that is next to one at rest."""
+        made = self._wiring.node("GeometryNodeSampleNearestSurface")
+        made.data_type = "FLOAT_VECTOR"
+        self._wiring.link(self._mesh, made.inputs["Mesh"])
+        value = self._wiring.attribute(name, "FLOAT_VECTOR")
+        self._wiring.link(value, self._wiring.enabled(made.inputs, "Value"))
+        self._wiring.link(place, made.inputs["Sample Position"])
+        return self._wiring.enabled(made.outputs, "Value")
+
+
+def _place_of(wiring: Wiring, now: _TriangleNow, read: Read | None) -> Any:
+    """Returns where a point is now; where it was put where the mesh has become another one."""
+    place = now.foot
+    if read is not None:
+        shift = wiring.combined(read(SHIFT_ATTRIBUTE, "FLOAT_VECTOR"), now.axes)
+        place = wiring.vector("ADD", place, shift)
+    return wiring.chosen(now.is_known, now.own, place)
+
+
+def _turn_of(wiring: Wiring, now: _TriangleNow, rotation: Any) -> Any:
+    """Returns how what is put on a point is turned now."""
+    along, away = (
+        wiring.combined(wiring.attribute(name, "FLOAT_VECTOR"), now.axes) for name in (X_ATTRIBUTE, Z_ATTRIBUTE)
+    )
+    upright = wiring.aligned("Z", "AUTO", away, None)
+    return wiring.chosen(now.is_known, rotation, wiring.aligned("X", "Z", along, upright))
+
+
+def _normal_of(wiring: Wiring, now: _TriangleNow, normal: Any) -> Any:
+    away = wiring.combined(wiring.attribute(Z_ATTRIBUTE, "FLOAT_VECTOR"), now.axes)
+    return wiring.chosen(now.is_known, normal, away)
