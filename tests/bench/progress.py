@@ -24,6 +24,7 @@ from tests import meshes
 
 Call = Callable[[sb.Job | None, Any], object]
 MOST_SILENCE, MOST_WAIT = 0.5, 0.1  # seconds
+THREADS = 1  # tests.bench.versions asks for others
 MOST_FOR_EXACT = 5000  # vertices: the exact graph holds all pairs in sight
 
 
@@ -110,7 +111,7 @@ def wait_after_cancel(case: Case, after: float) -> float:
 
 def build_calls(mesh: sb.Mesh) -> Iterator[Case]:
     def build(**how: Any) -> Call:
-        return lambda job, _: sb.SaddleVertexGraph(mesh, threads=1, device="cpu", job=job, **how)
+        return lambda job, _: sb.SaddleVertexGraph(mesh, threads=THREADS, device="cpu", job=job, **how)
 
     for accuracy in (2e-2, 5e-3, 1e-3):
         yield Case(f"build, accuracy={accuracy:g}", build(accuracy=accuracy))
@@ -160,8 +161,8 @@ def query_calls(mesh: sb.Mesh, graph: sb.SaddleVertexGraph) -> Iterator[Case]:
     yield Case("distances, curve, limit", lambda job, _: graph.distances(curve, size, job=job))
     yield Case("nearest, 5,000 points", lambda job, _: graph.nearest(many, job=job))
     yield Case("nearest, vertices", lambda job, _: graph.nearest(vertices[:1500], job=job))
-    yield Case("fields, 100 vertices", lambda job, _: graph.fields(vertices[:100], threads=1, job=job))
-    yield Case("fields, 20 points", lambda job, _: graph.fields(few, threads=1, job=job))
+    yield Case("fields, 100 vertices", lambda job, _: graph.fields(vertices[:100], threads=THREADS, job=job))
+    yield Case("fields, 20 points", lambda job, _: graph.fields(few, threads=THREADS, job=job))
     yield Case("distances_to, 20 to 5,000", lambda job, _: graph.distances_to(few, many, job=job))
     yield Case("distances_to, 300 to 5,000", lambda job, _: graph.distances_to(some, many, job=job))
     yield Case("distances_to, curve to 5,000", lambda job, _: graph.distances_to(curve, many, job=job))
@@ -181,7 +182,7 @@ def path_calls(mesh: sb.Mesh, graph: sb.SaddleVertexGraph) -> Iterator[Case]:
     vertices = np.random.default_rng(5).integers(mesh.vertex_count, size=20_000).astype(np.int32)
 
     def paths(sources: object, targets: object, shorten: bool = False) -> Call:
-        return lambda job, _: graph.paths(sources, targets, shorten, threads=1, job=job)  # type: ignore[arg-type]
+        return lambda job, _: graph.paths(sources, targets, shorten, threads=THREADS, job=job)  # type: ignore[arg-type]
 
     yield Case("paths, 1 to 20,000 vertices", paths([0], vertices))
     yield Case("paths, 1 to 2,000 points", paths([0], many))
@@ -203,7 +204,7 @@ def map_calls(mesh: sb.Mesh, graph: sb.SaddleVertexGraph, folder: Path) -> Itera
     yield Case("polar_coordinates", lambda job, _: sb.polar_coordinates(graph, curve, np.inf, job=job))
     yield Case("polar_coordinates, radius", lambda job, _: sb.polar_coordinates(graph, curve, size, job=job))
     yield Case("trace", lambda job, _: sb.trace(mesh, middle, 0.3, 2e5 * mesh.mean_edge_length, job=job))
-    yield Case("exp_map, 20,000", lambda job, _: sb.exp_map(mesh, middle, uv, threads=1, job=job))
+    yield Case("exp_map, 20,000", lambda job, _: sb.exp_map(mesh, middle, uv, threads=THREADS, job=job))
     path = folder / "graph"
     graph.save(path)
     yield Case("save", lambda job, _: graph.save(folder / "saved", job=job))
@@ -215,24 +216,26 @@ def pattern_calls(mesh: sb.Mesh, graph: sb.SaddleVertexGraph) -> Iterator[Case]:
     field = sb.direction_field(mesh, symmetry=1)
     size = 0.02 * mesh.area**0.5
     star = sb.Shape.star()
-    placed = sb.distribute(graph, star, [300], size=size, threads=1).placements
+    placed = sb.distribute(graph, star, [300], size=size, threads=THREADS).placements
     sites = np.random.default_rng(7).uniform(size=(500_000, 2))
     weights = np.random.default_rng(8).uniform(0, 1e-3, size=50_000)
     yield Case(
         "centroidal_voronoi, 500",
-        lambda job, _: sb.centroidal_voronoi(graph, count=500, max_iterations=15, threads=1, job=job),
+        lambda job, _: sb.centroidal_voronoi(graph, count=500, max_iterations=15, threads=THREADS, job=job),
     )
     yield Case("exact cells, 500", lambda job, _: sb.geodesic_voronoi(graph, cells.sites, exact=True, job=job))
     yield Case("dual", lambda job, _: cells.dual(job=job))
     yield Case("direction_field", lambda job, _: sb.direction_field(mesh, symmetry=4, align="curvature", job=job))
     yield Case(
         "distribute, maximal",
-        lambda job, _: sb.distribute(graph, star, None, field=field, size=size, maximal=True, threads=1, job=job),
+        lambda job, _: sb.distribute(graph, star, None, field=field, size=size, maximal=True, threads=THREADS, job=job),
     )
-    yield Case("map_shapes, 300", lambda job, _: sb.map_shapes(graph, star, placed, threads=1, job=job))
+    yield Case("map_shapes, 300", lambda job, _: sb.map_shapes(mesh, star, placed, threads=THREADS, job=job))
     yield Case("repair", lambda job, _: sb.repair(mesh.vertices, mesh.triangles, job=job))
-    yield Case("voronoi_2d, 500,000", lambda job, _: sb.voronoi_2d(sites, threads=1, job=job))
-    yield Case("voronoi_2d, 50,000 weighted", lambda job, _: sb.voronoi_2d(sites[:50_000], weights, threads=1, job=job))
+    yield Case("voronoi_2d, 500,000", lambda job, _: sb.voronoi_2d(sites, threads=THREADS, job=job))
+    yield Case(
+        "voronoi_2d, 50,000 weighted", lambda job, _: sb.voronoi_2d(sites[:50_000], weights, threads=THREADS, job=job)
+    )
 
 
 def calls(mesh: sb.Mesh, folder: Path) -> Iterator[Case]:
