@@ -38,11 +38,13 @@ Reader reader_for(const std::string& path) {
 
 std::string read_file(const std::string& path, const JobStage& stage) {
   const std::filesystem::path name = system_path(path);
+  std::error_code unknown;
+  if (std::filesystem::is_directory(name, unknown))
+    throw InputError(message("path: ", path, " is a folder; give a file"));
   const FileHandle file = open_file(name, "rb");
   if (!file) throw InputError(message("path: ", path, " cannot be opened: ", std::strerror(errno)));
   std::string contents;
   constexpr std::size_t k_block = std::size_t{1} << 20;
-  std::error_code unknown;
   if (const std::uintmax_t size = std::filesystem::file_size(name, unknown); !unknown) contents.reserve(size + k_block);
   for (;;) {
     stage.check();

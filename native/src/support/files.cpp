@@ -2,6 +2,12 @@
 
 #include <cerrno>
 #include <cstring>
+#ifdef _WIN32
+#ifndef NOMINMAX  // libstdc++ defines it
+#define NOMINMAX
+#endif
+#include <windows.h>
+#endif
 
 #include "saddleback/error.h"
 
@@ -19,14 +25,32 @@ fs::path system_path(const std::string& path) {
   }
 }
 
-// The C library that every Windows has knows no "x" in a mode; and of a name that is too long it says that there is no
-// such file.
-FileHandle open_file(const fs::path& path, const char* mode) {
+namespace {
+
+// Of a name that is too long Windows says that there is no such file, that the name is wrong, or nothing.
+int reason_of(const fs::path& path, int reason) {
   constexpr std::size_t k_longest_path = 259;
-  FileHandle file(_wfopen(path.c_str(), std::wstring(mode, mode + std::strcspn(mode, "x")).c_str()));
+  constexpr std::size_t k_longest_name = 255;
   std::error_code error;
-  if (!file && errno == ENOENT && fs::absolute(path, error).native().size() > k_longest_path) errno = ENAMETOOLONG;
+  const bool is_too_long =
+      fs::absolute(path, error).native().size() > k_longest_path || path.filename().native().size() > k_longest_name;
+  return is_too_long && (reason == ENOENT || reason == EINVAL || reason == EIO) ? ENAMETOOLONG : reason;
+}
+
+}  // namespace
+
+// The C library that every Windows has knows no "x" in a mode.
+FileHandle open_file(const fs::path& path, const char* mode) {
+  FileHandle file(_wfopen(path.c_str(), std::wstring(mode, mode + std::strcspn(mode, "x")).c_str()));
+  if (!file) errno = reason_of(path, errno);
   return file;
+}
+
+bool move_file(const fs::path& from, const fs::path& to) {
+  if (MoveFileExW(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING) != 0) return true;
+  const auto reason = std::system_category().default_error_condition(static_cast<int>(GetLastError()));
+  errno = reason_of(to, reason.category() == std::generic_category() ? reason.value() : EIO);
+  return false;
 }
 
 #else
@@ -34,6 +58,8 @@ FileHandle open_file(const fs::path& path, const char* mode) {
 fs::path system_path(const std::string& path) { return path; }
 
 FileHandle open_file(const fs::path& path, const char* mode) { return FileHandle(std::fopen(path.c_str(), mode)); }
+
+bool move_file(const fs::path& from, const fs::path& to) { return std::rename(from.c_str(), to.c_str()) == 0; }
 
 #endif
 

@@ -20,4 +20,7 @@ std::filesystem::path system_path(const std::string& path);
 /// Opens a file like std::fopen; null when the file cannot be opened, and errno tells why.
 FileHandle open_file(const std::filesystem::path& path, const char* mode);
 
+/// Moves a file to another name on its disk, in place of what has that; false when it cannot, and errno tells why.
+bool move_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
 }  // namespace saddleback

@@ -100,12 +100,7 @@ void NumberFileWriter::write_bytes(std::span<const std::byte> bytes) {
 
 void NumberFileWriter::commit() {
   if (!bring_to_disk(file_.get()) || std::fclose(file_.release()) != 0) fail();
-  std::error_code error;
-  fs::rename(partial_.path, target_, error);
-  if (error) {
-    errno = error.value();
-    fail();
-  }
+  if (!move_file(partial_.path, target_)) fail();
   partial_.path.clear();
 }
 
