@@ -31,7 +31,8 @@ install_for() {
   printf '%s\n' "$wanted" >"$folder/saddleback.stamp"
 }
 # What pytest and hypothesis need, as --no-deps has to name it; numpy, scipy and pygeodesic have their versions per platform.
-test_packages=(pytest==9.* pluggy iniconfig packaging pygments colorama hypothesis==6.* sortedcontainers)
+test_packages=(pytest==9.* pytest-timeout==2.* pluggy iniconfig packaging pygments colorama hypothesis==6.* sortedcontainers)
+elsewhere=(-p no:cacheprovider --timeout=600)  # a test that hangs ends them all, by its name
 
 # --- Windows ----------------------------------------------------------------------------------------------------------
 
@@ -81,20 +82,22 @@ set_up_windows_tests() {
     charset-normalizer zstandard
 }
 
-# test_windows [PYTEST_ARGUMENT...]: digests, tests/native, and the add-on in Blender for Windows.
+# test_windows [PYTEST_ARGUMENT...]: digests, tests/native, and the add-on in Blender for Windows; or these tests alone.
 test_windows() {
   local packages="Z:$PWD/.cache/windows/packages" build="Z:$PWD/build-windows-3.11/python" failed=()
-  addon/package --platform windows-x64
+  if [ $# = 0 ]; then addon/package --platform windows-x64; else build_windows "$python_wanted" "$PWD/.venv/bin/python"; fi
   set_up_windows_tests
   say "Digests on Windows"
   PYTHONPATH="$build;$packages;Z:$PWD" in_wine .cache/windows/python-3.11/python.exe -m tests.digests --portable ||
     failed+=(digests)
   say "Testing on Windows"
-  PYTHONPATH="$build;$packages" in_wine .cache/windows/python-3.11/python.exe -m pytest -p no:cacheprovider \
-    "${@:-tests/native}" || failed+=(tests/native)
-  say "Testing in Blender on Windows"
-  SADDLEBACK_PYTHONPATH="$build;$packages" in_wine .cache/windows/bpy-4.5/python.exe tests/run_in_blender.py -- \
-    tests/addon_blender || failed+=(tests/addon_blender)
+  PYTHONPATH="$build;$packages" in_wine .cache/windows/python-3.11/python.exe -m pytest "${elsewhere[@]}" \
+    "${@:-tests/native}" || failed+=(pytest)
+  if [ $# = 0 ]; then
+    say "Testing in Blender on Windows"
+    SADDLEBACK_PYTHONPATH="$build;$packages" in_wine .cache/windows/bpy-4.5/python.exe tests/run_in_blender.py -- \
+      tests/addon_blender "${elsewhere[@]:2}" || failed+=(tests/addon_blender)
+  fi
   [ ${#failed[@]} = 0 ] || die "Failed on Windows: ${failed[*]}."
 }
 
@@ -134,7 +137,7 @@ test_arm64() {
       qemu-aarch64-static -L "$root" "$root/usr/bin/python3.11" "$@"
   }
   emulated -m tests.digests --portable || failed+=(digests)
-  emulated -m pytest -p no:cacheprovider "${@:-tests/native/mesh}" || failed+=(tests/native)
+  emulated -m pytest "${elsewhere[@]}" "${@:-tests/native/mesh}" || failed+=(tests/native)
   [ ${#failed[@]} = 0 ] || die "Failed on Arm: ${failed[*]}."
 }
 
