@@ -27,6 +27,12 @@ DIGITS, NOTHING = 50, Decimal("1e-36")
 MOST_FACES = 60  # that the slow truth is asked about in a random check
 
 
+def area_between(u: Floats, v: Floats) -> Floats:
+    """Signed areas (n,) of the parallelograms of vectors (n, 2) in the plane."""
+    areas: Floats = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+    return areas
+
+
 def cross(a: Place, b: Place) -> Decimal:
     return a[0] * b[1] - a[1] * b[0]
 

@@ -11,6 +11,7 @@ from scipy.spatial import Delaunay
 
 import saddleback as sb
 from tests import meshes
+from tests.truth.distances import area_between
 from tests.truth.registry import guards
 
 Floats = NDArray[np.float64]
@@ -109,7 +110,7 @@ class Unrolled:
             profile = np.vstack([(0, 0), np.cumsum(steps, axis=0)])[at]
             vertices = np.column_stack([profile[:, 0], self.plane[:, 1], -profile[:, 1]])
         a, b, c = (self.plane[triangles[:, i]] for i in range(3))
-        area = np.cross(b - a, c - a)
+        area = area_between(b - a, c - a)
         triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[abs(area) > 1e-9]
         used, numbers = np.unique(triangles, return_inverse=True)
         self.plane = self.plane[used]
@@ -119,10 +120,8 @@ class Unrolled:
         """The face, the weights, and the direction of the face's first edge."""
         corners = self.plane[self.mesh.triangles]
         a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-        area = np.cross(b - a, c - a)
-        weights = np.column_stack(
-            [np.cross(b - point, c - point), np.cross(c - point, a - point), np.cross(a - point, b - point)]
-        )
+        area = area_between(b - a, c - a)
+        weights = np.column_stack([area_between(u - point, v - point) for u, v in ((b, c), (c, a), (a, b))])
         weights /= area[:, None]
         face = int(weights.min(axis=1).argmax())
         along = b[face] - a[face]

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import saddleback as sb
-from tests.truth.distances import Floats, Random, assert_near, is_convex_and_flat, longest_edge
+from tests.truth.distances import Floats, Random, area_between, assert_near, is_convex_and_flat, longest_edge
 from tests.truth.graph import ROUNDING, promised, random_rule
 from tests.truth.lines_and_maps import polyline_length
 from tests.truth.registry import guards
@@ -177,7 +177,7 @@ def map_of_a_disk(mesh: sb.Mesh, rng: Random) -> None:
     center = sb.SurfacePoints(rng.integers(0, mesh.face_count, 1).astype(np.int32), rng.dirichlet([1, 1, 1], 1))
     corners = mesh.vertices[mesh.triangles[center.faces[0]]][:, :2]
     place, size = center.barycentric[0] @ corners, longest_edge(mesh)
-    if np.cross(corners[1] - corners[0], corners[2] - corners[0]) < 1e-6 * size**2:
+    if area_between(corners[1] - corners[0], corners[2] - corners[0]) < 1e-6 * size**2:
         return  # seen from behind, or a needle whose edges have no direction
     radius = float(rng.choice([np.inf, size]))
     found = sb.SaddleVertexGraph(mesh, threads=1).log_map(center, radius)

@@ -90,10 +90,14 @@ void CellPlacer::place_straight(Index site) {
   const SeenVertices& seen = maps_.seen().of(site);
   for (std::size_t i = 0; i < seen.nodes.size(); ++i) {
     const Index node = seen.nodes[i];
-    if (labels_.label(node) != site || seen.rounded[i] > labels_.distance(node) * (1 + k_arc_rounding)) continue;
-    const std::optional<Vec2> place =
-        i < seen.arc_count || maps_.is_smooth() ? seen.places[i] : seen_truly(site, node, seen.places[i]);
-    if (place) maps_.set_place(node, VertexPlace::straight(*place));
+    const double distance = labels_.distance(node);
+    if (labels_.label(node) != site || seen.rounded[i] > distance * (1 + k_arc_rounding)) continue;
+    const bool is_known = i < seen.arc_count || maps_.is_smooth();
+    std::optional<Vec2> place = is_known ? seen.places[i] : seen_truly(site, node, seen.places[i]);
+    if (!place) continue;
+    // Beside short edges an arc, or what the waves told in single precision, may be longer when it is laid out.
+    if (!maps_.is_smooth() && place->norm() > distance * (1 + k_arc_rounding)) *place *= distance / place->norm();
+    maps_.set_place(node, VertexPlace::straight(*place));
   }
   if (seen.center != k_none && labels_.label(seen.center) == site)
     maps_.set_place(seen.center, {.found_by = VertexPlace::k_center});
