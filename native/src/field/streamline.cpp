@@ -111,14 +111,9 @@ class Walk {
     for (std::int64_t steps = 0;; ++steps) {
       if (steps > k_max_steps) throw InputError(too_long("steps", steps));
       if (steps % 64 == 0) stage_.update(traveled_ / length_);
-      if (const Index v = vertex_reached(); v != k_none) {
-        Vec3 corner = Vec3::Zero();
-        for (int i = 0; i < 3; ++i) corner[i] = mesh_.triangles()[face_][i] == v ? 1 : 0;
-        record({face_, corner});
-        return StreamlineEnd::singularity;
-      }
       const double left = length_ - traveled_;
       if (left <= 0) return StreamlineEnd::length;
+      if (const int corner = corner_reached(); corner != k_none) return end_at(corner, left);
       double length = std::min(left, step_here());
       Vec2 move = step(length);
       while (move.norm() < k_straight * length && length > k_inward * step_) move = step(length *= 0.5);
@@ -161,15 +156,26 @@ class Walk {
     return step;
   }
 
-  /// The singular corner that the place is at.
-  Index vertex_reached() const {
+  /// Which of the face's corners is singular and next to the place; k_none: none of them.
+  int corner_reached() const {
     if (!singular_) return k_none;
     for (int i = 0; i < 3; ++i) {
       const Index h = 3 * face_ + i;
       const double reach = k_at_singularity * std::min(mesh_.length(h), mesh_.length(Mesh::prev(h)));
-      if (field_.units_at(mesh_.from(h)) != 0 && (place_ - chart_->corner[i]).norm() < reach) return mesh_.from(h);
+      if (field_.units_at(mesh_.from(h)) != 0 && (place_ - chart_->corner[i]).norm() < reach) return i;
     }
     return k_none;
+  }
+
+  /// Goes straight to a corner, or towards it as far as the length allows.
+  StreamlineEnd end_at(int corner, double left) {
+    const Vec2 move = chart_->corner[corner] - place_;
+    if (move.norm() > left) {
+      record(point_at(place_ + left / move.norm() * move));
+      return StreamlineEnd::length;
+    }
+    record({face_, Vec3::Unit(corner)});
+    return StreamlineEnd::singularity;
   }
 
   /// Returns where the curve gets to in that length if the face went on; sets the heading there.
