@@ -6,7 +6,6 @@ What is compared is a list of arrays, each with the power of the unit that it is
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -155,23 +154,25 @@ def units_of_surfaces(mesh: sb.Mesh, rng: Random) -> None:
     assert_scales("surfaces", lambda u: surface_of(sb.Mesh(mesh.vertices * u, mesh.triangles), u, seed), unit)
 
 
-def repaired(mesh: sb.Mesh, unit: float, seed: int) -> Answer:
+def repaired(mesh: sb.Mesh, seed: int) -> tuple[Answer, Answer]:
+    """What comes to the bit, and what is told in two decimal digits."""
     rng = np.random.default_rng(seed)
     corners = mesh.vertices[mesh.triangles].reshape(-1, 3)
     soup = np.arange(3 * mesh.face_count, dtype=np.int32).reshape(-1, 3)
     weld = float(rng.choice([0.0, 1e-3])) * mesh.mean_edge_length
     mended, report = sb.repair(corners, soup, weld, stitch=bool(rng.random() < 0.5), fill_holes=10)
-    return [
-        (mended.vertices, 1), (mended.triangles, 0), (list(report.changes.values()), 0), (report.t_junctions, 0),
-        (round(math.log2((report.joining_distance or unit) / unit)), 0),
-    ]  # fmt: skip
+    changes = list(report.changes.values())
+    answer: Answer = [(mended.vertices, 1), (mended.triangles, 0), (changes, 0), (report.t_junctions, 0)]
+    return answer, [(report.joining_distance, 1)]
 
 
 @guards("repair", "RepairReport")
 def units_of_repair(mesh: sb.Mesh, rng: Random) -> None:
     """Welds, stitches and fills the same."""
     unit, seed = random_unit(rng), int(rng.integers(1 << 30))
-    assert_scales("repair", lambda u: repaired(sb.Mesh(mesh.vertices * u, mesh.triangles), u, seed), unit)
+    scaled = {u: repaired(sb.Mesh(mesh.vertices * u, mesh.triangles), seed) for u in (1.0, unit)}
+    assert_scales("repair", lambda u: scaled[u][0], unit)
+    assert_scales("what joins", lambda u: scaled[u][1], unit, rounding=0.1)
 
 
 def fields_of(mesh: sb.Mesh, unit: float, seed: int) -> Answer:
