@@ -172,6 +172,11 @@ def remove_material_slots(mesh: bpy.types.Mesh) -> None:
         write_numbers(mesh.polygons, "material_index", numbers)
 
 
+def coat_input(shader: Any) -> Any:
+    """How much clear varnish a principled shader has: "Coat Weight" from 4.0 on, "Clearcoat" before."""
+    return shader.inputs["Coat Weight" if "Coat Weight" in shader.inputs else "Clearcoat"]
+
+
 def new_group_socket(group: bpy.types.NodeTree, name: str, in_out: str, socket_type: str) -> Any:
     """Adds an INPUT or OUTPUT to a node group; returns what its default and limits are set on."""
     if hasattr(group, "interface"):  # 4.0 on

@@ -338,22 +338,22 @@ def attribute_output(node: Any) -> Any:
 
 def cells_material() -> bpy.types.Material:
     """A plain material that shows the color of each cell."""
-    return _find_material(CELLS) or _new_painted("Saddleback Cells", CELLS, 0.55)
+    return find_material(CELLS) or _new_painted("Saddleback Cells", CELLS, 0.55)
 
 
 def shapes_material() -> bpy.types.Material:
     """A plain material that shows the color of each shape."""
-    return _find_material(SHAPES) or _new_painted("Saddleback Shapes", SHAPES, 0.4)
+    return find_material(SHAPES) or _new_painted("Saddleback Shapes", SHAPES, 0.4)
 
 
 def edges_material() -> bpy.types.Material:
     """A dark plain material for the lines between cells."""
-    return _find_material(EDGES) or _new_colored("Saddleback Edges", EDGES, (0.03, 0.03, 0.035, 1.0), 0.4)
+    return find_material(EDGES) or _new_colored("Saddleback Edges", EDGES, (0.03, 0.03, 0.035, 1.0), 0.4)
 
 
 def paths_material() -> bpy.types.Material:
     """A bright plain material for shortest paths, which stands out on every color of the distance preview."""
-    return _find_material(PATHS) or _new_colored("Saddleback Paths", PATHS, (0.0, 0.36, 0.55, 1.0), 0.4)
+    return find_material(PATHS) or _new_colored("Saddleback Paths", PATHS, (0.0, 0.36, 0.55, 1.0), 0.4)
 
 
 def field_materials() -> list[bpy.types.Material]:
@@ -365,18 +365,23 @@ def field_materials() -> list[bpy.types.Material]:
         ("Saddleback Sources", SOURCES, (0.85, 0.13, 0.06, 1.0)),
         ("Saddleback Saddles", SADDLES, (0.04, 0.2, 0.8, 1.0)),
     )
-    return [_find_material(kind) or _new_colored(name, kind, color, 0.45) for name, kind, color in looks]
+    return [find_material(kind) or _new_colored(name, kind, color, 0.45) for name, kind, color in looks]
 
 
 def _new_painted(name: str, kind: str, roughness: float) -> bpy.types.Material:
     """Returns the layer of the color attribute."""
     material, shader = new_material(name, kind)
+    show_attribute(material, shader)
+    shader.inputs["Roughness"].default_value = roughness
+    return material
+
+
+def show_attribute(material: bpy.types.Material, shader: Any) -> None:
+    """Lets a material show the color attribute."""
     color = material.node_tree.nodes.new("ShaderNodeVertexColor")
     color.layer_name = COLOR_ATTRIBUTE
     color.location = (-220, 300)
     material.node_tree.links.new(color.outputs["Color"], shader.inputs["Base Color"])
-    shader.inputs["Roughness"].default_value = roughness
-    return material
 
 
 def _new_colored(name: str, kind: str, color: tuple[float, ...], roughness: float) -> bpy.types.Material:
@@ -387,7 +392,8 @@ def _new_colored(name: str, kind: str, color: tuple[float, ...], roughness: floa
     return material
 
 
-def _find_material(kind: str) -> bpy.types.Material | None:
+def find_material(kind: str) -> bpy.types.Material | None:
+    """The material of this kind in the file, None where there is none."""
     return next((m for m in bpy.data.materials if m.get(MARK) == kind and m.library is None), None)
 
 

@@ -41,7 +41,7 @@ def _count_draw(_panel, context):
 
 def in_order(screen):
     """The scenarios; later ones go on where earlier ones ended."""
-    plays = (opened, repaired, tessellated, undone, adjusted, escaped, divided, combed, clothed, refused)
+    plays = (opened, repaired, tessellated, undone, adjusted, escaped, divided, combed, clothed, dressed, refused)
     return {play.__name__: (lambda play=play: play(screen)) for play in plays}
 
 
@@ -290,6 +290,26 @@ def clothed(screen):
     yield 4 * FRAME
     yield from screen.shoot("clothed")
     return {"line": manager().saddleback_line, "outputs": outputs()}
+
+
+def dressed(screen):
+    """One click on a look makes it, in a run that can be watched; the button stays where it was."""
+    with screen.override():
+        doll = add_object("Doll", *synthetic_cells.sphere(3))
+        bpy.ops.ed.undo_push(message="Doll")
+    screen.redraw()
+    yield 12 * FRAME
+    look = "bpy.ops.saddleback.apply_look(look='PANELS')"
+    place = yield from screen.find_button(look)
+    yield from screen.shoot("looks")
+    yield from screen.click_until(place, lambda: manager().saddleback_running or doll.children)
+    yield from wait_until(lambda: not manager().saddleback_running, "the look to be made")
+    yield 4 * FRAME
+    yield from screen.shoot("dressed")
+    again = yield from screen.find_button(look)
+    doll = bpy.data.objects["Doll"]
+    made = {item["saddleback_role"]: item.data.materials[0].name for item in doll.children}
+    return {"made": made, "look": doll.saddleback.tessellate.look, "places": [place, again]}
 
 
 def show_panels(screen, names):

@@ -137,5 +137,11 @@ def test_shapes_are_laid_through_the_window(report):
     assert {"Ball Shapes", "Ball Shape Instances", "Ball Shape Outlines"} <= set(result["outputs"])
 
 
+def test_one_click_makes_a_look_and_the_button_stays(report):
+    result = seen(report, "dressed")
+    assert result["made"] == {"cells": "Saddleback Panels"} and result["look"] == "PANELS"
+    assert result["places"][0] == result["places"][1]
+
+
 def test_the_tab_says_what_to_do_without_a_mesh(report):
     assert seen(report, "refused")["drawn"] > 0

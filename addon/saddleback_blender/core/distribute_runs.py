@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from operator import itemgetter
 from typing import Any
 
@@ -19,10 +20,12 @@ from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .progress import Progress
 from .requests import DirectionFieldRequest, DistributeRequest, digest
 from .results import CheckResult, DistributeResult, Indices, PathsResult, PlacedShapes, Reals, ShapeValues
+from .settings import DistributeSettings
 from .shapes.bent_copies import bent_copies
 from .shapes.cut_shapes import cut_shapes
+from .shapes.overlapping import footprints, map_whole, tilted, tilted_frames
 from .shapes.shape_sizes import MOST_ROOM, Laid, Placed, crowding, fitted_to_count, room, size_of, sizes
-from .shapes.shape_templates import sized
+from .shapes.shape_templates import ShapeTemplate, sized
 from .surfaces.local_frames import anchored
 
 BYTES_PER_SHAPE = 4000  # of a placement and its outline
@@ -39,9 +42,10 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
     laid = laid_of(request, progress, cache)
     mesh, result = laid.mesh, laid.result
     mapped = _mapped(laid, request, progress, cache)
+    drawn, templates = _drawn(laid, mapped, request, progress, cache)
     bent = outlines = values = None
     if settings.make_bent:
-        bent = bent_copies(mesh, mapped, laid.templates, settings, request.threads, progress)
+        bent = bent_copies(mesh, drawn, templates, settings, request.threads, progress)
     bent_anchors = outline_anchors = None
     triangles = np.asarray(mesh.triangles)
     if bent is not None and settings.follow_surface:
@@ -66,7 +70,9 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         )
     progress.check()
     placements = result.placements
-    points, rotations, scales = mapped.frames()
+    points, rotations, scales = frames = drawn.frames()
+    if templates is not laid.templates:
+        points, rotations, scales = tilted_frames(templates, placements.shape, frames, settings.tilt)
     counts = np.bincount(placements.shape, minlength=len(laid.templates)).astype(np.int32)
     corners = np.asarray(mesh.triangles)[placements.center.faces]
     return DistributeResult(
@@ -102,7 +108,11 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
         raise BadInputError(f"'{surface.name}': the shares of all shapes are 0; give one of them more")
     mesh = mesh_of_surface(surface, progress, cache)
     templates = tuple(sized(template) for template in request.templates)
-    shapes = [sb.Shape(*[list(part) for part in template.parts]) for template in templates]
+    overlap = _overlap(settings, templates)
+    if settings.overlap > overlap:
+        progress.note("Shapes without a mesh do not overlap")
+    parts = [footprints(template.parts, overlap) for template in templates]
+    shapes = [sb.Shape(*[list(part) for part in outlines]) for outlines in parts]
     field = _field(request, mesh, progress, cache)
     bends = settings.bend and not settings.maximal
     if settings.bend and settings.maximal:
@@ -134,7 +144,7 @@ def laid_of(request: DistributeRequest, progress: Progress, cache: Cache) -> Lai
     if forbidden is not None:
         options["forbidden"] = forbidden
     field_key = (None, None) if field is None else (field.field.angles, field.field.symmetry)
-    loops = [loop for template in templates for part in template.parts for loop in part]
+    loops = [loop for outlines in parts for part in outlines for loop in part]
     shared = digest(
         *(value for item in sorted(options.items(), key=itemgetter(0)) for value in item), *field_key, *loops
     )
@@ -183,6 +193,30 @@ def _mapped(laid: Laid, request: DistributeRequest, progress: Progress, cache: C
             )
 
     return cache.get(("mapped shapes", *laid.key), lay, lambda found: BYTES_PER_SHAPE * len(found))
+
+
+def _overlap(settings: DistributeSettings, templates: Sequence[ShapeTemplate]) -> float:
+    """By how much shapes overlap: all of them, or none."""
+    return settings.overlap if all(template.solid is not None for template in templates) else 0.0
+
+
+def _drawn(
+    laid: Laid, mapped: Any, request: DistributeRequest, progress: Progress, cache: Cache
+) -> tuple[Any, Sequence[ShapeTemplate]]:
+    """The shapes as they are shown, and where: those that were laid, unless they overlap."""
+    overlap = _overlap(request.settings, laid.templates)
+    if overlap == 0.0:
+        return mapped, laid.templates
+    shapes = [native.load().Shape(*[list(part) for part in template.parts]) for template in laid.templates]
+
+    def lay() -> Any:
+        with progress.stage(0.9, "laying shapes over each other") as job:
+            return map_whole(
+                laid.mesh, shapes, laid.result.placements, laid.result.field, overlap, request.threads, job
+            )
+
+    whole = cache.get(("overlapping shapes", *laid.key), lay, lambda found: BYTES_PER_SHAPE * len(found))
+    return whole, [tilted(template, request.settings.tilt) for template in laid.templates]
 
 
 def _field(request: DistributeRequest, mesh: Any, progress: Progress, cache: Cache) -> MadeField | None:

@@ -79,6 +79,7 @@ class TessellateSettings(DensitySettings):
     density_attribute: str = "saddleback_density"
     write_edge_distance: bool = False
     edge_distance_attribute: str = "saddleback_edge_distance"
+    look: str = "NONE"  # whose colors and material what is made has
 
 
 @dataclass(frozen=True)
@@ -104,6 +105,7 @@ class DistanceSettings:
     make_preview: bool = False
     preview_lines: bool = True
     distance_attribute: str = "saddleback_distance"
+    look: str = "NONE"
 
 
 @dataclass(frozen=True)
@@ -208,6 +210,8 @@ class DistributeSettings(DensitySettings):
     lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the shares, in percent of the place of a shape
     gap: float = 0.0
     gap_share: float = 0.0
+    overlap: float = 0.0  # share of their length by which shapes reach over those before them
+    tilt: float = math.radians(14.0)  # of shapes that overlap: how steeply they rise to their tips
     packing: float = 1.0  # 0 = by chance, 1 = side by side
     maximal: bool = False  # go on until nothing more fits, whatever the count
     mirror: bool = False  # half of them
@@ -227,6 +231,7 @@ class DistributeSettings(DensitySettings):
     outline_radius_share: float = 3.0
     make_cut: bool = False  # a copy of the mesh with the outlines cut in
     write_attributes: bool = False
+    look: str = "NONE"  # whose colors and material what is made has
 
 
 @dataclass(frozen=True)

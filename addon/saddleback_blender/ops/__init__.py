@@ -4,9 +4,23 @@ from __future__ import annotations
 
 import bpy
 
-from . import clear, direction_field, distance, distribute, paint, path, repair, tessellate, voronoi_2d
+from . import (
+    apply_look,
+    clear,
+    direction_field,
+    distance,
+    distribute,
+    look_presets,
+    paint,
+    path,
+    repair,
+    tessellate,
+    voronoi_2d,
+)
 
 CLASSES = (
+    *apply_look.CLASSES,
+    *look_presets.CLASSES,
     *distance.CLASSES,
     *path.CLASSES,
     *tessellate.CLASSES,

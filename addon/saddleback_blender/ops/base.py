@@ -14,13 +14,15 @@ from .. import jobs, rollback
 from ..bridge.inputs.source import Source, active_object, usable_source, why_not
 from ..bridge.outputs.following import Follower
 from ..bridge.outputs.out_collection import outputs_of
+from ..bridge.outputs.out_looks import ROLES, remove_look
 from ..bridge.outputs.output_surface import has_own_faces
 from ..core import native, runs
 from ..core.errors import BadInputError
 from ..core.lengths import told_lengths, world_lengths
 from ..core.progress import Progress
 from ..core.requests import Surface
-from ..props import PROPERTIES, Settings, fill_operator, keep_texts, note_call
+from ..looks import NO_LOOK
+from ..props import PROPERTIES, Settings, existing_group, fill_operator, keep_texts, note_call
 
 # Seconds between looks at the thread: a run's end, and a progress step, are seen this late at most. ESC is an event of
 # its own and does not wait for it.
@@ -51,6 +53,7 @@ class SurfaceOperator(PolledOperator):
     settings_name: str  # of the group in Object.saddleback
     report: Callable[..., None]
     options: bpy.types.OperatorOptions
+    properties: Any
 
     keys = "ESC: stop"  # what the status bar says of a run
 
@@ -82,13 +85,13 @@ class SurfaceOperator(PolledOperator):
         self._surface, self._lengths = surface, world_lengths(settings, surface, count)
         return replace(settings, **self._lengths)
 
-    def begin_look(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
+    def begin_watching(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
         """Begins to show a run that goes on in a thread."""
 
-    def look(self) -> None:
+    def show_newest(self) -> None:
         """Shows what is new, at every look at the thread."""
 
-    def end_look(self) -> None:
+    def end_watching(self) -> None:
         """Takes away what was shown."""
 
     def keeps(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
@@ -103,7 +106,7 @@ class SurfaceOperator(PolledOperator):
         """Computes and writes before it returns: scripts and the redo panel."""
         try:
             # The redo panel calls as a script does, with what a person has chosen.
-            source, call = self._prepare(context, self.options.is_invoke or self.options.is_repeat)
+            source, call = self._prepare(context, self._is_asked_by_hand())
             progress = runs.new_progress()
             result = call(progress)
         except Exception as error:
@@ -122,7 +125,7 @@ class SurfaceOperator(PolledOperator):
         manager = context.window_manager
         self._timer = manager.event_timer_add(TIMER_STEP, window=context.window)
         manager.modal_handler_add(self)
-        self.begin_look(context, source)
+        self.begin_watching(context, source)
         self._show(context)
         return {"RUNNING_MODAL"}
 
@@ -139,7 +142,7 @@ class SurfaceOperator(PolledOperator):
             self._leave(context)
             return self._end(context, task)
         if event.type == "TIMER":
-            self.look()
+            self.show_newest()
             self._show(context)
         if self.keeps(context, event) and task.progress.settle():
             return {"RUNNING_MODAL"}
@@ -152,6 +155,11 @@ class SurfaceOperator(PolledOperator):
         if self._task is not None:
             self._task.cancel()
             self._leave(context)
+
+    def _is_asked_by_hand(self) -> bool:
+        """Tells whether a person asks, not a script. A look is what a person chooses, whoever calls for it."""
+        has_look = self.properties.is_property_set("look") if hasattr(self, "look") else False
+        return bool(self.options.is_invoke or self.options.is_repeat or has_look)
 
     def _prepare(
         self, context: bpy.types.Context, is_by_hand: bool
@@ -182,6 +190,8 @@ class SurfaceOperator(PolledOperator):
                 if not source.is_property_set("saddleback"):
                     rollback.undo_with(partial(source.property_unset, "saddleback"))
                 line = self.write(context, source, result)
+                if getattr(self, "look", NO_LOOK) != NO_LOOK:
+                    _leave_other_looks(source, self.settings_name)
                 note_call(source, self.settings_name, self._called, self._is_by_hand)
                 labels = {name: prop.keywords["name"] for name, prop in PROPERTIES[self.settings_name].items()}
                 lengths, figures = told_lengths(self, self._lengths, labels), self.figures(result)
@@ -238,7 +248,7 @@ class SurfaceOperator(PolledOperator):
         """Ends the watching: timer, status bar, panel."""
         if self._task is None:
             return
-        self.end_look()
+        self.end_watching()
         jobs.finish(self._task)
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
@@ -259,3 +269,14 @@ def _unseen(context: bpy.types.Context, source: bpy.types.Object) -> list[str]:
         return []
     told = " and ".join(f"'{name}'" for name in names)
     return [f"{told}: made, but not seen, since this view layer excludes the collection"]
+
+
+def _leave_other_looks(source: bpy.types.Object, settings_name: str) -> None:
+    """Takes away what other operators made for the look that the object had before."""
+    for other in ROLES:
+        group = existing_group(source, other)
+        if other != settings_name and group is not None and group.look != NO_LOOK:
+            remove_look(source, other)
+            keep_texts(source, other, [], [])
+            rollback.remember_setting(group, "look")
+            group.look = NO_LOOK

@@ -148,18 +148,18 @@ class SADDLEBACK_OT_relax_live(CellsOperator, bpy.types.Operator):
         self._live = LiveCells()
         return self._gather(context, source, self._live)
 
-    def begin_look(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
+    def begin_watching(self, context: bpy.types.Context, source: bpy.types.Object) -> None:
         """Makes the object that shows the cells."""
         radius = self._lengths["edge_radius"] if self._lengths else self.edge_radius
         self._preview = LivePreview(context, source, radius)
 
-    def look(self) -> None:
+    def show_newest(self) -> None:
         """Shows the latest cells."""
         step = self._live.newest()
         if step is not None:
             self._preview.show(step.lines)
 
-    def end_look(self) -> None:
+    def end_watching(self) -> None:
         """Takes the cells away."""
         self._preview.remove()
 

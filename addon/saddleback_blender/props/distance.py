@@ -13,6 +13,7 @@ from .kinds import (
     detail,
     length,
     lengths,
+    look,
     name_of,
     on_disk,
     quality,
@@ -67,6 +68,7 @@ DISTANCE: dict[str, Any] = {
     "make_preview": switch("Preview", "Show the distances in colors; the object's own materials are kept", False),
     "preview_lines": switch("Lines", "Show lines of equal distance in the preview, too", True),
     "distance_attribute": name_of("Attribute", "Where distances are written", "saddleback_distance"),
+    "look": look("distance"),
 }
 DISTANCE_BEGIN: dict[str, Any] = {
     "sources": "CURSOR",

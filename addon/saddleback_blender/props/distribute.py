@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from bpy.props import FloatProperty, IntProperty
 
 from .density import DENSITY, DENSITY_BEGIN
-from .kinds import choice, length, lengths, name_of, share, switch, use_modifiers
+from .kinds import choice, length, lengths, look, name_of, share, switch, use_modifiers
 from .tessellate import TESSELLATE
 
 SHAPES = (
@@ -46,6 +47,16 @@ DISTRIBUTE: dict[str, Any] = {
     "lengths": lengths("the size of the place that a shape has"),
     "gap": length("Gap", "Least distance from shape to shape", 0.0),
     "gap_share": share("Gap", "Least distance from shape to shape, in percent of the place that one has", 0.0),
+    "overlap": FloatProperty(
+        name="Overlap", description="Share of their length by which shapes with a mesh reach over those before them, "
+        "like scales or roof tiles; what is not covered touches no other", default=0.0, min=0.0, max=0.9,
+        soft_max=0.75, subtype="FACTOR", options={"SKIP_SAVE"},
+    ),
+    "tilt": FloatProperty(
+        name="Tilt", description="How steeply shapes that overlap rise from the surface to their tips",
+        default=math.radians(14.0), min=0.0, max=math.radians(80.0), soft_max=math.radians(45.0), subtype="ANGLE",
+        options={"SKIP_SAVE"},
+    ),
     "packing": FloatProperty(
         name="Packing", description="0 scatters shapes by chance, 1 lays them side by side, which makes room for more",
         default=1.0, min=0.0, max=1.0, subtype="FACTOR", options={"SKIP_SAVE"},
@@ -82,5 +93,6 @@ DISTRIBUTE: dict[str, Any] = {
     "write_attributes": switch(
         "Attributes", "Write on the mesh whose outline is nearest, how far it is, and where in the shape one is", False
     ),
+    "look": look("distribute"),
 }  # fmt: skip
 DISTRIBUTE_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE", **DENSITY_BEGIN}

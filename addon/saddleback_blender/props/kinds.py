@@ -6,6 +6,8 @@ from typing import Any
 
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from ..looks import LOOKS, NO_LOOK, of_operator
+
 QUALITIES = (
     ("FAST", "Fast", "Distances at most 2 % too long"),
     ("NORMAL", "Normal", "Distances at most 0.5 % too long"),
@@ -85,3 +87,16 @@ def switch(label: str, description: str, default: bool) -> Any:
 def choice(label: str, description: str, items: tuple[tuple[str, str, str], ...], default: str) -> Any:
     """One of several, each with its name and what it means."""
     return EnumProperty(name=label, description=description, items=items, default=default, options={"SKIP_SAVE"})
+
+
+def look(operator: str) -> Any:
+    """One of the looks that an operator makes, or none."""
+    items = tuple((key, found.label, found.description) for key, found in of_operator(operator).items())
+    none = (NO_LOOK, "None", "Plain colors and materials")
+    return choice("Look", "Whose colors and material what is made has", (none, *items), NO_LOOK)
+
+
+def any_look() -> Any:
+    """One of all looks."""
+    items = tuple((key, found.label, found.description) for key, found in LOOKS.items())
+    return choice("Look", "What the object gets", items, next(iter(LOOKS)))

@@ -8,7 +8,7 @@ from typing import Any
 from bpy.props import FloatProperty, IntProperty
 
 from .density import DENSITY, DENSITY_BEGIN
-from .kinds import choice, detail, length, lengths, name_of, on_disk, quality, share, switch, use_modifiers
+from .kinds import choice, detail, length, lengths, look, name_of, on_disk, quality, share, switch, use_modifiers
 
 SITES_SOURCES = (
     ("COUNT", "Count", "Place this many sites, by the density"),
@@ -133,5 +133,6 @@ TESSELLATE: dict[str, Any] = {
     "edge_distance_attribute": name_of(
         "Edge Distance Attribute", "Where distances to the cells' edges are written", "saddleback_edge_distance"
     ),
+    "look": look("tessellate"),
 }
 TESSELLATE_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE", **DENSITY_BEGIN}

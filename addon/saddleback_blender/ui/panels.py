@@ -9,7 +9,7 @@ import bpy
 from .. import compat
 from ..bridge.inputs.source import active_object, why_not
 from ..core import native
-from . import rows
+from . import look_rows, rows
 from .texts import draw_text
 
 
@@ -46,6 +46,11 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
 
     bl_label = "Saddleback"
 
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        """Draws the menu of looks that were kept."""
+        if SaddlebackSubPanel.poll(context):
+            look_rows.SADDLEBACK_PT_look_presets.draw_panel_header(self.layout)
+
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         layout = self.layout
@@ -60,12 +65,15 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
             draw_text(layout, context, problem, "INFO")
             return
         item = active_object(context)
+        look_rows.draw_looks(layout, item)
         column = layout.column(align=True)
         column.label(text=item.name, icon="OUTLINER_OB_MESH")
         draw_text(column, context, f"{len(item.data.vertices):,} vertices, {len(item.data.polygons):,} faces", "BLANK1")
         row = layout.row()
-        row.enabled = not context.window_manager.saddleback_running
-        row.operator("saddleback.clear", text="Clear Results", icon="TRASH")
+        if context.window_manager.saddleback_running:
+            compat.draw_progress(row, context.window_manager)
+        else:
+            row.operator("saddleback.clear", text="Clear Results", icon="TRASH")
         shading = context.space_data.shading
         if shading.type == "SOLID":  # which shows the colors of cells and shapes in one of its ways only
             layout.prop(shading, "color_type", text="Color")
@@ -537,6 +545,7 @@ def _native_problem() -> str:
 
 
 CLASSES = (
+    look_rows.SADDLEBACK_PT_look_presets,
     SADDLEBACK_PT_main,
     SADDLEBACK_PT_tessellate,
     SADDLEBACK_PT_density,

@@ -248,6 +248,11 @@ def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Objec
     column.prop(settings, "size")
     column.prop(settings, "size_variation")
     draw_length(layout, settings, "gap")
+    column = layout.column(align=True)
+    column.prop(settings, "overlap")
+    row = column.row()
+    row.active = settings.overlap > 0.0
+    row.prop(settings, "tilt")
     layout.prop(settings, "packing")
     layout.prop(settings, "mirror")
     row = layout.row()

@@ -16,7 +16,9 @@ from ...core.settings import TessellateSettings, Voronoi2dSettings
 from ...core.shapes.local_places import local_uv
 from ...core.solids.cell_mesh import CellMesh, CellPieces, CellShape, cell_pieces, raise_cells
 from ...core.solids.mesh_edges import triangle_edges
-from ...core.surfaces.cell_colors import cell_colors, linear_to_srgb
+from ...core.surfaces.cell_colors import cell_colors, linear_to_srgb, palette_colors
+from ...finishes import material_of, palette_of
+from ...looks import NO_LOOK, finish_of
 from .following import Follower
 from .out_attributes import set_attribute
 from .out_collection import level_place, replace_object, to_place
@@ -41,7 +43,12 @@ def write_cells(
     """Makes or replaces the source's cells object; gap, inset and thickness are in world units."""
     shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
     cells = raise_cells(_pieces(result, shape), shape)
-    colors = cell_colors(len(result.sites_position), result.edge_cells)
+    look = settings.look if isinstance(settings, TessellateSettings) else NO_LOOK
+    finish, count = finish_of(look), len(result.sites_position)
+    if finish is None:
+        colors = cell_colors(count, result.edge_cells)
+    else:
+        colors = palette_colors(count, result.edge_cells, palette_of(finish), finish.contrast)
     place = level_place(source)
     mesh = _mesh(to_place(place, cells.vertices), cells, colors, compat.is_shaded_smooth(source.data))
     if isinstance(settings, TessellateSettings) and settings.local_uv:
@@ -49,7 +56,7 @@ def write_cells(
             cells.vertices, cells.triangles, cells.triangle_cell, result.sites_position, result.sites_normal
         )
         mesh.uv_layers.new(name=LOCAL_UV).data.foreach_set("uv", places.astype(np.float32).ravel())
-    item = _shown(context, source, role, mesh, place)
+    item = _shown(context, source, role, mesh, place, look)
     if follower is not None:
         follower.take(item, place, cells.vertices, cells.feet)
     item[VANISHED] = len(cells.vanished)
@@ -116,9 +123,14 @@ def _new_mesh(positions: np.ndarray) -> bpy.types.Mesh:
 
 
 def _shown(
-    context: bpy.types.Context, source: bpy.types.Object, role: str, mesh: bpy.types.Mesh, place: Matrix
+    context: bpy.types.Context,
+    source: bpy.types.Object,
+    role: str,
+    mesh: bpy.types.Mesh,
+    place: Matrix,
+    look: str = NO_LOOK,
 ) -> bpy.types.Object:
-    mesh.materials.append(nodes.cells_material())
+    mesh.materials.append(material_of(look, nodes.cells_material))
     return replace_object(context, source, role, mesh, place)
 
 

@@ -67,7 +67,7 @@ def write_cut(
     mesh.polygons.foreach_set("use_smooth", np.ascontiguousarray(corners.smooth[::3]))
     for material in materials or [None]:
         mesh.materials.append(material)
-    firsts = add_materials(mesh, templates)
+    firsts = add_materials(mesh, templates, settings.look)
     slots = np.where(cut.copy >= 0, firsts[cut.shape], corners.material[::3]).astype(np.int32)
     mesh.polygons.foreach_set("material_index", slots)
     mesh.update()

@@ -12,10 +12,12 @@ from ...blocks import find
 from ...core.errors import BadInputError
 from ...core.results import Anchors, DistributeResult, Indices, PlacedShapes, Reals
 from ...core.settings import DistributeSettings
-from ...core.shapes.shape_colors import random_of, shape_colors
+from ...core.shapes.shape_colors import palette_colors, random_of, shape_colors
 from ...core.shapes.shape_templates import ShapeTemplate
 from ...core.surfaces.quaternions import axes_of, euler_of, quaternions_of, turned
+from ...finishes import material_of, palette_of
 from ...follow_nodes import WEIGHTS_ATTRIBUTE, stop_following
+from ...looks import NO_LOOK, finish_of
 from ...shape_nodes import set_shapes
 from ..inputs.materials_in import shown_materials
 from ..inputs.mesh_in import modified
@@ -65,11 +67,11 @@ def write_bent(
     set_attribute(mesh, nodes.CLASS_ATTRIBUTE, "FACE", bent.polygon_shape)
     set_attribute(mesh, RANDOM_ATTRIBUTE, "FACE", random[bent.polygon_copy])
     color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
-    rgb = shape_colors(bent.polygon_shape, random[bent.polygon_copy])
+    rgb = _colors(bent.polygon_shape, random[bent.polygon_copy], settings.look)
     rgba = np.column_stack([rgb, np.ones(len(rgb))]).astype(np.float32)
     color.data.foreach_set("color", np.repeat(rgba, np.diff(bent.offsets), axis=0).ravel())
     compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
-    firsts = add_materials(mesh, templates)
+    firsts = add_materials(mesh, templates, settings.look)
     compat.write_numbers(mesh.polygons, "material_index", bent.material + firsts[bent.polygon_shape])
     mesh.update()
     item = replace_object(context, source, BENT_ROLE, mesh, place)
@@ -113,7 +115,9 @@ def write_instances(
     mesh.update()
     item = replace_object(context, source, INSTANCES_ROLE, mesh, place)
     remove_templates(source)
-    set_shapes(item, [_shown_object(source, number, template) for number, template in enumerate(templates)])
+    set_shapes(
+        item, [_shown_object(source, number, template, settings.look) for number, template in enumerate(templates)]
+    )
     if settings.follow_surface:
         follower.take_anchored(item, place, _anchors(placed, points), rotations)
     else:
@@ -204,7 +208,7 @@ def remove_templates(source: bpy.types.Object) -> None:
             remove_object(item)
 
 
-def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate) -> bpy.types.Object:
+def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate, look: str) -> bpy.types.Object:
     """Returns what an instance shows: the artist's own object, or a new one of ours."""
     if template.source:
         return find(bpy.data.objects, template.source)
@@ -213,12 +217,12 @@ def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate
         solid = template.solid
         _fill(mesh, solid.vertices, solid.corners, solid.offsets, solid.uv, solid.smooth)
         color = mesh.color_attributes.new(nodes.COLOR_ATTRIBUTE, "BYTE_COLOR", "CORNER")
-        rgba = np.append(shape_colors(np.array([number], np.int32), np.array([0.5])), 1.0)
+        rgba = np.append(_colors(np.array([number], np.int32), np.array([0.5]), look), 1.0)
         color.data.foreach_set("color", np.tile(rgba, len(solid.corners)).astype(np.float32))
         compat.show_color(mesh, nodes.COLOR_ATTRIBUTE)
     else:
         _fill_flat(mesh, template)
-    mesh.materials.append(nodes.shapes_material())
+    mesh.materials.append(material_of(look, nodes.shapes_material))
     item = bpy.data.objects.new(template.name, mesh)
     item[ROLE], item[NAME], item[SOURCE] = f"{TEMPLATE_ROLE} {number}", item.name, source_token(source)
     return item
@@ -245,13 +249,20 @@ def _fill_flat(mesh: bpy.types.Mesh, template: ShapeTemplate) -> None:
     _fill(mesh, vertices, corners, offsets, 0.5 + 0.5 * flat, np.zeros(len(loops), bool))
 
 
-def add_materials(mesh: bpy.types.Mesh, templates: Sequence[ShapeTemplate]) -> np.ndarray:
+def _colors(classes: Indices, random: Reals, look: str) -> Reals:
+    finish = finish_of(look)
+    if finish is None:
+        return shape_colors(classes, random)
+    return palette_colors(random, palette_of(finish), finish.contrast)
+
+
+def add_materials(mesh: bpy.types.Mesh, templates: Sequence[ShapeTemplate], look: str = NO_LOOK) -> np.ndarray:
     """Adds the materials of all classes; returns (classes,) the slot at which those of each begin."""
     firsts = []
     for template in templates:
         firsts.append(len(mesh.materials))
         own = _materials(find(bpy.data.objects, template.source))
-        for material in own if any(own) else [nodes.shapes_material()]:
+        for material in own if any(own) else [material_of(look, nodes.shapes_material)]:
             mesh.materials.append(material)
     return np.array(firsts, np.int32)
 

@@ -10,6 +10,7 @@ import numpy as np
 from ... import compat, nodes
 from ...core.results import CellsResult
 from ...core.settings import TessellateSettings
+from ...finishes import material_of
 from .following import Follower
 from .out_collection import level_place, replace_object, to_place
 
@@ -33,7 +34,7 @@ def write_shell(
     compat.write_corners(mesh, shell.triangles)
     mesh.update(calc_edges=True)
     compat.shade_smooth_by_angle(mesh, CREASE_ANGLE)
-    mesh.materials.append(nodes.edges_material())
+    mesh.materials.append(material_of(settings.look, nodes.edges_material))
     item = replace_object(context, source, SHELL_ROLE, mesh, place)
     if follower is not None:
         follower.take(item, place, shell.vertices, shell.feet)

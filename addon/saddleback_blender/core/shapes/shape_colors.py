@@ -24,3 +24,11 @@ def shape_colors(classes: Indices, random: Reals) -> Reals:
     base = CLASSES[classes % len(CLASSES)]
     bright: Reals = base * (1.0 + SPREAD * (2.0 * random[:, None] - 1.0))
     return np.clip(bright, 0.0, 1.0)
+
+
+def palette_colors(random: Reals, palette: Reals, contrast: float) -> Reals:
+    """(n, 3) linear colors: one of the palette's (m, 3) for each shape, lighter or darker by up to `contrast`."""
+    place = random * len(palette)
+    base = palette[place.astype(np.int64)]
+    bright: Reals = base * (1.0 + contrast * (2.0 * (place % 1.0)[:, None] - 1.0))
+    return np.clip(bright, 0.0, 1.0)

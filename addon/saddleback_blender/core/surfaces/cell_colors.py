@@ -5,32 +5,57 @@ Colors are drawn in Oklab, where equal steps look equal [ottosson2020]: a middli
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..results import Indices, Reals
 
+Draw = Callable[[NDArray[np.uint64], NDArray[np.uint64]], Reals]  # of cells, in their turns
+
 LIGHTNESS = (0.60, 0.84)
 CHROMA = (0.07, 0.13)
 # Neighbors nearer than this in Oklab draw again; about a third of the hue circle's diameter.
 ALIKE = 0.09
+SAME = 1e-6  # of a palette's colors, which only have to be others
 MAX_DRAWS = 24
 
 
 def cell_colors(count: int, neighbors: Indices) -> Reals:
     """Linear RGB (count, 3) in [0, 1] for cells whose neighboring pairs are (e, 2). O(count + e)."""
-    draw = np.zeros(count, dtype=np.uint64)
-    lab = _draw(np.arange(count, dtype=np.uint64), draw)
+    lab = _unlike(count, neighbors, _draw, ALIKE)
+    return np.clip(oklab_to_linear_rgb(lab), 0.0, 1.0)
+
+
+def palette_colors(count: int, neighbors: Indices, palette: Reals, contrast: float) -> Reals:
+    """Linear RGB (count, 3) in [0, 1]: one of the palette's (m, 3) for each cell, another than its neighbors' where
+    that can be, by chance lighter or darker by up to `contrast`. O(count + e).
+    """
+
+    def draw(cell: NDArray[np.uint64], turn: NDArray[np.uint64]) -> Reals:
+        chosen: Reals = palette[(len(palette) * _random(cell, turn, [4])[:, 0]).astype(np.int64)]
+        return chosen
+
+    drawn = _unlike(count, neighbors, draw, SAME)
+    random = _random(np.arange(count, dtype=np.uint64), np.zeros(count, np.uint64), [5])
+    return np.clip(drawn * (1.0 + contrast * (2.0 * random - 1.0)), 0.0, 1.0)
+
+
+def _unlike(count: int, neighbors: Indices, draw: Draw, alike: float) -> Reals:
+    """Draws (count, c) values; of neighbors (e, 2) nearer than `alike` one draws again, so often as is sensible."""
+    turn = np.zeros(count, dtype=np.uint64)
+    values = draw(np.arange(count, dtype=np.uint64), turn)
     pairs = np.sort(neighbors[(neighbors >= 0).all(axis=1)], axis=1)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
     for _ in range(MAX_DRAWS):
-        alike = np.linalg.norm(lab[pairs[:, 0]] - lab[pairs[:, 1]], axis=1) < ALIKE
-        again = np.unique(pairs[alike, 1])
+        is_alike = np.linalg.norm(values[pairs[:, 0]] - values[pairs[:, 1]], axis=1) < alike
+        again = np.unique(pairs[is_alike, 1])
         if again.size == 0:
             break
-        draw[again] += np.uint64(1)
-        lab[again] = _draw(again.astype(np.uint64), draw[again])
-    return np.clip(oklab_to_linear_rgb(lab), 0.0, 1.0)
+        turn[again] += np.uint64(1)
+        values[again] = draw(again.astype(np.uint64), turn[again])
+    return values
 
 
 def _draw(cell: NDArray[np.uint64], draw: NDArray[np.uint64]) -> Reals:

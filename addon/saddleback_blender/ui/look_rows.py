@@ -1,0 +1,27 @@
+"""The looks in the tab: a button each, and Blender's menu of presets for the artist's own."""
+
+from __future__ import annotations
+
+import bpy
+from bl_ui.utils import PresetPanel
+
+from ..looks import LOOKS
+from ..ops.look_presets import PRESET_FOLDER
+
+
+class SADDLEBACK_PT_look_presets(PresetPanel, bpy.types.Panel):
+    """Looks that were kept."""
+
+    bl_label = "Look Presets"
+    preset_subdir = PRESET_FOLDER
+    preset_operator = "saddleback.run_preset"
+    preset_operator_defaults = {"wait": False}
+    preset_add_operator = "saddleback.look_preset_add"
+
+
+def draw_looks(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
+    """A button for each look; the one that the object has is pressed."""
+    grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    for key, look in LOOKS.items():
+        is_on = getattr(item.saddleback, look.operator).look == key
+        grid.operator("saddleback.apply_look", text=look.label, icon=look.icon, depress=is_on).look = key

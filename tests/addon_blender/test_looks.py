@@ -1,0 +1,240 @@
+"""Looks: one click, one picture; what they leave alone; the artist's own, kept as presets."""
+
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
+from scenes import add_object, grid, positions, select, sphere
+
+from saddleback_blender import finishes, jobs, looks, nodes
+from saddleback_blender.bridge.inputs.mesh_in import read_triangles
+from saddleback_blender.bridge.outputs.out_collection import find_output, outputs_of
+from saddleback_blender.core import native
+from saddleback_blender.core.surfaces.normals import normals_at
+from saddleback_blender.ops.look_presets import read_preset
+
+ROLES = {
+    "PANELS": "cells", "PEBBLES": "cells", "LAMP": "shell", "REMESH": "dual", "BANDS": "isolines", "SCALES": "shapes",
+    "FEATHERS": "shapes", "STUDS": "shapes", "MOSAIC": "shapes",
+}  # fmt: skip
+
+
+def torus():
+    bpy.ops.mesh.primitive_torus_add()
+    return bpy.context.active_object
+
+
+def apply(look):
+    return bpy.ops.saddleback.apply_look(look=look)
+
+
+def materials():
+    return sorted(material.name for material in bpy.data.materials)
+
+
+@pytest.mark.parametrize("make", [sphere, torus])
+@pytest.mark.parametrize("look", sorted(looks.LOOKS))
+def test_one_call_makes_the_look_and_another_piles_nothing_up(look, make):
+    item = make()
+    assert apply(look) == {"FINISHED"}
+    (shown,) = outputs_of(item)
+    assert find_output(item, ROLES[look]) == shown
+    finish = looks.finish_of(look)
+    if finish is not None:
+        material = bpy.data.materials[f"Saddleback {finish.name}"]
+        assert set(shown.data.materials) == {material}
+        mean = finishes.palette_of(finish).mean(axis=0)
+        assert material.diffuse_color[:3] == pytest.approx(mean)  # what Solid shows
+    group = getattr(item.saddleback, looks.LOOKS[look].operator)
+    for name, value in {**looks.LOOKS[look].settings, "look": look}.items():
+        assert getattr(group, name) == (pytest.approx(value) if isinstance(value, float) else value), name
+    before = len(bpy.data.objects), len(bpy.data.meshes), len(bpy.data.node_groups), materials()
+    assert apply(look) == {"FINISHED"}
+    assert (len(bpy.data.objects), len(bpy.data.meshes), len(bpy.data.node_groups), materials()) == before
+
+
+def test_every_look_stands_in_the_table_of_this_test():
+    assert set(ROLES) == set(looks.LOOKS)
+
+
+def test_a_look_takes_the_place_of_another_whoever_makes_it():
+    item = sphere()
+    for look in ("PANELS", "STUDS", "BANDS", "LAMP", "PEBBLES"):
+        assert apply(look) == {"FINISHED"}
+        assert [found["saddleback_role"] for found in outputs_of(item)] == [ROLES[look]]
+        operators = ("tessellate", "distribute", "distance")
+        shown = [getattr(item.saddleback, name).look for name in operators]
+        assert sorted(shown) == sorted([look, "NONE", "NONE"])
+        has_preview = any(material is not None for material in item.data.materials) or len(item.material_slots)
+        assert bool(has_preview) == (look == "BANDS")
+
+
+def test_what_the_artist_painted_and_chose_stays():
+    item = sphere(subdivisions=5)
+    top = [vertex.index for vertex in item.data.vertices if vertex.co.z > 0.7]
+    item.vertex_groups.new(name="Fine").add(top, 1.0, "REPLACE")
+    settings = item.saddleback.tessellate
+    settings.density_source, settings.density_name, settings.seed = "VERTEX_GROUP", "Fine", 4
+    assert apply("PANELS") == {"FINISHED"}
+    assert (settings.density_source, settings.density_name, settings.seed) == ("VERTEX_GROUP", "Fine", 4)
+    cells = np.zeros(len(item.data.vertices), np.int32)
+    item.data.attributes["saddleback_cell"].data.foreach_get("value", cells)
+    assert len(set(cells[top])) > 100  # of 200: painted cells are smaller by four
+    bpy.ops.saddleback.tessellate(count=60)  # a script goes on from the look
+    shown = find_output(item, "cells")
+    assert settings.look == "PANELS" and shown.data.materials[0].name == "Saddleback Panels"
+    assert find_output(item, "edges") is None
+
+
+def test_a_material_that_the_artist_edited_is_not_made_again():
+    item = sphere()
+    apply("LAMP")
+    material = bpy.data.materials["Saddleback Lamp"]
+    material.name, material.diffuse_color = "My Lamp", (1.0, 0.0, 0.0, 1.0)
+    other = sphere("Other")
+    apply("LAMP")
+    assert find_output(other, "shell").data.materials[0] == material == find_output(item, "shell").data.materials[0]
+    assert material.diffuse_color[:] == (1.0, 0.0, 0.0, 1.0)
+    own = bpy.data.materials.new("Own")
+    find_output(other, "shell").data.materials[0] = own
+    apply("LAMP")
+    assert find_output(other, "shell").data.materials[0] == own
+
+
+def test_colors_of_cells_are_those_of_the_look_and_no_two_neighbors_have_the_same():
+    item = sphere(subdivisions=4)
+    apply("PEBBLES")
+    mesh = find_output(item, "cells").data
+    colors = np.empty(4 * len(mesh.loops), np.float32)
+    mesh.color_attributes[nodes.COLOR_ATTRIBUTE].data.foreach_get("color", colors)
+    finish = looks.finish_of("PEBBLES")
+    palette = finishes.palette_of(finish)
+    seen = np.unique(colors.reshape(-1, 4)[:, :3], axis=0)
+    share = seen[:, None] / palette  # how bright, for each of the palette's
+    is_near = (np.ptp(share, axis=2) < 0.1) & (abs(share.mean(axis=2) - 1.0) < finish.contrast + 0.05)
+    assert is_near.any(axis=1).all() and is_near.any(axis=0).all()
+
+
+@pytest.mark.parametrize("size", [0.06, 120.0])
+def test_a_look_is_as_large_as_the_model(size):
+    item = sphere(radius=size)
+    apply("SCALES")
+    far = np.linalg.norm(positions(find_output(item, "shapes").data), axis=1)
+    assert size < np.quantile(far, 0.9) < 1.05 * size and far.max() < 1.2 * size
+
+
+def test_an_object_with_modifiers_shows_no_second_surface():
+    item = grid()
+    item.modifiers.new("Smooth", "SUBSURF").levels = 2
+    apply("PANELS")
+    copy = find_output(item, "surface")
+    assert copy.hide_viewport and copy.hide_render
+
+
+def test_what_cannot_be_covered_is_told_in_a_sentence():
+    with pytest.raises(RuntimeError, match="no active object"):
+        bpy.context.view_layer.objects.active = None
+        apply("PANELS")
+    item = add_object("Line", [(0, 0, 0), (1, 0, 0)], [])
+    with pytest.raises(RuntimeError, match="'Line'"):
+        apply("PANELS")
+    assert not outputs_of(item) and item.saddleback.tessellate.look == "NONE"
+
+
+def test_a_look_is_kept_as_a_preset_and_comes_back():
+    item = sphere()
+    apply("PANELS")
+    bpy.ops.saddleback.tessellate(count=70, gap_share=12.0, seed=3)
+    assert bpy.ops.saddleback.look_preset_add(name="Hull of mine") == {"FINISHED"}
+    path = Path(bpy.utils.preset_paths("saddleback/looks")[0]) / "Hull_of_mine.py"
+    operator, values = read_preset(path)
+    assert operator == "tessellate" and values["count"] == 70 and values["look"] == "PANELS"
+    assert not any("object" in name or name.startswith("density") for name in values)
+    other = torus()
+    assert bpy.ops.saddleback.run_preset(filepath=str(path)) == {"FINISHED"}
+    settings = other.saddleback.tessellate
+    assert (settings.count, settings.seed, settings.gap_share) == (70, 3, pytest.approx(12.0))
+    assert find_output(other, "cells").data.materials[0].name == "Saddleback Panels"
+    assert len(find_output(item, "cells").data.polygons)
+    path.write_text(path.read_text() + "settings.tessellate.of_tomorrow = 1\n")
+    assert bpy.ops.saddleback.run_preset(filepath=str(path)) == {"FINISHED"}
+    bpy.ops.saddleback.look_preset_add(name="Hull_of_mine", remove_name=True)
+    assert not path.exists()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "settings.render.count = 1\n",
+        "settings.tessellate.count = __import__('os')\n",
+        "settings.tessellate.count = 'x'\n",
+    ],
+)
+def test_a_preset_that_is_none_is_told_and_not_run(tmp_path, text):
+    item = sphere()
+    path = tmp_path / "own.py"
+    path.write_text(text)
+    with pytest.raises(RuntimeError, match=r"own\.py|count"):
+        bpy.ops.saddleback.run_preset(filepath=str(path))
+    assert not outputs_of(item)
+
+
+def test_only_the_active_object_gets_it():
+    item, other = sphere(), sphere("Other")
+    select(item, [0])
+    bpy.context.view_layer.objects.active = item
+    apply("STUDS")
+    assert outputs_of(item) and not outputs_of(other)
+
+
+def bare_share(item, shown, count=4000):
+    """The share of places on a closed surface, evenly spread, over which nothing lies as seen along the normal."""
+    body = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = native.load().Mesh(positions(body.data).astype(float), read_triangles(body.data))
+    places = native.load().sample(mesh, count, seed=1)
+    normals = normals_at(mesh.vertices, mesh.triangles, places.faces, places.barycentric)
+    tree = BVHTree.FromObject(shown, bpy.context.evaluated_depsgraph_get())
+    size = np.sqrt(mesh.area / count)
+    hits = [
+        tree.ray_cast(Vector(place - 0.1 * size * normal), Vector(normal), 20.0 * size)[0]
+        for place, normal in zip(places.positions(mesh), normals, strict=True)
+    ]
+    return hits.count(None) / count
+
+
+@pytest.mark.parametrize("look", ["SCALES", "FEATHERS"])
+@pytest.mark.parametrize("make", ["uv_sphere", "torus", "monkey"])
+def test_scales_leave_no_skin_bare_and_meet_only_where_they_overlap(look, make):
+    getattr(bpy.ops.mesh, f"primitive_{make}_add")()
+    item = bpy.context.active_object
+    item.modifiers.new("Smooth", "SUBSURF").levels = 2
+    apply(look)
+    shown = find_output(item, "shapes")
+    assert bare_share(item, shown) < 0.02
+    assert bpy.ops.saddleback.check_distribution() == {"FINISHED"}
+    assert "none touches another" in jobs.state.line  # of what is not overlapped
+
+
+def test_a_tip_stands_higher_than_a_root_by_the_tilt():
+    item = grid(n=20)
+    tilt = np.radians(20.0)
+    bpy.ops.saddleback.distribute(shapes="SCALES", count=40, overlap=0.5, tilt=tilt, make_instances=True)
+    mesh = find_output(item, "shapes").data
+    owner = np.zeros(len(mesh.polygons), np.int32)
+    mesh.attributes["saddleback_shape"].data.foreach_get("value", owner)
+    for number in np.unique(owner)[:5]:
+        corners = {vertex for polygon in mesh.polygons if owner[polygon.index] == number for vertex in polygon.vertices}
+        own = positions(mesh)[sorted(corners)]
+        floor = own[np.argsort(own[:, 2])[: len(own) // 2]]
+        length = np.ptp(own[:, :2] @ np.linalg.svd(own[:, :2] - own[:, :2].mean(axis=0))[2][0])
+        assert np.tan(tilt) * length == pytest.approx(np.ptp(own[:, 2]), rel=0.25) and floor[:, 2].min() > -1e-6
+    plain = find_output(item, "shape instances")
+    normals = np.empty(3 * len(plain.data.vertices), np.float32)
+    plain.data.attributes["saddleback_normal"].data.foreach_get("vector", normals)
+    assert normals.reshape(-1, 3)[:, 2] == pytest.approx(np.cos(tilt), abs=1e-4)
+    bpy.ops.saddleback.distribute(shapes="SCALES", count=40)
+    assert item.saddleback.distribute.overlap == 0.0
