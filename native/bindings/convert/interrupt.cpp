@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "convert/convert.h"
+#include "support/threads/thread_team.h"
 
 namespace saddleback::bindings {
 namespace {
@@ -74,7 +75,9 @@ CancelOnInterrupt::~CancelOnInterrupt() {
   g_interrupted.store(outer_);
 }
 
-JobIn::JobIn(const py::object& value) : job_(value.is_none() ? &own_ : as_job(value)), interrupt_(*job_) {}
+JobIn::JobIn(const py::object& value) : job_(value.is_none() ? &own_ : as_job(value)), interrupt_(*job_) {
+  touch_thread_data();  // each long call begins here, in any thread of Python's
+}
 
 void lock_python_again(PyThreadState* state) noexcept {
   // When the interpreter ends, CPython before 3.14 ends a daemon thread that asks for the lock, by pthread_exit, which

@@ -177,19 +177,28 @@ print(len(result))
 
 
 @posix
-@pytest.mark.parametrize("spare", [0, 1, 4, 16, 64])
-def test_little_memory_is_an_exception_or_enough(spare):
+@pytest.mark.parametrize("threads", [8, 32])
+@pytest.mark.parametrize("spare", [0, 1, 4, 12, 16, 22, 28, 36, 48, 64])
+def test_little_memory_is_an_exception_or_enough(spare, threads):
     done = run(f"""
 import resource
 sites = np.random.default_rng(1).random((200000, 2))
 size = int(open("/proc/self/statm").read().split()[0]) * 4096 + ({spare} << 20)
 resource.setrlimit(resource.RLIMIT_AS, (size, size))
-for call in (lambda: sb.SaddleVertexGraph(mesh, threads=8), lambda: sb.voronoi_2d(sites, threads=8),
-             lambda: sb.exact_distances(mesh, 0), lambda: sb.project(mesh, mesh.vertices, threads=8)):
-    try:
-        call()
-    except MemoryError:
-        pass
+def ask():
+    for call in (lambda: sb.SaddleVertexGraph(mesh, threads={threads}), lambda: sb.voronoi_2d(sites, threads={threads}),
+                 lambda: sb.exact_distances(mesh, 0), lambda: sb.project(mesh, mesh.vertices, threads={threads})):
+        try:
+            call()
+        except MemoryError:
+            pass
+ask()
+try:
+    thread = threading.Thread(target=ask)
+    thread.start()
+    thread.join()
+except (MemoryError, RuntimeError):  # no thread for want of memory
+    pass
 os.write(1, b"alive")
 """)
     assert done.stdout.strip() == "alive", done.stderr

@@ -89,8 +89,8 @@ void lay_out(const Unfolding& unfolding, const LegEnd& begin, const LegEnd& end,
   leg.crossings.clear();
   if (entered.empty()) return lay_out_in_face(unfolding, begin, end, leg);
   const Mesh& mesh = unfolding.mesh();
-  thread_local std::vector<Placed> portals;
-  portals.clear();
+  std::vector<Placed> portals;
+  portals.reserve(entered.size());
   Placed place = first_portal(unfolding, begin, entered[0]);
   for (std::size_t i = 0;; ++i) {
     portals.push_back(place);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <new>
 #include <system_error>
@@ -15,6 +16,7 @@
 #if defined(__unix__) || defined(__APPLE__)
 #include <pthread.h>
 #include <signal.h>
+#include <sys/mman.h>
 #define SADDLEBACK_POSIX
 #endif
 #ifdef _WIN32
@@ -68,17 +70,18 @@ std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& counter, std::ui
 
 /// A thread that waits to be asked. It is never destroyed: its thread may wait until the program's very end.
 struct alignas(k_apart) Worker {
-  std::atomic<std::uint32_t> asked{0};
+  std::atomic<std::uint32_t> asked{1};  // first to be there
   TeamWork work{};
   int member = 0;
   alignas(k_apart) std::atomic<std::uint32_t> answered{0};
 
   [[noreturn]] void serve() {
-    for (std::uint32_t seen = 0;;) {
-      seen = wait_for_change(asked, seen);
-      work.function(work.context, member);
+    touch_thread_data();
+    for (std::uint32_t seen = 1;;) {
       answered.store(seen, std::memory_order_release);
       wake(answered);
+      seen = wait_for_change(asked, seen);
+      work.function(work.context, member);
     }
   }
 
@@ -97,6 +100,20 @@ struct alignas(k_apart) Worker {
 };
 
 #ifdef SADDLEBACK_POSIX
+/// Tells whether a thread's stack fits into memory and leaves some for its own data, see touch_thread_data.
+bool has_room_for_thread() {
+  constexpr std::size_t k_own_data = 1 << 20;
+  std::size_t stack = 0;
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes) != 0) return false;
+  pthread_attr_getstacksize(&attributes, &stack);
+  pthread_attr_destroy(&attributes);
+  void* const room = mmap(nullptr, stack + k_own_data, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room == MAP_FAILED) return false;
+  munmap(room, stack + k_own_data);
+  return true;
+}
+
 /// Lets threads that begin while it lives receive no signals: those are for the program's own threads.
 class SignalsHeldBack {
  public:
@@ -113,6 +130,7 @@ class SignalsHeldBack {
   sigset_t before_{};
 };
 #else
+bool has_room_for_thread() { return true; }
 struct SignalsHeldBack {};
 #endif
 
@@ -149,6 +167,7 @@ class IdleWorkers {
       const std::lock_guard lock(mutex_);
       idle_.reserve(++worker_count_);  // so that to give back never fails
     }
+    if (!has_room_for_thread()) throw std::bad_alloc();
     Worker* const worker = new Worker;
     try {
       [[maybe_unused]] const SignalsHeldBack held_back;
@@ -157,6 +176,7 @@ class IdleWorkers {
       delete worker;
       throw;
     }
+    worker->wait_until_done();  // before others take the memory that it needs
     return worker;
   }
 
@@ -185,6 +205,10 @@ IdleWorkers& IdleWorkers::of_process() {
 }
 
 }  // namespace
+
+void touch_thread_data() {
+  [[maybe_unused]] const volatile int asked = std::uncaught_exceptions();  // else the call is left out
+}
 
 int processor_count() {
 #if defined(__linux__)

@@ -20,4 +20,8 @@ struct TeamWork {
 /// forked child begins with none, and the end of the program does not wait for them.
 void run_team(int members, TeamWork work);
 
+/// Makes what the library keeps for the calling thread, as for exceptions in flight. Else that comes with its first use
+/// and, where there is no memory for it, glibc ends the program. Threads of the team have theirs.
+void touch_thread_data();
+
 }  // namespace saddleback
