@@ -7,8 +7,10 @@ from scenes import add_object
 
 from saddleback_blender.bridge.inputs.mesh_in import read_surface
 from saddleback_blender.core.results import CellsResult
+from saddleback_blender.core.solids.cell_mesh import CellShape
 from saddleback_blender.core.surfaces.normals import normals_at
 from tests import synthetic_cells
+from tests.made_cells import build_cell_mesh
 
 # A turn, a mirrored and uneven scale and a place of its own: whatever is wrong with a transform shows here.
 HARD_PLACE = (
@@ -24,8 +26,8 @@ def sphere_source(name="Ball", levels=3, place=None):
     return item
 
 
-def result_of(item, count=25, sites=None):
-    """Cells of the object as it stands in the world."""
+def result_of(item, count=25, sites=None, **lengths):
+    """Cells of the object as it stands in the world, their mesh with the given gap, inset and thickness."""
     surface = read_surface(item, item.data)
     if sites is None:
         sites = np.linspace(0, len(surface.vertices) - 1, count)
@@ -46,13 +48,10 @@ def result_of(item, count=25, sites=None):
         edge_offsets=cells.edge_offsets,
         edge_cells=cells.edge_cells,
         edge_closed=cells.edge_closed,
-        split_vertices=cells.split_vertices,
-        split_triangles=cells.split_triangles,
-        split_cell=cells.split_cell,
-        split_origin=cells.split_origin,
         energy=np.array([2.0, 1.0]),
         iterations=2,
         stop_reason="max_iterations",
+        mesh=build_cell_mesh(cells.split_vertices, cells.split_triangles, cells.split_cell, CellShape(**lengths)),
     )
 
 

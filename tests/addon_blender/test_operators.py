@@ -268,7 +268,7 @@ def test_only_what_changed_is_computed():
     bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, gap=0.01)
     for thickness in (0.1, 0.2):
         bpy.ops.saddleback.tessellate(**QUICK, make_cells=True, gap=0.01, inset=0.01, thickness=thickness)
-    pieces = {"split": 1, "cell pieces": 3}
+    pieces = {"split": 1, "cell pieces": 3, "cell mesh": 4}
     assert built() == {"mesh": 1, "graph": 1, "cells": 1, "dual": 1, **pieces}
     bpy.ops.saddleback.tessellate(**{**QUICK, "count": 20}, make_cells=False)
     assert built() == {"mesh": 1, "graph": 1, "cells": 2, "dual": 2, **pieces}

@@ -6,8 +6,8 @@ import pytest
 from output_scenes import HARD_PLACE, sphere_source, triangles_of, world_positions
 from scenes import add_object, grid
 
-from saddleback_blender.bridge.inputs.crossings import find_crossings
 from saddleback_blender.core import cache
+from saddleback_blender.core.solids.crossings import find_crossings
 
 QUICK = {"count": 24, "iterations": 6, "k": 20, "make_edges": False, "make_shell": True}
 

@@ -18,7 +18,7 @@ from scenes import add_object, grid, tube_radius
 
 from saddleback_blender import compat, nodes
 from saddleback_blender.bridge.outputs.out_attributes import clear_attributes, write_vertex_attributes
-from saddleback_blender.bridge.outputs.out_cells import vanished_cells, write_cells
+from saddleback_blender.bridge.outputs.out_cells import write_cells
 from saddleback_blender.bridge.outputs.out_centers import write_centers
 from saddleback_blender.bridge.outputs.out_edges import write_edges
 from saddleback_blender.core.errors import BadInputError
@@ -175,7 +175,7 @@ def test_the_radius_stays_live_and_a_second_run_sets_it():
 def test_closed_lines_become_closed_tubes_and_curves():
     source = grid(n=20)
     result = result_of(source, count=2)
-    middle = np.linalg.norm(result.split_vertices[:, :2] - 0.5, axis=1)
+    middle = np.linalg.norm(result.mesh.vertices[:, :2] - 0.5, axis=1)
     assert middle.min() < 0.05
     turn = np.linspace(0, 2 * np.pi, 33)[:-1]
     loop = np.column_stack([0.5 + 0.3 * np.cos(turn), 0.5 + 0.3 * np.sin(turn), 0 * turn])
@@ -235,15 +235,15 @@ def test_cells_cover_the_surface_with_the_right_side_out(hard):
     a, b, c = (places[triangles[:, i]] - np.array(source.matrix_world)[:3, 3] for i in range(3))
     assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0
     assert item.matrix_world.determinant() > 0
-    assert len(mesh.vertices) == len(result.split_vertices)
+    assert len(mesh.vertices) == len(result.mesh.vertices)
     assert not mesh.validate()
 
 
 @pytest.mark.parametrize("gap", [0.02, 0.0])
 def test_every_face_of_a_cell_has_its_color_and_neighbors_differ(gap):
     source = sphere_source()
-    result = result_of(source)
-    mesh = write_cells(bpy.context, source, result, TessellateSettings(gap=gap)).data
+    result = result_of(source, gap=gap)
+    mesh = write_cells(bpy.context, source, result, TessellateSettings()).data
     cell = np.repeat(read_attribute(mesh, "saddleback_cell"), 3)
     assert mesh.color_attributes["saddleback_color"].domain == "CORNER"
     color = read_attribute(mesh, "saddleback_color")
@@ -259,7 +259,7 @@ def test_every_face_of_a_cell_has_its_color_and_neighbors_differ(gap):
 @pytest.mark.parametrize("shape", [{}, {"gap": 0.02, "inset": 0.02, "thickness": 0.1}])
 def test_cells_have_the_edges_that_blender_gives_them(shape):
     source = sphere_source()
-    mesh = write_cells(bpy.context, source, result_of(source), TessellateSettings(**shape)).data
+    mesh = write_cells(bpy.context, source, result_of(source, **shape), TessellateSettings()).data
     own = np.sort(compat.read_edge_vertices(mesh), axis=1)
     corners = compat.read_corner_vertices(mesh).reshape(-1, 3)
     sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
@@ -275,8 +275,8 @@ def test_cells_have_the_edges_that_blender_gives_them(shape):
 def test_cells_are_shaded_as_their_surface(smooth):
     source = sphere_source()
     source.data.polygons.foreach_set("use_smooth", np.full(len(source.data.polygons), smooth))
-    shape = TessellateSettings(gap=0.02, inset=0.02, thickness=0.1)
-    mesh = write_cells(bpy.context, source, result_of(source), shape).data
+    result = result_of(source, gap=0.02, inset=0.02, thickness=0.1)
+    mesh = write_cells(bpy.context, source, result, TessellateSettings()).data
     assert {polygon.use_smooth for polygon in mesh.polygons} == {smooth}
 
 
@@ -285,8 +285,8 @@ def test_gap_inset_and_thickness_are_world_lengths():
     source = add_object("Sheet", *synthetic_cells.grid(12, 12))
     source.matrix_world = HARD_PLACE
     bpy.context.view_layer.update()
-    result = result_of(source, sites=[6 * 12 + 2, 6 * 12 + 9])
-    item = write_cells(bpy.context, source, result, TessellateSettings(gap=0.04, inset=0.02, thickness=0.3))
+    result = result_of(source, sites=[6 * 12 + 2, 6 * 12 + 9], gap=0.04, inset=0.02, thickness=0.3)
+    item = write_cells(bpy.context, source, result, TessellateSettings())
     bpy.context.view_layer.update()
     matrix = np.array(HARD_PLACE, np.float64)
     across, up = matrix[:3, 0] / np.linalg.norm(matrix[:3, 0]), np.cross(matrix[:3, 1], matrix[:3, 0])
@@ -303,11 +303,10 @@ def test_gap_inset_and_thickness_are_world_lengths():
 
 def test_swallowed_cells_are_counted_and_an_empty_mesh_is_no_error():
     source = sphere_source()
-    result = result_of(source)
+    assert not len(result_of(source).mesh.vanished)
+    result = result_of(source, gap=50.0, inset=0.1, thickness=0.2)
+    assert len(result.mesh.vanished) == 25
     item = write_cells(bpy.context, source, result, TessellateSettings())
-    assert vanished_cells(item) == 0
-    item = write_cells(bpy.context, source, result, TessellateSettings(gap=50.0, inset=0.1, thickness=0.2))
-    assert vanished_cells(item) == 25
     assert len(item.data.polygons) == 0
 
 

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 import saddleback as sb
+from saddleback_blender.core.results import CellMesh
 from saddleback_blender.core.solids.boundary_distance import boundary_distance, find_boundary
-from saddleback_blender.core.solids.cell_mesh import CellMesh, CellShape, build_cell_mesh
+from saddleback_blender.core.solids.cell_mesh import CellShape
 from tests import synthetic_cells
+from tests.made_cells import build_cell_mesh
 from tests.synthetic_cells import SplitCells, split_cells, triangle_areas
 
 

@@ -1,4 +1,4 @@
-"""The ribs between cells and the solid made of them, without the search for crossings, which Blender lends."""
+"""The ribs between cells and the solid made of them."""
 
 import meshes_of_core as shapes
 import numpy as np
@@ -11,8 +11,8 @@ from saddleback_blender.core.figures import shell_faults_of
 from saddleback_blender.core.requests import Surface, TessellateRequest
 from saddleback_blender.core.results import LampShell
 from saddleback_blender.core.settings import TessellateSettings
-from saddleback_blender.core.solids import shell_solid
-from saddleback_blender.core.solids.near_faces import largest_extent, near_faces
+from saddleback_blender.core.solids import room
+from saddleback_blender.core.solids.near_faces import near_faces
 from saddleback_blender.core.solids.rib_surface import rib_surface
 from saddleback_blender.core.solids.shell_solid import thicken
 from tests import synthetic_cells
@@ -102,7 +102,7 @@ def test_looking_only_about_what_moved_changes_nothing(monkeypatch):
     counts: list[int] = []
     few = thicken(ribs, 0.1, too_high, runs.new_progress())
     assert min(counts) < 0.9 * counts[0]
-    monkeypatch.setattr(shell_solid, "near_faces", lambda vertices, faces, *_: np.arange(len(faces)))
+    monkeypatch.setattr(room, "near_faces", lambda vertices, faces, *_: np.arange(len(faces)))
     all_of_them = thicken(ribs, 0.1, too_high, runs.new_progress())
     assert np.array_equal(few.vertices, all_of_them.vertices) and few.crossing == all_of_them.crossing
 
@@ -115,14 +115,14 @@ def test_near_faces_are_all_whose_boxes_overlap():
     moved = np.zeros(4000, bool)
     moved[random.choice(4000, 20)] = True
     progress = runs.new_progress()
-    found = near_faces(vertices, triangles, moved, largest_extent(vertices, triangles), progress)
+    found = near_faces(vertices, triangles, moved, progress)
     low, high = vertices[triangles].min(axis=1), vertices[triangles].max(axis=1)
     overlap = ((low[:, None] <= high[moved]) & (low[moved] <= high[:, None])).all(axis=2).any(axis=1)
     assert np.isin(np.flatnonzero(overlap), found).all() and (np.diff(found) > 0).all() and len(found) < 1000
-    assert len(near_faces(vertices, triangles, np.zeros(4000, bool), 1.0, progress)) == 0
+    assert len(near_faces(vertices, triangles, np.zeros(4000, bool), progress)) == 0
     progress.cancel()
     with pytest.raises(sb.Cancelled):
-        near_faces(vertices, triangles, moved, 1.0, progress)
+        near_faces(vertices, triangles, moved, progress)
 
 
 def test_what_cannot_be_mended_is_told():
@@ -141,7 +141,7 @@ def test_pieces_are_counted():
         2 * len(vertices),
     )  # fmt: skip
     settings = TessellateSettings(count=20, iterations=2, k=30, make_shell=True, rib_width=0.2, rib_thickness=0.1)
-    request = TessellateRequest(both, settings, find_crossings=lambda *_: NONE)
+    request = TessellateRequest(both, settings)
     shell = runs.tessellate(request, runs.new_progress()).shell
     assert shell.pieces == 2 and "2 pieces" in shell_faults_of(shell)[0]
 
@@ -153,7 +153,7 @@ def test_ribs_are_as_wide_as_the_cells_let_them_be():
     shells = []
     for scale in (1.0, 64.0):
         scaled = Surface("Square", scale * square.vertices, square.triangles, len(square.vertices))
-        request = TessellateRequest(scaled, settings, find_crossings=lambda *_: NONE)
+        request = TessellateRequest(scaled, settings)
         shells.append(runs.tessellate(request, runs.new_progress()).shell)
     small, large = shells
     assert np.array_equal(small.triangles, large.triangles)

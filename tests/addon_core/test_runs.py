@@ -39,15 +39,9 @@ def test_cells_of_a_surface_with_loose_vertices(cache):
     assert (result.vertex_cell[:3] == -1).all() and np.isinf(result.vertex_distance[:3]).all()
     assert (result.vertex_cell[3:] >= 0).all() and np.isfinite(result.vertex_distance[3:]).all()
     assert result.cell_area.sum() == pytest.approx(1.0, rel=1e-9)
-    # The cut mesh: as large as the surface, each cell as large as said, its old vertices the Blender mesh's.
-    pieces = area(result.split_vertices, result.split_triangles)
-    sums = np.bincount(result.split_cell, pieces, minlength=8)
+    # The cut mesh: as large as the surface, each cell as large as said.
+    sums = np.bincount(result.mesh.triangle_cell, area(result.mesh.vertices, result.mesh.triangles), minlength=8)
     np.testing.assert_allclose(sums, result.cell_area, atol=1e-9)
-    old = result.split_origin >= 0
-    np.testing.assert_allclose(
-        result.split_vertices[old], surface.vertices[surface.compact(result.split_origin[old])], atol=1e-12
-    )
-    assert result.split_origin.min() == -1 and result.split_origin[old].min() == 3
     np.testing.assert_allclose(result.sites_normal, np.tile([0.0, 0.0, 1.0], (8, 1)), atol=1e-12)
     assert (np.diff(result.energy) <= 0).all() and result.iterations <= 3 and result.stop_reason
 
@@ -107,7 +101,7 @@ def test_more_cells_than_vertices(cache):
     result = tessellate(surface, cache, count=90, iterations=8, k=15, make_cells=True)
     assert len(result.sites_position) == 90
     assert len(np.unique(result.vertex_cell[1:])) <= 16
-    areas = np.bincount(result.split_cell, area(result.split_vertices, result.split_triangles), minlength=90)
+    areas = np.bincount(result.mesh.triangle_cell, area(result.mesh.vertices, result.mesh.triangles), minlength=90)
     assert (areas > 0).all()
     whole = area(surface.vertices, surface.triangles).sum()
     assert areas.sum() == pytest.approx(whole, rel=1e-6)
@@ -160,7 +154,7 @@ def test_without_room_in_the_cache_everything_is_still_right():
     surface = shapes.grid(8)
     kept, bare = tessellate(surface, Cache(2**30), make_cells=True), tessellate(surface, Cache(0), make_cells=True)
     np.testing.assert_array_equal(kept.vertex_cell, bare.vertex_cell)
-    np.testing.assert_array_equal(kept.split_triangles, bare.split_triangles)
+    np.testing.assert_array_equal(kept.mesh.triangles, bare.mesh.triangles)
 
 
 def test_distances_to_the_nearest_source_within_a_limit(cache):

@@ -61,25 +61,22 @@ def test_a_closed_mesh_is_left_alone():
     assert sewn(vertices, found) is found
 
 
-def shell_of(vertices, triangles, find_crossings, progress=None):
+def shell_of(vertices, triangles, progress=None):
     surface = Surface("Box", vertices, triangles, len(vertices))
     settings = TessellateSettings(count=12, iterations=3, make_shell=True, make_edges=False, rib_width=0.08)
-    request = TessellateRequest(surface, settings, find_crossings=find_crossings)
+    request = TessellateRequest(surface, settings)
     return runs.tessellate(request, progress or runs.new_progress(), Cache(2**30)).shell
 
 
 def test_the_lamp_shell_of_sheets_that_are_not_joined_is_one_solid():
-    def crossings(vertices, triangles, job):
-        return sb.self_crossings(vertices.astype(np.float32), triangles, job=job)
-
-    shell = shell_of(*box(4), crossings)
+    shell = shell_of(*box(4))
     assert (shell.pieces, shell.crossing) == (1, 0)
     edges = np.stack([shell.triangles, np.roll(shell.triangles, -1, axis=1)], axis=2).reshape(-1, 2)
     ways, uses = np.unique(edges, axis=0, return_counts=True)
     assert (uses == 1).all() and np.array_equal(ways, np.unique(edges[:, ::-1], axis=0))
 
 
-def test_a_round_can_be_stopped_in_its_midst():
+def test_a_round_can_be_stopped_in_its_midst(monkeypatch):
     progress = runs.new_progress()
     asked = []
 
@@ -88,17 +85,19 @@ def test_a_round_can_be_stopped_in_its_midst():
         progress.cancel()
         return sb.self_crossings(vertices.astype(np.float32), triangles, job=job)
 
+    monkeypatch.setattr(runs, "find_crossings", crossings)
     with pytest.raises(sb.Cancelled):
-        shell_of(*box(4), crossings, progress)
+        shell_of(*box(4), progress)
     assert len(asked) == 1
 
 
-def test_a_shell_that_never_gets_better_ends():
+def test_a_shell_that_never_gets_better_ends(monkeypatch):
     looks = []
 
     def crossings(vertices, triangles, job):
         looks.append(len(triangles))
         return np.stack([np.arange(20), np.arange(1, 21)], axis=1).astype(np.int32)
 
-    shell = shell_of(*box(4), crossings)
+    monkeypatch.setattr(runs, "find_crossings", crossings)
+    shell = shell_of(*box(4))
     assert shell.crossing == 21 and len(looks) < 40

@@ -199,11 +199,12 @@ def test_one_site_has_a_sweep_too():
 def test_only_what_changed_is_computed():
     cache, surface = Cache(2**30), surface_of(meshes.saddle(15))
     voronoi_2d(surface, cache, space="DISK", count=30, iterations=2)
-    assert cache.builds == {"mesh": 1, "space": 1, "sites 2d": 1}
-    voronoi_2d(surface, cache, space="DISK", count=30, iterations=2, gap=0.1, edge_radius=0.5)
-    assert cache.builds == {"mesh": 1, "space": 1, "sites 2d": 1}
-    voronoi_2d(surface, cache, space="DISK", count=31, iterations=2)
-    assert cache.builds == {"mesh": 1, "space": 1, "sites 2d": 2}
+    cells = {"cell pieces": 1, "cell mesh": 1}
+    assert cache.builds == {"mesh": 1, "space": 1, "sites 2d": 1, **cells}
+    voronoi_2d(surface, cache, space="DISK", count=30, iterations=2, edge_radius=0.5)
+    assert cache.builds == {"mesh": 1, "space": 1, "sites 2d": 1, **cells}
+    voronoi_2d(surface, cache, space="DISK", count=31, iterations=2, make_cells=False)
+    assert cache.builds == {"mesh": 1, "space": 1, "sites 2d": 2, **cells}
 
 
 def test_cells_of_a_disk_cover_the_surface():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .results import Dual, Figures, LampShell
+from .results import CellMesh, Dual, Figures, LampShell
 
 # Faults told one by one; of more only the number.
 MOST_TOLD = 3
@@ -43,3 +43,18 @@ def shell_faults_of(shell: LampShell) -> list[str]:
             f"{shell.crossing} faces of the lamp shell pass through others: make it thinner, or repair the mesh"
         )
     return faults
+
+
+def cell_faults_of(cells: CellMesh) -> list[str]:
+    """One sentence where cells pass through each other."""
+    count = len(cells.crossing)
+    if not count:
+        return []
+    told = "1 cell passes" if count == 1 else f"{count} cells pass"
+    return [f"{told} through others or itself, where the surface is folded: repair the mesh there"]
+
+
+def lost_of(lost: int, thinner: int = 0) -> str:
+    """Says of how many cells something is missing, where there are any."""
+    left_out = f", {lost} narrower than the gap left out" if lost else ""
+    return left_out + (f", {thinner} made thinner where there was no room" if thinner else "")

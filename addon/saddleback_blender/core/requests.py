@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,9 +101,6 @@ def digest(*parts: object) -> str:
     return hashed.hexdigest()
 
 
-# Given vertices (n, 3) and triangles (m, 3): pairs (k, 2) of triangles that pass through each other.
-FindCrossings = Callable[[Reals, Indices, Any], Indices]  # of vertices, triangles and the job that may stop it
-
 Points = NDArray[np.int32] | Reals  # vertices of the Blender mesh (n,), or places in the world (n, 3)
 
 
@@ -169,7 +165,6 @@ class TessellateRequest:
     marked_edges: Indices | None = None  # (n, 2) of the Blender mesh: some of the count stay on them
     threads: int = 0
     disk: DiskCache | None = None  # None: graphs are kept in memory only
-    find_crossings: FindCrossings | None = None  # for the lamp shell, which is not made without it
     live: LiveCells | None = None  # shown the cells while they are relaxed
 
 

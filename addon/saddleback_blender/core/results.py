@@ -60,12 +60,29 @@ class LampShell:
 
 
 @dataclass(frozen=True)
+class CellMesh:
+    """Cells as a mesh, with their gap and height. n vertices, m triangles."""
+
+    vertices: Reals  # (n, 3)
+    feet: Reals  # (n, 3) where on the surface the vertices stand
+    triangles: Indices  # (m, 3)
+    triangle_cell: Indices  # (m,)
+    vanished: Indices  # cells that the gap swallowed whole
+    thinner: Indices  # cells that are lower in places, where there was no room for their thickness
+    crossing: Indices  # cells that still pass through themselves or others: the surface itself does there
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays."""
+        return _nbytes(self)
+
+
+@dataclass(frozen=True)
 class CellsResult:
     """Geodesic cells of a mesh of V vertices.
 
     V counts the Blender mesh's vertices. A vertex of no face, or of a part of the surface without a site, has cell -1
-    and distance inf. n cells, e edges (polylines between two cells), S vertices and T triangles of the mesh cut along
-    them.
+    and distance inf. n cells, e edges (polylines between two cells).
     """
 
     vertex_cell: Indices  # (V,) cell of each vertex, -1 = none
@@ -78,14 +95,11 @@ class CellsResult:
     edge_offsets: Indices  # (e + 1,) edge i owns edge_points[edge_offsets[i]:edge_offsets[i + 1]]
     edge_cells: Indices  # (e, 2) the cells on both sides
     edge_closed: NDArray[np.bool_]  # (e,) the last point joins the first
-    split_vertices: Reals  # (S, 3)
-    split_triangles: Indices  # (T, 3) each inside exactly one cell
-    split_cell: Indices  # (T,)
-    split_origin: Indices  # (S,) vertex of the Blender mesh that it is, -1 = made by the cut
     energy: Reals  # (k,) of each iteration, empty where nothing was relaxed
     iterations: int
     stop_reason: str
     edge_distance: Reals | None = None  # (V,) world units to the edge of the vertex's cell, inf = none; where wanted
+    mesh: CellMesh | None = None  # where it was wanted
     dual: Dual | None = None  # where it was wanted
     shell: LampShell | None = None  # where it was wanted
     figures: Figures | None = None  # None where the sites have no triangle

@@ -12,15 +12,17 @@ import numpy as np
 from . import cache as cache_module
 from . import native
 from .cache import Cache
+from .cell_runs import cells_of, shape_of
 from .density_runs import density_of
 from .fields.curve_points import curves_on_surface, points_along
 from .graphs import GraphChoice, graph_of_surface, mesh_of_surface
 from .lengths import RIB_SHARE
 from .progress import Progress
 from .requests import DistanceRequest, Points, Polyline, Surface, TessellateRequest, digest
-from .results import CellsResult, DistanceResult, Dual, Indices, LampShell, Reals
+from .results import CellsResult, DistanceResult, Dual, LampShell, Reals
 from .settings import DistanceSettings
 from .solids.boundary_distance import boundary_distance
+from .solids.crossings import find_crossings
 from .solids.level_lines import LevelLines, isoline_levels, level_lines
 from .solids.rib_surface import rib_surface
 from .solids.shell_solid import thicken
@@ -82,13 +84,8 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
             found = cache.get(("edge distance", *key), lambda: _edge_distance(surface, split), lambda a: a.nbytes)
         result = replace(result, edge_distance=surface.spread(found, np.inf))
     if settings.make_cells:
-        result = replace(
-            result,
-            split_vertices=split.vertices,
-            split_triangles=split.triangles,
-            split_cell=split.triangle_cell,
-            split_origin=_blender_numbers(surface, split.vertex_origin),
-        )
+        made = cells_of(mesh, split, shape_of(settings), key, progress, cache)
+        result = replace(result, mesh=made)
     policy = settings.dual_policy if settings.make_dual else "STRICT"
 
     def triangulate() -> Dual:
@@ -98,7 +95,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
     result = replace(result, figures=figures_of(dual, solved.normalized_energy))
     if settings.make_dual:
         result = replace(result, dual=dual)
-    if settings.make_shell and request.find_crossings is not None:
+    if settings.make_shell:
         result = replace(result, shell=_shell(request, mesh, solved, key, progress, cache))
     progress.check()
     return result
@@ -255,10 +252,6 @@ def _result(request: TessellateRequest, solved: _Solved, density: Reals | None) 
         edge_offsets=cells.edge_offsets,
         edge_cells=cells.edge_cells,
         edge_closed=np.asarray(cells.edge_closed, bool),
-        split_vertices=np.empty((0, 3)),
-        split_triangles=np.empty((0, 3), np.int32),
-        split_cell=np.empty(0, np.int32),
-        split_origin=np.empty(0, np.int32),
         energy=solved.energy,
         iterations=solved.iterations,
         stop_reason=solved.stop_reason,
@@ -269,8 +262,6 @@ def _result(request: TessellateRequest, solved: _Solved, density: Reals | None) 
 def _shell(
     request: TessellateRequest, mesh: Any, solved: _Solved, key: tuple[str, ...], progress: Progress, cache: Cache
 ) -> LampShell:
-    find_crossings = request.find_crossings
-    assert find_crossings is not None
     width = request.settings.rib_width or RIB_SHARE * math.sqrt(mesh.area / len(solved.cells.areas))
     thickness = request.settings.rib_thickness or width
 
@@ -290,13 +281,6 @@ def _edge_distance(surface: Surface, split: Any) -> Reals:
     found = np.full(len(surface.vertices), np.inf)
     found[origin[origin >= 0]] = all_of_them[origin >= 0]
     return found
-
-
-def _blender_numbers(surface: Surface, origin: Indices) -> Indices:
-    """Numbers of the surface's vertices (-1 = none) -> of the Blender mesh's."""
-    if surface.used is None:
-        return origin
-    return np.where(origin >= 0, surface.used[np.maximum(origin, 0)], np.int32(-1)).astype(np.int32)
 
 
 def _solved_bytes(solved: _Solved) -> int:

@@ -10,12 +10,12 @@ import numpy as np
 from . import cache as cache_module
 from . import devices, native
 from .cache import Cache
+from .cell_runs import cells_of, shape_of
 from .errors import BadInputError
 from .fields.darkness import places_by_density
 from .progress import Progress
 from .requests import Voronoi2dRequest, digest
 from .results import CellPolygons, CellsResult, FlatCells, Indices, Reals, Voronoi2dResult
-from .solids.cell_mesh import CellShape
 from .solids.flat_cells import flat_cells
 from .solids.flat_solid import raised_cells
 from .surfaces.normals import normals_at
@@ -42,9 +42,9 @@ def voronoi_2d(request: Voronoi2dRequest, progress: Progress, cache: Cache | Non
     with progress.stage(0.8, "finding the cells") as job:
         diagram = devices.plane_diagram(sites.places, request.weights, request.threads, progress, job)
     if space.frame is None:
-        result = Voronoi2dResult(_lifted(request, space, sites, diagram, progress))
+        result = Voronoi2dResult(_lifted(request, space, sites, diagram, key[1:], progress, cache))
     else:
-        result = _flat(request, space, sites, diagram, progress)
+        result = _flat(request, space, sites, diagram, key[1:], progress, cache)
     progress.check()
     return result
 
@@ -167,7 +167,15 @@ def _relaxed_on_surface(request: Voronoi2dRequest, space: Space, sites: _Sites, 
     return sites
 
 
-def _lifted(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any, progress: Progress) -> CellsResult:
+def _lifted(
+    request: Voronoi2dRequest,
+    space: Space,
+    sites: _Sites,
+    diagram: Any,
+    key: tuple[str, ...],
+    progress: Progress,
+    cache: Cache,
+) -> CellsResult:
     with progress.stage(0.95, "bringing the cells to the surface") as job:
         lifted = space.chart.lift(diagram, threads=request.threads, job=job)
     result = replace(
@@ -179,17 +187,19 @@ def _lifted(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any
     )
     if not request.settings.make_cells:
         return result
-    split = lifted.split()
-    return replace(
-        result,
-        split_vertices=split.vertices,
-        split_triangles=split.triangles,
-        split_cell=split.triangle_cell,
-        split_origin=split.vertex_origin,
-    )
+    mesh = cells_of(space.mesh, lifted.split(), shape_of(request.settings), key, progress, cache)
+    return replace(result, mesh=mesh)
 
 
-def _flat(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any, progress: Progress) -> Voronoi2dResult:
+def _flat(
+    request: Voronoi2dRequest,
+    space: Space,
+    sites: _Sites,
+    diagram: Any,
+    key: tuple[str, ...],
+    progress: Progress,
+    cache: Cache,
+) -> Voronoi2dResult:
     assert space.frame is not None
     settings = request.settings
     with progress.stage(0.9, "cutting the cells out") as job:
@@ -204,7 +214,7 @@ def _flat(request: Voronoi2dRequest, space: Space, sites: _Sites, diagram: Any, 
             "add sites near the hole, or switch Cells off"
         )
     if settings.make_cells and flat.has_holes:
-        cells = _lifted(request, space, sites, diagram, progress)
+        cells = _lifted(request, space, sites, diagram, key, progress, cache)
     elif settings.make_cells:
         with progress.stage(0.95, "shaping the cells") as job:
             polygons, vanished = _shaped(request, space, diagram, flat, job)
@@ -221,7 +231,7 @@ def _shaped(
 ) -> tuple[CellPolygons, int]:
     """The cells with their gap, thickness and rim; and how many the gap leaves nothing of."""
     settings, threads = request.settings, request.threads
-    shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
+    shape = shape_of(settings)
     if not shape.cuts and shape.thickness == 0:
         return flat, 0
     assert space.frame is not None
@@ -255,10 +265,6 @@ def _bare_cells(space: Space, sites: _Sites, areas: Reals) -> CellsResult:
         edge_offsets=np.zeros(1, np.int32),
         edge_cells=np.empty((0, 2), np.int32),
         edge_closed=np.empty(0, bool),
-        split_vertices=np.empty((0, 3)),
-        split_triangles=np.empty((0, 3), np.int32),
-        split_cell=indices,
-        split_origin=indices,
         energy=reals,
         iterations=0,
         stop_reason="",

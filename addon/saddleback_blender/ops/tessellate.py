@@ -12,23 +12,22 @@ import numpy as np
 
 from .. import prefs
 from ..blocks import find
-from ..bridge.inputs.crossings import find_crossings
 from ..bridge.inputs.density import read_density
 from ..bridge.inputs.mesh_in import mesh_of, read_marked_edges, read_surface
 from ..bridge.inputs.sites import read_sites
 from ..bridge.inputs.source import shared_mesh_warning
 from ..bridge.outputs.live_preview import LivePreview
 from ..bridge.outputs.out_attributes import write_vertex_attributes
-from ..bridge.outputs.out_cells import CELLS_ROLE, vanished_cells, write_cells
+from ..bridge.outputs.out_cells import CELLS_ROLE, write_cells
 from ..bridge.outputs.out_centers import CENTERS_ROLE, write_centers
-from ..bridge.outputs.out_collection import find_output, remove_output
+from ..bridge.outputs.out_collection import remove_output
 from ..bridge.outputs.out_dual import DUAL_ROLE, write_dual
 from ..bridge.outputs.out_edges import EDGES_ROLE, write_edges
 from ..bridge.outputs.out_shell import SHELL_ROLE, write_shell
 from ..bridge.outputs.output_surface import check_attribute_names, output_surface
 from ..core import runs
 from ..core.errors import BadInputError
-from ..core.figures import faults_of, lines_of, shell_faults_of
+from ..core.figures import cell_faults_of, faults_of, lines_of, lost_of, shell_faults_of
 from ..core.live_cells import LiveCells
 from ..core.progress import Progress
 from ..core.requests import TessellateRequest
@@ -73,7 +72,6 @@ class CellsOperator(SurfaceOperator):
                 marked_edges=read_marked_edges(mesh) if settings.hold_marked else None,
                 threads=prefs.threads(context),
                 disk=prefs.disk_cache(context, settings.cache_on_disk),
-                find_crossings=find_crossings,
                 live=live,
             )
         return partial(runs.tessellate, request)
@@ -110,12 +108,13 @@ class CellsOperator(SurfaceOperator):
         keep_settings(chosen, "tessellate", source)
         if warning:
             self.report({"WARNING"}, warning)
-        return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(source)}{_added(result)}"
+        return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(result)}{_added(result)}"
 
     def notes(self, result: CellsResult) -> list[str]:
         """Returns what is wrong with the meshes that were made."""
+        cells = [] if result.mesh is None else cell_faults_of(result.mesh)
         dual = [] if result.dual is None else faults_of(result.dual)
-        return dual if result.shell is None else [*dual, *shell_faults_of(result.shell)]
+        return [*cells, *dual, *([] if result.shell is None else shell_faults_of(result.shell))]
 
     def figures(self, result: CellsResult) -> list[str]:
         """Returns how even the cells are."""
@@ -209,11 +208,8 @@ def _added(result: CellsResult) -> str:
     return exchanged + (f", {result.dual.added} vertices added to the dual mesh" if result.dual.added else "")
 
 
-def _lost(source: bpy.types.Object) -> str:
-    """Returns how many cells are too narrow for the gap, where there are any."""
-    cells = find_output(source, CELLS_ROLE)
-    lost = vanished_cells(cells) if cells is not None else 0
-    return f", {lost} narrower than the gap left out" if lost else ""
+def _lost(result: CellsResult) -> str:
+    return "" if result.mesh is None else lost_of(len(result.mesh.vanished), len(result.mesh.thinner))
 
 
 def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:

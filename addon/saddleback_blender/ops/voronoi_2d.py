@@ -14,13 +14,14 @@ from ..blocks import find
 from ..bridge.inputs.mesh_in import mesh_of, read_surface, read_triangle_polygons
 from ..bridge.inputs.voronoi_in import read_darkness, read_uv, read_voronoi_sites
 from ..bridge.outputs.following import Follower
-from ..bridge.outputs.out_cells import vanished_cells, write_cells, write_polygons
+from ..bridge.outputs.out_cells import write_cells, write_polygons
 from ..bridge.outputs.out_centers import write_centers
-from ..bridge.outputs.out_collection import find_output, remove_output
+from ..bridge.outputs.out_collection import remove_output
 from ..bridge.outputs.out_edges import write_edges, write_network
 from ..bridge.outputs.out_sweep import remove_sweep, write_sweep
 from ..core import voronoi_runs
 from ..core.errors import BadInputError
+from ..core.figures import cell_faults_of, lost_of
 from ..core.progress import Progress
 from ..core.requests import Voronoi2dRequest
 from ..core.results import FlatCells, Voronoi2dResult
@@ -85,7 +86,11 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
         else:
             remove_sweep(source)
         keep_settings(chosen, "voronoi_2d", source)
-        return f"'{source.name}': {_told(result)}{_lost(source)}"
+        return f"'{source.name}': {_told(result)}{_lost(result)}"
+
+    def notes(self, result: Voronoi2dResult) -> list[str]:
+        """Returns what is wrong with the meshes that were made."""
+        return [] if result.cells.mesh is None else cell_faults_of(result.cells.mesh)
 
 
 def _write_edges(
@@ -115,7 +120,7 @@ def _write_cells(
     elif result.flat is not None and result.polygons is not None:
         neighbors = result.flat.edge_cells
         count = result.cells.count
-        write_polygons(context, source, result.polygons, count, neighbors, result.vanished, CELLS_ROLE, follower)
+        write_polygons(context, source, result.polygons, count, neighbors, CELLS_ROLE, follower)
     else:
         write_cells(context, source, result.cells, settings, CELLS_ROLE, follower)
 
@@ -133,11 +138,9 @@ def _told(result: Voronoi2dResult) -> str:
     return f"{cells}, {without} sites without one" if without else cells
 
 
-def _lost(source: bpy.types.Object) -> str:
-    """Returns how many cells are too narrow for the gap, where there are any."""
-    cells = find_output(source, CELLS_ROLE)
-    lost = vanished_cells(cells) if cells is not None else 0
-    return f", {lost} narrower than the gap left out" if lost else ""
+def _lost(result: Voronoi2dResult) -> str:
+    mesh = result.cells.mesh
+    return lost_of(result.vanished) if mesh is None else lost_of(len(mesh.vanished), len(mesh.thinner))
 
 
 def _check(source: bpy.types.Object, settings: Voronoi2dSettings) -> None:

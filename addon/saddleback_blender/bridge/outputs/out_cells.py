@@ -9,12 +9,9 @@ import numpy as np
 from mathutils import Matrix
 
 from ... import compat, nodes
-from ...core import cache
-from ...core.requests import digest
-from ...core.results import CellPolygons, CellsResult, Indices
+from ...core.results import CellMesh, CellPolygons, CellsResult, Indices
 from ...core.settings import TessellateSettings, Voronoi2dSettings
 from ...core.shapes.local_places import local_uv
-from ...core.solids.cell_mesh import CellMesh, CellPieces, CellShape, cell_pieces, raise_cells
 from ...core.solids.mesh_edges import triangle_edges
 from ...core.surfaces.cell_colors import cell_colors, linear_to_srgb, palette_colors
 from ...finishes import material_of, palette_of
@@ -26,8 +23,6 @@ from .out_collection import level_place, replace_object, to_place
 CELLS_ROLE = "cells"
 CELL_ATTRIBUTE = "saddleback_cell"
 LOCAL_UV = "saddleback_local"
-# On the object: how many cells its gap left nothing of.
-VANISHED = "saddleback_vanished_cells"
 # A plateau's edge is steeper than this, and a mesh fine enough for cells bends less from face to face.
 CREASE_ANGLE = math.radians(30.0)
 
@@ -40,9 +35,9 @@ def write_cells(
     role: str = CELLS_ROLE,
     follower: Follower | None = None,
 ) -> bpy.types.Object:
-    """Makes or replaces the source's cells object; gap, inset and thickness are in world units."""
-    shape = CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
-    cells = raise_cells(_pieces(result, shape), shape)
+    """Makes or replaces the source's cells object."""
+    assert result.mesh is not None
+    cells = result.mesh
     look = settings.look if isinstance(settings, TessellateSettings) else NO_LOOK
     finish, count = finish_of(look), len(result.sites_position)
     if finish is None:
@@ -59,7 +54,6 @@ def write_cells(
     item = _shown(context, source, role, mesh, place, look)
     if follower is not None:
         follower.take(item, place, cells.vertices, cells.feet)
-    item[VANISHED] = len(cells.vanished)
     return item
 
 
@@ -69,7 +63,6 @@ def write_polygons(
     cells: CellPolygons,
     count: int,
     neighbors: Indices,
-    vanished: int,
     role: str,
     follower: Follower | None = None,
 ) -> bpy.types.Object:
@@ -85,20 +78,7 @@ def write_polygons(
     item = _shown(context, source, role, mesh, place)
     if follower is not None:
         follower.take(item, place, cells.vertices)
-    item[VANISHED] = vanished
     return item
-
-
-def vanished_cells(item: bpy.types.Object) -> int:
-    """Returns how many cells are missing in a cells object because they are narrower than the gap."""
-    return int(item.get(VANISHED, 0))
-
-
-def _pieces(result: CellsResult, shape: CellShape) -> CellPieces:
-    """The cells with their gap, kept for the next run: it may change no more than the thickness."""
-    split = (result.split_vertices, result.split_triangles, result.split_cell)
-    key = ("cell pieces", digest(*split, shape.gap, shape.inset))
-    return cache.shared.get(key, lambda: cell_pieces(*split, shape), lambda pieces: pieces.nbytes)
 
 
 def _mesh(positions: np.ndarray, cells: CellMesh, colors: np.ndarray, is_smooth: bool) -> bpy.types.Mesh:

@@ -13,16 +13,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import native
+from ..progress import Progress
+from ..results import CellMesh
 from .boundary_distance import find_boundary
-from .cell_solid import raise_surface, vertex_normals
+from .cell_solid import raise_surface
+from .crossings import find_crossings
 from .level_cut import cut_at_level, open_chords
+from .room import Solid, fit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
-POSITION, NORMAL, DISTANCE = slice(0, 3), slice(3, 6), 6
+POSITION, DIRECTION, DISTANCE = slice(0, 3), slice(3, 6), 6
 # A level line is off by this share of its distance from the boundary at most.
 LEVEL_TOLERANCE = 0.2
+END = 0.99  # of the run's progress
+# A place without room becomes lower by this factor, down to a share of the height that could as well be flat.
+THINNER, LEAST_SHARE, PATIENCE = 0.5, 0.02, 4
+LOWER = 0.99  # of its height: a place that is lower than that is told
 CRUMB = 0.02  # of a cell's largest piece: what the gap leaves of a ragged tip that is smaller goes, too
 
 
@@ -58,24 +66,11 @@ class CellShape:
 
 
 @dataclass(frozen=True)
-class CellMesh:
-    """Vertices (n,3), where on the surface they stand (n,3), triangles (m,3), the cell of each (m,), and the cells (k,)
-    that the gap swallowed whole.
-    """
-
-    vertices: Floats
-    feet: Floats
-    triangles: Ints
-    triangle_cell: Ints
-    vanished: Ints
-
-
-@dataclass(frozen=True)
 class CellPieces:
     """Holds what of a split mesh the gap leaves, and what its cells are raised by: all that no thickness
     changes.
 
-    fields (n,7): position, normal, distance to the boundary of the cell; triangles (m,3), the cell of each (m,); the
+    fields (n,7): position, direction, distance to the boundary of the cell; triangles (m,3), the cell of each (m,); the
     cells (k,) that the split mesh has.
     """
 
@@ -90,22 +85,15 @@ class CellPieces:
         return self.fields.nbytes + self.triangles.nbytes + self.cells.nbytes + self.present.nbytes
 
 
-def build_cell_mesh(vertices: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> CellMesh:
-    """Make the mesh of the cells from a split mesh: vertices (V,3), triangles (T,3), triangle_cell (T,).
-
-    Each cell is an island of its own when there is a gap; without gap, inset and thickness vertices stay shared. With a
-    thickness but no inset the sides are upright walls. O(T).
+def cell_pieces(
+    vertices: Floats, triangles: Ints, triangle_cell: Ints, direction: Floats, shape: CellShape
+) -> CellPieces:
+    """Drop what lies within half the gap of a boundary from a split mesh: vertices (V,3), triangles (T,3), cells (T,),
+    and which way (V,3) the surface is raised. Of the shape only its `gap` and `inset` matter. O(T).
     """
-    return raise_cells(cell_pieces(vertices, triangles, triangle_cell, shape), shape)
-
-
-def cell_pieces(vertices: Floats, triangles: Ints, triangle_cell: Ints, shape: CellShape) -> CellPieces:
-    """Drop what lies within half the gap of a boundary. Of the shape only its `gap` and `inset` matter."""
     triangles = np.ascontiguousarray(triangles, dtype=np.int32)
     cells = np.ascontiguousarray(triangle_cell, dtype=np.int32)
-    fields = np.zeros((len(vertices), 7))
-    fields[:, POSITION] = vertices
-    fields[:, NORMAL] = vertex_normals(fields[:, POSITION], triangles)
+    fields = np.column_stack([vertices, direction, np.zeros(len(vertices))])
     present = np.unique(cells)
     if shape.cuts and len(triangles):
         segments, _ = find_boundary(len(fields), triangles, cells)
@@ -136,8 +124,12 @@ def _is_crumb(positions: Floats, triangles: Ints, cells: Ints) -> NDArray[np.boo
     return crumb
 
 
-def raise_cells(pieces: CellPieces, shape: CellShape) -> CellMesh:
-    """Put an edge line where the plateau begins, and raise it."""
+def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress) -> CellMesh:
+    """Put an edge line where the plateau begins, and raise it as far as there is room.
+
+    Each cell is an island of its own when there is a gap; without gap, inset and thickness vertices stay shared. With a
+    thickness but no inset the sides are upright walls.
+    """
     fields, triangles, cells = pieces.fields, pieces.triangles, pieces.cells
     if shape.inset > 0.0 and len(triangles):
         inner = cut_at_level(fields, triangles, DISTANCE, shape.rim_end)
@@ -146,13 +138,19 @@ def raise_cells(pieces: CellPieces, shape: CellShape) -> CellMesh:
     is_left[cells] = True
     vanished = pieces.present[~is_left[pieces.present]]
     if shape.thickness > 0.0:
-        share = _plateau_share(fields[:, DISTANCE], shape)
-        solid = raise_surface(fields[:, :6], triangles, shape.thickness * share, shape.underside)
-        placed, triangles = drop_unused(np.column_stack([solid.vertices, solid.feet]), solid.triangles)
-        positions, feet = np.ascontiguousarray(placed[:, :3]), np.ascontiguousarray(placed[:, 3:])
-        return CellMesh(positions, feet, triangles, cells[solid.parent], vanished)
+        height = shape.thickness * _plateau_share(fields[:, DISTANCE], shape)
+        raised = raise_surface(fields[:, :6], triangles, height, shape.underside)
+        solid = Solid(raised.triangles, raised.place, len(raised.base), raised.at, THINNER, LEAST_SHARE, PATIENCE)
+        fitted = fit(solid, find_crossings, END, "making room for the cells", progress)
+        owner = cells[raised.parent]
+        thinner = np.unique(owner[(fitted.share < LOWER)[raised.place[raised.triangles]].any(axis=1)])
+        feet = raised.base[raised.place]
+        placed, triangles = drop_unused(np.column_stack([fitted.vertices, feet]), raised.triangles)
+        vertices, feet = np.ascontiguousarray(placed[:, :3]), np.ascontiguousarray(placed[:, 3:])
+        return CellMesh(vertices, feet, triangles, owner, vanished, thinner, np.unique(owner[fitted.crossing]))
     positions, triangles = drop_unused(fields[:, POSITION], triangles)
-    return CellMesh(positions, positions, triangles, cells, vanished)
+    none = np.empty(0, np.int32)
+    return CellMesh(positions, positions, triangles, cells, vanished, none, none)
 
 
 def _plateau_share(distance: Floats, shape: CellShape) -> Floats:

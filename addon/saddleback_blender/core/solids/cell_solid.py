@@ -1,4 +1,4 @@
-"""Raise a surface along its normals and close it: walls along its border, and a copy from below."""
+"""Raise a surface and close it: walls along its border, and a copy from below."""
 
 from __future__ import annotations
 
@@ -16,15 +16,27 @@ Ints = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
-class Solid:
-    """Vertices (n,3), some of them unused, where on the input they stand (n,3), triangles (m,3), and the input triangle
-    that each comes from (m,).
+class Raised:
+    """A raised surface: of n vertices where they stand, which way and how far they go; triangles (m,3) of the solid,
+    and the input triangle that each comes from (m,). After the n come those that stand below, on `feet` (k,) of them.
     """
 
-    vertices: Floats
-    feet: Floats
+    base: Floats
+    direction: Floats
+    height: Floats
+    feet: Ints
     triangles: Ints
     parent: Ints
+
+    def at(self, share: Floats) -> Floats:
+        """The solid's vertices (n + k,3) when each goes a share (n,) of its way; some are used by no triangle."""
+        raised = self.base + (share * self.height)[:, None] * self.direction
+        return np.concatenate([raised, self.base[self.feet]])
+
+    @property
+    def place(self) -> Ints:
+        """Which of the n vertices each of the solid's is, or stands below."""
+        return np.concatenate([np.arange(len(self.base), dtype=np.int32), self.feet])
 
 
 def vertex_normals(vertices: Floats, triangles: Ints) -> Floats:
@@ -39,11 +51,12 @@ def _unit(vectors: Floats) -> Floats:
     return unit
 
 
-def raise_surface(fields: Floats, triangles: Ints, height: Floats, underside: bool) -> Solid:
-    """Move the vertices by height (V,) >= 0 along their normals and build walls where the raised surface ends.
+def raise_surface(fields: Floats, triangles: Ints, height: Floats, underside: bool) -> Raised:
+    """Move the vertices by height (V,) >= 0 along their directions and build walls where the raised surface ends.
 
-    fields (V,6) or wider: position and normal (any length) come first. With `underside` each piece is closed from below
-    by a copy that was not moved, so that every edge has two triangles; where the border was not raised it is shared.
+    fields (V,6) or wider: position and direction (any length) come first. With `underside` each piece is closed from
+    below by a copy that was not moved, so that every edge has two triangles; where the border was not raised it is
+    shared.
     """
     parent = np.arange(len(triangles), dtype=np.int32)
     if underside:
@@ -53,9 +66,6 @@ def raise_surface(fields: Floats, triangles: Ints, height: Floats, underside: bo
         opened = open_chords(fields, triangles, np.stack([start[flat], end[flat]], axis=1))
         fields, triangles, parent, height = opened.fields, opened.triangles, opened.parent, opened.fields[:, 6]
     size = len(fields)
-    base = fields[:, :3]
-    raised = base + height[:, None] * _unit(fields[:, 3:6])
-
     # Below each vertex that needs one stands its foot, a vertex at height zero; one that was not raised is its own.
     start, end, owner = border_edges(triangles, size)
     is_border = np.zeros(size, dtype=np.bool_)
@@ -77,9 +87,11 @@ def raise_surface(fields: Floats, triangles: Ints, height: Floats, underside: bo
     if underside:
         pieces.append(foot[triangles[:, ::-1]])
         parents.append(parent)
-    return Solid(
-        np.concatenate([raised, base[stands]]),
-        np.concatenate([base, base[stands]]),
+    return Raised(
+        np.ascontiguousarray(fields[:, :3]),
+        _unit(fields[:, 3:6]),
+        height,
+        np.flatnonzero(stands).astype(np.int32),
         np.concatenate(pieces),
         np.concatenate(parents),
     )

@@ -1,4 +1,4 @@
-"""Finds where a triangle mesh passes through itself, as Blender stores it."""
+"""Finds where a triangle mesh passes through itself, as Blender will store it."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ...core import native
-from ...core.results import Indices, Reals
+from .. import native
+from ..results import Indices, Reals
 
 
 def find_crossings(vertices: Reals, triangles: Indices, job: Any = None) -> Indices:

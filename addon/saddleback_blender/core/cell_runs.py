@@ -1,0 +1,63 @@
+"""The mesh of the cells: from the library's split mesh to gaps, rims and heights."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from . import native
+from .cache import Cache
+from .progress import Progress
+from .requests import digest
+from .results import CellMesh, Reals
+from .settings import TessellateSettings, Voronoi2dSettings
+from .solids.cell_mesh import CellPieces, CellShape, cell_pieces, raise_cells
+from .solids.directions import smooth_directions
+
+# Of a cell's size: directions are smoothed over so much at least, so that they are found once for all usual heights.
+SMOOTHED = 0.2
+MOST_SMOOTHING = 40  # rounds; more change next to nothing where a mesh is that fine
+
+
+def shape_of(settings: TessellateSettings | Voronoi2dSettings) -> CellShape:
+    """Takes the lengths from settings that have them in world units."""
+    return CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
+
+
+def cells_of(
+    mesh: Any, split: Any, shape: CellShape, key: tuple[str, ...], progress: Progress, cache: Cache
+) -> CellMesh:
+    """The cells of the library's split mesh of its `mesh`, which `key` names. Only what changed is computed."""
+    count = int(np.max(split.triangle_cell, initial=0)) + 1
+    reach = max(shape.thickness, SMOOTHED * math.sqrt(mesh.area / count)) if shape.thickness > 0.0 else 0.0
+
+    def pieces() -> CellPieces:
+        way = directions(mesh, split, reach, progress)
+        return cell_pieces(split.vertices, split.triangles, split.triangle_cell, way, shape)
+
+    def raised() -> CellMesh:
+        part = ("cell pieces", *key, digest(shape.gap, shape.inset, reach))
+        return raise_cells(cache.get(part, pieces, lambda found: found.nbytes), shape, progress)
+
+    whole = ("cell mesh", *key, digest(shape.gap, shape.inset, shape.thickness, shape.underside))
+    return cache.get(whole, raised, lambda made: made.nbytes)
+
+
+def directions(mesh: Any, split: Any, reach: float, progress: Progress) -> Reals:
+    """Which way (V, 3) the split mesh's vertices go when it is raised by about `reach`: zero where that is zero.
+
+    Those that the split added go as their places on the mesh do. Normals of the split mesh would not: small triangles
+    beside lines turn them, and plates would wrinkle along their rims.
+    """
+    vertices, origin = np.asarray(split.vertices), np.asarray(split.vertex_origin)
+    ways = np.zeros((len(vertices), 3))
+    if reach > 0.0:
+        triangles = np.asarray(mesh.triangles)
+        smooth = smooth_directions(np.asarray(mesh.vertices), triangles, reach, progress, MOST_SMOOTHING)
+        is_old = origin >= 0
+        ways[is_old] = smooth[origin[is_old]]
+        places = native.load().project(mesh, vertices[~is_old])
+        ways[~is_old] = np.einsum("ni,nij->nj", places.barycentric, smooth[triangles[places.faces]])
+    return ways
