@@ -12,7 +12,7 @@ from . import compat, rollback
 MARK = "saddleback_made"  # custom property: which of the things below a data-block is
 
 TUBES, CURVE_TUBES = "tubes", "curve tubes"
-INSTANCES, SWEEP, SHAPES, FOLLOW = "instances", "sweep", "shapes", "follow"
+INSTANCES, DOTS, SWEEP, SHAPES, FOLLOW = "instances", "dots", "sweep", "shapes", "follow"
 CELLS, EDGES, PATHS = "cells", "edges", "paths"
 ARROWS, SOURCES, SADDLES = "arrows", "field sources", "field saddles"
 
@@ -79,6 +79,24 @@ def set_instances(item: bpy.types.Object, instance: bpy.types.Object | None, sca
     info.inputs["Object"].default_value = instance
     set_input(modifier, "Scale", scale)
     return modifier
+
+
+def set_dots(item: bpy.types.Object, scale: float, material: bpy.types.Material | None) -> bpy.types.Modifier:
+    """Puts a flat round dot on each point, sized and turned by the point's attributes."""
+    modifier = modifier_of(item, DOTS)
+    if modifier is None:
+        modifier = add_first(item, "Saddleback Dots", _shared_group(DOTS))
+        compat.set_modifier_input(modifier, "Resolution", 16)
+        compat.set_modifier_input(modifier, "Material", material)
+    set_input(modifier, "Scale", scale)
+    return modifier
+
+
+def remove_dots(item: bpy.types.Object) -> None:
+    """Takes the dots away."""
+    modifier = modifier_of(item, DOTS)
+    if modifier is not None:
+        rollback.when_written(partial(remove_modifier, item, modifier))
 
 
 def put_group(
@@ -150,7 +168,8 @@ def _shared_group(kind: str) -> bpy.types.NodeTree:
     for group in bpy.data.node_groups:
         if group.get(MARK) == kind and group.library is None:
             return group
-    return _new_tubes_group() if kind == TUBES else _new_curve_tubes_group()
+    makers = {TUBES: _new_tubes_group, CURVE_TUBES: _new_curve_tubes_group, DOTS: _new_dots_group}
+    return makers[kind]()
 
 
 def new_group(name: str, kind: str) -> tuple[bpy.types.NodeTree, Any, Any]:
@@ -259,12 +278,34 @@ def _new_tubes_group() -> bpy.types.NodeTree:
 
 def _new_instances_group() -> bpy.types.NodeTree:
     group, source, sink = new_group("Saddleback Instances", INSTANCES)
+    info = group.nodes.new("GeometryNodeObjectInfo")
+    info.inputs["As Instance"].default_value = True
+    _place_instances(group, source, sink, info, info.outputs["Geometry"])
+    return group
+
+
+def _new_dots_group() -> bpy.types.NodeTree:
+    group, source, sink = new_group("Saddleback Dots", DOTS)
+    resolution = compat.new_group_socket(group, "Resolution", "INPUT", "NodeSocketInt")
+    resolution.default_value, resolution.min_value, resolution.max_value = 16, 3, 128
+    compat.new_group_socket(group, "Material", "INPUT", "NodeSocketMaterial")
+    nodes, link = group.nodes, group.links.new
+    circle, painted = nodes.new("GeometryNodeMeshCircle"), nodes.new("GeometryNodeSetMaterial")
+    circle.fill_type = "NGON"
+    circle.inputs["Radius"].default_value = 1.0
+    link(source.outputs["Resolution"], circle.inputs["Vertices"])
+    link(circle.outputs["Mesh"], painted.inputs["Geometry"])
+    link(source.outputs["Material"], painted.inputs["Material"])
+    _place_instances(group, source, sink, (circle, painted), painted.outputs["Geometry"])
+    return group
+
+
+def _place_instances(group: bpy.types.NodeTree, source: Any, sink: Any, column: Any, instance: Any) -> None:
+    """Adds what puts an instance on each point, sized and turned by the point's attributes."""
     scale = compat.new_group_socket(group, "Scale", "INPUT", "NodeSocketFloat")
     scale.default_value, scale.min_value = 1.0, 0.0
     nodes, link = group.nodes, group.links.new
 
-    info = nodes.new("GeometryNodeObjectInfo")
-    info.inputs["As Instance"].default_value = True
     rotation, size = nodes.new("GeometryNodeInputNamedAttribute"), nodes.new("GeometryNodeInputNamedAttribute")
     rotation.data_type, size.data_type = "FLOAT_VECTOR", "FLOAT"
     rotation.inputs["Name"].default_value, size.inputs["Name"].default_value = ROTATION_ATTRIBUTE, SIZE_ATTRIBUTE
@@ -275,14 +316,14 @@ def _new_instances_group() -> bpy.types.NodeTree:
 
     link(source.outputs["Geometry"], points.inputs["Mesh"])
     link(points.outputs["Points"], placed.inputs["Points"])
-    link(info.outputs["Geometry"], placed.inputs["Instance"])
+    link(instance, placed.inputs["Instance"])
     link(attribute_output(rotation), placed.inputs["Rotation"])
     link(attribute_output(size), scaled.inputs[0])
     link(source.outputs["Scale"], scaled.inputs[1])
     link(scaled.outputs["Value"], placed.inputs["Scale"])
     link(placed.outputs["Instances"], sink.inputs["Geometry"])
-    lay_out((source, rotation, size), (points, info, scaled), placed, sink)
-    return group
+    columns = column if isinstance(column, tuple) else (column,)
+    lay_out((source, rotation, size), *columns, (points, scaled), placed, sink)
 
 
 def _new_sweep_group(draws_circle: bool) -> bpy.types.NodeTree:
@@ -349,6 +390,11 @@ def shapes_material() -> bpy.types.Material:
 def edges_material() -> bpy.types.Material:
     """A dark plain material for the lines between cells."""
     return find_material(EDGES) or _new_colored("Saddleback Edges", EDGES, (0.03, 0.03, 0.035, 1.0), 0.4)
+
+
+def dots_material() -> bpy.types.Material:
+    """Ink."""
+    return _find_material(DOTS) or _new_colored("Saddleback Dots", DOTS, (0.008, 0.009, 0.012, 1.0), 0.8)
 
 
 def paths_material() -> bpy.types.Material:

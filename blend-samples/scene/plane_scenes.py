@@ -102,36 +102,23 @@ def still_life(columns: int = 660, rows: int = 450) -> bpy.types.Image:
     return image
 
 
-def dot() -> bpy.types.Object:
-    """A flat round dot of radius 1."""
-    corners = 16
-    around = np.column_stack([ring(1.0, corners), np.full(corners, 0.002)])
-    item = add_mesh("Dot", around, [tuple(range(corners))])
-    item.data.materials.append(studio.principled("Ink", color("#15171d"), Roughness=0.8, Specular=0.1))
-    item.hide_render = True
-    item.hide_set(True)
-    return item
+def inked(item: bpy.types.Object) -> bpy.types.Object:
+    """Gives the panel paper, and its dots ink; returns those."""
+    centers = output(item, "voronoi centers")
+    ink = studio.principled("Ink", color("#15171d"), Roughness=0.8, Specular=0.1)
+    centers.data.materials[0].user_remap(ink)
+    item.data.materials.append(studio.principled("Paper", color("#f4efe4"), Roughness=0.9, Specular=0.1))
+    return centers
 
 
 def stipples(count: int = 6000) -> Items:
-    """Dots whose density is an image's darkness."""
-    instance, image = dot(), still_life()
-    item = panel()
+    """Dots of one size whose density is an image's darkness."""
+    image, item = still_life(), panel()
     bpy.ops.saddleback.voronoi_2d(
         sites_source="IMAGE", image_name=image.name, count=count, seed=1, iterations=30, make_edges=False,
-        make_cells=False, make_centers=True,
+        make_cells=False, make_centers=True, instance_dots=True, instance_size="EQUAL",
     )  # fmt: skip
-    centers = output(item, "voronoi centers")
-    # Every dot of the same size: their number alone makes the tone.
-    size = np.full(len(centers.data.vertices), math.sqrt(0.52 * 2.2 * 1.5 / (math.pi * count)), np.float32)
-    centers.data.attributes["saddleback_size"].data.foreach_set("value", size)
-    bpy.context.view_layer.objects.active = item
-    bpy.ops.saddleback.voronoi_2d(instance_object=instance.name)
-    centers = output(item, "voronoi centers")
-    centers.data.attributes["saddleback_size"].data.foreach_set("value", size)
-    centers.data.update()
-    item.data.materials.append(studio.principled("Paper", color("#f4efe4"), Roughness=0.9, Specular=0.1))
-    return [item, centers]
+    return [item, inked(item)]
 
 
 def lathe(profile: np.ndarray, around: int) -> tuple[np.ndarray, list[tuple[int, ...]], np.ndarray]:
@@ -196,15 +183,9 @@ def sweep(sites: int = 60) -> Items:
     item = panel(2.0, 2.0)
     bpy.ops.saddleback.voronoi_2d(
         count=sites, seed=9, iterations=2, make_edges=False, make_cells=False, make_centers=True, edge_radius=0.009,
-        animate=True, frame_start=1, frame_end=120,
+        animate=True, frame_start=1, frame_end=120, instance_dots=True, instance_size="EQUAL", instance_scale=0.11,
     )  # fmt: skip
-    instance = dot()
-    bpy.context.view_layer.objects.active = item
-    bpy.ops.saddleback.voronoi_2d(make_centers=True, instance_object=instance.name)
-    centers = output(item, "voronoi centers")
-    centers.data.attributes["saddleback_size"].data.foreach_set("value", np.full(sites, 0.016, np.float32))
-    centers.data.update()
-    item.data.materials.append(studio.principled("Paper", color("#f4efe4"), Roughness=0.9, Specular=0.1))
+    inked(item)
     line = studio.principled("Beach", color("#d8452f"), Roughness=0.5)
     output(item, "beach curve").data.materials[0].user_remap(line)
     return [item]

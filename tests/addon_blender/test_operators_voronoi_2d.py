@@ -392,3 +392,46 @@ def test_frames_and_spaces_of_the_sweep():
     grid(n=2)
     refused("the sweep ends in frame 5", animate=True, frame_start=9, frame_end=5)
     refused("shown on flat meshes only", animate=True, space="DISK")
+
+
+def dots_of(item):
+    """Middles (n, 3) and radii (n,) of the dots that are seen."""
+    found = [
+        (np.array(dot.matrix_world.translation), dot.matrix_world.to_scale().x)
+        for dot in bpy.context.evaluated_depsgraph_get().object_instances
+        if dot.is_instance and dot.parent.original == item
+    ]
+    return np.array([middle for middle, _ in found]), np.array([size for _, size in found])
+
+
+@pytest.mark.parametrize(
+    ("kind", "alike", "right"), [("EQUAL", True, True), ("TONE", False, True), ("CELL", False, False)]
+)
+def test_dots_cover_what_the_image_says(kind, alike, right):
+    item = grid()
+    half = image("Half", np.repeat([[0.2] * 32 + [0.8] * 32], 64, axis=0))
+    settings = {"make_edges": False, "make_cells": False, "make_centers": True, "instance_dots": True}
+    bpy.ops.saddleback.voronoi_2d(
+        sites_source="IMAGE", image_name=half.name, count=2000, iterations=15, instance_size=kind, **settings
+    )
+    centers = find_output(item, "voronoi centers")
+    middles, sizes = dots_of(centers)
+    assert len(middles) == 2000 and np.all(middles[:, 2] > 1e-4) and np.all(middles[:, 2] < 2e-3)
+    assert (np.ptp(sizes) < 1e-6) == alike
+    low, high = positions(item.data).min(axis=0), positions(item.data).max(axis=0)
+    dark = middles[:, 0] < 0.5 * (low + high)[0]
+    area = 0.5 * np.prod((high - low)[:2])
+    ink = np.array([np.pi * (sizes[side] ** 2).sum() / area for side in (dark, ~dark)])
+    assert (np.abs(ink - [0.8, 0.2]).max() < 0.05) == right
+    bpy.ops.saddleback.voronoi_2d(count=20, make_centers=True)
+    assert nodes.modifier_of(find_output(item, "voronoi centers"), nodes.DOTS) is None
+
+
+def test_an_object_takes_the_place_of_dots():
+    item = grid()
+    other = add_object("Other", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], active=False)
+    bpy.ops.saddleback.voronoi_2d(count=20, make_centers=True, instance_dots=True)
+    bpy.ops.saddleback.voronoi_2d(count=20, make_centers=True, instance_dots=True, instance_object=other.name)
+    centers = find_output(item, "voronoi centers")
+    assert nodes.modifier_of(centers, nodes.DOTS) is None and len(dots_of(centers)[0]) == 20
+    assert np.abs(positions(centers.data)[:, 2]).max() < 1e-6

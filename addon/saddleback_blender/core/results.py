@@ -99,6 +99,7 @@ class CellsResult:
     iterations: int
     stop_reason: str
     edge_distance: Reals | None = None  # (V,) world units to the edge of the vertex's cell, inf = none; where wanted
+    sites_tone: Reals | None = None  # (n,) 0 to 1, how dark the image is there, or how high the density; None = neither
     mesh: CellMesh | None = None  # where it was wanted
     dual: Dual | None = None  # where it was wanted
     shell: LampShell | None = None  # where it was wanted

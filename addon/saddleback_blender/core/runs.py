@@ -256,7 +256,15 @@ def _result(request: TessellateRequest, solved: _Solved, density: Reals | None) 
         iterations=solved.iterations,
         stop_reason=solved.stop_reason,
         exchanged=solved.exchanged,
+        sites_tone=None if density is None else _tone(surface, solved.cells.sites, density),
     )
+
+
+def _tone(surface: Surface, sites: Any, density: Reals) -> Reals:
+    """The density (n,) where the sites are, 1 where it is highest."""
+    corners = density[surface.triangles[sites.faces]]
+    tone: Reals = np.einsum("ni,ni->n", sites.barycentric, corners) / max(float(density.max(initial=0.0)), 1e-300)
+    return tone
 
 
 def _shell(

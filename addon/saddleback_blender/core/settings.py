@@ -65,6 +65,8 @@ class TessellateSettings(DensitySettings):
     local_uv: bool = False
     make_centers: bool = False
     instance_object: str = ""
+    instance_dots: bool = False  # a dot on each center, where no object is chosen
+    instance_size: str = "CELL"  # EQUAL, CELL, TONE = by the darkness of the image, or by the density
     instance_scale: float = 1.0
     make_dual: bool = False
     dual_policy: str = "REPAIR"  # REPAIR, STRICT
@@ -159,6 +161,8 @@ class Voronoi2dSettings:
     underside: bool = False
     make_centers: bool = False
     instance_object: str = ""
+    instance_dots: bool = False  # a dot on each center, where no object is chosen
+    instance_size: str = "CELL"  # EQUAL, CELL, TONE = by the darkness of the image, or by the density
     instance_scale: float = 1.0
     animate: bool = False
     frame_start: int = 1

@@ -12,7 +12,7 @@ from . import devices, native
 from .cache import Cache
 from .cell_runs import cells_of, shape_of
 from .errors import BadInputError
-from .fields.darkness import places_by_density
+from .fields.darkness import darkness_at, places_by_density
 from .progress import Progress
 from .requests import Voronoi2dRequest, digest
 from .results import CellPolygons, CellsResult, FlatCells, Indices, Reals, Voronoi2dResult
@@ -56,6 +56,7 @@ class _Sites:
     places: Reals
     faces: Indices | None = None  # (n,)
     barycentric: Reals | None = None  # (n, 3)
+    tone: Reals | None = None  # (n,) how dark the image is there
 
     @classmethod
     def at(cls, space: Space, points: Any) -> _Sites:
@@ -100,7 +101,8 @@ def _check(request: Voronoi2dRequest) -> None:
 
 def _placed(request: Voronoi2dRequest, space: Space, progress: Progress) -> _Sites:
     density = _darkness(request, space) if request.darkness is not None else None
-    return _relaxed(request, space, _sites(request, space, density), density, progress)
+    sites = _relaxed(request, space, _sites(request, space, density), density, progress)
+    return sites if density is None else replace(sites, tone=darkness_at(density, *space.box, sites.places))
 
 
 def _sites(request: Voronoi2dRequest, space: Space, density: Reals | None) -> _Sites:
@@ -268,4 +270,5 @@ def _bare_cells(space: Space, sites: _Sites, areas: Reals) -> CellsResult:
         energy=reals,
         iterations=0,
         stop_reason="",
+        sites_tone=sites.tone,
     )

@@ -28,6 +28,12 @@ EDGE_KINDS = (
     ("CURVE", "Curve", "A curve object with a bevel"),
 )
 
+INSTANCE_SIZES = (
+    ("EQUAL", "Equal", "All alike: of dots placed by an image, their number makes its tone"),
+    ("CELL", "By Cell", "As large as their cells"),
+    ("TONE", "By Tone", "Large where the image is dark, or the density high, within their cells"),
+)
+
 TESSELLATE: dict[str, Any] = {
     "count": IntProperty(
         name="Count", description="Number of cells", default=200, min=1, soft_max=20000, options={"SKIP_SAVE"}
@@ -99,9 +105,11 @@ TESSELLATE: dict[str, Any] = {
     "local_uv": switch("Local UV", "Give each cell of the mesh a UV map of its own, for materials that repeat", False),
     "make_centers": switch("Centers", "Make an object of points at the cells' centers", False),
     "instance_object": name_of("Instance", "The object to put on every center"),
+    "instance_dots": switch("Dots", "Put a flat round dot on every center, where no object is chosen", False),
+    "instance_size": choice("Size", "What says how large the instances are", INSTANCE_SIZES, "CELL"),
     "instance_scale": FloatProperty(
         name="Instance Scale",
-        description="Size of the instances, times the size of their cells",
+        description="Makes all instances larger or smaller; 1: a dot has the area of its cell or, by tone, its ink",
         default=1.0,
         min=0.0,
         soft_max=10.0,
@@ -135,4 +143,9 @@ TESSELLATE: dict[str, Any] = {
     ),
     "look": look("tessellate"),
 }
-TESSELLATE_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE", **DENSITY_BEGIN}
+TESSELLATE_BEGIN: dict[str, Any] = {
+    "use_modifiers": True,
+    "lengths": "RELATIVE",
+    "instance_dots": True,
+    **DENSITY_BEGIN,
+}

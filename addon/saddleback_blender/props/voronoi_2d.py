@@ -55,6 +55,8 @@ VORONOI_2D: dict[str, Any] = {
     "underside": TESSELLATE["underside"],
     "make_centers": switch("Centers", "Make an object of points at the sites", False),
     "instance_object": TESSELLATE["instance_object"],
+    "instance_dots": TESSELLATE["instance_dots"],
+    "instance_size": TESSELLATE["instance_size"],
     "instance_scale": TESSELLATE["instance_scale"],
     "animate": switch("Animate", "Make a sweep circle that grows and uncovers the edges, frame by frame", False),
     "frame_start": IntProperty(
@@ -64,4 +66,10 @@ VORONOI_2D: dict[str, Any] = {
         name="End", description="Frame in which all edges are there", default=120, options={"SKIP_SAVE"}
     ),
 }
-VORONOI_2D_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE"}
+VORONOI_2D_BEGIN: dict[str, Any] = {
+    "iterations": 15,
+    "use_modifiers": True,
+    "lengths": "RELATIVE",
+    "instance_dots": True,
+    "instance_size": "TONE",
+}

@@ -122,8 +122,11 @@ def draw_centers(layout: bpy.types.UILayout, settings: Any) -> None:
     """The points at the centers, and what stands on them."""
     layout.active = settings.make_centers
     draw_object(layout, settings, "instance_object")
+    if not settings.instance_object:
+        layout.prop(settings, "instance_dots")
     column = layout.column()
-    column.active = bool(settings.instance_object)
+    column.active = bool(settings.instance_object) or settings.instance_dots
+    column.prop(settings, "instance_size")
     column.prop(settings, "instance_scale", text="Scale")
 
 

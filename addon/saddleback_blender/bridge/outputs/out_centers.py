@@ -10,10 +10,10 @@ from ...blocks import find
 from ...core.errors import BadInputError
 from ...core.results import CellsResult
 from ...core.settings import TessellateSettings, Voronoi2dSettings
-from ...core.surfaces.centers import cell_size, euler_to_normal
+from ...core.surfaces.centers import euler_to_normal, instance_size
 from .following import Follower
 from .out_attributes import set_attribute
-from .out_collection import directions_to_place, find_output, level_place, replace_object, to_place
+from .out_collection import directions_to_place, find_output, hair, level_place, replace_object, to_place
 
 CENTERS_ROLE = "centers"
 CELL_ATTRIBUTE, AREA_ATTRIBUTE = "saddleback_cell", "saddleback_area"
@@ -27,24 +27,29 @@ def write_centers(
     role: str = CENTERS_ROLE,
     follower: Follower | None = None,
 ) -> bpy.types.Object:
-    """Makes or replaces the source's centers object, with the chosen object on every center.
+    """Makes or replaces the source's centers object, with the chosen object or a dot on every center.
 
-    Point attributes: cell, area (world units squared), normal (unit), size (radius of the disk of that area) and
+    Point attributes: cell, area (world units squared), normal (unit), size (a radius) and
     rotation (Euler XYZ that takes Z to the normal).
     """
     instance = _instance(source, settings.instance_object, role)
     place = level_place(source)
     mesh = bpy.data.meshes.new("Saddleback Centers")
     count = len(result.sites_position)
+    points = result.sites_position
+    has_dots = settings.instance_dots and instance is None
+    if has_dots:  # which are flat
+        mesh.materials.append(nodes.dots_material())
+        points = points + hair(source) * result.sites_normal
     mesh.vertices.add(count)
-    mesh.vertices.foreach_set("co", to_place(place, result.sites_position).astype(np.float32).ravel())
+    mesh.vertices.foreach_set("co", to_place(place, points).astype(np.float32).ravel())
     normal = directions_to_place(place, result.sites_normal)
     rotations = euler_to_normal(normal)
     columns: dict[str, np.ndarray] = {
         CELL_ATTRIBUTE: np.arange(count, dtype=np.int32),
         AREA_ATTRIBUTE: result.cell_area,
         nodes.NORMAL_ATTRIBUTE: normal,
-        nodes.SIZE_ATTRIBUTE: cell_size(result.cell_area),
+        nodes.SIZE_ATTRIBUTE: instance_size(result.cell_area, result.sites_tone, settings.instance_size),
         nodes.ROTATION_ATTRIBUTE: rotations,
     }
     for name, values in columns.items():
@@ -52,8 +57,12 @@ def write_centers(
     mesh.update()
     item = replace_object(context, source, role, mesh, place)
     nodes.set_instances(item, instance, settings.instance_scale)
+    if has_dots:
+        nodes.set_dots(item, settings.instance_scale, mesh.materials[0])
+    else:
+        nodes.remove_dots(item)
     if follower is not None:
-        follower.take(item, place, result.sites_position, rotations=rotations)
+        follower.take(item, place, points, result.sites_position, rotations=rotations)
     return item
 
 

@@ -27,6 +27,7 @@ MATERIALS = "saddleback_materials"  # on outputs: the names of the materials tha
 COLLECTION = "saddleback_outputs"  # on our collections
 
 COLLECTION_NAME = "Saddleback"
+HAIR = 5e-4  # of the longest side of the mesh: what is enough for a surface to hide another one
 # Of the role of an object that keeps where the points of a curve stand.
 KEEPER_ENDING = " anchors"
 
@@ -99,6 +100,11 @@ def level_place(source: bpy.types.Object) -> Matrix:
     location, rotation, _ = source.matrix_world.decompose()
     place: Matrix = Matrix.Translation(location) @ rotation.to_matrix().to_4x4()
     return place
+
+
+def hair(source: bpy.types.Object) -> float:
+    """A distance in the world that is enough for something to be seen before the source's surface."""
+    return HAIR * float(max(source.dimensions))
 
 
 def to_place(place: Matrix, positions: np.ndarray) -> np.ndarray:

@@ -11,10 +11,9 @@ from ...core.errors import BadInputError
 from ..inputs.mesh_in import mesh_of
 from .following import Follower
 from .out_attributes import recorded
-from .out_collection import find_output, replace_object
+from .out_collection import HAIR, find_output, replace_object
 
 SURFACE_ROLE = "surface"
-HAIR = 5e-4  # of the longest side of the mesh: what is enough for a surface to hide another one
 
 
 def output_surface(

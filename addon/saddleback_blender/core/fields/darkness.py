@@ -28,6 +28,14 @@ def darkness(pixels: NDArray[np.float32], is_encoded: bool, invert: bool) -> Rea
     return dark
 
 
+def darkness_at(dark: Reals, low: Reals, high: Reals, places: Reals) -> Reals:
+    """How dark (n,) an image (rows, columns) over the box from low (2,) to high (2,) is at places (n, 2)."""
+    size = np.array(dark.shape[::-1])
+    pixel = np.clip((places - low) / (high - low) * size, 0, size - 1).astype(np.int64)
+    found: Reals = dark[pixel[:, 1], pixel[:, 0]]
+    return found
+
+
 def shrunk(pixels: Reals) -> Reals:
     """Means over blocks, so that neither side is longer than MOST_PIXELS; what does not fill a block is left out."""
     rows, columns = pixels.shape[:2]

@@ -13,6 +13,17 @@ def cell_size(area: Reals) -> Reals:
     return size
 
 
+def instance_size(area: Reals, tone: Reals | None, kind: str) -> Reals:
+    """Radius (n,) of a disk on each center: by its cell's area (n,), by tone (n,), or equal.
+
+    All disks together cover as much as the tone says, everything where there is none.
+    """
+    ink = area if tone is None else area * tone
+    if kind == "EQUAL":
+        return cell_size(np.full(len(area), ink.mean() if len(area) else 0.0))
+    return cell_size(ink if kind == "TONE" else area)
+
+
 def euler_to_normal(normal: Reals) -> Reals:
     """Euler angles XYZ (n,3) of the shortest turn that takes the Z axis to each normal (n,3), in radians.
 
