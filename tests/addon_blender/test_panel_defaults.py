@@ -168,3 +168,38 @@ def test_the_panels_are_gone_when_the_library_is(monkeypatch):
     assert panel.poll(bpy.context) and item is not None
     monkeypatch.setattr(panels, "_native_problem", lambda: "the library does not load")
     assert not panel.poll(bpy.context)
+
+
+def shown(item):
+    """Vertices of what is seen of an object, in the world."""
+    bpy.context.view_layer.update()
+    mesh = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+    return positions(mesh) @ np.array(item.matrix_world)[:3, :3].T + np.array(item.matrix_world)[:3, 3]
+
+
+def test_bare_cells_stand_a_hair_before_the_surface_and_a_script_s_lie_on_it():
+    item = sphere(radius=10.0)
+    bpy.context.view_layer.update()
+    bpy.ops.saddleback.tessellate(**QUICK, make_cells=True)
+    cells = find_output(item, "cells")
+    assert "Lift" not in cells.modifiers
+    item.saddleback.tessellate.thickness_share = 0.0
+    item.saddleback.tessellate.gap_share = 0.0
+    run(pressed_tessellate(**QUICK, make_cells=True))
+    cells = find_output(item, "cells")
+    rise = np.linalg.norm(shown(cells), axis=1) - np.linalg.norm(positions(cells.data), axis=1)
+    assert rise.min() > 2e-3 and rise.max() < 2e-2
+    cells.modifiers["Lift"].strength = 1.0  # the artist's
+    run(pressed_tessellate(**QUICK, make_cells=True, seed=2))
+    assert find_output(item, "cells").modifiers["Lift"].strength == 1.0
+    run(pressed_tessellate(**QUICK, make_cells=True, thickness_share=5.0))
+    assert "Lift" not in find_output(item, "cells").modifiers
+
+
+def test_the_source_can_be_hidden_and_still_be_worked_on():
+    item = sphere()
+    bpy.ops.saddleback.hide_source()
+    assert item.display_type == "BOUNDS" and item.hide_render
+    assert bpy.ops.saddleback.tessellate(**QUICK) == {"FINISHED"}
+    bpy.ops.saddleback.hide_source()
+    assert item.display_type == "TEXTURED" and not item.hide_render

@@ -13,6 +13,7 @@ import bpy
 from .. import jobs, rollback
 from ..bridge.inputs.source import Source, active_object, usable_source, why_not
 from ..bridge.outputs.following import Follower
+from ..bridge.outputs.lifting import lift_lying
 from ..bridge.outputs.out_collection import outputs_of
 from ..bridge.outputs.out_looks import ROLES, remove_look
 from ..bridge.outputs.output_surface import has_own_faces
@@ -75,6 +76,10 @@ class SurfaceOperator(PolledOperator):
         """Returns what lets the outputs follow the source when it is deformed."""
         self._follower = Follower(context, source, self._surface, getattr(self, "use_modifiers", False))
         return self._follower
+
+    def lying(self) -> dict[str, bool]:
+        """Tells of outputs by their roles whether they would lie on the surface itself."""
+        return {}
 
     def notes(self, result: Any) -> list[str]:
         """Sentences to warn with after a run."""
@@ -192,6 +197,8 @@ class SurfaceOperator(PolledOperator):
                 line = self.write(context, source, result)
                 if getattr(self, "look", NO_LOOK) != NO_LOOK:
                     _leave_other_looks(source, self.settings_name)
+                if self._is_by_hand:
+                    lift_lying(source, self.lying())
                 note_call(source, self.settings_name, self._called, self._is_by_hand)
                 labels = {name: prop.keywords["name"] for name, prop in PROPERTIES[self.settings_name].items()}
                 lengths, figures = told_lengths(self, self._lengths, labels), self.figures(result)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from .. import jobs, rollback
-from ..bridge.inputs.source import usable_source, why_not
+from ..bridge.inputs.source import active_object, usable_source, why_not
 from ..bridge.outputs.out_collection import clear_outputs
 from ..bridge.outputs.preview import hide_preview
 from ..core.errors import BadInputError
@@ -46,4 +46,27 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
         return {"FINISHED"} if removed else {"CANCELLED"}
 
 
-CLASSES = (SADDLEBACK_OT_clear,)
+class SADDLEBACK_OT_hide_source(bpy.types.Operator):
+    """Shows outputs alone."""
+
+    bl_idname = "saddleback.hide_source"
+    bl_label = "Hide Source"
+    bl_description = (
+        "Show the active object as a box, and not in renders, to see what was made of it; or show it again"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the button can be pressed."""
+        return active_object(context) is not None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """It stays where it can be worked on, as a box."""
+        source = active_object(context)
+        source.hide_render = source.display_type != "BOUNDS"
+        source.display_type = "BOUNDS" if source.hide_render else "TEXTURED"
+        return {"FINISHED"}
+
+
+CLASSES = (SADDLEBACK_OT_clear, SADDLEBACK_OT_hide_source)

@@ -99,6 +99,10 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {result.text}"
 
+    def lying(self) -> dict[str, bool]:
+        """The cut mesh does."""
+        return {CUT_ROLE: True}
+
     def notes(self, result: DistributeResult) -> list[str]:
         """Returns what went wrong."""
         return list(result.warnings)

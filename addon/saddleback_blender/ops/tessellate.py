@@ -51,6 +51,7 @@ class CellsOperator(SurfaceOperator):
     """Mixin: makes cells."""
 
     settings_name = "tessellate"
+    thickness: float
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CellsResult]:
         """Reads everything from Blender."""
@@ -109,6 +110,10 @@ class CellsOperator(SurfaceOperator):
         if warning:
             self.report({"WARNING"}, warning)
         return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(result)}{_added(result)}"
+
+    def lying(self) -> dict[str, bool]:
+        """Cells without a height do."""
+        return {CELLS_ROLE: not self._lengths.get("thickness", self.thickness)}
 
     def notes(self, result: CellsResult) -> list[str]:
         """Returns what is wrong with the meshes that were made."""

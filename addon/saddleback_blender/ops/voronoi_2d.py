@@ -88,6 +88,10 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
         keep_settings(chosen, "voronoi_2d", source)
         return f"'{source.name}': {_told(result)}{_lost(result)}"
 
+    def lying(self) -> dict[str, bool]:
+        """Cells without a height do."""
+        return {CELLS_ROLE: not self._lengths.get("thickness", self.thickness)}
+
     def notes(self, result: Voronoi2dResult) -> list[str]:
         """Returns what is wrong with the meshes that were made."""
         return [] if result.cells.mesh is None else cell_faults_of(result.cells.mesh)

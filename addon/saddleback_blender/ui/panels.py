@@ -74,6 +74,9 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
             compat.draw_progress(row, context.window_manager)
         else:
             row.operator("saddleback.clear", text="Clear Results", icon="TRASH")
+            is_hidden = item.display_type == "BOUNDS"
+            icon = "HIDE_ON" if is_hidden else "HIDE_OFF"
+            row.operator("saddleback.hide_source", text="", icon=icon, depress=is_hidden)
         shading = context.space_data.shading
         if shading.type == "SOLID":  # which shows the colors of cells and shapes in one of its ways only
             layout.prop(shading, "color_type", text="Color")

@@ -103,7 +103,10 @@ def level_place(source: bpy.types.Object) -> Matrix:
 
 
 def hair(source: bpy.types.Object) -> float:
-    """A distance in the world that is enough for something to be seen before the source's surface."""
+    """A distance in the world that is enough for something to be seen before the source's surface.
+
+    In the space of outputs, too, whose scale is 1.
+    """
     return HAIR * float(max(source.dimensions))
 
 

@@ -10,8 +10,9 @@ from ...blocks import is_editable
 from ...core.errors import BadInputError
 from ..inputs.mesh_in import mesh_of
 from .following import Follower
+from .lifting import lift
 from .out_attributes import recorded
-from .out_collection import HAIR, find_output, replace_object
+from .out_collection import find_output, replace_object
 
 SURFACE_ROLE = "surface"
 
@@ -44,8 +45,7 @@ def output_surface(
     if use_modifiers and aside == "HIDE" and existing is None:
         item.hide_viewport = item.hide_render = True
     elif use_modifiers and aside == "LIFT" and existing is None:
-        lift = item.modifiers.new("Lift", "DISPLACE")
-        lift.mid_level, lift.strength = 0.0, HAIR * max(np.ptp(compat.read_positions(mesh), axis=0))
+        lift(source, item)
     if follower is not None:
         follower.take_all(item, source.matrix_world)
     return item
