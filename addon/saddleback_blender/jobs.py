@@ -60,10 +60,14 @@ class Task:
 
 
 class State:
-    """Holds what the panel shows: the task that is watched, the object refused last, what the last run made."""
+    """Holds what the panel shows: the task that is watched, the object refused last, what the last run made.
+
+    Blender asks for a text twice, for its length and for itself, and must get the same: none may change but by `look`.
+    """
 
     def __init__(self) -> None:
         self.task: Task | None = None
+        self.text = ""  # what the task was doing when it was looked at last
         self.kind = ""  # of the last run: the name of its settings
         self.needs_repair = ""
         self.line = ""
@@ -87,7 +91,7 @@ WINDOW_MANAGER_PROPERTIES = {
         get=lambda _: 100.0 * state.task.progress.fraction if state.task is not None else 0.0,
     ),
     "saddleback_text": StringProperty(
-        name="Doing", description="What is being done", get=lambda _: state.task.text if state.task is not None else ""
+        name="Doing", description="What is being done", get=lambda _: state.text
     ),
     "saddleback_kind": StringProperty(
         name="Kind", description="Which settings the last run was of", get=lambda _: state.kind
@@ -113,10 +117,17 @@ def start(call: Callable[[Progress], Any], progress: Progress, name: str) -> Tas
     return task
 
 
+def look() -> str:
+    """Returns what the task is doing, for the panel to show until the next look. For the main thread."""
+    state.text = state.task.text if state.task is not None else ""
+    return state.text
+
+
 def finish(task: Task) -> None:
     """Takes the task off the panel. A cancelled one may still need a moment to end; nobody waits for it."""
     if state.task is task:
         state.task = None
+        look()
 
 
 def stop_all(seconds: float = 5.0) -> None:
@@ -127,6 +138,7 @@ def stop_all(seconds: float = 5.0) -> None:
         task.join(seconds)
     _unfinished.clear()
     state.task = None
+    look()
 
 
 def redraw(context: bpy.types.Context) -> None:

@@ -244,11 +244,9 @@ class SurfaceOperator(PolledOperator):
         return {"CANCELLED"}
 
     def _show(self, context: bpy.types.Context) -> None:
-        task = self._task
+        task, text = self._task, jobs.look()
         if task is not None and context.workspace is not None:
-            context.workspace.status_text_set(
-                f"Saddleback: {task.text} {100 * task.progress.fraction:.0f}%    {self.keys}"
-            )
+            context.workspace.status_text_set(f"Saddleback: {text} {100 * task.progress.fraction:.0f}%    {self.keys}")
             jobs.redraw(context)
 
     def _leave(self, context: bpy.types.Context) -> None:

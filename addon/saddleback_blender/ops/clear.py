@@ -51,9 +51,7 @@ class SADDLEBACK_OT_hide_source(bpy.types.Operator):
 
     bl_idname = "saddleback.hide_source"
     bl_label = "Hide Source"
-    bl_description = (
-        "Show the active object as a box, and not in renders, to see what was made of it; or show it again"
-    )
+    bl_description = "Show the active object as a box, and not in renders, to see what was made of it; or show it again"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
