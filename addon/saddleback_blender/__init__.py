@@ -9,6 +9,7 @@ bl_info = {
     "blender": (3, 4, 0),
     "location": "3D View > Sidebar > Saddleback",
     "description": "Geodesic Voronoi cells and even tessellations of painted meshes",
+    "doc_url": "https://github.com/OWNER/saddleback/tree/main/docs/manual",
     "category": "Mesh",
 }
 

@@ -66,7 +66,8 @@ def _by_distance(
         if part is not None and len(part):
             with progress.stage(0.6, "measuring distances to the curves") as job:
                 far = np.minimum(far, graph.distances(part, job=job))
-    reach = settings.density_reach or REACH * float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
+    tenth = REACH * float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
+    reach = progress.choose("density_reach", settings.density_reach, tenth)
     ramp: Reals = sb.ramp_by_distance(far, 1.0, settings.density_beyond, reach)
     return ramp
 

@@ -13,7 +13,7 @@ from . import cache as cache_module
 from . import native
 from .cache import Cache
 from .errors import BadInputError
-from .fields.field_strokes import strokes_of
+from .fields.field_strokes import reach_of, strokes_of
 from .fields.stream_lines import even_streamlines
 from .graphs import mesh_of_surface
 from .progress import Progress
@@ -37,6 +37,8 @@ def direction_field(request: DirectionFieldRequest, progress: Progress, cache: C
     settings, surface = request.settings, request.surface
     mesh = mesh_of_surface(surface, progress, cache)
     made = field_of(request, mesh, progress, cache)
+    if request.strokes:
+        progress.choose("stroke_reach", settings.stroke_reach, reach_of(mesh))
     field = made.field
     progress.check()
     if settings.domain == "FACE":
@@ -47,7 +49,9 @@ def direction_field(request: DirectionFieldRequest, progress: Progress, cache: C
     singular = np.array(sorted(field.singularities), np.int32)
     arrows = None
     if settings.make_arrows:
-        arrows = _arrows(mesh, field, settings.arrow_count, settings.arrow_length, settings.seed, progress)
+        usual = ARROW_LENGTH * float(np.sqrt(mesh.area / settings.arrow_count))
+        length = progress.choose("arrow_length", settings.arrow_length, usual)
+        arrows = _arrows(mesh, field, settings.arrow_count, length, settings.seed, progress)
     streamlines = None
     if settings.make_streamlines:
         streamlines = even_streamlines(mesh, field, settings, progress)
@@ -191,5 +195,5 @@ def _arrows(mesh: Any, field: Any, count: int, length: float, seed: int, progres
             points=points.positions(mesh),
             directions=field.directions(points),
             normals=normals_at(mesh.vertices, mesh.triangles, points.faces, points.barycentric),
-            length=length or ARROW_LENGTH * float(np.sqrt(mesh.area / count)),
+            length=length,
         )

@@ -42,11 +42,15 @@ def _unit(settings: Any, surface: Surface, count: int) -> float:
     return surface.extent
 
 
-def told_lengths(settings: Any, lengths: dict[str, float], labels: dict[str, str]) -> list[str]:
-    """One line that tells the lengths of the outputs that were made, those of 0 left out."""
+def told_lengths(
+    settings: Any, lengths: dict[str, float], chosen: dict[str, float], labels: dict[str, str]
+) -> list[str]:
+    """Lines that tell the lengths of the outputs that were made, those of 0 left out, and what the run chose."""
     used = [
         f"{labels[name]} {value:.3g}"
         for name, value in lengths.items()
         if value > 0.0 and getattr(settings, OUTPUTS.get(name, ""), True)
     ]
-    return [f"In world units: {', '.join(used)}"] if used else []
+    found = [f"{labels[name]} {value:.3g}" for name, value in chosen.items()]
+    lines = {"In world units": used, "Automatic": found}
+    return [f"{title}: {', '.join(told)}" for title, told in lines.items() if told]

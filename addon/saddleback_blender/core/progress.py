@@ -27,6 +27,7 @@ class Progress:
         self._text = ""
         self._beat, self._dots, self._has_checked = 0, 0, False
         self.notes: list[str] = []  # what a person should know when the run is over
+        self.chosen: dict[str, float] = {}  # by setting: the value in place of a 0, which leaves it to the run
 
     @property
     def fraction(self) -> float:
@@ -66,6 +67,13 @@ class Progress:
     def note(self, text: str) -> None:
         """Adds a sentence to be told when the run is over."""
         self.notes.append(text)
+
+    def choose(self, name: str, asked: float, otherwise: float) -> float:
+        """Returns what is asked for or, where that is 0, the other value, to be told when the run is over."""
+        if asked:
+            return asked
+        self.chosen[name] = otherwise
+        return otherwise
 
     def check(self) -> None:
         """Raises the library's Cancelled when asked to stop; between native calls, where it also moves the dots."""

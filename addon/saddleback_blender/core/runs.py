@@ -270,8 +270,9 @@ def _tone(surface: Surface, sites: Any, density: Reals) -> Reals:
 def _shell(
     request: TessellateRequest, mesh: Any, solved: _Solved, key: tuple[str, ...], progress: Progress, cache: Cache
 ) -> LampShell:
-    width = request.settings.rib_width or RIB_SHARE * math.sqrt(mesh.area / len(solved.cells.areas))
-    thickness = request.settings.rib_thickness or width
+    settings = request.settings
+    width = progress.choose("rib_width", settings.rib_width, RIB_SHARE * math.sqrt(mesh.area / len(solved.cells.areas)))
+    thickness = progress.choose("rib_thickness", settings.rib_thickness, width)
 
     def build() -> LampShell:
         with progress.stage(0.95, "making the ribs of the lamp shell"):

@@ -135,7 +135,7 @@ class PathSettings:
 class Voronoi2dSettings:
     """All properties of `saddleback.voronoi_2d`; lengths are world units, objects are given by name ("" = none)."""
 
-    space: str = "OUTLINE"  # OUTLINE, UV, DISK
+    space: str = "OUTLINE"  # AUTO, OUTLINE, UV, DISK
     uv_name: str = ""  # the UV map; "" = the active one
     sites_source: str = "COUNT"  # COUNT, SELECTED, OBJECT, IMAGE
     count: int = 200  # of COUNT and IMAGE
@@ -145,6 +145,7 @@ class Voronoi2dSettings:
     image_invert: bool = False  # cells are small where the image is light
     weights_name: str = ""  # attribute of the vertices that are sites; "" = all weigh the same
     iterations: int = 0
+    relax_sites: bool = True  # move chosen sites too (those of COUNT and IMAGE always move)
     use_modifiers: bool = False
     lengths: str = "ABSOLUTE"  # ABSOLUTE, RELATIVE = by the shares, in percent of a cell's size
     make_edges: bool = True

@@ -24,6 +24,7 @@ from ..core.progress import Progress
 from ..core.requests import Surface
 from ..looks import NO_LOOK
 from ..props import PROPERTIES, Settings, existing_group, fill_operator, keep_texts, note_call
+from .redo import draw_redo
 
 # Seconds between looks at the thread: a run's end, and a progress step, are seen this late at most. ESC is an event of
 # its own and does not wait for it.
@@ -55,6 +56,7 @@ class SurfaceOperator(PolledOperator):
     report: Callable[..., None]
     options: bpy.types.OperatorOptions
     properties: Any
+    layout: bpy.types.UILayout
 
     keys = "ESC: stop"  # what the status bar says of a run
 
@@ -166,6 +168,10 @@ class SurfaceOperator(PolledOperator):
         has_look = self.properties.is_property_set("look") if hasattr(self, "look") else False
         return bool(self.options.is_invoke or self.options.is_repeat or has_look)
 
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draws Adjust Last Operation."""
+        draw_redo(self.layout, self, self.settings_name)
+
     def _prepare(
         self, context: bpy.types.Context, is_by_hand: bool
     ) -> tuple[bpy.types.Object, Callable[[Progress], Any]]:
@@ -201,7 +207,7 @@ class SurfaceOperator(PolledOperator):
                     lift_lying(source, self.lying())
                 note_call(source, self.settings_name, self._called, self._is_by_hand)
                 labels = {name: prop.keywords["name"] for name, prop in PROPERTIES[self.settings_name].items()}
-                lengths, figures = told_lengths(self, self._lengths, labels), self.figures(result)
+                lengths, figures = told_lengths(self, self._lengths, progress.chosen, labels), self.figures(result)
                 keep_texts(source, self.settings_name, [line, *lengths], figures)
         except Exception as error:
             return self._refuse(error, context)

@@ -23,10 +23,11 @@ from ..core import voronoi_runs
 from ..core.errors import BadInputError
 from ..core.figures import cell_faults_of, lost_of
 from ..core.progress import Progress
-from ..core.requests import Voronoi2dRequest
+from ..core.requests import Surface, Voronoi2dRequest
 from ..core.results import FlatCells, Voronoi2dResult
 from ..core.settings import Voronoi2dSettings
 from ..core.solids.edge_network import EdgeNetwork
+from ..core.surfaces.plane_frame import is_flat
 from ..props import keep_settings, settings_of
 from ..props.voronoi_2d import VORONOI_2D
 from .base import SurfaceOperator
@@ -53,6 +54,9 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
         with mesh_of(context, source, settings.use_modifiers) as mesh:
             sites, weights = read_voronoi_sites(context, source, mesh, settings)
             surface = read_surface(source, mesh)
+            is_found = settings.space == "AUTO"
+            steps = settings.iterations if _moves(settings) else 0
+            settings = replace(settings, space=_space(surface, mesh, settings), iterations=steps)
             sized = self.measured(settings, surface, settings.count if sites is None else len(sites))
             if weights is not None and settings.lengths == "RELATIVE":  # such cells can have none of these
                 self._lengths |= {"gap": 0.0, "inset": 0.0, "thickness": 0.0}
@@ -68,7 +72,7 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
                 darkness=read_darkness(source, settings),
                 threads=prefs.threads(context),
             )
-        return partial(voronoi_runs.voronoi_2d, request)
+        return partial(_run, request, is_found)
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: Voronoi2dResult) -> str:
         """Writes the result into Blender."""
@@ -95,6 +99,30 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
     def notes(self, result: Voronoi2dResult) -> list[str]:
         """Returns what is wrong with the meshes that were made."""
         return [] if result.cells.mesh is None else cell_faults_of(result.cells.mesh)
+
+
+def _space(surface: Surface, mesh: bpy.types.Mesh, settings: Voronoi2dSettings) -> str:
+    """The plane that is meant where it is to be found."""
+    if settings.space != "AUTO":
+        return settings.space
+    if is_flat(surface):
+        return "OUTLINE"
+    return "UV" if len(mesh.uv_layers) else "DISK"
+
+
+def _moves(settings: Voronoi2dSettings) -> bool:
+    """Tells whether sites leave the places where they are at first."""
+    return settings.sites_source in ("COUNT", "IMAGE") or settings.relax_sites
+
+
+def _run(request: Voronoi2dRequest, is_found: bool, progress: Progress) -> Voronoi2dResult:
+    """Says where the space was found by itself what needs none."""
+    try:
+        return voronoi_runs.voronoi_2d(request, progress)
+    except BadInputError as error:
+        if not is_found or request.settings.space == "OUTLINE":
+            raise
+        raise BadInputError(f"{error}. Tessellate makes cells of any surface, without a map") from error
 
 
 def _write_edges(

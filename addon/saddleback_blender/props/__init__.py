@@ -30,7 +30,7 @@ from .distance import DISTANCE, DISTANCE_BEGIN
 from .distribute import DISTRIBUTE, DISTRIBUTE_BEGIN
 from .path import PATH, PATH_BEGIN
 from .repair import REPAIR
-from .tessellate import TESSELLATE, TESSELLATE_BEGIN
+from .tessellate import EVENNESS, TESSELLATE, TESSELLATE_BEGIN
 from .voronoi_2d import VORONOI_2D, VORONOI_2D_BEGIN
 
 Settings = TypeVar(
@@ -101,7 +101,7 @@ def _kept(settings_name: str) -> dict[str, Any]:
             kept[name] = prop.function(**(prop.keywords | {"default": begin[name]}))
         else:
             kept[name] = prop
-    return kept
+    return kept | ({"evenness": EVENNESS} if settings_name == "tessellate" else {})
 
 
 class SaddlebackTessellateProps(bpy.types.PropertyGroup):

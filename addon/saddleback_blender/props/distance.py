@@ -23,7 +23,7 @@ from .kinds import (
 )
 
 DISTANCE_SOURCES = (
-    ("SELECTED", "Selected Vertices", "Vertices selected in Edit Mode"),
+    ("SELECTED", "Selected", "Vertices selected in Edit Mode"),
     ("VERTEX_GROUP", "Vertex Group", "Vertices whose weight in the group is above one half"),
     ("EMPTIES", "Empties", "Empties of a collection, or those parented to the object, brought to the nearest point"),
     (

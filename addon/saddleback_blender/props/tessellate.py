@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from bpy.props import FloatProperty, IntProperty
+from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .density import DENSITY, DENSITY_BEGIN
 from .kinds import choice, detail, length, lengths, look, name_of, on_disk, quality, share, switch, use_modifiers
 
 SITES_SOURCES = (
     ("COUNT", "Count", "Place this many sites, by the density"),
-    ("SELECTED", "Selected Vertices", "One cell for each vertex selected in Edit Mode"),
+    ("SELECTED", "Selected", "One cell for each vertex selected in Edit Mode"),
     ("OBJECT", "Object", "One cell for each vertex of another object, brought to the nearest point of the surface"),
 )
 METHODS = (
@@ -33,6 +33,32 @@ INSTANCE_SIZES = (
     ("CELL", "By Cell", "As large as their cells"),
     ("TONE", "By Tone", "Large where the image is dark, or the density high, within their cells"),
 )
+
+# How even cells become: iterations, annealing, starts.
+EVENNESSES = {"QUICK": (5, 0, 1), "EVEN": (15, 0, 1), "PERFECT": (60, 200, 1)}
+EVENNESS_ITEMS = (
+    ("QUICK", "Quick", "A few steps: to see where cells come to lie"),
+    ("EVEN", "Even", "As even as most work needs"),
+    ("PERFECT", "Perfect", "Nearly all cells hexagons, where the surface lets them; takes some ten times as long"),
+    ("CUSTOM", "Custom", "As Iterations, Annealing and Starts under Advanced say"),
+)
+
+
+def _evenness(group: Any) -> int:
+    found = (group.iterations, group.annealing, group.starts)
+    return [*EVENNESSES.values(), found].index(found)
+
+
+def _set_evenness(group: Any, number: int) -> None:
+    if number < len(EVENNESSES):
+        group.iterations, group.annealing, group.starts = list(EVENNESSES.values())[number]
+
+
+# Of the panel only: it stands for three others.
+EVENNESS = EnumProperty(
+    name="Evenness", description="How even the cells become, and how long that takes", items=EVENNESS_ITEMS,
+    get=_evenness, set=_set_evenness, options={"SKIP_SAVE"},
+)  # fmt: skip
 
 TESSELLATE: dict[str, Any] = {
     "count": IntProperty(

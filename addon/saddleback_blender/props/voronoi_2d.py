@@ -10,6 +10,7 @@ from .kinds import choice, name_of, switch, use_modifiers
 from .tessellate import SITES_SOURCES, TESSELLATE
 
 SPACES = (
+    ("AUTO", "Automatic", "The outline of a flat mesh; of others the UV map where there is one, else a disk"),
     ("OUTLINE", "Outline", "The plane of a flat mesh, within its outline and around its holes"),
     ("UV", "UV Map", "The plane of a UV map; cells and edges are brought back to the surface"),
     ("DISK", "Disk", "A disk that the surface is laid into; for surfaces with one border and without a UV map"),
@@ -39,6 +40,7 @@ VORONOI_2D: dict[str, Any] = {
         soft_max=200,
         options={"SKIP_SAVE"},
     ),
+    "relax_sites": switch("Relax Sites", "Move the chosen sites to even the cells out", True),
     "use_modifiers": use_modifiers(),
     "lengths": TESSELLATE["lengths"],
     "make_edges": TESSELLATE["make_edges"],
@@ -67,7 +69,9 @@ VORONOI_2D: dict[str, Any] = {
     ),
 }
 VORONOI_2D_BEGIN: dict[str, Any] = {
+    "space": "AUTO",
     "iterations": 15,
+    "relax_sites": False,
     "use_modifiers": True,
     "lengths": "RELATIVE",
     "instance_dots": True,

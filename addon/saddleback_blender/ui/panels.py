@@ -136,9 +136,6 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
             layout.operator("saddleback.relax_live", icon="PLAY")
         _draw_state(layout, context, "tessellate")
         rows.draw_sites(layout.column(), settings)
-        rows.draw_quality(layout, settings)
-        layout.prop(settings, "use_modifiers")
-        layout.prop(settings, "lengths")
 
 
 class SADDLEBACK_PT_density(SaddlebackSubPanel, bpy.types.Panel):
@@ -226,6 +223,30 @@ class SADDLEBACK_PT_shell(SaddlebackOutputPanel, bpy.types.Panel):
         rows.draw_shell(self.split_layout(context), active_object(context).saddleback.tessellate)
 
 
+class SaddlebackAdvancedPanel(SaddlebackSubPanel):
+    """Mixin: what is seldom changed."""
+
+    bl_label = "Advanced"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class SADDLEBACK_PT_tessellate_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
+    """How cells are found."""
+
+    bl_parent_id = "SADDLEBACK_PT_tessellate"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = active_object(context).saddleback.tessellate
+        layout = self.split_layout(context)
+        layout.prop(settings, "lengths")
+        layout.prop(settings, "edge_kind", text="Edges")
+        rows.draw_density_advanced(layout.column(), settings)
+        rows.draw_sites_advanced(layout.column(), settings)
+        rows.draw_quality(layout, settings)
+        layout.prop(settings, "use_modifiers")
+
+
 class SADDLEBACK_PT_attributes(SaddlebackSubPanel, bpy.types.Panel):
     """Names of what is written on the mesh."""
 
@@ -264,10 +285,22 @@ class SADDLEBACK_PT_distance(SaddlebackSubPanel, bpy.types.Panel):
         _draw_button(layout, context, "saddleback.distance", "DRIVER_DISTANCE")
         _draw_state(layout, context, "distance")
         rows.draw_distance_sources(layout.column(), settings, item)
+
+
+class SADDLEBACK_PT_distance_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
+    """How distances are found."""
+
+    bl_parent_id = "SADDLEBACK_PT_distance"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = active_object(context).saddleback.distance
+        layout = self.split_layout(context)
+        layout.prop(settings, "lengths")
+        rows.draw_automatic(layout, settings, "limit", zero="None")
         rows.draw_quality(layout, settings)
         layout.prop(settings, "use_modifiers")
-        layout.prop(settings, "lengths")
-        layout.prop(settings, "distance_attribute")
+        rows.draw_name(layout, settings, "distance_attribute", "Attribute")
 
 
 class SADDLEBACK_PT_isolines(SaddlebackSubPanel, bpy.types.Panel):
@@ -319,9 +352,20 @@ class SADDLEBACK_PT_path(SaddlebackSubPanel, bpy.types.Panel):
         _draw_button(layout, context, "saddleback.path", "CURVE_PATH")
         _draw_state(layout, context, "path")
         rows.draw_path_points(layout.column(), settings, item)
-        layout.prop(settings, "lengths")
         rows.draw_length(layout, settings, "path_radius")
         rows.draw_length(layout, settings, "lift")
+
+
+class SADDLEBACK_PT_path_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
+    """How paths are found."""
+
+    bl_parent_id = "SADDLEBACK_PT_path"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = active_object(context).saddleback.path
+        layout = self.split_layout(context)
+        layout.prop(settings, "lengths")
         row = layout.row()
         row.active = settings.k > 0 or settings.quality != "EXACT"  # exact paths are straight
         row.prop(settings, "shorten")
@@ -343,8 +387,23 @@ class SADDLEBACK_PT_voronoi_2d(SaddlebackSubPanel, bpy.types.Panel):
         _draw_button(layout, context, "saddleback.voronoi_2d", "MESH_GRID")
         _draw_state(layout, context, "voronoi_2d")
         rows.draw_plane_sites(layout.column(), settings, item)
-        layout.prop(settings, "use_modifiers")
+
+
+class SADDLEBACK_PT_plane_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
+    """How the diagram is found."""
+
+    bl_parent_id = "SADDLEBACK_PT_voronoi_2d"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = active_object(context).saddleback.voronoi_2d
+        layout = self.split_layout(context)
         layout.prop(settings, "lengths")
+        layout.prop(settings, "edge_kind", text="Edges")
+        row = layout.row()
+        row.active = settings.sites_source in ("COUNT", "IMAGE")
+        row.prop(settings, "seed")
+        layout.prop(settings, "use_modifiers")
 
 
 class SaddlebackPlaneOutputPanel(SaddlebackSubPanel):
@@ -363,6 +422,7 @@ class SADDLEBACK_PT_plane_edges(SaddlebackPlaneOutputPanel, bpy.types.Panel):
     """The lines between cells."""
 
     bl_label = "Edges"
+    bl_options = {"DEFAULT_CLOSED"}
     switch = "make_edges"
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -374,6 +434,7 @@ class SADDLEBACK_PT_plane_cells(SaddlebackPlaneOutputPanel, bpy.types.Panel):
     """The mesh of the cells."""
 
     bl_label = "Cells"
+    bl_options = {"DEFAULT_CLOSED"}
     switch = "make_cells"
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -419,10 +480,20 @@ class SADDLEBACK_PT_direction_field(SaddlebackSubPanel, bpy.types.Panel):
         _draw_state(layout, context, "direction_field")
         rows.draw_pens(layout)
         rows.draw_field(layout.column(), settings)
-        layout.prop(settings, "use_modifiers")
+
+
+class SADDLEBACK_PT_field_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
+    """How the field follows strokes, and where it is written."""
+
+    bl_parent_id = "SADDLEBACK_PT_direction_field"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = active_object(context).saddleback.direction_field
+        layout = self.split_layout(context)
         layout.prop(settings, "lengths")
-        layout.prop(settings, "direction_attribute")
-        layout.prop(settings, "domain")
+        rows.draw_field_advanced(layout, settings)
+        layout.prop(settings, "use_modifiers")
 
 
 class SaddlebackFieldOutputPanel(SaddlebackSubPanel):
@@ -441,6 +512,7 @@ class SADDLEBACK_PT_arrows(SaddlebackFieldOutputPanel, bpy.types.Panel):
     """Arrows along the field."""
 
     bl_label = "Arrows"
+    bl_options = {"DEFAULT_CLOSED"}
     switch = "make_arrows"
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -475,9 +547,23 @@ class SADDLEBACK_PT_distribute(SaddlebackSubPanel, bpy.types.Panel):
         _draw_state(layout, context, "distribute")
         _draw_figures(layout, context, "distribute")
         rows.draw_shapes(layout.column(), settings, item)
-        layout.prop(settings, "use_modifiers")
-        layout.prop(settings, "lengths")
         layout.operator("saddleback.check_distribution", icon="CHECKMARK")
+
+
+class SADDLEBACK_PT_shapes_advanced(SaddlebackAdvancedPanel, bpy.types.Panel):
+    """How shapes lie."""
+
+    bl_parent_id = "SADDLEBACK_PT_distribute"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        item = active_object(context)
+        settings = item.saddleback.distribute
+        layout = self.split_layout(context)
+        layout.prop(settings, "lengths")
+        rows.draw_density_advanced(layout.column(), settings)
+        rows.draw_shapes_advanced(layout, settings, item)
+        layout.prop(settings, "use_modifiers")
 
 
 class SADDLEBACK_PT_shape_density(SaddlebackSubPanel, bpy.types.Panel):
@@ -498,6 +584,7 @@ class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
 
     bl_label = "Output"
     bl_parent_id = "SADDLEBACK_PT_distribute"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
@@ -509,7 +596,7 @@ class SADDLEBACK_PT_shape_outputs(SaddlebackSubPanel, bpy.types.Panel):
         row.prop(settings, "fit")
         row = layout.row()
         row.active = settings.make_bent and settings.shapes in ("COLLECTION", "IMAGE")
-        row.prop(settings, "thickness")
+        rows.draw_automatic(row, settings, "thickness")
         layout.prop(settings, "make_instances")
         layout.operator("saddleback.make_real", icon="OUTLINER_OB_MESH")
         layout.prop(settings, "make_outlines")
@@ -536,9 +623,9 @@ class SADDLEBACK_PT_repair(SaddlebackSubPanel, bpy.types.Panel):
         _draw_state(layout, context, "repair")
         _draw_figures(layout, context, "repair")
         settings = active_object(context).saddleback.repair
-        layout.prop(settings, "weld_distance")
+        rows.draw_automatic(layout, settings, "weld_distance", "Weld", zero="Same Place")
         layout.prop(settings, "close_cracks")
-        layout.prop(settings, "fill_holes")
+        rows.draw_automatic(layout, settings, "fill_holes", zero="None")
 
 
 @functools.cache
@@ -557,22 +644,28 @@ CLASSES = (
     SADDLEBACK_PT_centers,
     SADDLEBACK_PT_dual,
     SADDLEBACK_PT_shell,
+    SADDLEBACK_PT_tessellate_advanced,
     SADDLEBACK_PT_attributes,
     SADDLEBACK_PT_info,
     SADDLEBACK_PT_distance,
     SADDLEBACK_PT_isolines,
     SADDLEBACK_PT_preview,
+    SADDLEBACK_PT_distance_advanced,
     SADDLEBACK_PT_path,
+    SADDLEBACK_PT_path_advanced,
     SADDLEBACK_PT_voronoi_2d,
     SADDLEBACK_PT_plane_edges,
     SADDLEBACK_PT_plane_cells,
     SADDLEBACK_PT_plane_centers,
     SADDLEBACK_PT_sweep,
+    SADDLEBACK_PT_plane_advanced,
     SADDLEBACK_PT_direction_field,
     SADDLEBACK_PT_arrows,
     SADDLEBACK_PT_streamlines,
+    SADDLEBACK_PT_field_advanced,
     SADDLEBACK_PT_distribute,
     SADDLEBACK_PT_shape_density,
     SADDLEBACK_PT_shape_outputs,
+    SADDLEBACK_PT_shapes_advanced,
     SADDLEBACK_PT_repair,
 )

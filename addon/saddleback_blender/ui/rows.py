@@ -17,17 +17,25 @@ DENSITY_LISTS = {
 
 
 def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
-    """Draws where the cells' centers come from, and how they are evened out."""
+    """Draws where the cells' centers come from, and how even they become."""
     layout.prop(settings, "sites_source")
     if settings.sites_source == "COUNT":
         layout.prop(settings, "count")
-        layout.prop(settings, "seed")
     else:
         if settings.sites_source == "OBJECT":
             draw_object(layout, settings, "sites_object")
         layout.prop(settings, "relax_sites")
+    row = layout.row()
+    row.active = settings.sites_source == "COUNT" or settings.relax_sites
+    row.prop(settings, "evenness")
+
+
+def draw_sites_advanced(layout: bpy.types.UILayout, settings: Any) -> None:
+    """Draws how sites are found and evened out in detail."""
     column = layout.column()
     column.active = settings.sites_source == "COUNT" or settings.relax_sites
+    if settings.sites_source == "COUNT":
+        column.prop(settings, "seed")
     column.prop(settings, "iterations")
     if settings.sites_source == "COUNT":
         column.prop(settings, "starts")
@@ -62,13 +70,18 @@ def draw_density(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Obje
         draw_object(layout, settings, "density_object")
         if not settings.density_object:
             draw_collection(layout, settings, "density_collection")
-        layout.prop(settings, "density_reach")
-        layout.prop(settings, "density_beyond")
     if source in ("COLOR", "IMAGE"):
         layout.prop(settings, "density_channel")
     if source not in ("UNIFORM", "CURVATURE", "DISTANCE"):
-        layout.prop(settings, "density_smaller_by")
-    if source != "UNIFORM":
+        draw_automatic(layout, settings, "density_smaller_by", zero="By Paint")
+
+
+def draw_density_advanced(layout: bpy.types.UILayout, settings: Any) -> None:
+    """Draws how the paint, or the way from curves, becomes density."""
+    if settings.density_source == "DISTANCE":
+        draw_automatic(layout, settings, "density_reach")
+        layout.prop(settings, "density_beyond")
+    if settings.density_source != "UNIFORM":
         layout.prop(settings, "density_invert")
         layout.prop(settings, "density_contrast")
 
@@ -101,7 +114,6 @@ def draw_length(layout: bpy.types.UILayout, settings: Any, name: str, text: str 
 def draw_edges(layout: bpy.types.UILayout, settings: Any) -> None:
     """The object of the lines between cells."""
     layout.active = settings.make_edges
-    layout.prop(settings, "edge_kind", text="Kind")
     draw_length(layout, settings, "edge_radius")
 
 
@@ -140,21 +152,42 @@ def draw_dual(layout: bpy.types.UILayout, settings: Any) -> None:
 def draw_shell(layout: bpy.types.UILayout, settings: Any) -> None:
     """The printable ribs."""
     layout.active = settings.make_shell
-    draw_length(layout, settings, "rib_width", "Width")
-    draw_length(layout, settings, "rib_thickness", "Thickness")
+    for name, text in (("rib_width", "Width"), ("rib_thickness", "Thickness")):
+        if is_relative(settings):
+            draw_length(layout, settings, name, text)
+        else:
+            draw_automatic(layout, settings, name, text)
 
 
 def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:
     """Names of what is written on the mesh itself."""
-    layout.prop(settings, "cell_attribute", text="Cell")
-    layout.prop(settings, "distance_attribute", text="Distance")
+    draw_name(layout, settings, "cell_attribute", "Cell")
+    draw_name(layout, settings, "distance_attribute", "Distance")
     column = layout.column()
     column.active = settings.density_source != "UNIFORM"
-    column.prop(settings, "density_attribute", text="Density")
+    draw_name(column, settings, "density_attribute", "Density")
     layout.prop(settings, "write_edge_distance")
     column = layout.column()
     column.active = settings.write_edge_distance
-    column.prop(settings, "edge_distance_attribute", text="To Edge")
+    draw_name(column, settings, "edge_distance_attribute", "To Edge")
+
+
+def draw_name(layout: bpy.types.UILayout, settings: Any, name: str, label: str) -> None:
+    """A name that is too long to stand beside its label."""
+    column = layout.column(align=True)
+    column.use_property_split = False
+    column.label(text=label)
+    column.prop(settings, name, text="")
+
+
+def draw_automatic(
+    layout: bpy.types.UILayout, settings: Any, name: str, text: str | None = None, zero: str = "Auto"
+) -> None:
+    """A number of which 0 means something else, mostly that it is found; then a word beside it says so."""
+    row = layout.row(align=True)
+    row.prop(settings, name, text=text)
+    if not getattr(settings, name):
+        row.label(text=zero)
 
 
 def draw_quality(layout: bpy.types.UILayout, settings: Any) -> None:
@@ -163,7 +196,7 @@ def draw_quality(layout: bpy.types.UILayout, settings: Any) -> None:
     row = column.row()
     row.active = settings.k == 0
     row.prop(settings, "quality")
-    column.prop(settings, "k")
+    draw_automatic(column, settings, "k")
     row = column.row()
     row.active = settings.k > 0 or settings.quality != "EXACT"
     row.prop(settings, "cache_on_disk")
@@ -183,10 +216,12 @@ def draw_plane_sites(layout: bpy.types.UILayout, settings: Any, item: bpy.types.
         draw_object(layout, settings, "sites_object")
     if source in ("COUNT", "IMAGE"):
         layout.prop(settings, "count")
-        layout.prop(settings, "seed")
     else:
         layout.prop(settings, "weights_name")
-    layout.prop(settings, "iterations")
+        layout.prop(settings, "relax_sites")
+    row = layout.row()
+    row.active = source in ("COUNT", "IMAGE") or settings.relax_sites
+    row.prop(settings, "iterations")
 
 
 def draw_sweep(layout: bpy.types.UILayout, settings: Any) -> None:
@@ -208,31 +243,39 @@ def draw_field(layout: bpy.types.UILayout, settings: Any) -> None:
         draw_object(layout, settings, "strokes_object")
     elif settings.strokes == "COLLECTION":
         draw_collection(layout, settings, "strokes_collection")
-    if settings.strokes != "NONE":
-        layout.prop(settings, "hard_strokes")
-        row = layout.row()
-        row.active = not settings.hard_strokes
-        row.prop(settings, "stroke_weight")
-        layout.prop(settings, "stroke_reach")
-    layout.prop(settings, "singularities")
+    layout.prop(settings, "singularities", text="Singular")
     if settings.singularities == "EMPTIES":
         draw_collection(layout, settings, "singularities_collection")
         layout.operator("saddleback.add_singularity", icon="EMPTY_AXIS")
     layout.prop(settings, "turn")
 
 
+def draw_field_advanced(layout: bpy.types.UILayout, settings: Any) -> None:
+    """Draws how strokes are followed, and where the field is written."""
+    column = layout.column()
+    column.active = settings.strokes != "NONE"
+    column.prop(settings, "hard_strokes")
+    row = column.row()
+    row.active = not settings.hard_strokes
+    row.prop(settings, "stroke_weight")
+    draw_automatic(column, settings, "stroke_reach")
+    layout.prop(settings, "seed")
+    layout.prop(settings, "domain")
+    draw_name(layout, settings, "direction_attribute", "Attribute")
+
+
 def draw_arrows(layout: bpy.types.UILayout, settings: Any) -> None:
     """The view of a field."""
     layout.active = settings.make_arrows
     layout.prop(settings, "arrow_count")
-    layout.prop(settings, "arrow_length")
+    draw_automatic(layout, settings, "arrow_length")
 
 
 def draw_streamlines(layout: bpy.types.UILayout, settings: Any) -> None:
     """Lines along a field."""
     layout.active = settings.make_streamlines
-    layout.prop(settings, "streamline_spacing")
-    layout.prop(settings, "streamline_length")
+    draw_automatic(layout, settings, "streamline_spacing")
+    draw_automatic(layout, settings, "streamline_length")
     draw_length(layout, settings, "streamline_radius")
 
 
@@ -243,12 +286,11 @@ def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Objec
         draw_collection(layout, settings, "shapes_collection")
     elif settings.shapes == "IMAGE":
         draw_pointer(layout, settings, "shapes_image", "images")
-    layout.prop(settings, "maximal")
     row = layout.row()
     row.active = not settings.maximal or not settings.size
     row.prop(settings, "count")
     column = layout.column(align=True)
-    column.prop(settings, "size")
+    draw_automatic(column, settings, "size")
     column.prop(settings, "size_variation")
     draw_length(layout, settings, "gap")
     column = layout.column(align=True)
@@ -257,6 +299,11 @@ def draw_shapes(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Objec
     row.active = settings.overlap > 0.0
     row.prop(settings, "tilt")
     layout.prop(settings, "packing")
+
+
+def draw_shapes_advanced(layout: bpy.types.UILayout, settings: Any, item: bpy.types.Object) -> None:
+    """Draws how shapes lie and turn in detail."""
+    layout.prop(settings, "maximal")
     layout.prop(settings, "mirror")
     row = layout.row()
     row.active = not settings.maximal
@@ -273,7 +320,7 @@ def draw_shape_density(layout: bpy.types.UILayout, settings: Any, item: bpy.type
     draw_density(layout, settings, item)
     row = layout.row()
     row.active = settings.density_source != "UNIFORM"
-    row.prop(settings, "size_by_density")
+    row.prop(settings, "size_by_density", text="By Density")
     draw_paint_buttons(layout, "distribute")
 
 
@@ -288,7 +335,6 @@ def draw_distance_sources(layout: bpy.types.UILayout, settings: Any, item: bpy.t
         draw_object(layout, settings, "sources_object")
         if not settings.sources_object:
             draw_collection(layout, settings, "sources_collection")
-    layout.prop(settings, "limit")
 
 
 def draw_isolines(layout: bpy.types.UILayout, settings: Any) -> None:

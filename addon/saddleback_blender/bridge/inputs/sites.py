@@ -112,9 +112,7 @@ def object_points(context: bpy.types.Context, source: bpy.types.Object, name: st
     if other is None:
         raise BadInputError(f"'{source.name}': there is no object '{name}' to take sites from; choose one")
     if other == source:
-        raise BadInputError(
-            f"'{source.name}' cannot take its sites from itself; choose another object, or Selected Vertices"
-        )
+        raise BadInputError(f"'{source.name}' cannot take its sites from itself; choose another object, or Selected")
     if other.type != "MESH":
         raise BadInputError(f"'{name}' is no mesh object, so '{source.name}' cannot take sites from it; choose a mesh")
     with modified(context, other) as (shown, mesh):

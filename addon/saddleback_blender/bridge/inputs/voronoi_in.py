@@ -54,7 +54,7 @@ def read_voronoi_sites(
             return points, _weights(other, sites_mesh, settings.weights_name)
     if settings.weights_name:
         raise BadInputError(
-            f"'{source.name}': only vertices have weights; leave their name empty, or choose Selected Vertices or "
+            f"'{source.name}': only vertices have weights; leave their name empty, or choose Selected or "
             "Object for the sites"
         )
     return None, None

@@ -30,12 +30,17 @@ class SurfaceStrokes:
     left_out: tuple[str, ...] = ()  # whose lines are too far from it
 
 
+def reach_of(mesh: Any) -> float:
+    """How far strokes may be from the surface where nothing else is asked for."""
+    return REACH * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+
+
 def strokes_of(request: DirectionFieldRequest, mesh: Any) -> SurfaceStrokes:
     """The library's strokes. Raises BadInputError where no line comes near the surface."""
     if not request.strokes:
         return SurfaceStrokes([], [], 0)
     sb, settings = native.load(), request.settings
-    reach = settings.stroke_reach or REACH * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    reach = settings.stroke_reach or reach_of(mesh)
     step = float(mesh.mean_edge_length) / STEPS_PER_EDGE
     lines = [_smoothed(places_along(line, step), line.closed) for line in request.strokes]
     places, owner = np.concatenate(lines), np.repeat(np.arange(len(lines)), [len(line) for line in lines])

@@ -29,8 +29,8 @@ def even_streamlines(mesh: Any, field: Any, settings: DirectionFieldSettings, pr
     """Streamlines at the settings' spacing; of a cross field both ways, each keeping its distance to its like only."""
     sb = native.load()
     extent = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
-    spacing = settings.streamline_spacing or SPACING * extent
-    length = settings.streamline_length or LENGTH * spacing
+    spacing = progress.choose("streamline_spacing", settings.streamline_spacing, SPACING * extent)
+    length = progress.choose("streamline_length", settings.streamline_length, LENGTH * spacing)
     count = int(np.clip(mesh.area / spacing**2, 1, 50_000))
     starts = even_points(mesh, count, settings.seed)
     places, headings = starts.positions(mesh), field.directions(starts)[:, None]

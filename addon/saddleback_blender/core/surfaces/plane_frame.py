@@ -32,6 +32,15 @@ class PlaneFrame:
         return points
 
 
+def is_flat(surface: Surface) -> bool:
+    """Tells whether it lies in a plane."""
+    try:
+        plane_of(surface)
+    except BadInputError:
+        return False
+    return True
+
+
 def plane_of(surface: Surface) -> PlaneFrame:
     """The plane that a surface lies in. Raises BadInputError naming the vertex that is farthest from it."""
     vertices = surface.vertices

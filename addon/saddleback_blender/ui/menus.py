@@ -1,0 +1,91 @@
+"""Object > Saddleback, which Blender's search finds, too, and pages of the manual for the buttons' context menus."""
+
+from __future__ import annotations
+
+import bpy
+
+# OWNER: until the project has a home, as in pyproject.toml.
+MANUAL = "https://github.com/OWNER/saddleback/blob/main/docs/manual/"
+PAGES = {
+    "tessellate": "tessellation.md",
+    "relax_live": "tessellation.md",
+    "distance": "distance.md",
+    "path": "distance.md",
+    "voronoi_2d": "voronoi_2d.md",
+    "direction_field": "direction_field.md",
+    "draw_strokes": "direction_field.md",
+    "add_singularity": "direction_field.md",
+    "distribute": "shapes.md",
+    "check_distribution": "shapes.md",
+    "make_real": "shapes.md",
+    "paint_density": "tessellation.md",
+    "repair": "repair.md",
+}
+# Of settings on objects, by the group that they are in.
+GROUPS = {
+    "SaddlebackTessellateProps": "tessellation.md",
+    "SaddlebackDistanceProps": "distance.md",
+    "SaddlebackPathProps": "distance.md",
+    "SaddlebackVoronoi2dProps": "voronoi_2d.md",
+    "SaddlebackDirectionFieldProps": "direction_field.md",
+    "SaddlebackDistributeProps": "shapes.md",
+    "SaddlebackRepairProps": "repair.md",
+}
+# None is a line between groups.
+ENTRIES = (
+    ("tessellate", "MOD_EXPLODE"),
+    ("relax_live", "PLAY"),
+    ("voronoi_2d", "MESH_GRID"),
+    None,
+    ("distance", "DRIVER_DISTANCE"),
+    ("path", "CURVE_PATH"),
+    None,
+    ("direction_field", "FORCE_WIND"),
+    ("distribute", "STICKY_UVS_DISABLE"),
+    None,
+    ("repair", "TOOL_SETTINGS"),
+    ("hide_source", "HIDE_OFF"),
+    ("clear", "TRASH"),
+)
+
+
+class SADDLEBACK_MT_object(bpy.types.Menu):
+    """All that runs on the active object, with the settings that it keeps."""
+
+    bl_label = "Saddleback"
+    bl_idname = "SADDLEBACK_MT_object"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draws the menu."""
+        for entry in ENTRIES:
+            if entry is None:
+                self.layout.separator()
+            else:
+                self.layout.operator(f"saddleback.{entry[0]}", icon=entry[1])
+
+
+def draw_menu(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    """Draws the entry in the menu Object."""
+    menu.layout.separator()
+    menu.layout.menu(SADDLEBACK_MT_object.bl_idname)
+
+
+def manual_map() -> tuple[str, tuple[tuple[str, str], ...]]:
+    """Returns where the pages are, and the page of each operator and setting."""
+    operators = tuple((f"bpy.ops.saddleback.{name}*", page) for name, page in PAGES.items())
+    settings = tuple((f"bpy.types.{name.lower()}.*", page) for name, page in GROUPS.items())
+    return MANUAL, (*operators, *settings, ("bpy.ops.saddleback.*", "README.md"))
+
+
+def register() -> None:
+    """Makes everything of this module known to Blender."""
+    bpy.utils.register_class(SADDLEBACK_MT_object)
+    bpy.types.VIEW3D_MT_object.append(draw_menu)
+    bpy.utils.register_manual_map(manual_map)
+
+
+def unregister() -> None:
+    """Takes it back, in the opposite order."""
+    bpy.utils.unregister_manual_map(manual_map)
+    bpy.types.VIEW3D_MT_object.remove(draw_menu)
+    bpy.utils.unregister_class(SADDLEBACK_MT_object)

@@ -1,0 +1,212 @@
+"""What the tab, the redo panel, the menu and the manual map offer: few settings, in the unit that is chosen."""
+
+from fnmatch import fnmatchcase
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from scenes import add_object, grid, sphere
+from test_modal import press, run_to_end
+
+from saddleback_blender import jobs
+from saddleback_blender.core.settings import TessellateSettings, Voronoi2dSettings
+from saddleback_blender.ops import redo
+from saddleback_blender.ops.tessellate import SADDLEBACK_OT_tessellate
+from saddleback_blender.ops.voronoi_2d import SADDLEBACK_OT_voronoi_2d
+from saddleback_blender.props import BEGIN, PROPERTIES
+from saddleback_blender.ui import menus, panels
+from tests import synthetic_cells
+
+MOST_SETTINGS = 10
+
+
+class Layout:
+    """Notes which settings are drawn in place of drawing."""
+
+    def __init__(self, drawn):
+        self.__dict__["drawn"] = drawn
+
+    def __setattr__(self, name, value):
+        pass
+
+    def prop(self, settings, name, **_):
+        if settings.bl_rna.identifier.startswith("Saddleback"):
+            self.drawn.append(name)
+
+    def prop_search(self, settings, name, *_, **__):
+        self.prop(settings, name)
+
+    def template_ID(self, settings, name, **_):  # noqa: N802 - Blender's name
+        self.prop(settings, name)
+
+    def operator(self, *_, **__):
+        return type("Button", (), {})()
+
+    def label(self, **_):
+        pass
+
+    progress = separator = menu = label
+
+    def row(self, **_):
+        return self
+
+    column = box = split = row
+
+
+def drawn_by(panel):
+    """Settings that a panel draws, its header's switch among them."""
+    drawn = []
+    layout = Layout(drawn)
+    pretended = SimpleNamespace(layout=layout, split_layout=lambda _: layout, switch=getattr(panel, "switch", ""))
+    context = SimpleNamespace(
+        window_manager=bpy.context.window_manager,
+        view_layer=bpy.context.view_layer,
+        space_data=SimpleNamespace(shading=SimpleNamespace(type="WIREFRAME")),
+        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
+        region=None,
+    )
+    if hasattr(panel, "draw_header"):
+        panel.draw_header(pretended, context)
+    is_closed = "DEFAULT_CLOSED" in getattr(panel, "bl_options", set()) and hasattr(panel, "bl_parent_id")
+    if not is_closed or panel.bl_parent_id == "SADDLEBACK_PT_main":
+        panel.draw(pretended, context)
+    return drawn
+
+
+@pytest.mark.parametrize("name", list(PROPERTIES))
+@pytest.mark.parametrize("painted", [False, True])
+def test_at_most_ten_settings_are_shown_before_advanced(name, painted):
+    item = sphere()
+    if painted and "density_source" in PROPERTIES[name]:
+        getattr(item.saddleback, name).density_source = "VERTEX_GROUP"
+    top = next(panel for panel in panels.CLASSES if panel.__name__ == f"SADDLEBACK_PT_{name}")
+    family = [top, *(panel for panel in panels.CLASSES if getattr(panel, "bl_parent_id", "") == top.__name__)]
+    shown = [setting for panel in family for setting in drawn_by(panel)]
+    assert len(shown) == len(set(shown)) and shown
+    most = MOST_SETTINGS + 2 * (painted and name == "tessellate")  # the group's name and how much smaller
+    assert len(shown) <= most, shown
+
+
+@pytest.mark.parametrize("name", list(PROPERTIES))
+def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
+    item = sphere()
+    group = getattr(item.saddleback, name)
+    shown = set()
+    for source in ("UNIFORM", "DISTANCE", "IMAGE") if "density_source" in PROPERTIES[name] else ("",):
+        for unit in ("RELATIVE", "ABSOLUTE") if "lengths" in PROPERTIES[name] else ("",):
+            if source:
+                group.density_source = source
+            if unit:
+                group.lengths = unit
+            for panel in panels.CLASSES:
+                closed = set(getattr(panel, "bl_options", set()))
+                panel.bl_options = set()
+                try:
+                    shown |= set(drawn_by(panel))
+                finally:
+                    panel.bl_options = closed
+    # What is asked for only where another setting wants it.
+    dependent = {
+        "tessellate": {"sites_object", "relax_sites"},
+        "distance": {"sources_group", "sources_collection", "sources_object", "isoline_spacing"},
+        "path": {"points_group", "points_collection", "connect", "from_cursor"},
+        "voronoi_2d": {"uv_name", "sites_object", "image_name", "image_invert", "weights_name", "relax_sites"},
+        "direction_field": {"strokes_object", "strokes_collection", "singularities_collection", "align_weight"},
+        "distribute": {"shapes_collection", "shapes_image", "direction_attribute"},
+        "repair": set(),
+    }[name]
+    assert set(PROPERTIES[name]) - dependent <= shown
+
+
+@pytest.mark.parametrize("name", list(PROPERTIES))
+def test_the_redo_panel_has_six_rows_at_most_in_the_unit_that_is_chosen(name):
+    values = {key: prop.keywords.get("default") for key, prop in PROPERTIES[name].items()}
+    for unit in ("ABSOLUTE", "RELATIVE"):
+        for outputs in (False, True):
+            made = {key: outputs for key in values if key.startswith("make_")}
+            operator = type("Operator", (), values | made | {"lengths": unit})()
+            rows = redo.rows_of(operator, name)
+            assert len(rows) <= redo.MOST_ROWS and set(rows) <= set(values)
+            assert not any(key.endswith("_share") for key in rows) or unit == "RELATIVE"
+            if not outputs:
+                assert not any(key.startswith(("edge_", "rib_", "isoline_", "streamline_")) for key in rows)
+
+
+def test_evenness_stands_for_iterations_annealing_and_starts():
+    settings = sphere().saddleback.tessellate
+    assert settings.evenness == "EVEN"
+    settings.evenness = "PERFECT"
+    assert (settings.iterations, settings.annealing, settings.starts) == (60, 200, 1)
+    settings.iterations = 61
+    assert settings.evenness == "CUSTOM"
+    settings.evenness = "CUSTOM"
+    assert settings.iterations == 61
+    settings.evenness = "QUICK"
+    assert (settings.iterations, settings.annealing) == (5, 0)
+
+
+def test_the_menu_and_the_manual_name_operators_and_pages_that_are_there(request):
+    for name in (entry[0] for entry in menus.ENTRIES if entry):
+        assert hasattr(bpy.types, f"SADDLEBACK_OT_{name}"), name
+    pages = request.config.rootpath / "docs/manual"
+    url, patterns = menus.manual_map()
+    assert url.endswith("/")
+    assert all((pages / page).is_file() for _, page in patterns)
+    for group in menus.GROUPS:
+        assert bpy.types.PropertyGroup.bl_rna_get_subclass_py(group) is not None, group
+
+    def page_of(identifier):  # as Blender looks them up
+        return next(page for pattern, page in patterns if fnmatchcase(identifier.lower(), pattern.lower()))
+
+    assert page_of("bpy.ops.saddleback.tessellate") == page_of("bpy.types.SaddlebackTessellateProps.count")
+    assert (
+        page_of("bpy.ops.saddleback.distribute") == "shapes.md" and page_of("bpy.ops.saddleback.clear") == "README.md"
+    )
+
+
+def told(kind, settings, **options):
+    operator, context = press(kind, settings, **options)
+    operator.invoke(context, None)
+    return run_to_end(operator, context), operator
+
+
+def test_the_space_of_a_diagram_is_found():
+    assert BEGIN["voronoi_2d"]["space"] == "AUTO"
+    few = {"count": 30, "iterations": 2}
+    grid()
+    assert told(SADDLEBACK_OT_voronoi_2d, Voronoi2dSettings(), **few)[0] == {"FINISHED"}
+    bowl = sphere()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for vertex in bowl.data.vertices:
+        vertex.select = vertex.co.z > 0.5
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.delete(type="VERT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert told(SADDLEBACK_OT_voronoi_2d, Voronoi2dSettings(), **few)[0] == {"FINISHED"}  # a disk
+    add_object("Closed", *synthetic_cells.sphere(2))
+    result, operator = told(SADDLEBACK_OT_voronoi_2d, Voronoi2dSettings(), **few)
+    assert result == {"CANCELLED"} and "Tessellate makes cells of any surface" in operator.messages[-1][1]
+
+
+def test_chosen_sites_stay_when_the_panel_begins_with_iterations():
+    item = grid()
+    seeds = add_object("Seeds", [(0.2, 0.3, 0), (0.7, 0.6, 0), (0.4, 0.8, 0)], [(0, 1, 2)], active=False)
+    item.saddleback.voronoi_2d.sites_object = seeds
+    options = {"sites_source": "OBJECT", "sites_object": seeds.name, "make_centers": True}
+    assert told(SADDLEBACK_OT_voronoi_2d, Voronoi2dSettings(), **options)[0] == {"FINISHED"}
+    assert item.saddleback.voronoi_2d.iterations == 15
+    centers = bpy.data.objects[f"{item.name} Voronoi Centers"]
+    places = sorted(tuple(round(value, 3) for value in vertex.co.xy) for vertex in centers.data.vertices)
+    assert places == [(0.2, 0.3), (0.4, 0.8), (0.7, 0.6)]
+
+
+def test_what_a_zero_left_to_the_run_is_told():
+    sphere()
+    few = {"count": 20, "iterations": 2, "k": 30, "make_shell": True, "lengths": "ABSOLUTE"}
+    assert told(SADDLEBACK_OT_tessellate, TessellateSettings(), **few)[0] == {"FINISHED"}
+    line = next(line for line in jobs.state.figures if line.startswith("Automatic: "))
+    assert line.startswith("Automatic: Rib Width 0.0") and "Rib Thickness 0.0" in line
+    assert told(SADDLEBACK_OT_tessellate, TessellateSettings(), **few, rib_width=0.05, rib_thickness=0.04)[0]
+    assert not any(line.startswith("Automatic") for line in jobs.state.figures)
