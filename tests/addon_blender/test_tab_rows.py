@@ -107,7 +107,7 @@ def test_every_setting_is_in_the_panels_somewhere_open_or_closed(name):
                     panel.bl_options = closed
     # What is asked for only where another setting wants it.
     dependent = {
-        "tessellate": {"sites_object", "relax_sites"},
+        "tessellate": {"sites_object", "relax_sites", "cell_size"},
         "distance": {"sources_group", "sources_collection", "sources_object", "isoline_spacing"},
         "path": {"points_group", "points_collection", "connect", "from_cursor"},
         "voronoi_2d": {"uv_name", "sites_object", "image_name", "image_invert", "weights_name", "relax_sites"},
@@ -210,3 +210,15 @@ def test_what_a_zero_left_to_the_run_is_told():
     assert line.startswith("Automatic: Rib Width 0.0") and "Rib Thickness 0.0" in line
     assert told(SADDLEBACK_OT_tessellate, TessellateSettings(), **few, rib_width=0.05, rib_thickness=0.04)[0]
     assert not any(line.startswith("Automatic") for line in jobs.state.figures)
+
+
+def test_cells_can_be_asked_for_by_their_size():
+    item = sphere()
+    area = sum(polygon.area for polygon in item.data.polygons)
+    options = {"sites_source": "SIZE", "cell_size": (area / 50) ** 0.5, "iterations": 2, "k": 30}
+    bpy.ops.saddleback.tessellate(**options)
+    assert jobs.state.line.startswith(f"'{item.name}': 50 cells")
+    bpy.ops.saddleback.tessellate()
+    assert jobs.state.line.startswith(f"'{item.name}': 50 cells")  # the size is kept, not the number
+    with pytest.raises(RuntimeError, match=r"would have .* cells of size 1e-05; make them larger"):
+        bpy.ops.saddleback.tessellate(**options | {"cell_size": 1e-5})

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from .errors import BadInputError
 from .requests import Surface
 from .settings import DistributeSettings, TessellateSettings, Voronoi2dSettings
 
 SHARE = "_share"  # ends the name of the setting that says a length in percent; the length's own name is before it
+MOST_CELLS = 1_000_000  # that a size may ask for: a number is typed on purpose, a size may be off by the model's unit
 RIB_SHARE = 0.125  # of a cell's size: the width of ribs where none is given
 # The switch of the output that a length belongs to.
 OUTPUTS = {
@@ -40,6 +42,14 @@ def _unit(settings: Any, surface: Surface, count: int) -> float:
     if isinstance(settings, (TessellateSettings, Voronoi2dSettings, DistributeSettings)):
         return math.sqrt(surface.area / max(count, 1))
     return surface.extent
+
+
+def count_of_size(surface: Surface, size: float) -> int:
+    """Number of cells of a size, the side of a square of their area. Raises BadInputError where there are too many."""
+    count = max(1, round(surface.area / size**2))
+    if count > MOST_CELLS:
+        raise BadInputError(f"'{surface.name}' would have {count:,} cells of size {size:g}; make them larger")
+    return count
 
 
 def told_lengths(

@@ -37,7 +37,8 @@ class TessellateSettings(DensitySettings):
     iterations: int = 15
     starts: int = 1  # relaxations from so many samples; the best is taken
     annealing: int = 0  # steps in which the sites are shaken before the iterations
-    sites_source: str = "COUNT"  # COUNT, SELECTED, OBJECT
+    sites_source: str = "COUNT"  # COUNT, SIZE, SELECTED, OBJECT
+    cell_size: float = 0.1  # of SIZE: the side of a square of the mean cell's area
     sites_object: str = ""
     relax_sites: bool = False  # move chosen sites too (those of COUNT always move)
     # Lines on which some sites of COUNT stay:

@@ -10,10 +10,10 @@ from ..core.lengths import OUTPUTS, SHARE
 
 MOST_ROWS = 6
 ROWS = {
-    "tessellate": ("count", "seed", "iterations", "edge_radius", "gap", "thickness", "inset", "rib_width"),
+    "tessellate": ("count", "seed", "iterations", "edge_radius", "gap", "thickness", "inset", "instance_scale"),
     "distance": ("isoline_count", "isoline_radius", "preview_lines", "limit"),
     "path": ("path_radius", "lift", "connect", "shorten"),
-    "voronoi_2d": ("count", "seed", "iterations", "edge_radius", "gap", "thickness", "inset"),
+    "voronoi_2d": ("count", "seed", "iterations", "edge_radius", "gap", "thickness", "instance_size", "instance_scale"),
     "direction_field": ("symmetry", "align", "turn", "arrow_count", "streamline_spacing", "streamline_radius"),
     "distribute": ("count", "seed", "size", "packing", "gap", "outline_radius"),
     "repair": ("weld_distance", "close_cracks", "fill_holes"),
@@ -22,9 +22,15 @@ ROWS = {
 SWITCHES = OUTPUTS | {
     "isoline_count": "make_isolines",
     "preview_lines": "make_preview",
+    "instance_size": "make_centers",
+    "instance_scale": "make_centers",
     "arrow_count": "make_arrows",
     "streamline_spacing": "make_streamlines",
 }
+
+
+# What stands for a number of cells, by where they come from.
+COUNTS = {"SIZE": "cell_size", "SELECTED": "", "OBJECT": ""}
 
 
 def rows_of(operator: Any, settings_name: str) -> list[str]:
@@ -36,6 +42,10 @@ def rows_of(operator: Any, settings_name: str) -> list[str]:
             switch = ""  # between shapes, whatever is made of them
         if not getattr(operator, switch, True):
             continue
+        if name == "count" and getattr(operator, "sites_source", name) in COUNTS:
+            name = COUNTS[operator.sites_source]
+            if not name:
+                continue
         is_share = hasattr(operator, name + SHARE) and operator.lengths == "RELATIVE"
         names.append(name + SHARE if is_share else name)
     return names[:MOST_ROWS]

@@ -28,6 +28,7 @@ from ..bridge.outputs.output_surface import check_attribute_names, output_surfac
 from ..core import runs
 from ..core.errors import BadInputError
 from ..core.figures import cell_faults_of, faults_of, lines_of, lost_of, shell_faults_of
+from ..core.lengths import count_of_size
 from ..core.live_cells import LiveCells
 from ..core.progress import Progress
 from ..core.requests import TessellateRequest
@@ -64,6 +65,9 @@ class CellsOperator(SurfaceOperator):
         _check(source, settings)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
             surface = read_surface(source, mesh)
+            if settings.sites_source == "SIZE":
+                count = count_of_size(surface, settings.cell_size)
+                settings = replace(settings, sites_source="COUNT", count=count)
             sites = read_sites(context, source, mesh, settings)
             request = TessellateRequest(
                 surface=surface,

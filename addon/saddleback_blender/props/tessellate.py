@@ -12,6 +12,7 @@ from .kinds import choice, detail, length, lengths, look, name_of, on_disk, qual
 
 SITES_SOURCES = (
     ("COUNT", "Count", "Place this many sites, by the density"),
+    ("SIZE", "Cell Size", "Place as many sites as make cells of this size, in the mean"),
     ("SELECTED", "Selected", "One cell for each vertex selected in Edit Mode"),
     ("OBJECT", "Object", "One cell for each vertex of another object, brought to the nearest point of the surface"),
 )
@@ -94,6 +95,7 @@ TESSELLATE: dict[str, Any] = {
     ),
     "method": choice("Method", "How the sites find their places", METHODS, "LBFGS"),
     "sites_source": choice("Sites", "Where the cells' centers come from", SITES_SOURCES, "COUNT"),
+    "cell_size": length("Cell Size", "The side of a square as large as the cells are in the mean", 0.1, least=1e-6),
     "sites_object": name_of("Sites Object", "The object whose vertices become sites"),
     "relax_sites": switch("Relax Sites", "Move the chosen sites to even the cells out", False),
     "hold_sharp": switch(

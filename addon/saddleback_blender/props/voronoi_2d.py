@@ -17,8 +17,7 @@ SPACES = (
 )
 PLANE_SITES = (
     ("COUNT", "Count", "Place this many sites evenly on the surface"),
-    SITES_SOURCES[1],
-    SITES_SOURCES[2],
+    *SITES_SOURCES[2:],
     ("IMAGE", "Image", "Place this many sites by how dark an image is: stippling"),
 )
 

@@ -19,29 +19,34 @@ DENSITY_LISTS = {
 def draw_sites(layout: bpy.types.UILayout, settings: Any) -> None:
     """Draws where the cells' centers come from, and how even they become."""
     layout.prop(settings, "sites_source")
-    if settings.sites_source == "COUNT":
-        layout.prop(settings, "count")
+    if is_placed(settings):
+        layout.prop(settings, "count" if settings.sites_source == "COUNT" else "cell_size")
     else:
         if settings.sites_source == "OBJECT":
             draw_object(layout, settings, "sites_object")
         layout.prop(settings, "relax_sites")
     row = layout.row()
-    row.active = settings.sites_source == "COUNT" or settings.relax_sites
+    row.active = is_placed(settings) or settings.relax_sites
     row.prop(settings, "evenness")
+
+
+def is_placed(settings: Any) -> bool:
+    """Tells whether sites are placed by the run and not chosen."""
+    return settings.sites_source in ("COUNT", "SIZE")
 
 
 def draw_sites_advanced(layout: bpy.types.UILayout, settings: Any) -> None:
     """Draws how sites are found and evened out in detail."""
     column = layout.column()
-    column.active = settings.sites_source == "COUNT" or settings.relax_sites
-    if settings.sites_source == "COUNT":
+    column.active = is_placed(settings) or settings.relax_sites
+    if is_placed(settings):
         column.prop(settings, "seed")
     column.prop(settings, "iterations")
-    if settings.sites_source == "COUNT":
+    if is_placed(settings):
         column.prop(settings, "starts")
     column.prop(settings, "annealing")
     column.prop(settings, "method")
-    if settings.sites_source == "COUNT":
+    if is_placed(settings):
         _draw_held(layout.column(heading="Keep", align=True), settings)
 
 
@@ -374,7 +379,10 @@ def draw_pointer(layout: bpy.types.UILayout, settings: Any, name: str, blocks: s
     if _is_name(settings, name):
         layout.prop_search(settings, name, bpy.data, blocks)
     elif blocks == "images":
-        layout.template_ID(settings, name, open="image.open", text=settings.bl_rna.properties[name].name)
+        column = layout.column(align=True)  # with all its buttons it leaves no room for a label, or a name
+        column.use_property_split = False
+        column.label(text=settings.bl_rna.properties[name].name)
+        column.template_ID(settings, name, open="image.open")
     else:
         layout.prop(settings, name)
 
