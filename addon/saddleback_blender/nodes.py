@@ -394,7 +394,7 @@ def edges_material() -> bpy.types.Material:
 
 def dots_material() -> bpy.types.Material:
     """Ink."""
-    return _find_material(DOTS) or _new_colored("Saddleback Dots", DOTS, (0.008, 0.009, 0.012, 1.0), 0.8)
+    return find_material(DOTS) or _new_colored("Saddleback Dots", DOTS, (0.008, 0.009, 0.012, 1.0), 0.8)
 
 
 def paths_material() -> bpy.types.Material:
