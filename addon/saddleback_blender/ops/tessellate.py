@@ -202,7 +202,7 @@ def _writes_density(settings: TessellateSettings) -> bool:
 
 def _steps(result: CellsResult) -> str:
     if not result.iterations:
-        return ""
+        return ", stopped before the first iteration" if result.stop_reason == "cancelled" else ""
     energy = f", energy {result.energy[-1]:.4g}" if len(result.energy) else ""
     steps = "iteration" if result.iterations == 1 else "iterations"
     return f", {result.iterations} {steps}{ENDS.get(result.stop_reason, '')}{energy}"
