@@ -1,4 +1,5 @@
-# OpenMesh's core with its asserts off, as objects that become a part of our library.
+# The mesh of OpenMesh's core with its asserts off, as objects that become a part of our library; its readers and writers
+# stay out.
 #
 # Debian's package is a shared library whose asserts abort the process, which inside Blender would cost the artist's
 # work. PyPI's source package of the OpenMesh bindings carries the C++ sources.
@@ -17,22 +18,12 @@ endif()
 
 set(_core ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src/OpenMesh/Core)
 add_library(OpenMeshCore OBJECT
-  ${_core}/IO/BinaryHelper.cc
-  ${_core}/IO/IOManager.cc
-  ${_core}/IO/OMFormat.cc
-  ${_core}/IO/reader/BaseReader.cc
-  ${_core}/IO/reader/OBJReader.cc
-  ${_core}/IO/reader/OFFReader.cc
-  ${_core}/IO/reader/PLYReader.cc
-  ${_core}/IO/reader/STLReader.cc
   ${_core}/Mesh/ArrayKernel.cc
   ${_core}/Mesh/BaseKernel.cc
   ${_core}/Mesh/PolyConnectivity.cc
   ${_core}/Mesh/TriConnectivity.cc
   ${_core}/System/omstream.cc
-  ${_core}/Utils/BaseProperty.cc
-  ${_core}/Utils/Endian.cc
-  ${_core}/Utils/RandomNumberGenerator.cc)
+  ${_core}/Utils/BaseProperty.cc)
 target_include_directories(OpenMeshCore SYSTEM PUBLIC ${SADDLEBACK_OPENMESH_SOURCE}/OpenMesh/src)
 target_compile_definitions(OpenMeshCore PUBLIC OM_STATIC_BUILD PRIVATE _USE_MATH_DEFINES NDEBUG)
-target_compile_options(OpenMeshCore PRIVATE -w -O1)  # reading files waits for the disk: -O3 takes minutes to compile and gains nothing
+target_compile_options(OpenMeshCore PRIVATE -w)

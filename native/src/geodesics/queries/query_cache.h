@@ -16,7 +16,8 @@
 namespace saddleback {
 
 /// Safe to use from any number of threads.
-struct QueryCache {
+class QueryCache {
+ public:
   ScratchPool<GraphSearch> field_searches;
   ScratchPool<PointSearch> point_searches;
   ScratchPool<DirectFanFinder> fan_finders;

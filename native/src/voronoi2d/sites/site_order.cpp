@@ -143,7 +143,8 @@ class Gatherer {
 #endif
       const Placed item = items[i];
       const Vec2 site = sites[item.index];
-      has_equal |= (site.x() == before.x()) & (site.y() == before.y());
+      const bool has_equal_x = site.x() == before.x(), has_equal_y = site.y() == before.y();
+      has_equal |= has_equal_x & has_equal_y;
       before = site;
       to_x[i] = site.x() * scale;
       to_y[i] = site.y() * scale;

@@ -22,8 +22,8 @@
 //
 // Plain functions on flat arrays, without allocation: the same code can step a circle on a device.
 
-#include <cfloat>
 #include <cstdint>
+#include <limits>
 
 #include "saddleback/types.h"
 
@@ -64,7 +64,8 @@ struct SweptSite {
   Index site;
 };
 
-constexpr double k_never = DBL_MAX, k_latest = 0.5 * DBL_MAX;  ///< events lie before `k_latest`, or never
+constexpr double k_never = std::numeric_limits<double>::max(),
+                 k_latest = 0.5 * k_never;  ///< events lie before `k_latest`, or never
 
 /// Returns when an arc b vanishes between the arcs a and c before and after it, where the sign of their turn must be
 /// exact: the last radius of all, or never. Between two parts of one ellipse an arc stays; three sites nearly on one

@@ -15,8 +15,6 @@ namespace {
 /// Finds cells, a block of sites in a row after the other.
 class CellFinder {
  public:
-  static constexpr Index k_block = 64;
-
   CellFinder(const WeightedSites& sites, const DiskTree& tree) : points_(sites.points), tree_(tree) {
     double heaviest = 0;
     for (const DiskTree::Disk& disk : tree.widest()) heaviest = std::max(heaviest, std::fabs(disk.radius));
