@@ -288,7 +288,7 @@ py::object field_from_turns(const py::object& mesh_object, const py::object& ang
                             const py::object& symmetry) {
   const Mesh& mesh = as_mesh(mesh_object, "mesh");
   const int wanted = as_integer(symmetry, "symmetry");
-  const ArrayIn<double> own = as_reals(angles, "angles", static_cast<std::size_t>(mesh.face_count()));
+  const ArrayIn<double> own = as_reals(angles, "angles", mesh.face_count());
   const ArrayIn<double> rows = as_points3(turns, "turns");
   py::object result = py::cast(without_gil([&] { return field_of_turns(mesh, wanted, own.values, rows.values); }));
   py::detail::keep_alive_impl(result, mesh_object);
