@@ -16,15 +16,15 @@ bl_info = {
 
 def register() -> None:
     """Makes everything of this module known to Blender."""
-    from . import jobs, ops, prefs, props, ui
+    from . import jobs, ops, prefs, props, translations, ui
 
-    for module in (props, prefs, jobs, ops, ui):
+    for module in (translations, props, prefs, jobs, ops, ui):
         module.register()
 
 
 def unregister() -> None:
     """Takes it back, in the opposite order."""
-    from . import jobs, ops, prefs, props, ui
+    from . import jobs, ops, prefs, props, translations, ui
 
-    for module in (ui, ops, jobs, prefs, props):
+    for module in (ui, ops, jobs, prefs, props, translations):
         module.unregister()
