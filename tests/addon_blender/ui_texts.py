@@ -49,7 +49,7 @@ def _operator(own: Any) -> Any:
 
 
 def _of_property(prop: Any) -> Iterator[str]:
-    yield from (prop.name, prop.description)
+    yield from (prop.name if prop.name != prop.identifier else "", prop.description)
     if prop.type == "ENUM":
         for item in prop.enum_items:
             yield from (item.name, item.description)
