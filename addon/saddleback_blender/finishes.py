@@ -10,13 +10,27 @@ import numpy as np
 from . import compat, nodes
 from .core.fields.image_colors import to_linear
 from .core.results import Reals
-from .looks import Finish, finish_of
+from .looks import LOOKS, Finish, finish_of
+
+GROUND = "ground"  # begins the kind of a material that a body has below a look
 
 
 def palette_of(finish: Finish) -> Reals:
     """(m, 3) linear colors."""
-    encoded = [[int(color[i : i + 2], 16) / 255.0 for i in (1, 3, 5)] for color in finish.colors]
-    return to_linear(np.array(encoded))
+    return np.array([linear_of(color) for color in finish.colors])
+
+
+def linear_of(color: str) -> Reals:
+    """(3,) of "#rrggbb"."""
+    return to_linear(np.array([int(color[i : i + 2], 16) / 255.0 for i in (1, 3, 5)]))
+
+
+def ground_of(look: str) -> bpy.types.Material | None:
+    """The material of the body below a look, None where that stays as it is."""
+    if look not in LOOKS or not LOOKS[look].ground:
+        return None
+    kind, name = f"{GROUND} {look}", f"Saddleback {LOOKS[look].label} Ground"
+    return nodes.find_material(kind) or nodes.new_colored(name, kind, (*linear_of(LOOKS[look].ground), 1.0), 0.8)
 
 
 def material_of(look: str, otherwise: Callable[[], bpy.types.Material]) -> bpy.types.Material:

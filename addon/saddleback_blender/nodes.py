@@ -389,17 +389,17 @@ def shapes_material() -> bpy.types.Material:
 
 def edges_material() -> bpy.types.Material:
     """A dark plain material for the lines between cells."""
-    return find_material(EDGES) or _new_colored("Saddleback Edges", EDGES, (0.03, 0.03, 0.035, 1.0), 0.4)
+    return find_material(EDGES) or new_colored("Saddleback Edges", EDGES, (0.03, 0.03, 0.035, 1.0), 0.4)
 
 
 def dots_material() -> bpy.types.Material:
     """Ink."""
-    return find_material(DOTS) or _new_colored("Saddleback Dots", DOTS, (0.008, 0.009, 0.012, 1.0), 0.8)
+    return find_material(DOTS) or new_colored("Saddleback Dots", DOTS, (0.008, 0.009, 0.012, 1.0), 0.8)
 
 
 def paths_material() -> bpy.types.Material:
     """A bright plain material for shortest paths, which stands out on every color of the distance preview."""
-    return find_material(PATHS) or _new_colored("Saddleback Paths", PATHS, (0.0, 0.36, 0.55, 1.0), 0.4)
+    return find_material(PATHS) or new_colored("Saddleback Paths", PATHS, (0.0, 0.36, 0.55, 1.0), 0.4)
 
 
 def field_materials() -> list[bpy.types.Material]:
@@ -411,7 +411,7 @@ def field_materials() -> list[bpy.types.Material]:
         ("Saddleback Sources", SOURCES, (0.85, 0.13, 0.06, 1.0)),
         ("Saddleback Saddles", SADDLES, (0.04, 0.2, 0.8, 1.0)),
     )
-    return [find_material(kind) or _new_colored(name, kind, color, 0.45) for name, kind, color in looks]
+    return [find_material(kind) or new_colored(name, kind, color, 0.45) for name, kind, color in looks]
 
 
 def _new_painted(name: str, kind: str, roughness: float) -> bpy.types.Material:
@@ -430,7 +430,8 @@ def show_attribute(material: bpy.types.Material, shader: Any) -> None:
     material.node_tree.links.new(color.outputs["Color"], shader.inputs["Base Color"])
 
 
-def _new_colored(name: str, kind: str, color: tuple[float, ...], roughness: float) -> bpy.types.Material:
+def new_colored(name: str, kind: str, color: tuple[float, ...], roughness: float) -> bpy.types.Material:
+    """A material of one color."""
     material, shader = new_material(name, kind)
     shader.inputs["Base Color"].default_value = color
     shader.inputs["Roughness"].default_value = roughness

@@ -17,7 +17,7 @@ from saddleback_blender.core.surfaces.normals import normals_at
 from saddleback_blender.ops.look_presets import read_preset
 
 ROLES = {
-    "PANELS": "cells", "PEBBLES": "cells", "LAMP": "shell", "REMESH": "dual", "BANDS": "isolines", "SCALES": "shapes",
+    "PANELS": "cells", "PEBBLES": "cells", "LAMP": "shell", "STIPPLE": "centers", "REMESH": "dual", "BANDS": "isolines", "SCALES": "shapes",
     "FEATHERS": "shapes", "STUDS": "shapes", "MOSAIC": "shapes",
 }  # fmt: skip
 
@@ -68,8 +68,28 @@ def test_a_look_takes_the_place_of_another_whoever_makes_it():
         operators = ("tessellate", "distribute", "distance")
         shown = [getattr(item.saddleback, name).look for name in operators]
         assert sorted(shown) == sorted([look, "NONE", "NONE"])
-        has_preview = any(material is not None for material in item.data.materials) or len(item.material_slots)
-        assert bool(has_preview) == (look == "BANDS")
+        names = [slot.material.name for slot in item.material_slots]
+        below = {"PANELS": "Panels Ground", "STUDS": "Studs Ground", "BANDS": "Distance", "PEBBLES": "Pebbles Ground"}
+        assert names == ([f"Saddleback {below[look]}"] if look in below else [])
+        assert (item.hide_render, item.display_type) == ((True, "BOUNDS") if look == "LAMP" else (False, "TEXTURED"))
+    bpy.ops.saddleback.clear()
+    assert not item.material_slots and not item.data.materials and not materials()
+
+
+def test_a_body_with_a_material_keeps_it_and_comes_back_from_hiding():
+    item = sphere()
+    own = bpy.data.materials.new("Own")
+    item.data.materials.append(own)
+    apply("MOSAIC")
+    assert item.material_slots[0].material == own
+    item.display_type = "WIRE"
+    apply("LAMP")
+    assert item.hide_render and item.display_type == "BOUNDS"
+    bpy.ops.saddleback.tessellate(look="NONE", make_cells=True)
+    assert not item.hide_render and item.display_type == "WIRE"
+    apply("REMESH")
+    bpy.ops.saddleback.clear()
+    assert not item.hide_render and item.display_type == "WIRE" and list(item.data.materials) == [own]
 
 
 def test_what_the_artist_painted_and_chose_stays():

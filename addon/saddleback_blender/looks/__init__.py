@@ -36,6 +36,8 @@ class Look:
     operator: str
     settings: dict[str, Any] = field(default_factory=dict)
     finish: Finish | None = None
+    ground: str = ""  # sRGB: the body's color between what lies on it, where it has no material of its own
+    hides_source: bool = False  # which would lie in or on what is made
 
 
 LOOKS: dict[str, Look] = {
@@ -50,7 +52,7 @@ LOOKS: dict[str, Look] = {
                 "#d8d4ca", "#cfcabf", "#c6c2b8", "#e4e0d5", "#dad7cf", "#bcbab3", "#ece8dd", "#d2cdc0", "#98a0a5",
                 "#7f878d", "#d9692f",
             ), 0.35, coat=0.5, contrast=0.04,
-        ),
+        ), ground="#26282a",
     ),
     "PEBBLES": Look(
         "Pebbles", "Round stones side by side, like leather or a riverbed", "MESH_ICOSPHERE", "tessellate",
@@ -59,35 +61,48 @@ LOOKS: dict[str, Look] = {
             "inset_share": 24.0, "thickness_share": 18.0,
         },
         Finish("Pebbles", ("#6f675d", "#8c8273", "#a59a88", "#574f49", "#7d6a58", "#949087"), 0.55, contrast=0.2),
+        ground="#2b2622",
     ),
     "SCALES": Look(
         "Scales", "Scales that overlap along the strokes, like those of a fish or a roof's tiles", "MOD_FLUID",
         "distribute", {"shapes": "SCALES", "count": 700, "overlap": 0.6, "tilt": math.radians(14.0), "fit": 0.04},
         Finish("Scales", ("#2a6d5c", "#1f5a4e", "#3b8266", "#184741", "#57926a"), 0.3, coat=0.5),
+        ground="#12302a",
     ),
     "FEATHERS": Look(
         "Feathers", "Plumage along the strokes", "FORCE_WIND", "distribute",
         {"shapes": "FEATHERS", "count": 700, "overlap": 0.6, "tilt": math.radians(9.0), "fit": 0.04},
         Finish("Feathers", ("#2b3f5c", "#35557a", "#24344c", "#4a7296", "#1c2a3d"), 0.6),
+        ground="#161f2c",
     ),
     "STUDS": Look(
         "Studs", "Brass heads side by side", "MESH_CYLINDER", "distribute",
         {"shapes": "STUDS", "count": 400, "fit": 0.03},
         Finish("Studs", ("#c9a15a", "#bd9350", "#d2ae6c"), 0.3, metallic=1.0, contrast=0.05),
+        ground="#3a2418",
     ),
     "MOSAIC": Look(
         "Mosaic", "Small tiles of stone and glass", "MOD_LATTICE", "distribute",
         {"shapes": "MOSAIC", "count": 900, "fit": 0.03},
         Finish("Mosaic", ("#1f5a94", "#2a9d8f", "#e9c46a", "#e2714f", "#f1ecdd", "#264653"), 0.25, coat=0.4),
+        ground="#4a463f",
     ),
     "LAMP": Look(
         "Lamp", "A lattice of ribs, closed and thick enough to print", "LIGHT", "tessellate",
         {"count": 150, "iterations": 40, "make_edges": False, "make_shell": True},
-        Finish("Lamp", ("#f1e3cb",), 0.45, contrast=0.0),
+        Finish("Lamp", ("#e0ae62",), 0.45, contrast=0.0), hides_source=True,
+    ),
+    "STIPPLE": Look(
+        "Stipple", "Ink dots on paper, close together where the density is high", "STICKY_UVS_DISABLE", "tessellate",
+        {
+            "count": 3000, "iterations": 20, "make_edges": False, "make_centers": True, "instance_dots": True,
+            "instance_size": "EQUAL", "instance_scale": 0.5,
+        },
+        ground="#f2eee3",
     ),
     "REMESH": Look(
         "Remesh", "A new mesh of even triangles with the same layers and materials", "MOD_REMESH", "tessellate",
-        {"count": 2000, "iterations": 60, "make_edges": False, "make_dual": True},
+        {"count": 2000, "iterations": 60, "make_edges": False, "make_dual": True}, hides_source=True,
     ),
     "BANDS": Look(
         "Bands", "Colors and lines by the distance along the surface", "IPO_ELASTIC", "distance",

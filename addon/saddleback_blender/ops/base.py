@@ -15,7 +15,7 @@ from ..bridge.inputs.source import Source, active_object, usable_source, why_not
 from ..bridge.outputs.following import Follower
 from ..bridge.outputs.lifting import lift_lying
 from ..bridge.outputs.out_collection import outputs_of
-from ..bridge.outputs.out_looks import ROLES, remove_look
+from ..bridge.outputs.out_looks import ROLES, remove_look, set_stage
 from ..bridge.outputs.output_surface import has_own_faces
 from ..core import native, runs
 from ..core.errors import BadInputError
@@ -57,6 +57,7 @@ class SurfaceOperator(PolledOperator):
     options: bpy.types.OperatorOptions
     properties: Any
     layout: bpy.types.UILayout
+    look: str = NO_LOOK  # of the operators that make looks
 
     keys = "ESC: stop"  # what the status bar says of a run
 
@@ -165,7 +166,7 @@ class SurfaceOperator(PolledOperator):
 
     def _is_asked_by_hand(self) -> bool:
         """Tells whether a person asks, not a script. A look is what a person chooses, whoever calls for it."""
-        has_look = self.properties.is_property_set("look") if hasattr(self, "look") else False
+        has_look = self.settings_name in ROLES and self.properties.is_property_set("look")
         return bool(self.options.is_invoke or self.options.is_repeat or has_look)
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -205,6 +206,8 @@ class SurfaceOperator(PolledOperator):
                     _leave_other_looks(source, self.settings_name)
                 if self._is_by_hand:
                     lift_lying(source, self.lying())
+                if self.settings_name in ROLES:
+                    _settle_look(source, self.settings_name, self.look)
                 note_call(source, self.settings_name, self._called, self._is_by_hand)
                 labels = {name: prop.keywords["name"] for name, prop in PROPERTIES[self.settings_name].items()}
                 lengths, figures = told_lengths(self, self._lengths, progress.chosen, labels), self.figures(result)
@@ -282,12 +285,15 @@ def _unseen(context: bpy.types.Context, source: bpy.types.Object) -> list[str]:
     return [f"{told}: made, but not seen, since this view layer excludes the collection"]
 
 
-def _leave_other_looks(source: bpy.types.Object, settings_name: str) -> None:
-    """Takes away what other operators made for the look that the object had before."""
-    for other in ROLES:
-        group = existing_group(source, other)
-        if other != settings_name and group is not None and group.look != NO_LOOK:
-            remove_look(source, other)
-            keep_texts(source, other, [], [])
-            rollback.remember_setting(group, "look")
-            group.look = NO_LOOK
+def _settle_look(source: bpy.types.Object, settings_name: str, look: str) -> None:
+    """Takes away what other operators made for the look that the object had before, and sets the stage for this one."""
+    groups = {other: existing_group(source, other) for other in ROLES if other != settings_name}
+    others = {other: group for other, group in groups.items() if group is not None and group.look != NO_LOOK}
+    if look == NO_LOOK and others:
+        return
+    for other, group in others.items():
+        remove_look(source, other)
+        keep_texts(source, other, [], [])
+        rollback.remember_setting(group, "look")
+        group.look = NO_LOOK
+    set_stage(source, look)

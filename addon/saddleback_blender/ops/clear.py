@@ -7,8 +7,10 @@ import bpy
 from .. import jobs, rollback
 from ..bridge.inputs.source import active_object, usable_source, why_not
 from ..bridge.outputs.out_collection import clear_outputs
+from ..bridge.outputs.out_looks import set_stage
 from ..bridge.outputs.preview import hide_preview
 from ..core.errors import BadInputError
+from ..looks import NO_LOOK
 from ..props import forget_texts
 
 
@@ -36,6 +38,7 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         with rollback.all_or_nothing():
+            set_stage(source, NO_LOOK)
             removed = hide_preview(source) + clear_outputs(context, source)
             forget_texts(source)
         if jobs.state.needs_repair == source.name:

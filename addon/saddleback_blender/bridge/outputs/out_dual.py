@@ -8,6 +8,7 @@ import numpy as np
 from ... import compat
 from ...core.results import CellsResult, Dual
 from ...core.settings import TessellateSettings
+from ...looks import NO_LOOK
 from ..inputs.carried_in import Carried, read_carried
 from ..inputs.materials_in import shown_materials
 from ..inputs.mesh_in import from_world, mesh_of
@@ -44,6 +45,8 @@ def write_dual(
         mesh.materials.append(material)
     item = replace_object(context, source, DUAL_ROLE, mesh)
     write_groups(item, carried)
+    if settings.look != NO_LOOK:
+        item.show_wire = True  # which is what one looks at
     if follower is not None:
         follower.take(item, source.matrix_world, dual.vertices)
     return item

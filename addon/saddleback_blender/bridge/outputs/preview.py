@@ -12,6 +12,7 @@ from typing import Any
 import bpy
 
 from ... import compat, nodes, rollback
+from ...finishes import GROUND
 
 KIND = "distance"
 ADDED_SLOT = "saddleback_preview_slot"  # on an object: the slot that a mesh without materials was given
@@ -43,17 +44,30 @@ def show_preview(item: bpy.types.Object, attribute: str, farthest: float, spacin
         item.data.materials.append(None)
         item[ADDED_SLOT] = True
     for number, slot in enumerate(item.material_slots):
-        if slot.link == "OBJECT" and slot.material is not None and not _is_preview(slot.material):
+        is_ours = _is_preview(slot.material) or _is_of(slot.material, GROUND)
+        if slot.link == "OBJECT" and slot.material is not None and not is_ours:
             item[f"{BEFORE}{number}"] = slot.material
         slot.link = "OBJECT"
         slot.material = material
     return material
 
 
-def hide_preview(item: bpy.types.Object) -> bool:
-    """Gives the object its own materials back; says whether it showed a preview."""
+def show_ground(item: bpy.types.Object, material: bpy.types.Material) -> None:
+    """Shows a material on an object that has none, in place of what was shown so before."""
+    hide_preview(item, GROUND)
+    if not len(item.material_slots):
+        _remember(item)
+        item.data.materials.append(None)
+        item[ADDED_SLOT] = True
+        item.material_slots[0].link, item.material_slots[0].material = "OBJECT", material
+
+
+def hide_preview(item: bpy.types.Object, kind: str = KIND) -> bool:
+    """Gives the object its own materials back; says whether it showed a preview, or what else begins with `kind`."""
     _remember(item)
-    shown = [(number, slot) for number, slot in enumerate(item.material_slots) if _is_preview(slot.material)]
+    shown = [(number, slot) for number, slot in enumerate(item.material_slots) if _is_of(slot.material, kind)]
+    if not shown:
+        return False
     materials = {slot.material for _, slot in shown}
     for number, slot in shown:
         key = f"{BEFORE}{number}"
@@ -96,7 +110,11 @@ def _remove_if_unused(material: bpy.types.Material) -> None:
 
 
 def _is_preview(material: bpy.types.Material | None) -> bool:
-    return material is not None and material.get(nodes.MARK) == KIND
+    return _is_of(material, KIND)
+
+
+def _is_of(material: bpy.types.Material | None, kind: str) -> bool:
+    return material is not None and str(material.get(nodes.MARK, "")).startswith(kind)
 
 
 def _own_material(item: bpy.types.Object) -> bpy.types.Material | None:
