@@ -17,8 +17,8 @@ from saddleback_blender.core.surfaces.normals import normals_at
 from saddleback_blender.ops.look_presets import read_preset
 
 ROLES = {
-    "PANELS": "cells", "PEBBLES": "cells", "LAMP": "shell", "STIPPLE": "centers", "REMESH": "dual", "BANDS": "isolines", "SCALES": "shapes",
-    "FEATHERS": "shapes", "STUDS": "shapes", "MOSAIC": "shapes",
+    "PANELS": "cells", "PEBBLES": "cells", "LAMP": "shell", "STIPPLE": "centers", "REMESH": "dual", "BANDS": "isolines",
+    "SCALES": "shapes", "FEATHERS": "shapes", "STUDS": "shapes", "MOSAIC": "shapes",
 }  # fmt: skip
 
 

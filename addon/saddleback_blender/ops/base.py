@@ -202,12 +202,10 @@ class SurfaceOperator(PolledOperator):
                 if not source.is_property_set("saddleback"):
                     rollback.undo_with(partial(source.property_unset, "saddleback"))
                 line = self.write(context, source, result)
-                if getattr(self, "look", NO_LOOK) != NO_LOOK:
-                    _leave_other_looks(source, self.settings_name)
-                if self._is_by_hand:
-                    lift_lying(source, self.lying())
                 if self.settings_name in ROLES:
                     _settle_look(source, self.settings_name, self.look)
+                if self._is_by_hand:
+                    lift_lying(source, self.lying())
                 note_call(source, self.settings_name, self._called, self._is_by_hand)
                 labels = {name: prop.keywords["name"] for name, prop in PROPERTIES[self.settings_name].items()}
                 lengths, figures = told_lengths(self, self._lengths, progress.chosen, labels), self.figures(result)
