@@ -294,8 +294,9 @@ void GeodesicDisks::choose() {
     const std::int32_t slot = slots[i], lane = slot & (k_batch - 1);
     const BestArc best = arcs[slot];
     const float reach = distance_of(best.label);
-    const bool kept = (reach <= slack * distance_of(labels[slot])) & (reach <= limits[lane]);
-    const bool is_shortest = makes_arc(seen[i]) & (best.sighting == i);
+    const float limit = limits[lane];
+    const bool kept = (reach <= slack * distance_of(labels[slot])) & (reach <= limit);
+    const bool is_shortest = (best.sighting == i) & makes_arc(seen[i]);
     // Edges stay even where something shorter, but no arc, was found.
     const bool is_chosen = (is_shortest & kept) | (is_link(roots[i]) & (is_shortest | !kept));
     *ends[lane] = i;
