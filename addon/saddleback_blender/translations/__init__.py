@@ -6,7 +6,7 @@ Figures, results and refusals, which are sentences with names and numbers in the
 from __future__ import annotations
 
 import json
-from pathlib import Path
+from importlib.resources import files
 
 import bpy
 
@@ -18,7 +18,7 @@ CONTEXTS = ("*", "Operator")
 
 def texts(language: str) -> dict[str, str]:
     """English to the language, as in its file."""
-    found: dict[str, str] = json.loads(Path(__file__).with_name(f"{language}.json").read_text(encoding="utf-8"))
+    found: dict[str, str] = json.loads(files(__package__).joinpath(f"{language}.json").read_text(encoding="utf-8"))
     return found
 
 
