@@ -18,6 +18,7 @@
 SEND_TO_OLD_VERSION(log);
 SEND_TO_OLD_VERSION(log2);
 SEND_TO_OLD_VERSION(pow);
+SEND_TO_OLD_VERSION(pthread_attr_getstacksize);
 SEND_TO_OLD_VERSION(pthread_create);
 SEND_TO_OLD_VERSION(pthread_detach);
 SEND_TO_OLD_VERSION(pthread_getspecific);
