@@ -39,7 +39,8 @@ def _of_classes() -> Iterator[str]:
             if not own.is_registered:
                 continue
             rna = own.bl_rna if kind != "Operator" else _operator(own).get_rna_type()
-            yield from (rna.name, rna.description) if kind == "Operator" else (getattr(own, "bl_label", ""),)
+            if kind == "Operator":
+                yield from (rna.name, rna.description)
             for prop in rna.properties:
                 if prop.identifier not in inherited:
                     yield from _of_property(prop)
@@ -58,14 +59,19 @@ def _of_property(prop: Any) -> Iterator[str]:
 
 
 def _of_sources() -> Iterator[str]:
-    """Texts that are handed to layouts as they are."""
+    """Labels of panels and menus, which Blender writes over when a preset is chosen, and texts that are handed to
+    layouts as they are.
+    """
     for path in Path(saddleback_blender.__file__).parent.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if not isinstance(node, ast.Call):
-                continue
-            for given in node.keywords:
-                if given.arg == "text" and isinstance(given.value, ast.Constant) and isinstance(given.value.value, str):
-                    yield given.value.value
+            values = (
+                [given.value for given in node.keywords if given.arg == "text"] if isinstance(node, ast.Call) else []
+            )
+            if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+                values += [node.value] if node.targets[0].id == "bl_label" else []
+            yield from (
+                value.value for value in values if isinstance(value, ast.Constant) and isinstance(value.value, str)
+            )
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
