@@ -59,18 +59,21 @@ def set_tubes(item: bpy.types.Object, radius: float, material: bpy.types.Materia
 
 def remove_tubes(item: bpy.types.Object) -> None:
     """Leaves a curve object a line."""
-    modifier = modifier_of(item, CURVE_TUBES)
+    _remove(item, CURVE_TUBES)
+
+
+def _remove(item: bpy.types.Object, kind: str) -> None:
+    modifier = modifier_of(item, kind)
     if modifier is not None:
         rollback.when_written(partial(remove_modifier, item, modifier))
 
 
 def set_instances(item: bpy.types.Object, instance: bpy.types.Object | None, scale: float) -> bpy.types.Modifier | None:
     """Puts an object on each point, sized and turned by the point's attributes; None takes the instances away."""
-    modifier = modifier_of(item, INSTANCES)
     if instance is None:
-        if modifier is not None:
-            rollback.when_written(partial(remove_modifier, item, modifier))
+        _remove(item, INSTANCES)
         return None
+    modifier = modifier_of(item, INSTANCES)
     if modifier is None:
         # Each output has a group of its own: the object stands on the node, which works alike in all versions.
         modifier = add_first(item, "Saddleback Instances", _new_instances_group())
@@ -94,9 +97,7 @@ def set_dots(item: bpy.types.Object, scale: float, material: bpy.types.Material 
 
 def remove_dots(item: bpy.types.Object) -> None:
     """Takes the dots away."""
-    modifier = modifier_of(item, DOTS)
-    if modifier is not None:
-        rollback.when_written(partial(remove_modifier, item, modifier))
+    _remove(item, DOTS)
 
 
 def put_group(

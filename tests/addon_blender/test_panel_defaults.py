@@ -198,8 +198,21 @@ def test_bare_cells_stand_a_hair_before_the_surface_and_a_script_s_lie_on_it():
 
 def test_the_source_can_be_hidden_and_still_be_worked_on():
     item = sphere()
+    item.display_type = "WIRE"
     bpy.ops.saddleback.hide_source()
     assert item.display_type == "BOUNDS" and item.hide_render
     assert bpy.ops.saddleback.tessellate(**QUICK) == {"FINISHED"}
     bpy.ops.saddleback.hide_source()
-    assert item.display_type == "TEXTURED" and not item.hide_render
+    assert item.display_type == "WIRE" and not item.hide_render
+
+
+def test_what_a_look_hides_can_be_shown_and_what_was_left_out_of_renders_stays_so():
+    item = sphere()
+    item.hide_render = True
+    assert bpy.ops.saddleback.apply_look(look="LAMP") == {"FINISHED"}
+    assert item.display_type == "BOUNDS" and item.hide_render
+    bpy.ops.saddleback.hide_source()
+    assert item.display_type == "TEXTURED" and item.hide_render
+    bpy.ops.saddleback.hide_source()
+    assert bpy.ops.saddleback.apply_look(look="PANELS") == {"FINISHED"}
+    assert item.display_type == "BOUNDS"  # a person hid it

@@ -7,7 +7,7 @@ import bpy
 from .. import jobs, rollback
 from ..bridge.inputs.source import active_object, usable_source, why_not
 from ..bridge.outputs.out_collection import clear_outputs
-from ..bridge.outputs.out_looks import set_stage
+from ..bridge.outputs.out_looks import BY_HAND, hide, is_hidden, set_stage, show
 from ..bridge.outputs.preview import hide_preview
 from ..core.errors import BadInputError
 from ..looks import NO_LOOK
@@ -65,8 +65,11 @@ class SADDLEBACK_OT_hide_source(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """It stays where it can be worked on, as a box."""
         source = active_object(context)
-        source.hide_render = source.display_type != "BOUNDS"
-        source.display_type = "BOUNDS" if source.hide_render else "TEXTURED"
+        with rollback.all_or_nothing():
+            if is_hidden(source):
+                show(source)
+            else:
+                hide(source, BY_HAND)
         return {"FINISHED"}
 
 

@@ -8,6 +8,7 @@ import bpy
 
 from .. import compat
 from ..bridge.inputs.source import active_object, why_not
+from ..bridge.outputs.out_looks import is_hidden
 from ..core import native
 from . import look_rows, rows
 from .texts import draw_text
@@ -74,9 +75,8 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
             compat.draw_progress(row, context.window_manager)
         else:
             row.operator("saddleback.clear", text="Clear Results", icon="TRASH")
-            is_hidden = item.display_type == "BOUNDS"
-            icon = "HIDE_ON" if is_hidden else "HIDE_OFF"
-            row.operator("saddleback.hide_source", text="", icon=icon, depress=is_hidden)
+            icon = "HIDE_ON" if is_hidden(item) else "HIDE_OFF"
+            row.operator("saddleback.hide_source", text="", icon=icon, depress=is_hidden(item))
         shading = context.space_data.shading
         if shading.type == "SOLID":  # which shows the colors of cells and shapes in one of its ways only
             layout.prop(shading, "color_type", text="Color")

@@ -20,7 +20,8 @@ from .out_shell import SHELL_ROLE
 from .output_surface import SURFACE_ROLE
 from .preview import hide_preview, show_ground
 
-HIDDEN = "saddleback_hidden"  # on a source that a look hides: how it was displayed
+# On a hidden source, by who hid it: how it was displayed, and whether renders left it out.
+BY_LOOK, BY_HAND = "saddleback_hidden", "saddleback_hidden_by_hand"
 
 ROLES = {
     "tessellate": (EDGES_ROLE, CELLS_ROLE, CENTERS_ROLE, DUAL_ROLE, SHELL_ROLE),
@@ -54,12 +55,35 @@ def set_stage(source: bpy.types.Object, look: str) -> None:
     copy = find_output(source, SURFACE_ROLE)
     is_on_copy = look in LOOKS and LOOKS[look].operator == "distance" and copy is not None and not copy.hide_viewport
     hides = is_on_copy or (look in LOOKS and LOOKS[look].hides_source)
-    if hides != (HIDDEN in source):
-        rollback.remember_keys(source, HIDDEN)
-        rollback.remember(source, "display_type", "hide_render")
-        source.hide_render = hides
-        if hides:
-            source[HIDDEN], source.display_type = source.display_type, "BOUNDS"
-        else:
-            source.display_type = source[HIDDEN]
-            del source[HIDDEN]
+    if hides and not is_hidden(source):
+        hide(source, BY_LOOK)
+    elif not hides and BY_LOOK in source:
+        show(source)
+
+
+def is_hidden(source: bpy.types.Object) -> bool:
+    """Tells whether a look or a person has hidden the source."""
+    return BY_LOOK in source or BY_HAND in source
+
+
+def hide(source: bpy.types.Object, who: str) -> None:
+    """Shows the source as a box, which can be worked on, and not in renders."""
+    _remember(source)
+    source[who] = f"{source.display_type} {int(source.hide_render)}"
+    source.display_type, source.hide_render = "BOUNDS", True
+
+
+def show(source: bpy.types.Object) -> None:
+    """Shows a hidden source as it was before."""
+    _remember(source)
+    display, left_out = source[BY_LOOK if BY_LOOK in source else BY_HAND].split()
+    source.display_type, source.hide_render = display, left_out == "1"
+    for who in (BY_LOOK, BY_HAND):
+        if who in source:
+            del source[who]
+
+
+def _remember(source: bpy.types.Object) -> None:
+    rollback.remember_keys(source, BY_LOOK)
+    rollback.remember_keys(source, BY_HAND)
+    rollback.remember(source, "display_type", "hide_render")
