@@ -28,7 +28,7 @@ from saddleback_blender import jobs
 from saddleback_blender.core import cache
 
 KINDS = 4
-SCENARIOS = 48  # of all kinds together; each is repeated in every round, in another order
+SCENARIOS = 120  # of all kinds together; each is repeated in every round, in another order
 ROUNDS_TO_WARM = 3
 FLAT = 0.02
 OPERATORS = (
@@ -40,8 +40,10 @@ OPERATORS = (
     "check_distribution",
     "voronoi_2d",
     "repair",
+    "apply_look",
 )
 NAMES = ("", "Density", "numbers", "UV", "Kept", "Line", "Gone", "\u00e4" * 70, "\n")
+CHANGED = 0.06  # of an operator's settings: with more of them at random nearly every run is refused
 MOST = {"count": 40, "iterations": 4, "starts": 2, "annealing": 3, "isoline_count": 8, "arrow_count": 50}
 
 
@@ -174,7 +176,7 @@ def settings(name: str, rng: random.Random) -> dict[str, Any]:
     chosen: dict[str, Any] = {}
     for prop in getattr(bpy.ops.saddleback, name).get_rna_type().properties:
         # How long it takes to fill a surface is as small shapes say: minutes where those are tiny.
-        if prop.identifier in ("rna_type", "maximal") or rng.random() < 0.7:
+        if prop.identifier in ("rna_type", "maximal") or rng.random() > CHANGED:
             continue
         if prop.type == "BOOLEAN":
             chosen[prop.identifier] = rng.random() < 0.5
