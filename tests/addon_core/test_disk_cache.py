@@ -92,11 +92,48 @@ def test_a_file_of_a_newer_version_stays(disk):
         assert path.read_bytes() == contents and os.listdir(disk.folder) == [path.name]
 
 
-def test_a_folder_that_cannot_be_written_is_only_a_note(tmp_path):
-    (tmp_path / "file").write_text("in the way")
-    values, notes, _ = run(DiskCache(tmp_path / "file" / "graphs", 2**30))
+def check_that_it_is_only_a_note(folder, *sentences):
+    disk = DiskCache(folder, 2**30)
+    values, notes, _ = run(disk)
     assert np.isfinite(values).all()
     assert len(notes) == 1 and notes[0].startswith("The distance graph could not be kept on disk (")
+    for sentence in sentences:
+        assert sentence in notes[0]
+    assert disk.clear() == 0
+
+
+def test_a_file_in_the_folders_place(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    check_that_it_is_only_a_note(
+        tmp_path / "file" / "graphs", "cannot be made", "choose another cache folder in the pref"
+    )
+
+
+@pytest.mark.parametrize("folder", ["x" * 256, "/".join(["y" * 200] * 30)])
+def test_a_folder_whose_name_is_too_long(tmp_path, folder):
+    check_that_it_is_only_a_note(tmp_path / folder, "ame too long")
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has other permissions for folders")
+@pytest.mark.parametrize("mode", [0o500, 0o000])
+def test_a_folder_that_must_not_be_written(as_anyone, mode):
+    as_anyone.chmod(mode)
+    check_that_it_is_only_a_note(as_anyone, "Permission denied; allow it or choose another place")
+    check_that_it_is_only_a_note(as_anyone / "graphs", "cannot be made: Permission denied")
+    as_anyone.chmod(0o700)
+
+
+def test_a_full_drive(disk):
+    """The limit on a file's size stands for the drive's end."""
+    resource = pytest.importorskip("resource", reason="POSIX alone limits the size of files")
+    old = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5000, old[1]))
+    try:
+        check_that_it_is_only_a_note(disk.folder, "File too large; make room or choose another place")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, old)
+    assert os.listdir(disk.folder) == []
 
 
 def test_the_oldest_go_first(disk):

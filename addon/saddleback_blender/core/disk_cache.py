@@ -33,13 +33,13 @@ class DiskCache:
         return self.folder / (name + SUFFIX)
 
     def has(self, name: str) -> bool:
-        """Tells whether there is such a file, usable or not."""
-        return self.path(name).is_file()
+        """Tells whether there is such a file, usable or not; none where one may not look, or the name is too long."""
+        return os.path.isfile(self.path(name))
 
     def load(self, name: str, mesh: Any, job: Any, note: Callable[[str], None]) -> Any | None:
         """The graph of that name for `mesh`, None where there is none that can be used."""
         path, sb = self.path(name), native.load()
-        if not path.is_file():
+        if not self.has(name):
             return None
         try:
             graph = sb.SaddleVertexGraph.load(path, mesh, job=job)
@@ -67,19 +67,25 @@ class DiskCache:
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             graph.save(self.path(name), job=job)
-        except (sb.InputError, OSError) as error:
+        except sb.InputError as error:
             note(f"The distance graph could not be kept on disk ({error})")
+            return
+        except OSError as error:
+            note(
+                f"The distance graph could not be kept on disk ({self.folder} cannot be made: {error.strerror}; choose "
+                "another cache folder in the preferences)"
+            )
             return
         self.trim(spared=self.path(name))
 
     def trim(self, spared: Path | None = None) -> int:
         """Removes the files not used for longest until the rest keeps the limit; returns how many went."""
         files = []
-        for path in self.folder.glob("*" + SUFFIX):
+        for path in self._files("*" + SUFFIX):
             with contextlib.suppress(OSError):  # another Blender may remove it meanwhile
                 status = path.stat()
                 files.append((path == spared, status.st_mtime_ns, path.name, status.st_size, path))
-        for path in self.folder.glob(PARTIAL):
+        for path in self._files(PARTIAL):
             with contextlib.suppress(OSError):
                 if time.time() - path.stat().st_mtime > PARTIAL_SECONDS:
                     path.unlink()
@@ -93,6 +99,12 @@ class DiskCache:
                 removed += 1
             total -= size
         return removed
+
+    def _files(self, pattern: str) -> list[Path]:
+        try:
+            return list(self.folder.glob(pattern))
+        except OSError:  # a folder that cannot be read, whatever the reason
+            return []
 
     def clear(self) -> int:
         """Removes all graphs, and nothing else; returns how many there were."""

@@ -6,11 +6,9 @@ import os
 import stat
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import zlib
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -138,22 +136,6 @@ def test_devices_are_no_files(torus: sb.SaddleVertexGraph, mesh: sb.Mesh) -> Non
     with pytest.raises(sb.InputError, match="no regular file"):
         sb.SaddleVertexGraph.load("/dev/null", mesh)
     assert stat.S_ISCHR(os.stat("/dev/full").st_mode)
-
-
-@pytest.fixture
-def as_anyone(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A folder of a user who may not write everywhere, as whom the test runs: root gives its rights up for so long."""
-    if os.name == "nt" or os.geteuid() != 0:
-        yield tmp_path_factory.mktemp("anyone")
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        nobody = 65534
-        os.chown(folder, nobody, nobody)
-        os.setresuid(nobody, nobody, 0)
-        try:
-            yield Path(folder)
-        finally:
-            os.setresuid(0, 0, 0)
 
 
 def test_a_file_that_must_not_be_written_stays(torus: sb.SaddleVertexGraph, as_anyone: Path) -> None:
