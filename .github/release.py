@@ -20,6 +20,12 @@ def notes(version: str) -> str:
     return found[1].strip() if found else ""
 
 
+def without_owner() -> list[str]:
+    """The files of packages whose addresses have no owner yet."""
+    files = [ROOT / "pyproject.toml", *sorted((ROOT / "addon").rglob("*.py"))]
+    return [str(path.relative_to(ROOT)) for path in files if re.search(r"\bOWNER\b", path.read_text(encoding="utf-8"))]
+
+
 def problems(version: str, address: str) -> list[str]:
     """What stands against releasing this version from the repository at this address."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -28,6 +34,7 @@ def problems(version: str, address: str) -> list[str]:
         found.append(f"the tag is v{version}, but pyproject.toml has version {project['version']}")
     if project["urls"]["Source"] != address:
         found.append(f"pyproject.toml says that the source is at {project['urls']['Source']}, but this is {address}")
+    found += [f"{name} says OWNER where docs/releasing.md, step 1, puts a name" for name in without_owner()]
     if not notes(version):
         found.append(f"CHANGELOG.md has no section [{version}]")
     return found

@@ -146,7 +146,8 @@ test_arm64() {
 # --- macOS ------------------------------------------------------------------------------------------------------------
 
 # build_macos TARGET: aarch64 or x86_64; compiles and links everything, warnings being errors, and optimizes nothing: it
-# runs nowhere here. Zig's linker makes no bundles, but shared libraries, which are linked alike.
+# runs nowhere here. Zig would add checks, and what debuggers read. Its linker makes no bundles, but shared libraries,
+# which are linked alike.
 build_macos() {
   local folder=$PWD/.cache/macos/$1 zig command
   fill_venv .cache/macos/zig "zig's clang" "$python" ziglang==0.17.0
@@ -157,7 +158,7 @@ build_macos() {
   chmod +x "$folder"/*
   copy_headers "$python" .cache/macos/include
   build_for macos "build-macos-$1" -DSADDLEBACK_ZIG="$folder" -DCMAKE_BUILD_TYPE=Check \
-    -DCMAKE_CXX_FLAGS_CHECK="-O0 -DNDEBUG" -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
+    -DCMAKE_CXX_FLAGS_CHECK="-O0 -g0 -fno-sanitize=undefined -DNDEBUG" -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
     -DPython_INCLUDE_DIR="$PWD/.cache/macos/include" -DPYTHON_MODULE_EXTENSION=.cpython-311-darwin.so
 }
 

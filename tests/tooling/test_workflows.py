@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import tomllib
+
 ROOT = Path(__file__).resolve().parents[2]
 WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.yml"))
 
@@ -37,6 +39,18 @@ def test_a_release_needs_its_version_its_changelog_and_its_home(monkeypatch, tmp
     assert tool.problems("1.2.3", "https://home") == []
     assert tool.notes("1.2.3") == "### Added\n\n- A."
     assert len(tool.problems("1.3.0", "https://elsewhere")) == 3
+    (tmp_path / "addon").mkdir()
+    (tmp_path / "addon/menus.py").write_text('MANUAL = "https://github.com/OWNER/saddleback"\n')
+    assert tool.problems("1.2.3", "https://home") == [
+        "addon/menus.py says OWNER where docs/releasing.md, step 1, puts a name"
+    ]
+
+
+def test_all_addresses_lead_to_one_home():
+    home = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["urls"]["Homepage"]
+    for path in [ROOT / "pyproject.toml", *(ROOT / "addon").rglob("*.py")]:
+        for address in re.findall(r"https://github\.com/[^\s\"]+", path.read_text()):
+            assert f"{address}/".startswith(f"{home}/"), f"{path.name}: {address} is not at {home}"
 
 
 def test_the_page_tells_of_each_job_whether_it_ever_ran():

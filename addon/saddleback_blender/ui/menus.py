@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-# OWNER: until the project has a home, as in pyproject.toml.
+# Its owner is that of pyproject.toml: docs/releasing.md, step 1.
 MANUAL = "https://github.com/OWNER/saddleback/blob/main/docs/manual/"
 PAGES = {
     "tessellate": "tessellation.md",
