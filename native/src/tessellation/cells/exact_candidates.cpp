@@ -173,33 +173,41 @@ void ExactParts::find_candidates(const FaceRefinement::Part& part, std::vector<F
 void ExactParts::find_candidates(const FaceRefinement::Part& part, const Corners& corners,
                                  std::vector<FaceCandidate>& candidates) const {
   candidates.clear();
-  for (const Distances* const at_corner : corners) {
-    for (const Known& known_here : *at_corner) {
-      if (std::ranges::find(candidates, known_here.source, &FaceCandidate::site) != candidates.end()) continue;
-      FaceCandidate candidate{part.face, known_here.source, {}};
-      std::array<double, 3> distance;
-      for (int i = 0; i < 3; ++i) {
-        const Known* const known = find_source(*corners[i], known_here.source);
-        distance[i] = known ? known->distance : k_infinity;
-      }
-      bool may_own = true, is_nearest = false;  // the latter whatever rounding says of the former
-      for (int i = 0; i < 3; ++i) {
-        const double to_next = part.length[i], to_last = part.length[(i + 2) % 3];
-        const double least = std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
-        const ExactField::Sight& nearest = nearest_[part.corner[i]];
-        const double lead = least - nearest.distance;
-        may_own = may_own && lead <= 2 * std::max(to_next, to_last);
-        // Whatever rounding says of ties, all parts about a vertex agree on whose it is.
-        const double of_nearest = nearest.distance * nearest.distance;
-        candidate.squared_distance[i] = nearest.source == candidate.site
-                                            ? of_nearest
-                                            : std::max(least * least, std::nextafter(of_nearest, k_infinity));
-        is_nearest = is_nearest || nearest.source == candidate.site;
-      }
-      if (may_own || is_nearest) candidates.push_back(candidate);
-    }
+  const std::array<double, 3>& length = part.length;
+  std::array<Distances::const_iterator, 3> next;
+  std::array<ExactField::Sight, 3> nearest;
+  std::array<double, 3> squared, beyond;  // of the nearest site's distances, and the next number above
+  for (int i = 0; i < 3; ++i) {
+    next[i] = corners[i]->begin();
+    nearest[i] = nearest_[part.corner[i]];
+    squared[i] = nearest[i].distance * nearest[i].distance;
+    beyond[i] = std::nextafter(squared[i], k_infinity);
   }
-  std::ranges::sort(candidates, {}, &FaceCandidate::site);
+  while (true) {  // the corners' lists, which are by source, are read side by side
+    Index source = std::numeric_limits<Index>::max();
+    for (int i = 0; i < 3; ++i)
+      if (next[i] != corners[i]->end()) source = std::min(source, next[i]->source);
+    if (source == std::numeric_limits<Index>::max()) return;
+    std::array<double, 3> distance, least;
+    for (int i = 0; i < 3; ++i) {
+      const bool is_known = next[i] != corners[i]->end() && next[i]->source == source;
+      distance[i] = is_known ? (next[i]++)->distance : k_infinity;
+    }
+    bool may_own = true, is_nearest = false;  // the latter whatever rounding says of the former
+    for (int i = 0; i < 3; ++i) {
+      const double to_next = length[i], to_last = length[(i + 2) % 3];
+      least[i] = std::min({distance[i], distance[(i + 1) % 3] + to_next, distance[(i + 2) % 3] + to_last});
+      may_own = may_own && least[i] - nearest[i].distance <= 2 * std::max(to_next, to_last);
+      is_nearest = is_nearest || nearest[i].source == source;
+    }
+    if (!may_own && !is_nearest) continue;
+    FaceCandidate candidate{part.face, source, {}};
+    // Whatever rounding says of ties, all parts about a vertex agree on whose it is.
+    for (int i = 0; i < 3; ++i)
+      candidate.squared_distance[i] =
+          nearest[i].source == source ? squared[i] : std::max(least[i] * least[i], beyond[i]);
+    candidates.push_back(candidate);
+  }
 }
 
 bool ExactParts::is_right(const FaceRefinement::Part& part) {
