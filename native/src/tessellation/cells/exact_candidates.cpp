@@ -13,6 +13,9 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 // is nearer would there be more, wherever it does.
 constexpr std::size_t k_some_parts = 1 << 17, k_parts_each = 128;
 
+// How much shorter parts may get in a round than in the one before.
+constexpr double k_finer = 4;
+
 // Of the tolerance, where no way bends: bisectors are straight there, so that it costs few parts.
 constexpr double k_unbent = 0.1;
 
@@ -82,13 +85,16 @@ ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites,
   const std::size_t most = k_some_parts + k_parts_each * (field.mesh().face_count() + sites.size());
   looked_.assign(field.mesh().face_count(), k_none);
   const double faces = field.mesh().face_count();
-  double looks = 0;                      // how many parts more will be looked at than there are faces is not known
+  double looks = 0;  // how many parts more will be looked at than there are faces is not known
+  double least = 0;  // the length of what is looked at, so that where parts run out all places are divided alike
+  for (const FaceRefinement::Part& part : refinement_.parts()) least = std::max(least, std::ranges::max(part.length));
   for (bool goes_on = true; goes_on;) {  // what is told anew in one part is looked at in those beside
     goes_on = false;
-    // What a round adds waits for the next one, so that where parts run out all places are divided alike.
-    for (std::size_t part = 0, end = looked_.size(); part < end; ++part) {
+    least = least > tolerance_ ? least / k_finer : 0;
+    for (std::size_t part = 0; part < looked_.size(); ++part) {
       if (is_looked_at(static_cast<Index>(part))) continue;
       goes_on = true;
+      if (std::ranges::max(refinement_.parts()[part].length) < least) continue;
       if (std::fmod(looks++, 64) == 0)
         stage.update(0.3 + 0.7 * (looks <= faces ? looks / faces / 2 : 1 - faces / looks / 2));
       const bool is_done = is_right(refinement_.parts()[part]);
