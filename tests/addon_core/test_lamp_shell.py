@@ -11,8 +11,6 @@ from saddleback_blender.core.figures import shell_faults_of
 from saddleback_blender.core.requests import Surface, TessellateRequest
 from saddleback_blender.core.results import LampShell
 from saddleback_blender.core.settings import TessellateSettings
-from saddleback_blender.core.solids import room
-from saddleback_blender.core.solids.near_faces import near_faces
 from saddleback_blender.core.solids.rib_surface import rib_surface
 from saddleback_blender.core.solids.shell_solid import thicken
 from tests import synthetic_cells
@@ -86,43 +84,24 @@ def test_a_place_that_crosses_becomes_thinner_and_no_other():
     np.testing.assert_allclose(height, [0.025 * 0.36, 0.025], atol=1e-9)
 
 
-def test_looking_only_about_what_moved_changes_nothing(monkeypatch):
-    """The same solid, to the bit, as when every triangle is looked at in every round."""
+def test_what_crosses_is_always_among_what_has_moved():
+    """So that looking at that alone changes nothing."""
     vertices, triangles = synthetic_cells.sphere(4)
     mesh = sb.Mesh(vertices, triangles)
     graph = sb.SaddleVertexGraph(mesh, k=30)
     ribs = ribs_of(mesh, sb.centroidal_voronoi(graph, count=30).cells, 0.1)
 
-    def too_high(vertices, triangles, _):
+    def too_high(vertices, triangles, among, _):
         """Triangles that reach beyond a slope: fewer each time, and some only after the vertices have moved."""
         high = np.linalg.norm(vertices, axis=1) > 1.02 + 0.02 * vertices[:, 0]
-        counts.append(len(triangles))
-        return np.flatnonzero(high[triangles].any(axis=1)).astype(np.int32)
+        counts.append(len(among))
+        found = np.flatnonzero(high[triangles].any(axis=1))
+        assert np.isin(found, among).all()
+        return found.astype(np.int32)
 
     counts: list[int] = []
-    few = thicken(ribs, 0.1, too_high, runs.new_progress())
-    assert min(counts) < 0.9 * counts[0]
-    monkeypatch.setattr(room, "near_faces", lambda vertices, faces, *_: np.arange(len(faces)))
-    all_of_them = thicken(ribs, 0.1, too_high, runs.new_progress())
-    assert np.array_equal(few.vertices, all_of_them.vertices) and few.crossing == all_of_them.crossing
-
-
-def test_near_faces_are_all_whose_boxes_overlap():
-    random = np.random.default_rng(3)
-    middles = random.uniform(0, 10, (4000, 1, 3))
-    vertices = (middles + random.uniform(-0.2, 0.2, (4000, 3, 3))).reshape(-1, 3)
-    triangles = np.arange(12000, dtype=np.int32).reshape(-1, 3)
-    moved = np.zeros(4000, bool)
-    moved[random.choice(4000, 20)] = True
-    progress = runs.new_progress()
-    found = near_faces(vertices, triangles, moved, progress)
-    low, high = vertices[triangles].min(axis=1), vertices[triangles].max(axis=1)
-    overlap = ((low[:, None] <= high[moved]) & (low[moved] <= high[:, None])).all(axis=2).any(axis=1)
-    assert np.isin(np.flatnonzero(overlap), found).all() and (np.diff(found) > 0).all() and len(found) < 1000
-    assert len(near_faces(vertices, triangles, np.zeros(4000, bool), progress)) == 0
-    progress.cancel()
-    with pytest.raises(sb.Cancelled):
-        near_faces(vertices, triangles, moved, progress)
+    shell = thicken(ribs, 0.1, too_high, runs.new_progress())
+    assert min(counts) < 0.9 * counts[0] == 0.9 * len(shell.triangles) and not shell.crossing
 
 
 def test_what_cannot_be_mended_is_told():

@@ -80,10 +80,10 @@ def test_a_round_can_be_stopped_in_its_midst(monkeypatch):
     progress = runs.new_progress()
     asked = []
 
-    def crossings(vertices, triangles, job):
+    def crossings(vertices, triangles, among, job):
         asked.append(job)
         progress.cancel()
-        return sb.self_crossings(vertices.astype(np.float32), triangles, job=job)
+        return sb.self_crossings(vertices.astype(np.float32), triangles, among, job=job)
 
     monkeypatch.setattr(runs, "find_crossings", crossings)
     with pytest.raises(sb.Cancelled):
@@ -94,8 +94,8 @@ def test_a_round_can_be_stopped_in_its_midst(monkeypatch):
 def test_a_shell_that_never_gets_better_ends(monkeypatch):
     looks = []
 
-    def crossings(vertices, triangles, job):
-        looks.append(len(triangles))
+    def crossings(vertices, triangles, among, job):
+        looks.append(len(among))
         return np.stack([np.arange(20), np.arange(1, 21)], axis=1).astype(np.int32)
 
     monkeypatch.setattr(runs, "find_crossings", crossings)

@@ -91,15 +91,17 @@ py::tuple refine(const py::object& fields, const py::object& triangles, const py
                         to_array(std::move(found.cells)));
 }
 
-py::array crossings(const py::object& vertices, const py::object& triangles, const py::object& threads,
-                    const py::object& job) {
+py::array crossings(const py::object& vertices, const py::object& triangles, const py::object& among,
+                    const py::object& threads, const py::object& job) {
   const ArrayIn<double> xyz = as_points3(vertices, "vertices");
   const ArrayIn<Index> indices = as_triangles(triangles, "triangles");
+  const ArrayIn<Index> chosen = among.is_none() ? ArrayIn<Index>{} : as_indices(among, "among");
+  const std::optional named = among.is_none() ? std::nullopt : std::optional(chosen.values);
   const Index count = as_integer(threads, "threads");
   const JobIn token(job);
   return to_rows<Index>(without_gil([&] {
     const JobStage stage(token, "Looking for triangles that pass through each other");
-    return self_crossings(points_of(xyz), triangles_of(indices), count, stage);
+    return self_crossings(points_of(xyz), triangles_of(indices), named, count, stage);
   }));
 }
 
@@ -249,8 +251,8 @@ Raises
 ------
 InputError
     A wrong number of cells, a tolerance that is not above 0.)");
-  m.def("self_crossings", &crossings, py::arg("vertices"), py::arg("triangles"), py::kw_only(), py::arg("threads") = 0,
-        py::arg("job") = py::none(),
+  m.def("self_crossings", &crossings, py::arg("vertices"), py::arg("triangles"), py::arg("among") = py::none(),
+        py::kw_only(), py::arg("threads") = 0, py::arg("job") = py::none(),
         R"(Find the triangles that pass through each other.
 
 Exact for the coordinates as they are. Triangles that only touch, lie in one plane or share an edge are no such pair.
@@ -259,6 +261,8 @@ Parameters
 ----------
 vertices : (V, 3) float array
 triangles : (T, 3) int array
+among : (n,) int array, optional
+    Numbers of triangles, rising: only pairs of which one is among these.
 threads : int
     0: all cores. The result does not depend on it.
 job : Job, optional
@@ -266,12 +270,12 @@ job : Job, optional
 Returns
 -------
 (k, 2) int32
-    Numbers of triangles, the smaller first, in order. About O(T log T).
+    Numbers of triangles, the smaller first, in order. About O(T log n), where n = T without `among`.
 
 Raises
 ------
 InputError
-    A corner that is no vertex, a vertex that is not finite.
+    A corner that is no vertex, a vertex that is not finite, an `among` that does not rise.
 Cancelled
     The job was cancelled.)");
 }

@@ -503,7 +503,12 @@ def cut_at_level(
     fields: ArrayLike, triangles: ArrayLike, column: SupportsIndex, level: SupportsFloat
 ) -> tuple[_Floats, _Indices, _Indices, NDArray[np.bool_]]: ...
 def self_crossings(
-    vertices: ArrayLike, triangles: ArrayLike, *, threads: SupportsIndex = 0, job: Job | None = None
+    vertices: ArrayLike,
+    triangles: ArrayLike,
+    among: ArrayLike | None = None,
+    *,
+    threads: SupportsIndex = 0,
+    job: Job | None = None,
 ) -> _Indices: ...
 def cell_boundary(
     triangles: ArrayLike, triangle_cell: ArrayLike, vertex_count: SupportsIndex

@@ -51,7 +51,7 @@ std::vector<Vec2> as_corners(const Mesh& mesh, std::span<const Vec2> uv) {
 }  // namespace
 
 struct Chart::Finder {
-  explicit Finder(std::vector<Box<Vec2>> boxes) : tree(std::move(boxes)) {}
+  explicit Finder(const std::vector<Box<Vec2>>& boxes) : tree(boxes) {}
   BoxTree<Vec2> tree;
 };
 
@@ -65,7 +65,7 @@ Chart::Chart(const Mesh& mesh, std::span<const Vec2> uv, Job* job) : mesh_(&mesh
     area_ += 0.5 * twice_area(a, b, c);
   }
   stage.update(0.1);
-  finder_ = std::make_unique<Finder>(std::move(boxes));
+  finder_ = std::make_unique<Finder>(boxes);
   check_overlaps(stage.part(0.3, 1));
 }
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,60 +24,79 @@ template <class Vector>
 class BoxTree {
  public:
   /// O(n log n).
-  explicit BoxTree(std::vector<Box<Vector>> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
-    if (order_.empty()) return;
-    nodes_.resize(4 * std::bit_ceil(boxes_.size() / k_leaf + 1));
-    build(1, 0, static_cast<Index>(order_.size()));
+  explicit BoxTree(const std::vector<Box<Vector>>& boxes) : boxes_(boxes.size()), order_(boxes.size()) {
+    if (boxes.empty()) return;
+    std::vector<Center> centers(boxes.size());
+    for (Index i = 0; i < static_cast<Index>(boxes.size()); ++i) centers[i] = {boxes[i].low + boxes[i].high, i};
+    nodes_.resize(4 * std::bit_ceil(boxes.size() / k_leaf + 1));
+    build(1, centers, boxes, 0);
   }
-
-  const Box<Vector>& box(Index i) const { return boxes_[i]; }
 
   /// Calls visit(i) for every box i that meets `box`, in no particular order. O(log n + boxes met), typically.
   template <class Visit>
   void visit(const Box<Vector>& box, Visit&& visit) const {
-    if (!order_.empty()) visit_node(1, 0, static_cast<Index>(order_.size()), box, visit);
+    if (!order_.empty()) visit_node(1, 0, static_cast<Index>(order_.size()), 0, box, visit);
+  }
+
+  /// Calls visit(i, j) for every box j that meets box i, the one at `place` in the tree's own order, and comes later in
+  /// it: over all places, for each two boxes that meet once. Neighboring places look at nearly the same boxes.
+  template <class Visit>
+  void visit_later(Index place, Visit&& visit) const {
+    const Index i = order_[place];
+    visit_node(1, 0, static_cast<Index>(order_.size()), place + 1, boxes_[place], [&](Index j) { visit(i, j); });
   }
 
  private:
   static constexpr Index k_leaf = 4;  ///< boxes in a leaf, at most
+  struct Center {
+    Vector twice;
+    Index box;
+  };
 
-  void build(std::size_t node, Index begin, Index end) {
+  /// `begin` is the first one's place.
+  const Box<Vector>& build(std::size_t node, std::span<Center> centers, const std::vector<Box<Vector>>& boxes,
+                           Index begin) {
     Box<Vector>& whole = nodes_[node];
-    whole = boxes_[order_[begin]];
-    for (Index i = begin + 1; i < end; ++i) {
-      whole.low = whole.low.cwiseMin(boxes_[order_[i]].low);
-      whole.high = whole.high.cwiseMax(boxes_[order_[i]].high);
+    if (centers.size() <= k_leaf) {
+      whole = boxes[centers.front().box];
+      for (const Center& center : centers) {
+        order_[begin] = center.box;
+        boxes_[begin++] = boxes[center.box];
+        join(whole, boxes[center.box]);
+      }
+      return whole;
     }
-    if (end - begin <= k_leaf) return;
+    Box<Vector> among{centers.front().twice, centers.front().twice};
+    for (const Center& center : centers) join(among, {center.twice, center.twice});
     int axis = 0;
-    const Vector sides = whole.high - whole.low;
-    for (int i = 1; i < sides.size(); ++i)
-      if (sides[i] > sides[axis]) axis = i;
-    const Index middle = begin + (end - begin) / 2;
-    const auto twice_center = [&](Index i) { return boxes_[i].low[axis] + boxes_[i].high[axis]; };
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](Index a, Index b) {
-      const double at_a = twice_center(a), at_b = twice_center(b);
-      return at_a < at_b || (at_a == at_b && a < b);
-    });
-    build(2 * node, begin, middle);
-    build(2 * node + 1, middle, end);
+    (among.high - among.low).maxCoeff(&axis);
+    const std::size_t half = centers.size() / 2;
+    std::ranges::nth_element(centers, centers.begin() + half, {},
+                             [axis](const Center& center) { return std::pair(center.twice[axis], center.box); });
+    whole = build(2 * node, centers.first(half), boxes, begin);
+    join(whole, build(2 * node + 1, centers.subspan(half), boxes, begin + static_cast<Index>(half)));
+    return whole;
   }
 
+  static void join(Box<Vector>& whole, const Box<Vector>& part) {
+    whole = {whole.low.cwiseMin(part.low), whole.high.cwiseMax(part.high)};
+  }
+
+  /// Leaves out what comes before `first`.
   template <class Visit>
-  void visit_node(std::size_t node, Index begin, Index end, const Box<Vector>& box, Visit& visit) const {
-    if (!nodes_[node].meets(box)) return;
+  void visit_node(std::size_t node, Index begin, Index end, Index first, const Box<Vector>& box, Visit&& visit) const {
+    if (end <= first || !nodes_[node].meets(box)) return;
     if (end - begin <= k_leaf) {
-      for (Index i = begin; i < end; ++i)
-        if (boxes_[order_[i]].meets(box)) visit(order_[i]);
+      for (Index i = std::max(begin, first); i < end; ++i)
+        if (boxes_[i].meets(box)) visit(order_[i]);
       return;
     }
     const Index middle = begin + (end - begin) / 2;
-    visit_node(2 * node, begin, middle, box, visit);
-    visit_node(2 * node + 1, middle, end, box, visit);
+    visit_node(2 * node, begin, middle, first, box, visit);
+    visit_node(2 * node + 1, middle, end, first, box, visit);
   }
 
-  std::vector<Box<Vector>> boxes_, nodes_;
+  std::vector<Box<Vector>> boxes_, nodes_;  ///< boxes in the tree's order
   std::vector<Index> order_;
 };
 

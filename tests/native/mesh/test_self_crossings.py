@@ -53,6 +53,9 @@ def test_as_fractions_tell(grain: int) -> None:
     found = sb.self_crossings(vertices, triangles)
     assert found.dtype == np.int32 and [tuple(pair) for pair in found.tolist()] == expected
     assert expected
+    among = np.flatnonzero(random.random(len(triangles)) < 0.2)
+    some = [pair for pair in expected if np.isin(pair, among).any()]
+    assert [tuple(pair) for pair in sb.self_crossings(vertices, triangles, among).tolist()] == some
 
 
 def test_a_needle_that_pricks_its_neighbor_by_a_millionth() -> None:
@@ -75,6 +78,8 @@ def test_closed_surfaces_have_none_and_two_balls_a_ring_of_them() -> None:
     way = np.array([0.9, 0.05, 0.02])
     assert np.abs((middles - way / 2) @ way / np.linalg.norm(way)).max() < 0.1
     assert sb.self_crossings(both, twice, threads=8).tobytes() == found.tobytes()
+    assert sb.self_crossings(both, twice, np.unique(found[:, 1]), threads=8).tobytes() == found.tobytes()
+    assert sb.self_crossings(both, twice, []).shape == (0, 2)
     order = np.random.default_rng(1).permutation(len(twice))
     again = np.sort(order[sb.self_crossings(both, twice[order])], axis=1)
     assert {tuple(pair) for pair in again.tolist()} == {tuple(pair) for pair in found.tolist()}
@@ -86,6 +91,9 @@ def test_nothing_and_bad_input() -> None:
         sb.self_crossings(np.zeros((3, 3)), [[0, 1, 3]])
     with pytest.raises(sb.InputError, match="vertex 1 is not finite"):
         sb.self_crossings([[0, 0, 0], [np.nan, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    for among in ([1, 0], [0, 0], [-1], [2]):
+        with pytest.raises(sb.InputError, match=r"among: entry .* name each of 2 triangles once, in order"):
+            sb.self_crossings(np.eye(3), [[0, 1, 2], [0, 2, 1]], among)
     job = sb.Job()
     job.cancel()
     with pytest.raises(sb.Cancelled):

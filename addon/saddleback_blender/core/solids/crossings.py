@@ -10,10 +10,9 @@ from .. import native
 from ..results import Indices, Reals
 
 
-def find_crossings(vertices: Reals, triangles: Indices, job: Any = None) -> Indices:
-    """Pairs (k, 2) of triangles that pass through each other, neighbors along an edge left out. O(m log m).
-
-    Coordinates are rounded to single precision, whichever of the mesh's triangles are given.
+def find_crossings(vertices: Reals, triangles: Indices, among: Indices | None = None, job: Any = None) -> Indices:
+    """Pairs (k, 2) of triangles that pass through each other, neighbors along an edge left out; only those of which one
+    is `among` the n named, if given. Coordinates are rounded to single precision. O(m log n).
     """
-    found: Indices = native.load().self_crossings(vertices.astype(np.float32), triangles, job=job)
+    found: Indices = native.load().self_crossings(vertices.astype(np.float32), triangles, among, job=job)
     return found

@@ -2,6 +2,7 @@
 // Functions of plain triangle arrays, such as those that `split` gives: no Mesh need be made of them.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -91,9 +92,11 @@ BoundaryRefinement refine_to_cell_boundary(std::span<const double> fields, Index
 
 /// Pairs of triangles that pass through each other, the smaller number first, in order: an edge of one goes from one
 /// side of the other to its other side. Exact for coordinates as they are; triangles that only touch, lie in one plane
-/// or share an edge are no such pair. The same for any number of threads (0: all cores). \throw Cancelled,
-/// InputError for a vertex that is not finite. About O(T log T).
+/// or share an edge are no such pair. Only pairs of which one is `among` these, if given. The same for any number of
+/// threads (0: all cores). \throw Cancelled, InputError for a vertex that is not finite, and for an `among` that does
+/// not rise. About O(T log n), n of them `among`.
 std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                                 int threads, const JobStage& stage);
+                                                 std::optional<std::span<const Index>> among, int threads,
+                                                 const JobStage& stage);
 
 }  // namespace saddleback

@@ -56,7 +56,7 @@ class FaceBoxes {
       std::vector<Box<Vec2>> boxes;
       for (std::size_t i = begins_[face]; i < begins_[face + 1]; ++i) boxes.push_back(box_of(i));
       trees_.resize(begins_.size() - 1);
-      trees_[face] = std::make_unique<BoxTree<Vec2>>(std::move(boxes));
+      trees_[face] = std::make_unique<BoxTree<Vec2>>(boxes);
     }
   }
 

@@ -2,6 +2,7 @@
 // whether an edge of one passes through the other.
 
 #include <algorithm>
+#include <numeric>
 
 #include "saddleback/error.h"
 #include "saddleback/mesh/triangle_arrays.h"
@@ -19,11 +20,27 @@ using predicates::orient_3d;
 // Triangles between two looks at the job, and that a thread takes at a time.
 constexpr Index k_at_once = 256;
 
-/// Tells whether the segment's ends lie on different sides of the triangle's plane, and it passes between its sides.
-bool pierces(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& t) {
-  if (orient_3d(t[0], t[1], t[2], from) * orient_3d(t[0], t[1], t[2], to) >= 0) return false;
+using Corners = std::array<Vec3, 3>;
+using Sides = std::array<int, 3>;  ///< of a plane, on which the corners of a triangle lie
+
+/// Tells whether all that is off the plane is on one side of it, and there is something.
+bool is_beside(const Sides& sides) {
+  const auto [least, most] = std::ranges::minmax(sides);
+  return (least >= 0) != (most <= 0);
+}
+
+/// Tells whether the segment passes between the sides of a triangle on whose different sides its ends lie.
+bool is_between(const Vec3& from, const Vec3& to, const Corners& t) {
   const int side = orient_3d(from, to, t[0], t[1]);
   return side != 0 && orient_3d(from, to, t[1], t[2]) == side && orient_3d(from, to, t[2], t[0]) == side;
+}
+
+bool pierces(const Corners& corners, const Sides& sides, const Corners& other) {
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    if (sides[i] * sides[next] < 0 && is_between(corners[i], corners[next], other)) return true;
+  }
+  return false;
 }
 
 class Crossings {
@@ -37,55 +54,82 @@ class Crossings {
   }
   bool cross(Index a, Index b) const {
     const Triangle &of_a = triangles_[a], &of_b = triangles_[b];
-    int shared = 0, at_a = 0, at_b = 0;
+    int shared = 0, at_a = k_none, at_b = k_none;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         if (of_a[i] == of_b[j]) ++shared, at_a = i, at_b = j;
     if (shared > 1) return false;
-    // Where they share a corner, the line that they share begins there and ends on the side opposite of one of them.
-    return any_pierces(a, corners(b), shared ? (at_a + 1) % 3 : k_all_sides) ||
-           any_pierces(b, corners(a), shared ? (at_b + 1) % 3 : k_all_sides);
+    // A triangle beside the other's plane has no inner point in it, so nothing passes through either.
+    const Corners first = corners(a), second = corners(b);
+    const Sides of_first = sides(second, first, at_a);
+    if (is_beside(of_first)) return false;
+    const Sides of_second = sides(first, second, at_b);
+    if (is_beside(of_second)) return false;
+    return pierces(first, of_first, second) || pierces(second, of_second, first);
   }
 
  private:
-  static constexpr int k_all_sides = -1;
-  std::array<Vec3, 3> corners(Index i) const {
+  static constexpr int k_none = -1;
+  Corners corners(Index i) const {
     const Triangle& t = triangles_[i];
     return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
   }
-  bool any_pierces(Index triangle, const std::array<Vec3, 3>& other, int side) const {
-    const auto own = corners(triangle);
+  /// `shared` is the corner that lies in the plane since it is one of the plane's own.
+  static Sides sides(const Corners& plane, const Corners& of, int shared) {
+    Sides found{};
     for (int i = 0; i < 3; ++i)
-      if ((side == k_all_sides || side == i) && pierces(own[i], own[(i + 1) % 3], other)) return true;
-    return false;
+      if (i != shared) found[i] = orient_3d(plane[0], plane[1], plane[2], of[i]);
+    return found;
   }
 
   std::span<const Vec3> vertices_;
   std::span<const Triangle> triangles_;
 };
 
+/// All of `count` triangles, or those that are named.
+std::vector<Index> chosen_of(std::optional<std::span<const Index>> among, Index count) {
+  if (!among) {
+    std::vector<Index> all(count);
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  for (std::size_t k = 0; k < among->size(); ++k)
+    if ((*among)[k] <= (k ? (*among)[k - 1] : -1) || (*among)[k] >= count)
+      throw InputError(
+          message("among: entry ", k, " is ", (*among)[k], "; name each of ", count, " triangles once, in order"));
+  return {among->begin(), among->end()};
+}
+
 }  // namespace
 
 std::vector<std::array<Index, 2>> self_crossings(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                                 int threads, const JobStage& stage) {
+                                                 std::optional<std::span<const Index>> among, int threads,
+                                                 const JobStage& stage) {
+  const auto count = static_cast<Index>(triangles.size());
   check_corners(triangles, static_cast<Index>(vertices.size()));
   for (std::size_t v = 0; v < vertices.size(); ++v)
     if (!vertices[v].allFinite()) throw InputError(message("vertices: vertex ", v, " is not finite"));
+  const std::vector<Index> chosen = chosen_of(among, count);
   const Crossings crossings(vertices, triangles);
-  const auto count = static_cast<Index>(triangles.size());
-  std::vector<Box<Vec3>> boxes(count);
-  for (Index i = 0; i < count; ++i) boxes[i] = crossings.box(i);
-  const BoxTree<Vec3> tree(std::move(boxes));
+  std::vector<Box<Vec3>> boxes(chosen.size());
+  for (std::size_t k = 0; k < chosen.size(); ++k) boxes[k] = crossings.box(chosen[k]);
+  const BoxTree<Vec3> tree(boxes);
   struct alignas(k_apart) Worker {
     std::vector<std::array<Index, 2>> found;
   };
   std::vector<Worker> workers(thread_count(threads));
-  parallel_for(count, threads, k_at_once, [&](Index i, int thread) {
-    if (i % k_at_once == 0) stage.check();
-    auto& found = workers[thread].found;
-    tree.visit(tree.box(i), [&](Index other) {
-      if (other > i && crossings.cross(i, other)) found.push_back({i, other});
-    });
+  const auto look = [&](Index a, Index b, int thread) {
+    if (crossings.cross(a, b)) workers[thread].found.push_back({std::min(a, b), std::max(a, b)});
+  };
+  parallel_for(static_cast<Index>(chosen.size()), threads, k_at_once, [&](Index place, int thread) {
+    if (place % k_at_once == 0) stage.check();
+    tree.visit_later(place, [&](Index i, Index j) { look(chosen[i], chosen[j], thread); });
+  });
+  std::vector<bool> is_chosen(count);
+  for (const Index i : chosen) is_chosen[i] = true;
+  parallel_for(count, threads, k_at_once, [&](Index other, int thread) {
+    if (other % k_at_once == 0) stage.check();
+    if (!is_chosen[other]) tree.visit(crossings.box(other), [&](Index i) { look(chosen[i], other, thread); });
   });
   std::vector<std::array<Index, 2>> all;
   for (const Worker& worker : workers) all.insert(all.end(), worker.found.begin(), worker.found.end());
