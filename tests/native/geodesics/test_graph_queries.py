@@ -294,6 +294,20 @@ def test_points_across_needles_are_as_near_as_they_are(width: float, seed: int) 
     )
 
 
+@pytest.mark.parametrize("width", [1e-3, 2e-6, 1e-6])
+@pytest.mark.parametrize("seed", range(6))
+def test_vertices_across_needles_are_as_near_as_they_are(width: float, seed: int) -> None:
+    """From the blunt end of a needle the far corner of the next one is on both rays in single precision."""
+    vertices, triangles = meshes.grid(12 + 7 * seed, 2 + seed % 3, jitter=0.3, seed=seed)
+    mesh = sb.Mesh(vertices * [width, 1, 1], triangles)
+    graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3)
+    for source in range(0, mesh.vertex_count, 3):
+        right = np.linalg.norm(mesh.vertices - mesh.vertices[source], axis=1)
+        found = graph.distances(source)
+        assert (found >= right * (1 - 1e-12)).all()
+        assert (found <= right * (1 + 5e-3)).all()
+
+
 @pytest.mark.parametrize("gap", [1e-5, 1e-7, 1e-9])
 def test_points_in_needles_beside_needles_see_across(gap: float) -> None:
     """In single precision a point of so thin a face is on its long edge, and so is the far corner of the next one."""

@@ -12,6 +12,7 @@
 
 #include "geodesics/cuda/device_edge_bound.cuh"
 #include "geodesics/cuda/device_window_memory.cuh"
+#include "geodesics/unfolding/unfolded_corner.h"
 #include "support/cuda/warp.cuh"
 
 namespace saddleback {
@@ -225,6 +226,10 @@ class WarpWaves {
     if (active) put_arc(number, {{length, 0}, {0, 0}, 0, 0, Sighting::pack(root, to), near_label});
     if (boundary) put_arc(number + 1, {{other, 0}, {0, 0}, 1, 0, Sighting::pack(root, apex), far_label});
     const bool opens = active && record.right >= 0;
+    if (opens && corner.x < 0) {
+      const double2 beyond = apex_of(mesh_.records[record.right], corner, {length, 0});
+      if (is_on_both_rays(length, 0, corner.x, corner.y, beyond.x, beyond.y)) overflow_ = 1;  // the processor passes it
+    }
     const unsigned opening = __ballot_sync(k_warp, opens);
     const int opened = __popc(opening);
     if (count_ + opened >= k_windows) {

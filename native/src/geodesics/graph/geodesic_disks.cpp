@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "geodesics/unfolding/unfolded_corner.h"
 #include "support/planar.h"
 
 namespace saddleback {
@@ -89,7 +90,9 @@ void GeodesicDisks::add_node(int lane, Index node) {
     const Index apex_node = mesh_.records()[e].apex;
     add_link(mesh_.target(e) * k_batch + lane, along, along, 0, ~e);
     if (!mesh_.has_left(e)) add_link(apex_node * k_batch + lane, other, other, 1, ~e);
-    if (mesh_.opposite(e) >= 0) add_window(lane, {along, apex, mesh_.target(e), apex_node, mesh_.opposite(e), e});
+    if (mesh_.opposite(e) < 0) continue;
+    const FirstWindow window{along, apex, mesh_.target(e), apex_node, mesh_.opposite(e), e};
+    along.dot(apex) < 0 ? add_wide_window(lane, window) : add_window(lane, window);
   }
 }
 
@@ -129,19 +132,15 @@ void GeodesicDisks::add_link(std::int32_t slot, const Vec2& place, const Vec2& f
   lower_labels(i, i + 1);
 }
 
-/// A source in a needle lies on the long edge but for rounding. Where the face behind is a needle, too, its far corner
-/// is on both rays in single precision, and the cone would be lost: such faces are passed here.
+/// Passes the faces whose far corners are on both rays, in double precision.
 void GeodesicDisks::add_wide_window(int lane, FirstWindow window) {
-  constexpr double k_on_both = 1e-4;  // sines: waves take 1e-6 for nothing, and round theirs
   constexpr int k_most_faces = 1000;
   for (int faces = 0; faces < k_most_faces; ++faces) {
     const EdgeRecord& record = mesh_.records()[window.entered];
     const Vec2 along = window.right - window.left;
     const Vec2 apex = window.left + record.a * along + record.b * Vec2(-along.y(), along.x());
-    const double from_right = cross(window.right, apex) / window.right.norm(),
-                 to_left = cross(apex, window.left) / window.left.norm();
-    if (std::max(from_right, to_left) > k_on_both * apex.norm()) break;
-    if (!(apex.dot(window.right) * apex.dot(window.left) < 0)) break;  // the cone is narrow, not wide
+    if (!is_on_both_rays(window.right.x(), window.right.y(), window.left.x(), window.left.y(), apex.x(), apex.y()))
+      break;
     add_link(record.apex * k_batch + lane, apex, window.left, window.entered * k_batch + lane, window.root);
     const FirstWindow left{apex, window.left, record.apex, window.left_node, record.left, window.root},
         right{window.right, apex, window.right_node, record.apex, record.right, window.root};

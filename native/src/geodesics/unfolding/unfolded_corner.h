@@ -1,6 +1,8 @@
 #pragma once
 // A face laid flat by the lengths of its edges, on the processor and on a CUDA device alike.
 
+#include <cmath>
+
 #include "support/cuda/host_device.h"
 
 namespace saddleback {
@@ -16,5 +18,18 @@ SADDLEBACK_HOST_DEVICE inline double corner_along(double base, double left, doub
 }
 /// Returns how far off it. From the area, which the mesh computes stably.
 SADDLEBACK_HOST_DEVICE inline double corner_off(double base, double area) { return 2 * area / base; }
+
+/// Tells whether the far corner of the face behind a cone is on both of its rays as far as single precision tells, and
+/// the cone is wide: waves would lose it. So is a source in a needle, or at the blunt end of one, beside another
+/// needle.
+SADDLEBACK_HOST_DEVICE inline bool is_on_both_rays(double right_x, double right_y, double left_x, double left_y,
+                                                   double apex_x, double apex_y) {
+  constexpr double k_on_both = 1e-4;  // sines: waves take 1e-6 for nothing, and round theirs
+  const double from_right = (right_x * apex_y - right_y * apex_x) / std::sqrt(right_x * right_x + right_y * right_y);
+  const double to_left = (apex_x * left_y - apex_y * left_x) / std::sqrt(left_x * left_x + left_y * left_y);
+  const double most = k_on_both * std::sqrt(apex_x * apex_x + apex_y * apex_y);
+  if (from_right > most || to_left > most) return false;
+  return (apex_x * right_x + apex_y * right_y) * (apex_x * left_x + apex_y * left_y) < 0;
+}
 
 }  // namespace saddleback
