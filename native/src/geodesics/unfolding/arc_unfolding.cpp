@@ -9,8 +9,10 @@
 namespace saddleback {
 namespace {
 
-// Geodesics may run through vertices: they lie on the border of their windows, up to rounding.
-constexpr double k_on_border = 1e-9, k_on_rough_border = 1e-5;
+// Geodesics may run through vertices: they lie on the border of their windows, up to rounding, which is usually the
+// least of these. All of a region that is smaller than a border is on it: there a way wanders without end, and only
+// where that is less than 1e-12 of its length that is none of its length.
+constexpr double k_on_border = 1e-13, k_on_loose_border = 1e-9, k_on_rough_border = 1e-5;
 
 // The share of the longest length by which rounding moves one place.
 constexpr double k_same_place = 1e-11;
@@ -37,8 +39,13 @@ bool ArcUnfolder::unfold(const ArcHint& hint, const SurfacePoint* target, Unfold
   arc.entered.clear();
   arc.crossings.clear();
   target_ = target;
-  border_ = hint.is_rough ? k_on_rough_border : k_on_border;
   if (!target && along_an_edge(hint, arc)) return true;
+  if (hint.is_rough) return unfold_within(k_on_rough_border, hint, arc);
+  return unfold_within(k_on_border, hint, arc) || unfold_within(k_on_loose_border, hint, arc);
+}
+
+bool ArcUnfolder::unfold_within(double border, const ArcHint& hint, UnfoldedArc& arc) {
+  border_ = border;
   for (const Index h : outgoing(mesh_, hint.from)) {
     const double begin = unfolding_.polar(h);
     if (begin <= hint.end_angle && begin + mesh_.corner_angle(h) >= hint.begin_angle && start(hint, h, arc))

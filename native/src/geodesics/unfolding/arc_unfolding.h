@@ -57,6 +57,7 @@ class ArcUnfolder {
     Vec2 from, to;  ///< its ends, as above
   };
   bool unfold(const ArcHint& hint, const SurfacePoint* target, UnfoldedArc& arc);
+  bool unfold_within(double border, const ArcHint& hint, UnfoldedArc& arc);
   bool along_an_edge(const ArcHint& hint, UnfoldedArc& arc) const;
   bool inside_first_face(const ArcHint& hint, Index halfedge, UnfoldedArc& arc) const;
   /// Returns where the target lies when it lies in the face of `window`, whose third corner is at `apex`.
