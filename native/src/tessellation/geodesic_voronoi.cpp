@@ -2,6 +2,7 @@
 
 #include "saddleback/tessellation/geodesic_voronoi.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -188,6 +189,33 @@ double way_over_corner(const GeodesicVoronoi& cells, const Mesh& mesh, const Sur
   return shortest;
 }
 
+/// Returns the sites that may be seen straight from a place by a shorter way than the one known: those that are nearer
+/// as the bird flies, whether or not they own something near there.
+std::vector<Index> sites_in_reach(const GeodesicVoronoi& cells, const Mesh& mesh, const SurfacePoints& places,
+                                  std::span<const double> known) {
+  constexpr double k_bird = 1 + 1e-12;
+  std::vector<Vec3> positions;
+  Eigen::AlignedBox3d box;
+  for (const SurfacePoint& site : cells.sites) box.extend(positions.emplace_back(position(mesh, site)));
+  Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  std::vector<std::pair<double, Index>> along;
+  for (std::size_t i = 0; i < positions.size(); ++i) along.emplace_back(positions[i][axis], static_cast<Index>(i));
+  std::ranges::sort(along);
+  std::vector<std::uint8_t> is_in_reach(positions.size(), 0);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec3 place = position(mesh, places[i]);
+    const double reach = known[i] * k_bird;
+    auto site = std::ranges::lower_bound(along, std::pair(place[axis] - reach, Index(0)));
+    for (; site != along.end() && site->first <= place[axis] + reach; ++site)
+      is_in_reach[site->second] |= (positions[site->second] - place).norm() <= reach;
+  }
+  std::vector<Index> sites;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (is_in_reach[i]) sites.push_back(static_cast<Index>(i));
+  return sites;
+}
+
 }  // namespace
 
 Index GeodesicVoronoi::cell_at(const Mesh& mesh, const SurfacePoint& point) const {
@@ -208,21 +236,14 @@ std::vector<CellAt> GeodesicVoronoi::locate(const SaddleVertexGraph& graph, cons
     }
     return result;
   }
-  std::vector<Index> rivals;  // whose site may be seen straight from a place
   std::vector<double> known;
   for (const SurfacePoint& place : places) {
     if (result.size() % 256 == 0) stage.check();
     result.push_back({candidate_at(*this, mesh, place).cell, 0});
     known.push_back(way_over_corner(*this, mesh, place));
-    rivals.push_back(result.back().cell);
-    for (Index i = face_candidates[place.face]; i < face_candidates[place.face + 1]; ++i)
-      rivals.push_back(candidates[i].cell);
   }
-  std::ranges::sort(rivals);
-  const auto repeated = std::ranges::unique(rivals);
-  rivals.erase(repeated.begin(), repeated.end());
   SurfacePoints rival_sites;
-  for (const Index rival : rivals) rival_sites.push_back(sites[rival]);
+  for (const Index rival : sites_in_reach(*this, mesh, places, known)) rival_sites.push_back(sites[rival]);
   const std::vector<PointFan> fans = find_fans(graph, rival_sites, stage.part(0, 0.2));
   known = distances_at(
       graph, rival_sites, fans, [&](Index vertex) { return vertex_distance[vertex]; }, places, std::move(known),
