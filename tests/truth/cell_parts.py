@@ -35,7 +35,7 @@ def boundaries_are_midway(mesh: sb.Mesh, rng: Random) -> None:
         check_boundaries(mesh, rng)
 
 
-@guards("VoronoiEdge", unsettled="1 of 800: part of a third cell between two, on rings of needles")
+@guards("VoronoiEdge")
 def boundaries_among_needles(mesh: sb.Mesh, rng: Random) -> None:
     """The same where faces are needles."""
     if not is_usual(mesh) and mesh.edge_lengths.min() > 1e-4 * longest_edge(mesh):

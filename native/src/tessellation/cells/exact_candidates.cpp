@@ -232,7 +232,31 @@ bool ExactParts::is_right(const FaceRefinement::Part& part) {
   });
   if (bends && std::ranges::max(part.length) <= tolerance_ / 2) return true;
   const double tolerance = bends ? tolerance_ : k_unbent * tolerance_;
-  return fits(part, candidates, nullptr, tolerance) || straighten(part, candidates, tolerance);
+  const bool is_as_told = fits(part, candidates, nullptr, tolerance) && owners_are_nearest(part, candidates, tolerance);
+  return is_as_told || straighten(part, candidates, tolerance);
+}
+
+/// Tells whether the sites that own the places beside the bisectors are nearest there: one that a sample does not see
+/// may be told, from the corners, to come between the others where it does not.
+bool ExactParts::owners_are_nearest(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates,
+                                    double tolerance) const {
+  const auto is_seen = [&](const FaceCandidate& candidate) {
+    return is_beaten(candidate, candidates) || std::ranges::all_of(at_samples_, [&](const Ways& ways) {
+             return find_source(ways, candidate.site) != nullptr;
+           });
+  };
+  if (std::ranges::all_of(candidates, is_seen)) return true;
+  for (const Vec3& x : places_by_bisectors(candidates)) {
+    const Index nearest = sites_[field_.nearest_at(point_in(part, x)).source];
+    double least = k_infinity, of_nearest = k_infinity;
+    for (const FaceCandidate& candidate : candidates) {
+      const double distance = distance_at(part, candidate, x);
+      least = std::min(least, distance);
+      if (candidate.site == nearest) of_nearest = distance;
+    }
+    if (of_nearest > least + tolerance) return false;
+  }
+  return true;
 }
 
 /// Looks at what the sites' distances at the samples are more than the corners say. Among sites that own something

@@ -52,6 +52,8 @@ class ExactParts {
   bool is_right(const FaceRefinement::Part& part);
   bool fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, const Ways* straight,
             double tolerance) const;
+  bool owners_are_nearest(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates,
+                          double tolerance) const;
   Ways ways_seen(const std::vector<FaceCandidate>& candidates) const;
   bool explain(const FaceRefinement::Part& part, const Ways& ways, std::span<const Vec3> places) const;
   bool straighten(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, double tolerance);
