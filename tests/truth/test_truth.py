@@ -35,6 +35,10 @@ def test_random_input_meets_the_truths():
         ("cells.cells_of_few_sites", 123091566),  # told in single precision to be as near as another way
         ("lines_and_maps.lines_along_fields", 20626990),  # ended at a singularity past its length
         ("shapes.innocent_shapes", 123100773),  # an edge 1e-5 long, seen along
+        ("graph.path_lengths", 20460663),  # wandered through a region of 1e-9 of its distance, all of it on a ray
+        ("cells.places_in_cells", 66001587),  # a site seen straight that claims nothing of the face
+        ("cell_parts.boundaries_are_midway", 20329483),  # a third cell between two, told from two corners alone
+        ("cell_parts.boundaries_among_needles", 795778662590),
     ],
 )
 def test_what_a_search_found_stays_mended(name, seed):
