@@ -29,6 +29,17 @@ std::vector<double> limits_of_places(const Mesh& mesh) {
   return limits;
 }
 
+/// Returns for each component the tolerance of distances in it.
+std::vector<double> tolerances(const Mesh& mesh, const SurfacePoints& sites) {
+  std::vector<double> areas(mesh.component_count(), 0), counts(areas), result;
+  for (Index face = 0; face < mesh.face_count(); ++face)
+    areas[mesh.component_of(mesh.triangles()[face][0])] += mesh.face_area(face);
+  for (const SurfacePoint& site : sites) ++counts[mesh.component_of(mesh.triangles()[site.face][0])];
+  for (std::size_t part = 0; part < areas.size(); ++part)
+    result.push_back(k_tolerance * std::sqrt(areas[part] / counts[part]));
+  return result;
+}
+
 /// The sites but those that are at the place of an earlier one. O(n log n) but for many beside each other.
 std::vector<Index> sites_of_places(const Mesh& mesh, const SurfacePoints& sites) {
   const std::vector<double> limits = limits_of_places(mesh);
@@ -144,12 +155,11 @@ class InFaces {
 GeodesicVoronoi exact_voronoi(const Mesh& mesh, const SurfacePoints& sites, Job* job) {
   check_sites(mesh, sites);
   const JobStage stage(job, "Finding cells by exact distances");
-  const double size = std::sqrt(mesh.area() / static_cast<double>(sites.size()));
   std::vector<Index> kept = sites_of_places(mesh, sites);
   SurfacePoints sources;
   for (const Index site : kept) sources.push_back(sites[site]);
   auto field = std::make_shared<const ExactField>(mesh, sources, stage.part(0, 0.3));
-  const ExactParts parts(*field, kept, k_tolerance * size, stage.part(0.3, 0.8));
+  const ExactParts parts(*field, kept, tolerances(mesh, sites), stage.part(0.3, 0.8));
   const Mesh divided = mesh_of(parts, stage.part(0.8, 0.85));
   const ExactCandidates candidates(parts, divided, static_cast<Index>(sites.size()));
   GeodesicVoronoi diagram = subdivision(CellComplex(candidates, 1, stage.part(0.85, 0.95)), sites, stage);

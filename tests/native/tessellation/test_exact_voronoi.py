@@ -387,3 +387,17 @@ def test_a_strip_stays_whole(width: float) -> None:
         sites = sb.SurfacePoints(np.append(faces, faces[5]).astype(np.int32), np.vstack([weights, twin]))
         cells = exact_cells(mesh, sites)
         check(mesh, cells)
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1e-12])
+def test_a_part_beside_a_large_one_is_divided_as_it_is_alone(ratio: float) -> None:
+    vertices, triangles = meshes.icosphere(1)
+    vertices = ratio * (vertices + 0.05 * np.random.default_rng(2).normal(size=vertices.shape))
+    large = meshes.icosphere(2)
+    alone = sb.Mesh(vertices, triangles)
+    both = sb.Mesh(*meshes.merge((vertices, triangles), (large[0] + [5.0, 0, 0], large[1])))
+    beside, expected = (
+        sb.geodesic_voronoi(sb.SaddleVertexGraph(mesh, k=3), sites, exact=True).areas
+        for mesh, sites in ((both, [0, 7, 20, len(vertices)]), (alone, [0, 7, 20]))
+    )
+    np.testing.assert_allclose(beside[:3], expected, rtol=1e-9)

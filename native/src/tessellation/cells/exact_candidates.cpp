@@ -78,23 +78,27 @@ std::vector<Vec3> places_by_bisectors(const std::vector<FaceCandidate>& candidat
 
 }  // namespace
 
-ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites, double tolerance,
+ExactParts::ExactParts(const ExactField& field, const std::vector<Index>& sites, std::vector<double> tolerances,
                        const JobStage& stage)
-    : field_(field), sites_(sites), tolerance_(tolerance), refinement_(field.mesh()) {
+    : field_(field), sites_(sites), tolerances_(std::move(tolerances)), refinement_(field.mesh()) {
   look_at_mesh_vertices(stage.part(0, 0.3));
   const std::size_t most = k_some_parts + k_parts_each * (field.mesh().face_count() + sites.size());
   looked_.assign(field.mesh().face_count(), k_none);
   const double faces = field.mesh().face_count();
   double looks = 0;  // how many parts more will be looked at than there are faces is not known
-  double least = 0;  // the length of what is looked at, so that where parts run out all places are divided alike
-  for (const FaceRefinement::Part& part : refinement_.parts()) least = std::max(least, std::ranges::max(part.length));
+  // The length of what is looked at, in tolerances, so that where parts run out all places are divided alike.
+  const auto size = [&](const FaceRefinement::Part& part) {
+    return std::ranges::max(part.length) / tolerance_of(part);
+  };
+  double least = 0;
+  for (const FaceRefinement::Part& part : refinement_.parts()) least = std::max(least, size(part));
   for (bool goes_on = true; goes_on;) {  // what is told anew in one part is looked at in those beside
     goes_on = false;
-    least = least > tolerance_ ? least / k_finer : 0;
+    least = least > 1 ? least / k_finer : 0;
     for (std::size_t part = 0; part < looked_.size(); ++part) {
       if (is_looked_at(static_cast<Index>(part))) continue;
       goes_on = true;
-      if (std::ranges::max(refinement_.parts()[part].length) < least) continue;
+      if (size(refinement_.parts()[part]) < least) continue;
       if (std::fmod(looks++, 64) == 0)
         stage.update(0.3 + 0.7 * (looks <= faces ? looks / faces / 2 : 1 - faces / looks / 2));
       const bool is_done = is_right(refinement_.parts()[part]);
@@ -217,7 +221,8 @@ void ExactParts::find_candidates(const FaceRefinement::Part& part, const Corners
 }
 
 bool ExactParts::is_right(const FaceRefinement::Part& part) {
-  if (std::ranges::max(part.length) <= k_unbent * tolerance_ / 2) return true;
+  const double whole = tolerance_of(part);
+  if (std::ranges::max(part.length) <= k_unbent * whole / 2) return true;
   std::vector<FaceCandidate> candidates;
   find_candidates(part, candidates);
   if (candidates.size() == 1) return true;
@@ -230,8 +235,8 @@ bool ExactParts::is_right(const FaceRefinement::Part& part) {
   const bool bends = std::ranges::any_of(at_samples_, [&](const Ways& ways) {
     return std::ranges::any_of(ways, [&](const Way& way) { return way.before > 0 && is_rival(way); });
   });
-  if (bends && std::ranges::max(part.length) <= tolerance_ / 2) return true;
-  const double tolerance = bends ? tolerance_ : k_unbent * tolerance_;
+  if (bends && std::ranges::max(part.length) <= whole / 2) return true;
+  const double tolerance = bends ? whole : k_unbent * whole;
   const bool is_as_told = fits(part, candidates, nullptr, tolerance) && owners_are_nearest(part, candidates, tolerance);
   return is_as_told || straighten(part, candidates, tolerance);
 }
@@ -315,7 +320,7 @@ bool ExactParts::explain(const FaceRefinement::Part& part, const Ways& ways, std
     const Vec2 place = field_.place_of(point);
     double least = k_infinity;
     for (const Way& way : ways) least = std::min(least, way.straight_to(place));
-    if (std::abs(least - field_.nearest_at(point).distance) > k_explained * tolerance_) return false;
+    if (std::abs(least - field_.nearest_at(point).distance) > k_explained * tolerance_of(part)) return false;
   }
   return true;
 }

@@ -17,9 +17,10 @@ namespace saddleback {
 /// for.
 class ExactParts {
  public:
-  /// `sites`: the sites that are the field's sources, in increasing order; cells are numbered by them. `tolerance`: of
-  /// distances, mesh units. All must outlive the parts. \throw Cancelled.
-  ExactParts(const ExactField& field, const std::vector<Index>& sites, double tolerance, const JobStage& stage);
+  /// `sites`: the sites that are the field's sources, in increasing order; cells are numbered by them. `tolerances`:
+  /// of distances, mesh units, by the mesh's component. The others must outlive the parts. \throw Cancelled.
+  ExactParts(const ExactField& field, const std::vector<Index>& sites, std::vector<double> tolerances,
+             const JobStage& stage);
 
   const FaceRefinement& refinement() const { return refinement_; }
   /// Values by face of the mesh.
@@ -49,6 +50,9 @@ class ExactParts {
                        std::vector<FaceCandidate>& candidates) const;
   void divide(Index part);
   bool is_looked_at(Index part) const;
+  double tolerance_of(const FaceRefinement::Part& part) const {
+    return tolerances_[field_.mesh().component_of(field_.mesh().triangles()[part.face][0])];
+  }
   bool is_right(const FaceRefinement::Part& part);
   bool fits(const FaceRefinement::Part& part, const std::vector<FaceCandidate>& candidates, const Ways* straight,
             double tolerance) const;
@@ -60,7 +64,7 @@ class ExactParts {
 
   const ExactField& field_;
   const std::vector<Index>& sites_;
-  const double tolerance_;
+  const std::vector<double> tolerances_;  ///< by component
   FaceRefinement refinement_;
   std::vector<Distances> distances_;  ///< by vertex
   std::vector<ExactField::Sight> nearest_;
