@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import bmesh
@@ -219,12 +220,12 @@ def modifier_inputs(modifier: bpy.types.Modifier) -> dict[str, Any]:
     return {name: modifier_input(modifier, name) for name in names}
 
 
-def user_folder() -> str:
+def user_folder(name: str = "graphs") -> str:
     """Tells where this add-on may keep files of its own; an extension has a place of its own from 4.2 on."""
     is_extension = __package__.startswith("bl_ext.")
     if is_extension and hasattr(bpy.utils, "extension_path_user"):
-        return str(bpy.utils.extension_path_user(__package__, path="graphs"))
-    return str(bpy.utils.user_resource("DATAFILES", path="saddleback_graphs"))
+        return str(bpy.utils.extension_path_user(__package__, path=name))
+    return str(bpy.utils.user_resource("DATAFILES", path=f"saddleback_{name}"))
 
 
 def in_order_of_selection(mesh: bpy.types.Mesh, vertices: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -334,3 +335,29 @@ def interpolate_corner(loop: Any, face: Any) -> None:
         loop.copy_from_face_interp(*arguments)
     except TypeError:  # Blender 3 wants all of them in one tuple
         loop.copy_from_face_interp(arguments)
+
+
+def add_swept_curve(wiring: Any, curve: Any, profile: Any, radius: Any) -> Any:
+    """Adds nodes that sweep a profile of radius 1 along curves, scaled by a field; an input of the node from 5.0 on."""
+    swept = wiring.node("GeometryNodeCurveToMesh")
+    swept.inputs["Fill Caps"].default_value = True
+    wiring.link(profile, swept.inputs["Profile Curve"])
+    if "Scale" in swept.inputs:
+        wiring.link(radius, swept.inputs["Scale"])
+    else:
+        thick = wiring.node("GeometryNodeSetCurveRadius")
+        wiring.link(curve, thick.inputs["Curve"])
+        wiring.link(radius, thick.inputs["Radius"])
+        curve = thick.outputs["Curve"]
+    wiring.link(curve, swept.inputs["Curve"])
+    return swept.outputs["Mesh"]
+
+
+def add_asset_library(name: str, folder: Path) -> None:
+    """Adds a folder to the asset libraries of the preferences; from 3.6 on without an operator."""
+    libraries = bpy.context.preferences.filepaths.asset_libraries
+    if hasattr(libraries, "new"):
+        libraries.new(name=name, directory=str(folder))
+        return
+    bpy.ops.preferences.asset_library_add(directory=str(folder))
+    libraries[-1].name = name

@@ -169,7 +169,7 @@ def _shared_group(kind: str) -> bpy.types.NodeTree:
     for group in bpy.data.node_groups:
         if group.get(MARK) == kind and group.library is None:
             return group
-    makers = {TUBES: _new_tubes_group, CURVE_TUBES: _new_curve_tubes_group, DOTS: _new_dots_group}
+    makers = {TUBES: _new_tubes_group, CURVE_TUBES: _new_curve_tubes_group, DOTS: new_dots_group}
     return makers[kind]()
 
 
@@ -281,11 +281,12 @@ def _new_instances_group() -> bpy.types.NodeTree:
     group, source, sink = new_group("Saddleback Instances", INSTANCES)
     info = group.nodes.new("GeometryNodeObjectInfo")
     info.inputs["As Instance"].default_value = True
-    _place_instances(group, source, sink, info, info.outputs["Geometry"])
+    place_instances(group, source, sink, info, info.outputs["Geometry"])
     return group
 
 
-def _new_dots_group() -> bpy.types.NodeTree:
+def new_dots_group(scale: float = 1.0) -> bpy.types.NodeTree:
+    """A flat round dot on each point; `scale`: of dots that fill their cells, until the artist says otherwise."""
     group, source, sink = new_group("Saddleback Dots", DOTS)
     resolution = compat.new_group_socket(group, "Resolution", "INPUT", "NodeSocketInt")
     resolution.default_value, resolution.min_value, resolution.max_value = 16, 3, 128
@@ -297,14 +298,16 @@ def _new_dots_group() -> bpy.types.NodeTree:
     link(source.outputs["Resolution"], circle.inputs["Vertices"])
     link(circle.outputs["Mesh"], painted.inputs["Geometry"])
     link(source.outputs["Material"], painted.inputs["Material"])
-    _place_instances(group, source, sink, (circle, painted), painted.outputs["Geometry"])
+    place_instances(group, source, sink, (circle, painted), painted.outputs["Geometry"], scale)
     return group
 
 
-def _place_instances(group: bpy.types.NodeTree, source: Any, sink: Any, column: Any, instance: Any) -> None:
+def place_instances(
+    group: bpy.types.NodeTree, source: Any, sink: Any, column: Any, instance: Any, factor: float = 1.0
+) -> None:
     """Adds what puts an instance on each point, sized and turned by the point's attributes."""
     scale = compat.new_group_socket(group, "Scale", "INPUT", "NodeSocketFloat")
-    scale.default_value, scale.min_value = 1.0, 0.0
+    scale.default_value, scale.min_value = factor, 0.0
     nodes, link = group.nodes, group.links.new
 
     rotation, size = nodes.new("GeometryNodeInputNamedAttribute"), nodes.new("GeometryNodeInputNamedAttribute")

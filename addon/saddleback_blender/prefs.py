@@ -86,6 +86,7 @@ class SaddlebackPreferences(bpy.types.AddonPreferences):
         layout.prop(self, "cache_on_disk")
         layout.prop(self, "cache_folder")
         layout.prop(self, "disk_megabytes")
+        layout.operator("saddleback.add_asset_library", icon="ASSET_MANAGER")
         problem = native.problem()
         row = layout.row()
         row.alert = bool(problem)

@@ -97,6 +97,14 @@ class Wiring:
         self.link(other, made.inputs[1])
         return made.outputs["Boolean"]
 
+    def math(self, operation: str, *operands: Any) -> Any:
+        """Mathematics with sockets or constants."""
+        made = self.node("ShaderNodeMath")
+        made.operation = operation
+        for socket, operand in zip(made.inputs, operands, strict=False):
+            self._give(socket, operand)
+        return made.outputs["Value"]
+
     def vector(self, operation: str, *operands: Any) -> Any:
         """Vector mathematics with sockets or constants."""
         made = self.node("ShaderNodeVectorMath")

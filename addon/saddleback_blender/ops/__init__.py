@@ -6,6 +6,7 @@ import bpy
 
 from . import (
     apply_look,
+    asset_library,
     clear,
     direction_field,
     distance,
@@ -30,6 +31,7 @@ CLASSES = (
     *paint.CLASSES,
     *repair.CLASSES,
     *clear.CLASSES,
+    *asset_library.CLASSES,
 )
 
 

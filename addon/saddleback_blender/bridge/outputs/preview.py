@@ -140,10 +140,19 @@ def _set(material: bpy.types.Material, attribute: str, farthest: float, spacing:
 
 
 def _new_material() -> bpy.types.Material:
-    """Distance / farthest -> ramp -> color, darkened where distance / spacing is near a whole number."""
     material, shader = nodes.new_material("Saddleback Distance", KIND)
     material.diffuse_color = (*RAMP[1][1], 1.0)
-    tree, link = material.node_tree.nodes, material.node_tree.links.new
+    material.node_tree.links.new(add_ramp(material.node_tree), shader.inputs["Base Color"])
+    shader.inputs["Roughness"].default_value = 0.6
+    return material
+
+
+def add_ramp(group: bpy.types.NodeTree) -> Any:
+    """Distance / farthest -> ramp -> color, darkened where distance / spacing is near a whole number.
+
+    Returns the socket of the color; the second inputs of the nodes FARTHEST, SPACING and DARKNESS are the numbers.
+    """
+    tree, link = group.nodes, group.links.new
 
     def math(operation: str, name: str, second: float, x: float, y: float) -> Any:
         node = tree.new("ShaderNodeMath")
@@ -183,6 +192,4 @@ def _new_material() -> bpy.types.Material:
     link(dark.outputs[0], bright.inputs[1])
     link(ramp.outputs["Color"], shaded.inputs[0])
     link(bright.outputs[0], shaded.inputs["Scale"])
-    link(shaded.outputs[0], shader.inputs["Base Color"])
-    shader.inputs["Roughness"].default_value = 0.6
-    return material
+    return shaded.outputs[0]
