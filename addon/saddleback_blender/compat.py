@@ -22,6 +22,13 @@ def read_positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
     return positions.reshape(-1, 3)
 
 
+def read_floats(elements: Any, name: str, width: int) -> NDArray[np.float32]:
+    """(n, width) numbers that n elements have."""
+    numbers = np.empty(width * len(elements), np.float32)
+    elements.foreach_get(name, numbers)
+    return numbers.reshape(-1, width)
+
+
 def write_positions(mesh: bpy.types.Mesh, positions: NDArray[np.float32]) -> None:
     """Sets the (V, 3) object-space positions."""
     mesh.vertices.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())

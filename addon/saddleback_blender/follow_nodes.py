@@ -99,6 +99,12 @@ def set_following(item: bpy.types.Object, host: Host, known: Known) -> bpy.types
     return put_group(item, FOLLOW, "Saddleback Follow", group, inputs)
 
 
+def follows(item: bpy.types.Object, host: bpy.types.Object) -> bool:
+    """Tells whether an object's points are taken along with the host."""
+    modifier = modifier_of(item, FOLLOW)
+    return modifier is not None and compat.modifier_input(modifier, HOST) == host
+
+
 def stop_following(item: bpy.types.Object) -> None:
     """Leaves the points where they are."""
     modifier = modifier_of(item, FOLLOW)

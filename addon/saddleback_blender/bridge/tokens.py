@@ -1,4 +1,6 @@
-"""Lets an output know its source: by a token, a random word that both keep, so that both may be renamed and saved."""
+"""Lets an output know its source: by a token, a random word that both keep, so that both may be renamed and saved;
+and the layer of the source that it belongs to, by a word of the layer's, "" of the first.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +12,11 @@ from .. import rollback
 
 TOKEN = "saddleback_token"  # on a source
 SOURCE = "saddleback_source"  # on outputs: the token of their source
+ROLE = "saddleback_role"  # on outputs: what it shows
+NAME = "saddleback_name"  # on outputs: the name that we gave it
+PLACE = "saddleback_place"  # on outputs: the matrix that we gave it
+MATERIALS = "saddleback_materials"  # on outputs: the names of the materials that we gave it, one a line
+LAYER = "saddleback_layer"  # on outputs: the word of their layer; none on those of the first
 # On a source that overrides one of another file, where Blender keeps registered properties only.
 OVERRIDE_TOKEN = "saddleback_override_token"
 
@@ -17,6 +24,11 @@ OVERRIDE_TOKEN = "saddleback_override_token"
 def token_of(item: bpy.types.Object) -> str:
     """The object's token, "" where it has none."""
     return str(item.get(TOKEN, "") or getattr(item, OVERRIDE_TOKEN, ""))
+
+
+def layer_of(source: bpy.types.Object) -> str:
+    """The word of the source's active layer, which runs are made in."""
+    return str(source.saddleback.layer_word) if source.is_property_set("saddleback") else ""
 
 
 def source_token(source: bpy.types.Object) -> str:

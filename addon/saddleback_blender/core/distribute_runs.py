@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from operator import itemgetter
 from typing import Any
 
@@ -59,6 +60,7 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
         cut = cut_shapes(mesh, mapped, progress)
         if settings.follow_surface:
             cut_anchors = anchored(surface, triangles, cut.faces, cut.barycentric, cut.vertices, progress)
+        cut = replace(cut, faces=surface.of_mesh(cut.faces), corner_faces=surface.of_mesh(cut.corner_faces))
     if settings.write_attributes:
         with progress.stage(0.97, "measuring the way to the outlines") as job:
             found = mapped.attributes(VALUES_REACH * laid.size, threads=request.threads, job=job)
@@ -81,7 +83,7 @@ def distribute(request: DistributeRequest, progress: Progress, cache: Cache | No
             points=points,
             rotations=rotations,
             scales=scales,
-            faces=placements.center.faces,
+            faces=surface.of_mesh(placements.center.faces),
             barycentric=placements.center.barycentric,
             corners=corners if surface.used is None else surface.used[corners],
             corner_points=surface.vertices[corners],

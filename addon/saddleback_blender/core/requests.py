@@ -32,7 +32,8 @@ class Surface:
     """The triangles of one Blender mesh in world space, without its loose vertices.
 
     `vertices` (n, 3) and `triangles` (F, 3), counter-clockwise seen from outside. `used` (n,) gives each vertex its
-    number in the Blender mesh of `vertex_count` vertices; None where all are used.
+    number in the Blender mesh of `vertex_count` vertices; None where all are used. `kept` (F,) gives each triangle its
+    number among the Blender mesh's; None where all are in the surface.
     """
 
     name: str  # of the object, for messages
@@ -40,6 +41,7 @@ class Surface:
     triangles: Indices
     vertex_count: int
     used: Indices | None = None
+    kept: Indices | None = None
 
     @cached_property
     def key(self) -> str:
@@ -67,6 +69,10 @@ class Surface:
         numbers = np.full(self.vertex_count, -1, np.int32)
         numbers[self.used] = np.arange(len(self.vertices), dtype=np.int32)
         return numbers
+
+    def of_mesh(self, faces: Indices) -> Indices:
+        """Numbers of triangles -> numbers among the Blender mesh's."""
+        return faces if self.kept is None else self.kept[faces]
 
     def compact(self, vertices: NDArray[np.integer]) -> Indices:
         """Numbers in `vertices` of the Blender mesh's vertices, -1 for loose ones."""

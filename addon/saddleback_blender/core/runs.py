@@ -94,7 +94,7 @@ def tessellate(request: TessellateRequest, progress: Progress, cache: Cache | No
     dual = cache.get(("dual", *key, policy), triangulate, lambda made: 2 * made.vertices.nbytes)
     result = replace(result, figures=figures_of(dual, solved.normalized_energy))
     if settings.make_dual:
-        result = replace(result, dual=dual)
+        result = replace(result, dual=replace(dual, faces=surface.of_mesh(dual.faces)))
     if settings.make_shell:
         result = replace(result, shell=_shell(request, mesh, solved, key, progress, cache))
     progress.check()

@@ -7,6 +7,14 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
+class RegionSettings:
+    """Holds which part of the object a layer covers: the properties that all have which make patterns."""
+
+    region: str = "WHOLE"  # WHOLE, VERTEX_GROUP, ATTRIBUTE, FACES, MATERIAL
+    region_name: str = ""  # of the group, attribute or material
+
+
+@dataclass(frozen=True)
 class DensitySettings:
     """Holds where cells or shapes are small: the properties that several operators share."""
 
@@ -25,7 +33,7 @@ class DensitySettings:
 
 
 @dataclass(frozen=True)
-class TessellateSettings(DensitySettings):
+class TessellateSettings(DensitySettings, RegionSettings):
     """All properties of `saddleback.tessellate`; lengths are world units, shares percent of a cell's size.
 
     Objects are given by name ("" = none).
@@ -86,7 +94,7 @@ class TessellateSettings(DensitySettings):
 
 
 @dataclass(frozen=True)
-class DistanceSettings:
+class DistanceSettings(RegionSettings):
     """All properties of `saddleback.distance`; lengths are world units, objects are given by name ("" = none)."""
 
     sources: str = "SELECTED"  # SELECTED, VERTEX_GROUP, EMPTIES, CURVES, CURSOR
@@ -203,7 +211,7 @@ class DirectionFieldSettings:
 
 
 @dataclass(frozen=True)
-class DistributeSettings(DensitySettings):
+class DistributeSettings(DensitySettings, RegionSettings):
     """All properties of `saddleback.distribute`; lengths are world units, "" is no object, collection or layer."""
 
     shapes: str = "SCALES"  # COLLECTION, IMAGE, SCALES, STUDS, FEATHERS, LEAVES, MOSAIC

@@ -11,6 +11,7 @@ from . import (
     direction_field,
     distance,
     distribute,
+    layers,
     look_presets,
     paint,
     path,
@@ -22,6 +23,7 @@ from . import (
 CLASSES = (
     *apply_look.CLASSES,
     *look_presets.CLASSES,
+    *layers.CLASSES,
     *distance.CLASSES,
     *path.CLASSES,
     *tessellate.CLASSES,

@@ -12,18 +12,22 @@ import bpy
 
 from .. import jobs, rollback
 from ..bridge.inputs.source import Source, active_object, usable_source, why_not
+from ..bridge.outputs import hand_edits
 from ..bridge.outputs.following import Follower
+from ..bridge.outputs.layer_visibility import show_layer
 from ..bridge.outputs.lifting import lift_lying
-from ..bridge.outputs.out_collection import outputs_of
+from ..bridge.outputs.out_collection import hide_output, outputs_of, remove_output
 from ..bridge.outputs.out_looks import ROLES, remove_look, set_stage
 from ..bridge.outputs.output_surface import has_own_faces
+from ..bridge.tokens import layer_of
 from ..core import native, runs
 from ..core.errors import BadInputError
 from ..core.lengths import told_lengths, world_lengths
 from ..core.progress import Progress
 from ..core.requests import Surface
-from ..looks import NO_LOOK
+from ..looks import LOOKS, NO_LOOK
 from ..props import PROPERTIES, Settings, existing_group, fill_operator, keep_texts, note_call
+from ..props.layers import check_layer, first_layer, look_of, name_after
 from .redo import draw_redo
 
 # Seconds between looks at the thread: a run's end, and a progress step, are seen this late at most. ESC is an event of
@@ -53,6 +57,8 @@ class SurfaceOperator(PolledOperator):
     """
 
     settings_name: str  # of the group in Object.saddleback
+    makes_layers = True  # or works on the object as a whole
+    bl_label: str
     report: Callable[..., None]
     options: bpy.types.OperatorOptions
     properties: Any
@@ -64,6 +70,7 @@ class SurfaceOperator(PolledOperator):
     _task: jobs.Task | None = None
     _is_by_hand = False  # not by a script
     _lengths: dict[str, Any]  # in world units, those that are given as shares
+    _called: tuple[str, ...]  # names of settings that the caller gave
     _surface: Surface  # that the run is made on
     _follower: Follower | None = None
 
@@ -79,6 +86,13 @@ class SurfaceOperator(PolledOperator):
         """Returns what lets the outputs follow the source when it is deformed."""
         self._follower = Follower(context, source, self._surface, getattr(self, "use_modifiers", False))
         return self._follower
+
+    def drop(self, source: bpy.types.Object, role: str) -> None:
+        """An output that is not wanted: a person may want it again, and finds it as it was; a script gets no rest."""
+        if self._is_by_hand and "look" not in self._called:
+            hide_output(source, role)
+        else:
+            remove_output(source, role)
 
     def lying(self) -> dict[str, bool]:
         """Tells of outputs by their roles whether they would lie on the surface itself."""
@@ -179,6 +193,9 @@ class SurfaceOperator(PolledOperator):
         self._began, self._is_by_hand, self._lengths = perf_counter(), is_by_hand, {}
         jobs.state.kind = self.settings_name
         source = usable_source(context)
+        if self.makes_layers:
+            check_layer(source)
+        self._layer = layer_of(source)
         self._called = fill_operator(self, source, self.settings_name, is_by_hand)
         native.load()
         return source, self.gather(context, source)
@@ -190,6 +207,10 @@ class SurfaceOperator(PolledOperator):
             raise task.error
         try:
             source = self._source.find(context)
+            if layer_of(source) != self._layer:
+                raise BadInputError(
+                    f"'{source.name}': another layer was chosen during the run, so nothing was written: run again"
+                )
         except BadInputError as error:
             return self._refuse(error, context)
         return self._succeed(context, source, task.result, task.progress)
@@ -197,10 +218,13 @@ class SurfaceOperator(PolledOperator):
     def _succeed(
         self, context: bpy.types.Context, source: bpy.types.Object, result: Any, progress: Progress
     ) -> set[str]:
+        hand_edits.notes()  # of what was taken back
         try:
             with rollback.all_or_nothing():
                 if not source.is_property_set("saddleback"):
                     rollback.undo_with(partial(source.property_unset, "saddleback"))
+                if self.makes_layers:
+                    name_after(source, LOOKS[self.look].label if self.look in LOOKS else self.bl_label)
                 line = self.write(context, source, result)
                 if self.settings_name in ROLES:
                     _settle_look(source, self.settings_name, self.look)
@@ -210,6 +234,9 @@ class SurfaceOperator(PolledOperator):
                 labels = {name: prop.keywords["name"] for name, prop in PROPERTIES[self.settings_name].items()}
                 lengths, figures = told_lengths(self, self._lengths, progress.chosen, labels), self.figures(result)
                 keep_texts(source, self.settings_name, [line, *lengths], figures)
+                if self.makes_layers:
+                    hand_edits.stamp(outputs_of(source, self._layer))
+                    show_layer(source, first_layer(source))
         except Exception as error:
             return self._refuse(error, context)
         if jobs.state.needs_repair == source.name:
@@ -217,7 +244,7 @@ class SurfaceOperator(PolledOperator):
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
         jobs.state.figures = [*lengths, *figures]
         followed = [] if self._follower is None else self._follower.notes()
-        for note in [*progress.notes, *self.notes(result), *followed, *_unseen(context, source)]:
+        for note in [*progress.notes, *self.notes(result), *hand_edits.notes(), *followed, *_unseen(context, source)]:
             self.report({"WARNING"}, note)
         self.report({"INFO"}, jobs.state.line)
         return {"FINISHED"}
@@ -294,4 +321,4 @@ def _settle_look(source: bpy.types.Object, settings_name: str, look: str) -> Non
         keep_texts(source, other, [], [])
         rollback.remember_setting(group, "look")
         group.look = NO_LOOK
-    set_stage(source, look)
+    set_stage(source, look if look != NO_LOOK else look_of(source))

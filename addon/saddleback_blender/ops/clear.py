@@ -6,6 +6,7 @@ import bpy
 
 from .. import jobs, rollback
 from ..bridge.inputs.source import active_object, usable_source, why_not
+from ..bridge.outputs import hand_edits
 from ..bridge.outputs.out_collection import clear_outputs
 from ..bridge.outputs.out_looks import BY_HAND, hide, is_hidden, set_stage, show
 from ..bridge.outputs.preview import hide_preview
@@ -37,6 +38,7 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
         except BadInputError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        hand_edits.notes()  # of what was taken back
         with rollback.all_or_nothing():
             set_stage(source, NO_LOOK)
             removed = hide_preview(source) + clear_outputs(context, source)
@@ -45,6 +47,8 @@ class SADDLEBACK_OT_clear(bpy.types.Operator):
             jobs.state.needs_repair = ""
         jobs.state.line = ""
         jobs.state.figures = []
+        for note in hand_edits.notes():
+            self.report({"WARNING"}, note)
         self.report({"INFO"}, f"'{source.name}': {removed} outputs removed" if removed else "Nothing to clear")
         return {"FINISHED"} if removed else {"CANCELLED"}
 

@@ -14,7 +14,6 @@ from ..bridge.inputs.mesh_in import mesh_of, read_surface, read_triangle_polygon
 from ..bridge.inputs.singularities_in import read_singularities
 from ..bridge.inputs.source import shared_mesh_warning
 from ..bridge.inputs.strokes_in import read_strokes
-from ..bridge.outputs.out_collection import remove_output
 from ..bridge.outputs.out_field import ARROWS_ROLE, STREAMLINES_ROLE, write_arrows, write_directions, write_streamlines
 from ..bridge.outputs.output_surface import check_attribute_names, output_surface
 from ..core import field_runs
@@ -68,11 +67,11 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
         if result.arrows is not None:
             write_arrows(context, source, result, follower)
         else:
-            remove_output(source, ARROWS_ROLE)
+            self.drop(source, ARROWS_ROLE)
         if result.streamlines is not None:
             write_streamlines(context, source, result, settings.streamline_radius, follower)
         else:
-            remove_output(source, STREAMLINES_ROLE)
+            self.drop(source, STREAMLINES_ROLE)
         keep_settings(chosen, "direction_field", source)
         if warning:
             self.report({"WARNING"}, warning)

@@ -10,11 +10,11 @@ import bpy
 import numpy as np
 
 from .. import prefs
-from ..bridge.inputs.mesh_in import mesh_of, read_surface
+from ..bridge.inputs.mesh_in import mesh_of
+from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.sites import read_sources
 from ..bridge.inputs.source import shared_mesh_warning
 from ..bridge.outputs.out_attributes import write_vertex_attributes
-from ..bridge.outputs.out_collection import remove_output
 from ..bridge.outputs.out_curves import ISOLINES_ROLE, write_isolines
 from ..bridge.outputs.output_surface import check_attribute_names, output_surface
 from ..bridge.outputs.preview import hide_preview, show_preview
@@ -47,7 +47,7 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
             source, {"distance_attribute": settings.distance_attribute}, {"distance_attribute": "FLOAT"}
         )
         with mesh_of(context, source, settings.use_modifiers) as mesh:
-            surface = read_surface(source, mesh)
+            surface = read_part(source, mesh, settings)
             request = DistanceRequest(
                 surface=surface,
                 settings=self.measured(settings, surface),
@@ -72,7 +72,7 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
         if result.isolines is not None:
             write_isolines(context, source, result.isolines, settings.isoline_radius, follower)
         else:
-            remove_output(source, ISOLINES_ROLE)
+            self.drop(source, ISOLINES_ROLE)
         if settings.make_preview:
             spacing = isoline_spacing(settings, farthest) if settings.preview_lines else 0.0
             show_preview(surface, settings.distance_attribute, farthest, spacing)

@@ -12,12 +12,13 @@ import numpy as np
 from .. import prefs
 from ..bridge.inputs.density import read_density, read_vertex_group
 from ..bridge.inputs.directions_in import read_directions
-from ..bridge.inputs.mesh_in import mesh_of, read_surface
+from ..bridge.inputs.mesh_in import mesh_of
+from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.shapes_in import read_templates
 from ..bridge.inputs.singularities_in import read_singularities
 from ..bridge.inputs.source import shared_mesh_warning
 from ..bridge.inputs.strokes_in import read_strokes
-from ..bridge.outputs.out_collection import find_output, remove_output
+from ..bridge.outputs.out_collection import find_output
 from ..bridge.outputs.out_shape_cut import CUT_ROLE, write_cut
 from ..bridge.outputs.out_shapes import (
     BENT_ROLE,
@@ -42,6 +43,7 @@ from ..core.results import CheckResult, DistributeResult
 from ..core.settings import DirectionFieldSettings, DistributeSettings
 from ..props import keep_settings, kept_settings, settings_of
 from ..props.distribute import DISTRIBUTE
+from ..props.layers import suffix_of
 from .base import SurfaceOperator
 from .paint import HelperOperator
 
@@ -61,7 +63,8 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
         """Reads everything from Blender."""
         settings = settings_of(self, DistributeSettings)
         if settings.write_attributes:
-            names = {"shape_attribute": SHAPE_ATTRIBUTE, "distance_attribute": OUTLINE_DISTANCE, "uv": SHAPE_UV}
+            own = {"shape_attribute": SHAPE_ATTRIBUTE, "distance_attribute": OUTLINE_DISTANCE, "uv": SHAPE_UV}
+            names = {label: name + suffix_of(source) for label, name in own.items()}
             types = {"shape_attribute": "INT", "distance_attribute": "FLOAT", "uv": "FLOAT2"}
             check_attribute_names(source, names, types)
         request = _request(self, context, source, settings)
@@ -76,24 +79,26 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
         follower = self.follower(context, source)
         if result.values is not None:
             aside = "HIDE" if self._is_by_hand else ""
-            write_shape_values(output_surface(context, source, settings.use_modifiers, aside, follower), result)
+            surface = output_surface(context, source, settings.use_modifiers, aside, follower)
+            write_shape_values(surface, result, suffix_of(source))
         if result.bent is not None:
             write_bent(context, source, result, self._templates, settings, follower)
         else:
-            remove_output(source, BENT_ROLE)
+            self.drop(source, BENT_ROLE)
         if settings.make_instances:
             write_instances(context, source, result, self._templates, settings, follower)
         else:
-            remove_output(source, INSTANCES_ROLE)
-            remove_templates(source)
+            self.drop(source, INSTANCES_ROLE)
+            if find_output(source, INSTANCES_ROLE) is None:
+                remove_templates(source)
         if result.outlines is not None:
             write_outlines(context, source, result, settings, follower)
         else:
-            remove_output(source, OUTLINES_ROLE)
+            self.drop(source, OUTLINES_ROLE)
         if result.cut is not None:
             write_cut(context, source, result, self._templates, settings, follower)
         else:
-            remove_output(source, CUT_ROLE)
+            self.drop(source, CUT_ROLE)
         keep_settings(chosen, "distribute", source)
         if warning:
             self.report({"WARNING"}, warning)
@@ -122,6 +127,7 @@ class SADDLEBACK_OT_check_distribution(SurfaceOperator, bpy.types.Operator):
     __annotations__ = dict(DISTRIBUTE)
 
     settings_name = "distribute"
+    makes_layers = False
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], CheckResult]:
         """Reads everything from Blender."""
@@ -163,7 +169,7 @@ def _request(
 ) -> DistributeRequest:
     """Reads everything from Blender."""
     with mesh_of(context, source, settings.use_modifiers) as mesh:
-        surface = read_surface(source, mesh)
+        surface = read_part(source, mesh, settings)
         return DistributeRequest(
             surface=surface,
             settings=operator.measured(settings, surface, settings.count),

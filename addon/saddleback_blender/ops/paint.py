@@ -11,8 +11,10 @@ from bpy.props import EnumProperty, FloatProperty, StringProperty
 from .. import rollback
 from ..bridge.inputs.nearest import nearest_vertex
 from ..bridge.inputs.source import check_own_mesh, usable_source
+from ..bridge.outputs import hand_edits
 from ..bridge.outputs.paint_layers import PAINT_NAME, prepare_colors, prepare_weights
 from ..core.errors import BadInputError
+from ..props.layers import suffix_of
 from .base import PolledOperator
 
 PAINTS = (
@@ -37,11 +39,14 @@ class HelperOperator(PolledOperator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Does it, or says why not."""
         try:
+            hand_edits.notes()  # of what was taken back
             with rollback.all_or_nothing():
                 line = self.help(context, usable_source(context))
         except BadInputError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        for note in hand_edits.notes():
+            self.report({"WARNING"}, note)
         self.report({"INFO"}, line)
         return {"FINISHED"}
 
@@ -63,6 +68,8 @@ class SADDLEBACK_OT_paint_density(HelperOperator, bpy.types.Operator):
         """Makes the layer and changes the mode."""
         check_own_mesh(source)
         name = self.paint_name or PAINT_NAME
+        if name == PAINT_NAME:
+            name += suffix_of(source)  # each layer is painted for itself
         if self.paint == "COLOR":
             prepare_colors(source, name)
         else:

@@ -35,6 +35,7 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
     __annotations__ = dict(REPAIR)
 
     settings_name = "repair"
+    makes_layers = False
 
     def gather(self, context: bpy.types.Context, source: bpy.types.Object) -> Callable[[Progress], RepairResult]:
         """Reads the mesh as it is, bad numbers included."""

@@ -13,14 +13,14 @@ import numpy as np
 from .. import prefs
 from ..blocks import find
 from ..bridge.inputs.density import read_density
-from ..bridge.inputs.mesh_in import mesh_of, read_marked_edges, read_surface
+from ..bridge.inputs.mesh_in import mesh_of, read_marked_edges
+from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.sites import read_sites
 from ..bridge.inputs.source import shared_mesh_warning
 from ..bridge.outputs.live_preview import LivePreview
 from ..bridge.outputs.out_attributes import write_vertex_attributes
 from ..bridge.outputs.out_cells import CELLS_ROLE, write_cells
 from ..bridge.outputs.out_centers import CENTERS_ROLE, write_centers
-from ..bridge.outputs.out_collection import remove_output
 from ..bridge.outputs.out_dual import DUAL_ROLE, write_dual
 from ..bridge.outputs.out_edges import EDGES_ROLE, write_edges
 from ..bridge.outputs.out_shell import SHELL_ROLE, write_shell
@@ -64,7 +64,7 @@ class CellsOperator(SurfaceOperator):
         settings = settings_of(self, TessellateSettings)
         _check(source, settings)
         with mesh_of(context, source, settings.use_modifiers) as mesh:
-            surface = read_surface(source, mesh)
+            surface = read_part(source, mesh, settings)
             if settings.sites_source == "SIZE":
                 count = count_of_size(surface, settings.cell_size)
                 settings = replace(settings, sites_source="COUNT", count=count)
@@ -109,7 +109,7 @@ class CellsOperator(SurfaceOperator):
             if wanted:
                 write(context, source, result, settings, follower=follower)
             else:
-                remove_output(source, role)
+                self.drop(source, role)
         keep_settings(chosen, "tessellate", source)
         if warning:
             self.report({"WARNING"}, warning)

@@ -16,7 +16,6 @@ from ..bridge.inputs.voronoi_in import read_darkness, read_uv, read_voronoi_site
 from ..bridge.outputs.following import Follower
 from ..bridge.outputs.out_cells import write_cells, write_polygons
 from ..bridge.outputs.out_centers import write_centers
-from ..bridge.outputs.out_collection import remove_output
 from ..bridge.outputs.out_edges import write_edges, write_network
 from ..bridge.outputs.out_sweep import remove_sweep, write_sweep
 from ..core import voronoi_runs
@@ -79,12 +78,18 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
         chosen = settings_of(self, Voronoi2dSettings)
         settings = replace(chosen, **self._lengths)
         follower = self.follower(context, source)
-        _write_edges(context, source, result, settings, follower)
-        _write_cells(context, source, result, settings, follower)
+        for wanted, write, role in (
+            (settings.make_edges, _write_edges, EDGES_ROLE),
+            (settings.make_cells, _write_cells, CELLS_ROLE),
+        ):
+            if wanted:
+                write(context, source, result, settings, follower)
+            else:
+                self.drop(source, role)
         if settings.make_centers:
             write_centers(context, source, result.cells, settings, CENTERS_ROLE, follower)
         else:
-            remove_output(source, CENTERS_ROLE)
+            self.drop(source, CENTERS_ROLE)
         if result.sweep is not None:
             write_sweep(context, source, result.sweep, settings)
         else:
@@ -132,9 +137,7 @@ def _write_edges(
     settings: Voronoi2dSettings,
     follower: Follower,
 ) -> None:
-    if not settings.make_edges:
-        remove_output(source, EDGES_ROLE)
-    elif result.flat is not None:
+    if result.flat is not None:
         write_network(context, source, _network(result.flat), settings, EDGES_ROLE, follower)
     else:
         write_edges(context, source, result.cells, settings, EDGES_ROLE, follower)
@@ -147,9 +150,7 @@ def _write_cells(
     settings: Voronoi2dSettings,
     follower: Follower,
 ) -> None:
-    if not settings.make_cells:
-        remove_output(source, CELLS_ROLE)
-    elif result.flat is not None and result.polygons is not None:
+    if result.flat is not None and result.polygons is not None:
         neighbors = result.flat.edge_cells
         count = result.cells.count
         write_polygons(context, source, result.polygons, count, neighbors, CELLS_ROLE, follower)

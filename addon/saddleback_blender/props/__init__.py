@@ -10,7 +10,7 @@ from dataclasses import fields
 from typing import Any, TypeVar
 
 import bpy
-from bpy.props import IntProperty, PointerProperty, StringProperty
+from bpy.props import CollectionProperty, IntProperty, PointerProperty, StringProperty
 
 from .. import rollback
 from ..blocks import find, name_of
@@ -24,11 +24,12 @@ from ..core.settings import (
     TessellateSettings,
     Voronoi2dSettings,
 )
-from . import old_files, overrides
+from . import layers, old_files, overrides
 from .direction_field import DIRECTION_FIELD, DIRECTION_FIELD_BEGIN
 from .distance import DISTANCE, DISTANCE_BEGIN
 from .distribute import DISTRIBUTE, DISTRIBUTE_BEGIN
 from .path import PATH, PATH_BEGIN
+from .region import REGION
 from .repair import REPAIR
 from .tessellate import EVENNESS, TESSELLATE, TESSELLATE_BEGIN
 from .voronoi_2d import VORONOI_2D, VORONOI_2D_BEGIN
@@ -93,6 +94,8 @@ def _kept(settings_name: str) -> dict[str, Any]:
         FIGURES: StringProperty(name="Figures", description="Numbers of the last run", options={"HIDDEN"}),
     }
     for name, prop in PROPERTIES[settings_name].items():
+        if name in REGION:  # which the layer keeps
+            continue
         if name in pointers:
             kept[name] = PointerProperty(
                 type=pointers[name], name=prop.keywords["name"], description=prop.keywords["description"]
@@ -146,8 +149,27 @@ class SaddlebackRepairProps(bpy.types.PropertyGroup):
     __annotations__ = _kept("repair")
 
 
+# Of a layer each; what Repair does to the mesh is of none.
+LAYER_KINDS = tuple(name for name in PROPERTIES if name != "repair")
+
+
+class SaddlebackLayer(bpy.types.PropertyGroup):
+    """One pattern on an object: its settings, while another is active."""
+
+    __annotations__ = layers.layer_annotations(
+        {
+            "tessellate": SaddlebackTessellateProps,
+            "distance": SaddlebackDistanceProps,
+            "path": SaddlebackPathProps,
+            "voronoi_2d": SaddlebackVoronoi2dProps,
+            "direction_field": SaddlebackDirectionFieldProps,
+            "distribute": SaddlebackDistributeProps,
+        }
+    ) | dict(REGION)
+
+
 class SaddlebackObjectProps(bpy.types.PropertyGroup):
-    """`Object.saddleback`: the settings of each operator, as last used or set in the panel."""
+    """`Object.saddleback`: the settings of each operator in the active layer, as last used or set in the panel."""
 
     __annotations__ = {
         "tessellate": PointerProperty(type=SaddlebackTessellateProps),
@@ -157,6 +179,10 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
         "direction_field": PointerProperty(type=SaddlebackDirectionFieldProps),
         "distribute": PointerProperty(type=SaddlebackDistributeProps),
         "repair": PointerProperty(type=SaddlebackRepairProps),
+        "layers": CollectionProperty(type=SaddlebackLayer, name="Layers", description="Patterns on the object"),
+        "layer_index": layers.INDEX,
+        "layer_word": layers.WORD,
+        **REGION,
         "layout_number": IntProperty(name="Layout", description="Of these settings", options={"HIDDEN"}),
     }
 
@@ -169,6 +195,7 @@ CLASSES = (
     SaddlebackDirectionFieldProps,
     SaddlebackDistributeProps,
     SaddlebackRepairProps,
+    SaddlebackLayer,
     SaddlebackObjectProps,
 )
 
@@ -189,12 +216,13 @@ def fill_operator(
                 setattr(operator, name, value)
     group = existing_group(source, settings_name)
     called = _with_unit(operator, called)
-    if group is None:
+    if not source.is_property_set("saddleback"):
         return called
-    left = _left_by_call(group) if called else {}
+    left = _left_by_call(group) if called and group is not None else {}
     for name in PROPERTIES[settings_name]:
-        if name not in called and group.is_property_set(name):
-            value = _plain(group, name)
+        home = source.saddleback if name in REGION else group
+        if name not in called and home is not None and home.is_property_set(name):
+            value = _plain(home, name)
             if name not in left or left[name] != value:
                 setattr(operator, name, value)
     return called
@@ -231,9 +259,10 @@ def keep_settings(settings: Settings, settings_name: str, source: bpy.types.Obje
     for field in fields(settings):
         # Default values stay unset, so that an object carries no more than what was chosen for it.
         value = getattr(settings, field.name)
-        is_open = field.name in begin and not group.is_property_set(field.name)
+        home = _home(group, field.name)
+        is_open = field.name in begin and not home.is_property_set(field.name)
         if is_open or _plain(group, field.name) != value:
-            rollback.remember_setting(group, field.name)
+            rollback.remember_setting(home, field.name)
             _set_plain(group, field.name, value)
 
 
@@ -247,9 +276,11 @@ def keep_texts(source: bpy.types.Object, settings_name: str, told: list[str], fi
 
 
 def forget_texts(source: bpy.types.Object) -> None:
-    """Takes all of that away."""
-    for settings_name in PROPERTIES:
-        group = existing_group(source, settings_name)
+    """Takes all of that away, in all layers."""
+    owners = [source.saddleback, *source.saddleback.layers] if source.is_property_set("saddleback") else []
+    kept = [(owner, name) for owner in owners for name in LAYER_KINDS if owner.is_property_set(name)]
+    groups = [existing_group(source, "repair"), *(getattr(owner, name) for owner, name in kept)]
+    for group in groups:
         for name in (TOLD, FIGURES):
             if group is not None and group.is_property_set(name):
                 rollback.remember_setting(group, name)
@@ -267,14 +298,19 @@ def _left_by_call(group: bpy.types.PropertyGroup) -> dict[str, Any]:
     return dict(json.loads(getattr(group, CALL) or "{}"))
 
 
+def _home(group: bpy.types.PropertyGroup, name: str) -> bpy.types.PropertyGroup:
+    """What keeps a setting: the operator's group, or all of the layer's settings."""
+    return group.id_data.saddleback if name in REGION else group
+
+
 def _plain(group: bpy.types.PropertyGroup, name: str) -> Any:
     """A kept value as the operator has it: of a pointer the name that leads to it."""
-    value = getattr(group, name)
+    value = getattr(_home(group, name), name)
     return value if _blocks(name) is None else name_of(_blocks(name), value)
 
 
 def _set_plain(group: bpy.types.PropertyGroup, name: str, value: Any) -> None:
-    setattr(group, name, value if _blocks(name) is None else find(_blocks(name), value))
+    setattr(_home(group, name), name, value if _blocks(name) is None else find(_blocks(name), value))
 
 
 def _blocks(name: str) -> Any:
@@ -292,7 +328,11 @@ def kept_settings(source: bpy.types.Object, settings_name: str, kind: type[Setti
     if group is None:
         return kind()
     return kind(
-        **{field.name: _plain(group, field.name) for field in fields(kind) if group.is_property_set(field.name)}
+        **{
+            field.name: _plain(group, field.name)
+            for field in fields(kind)
+            if _home(group, field.name).is_property_set(field.name)
+        }
     )
 
 
@@ -305,7 +345,9 @@ def told_settings(source: bpy.types.Object) -> dict[str, dict[str, Any]]:
     """Returns what the object keeps, by operator and name."""
     groups = {name: existing_group(source, name) for name in PROPERTIES}
     return {
-        name: {prop: _plain(group, prop) for prop in (*PROPERTIES[name], CALL) if group.is_property_set(prop)}
+        name: {
+            prop: _plain(group, prop) for prop in (*PROPERTIES[name], CALL) if _home(group, prop).is_property_set(prop)
+        }
         for name, group in groups.items()
         if group is not None
     }
@@ -316,7 +358,7 @@ def take_settings(source: bpy.types.Object, told: dict[str, dict[str, Any]]) -> 
     for settings_name, values in told.items():
         group = getattr(source.saddleback, settings_name, None)
         for name, value in values.items():
-            if group is not None and name in group.bl_rna.properties:
+            if group is not None and (name in group.bl_rna.properties or name in REGION):
                 _set_plain(group, name, value)
 
 

@@ -21,6 +21,7 @@ from .kinds import (
     switch,
     use_modifiers,
 )
+from .region import REGION
 
 DISTANCE_SOURCES = (
     ("SELECTED", "Selected", "Vertices selected in Edit Mode"),
@@ -69,6 +70,7 @@ DISTANCE: dict[str, Any] = {
     "preview_lines": switch("Lines", "Show lines of equal distance in the preview, too", True),
     "distance_attribute": name_of("Attribute", "Where distances are written", "saddleback_distance"),
     "look": look("distance"),
+    **REGION,
 }
 DISTANCE_BEGIN: dict[str, Any] = {
     "sources": "CURSOR",

@@ -9,6 +9,7 @@ from bpy.props import FloatProperty, IntProperty
 
 from .density import DENSITY, DENSITY_BEGIN
 from .kinds import choice, length, lengths, look, name_of, share, switch, use_modifiers
+from .region import REGION
 from .tessellate import TESSELLATE
 
 SHAPES = (
@@ -94,5 +95,6 @@ DISTRIBUTE: dict[str, Any] = {
         "Attributes", "Write on the mesh whose outline is nearest, how far it is, and where in the shape one is", False
     ),
     "look": look("distribute"),
+    **REGION,
 }  # fmt: skip
 DISTRIBUTE_BEGIN: dict[str, Any] = {"use_modifiers": True, "lengths": "RELATIVE", **DENSITY_BEGIN}

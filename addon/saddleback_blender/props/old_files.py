@@ -7,6 +7,8 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
+from .layers import first_layer, has_settings
+
 LAYOUT = 1  # of the kept settings; in version 0.1 there was no number, which reads as 0
 
 
@@ -30,6 +32,8 @@ def settle(*_: Any) -> None:
     from . import BEGIN, PROPERTIES, existing_group
 
     for item in _own_objects():
+        if has_settings(item):  # it may be from before there were layers
+            first_layer(item)
         if item.saddleback.layout_number != 0:
             continue
         for settings_name, begin in BEGIN.items():

@@ -20,6 +20,8 @@ PAGES = {
     "make_real": "shapes.md",
     "paint_density": "tessellation.md",
     "repair": "repair.md",
+    "layer_": "layers.md",
+    "region_": "layers.md",
 }
 # Of settings on objects, by the group that they are in.
 GROUPS = {
@@ -30,6 +32,7 @@ GROUPS = {
     "SaddlebackDirectionFieldProps": "direction_field.md",
     "SaddlebackDistributeProps": "shapes.md",
     "SaddlebackRepairProps": "repair.md",
+    "SaddlebackLayer": "layers.md",
 }
 # None is a line between groups.
 ENTRIES = (

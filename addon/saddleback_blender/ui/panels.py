@@ -10,7 +10,7 @@ from .. import compat
 from ..bridge.inputs.source import active_object, why_not
 from ..bridge.outputs.out_looks import is_hidden
 from ..core import native
-from . import look_rows, rows
+from . import layer_rows, look_rows, rows
 from .texts import draw_text
 
 
@@ -66,6 +66,10 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
             draw_text(layout, context, problem, "INFO")
             return
         item = active_object(context)
+        column = layout.column()
+        column.enabled = not context.window_manager.saddleback_running
+        layer_rows.draw_layers(column, item)
+        layer_rows.draw_region(column, item)
         look_rows.draw_looks(layout, item)
         column = layout.column(align=True)
         column.label(text=item.name, icon="OUTLINER_OB_MESH")
@@ -636,6 +640,7 @@ def _native_problem() -> str:
 
 CLASSES = (
     look_rows.SADDLEBACK_PT_look_presets,
+    layer_rows.SADDLEBACK_UL_layers,
     SADDLEBACK_PT_main,
     SADDLEBACK_PT_tessellate,
     SADDLEBACK_PT_density,

@@ -13,6 +13,7 @@ from ... import compat
 from ...core.errors import BadInputError
 from ...core.requests import Surface
 from ...core.results import Indices, Reals
+from ...core.surfaces.parts import part_at_pinches
 from .evaluated import evaluated
 
 
@@ -37,10 +38,16 @@ def modified(context: bpy.types.Context, item: bpy.types.Object) -> Iterator[tup
             shown.to_mesh_clear()
 
 
-def read_surface(source: bpy.types.Object, mesh: bpy.types.Mesh, check: bool = True) -> Surface:
+def read_surface(
+    source: bpy.types.Object,
+    mesh: bpy.types.Mesh,
+    check: bool = True,
+    is_inside: NDArray[np.bool_] | None = None,
+) -> Surface:
     """The surface of `mesh` as placed in the world by `source`: scale applied, polygons cut into triangles.
 
-    Raises BadInputError for a mesh without faces and, with `check`, for coordinates that are not finite.
+    With `is_inside` (polygons,) it is a part of that. Raises BadInputError for a mesh without faces and, with `check`,
+    for coordinates that are not finite.
     """
     vertices = to_world(source, compat.read_positions(mesh))
     if check and not np.isfinite(vertices).all():
@@ -51,9 +58,14 @@ def read_surface(source: bpy.types.Object, mesh: bpy.types.Mesh, check: bool = T
         raise BadInputError(f"'{source.name}' has no faces; choose an object with a surface")
     if source.matrix_world.determinant() < 0:  # a mirrored object shows its faces from the other side
         triangles = np.ascontiguousarray(triangles[:, ::-1])
-    used, triangles = _compact(triangles, len(vertices))
-    count = len(vertices)
-    return Surface(source.name, vertices if used is None else vertices[used], triangles, count, used)
+    count, kept, copied = len(vertices), None, np.empty(0, np.int32)
+    if is_inside is not None:
+        kept = np.flatnonzero(is_inside[read_triangle_polygons(mesh)]).astype(np.int32)
+        triangles, copied = part_at_pinches(triangles[kept], count)
+    used, triangles = _compact(triangles, count + len(copied))
+    if len(copied):
+        used = np.concatenate([np.arange(count, dtype=np.int32), copied])[used]
+    return Surface(source.name, vertices if used is None else vertices[used], triangles, count, used, kept)
 
 
 def read_triangles(mesh: bpy.types.Mesh) -> Indices:

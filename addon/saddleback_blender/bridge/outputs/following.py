@@ -28,9 +28,9 @@ from ...follow_nodes import (
     set_following,
 )
 from ..inputs.mesh_in import mesh_of, read_vertex_normals
-from ..tokens import SOURCE, source_token
+from ..tokens import NAME, ROLE
 from .out_attributes import set_attribute
-from .out_collection import KEEPER_ENDING, NAME, ROLE, find_output, remove_object
+from .out_collection import KEEPER_ENDING, find_output, mark, remove_object
 from .rest_places import Rest, read_rest, write_rest
 
 # Of the surface's extent: points nearer to it are on it, since Blender's single precision cannot tell.
@@ -140,7 +140,8 @@ def _new_keeper(source: bpy.types.Object, item: bpy.types.Object, count: int) ->
     mesh = bpy.data.meshes.new(f"{item.name} Anchors")
     mesh.vertices.add(count)
     keeper = bpy.data.objects.new(mesh.name, mesh)
-    keeper[ROLE], keeper[NAME], keeper[SOURCE] = item[ROLE] + KEEPER_ENDING, keeper.name, source_token(source)
+    keeper[NAME] = keeper.name
+    mark(keeper, source, item[ROLE] + KEEPER_ENDING)
     return keeper
 
 

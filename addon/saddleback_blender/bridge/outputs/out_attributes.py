@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from ... import rollback
 from ...blocks import is_editable
 from ...core.errors import BadInputError
-from ..tokens import SOURCE, owns, source_token, token_of
+from ..tokens import SOURCE, layer_of, owns, source_token, token_of
 
-# On a mesh: the attributes that we wrote, each with the token of the object that they are of, in JSON. Files of older
-# versions have names only, one a line. Clear removes these and no others.
+# On a mesh: the attributes that we wrote, each with the token of the object that they are of, and the word of the layer
+# behind a "/", in JSON. Files of older versions have names only, one a line. Clear removes these and no others.
 RECORD = "saddleback_attributes"
 
 # dtype kind and trailing shape -> attribute type, its element property, and the dtype that is copied without a loop.
@@ -88,7 +88,10 @@ def set_attribute(mesh: bpy.types.Mesh, name: str, domain: str, values: NDArray[
 
 def record(item: bpy.types.Object, names: Any) -> None:
     """Adds names to the list of the object's mesh, as the object's; an output's own mesh is nobody else's."""
-    _keep(item.data, _writers(item.data) | dict.fromkeys(names, "" if SOURCE in item else source_token(item)))
+    source = item.parent if SOURCE in item else item
+    layer = "" if source is None else layer_of(source)
+    writer = ("" if SOURCE in item else source_token(item)) + (f"/{layer}" if layer else "")
+    _keep(item.data, _writers(item.data) | dict.fromkeys(names, writer))
 
 
 def forget(mesh: bpy.types.Mesh, name: str) -> None:
@@ -96,13 +99,20 @@ def forget(mesh: bpy.types.Mesh, name: str) -> None:
     _keep(mesh, {other: token for other, token in _writers(mesh).items() if other != name})
 
 
+def forget_layer_names(mesh: bpy.types.Mesh, layer: str) -> int:
+    """Takes a layer's attributes off the mesh's list: they are the artist's from now on; returns how many."""
+    own = [name for name, writer in _writers(mesh).items() if writer.partition("/")[2] == layer]
+    _keep(mesh, {name: writer for name, writer in _writers(mesh).items() if name not in own})
+    return len(own)
+
+
 def recorded(mesh: bpy.types.Mesh) -> list[str]:
     """The attributes that we wrote, whether or not they still exist."""
     return list(_writers(mesh))
 
 
-def clear_attributes(source: bpy.types.Object) -> int:
-    """Removes the attributes that we wrote for the object, and their list; returns how many there were.
+def clear_attributes(source: bpy.types.Object, layer: str | None = None) -> int:
+    """Removes the attributes that we wrote for the object, or in one layer of it; returns how many there were.
 
     Those of another object with the same mesh stay.
     """
@@ -112,7 +122,11 @@ def clear_attributes(source: bpy.types.Object) -> int:
     twins = [item for item in bpy.data.objects if item.data == mesh and item != source]
     writers = _writers(mesh)
     others = {token for item in twins for token in {token_of(item)} if token and owns(item, token)}
-    own = [name for name, token in writers.items() if token not in others]
+    own = [
+        name
+        for name, writer in writers.items()
+        if writer.partition("/")[0] not in others and layer in (None, writer.partition("/")[2])
+    ]
     count = 0
     for name in own:
         attribute = mesh.attributes.get(name)
@@ -125,7 +139,7 @@ def clear_attributes(source: bpy.types.Object) -> int:
 
 
 def _writers(mesh: bpy.types.Mesh) -> dict[str, str]:
-    """Token by name of the attributes that we wrote; "" where an older version wrote it."""
+    """Token and layer by name of the attributes that we wrote; "" where an older version wrote it."""
     text = str(mesh.get(RECORD, ""))
     return dict(json.loads(text)) if text.startswith("{") else dict.fromkeys(filter(None, text.split("\n")), "")
 

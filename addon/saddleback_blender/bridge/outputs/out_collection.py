@@ -16,20 +16,34 @@ from mathutils import Matrix
 
 from ... import nodes, rollback
 from ...blocks import is_editable
-from ..tokens import SOURCE, forget_token, owns, source_token, token_of
-from .out_attributes import clear_attributes
+from ...follow_nodes import follows
+from ..tokens import (
+    LAYER,
+    MATERIALS,
+    NAME,
+    PLACE,
+    ROLE,
+    SOURCE,
+    forget_token,
+    layer_of,
+    owns,
+    source_token,
+    token_of,
+)
+from .hand_edits import CONTENT, is_edited, keep_data, keep_object, make_ordinary
+from .out_attributes import clear_attributes, forget_layer_names
 from .rest_places import forget_rest
 
-ROLE = "saddleback_role"  # on outputs: what it shows
-NAME = "saddleback_name"  # on outputs: the name that we gave it
-PLACE = "saddleback_place"  # on outputs: the matrix that we gave it
-MATERIALS = "saddleback_materials"  # on outputs: the names of the materials that we gave it, one a line
 COLLECTION = "saddleback_outputs"  # on our collections
+
+UNWANTED = "saddleback_unwanted"  # on outputs that a person no longer wants: whether they were hidden before
+FORMER = "Saddleback Former"  # the name of what goes away when all is written
 
 COLLECTION_NAME = "Saddleback"
 HAIR = 5e-4  # of the longest side of the mesh: what is enough for a surface to hide another one
 # Of the role of an object that keeps where the points of a curve stand.
 KEEPER_ENDING = " anchors"
+SURFACE_ROLE = "surface"  # of the copy that has the attributes of all layers
 
 
 def output_collection(context: bpy.types.Context, source: bpy.types.Object) -> bpy.types.Collection:
@@ -60,16 +74,22 @@ def replace_object(
     place = source.matrix_world.copy() if place is None else place
     item = find_output(source, role)
     if item is not None and item.type != _object_type(data):
-        remove_object(item)
+        _remove_all([item])
         item = None
     if item is None:
-        item = bpy.data.objects.new(f"{source.name} {role.title()}", data)
+        item = bpy.data.objects.new(
+            " ".join(filter(None, (source.name, _layer_name(source, role), role.title()))), data
+        )
         item[ROLE], item[NAME] = role, item.name
         moved = Matrix.Identity(4)
         given = _names(data)
     else:
         rollback.remember(item, "matrix_basis", "matrix_parent_inverse", "parent_type", "parent", "data")
-        rollback.remember_keys(item, MATERIALS, SOURCE, PLACE)
+        rollback.remember_keys(item, MATERIALS, SOURCE, PLACE, CONTENT)
+        keep_data(item)
+        if CONTENT in item:
+            del item[CONTENT]
+        _show_again(item)
         moved = _artists_move(item)
         given = _names(data)
         _swap_data(item, data)
@@ -78,7 +98,7 @@ def replace_object(
         collection = output_collection(context, source)
         collection.objects.link(item)
         rollback.undo_with(partial(collection.objects.unlink, item))
-    item[SOURCE] = source_token(source)
+    mark(item, source, role)
     item.parent, item.parent_type = source, "OBJECT"
     # Location, rotation and scale cannot hold a shear: the parent's inverse holds it.
     basis, inverse = Matrix.LocRotScale(*place.decompose()), source.matrix_world.inverted_safe()
@@ -88,6 +108,24 @@ def replace_object(
     item.matrix_basis = moved @ (basis if is_sheared else place)
     data.name = item.name
     return item
+
+
+def mark(item: bpy.types.Object, source: bpy.types.Object, role: str) -> None:
+    """Says on an object whose it is, in the source's active layer, and what it shows."""
+    item[ROLE], item[SOURCE] = role, source_token(source)
+    layer = _layer_of_role(source, role)
+    if layer:
+        item[LAYER] = layer
+
+
+def _layer_of_role(source: bpy.types.Object, role: str) -> str:
+    return "" if role == SURFACE_ROLE else layer_of(source)
+
+
+def _layer_name(source: bpy.types.Object, role: str) -> str:
+    """What tells the names of outputs of other layers than the first from those."""
+    word = _layer_of_role(source, role)
+    return next((str(layer.name) for layer in source.saddleback.layers if layer.word == word), "") if word else ""
 
 
 def _reachable(context: bpy.types.Context) -> list[bpy.types.Collection]:
@@ -121,55 +159,110 @@ def directions_to_place(place: Matrix, directions: np.ndarray) -> np.ndarray:
     return directions @ np.array(place, np.float64)[:3, :3]
 
 
-def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
-    """Returns what we made for the source and still exists, one object for each role."""
-    return [item for item in _all_of(source) if not str(item[ROLE]).endswith(KEEPER_ENDING)]
+def outputs_of(source: bpy.types.Object, layer: str | None = None) -> list[bpy.types.Object]:
+    """Returns what we made for the source, or in one layer, and still exists, one object for each role and layer."""
+    every = [item for item in _all_of(source) if not str(item[ROLE]).endswith(KEEPER_ENDING)]
+    return every if layer is None else [item for item in every if _is_in(item, layer)]
+
+
+def _is_in(item: bpy.types.Object, layer: str) -> bool:
+    """The copy of the surface is in no layer."""
+    return bool(item[ROLE] != SURFACE_ROLE and item.get(LAYER, "") == layer)
 
 
 def _all_of(source: bpy.types.Object) -> list[bpy.types.Object]:
-    """Returns the outputs, and what keeps where points of theirs stand."""
+    """Returns the outputs of all layers, and what keeps where points of theirs stand."""
     token = token_of(source)
     if not token or not owns(source, token):
         return []
-    by_role: dict[str, list[bpy.types.Object]] = {}
+    by_role: dict[tuple[str, str], list[bpy.types.Object]] = {}
     for item in bpy.data.objects:
         is_ours = item.get(SOURCE) == token and item.library is None and item != source
         if is_ours and (item.parent is None or item.parent == source or token_of(item.parent) != token):
-            by_role.setdefault(str(item.get(ROLE)), []).append(item)
+            by_role.setdefault((str(item.get(ROLE)), str(item.get(LAYER, ""))), []).append(item)
     return [_original(candidates) for candidates in by_role.values()]
 
 
 def find_output(source: bpy.types.Object, role: str) -> bpy.types.Object | None:
-    """The source's output of a role, None where there is none."""
-    return next((item for item in _all_of(source) if item[ROLE] == role), None)
+    """The source's output of a role in the active layer, None where there is none."""
+    layer = _layer_of_role(source, role)
+    return next((item for item in _all_of(source) if item[ROLE] == role and item.get(LAYER, "") == layer), None)
 
 
 def remove_output(source: bpy.types.Object, role: str) -> bool:
     """Removes the output of one role, when its kind is no longer wanted; says whether there was one."""
     item, keeper = find_output(source, role), find_output(source, role + KEEPER_ENDING)
-    if keeper is not None:
-        remove_object(keeper)
     if item is None:
         return False
-    collections = list(item.users_collection)
-    remove_object(item)
-    rollback.when_written(partial(_remove_empty, collections))
+    _remove_all([item] if keeper is None else [item, keeper])
     return True
+
+
+def hide_output(source: bpy.types.Object, role: str) -> None:
+    """Hides the output of one role, when a person no longer wants it; a run that makes it again shows it."""
+    item = find_output(source, role)
+    if item is not None and UNWANTED not in item:
+        rollback.remember(item, "hide_viewport", "hide_render")
+        rollback.remember_keys(item, UNWANTED)
+        item[UNWANTED] = f"{int(item.hide_viewport)}{int(item.hide_render)}"
+        item.hide_viewport = item.hide_render = True
+
+
+def _show_again(item: bpy.types.Object) -> None:
+    if UNWANTED in item:
+        rollback.remember(item, "hide_viewport", "hide_render")
+        rollback.remember_keys(item, UNWANTED)
+        item.hide_viewport, item.hide_render = (state == "1" for state in str(item[UNWANTED]))
+        del item[UNWANTED]
+
+
+def clear_layer(context: bpy.types.Context, source: bpy.types.Object, layer: str, is_last: bool) -> int:
+    """Removes what was made in one layer; with the last one goes what all have. Returns how many there were."""
+    if is_last:
+        return clear_outputs(context, source)
+    items = outputs_of(source, layer)
+    _remove_all([item for item in _all_of(source) if _is_in(item, layer)])
+    rollback.when_written(nodes.remove_unused)
+    surfaces = [source, *(item for item in outputs_of(source) if item[ROLE] == SURFACE_ROLE)]
+    cleared = sum(clear_attributes(item, layer) for item in surfaces)
+    rollback.when_written(context.view_layer.update)
+    return len(items) + cleared
 
 
 def clear_outputs(context: bpy.types.Context, source: bpy.types.Object) -> int:
     """Removes all that we made for the source and nothing else; returns how many objects and attributes went."""
-    items, every = outputs_of(source), _all_of(source)
-    collections = [collection for item in items for collection in item.users_collection]
-    for item in every:
-        remove_object(item)
-    rollback.when_written(partial(_remove_empty, collections))
+    items = outputs_of(source)
+    _remove_all(_all_of(source))
     rollback.when_written(nodes.remove_unused)
     cleared = clear_attributes(source)
-    forget_rest(source)
+    if not any(follows(item, source) for item in bpy.data.objects if ROLE not in item and not _is_going(item)):
+        forget_rest(source)
     forget_token(source)
     rollback.when_written(context.view_layer.update)
     return len(items) + cleared
+
+
+def free_layer(source: bpy.types.Object, layer: str) -> int:
+    """Makes all that was made in a layer the artist's own; returns how many objects and attributes that are."""
+    items, surface = outputs_of(source, layer), find_output(source, SURFACE_ROLE)
+    for item in [item for item in _all_of(source) if _is_in(item, layer)]:
+        make_ordinary(item)
+    meshes = [item.data for item in (source, surface) if item is not None and is_editable(item.data)]
+    return len(items) + sum(forget_layer_names(mesh, layer) for mesh in meshes)
+
+
+def _remove_all(items: list[bpy.types.Object]) -> None:
+    """Removes outputs and keepers; those that were edited by hand stay as the artist's own, with their keepers."""
+    edited = {(item.get(LAYER), item[ROLE]) for item in items if is_edited(item)}
+    collections = [collection for item in items for collection in item.users_collection]
+    for item in items:
+        if (item.get(LAYER), str(item[ROLE]).removesuffix(KEEPER_ENDING)) not in edited:
+            remove_object(item)
+        elif str(item[ROLE]).endswith(KEEPER_ENDING):
+            make_ordinary(item)
+        else:
+            keep_object(item)
+    rollback.when_written(partial(_remove_empty, collections))
 
 
 def remove_object(item: bpy.types.Object) -> None:
@@ -183,8 +276,13 @@ def remove_object(item: bpy.types.Object) -> None:
             del item[key]
     for block in (item, item.data) if item.data.users == 1 else (item,):
         rollback.remember_name(block)
-        block.name = "Saddleback Former"
+        block.name = FORMER
     rollback.when_written(partial(_remove, item))
+
+
+def _is_going(item: bpy.types.Object) -> bool:
+    """Tells whether an object is removed when all is written."""
+    return str(item.name).startswith(FORMER)
 
 
 def _remove(item: bpy.types.Object) -> None:
@@ -229,7 +327,7 @@ def _swap_data(item: bpy.types.Object, data: bpy.types.ID) -> None:
     item.data = data
     if old.users == 0:
         rollback.remember_name(old)
-        old.name = "Saddleback Former"
+        old.name = FORMER
     rollback.when_written(partial(_remove_data, old))
 
 

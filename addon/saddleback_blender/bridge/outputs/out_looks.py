@@ -10,14 +10,13 @@ from ...finishes import GROUND, ground_of
 from ...looks import LOOKS
 from .out_cells import CELLS_ROLE
 from .out_centers import CENTERS_ROLE
-from .out_collection import find_output, remove_output
+from .out_collection import SURFACE_ROLE, find_output, remove_output
 from .out_curves import ISOLINES_ROLE
 from .out_dual import DUAL_ROLE
 from .out_edges import EDGES_ROLE
 from .out_shape_cut import CUT_ROLE
 from .out_shapes import BENT_ROLE, INSTANCES_ROLE, OUTLINES_ROLE, remove_templates
 from .out_shell import SHELL_ROLE
-from .output_surface import SURFACE_ROLE
 from .preview import hide_preview, show_ground
 
 # On a hidden source, by who hid it: how it was displayed, and whether renders left it out.

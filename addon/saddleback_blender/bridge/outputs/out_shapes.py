@@ -21,14 +21,14 @@ from ...looks import NO_LOOK, finish_of
 from ...shape_nodes import set_shapes
 from ..inputs.materials_in import shown_materials
 from ..inputs.mesh_in import modified
-from ..tokens import SOURCE, source_token
+from ..tokens import NAME, ROLE, layer_of
 from .following import Follower
+from .hand_edits import make_ordinary
 from .out_attributes import set_attribute, write_vertex_attributes
 from .out_collection import (
-    NAME,
-    ROLE,
     directions_to_place,
     level_place,
+    mark,
     outputs_of,
     remove_object,
     replace_object,
@@ -149,13 +149,18 @@ def write_outlines(
     return item
 
 
-def write_shape_values(surface: bpy.types.Object, result: DistributeResult) -> None:
+def write_shape_values(surface: bpy.types.Object, result: DistributeResult, suffix: str) -> None:
     """Writes on the surface's vertices whose outline is nearest, how far it is, and where in the shape they are."""
     values = result.values
     assert values is not None
     distance = np.where(np.isfinite(values.distance), values.distance, FAR)
     write_vertex_attributes(
-        surface, {SHAPE_ATTRIBUTE: values.shape, OUTLINE_DISTANCE: distance.astype(np.float32), SHAPE_UV: values.uv}
+        surface,
+        {
+            SHAPE_ATTRIBUTE + suffix: values.shape,
+            OUTLINE_DISTANCE + suffix: distance.astype(np.float32),
+            SHAPE_UV + suffix: values.uv,
+        },
     )
 
 
@@ -175,9 +180,7 @@ def make_real(context: bpy.types.Context, source: bpy.types.Object, item: bpy.ty
     made = [other for name, other in bpy.data.objects.items() if name not in before]
     for other in made:
         other.select_set(False)
-        for key in (ROLE, NAME, SOURCE):
-            if key in other:
-                del other[key]
+        make_ordinary(other)
     remove_object(item)
     remove_templates(source)
     for other in selected:
@@ -203,7 +206,7 @@ def _show(context: bpy.types.Context, source: bpy.types.Object, item: bpy.types.
 
 def remove_templates(source: bpy.types.Object) -> None:
     """Removes the objects of ours that instances showed."""
-    for item in outputs_of(source):
+    for item in outputs_of(source, layer_of(source)):
         if str(item[ROLE]).startswith(TEMPLATE_ROLE):
             remove_object(item)
 
@@ -224,7 +227,8 @@ def _shown_object(source: bpy.types.Object, number: int, template: ShapeTemplate
         _fill_flat(mesh, template)
     mesh.materials.append(material_of(look, nodes.shapes_material))
     item = bpy.data.objects.new(template.name, mesh)
-    item[ROLE], item[NAME], item[SOURCE] = f"{TEMPLATE_ROLE} {number}", item.name, source_token(source)
+    item[NAME] = item.name
+    mark(item, source, f"{TEMPLATE_ROLE} {number}")
     return item
 
 

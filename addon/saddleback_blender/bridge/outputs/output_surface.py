@@ -12,9 +12,7 @@ from ..inputs.mesh_in import mesh_of
 from .following import Follower
 from .lifting import lift
 from .out_attributes import recorded
-from .out_collection import find_output, replace_object
-
-SURFACE_ROLE = "surface"
+from .out_collection import SURFACE_ROLE, find_output, replace_object
 
 
 def output_surface(

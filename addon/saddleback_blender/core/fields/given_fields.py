@@ -32,7 +32,8 @@ def given_field(surface: Surface, given: GivenDirections, mesh: Any) -> Any:
 def _of_faces(surface: Surface, given: GivenDirections, mesh: Any) -> Reals:
     """(F, 3): a polygon's own, or the mean of the corners' as far as the symmetry lets them agree."""
     if given.polygons is not None:
-        polygon_vectors: Reals = given.vectors[given.polygons]
+        polygons = given.polygons if surface.kept is None else given.polygons[surface.kept]
+        polygon_vectors: Reals = given.vectors[polygons]
         return polygon_vectors
     corners = given.vectors if surface.used is None else given.vectors[surface.used]
     triangles, normals, n = mesh.triangles, _face_normals(mesh), given.symmetry

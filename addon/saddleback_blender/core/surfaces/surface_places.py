@@ -18,9 +18,8 @@ def compact_points(surface: Surface, points: Points, what: str) -> Points:
     vertices = surface.compact(np.asarray(points, np.int32))
     loose = np.nonzero(vertices < 0)[0]
     if len(loose):
-        raise BadInputError(
-            f"'{surface.name}': the {what} at vertex {points[loose[0]]} belongs to no face; choose one of the surface"
-        )
+        where = "no face; choose one of the surface" if surface.kept is None else "no face of the layer's region"
+        raise BadInputError(f"'{surface.name}': the {what} at vertex {points[loose[0]]} belongs to {where}")
     return vertices
 
 

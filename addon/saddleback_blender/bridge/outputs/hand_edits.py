@@ -1,0 +1,92 @@
+"""Notices what an artist changed in an output by hand, so that no run takes it away.
+
+A run writes on each output what its data were. Where they are others by the next run, the edited ones stay, in an
+ordinary object.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+import bpy
+import numpy as np
+
+from ... import compat, rollback
+from ...nodes import FOLLOW, modifier_of
+from ..tokens import LAYER, MATERIALS, NAME, PLACE, ROLE, SOURCE
+
+CONTENT = "saddleback_content"  # on outputs: a hash of the data that we gave it
+COLOR_STEPS = 1023  # of color channels, which Blender's versions may tell with another last digit
+
+_kept: list[str] = []  # sentences on what was kept
+
+
+def stamp(items: list[bpy.types.Object]) -> None:
+    """Writes on outputs that are new what their data are."""
+    for item in items:
+        if CONTENT not in item:
+            rollback.remember_keys(item, CONTENT)
+            item[CONTENT] = _content(item)
+
+
+def is_edited(item: bpy.types.Object) -> bool:
+    """Tells whether an output's data are others than we gave it."""
+    return CONTENT in item and item[CONTENT] != _content(item)
+
+
+def keep_data(item: bpy.types.Object) -> None:
+    """Makes an ordinary object, hidden, of an output that is about to get other data, if it was edited."""
+    if not is_edited(item):
+        return
+    kept = item.copy()
+    kept.name = f"{item.name} Edited"
+    for collection in item.users_collection:
+        collection.objects.link(kept)
+    make_ordinary(kept)
+    following = modifier_of(kept, FOLLOW)
+    if following is not None and kept.type == "CURVE":  # what its points stand on goes with the output
+        kept.modifiers.remove(following)
+    kept.hide_viewport = kept.hide_render = True
+    _kept.append(f"'{item.name}' was edited by hand: it stays as '{kept.name}', hidden")
+
+
+def keep_object(item: bpy.types.Object) -> None:
+    """Makes an output that was edited an ordinary object, in place of removing it."""
+    make_ordinary(item)
+    _kept.append(f"'{item.name}' was edited by hand and stays, as an object of its own")
+
+
+def make_ordinary(item: bpy.types.Object) -> None:
+    """Takes off an output all that makes it one."""
+    keys = (ROLE, NAME, PLACE, MATERIALS, CONTENT, SOURCE, LAYER)
+    rollback.remember_keys(item, *keys)
+    for key in keys:
+        if key in item:
+            del item[key]
+
+
+def notes() -> list[str]:
+    """Says what was kept since it was asked last."""
+    told = list(_kept)
+    _kept.clear()
+    return told
+
+
+def _content(item: bpy.types.Object) -> str:
+    if item.mode == "EDIT":
+        item.update_from_editmode()
+    digest = hashlib.blake2b(f"{len(item.vertex_groups)}".encode(), digest_size=12)
+    if isinstance(item.data, bpy.types.Curve):
+        for spline in item.data.splines:
+            points = spline.bezier_points if spline.type == "BEZIER" else spline.points
+            digest.update(f"{spline.type}{spline.use_cyclic_u}".encode())
+            digest.update(compat.read_floats(points, "co", 3 if spline.type == "BEZIER" else 4).data)
+        return digest.hexdigest()
+    mesh = item.data
+    digest.update(f"{len(mesh.vertices)} {len(mesh.edges)} {len(mesh.polygons)}".encode())
+    digest.update(compat.read_positions(mesh).data)
+    digest.update(compat.read_corner_vertices(mesh).data)
+    for layer in mesh.color_attributes:
+        colors = compat.read_floats(layer.data, "color", 4)
+        digest.update((colors * COLOR_STEPS).astype(np.int32).data)
+    return digest.hexdigest()

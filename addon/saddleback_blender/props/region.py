@@ -1,0 +1,20 @@
+"""The part of the object that a layer covers: settings of the layer, which all operators that run in it share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .kinds import choice, name_of
+
+REGIONS = (
+    ("WHOLE", "Whole Surface", "All faces"),
+    ("VERTEX_GROUP", "Vertex Group", "Faces whose weights are above one half in the mean"),
+    ("ATTRIBUTE", "Painted", "Faces whose values of an attribute, or lightness of its colors, are above one half"),
+    ("FACES", "Selected Faces", "Faces that were selected in Edit Mode, kept as an attribute"),
+    ("MATERIAL", "Material", "Faces that show a material"),
+)
+
+REGION: dict[str, Any] = {
+    "region": choice("On", "Which part of the object the layer covers", REGIONS, "WHOLE"),
+    "region_name": name_of("Region", "The vertex group, attribute or material of the part that the layer covers"),
+}
