@@ -105,6 +105,7 @@ class CellsResult:
     shell: LampShell | None = None  # where it was wanted
     figures: Figures | None = None  # None where the sites have no triangle
     exchanged: int = 0  # cells that were moved to where the dual mesh needs them
+    twin: Indices | None = None  # (n,) where it was mirrored: the cell of the one side that each is the mirror of
 
     @property
     def count(self) -> int:
@@ -305,6 +306,7 @@ class DistributeResult:
     values: ShapeValues | None = None  # where they were wanted
     cut: CutShapes | None = None  # where it was wanted
     cut_anchors: Anchors | None = None  # of its vertices, where they follow the surface
+    twin: Indices | None = None  # (n,) where it was mirrored: the shape of the one side that each is the mirror of
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,13 @@ class RegionSettings:
 
 
 @dataclass(frozen=True)
+class PatternSettings(RegionSettings):
+    """And whether the pattern is mirrored."""
+
+    mirror_x: bool = False  # the same to both sides of the object's own X
+
+
+@dataclass(frozen=True)
 class DensitySettings:
     """Holds where cells or shapes are small: the properties that several operators share."""
 
@@ -33,7 +40,7 @@ class DensitySettings:
 
 
 @dataclass(frozen=True)
-class TessellateSettings(DensitySettings, RegionSettings):
+class TessellateSettings(DensitySettings, PatternSettings):
     """All properties of `saddleback.tessellate`; lengths are world units, shares percent of a cell's size.
 
     Objects are given by name ("" = none).
@@ -211,7 +218,7 @@ class DirectionFieldSettings:
 
 
 @dataclass(frozen=True)
-class DistributeSettings(DensitySettings, RegionSettings):
+class DistributeSettings(DensitySettings, PatternSettings):
     """All properties of `saddleback.distribute`; lengths are world units, "" is no object, collection or layer."""
 
     shapes: str = "SCALES"  # COLLECTION, IMAGE, SCALES, STUDS, FEATHERS, LEAVES, MOSAIC

@@ -13,6 +13,7 @@ from .. import prefs
 from ..bridge.inputs.density import read_density, read_vertex_group
 from ..bridge.inputs.directions_in import read_directions
 from ..bridge.inputs.mesh_in import mesh_of
+from ..bridge.inputs.mirror_in import read_mirror
 from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.shapes_in import read_templates
 from ..bridge.inputs.singularities_in import read_singularities
@@ -35,8 +36,9 @@ from ..bridge.outputs.out_shapes import (
     write_shape_values,
 )
 from ..bridge.outputs.output_surface import check_attribute_names, output_surface
-from ..core import distribute_runs
+from ..core import distribute_runs, mirrored_runs
 from ..core.errors import BadInputError
+from ..core.mirrored_runs import shapes_halved
 from ..core.progress import Progress
 from ..core.requests import DirectionFieldRequest, DistributeRequest, GivenDirections, Surface
 from ..core.results import CheckResult, DistributeResult
@@ -69,6 +71,10 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
             check_attribute_names(source, names, types)
         request = _request(self, context, source, settings)
         self._templates = request.templates
+        if settings.mirror_x:
+            with mesh_of(context, source, settings.use_modifiers) as mesh:
+                mirror = read_mirror(source, mesh, request.surface)
+            return partial(mirrored_runs.distribute, shapes_halved(request, mirror), mirror)
         return partial(distribute_runs.distribute, request)
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: DistributeResult) -> str:

@@ -21,7 +21,17 @@ from .apply_look import LookOperator
 
 PRESET_FOLDER = "saddleback/looks"  # below Blender's presets
 # What belongs to one object and not to a look.
-OWN = (*OBJECT_NAMES, *COLLECTION_NAMES, *IMAGE_NAMES, "density_", "sites_", "sources", "forbidden_", "region")
+OWN = (
+    *OBJECT_NAMES,
+    *COLLECTION_NAMES,
+    *IMAGE_NAMES,
+    "density_",
+    "sites_",
+    "sources",
+    "forbidden_",
+    "region",
+    "mirror_x",
+)
 LINE = re.compile(r"settings\.(\w+)\.(\w+) = (.+)")
 
 

@@ -14,6 +14,7 @@ from .. import prefs
 from ..blocks import find
 from ..bridge.inputs.density import read_density
 from ..bridge.inputs.mesh_in import mesh_of, read_marked_edges
+from ..bridge.inputs.mirror_in import read_mirror
 from ..bridge.inputs.region_in import read_part
 from ..bridge.inputs.sites import read_sites
 from ..bridge.inputs.source import shared_mesh_warning
@@ -25,11 +26,12 @@ from ..bridge.outputs.out_dual import DUAL_ROLE, write_dual
 from ..bridge.outputs.out_edges import EDGES_ROLE, write_edges
 from ..bridge.outputs.out_shell import SHELL_ROLE, write_shell
 from ..bridge.outputs.output_surface import check_attribute_names, output_surface
-from ..core import runs
+from ..core import mirrored_runs, runs
 from ..core.errors import BadInputError
 from ..core.figures import cell_faults_of, faults_of, lines_of, lost_of, shell_faults_of
 from ..core.lengths import count_of_size
 from ..core.live_cells import LiveCells
+from ..core.mirrored_runs import halved
 from ..core.progress import Progress
 from ..core.requests import TessellateRequest
 from ..core.results import CellsResult
@@ -69,9 +71,10 @@ class CellsOperator(SurfaceOperator):
                 count = count_of_size(surface, settings.cell_size)
                 settings = replace(settings, sites_source="COUNT", count=count)
             sites = read_sites(context, source, mesh, settings)
+            measured = self.measured(settings, surface, settings.count if sites is None else len(sites))
             request = TessellateRequest(
                 surface=surface,
-                settings=self.measured(settings, surface, settings.count if sites is None else len(sites)),
+                settings=measured,
                 density=read_density(source, mesh, settings),
                 sites=sites,
                 marked_edges=read_marked_edges(mesh) if settings.hold_marked else None,
@@ -79,6 +82,9 @@ class CellsOperator(SurfaceOperator):
                 disk=prefs.disk_cache(context, settings.cache_on_disk),
                 live=live,
             )
+            mirror = read_mirror(source, mesh, surface) if settings.mirror_x else None
+        if mirror is not None:
+            return partial(mirrored_runs.tessellate, halved(request, mirror), mirror)
         return partial(runs.tessellate, request)
 
     def write(self, context: bpy.types.Context, source: bpy.types.Object, result: CellsResult) -> str:

@@ -29,7 +29,7 @@ from .direction_field import DIRECTION_FIELD, DIRECTION_FIELD_BEGIN
 from .distance import DISTANCE, DISTANCE_BEGIN
 from .distribute import DISTRIBUTE, DISTRIBUTE_BEGIN
 from .path import PATH, PATH_BEGIN
-from .region import REGION
+from .region import LAYER_SETTINGS
 from .repair import REPAIR
 from .tessellate import EVENNESS, TESSELLATE, TESSELLATE_BEGIN
 from .voronoi_2d import VORONOI_2D, VORONOI_2D_BEGIN
@@ -58,6 +58,7 @@ COLLECTION_NAMES = (
 )
 IMAGE_NAMES = ("image_name", "density_image", "shapes_image")
 TOLD, FIGURES = "told", "figures"  # on each group: what the last run said of the object, a sentence a line
+SHARED = "shared"  # in texts: the settings that all operators in a layer share
 CALL = "left_by_call"  # on each group: the values in it that a script's call has set, in JSON
 
 PROPERTIES = {
@@ -94,7 +95,7 @@ def _kept(settings_name: str) -> dict[str, Any]:
         FIGURES: StringProperty(name="Figures", description="Numbers of the last run", options={"HIDDEN"}),
     }
     for name, prop in PROPERTIES[settings_name].items():
-        if name in REGION:  # which the layer keeps
+        if name in LAYER_SETTINGS:  # which the layer keeps
             continue
         if name in pointers:
             kept[name] = PointerProperty(
@@ -165,7 +166,7 @@ class SaddlebackLayer(bpy.types.PropertyGroup):
             "direction_field": SaddlebackDirectionFieldProps,
             "distribute": SaddlebackDistributeProps,
         }
-    ) | dict(REGION)
+    ) | dict(LAYER_SETTINGS)
 
 
 class SaddlebackObjectProps(bpy.types.PropertyGroup):
@@ -179,10 +180,15 @@ class SaddlebackObjectProps(bpy.types.PropertyGroup):
         "direction_field": PointerProperty(type=SaddlebackDirectionFieldProps),
         "distribute": PointerProperty(type=SaddlebackDistributeProps),
         "repair": PointerProperty(type=SaddlebackRepairProps),
-        "layers": CollectionProperty(type=SaddlebackLayer, name="Layers", description="Patterns on the object"),
+        "layers": CollectionProperty(
+            type=SaddlebackLayer,
+            name="Layers",
+            description="Patterns on the object",
+            override={"LIBRARY_OVERRIDABLE", "USE_INSERTION"},
+        ),
         "layer_index": layers.INDEX,
         "layer_word": layers.WORD,
-        **REGION,
+        **LAYER_SETTINGS,
         "layout_number": IntProperty(name="Layout", description="Of these settings", options={"HIDDEN"}),
     }
 
@@ -220,7 +226,7 @@ def fill_operator(
         return called
     left = _left_by_call(group) if called and group is not None else {}
     for name in PROPERTIES[settings_name]:
-        home = source.saddleback if name in REGION else group
+        home = source.saddleback if name in LAYER_SETTINGS else group
         if name not in called and home is not None and home.is_property_set(name):
             value = _plain(home, name)
             if name not in left or left[name] != value:
@@ -300,7 +306,7 @@ def _left_by_call(group: bpy.types.PropertyGroup) -> dict[str, Any]:
 
 def _home(group: bpy.types.PropertyGroup, name: str) -> bpy.types.PropertyGroup:
     """What keeps a setting: the operator's group, or all of the layer's settings."""
-    return group.id_data.saddleback if name in REGION else group
+    return group.id_data.saddleback if name in LAYER_SETTINGS else group
 
 
 def _plain(group: bpy.types.PropertyGroup, name: str) -> Any:
@@ -341,25 +347,54 @@ def settings_of(operator: bpy.types.Operator, kind: type[Settings]) -> Settings:
     return kind(**{field.name: getattr(operator, field.name) for field in fields(kind)})
 
 
-def told_settings(source: bpy.types.Object) -> dict[str, dict[str, Any]]:
-    """Returns what the object keeps, by operator and name."""
-    groups = {name: existing_group(source, name) for name in PROPERTIES}
-    return {
-        name: {
-            prop: _plain(group, prop) for prop in (*PROPERTIES[name], CALL) if _home(group, prop).is_property_set(prop)
-        }
-        for name, group in groups.items()
-        if group is not None
-    }
+def told_settings(source: bpy.types.Object) -> dict[str, Any]:
+    """Returns what the object keeps: by operator and name, and of its other layers the same."""
+    if not source.is_property_set("saddleback"):
+        return {}
+    props = source.saddleback
+    told = _told(props)
+    if len(props.layers):
+        told["layer_word"] = props.layer_word
+        told["layers"] = [
+            {**_told(layer), "own": {name: getattr(layer, name) for name in layers.OWN}} for layer in props.layers
+        ]
+    return told
 
 
-def take_settings(source: bpy.types.Object, told: dict[str, dict[str, Any]]) -> None:
+def _told(owner: bpy.types.PropertyGroup) -> dict[str, Any]:
+    kinds = [name for name in PROPERTIES if name in owner.bl_rna.properties and owner.is_property_set(name)]
+    told: dict[str, Any] = {}
+    for kind in kinds:
+        group = getattr(owner, kind)
+        names = [name for name in (*PROPERTIES[kind], CALL) if name not in LAYER_SETTINGS]
+        told[kind] = {name: _plain(group, name) for name in names if group.is_property_set(name)}
+    shared = {name: getattr(owner, name) for name in LAYER_SETTINGS if owner.is_property_set(name)}
+    return told | ({SHARED: shared} if shared else {})
+
+
+def take_settings(source: bpy.types.Object, told: dict[str, Any]) -> None:
     """Gives the object what `told_settings` told; what is not known, as from another version, is left out."""
+    props = source.saddleback
+    _take(props, told)
+    for values in told.get("layers", []):
+        own = values.get("own", {})
+        layer = next((layer for layer in props.layers if layer.word == own.get("word")), None) or props.layers.add()
+        for name in layers.OWN:
+            if name in own:
+                setattr(layer, name, own[name])
+        _take(layer, values)
+    props.layer_word = told.get("layer_word", "")
+    layers.show_index(source)
+
+
+def _take(owner: bpy.types.PropertyGroup, told: dict[str, Any]) -> None:
     for settings_name, values in told.items():
-        group = getattr(source.saddleback, settings_name, None)
+        if settings_name != SHARED and settings_name not in PROPERTIES:
+            continue
+        group = owner if settings_name == SHARED else getattr(owner, settings_name)
         for name, value in values.items():
-            if group is not None and (name in group.bl_rna.properties or name in REGION):
-                _set_plain(group, name, value)
+            if name in group.bl_rna.properties:
+                setattr(group, name, value if _blocks(name) is None else find(_blocks(name), value))
 
 
 def register() -> None:

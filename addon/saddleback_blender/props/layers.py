@@ -18,7 +18,7 @@ from .. import rollback
 from ..bridge.outputs.layer_visibility import show_layer
 from ..core.errors import BadInputError
 from ..looks import NO_LOOK
-from .region import REGION
+from .region import LAYER_SETTINGS
 
 # Of each kind of settings: attributes that it writes, whose names other layers must not have.
 ATTRIBUTE_NAMES = {
@@ -36,6 +36,10 @@ def _choose(props: Any, _context: bpy.types.Context) -> None:
     source = props.id_data
     if 0 <= props.layer_index < len(props.layers):
         activate(source, props.layers[props.layer_index])
+
+
+# What a layer has beside settings.
+OWN = ("name", "word", "given_name", "number", "is_frozen", "show_viewport", "show_render")
 
 
 def layer_annotations(groups: dict[str, type]) -> dict[str, Any]:
@@ -136,7 +140,13 @@ def _load(source: bpy.types.Object, layer: Any) -> None:
     props = source.saddleback
     copy_layer(layer, props, _kinds())
     props.layer_word = layer.word
-    index = next(i for i, other in enumerate(props.layers) if other.word == layer.word)
+    show_index(source)
+
+
+def show_index(source: bpy.types.Object) -> None:
+    """Lets the list show which layer is active."""
+    props = source.saddleback
+    index = next((i for i, other in enumerate(props.layers) if other.word == props.layer_word), 0)
     if props.layer_index != index:
         props.layer_index = index
 
@@ -175,7 +185,7 @@ def copy_layer(old: Any, new: Any, kinds: Iterable[str]) -> None:
             _copy(getattr(old, kind), getattr(new, kind))
         elif new.is_property_set(kind):
             new.property_unset(kind)
-    for name in REGION:
+    for name in LAYER_SETTINGS:
         _copy_one(old, new, name)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .kinds import choice, name_of
+from .kinds import choice, name_of, switch
 
 REGIONS = (
     ("WHOLE", "Whole Surface", "All faces"),
@@ -18,3 +18,6 @@ REGION: dict[str, Any] = {
     "region": choice("On", "Which part of the object the layer covers", REGIONS, "WHOLE"),
     "region_name": name_of("Region", "The vertex group, attribute or material of the part that the layer covers"),
 }
+# Of the operators that make patterns.
+MIRROR: dict[str, Any] = {"mirror_x": switch("X Mirror", "The same pattern to both sides of the object's own X", False)}
+LAYER_SETTINGS = REGION | MIRROR

@@ -9,7 +9,7 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .density import DENSITY, DENSITY_BEGIN
 from .kinds import choice, detail, length, lengths, look, name_of, on_disk, quality, share, switch, use_modifiers
-from .region import REGION
+from .region import LAYER_SETTINGS
 
 SITES_SOURCES = (
     ("COUNT", "Count", "Place this many sites, by the density"),
@@ -171,7 +171,7 @@ TESSELLATE: dict[str, Any] = {
         "Edge Distance Attribute", "Where distances to the cells' edges are written", "saddleback_edge_distance"
     ),
     "look": look("tessellate"),
-    **REGION,
+    **LAYER_SETTINGS,
 }
 TESSELLATE_BEGIN: dict[str, Any] = {
     "use_modifiers": True,

@@ -57,6 +57,7 @@ def draw_region(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
         column.prop_search(props, "region_name", item.data, "materials", text="Material", icon="MATERIAL")
     elif props.region == "FACES":
         column.operator("saddleback.region_from_selection", icon="FACESEL")
+    column.prop(props, "mirror_x")
 
 
 def draw_layers(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:

@@ -14,6 +14,7 @@ from ...core.errors import BadInputError
 from ...core.requests import Surface
 from ...core.results import Indices, Reals
 from ...core.surfaces.parts import part_at_pinches
+from ...core.surfaces.seen_places import seen_from
 from .evaluated import evaluated
 
 
@@ -121,9 +122,7 @@ def to_world(source: bpy.types.Object, positions: NDArray[np.floating]) -> Reals
 
 def from_world(source: bpy.types.Object, points: Reals) -> Reals:
     """(n, 3) world space -> the object's own space."""
-    matrix = np.linalg.inv(np.array(source.matrix_world, np.float64))
-    own: Reals = points @ matrix[:3, :3].T + matrix[:3, 3]
-    return own
+    return seen_from(np.array(source.matrix_world, np.float64), points)
 
 
 def _all_triangles(mesh: bpy.types.Mesh) -> bool:

@@ -39,11 +39,15 @@ def write_cells(
     assert result.mesh is not None
     cells = result.mesh
     look = settings.look if isinstance(settings, TessellateSettings) else NO_LOOK
-    finish, count = finish_of(look), len(result.sites_position)
+    finish, count, neighbors = finish_of(look), result.count, result.edge_cells
+    if result.twin is not None:  # the first half of the edges is of the one side
+        count, neighbors = int(result.twin.max()) + 1, neighbors[: len(neighbors) // 2]
     if finish is None:
-        colors = cell_colors(count, result.edge_cells)
+        colors = cell_colors(count, neighbors)
     else:
-        colors = palette_colors(count, result.edge_cells, palette_of(finish), finish.contrast)
+        colors = palette_colors(count, neighbors, palette_of(finish), finish.contrast)
+    if result.twin is not None:
+        colors = colors[result.twin]
     place = level_place(source)
     mesh = _mesh(to_place(place, cells.vertices), cells, colors, compat.is_shaded_smooth(source.data))
     if isinstance(settings, TessellateSettings) and settings.local_uv:

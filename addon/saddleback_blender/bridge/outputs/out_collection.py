@@ -16,6 +16,7 @@ from mathutils import Matrix
 
 from ... import nodes, rollback
 from ...blocks import is_editable
+from ...core.surfaces.seen_places import seen_from
 from ...follow_nodes import follows
 from ..tokens import (
     LAYER,
@@ -150,8 +151,7 @@ def hair(source: bpy.types.Object) -> float:
 
 def to_place(place: Matrix, positions: np.ndarray) -> np.ndarray:
     """World positions (n,3) as seen from an object whose world matrix is `place`."""
-    inverse = np.linalg.inv(np.array(place, np.float64))
-    return positions @ inverse[:3, :3].T + inverse[:3, 3]
+    return seen_from(np.array(place, np.float64), positions)
 
 
 def directions_to_place(place: Matrix, directions: np.ndarray) -> np.ndarray:

@@ -62,7 +62,7 @@ def write_bent(
     place = level_place(source)
     mesh = bpy.data.meshes.new("Saddleback Shapes")
     _fill(mesh, to_place(place, bent.vertices), bent.corners, bent.offsets, bent.uv, bent.smooth)
-    random = random_of(len(result.placed.shape), settings.seed)
+    random = random_numbers(result, settings.seed)
     set_attribute(mesh, SHAPE_ATTRIBUTE, "FACE", bent.polygon_copy)
     set_attribute(mesh, nodes.CLASS_ATTRIBUTE, "FACE", bent.polygon_shape)
     set_attribute(mesh, RANDOM_ATTRIBUTE, "FACE", random[bent.polygon_copy])
@@ -106,7 +106,7 @@ def write_instances(
         nodes.ROTATION_ATTRIBUTE: rotations,
         nodes.NORMAL_ATTRIBUTE: axes_of(rotations)[1],
         nodes.SCALE_ATTRIBUTE: scales,
-        RANDOM_ATTRIBUTE: random_of(len(points), settings.seed),
+        RANDOM_ATTRIBUTE: random_numbers(result, settings.seed),
         FACE_ATTRIBUTE: placed.faces,
         WEIGHTS_ATTRIBUTE: placed.barycentric,
     }
@@ -251,6 +251,12 @@ def _fill_flat(mesh: bpy.types.Mesh, template: ShapeTemplate) -> None:
     vertices = np.column_stack([flat, np.full(len(flat), 0.02)])
     corners = np.arange(len(flat), dtype=np.int32)
     _fill(mesh, vertices, corners, offsets, 0.5 + 0.5 * flat, np.zeros(len(loops), bool))
+
+
+def random_numbers(result: DistributeResult, seed: int) -> Reals:
+    """(n,) a number of each shape, 0 to 1; a mirrored one has its twin's."""
+    count = len(result.placed.shape)
+    return random_of(count, seed) if result.twin is None else random_of(count // 2, seed)[result.twin]
 
 
 def _colors(classes: Indices, random: Reals, look: str) -> Reals:
