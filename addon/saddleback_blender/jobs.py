@@ -2,7 +2,7 @@
 
 The thread works on arrays and never touches bpy; progress and cancel go through a token, never a call into Python from
 native threads. What the panel shows of a run is read through properties of the window manager that store nothing, so a
-run leaves no trace in the file.
+run leaves no trace in the file. One is a switch of the tab, which no file has either.
 """
 
 from __future__ import annotations
@@ -101,6 +101,9 @@ WINDOW_MANAGER_PROPERTIES = {
     ),
     "saddleback_line": StringProperty(
         name="Last Run", description="What the last run made", get=lambda _: state.line
+    ),
+    "saddleback_all_selected": BoolProperty(
+        name="All Selected", description="Do the same to all selected mesh objects, not only to the active one"
     ),
     "saddleback_figures": StringProperty(
         name="Figures", description="How even the last run's cells are", get=lambda _: "\n".join(state.figures)

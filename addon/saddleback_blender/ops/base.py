@@ -19,7 +19,7 @@ from ..bridge.outputs.lifting import lift_lying
 from ..bridge.outputs.out_collection import hide_output, outputs_of, remove_output
 from ..bridge.outputs.out_looks import ROLES, remove_look, set_stage
 from ..bridge.outputs.output_surface import has_own_faces
-from ..bridge.tokens import layer_of
+from ..bridge.tokens import SOURCE, layer_of
 from ..core import native, runs
 from ..core.errors import BadInputError
 from ..core.lengths import told_lengths, world_lengths
@@ -27,12 +27,21 @@ from ..core.progress import Progress
 from ..core.requests import Surface
 from ..looks import LOOKS, NO_LOOK
 from ..props import PROPERTIES, Settings, existing_group, fill_operator, keep_texts, note_call
+from ..props.kinds import switch
 from ..props.layers import check_layer, first_layer, look_of, name_after
 from .redo import draw_redo
 
 # Seconds between looks at the thread: a run's end, and a progress step, are seen this late at most. ESC is an event of
 # its own and does not wait for it.
 TIMER_STEP = 0.05
+STOPPED = "Stopped; nothing was changed"
+STOPPED_LATER = "Stopped; the objects that were done stay as they are"
+# Of operators that may work on several objects.
+ALL_SELECTED = {
+    "all_selected": switch(
+        "All Selected", "Do the same to all selected mesh objects, not only to the active one", False
+    )
+}
 
 
 class PolledOperator:
@@ -71,6 +80,8 @@ class SurfaceOperator(PolledOperator):
     _is_by_hand = False  # not by a script
     _lengths: dict[str, Any]  # in world units, those that are given as shares
     _called: tuple[str, ...]  # names of settings that the caller gave
+    _others: list[str]  # names of selected objects that are still to be worked on
+    _is_filled = False  # the active object is done, others may follow
     _surface: Surface  # that the run is made on
     _follower: Follower | None = None
 
@@ -126,6 +137,14 @@ class SurfaceOperator(PolledOperator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Computes and writes before it returns: scripts and the redo panel."""
+        self._begin(context)
+        answer = self._compute(context)
+        while answer == {"FINISHED"} and self._others:
+            with _active(context, self._others.pop(0)):
+                self._compute(context)
+        return answer
+
+    def _compute(self, context: bpy.types.Context) -> set[str]:
         try:
             # The redo panel calls as a script does, with what a person has chosen.
             source, call = self._prepare(context, self._is_asked_by_hand())
@@ -137,6 +156,12 @@ class SurfaceOperator(PolledOperator):
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Starts the run in a thread: the panel."""
+        if hasattr(self, "all_selected") and not self.properties.is_property_set("all_selected"):
+            self.all_selected = context.window_manager.saddleback_all_selected
+        self._begin(context)
+        return self._start(context)
+
+    def _start(self, context: bpy.types.Context) -> set[str]:
         try:
             source, call = self._prepare(context, True)
             self._source = Source.of(context, source, getattr(self, "use_modifiers", False))
@@ -146,7 +171,8 @@ class SurfaceOperator(PolledOperator):
         self._task = jobs.start(call, progress, source.name)
         manager = context.window_manager
         self._timer = manager.event_timer_add(TIMER_STEP, window=context.window)
-        manager.modal_handler_add(self)
+        if not self._is_filled:  # else it watches already
+            manager.modal_handler_add(self)
         self.begin_watching(context, source)
         self._show(context)
         return {"RUNNING_MODAL"}
@@ -158,11 +184,11 @@ class SurfaceOperator(PolledOperator):
             return {"CANCELLED"}
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
-            self.report({"INFO"}, "Stopped; nothing was changed")
-            return {"CANCELLED"}
+            self.report({"INFO"}, STOPPED_LATER if self._is_filled else STOPPED)
+            return {"FINISHED"} if self._is_filled else {"CANCELLED"}
         if event.type == "TIMER" and task.done:
             self._leave(context)
-            return self._end(context, task)
+            return self._go_on(context, self._end(context, task))
         if event.type == "TIMER":
             self.show_newest()
             self._show(context)
@@ -177,6 +203,19 @@ class SurfaceOperator(PolledOperator):
         if self._task is not None:
             self._task.cancel()
             self._leave(context)
+
+    def _begin(self, context: bpy.types.Context) -> None:
+        """Notes which objects are to be worked on."""
+        self._is_filled = False
+        self._others = _selected(context) if getattr(self, "all_selected", False) else []
+
+    def _go_on(self, context: bpy.types.Context, answer: set[str]) -> set[str]:
+        """Begins with the next selected object, once the active one is done."""
+        while self._is_filled and self._others:
+            with _active(context, self._others.pop(0)):
+                if self._start(context) == {"RUNNING_MODAL"}:
+                    return {"RUNNING_MODAL"}
+        return {"FINISHED"} if self._is_filled else answer
 
     def _is_asked_by_hand(self) -> bool:
         """Tells whether a person asks, not a script. A look is what a person chooses, whoever calls for it."""
@@ -196,7 +235,8 @@ class SurfaceOperator(PolledOperator):
         if self.makes_layers:
             check_layer(source)
         self._layer = layer_of(source)
-        self._called = fill_operator(self, source, self.settings_name, is_by_hand)
+        if not self._is_filled:  # all selected objects get what the active one does
+            self._called = fill_operator(self, source, self.settings_name, is_by_hand)
         native.load()
         return source, self.gather(context, source)
 
@@ -241,6 +281,7 @@ class SurfaceOperator(PolledOperator):
             return self._refuse(error, context)
         if jobs.state.needs_repair == source.name:
             jobs.state.needs_repair = ""
+        self._is_filled = True
         jobs.state.line = f"{line}, {perf_counter() - self._began:.1f} s"
         jobs.state.figures = [*lengths, *figures]
         followed = [] if self._follower is None else self._follower.notes()
@@ -251,12 +292,13 @@ class SurfaceOperator(PolledOperator):
 
     def _refuse(self, error: Exception, context: bpy.types.Context) -> set[str]:
         """Tells an error that has a sentence; any other is a defect of ours and goes on as it is."""
+        level = {"WARNING"} if self._is_filled else {"ERROR"}  # what was done before stays
         if isinstance(error, (BadInputError, native.NativeMissingError)):
-            self.report({"ERROR"}, str(error))
+            self.report(level, str(error))
             return {"CANCELLED"}
         sb = native.load()
         if isinstance(error, sb.Cancelled):
-            self.report({"INFO"}, "Stopped; nothing was changed")
+            self.report({"INFO"}, STOPPED)
             return {"CANCELLED"}
         if not isinstance(error, (sb.Error, MemoryError)):
             raise error
@@ -274,7 +316,7 @@ class SurfaceOperator(PolledOperator):
             else:
                 jobs.state.needs_repair = name
                 text += "; press Repair in the Saddleback tab, then run again"
-        self.report({"ERROR"}, f"'{name}': {text}")
+        self.report(level, f"'{name}': {text}")
         return {"CANCELLED"}
 
     def _show(self, context: bpy.types.Context) -> None:
@@ -296,6 +338,18 @@ class SurfaceOperator(PolledOperator):
             context.workspace.status_text_set(None)
         jobs.redraw(context)
         self._task = None
+
+
+def _selected(context: bpy.types.Context) -> list[str]:
+    """Names of selected mesh objects but for the active one and what was made of objects."""
+    active = active_object(context)
+    chosen = [item for item in context.view_layer.objects if item.select_get(view_layer=context.view_layer)]
+    return [item.name for item in chosen if item.type == "MESH" and item != active and SOURCE not in item]
+
+
+def _active(context: bpy.types.Context, name: str) -> Any:
+    item = bpy.data.objects.get(name)
+    return context.temp_override(object=item, active_object=item)
 
 
 def _unseen(context: bpy.types.Context, source: bpy.types.Object) -> list[str]:

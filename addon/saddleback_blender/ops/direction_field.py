@@ -23,7 +23,7 @@ from ..core.results import FieldResult
 from ..core.settings import DirectionFieldSettings
 from ..props import keep_settings, settings_of
 from ..props.direction_field import DIRECTION_FIELD
-from .base import SurfaceOperator
+from .base import ALL_SELECTED, SurfaceOperator
 
 KINDS = {1: "vectors", 2: "lines", 4: "crosses"}
 
@@ -35,7 +35,7 @@ class SADDLEBACK_OT_direction_field(SurfaceOperator, bpy.types.Operator):
     bl_label = "Direction Field"
     bl_description = "Comb the surface of the active object: directions that follow strokes and turn where you say"
     bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = dict(DIRECTION_FIELD)
+    __annotations__ = DIRECTION_FIELD | ALL_SELECTED
 
     settings_name = "direction_field"
 

@@ -26,7 +26,7 @@ from ..core.settings import DistanceSettings
 from ..core.solids.level_lines import isoline_spacing
 from ..props import keep_settings, settings_of
 from ..props.distance import DISTANCE
-from .base import SurfaceOperator
+from .base import ALL_SELECTED, SurfaceOperator
 
 
 class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
@@ -36,7 +36,7 @@ class SADDLEBACK_OT_distance(SurfaceOperator, bpy.types.Operator):
     bl_label = "Distance"
     bl_description = "Measure along the surface how far each vertex of the active object is from the nearest source"
     bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = dict(DISTANCE)
+    __annotations__ = DISTANCE | ALL_SELECTED
 
     settings_name = "distance"
 

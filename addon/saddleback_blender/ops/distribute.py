@@ -46,7 +46,7 @@ from ..core.settings import DirectionFieldSettings, DistributeSettings
 from ..props import keep_settings, kept_settings, settings_of
 from ..props.distribute import DISTRIBUTE
 from ..props.layers import suffix_of
-from .base import SurfaceOperator
+from .base import ALL_SELECTED, SurfaceOperator
 from .paint import HelperOperator
 
 
@@ -57,7 +57,7 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
     bl_label = "Distribute Shapes"
     bl_description = "Lay shapes on the surface of the active object: along its direction field, none touching another"
     bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = dict(DISTRIBUTE)
+    __annotations__ = DISTRIBUTE | ALL_SELECTED
 
     settings_name = "distribute"
 

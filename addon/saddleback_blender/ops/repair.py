@@ -19,7 +19,7 @@ from ..core.settings import RepairSettings
 from ..core.surfaces.repair_plan import plan_repair
 from ..props import keep_settings, settings_of
 from ..props.repair import REPAIR
-from .base import SurfaceOperator
+from .base import ALL_SELECTED, SurfaceOperator
 
 
 class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
@@ -32,7 +32,7 @@ class SADDLEBACK_OT_repair(SurfaceOperator, bpy.types.Operator):
         "fill its holes; groups, UVs, colors and materials stay"
     )
     bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = dict(REPAIR)
+    __annotations__ = REPAIR | ALL_SELECTED
 
     settings_name = "repair"
     makes_layers = False

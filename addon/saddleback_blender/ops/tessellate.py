@@ -38,7 +38,7 @@ from ..core.results import CellsResult
 from ..core.settings import TessellateSettings
 from ..props import keep_settings, settings_of
 from ..props.tessellate import TESSELLATE
-from .base import SurfaceOperator
+from .base import ALL_SELECTED, SurfaceOperator
 
 # What the library's reasons to stop mean to a person; that all steps were done needs no word.
 ENDS = {
@@ -143,7 +143,7 @@ class SADDLEBACK_OT_tessellate(CellsOperator, bpy.types.Operator):
     bl_label = "Tessellate"
     bl_description = "Cover the surface of the active object with cells of even size, small where the density is high"
     bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = dict(TESSELLATE)
+    __annotations__ = TESSELLATE | ALL_SELECTED
 
 
 class SADDLEBACK_OT_relax_live(CellsOperator, bpy.types.Operator):

@@ -29,7 +29,7 @@ from ..core.solids.edge_network import EdgeNetwork
 from ..core.surfaces.plane_frame import is_flat
 from ..props import keep_settings, settings_of
 from ..props.voronoi_2d import VORONOI_2D
-from .base import SurfaceOperator
+from .base import ALL_SELECTED, SurfaceOperator
 
 # Other names than tessellate's, so that an object can show both.
 EDGES_ROLE, CELLS_ROLE, CENTERS_ROLE = "voronoi edges", "voronoi cells", "voronoi centers"
@@ -42,7 +42,7 @@ class SADDLEBACK_OT_voronoi_2d(SurfaceOperator, bpy.types.Operator):
     bl_label = "Voronoi 2D"
     bl_description = "Divide a flat mesh, or a surface through its UV map, into the cells of a plane Voronoi diagram"
     bl_options = {"REGISTER", "UNDO"}
-    __annotations__ = dict(VORONOI_2D)
+    __annotations__ = VORONOI_2D | ALL_SELECTED
 
     settings_name = "voronoi_2d"
 
