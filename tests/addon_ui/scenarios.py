@@ -41,7 +41,8 @@ def _count_draw(_panel, context):
 
 def in_order(screen):
     """The scenarios; later ones go on where earlier ones ended."""
-    plays = (opened, repaired, tessellated, undone, adjusted, escaped, divided, combed, clothed, dressed, refused)
+    made = (opened, repaired, tessellated, undone, adjusted, escaped, divided, combed, clothed, dressed, layered)
+    plays = (*made, refused)
     return {play.__name__: (lambda play=play: play(screen)) for play in plays}
 
 
@@ -310,6 +311,28 @@ def dressed(screen):
     doll = bpy.data.objects["Doll"]
     made = {item["saddleback_role"]: item.data.materials[0].name for item in doll.children}
     return {"made": made, "look": doll.saddleback.tessellate.look, "places": [place, again]}
+
+
+def layered(screen):
+    """A second pattern on the same object; the first is hidden, and Undo takes all of the second back."""
+    command = "bpy.ops.saddleback.layer_add()"
+    doll = bpy.data.objects["Doll"]
+    place = yield from screen.find_button(command)
+    yield from screen.click_until(place, lambda: len(bpy.data.objects["Doll"].saddleback.layers) == 2)
+    place = yield from screen.find_button("bpy.ops.saddleback.apply_look(look='SCALES')")
+    yield from screen.click_until(place, lambda: manager().saddleback_running or len(doll.children) == 2)
+    yield from wait_until(lambda: not manager().saddleback_running, "the scales to be made")
+    yield 4 * FRAME
+    doll = bpy.data.objects["Doll"]
+    names = [layer.name for layer in doll.saddleback.layers]
+    made = {item["saddleback_role"]: item.get("saddleback_layer", "") != "" for item in doll.children}
+    doll.saddleback.layers[0].show_viewport = False
+    screen.redraw()
+    yield 4 * FRAME
+    yield from screen.shoot("layered")
+    hidden = [item["saddleback_role"] for item in doll.children if item.hide_viewport]
+    doll.saddleback.layers[0].show_viewport = True
+    return {"names": names, "made": made, "hidden": hidden}
 
 
 def show_panels(screen, names):

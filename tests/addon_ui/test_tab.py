@@ -143,5 +143,11 @@ def test_one_click_makes_a_look_and_the_button_stays(report):
     assert result["places"][0] == result["places"][1]
 
 
+def test_a_second_layer_lies_beside_the_first(report):
+    result = seen(report, "layered")
+    assert result["names"] == ["Panels", "Scales"]
+    assert result["made"] == {"cells": False, "shapes": True} and result["hidden"] == ["cells"]
+
+
 def test_the_tab_says_what_to_do_without_a_mesh(report):
     assert seen(report, "refused")["drawn"] > 0

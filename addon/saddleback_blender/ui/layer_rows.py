@@ -11,6 +11,9 @@ from ..props import LAYER_KINDS
 from ..props.layers import active_layer, layers_of
 
 
+FEWEST_ROWS, MOST_ROWS = 2, 5  # of the list; buttons below it stay where they are while layers are few
+
+
 class SADDLEBACK_UL_layers(bpy.types.UIList):
     """Patterns on one object."""
 
@@ -48,7 +51,9 @@ def draw_region(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
     column = layout.column()
     column.use_property_split = True
     column.use_property_decorate = False
-    column.prop(props, "region")
+    row = column.row(align=True)
+    row.prop(props, "region")
+    row.prop(props, "mirror_x", text="", icon="MOD_MIRROR")
     if props.region == "VERTEX_GROUP":
         column.prop_search(props, "region_name", item, "vertex_groups", text="Group", icon="GROUP_VERTEX")
     elif props.region == "ATTRIBUTE":
@@ -57,17 +62,14 @@ def draw_region(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
         column.prop_search(props, "region_name", item.data, "materials", text="Material", icon="MATERIAL")
     elif props.region == "FACES":
         column.operator("saddleback.region_from_selection", icon="FACESEL")
-    column.prop(props, "mirror_x")
 
 
 def draw_layers(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
     """The list, and what can be done with the active one."""
     column = layout.column(align=True)
-    layers = layers_of(item)
-    if layers:
-        rows = min(max(len(layers), 2), 5)
-        column.template_list("SADDLEBACK_UL_layers", "", item.saddleback, "layers", item.saddleback, "layer_index",
-                             rows=rows, maxrows=5)  # fmt: skip
+    rows = min(max(len(layers_of(item)), FEWEST_ROWS), MOST_ROWS)
+    props = item.saddleback
+    column.template_list("SADDLEBACK_UL_layers", "", props, "layers", props, "layer_index", rows=rows, maxrows=rows)
     row = column.row(align=True)
     row.operator("saddleback.layer_add", text="Add Layer", icon="ADD")
     if active_layer(item) is not None:

@@ -72,11 +72,10 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
         layer_rows.draw_region(column, item)
         look_rows.draw_looks(layout, item)
         column = layout.column(align=True)
-        row = column.row()
-        row.label(text=item.name, icon="OUTLINER_OB_MESH")
-        if sum(other.type == "MESH" for other in context.view_layer.objects.selected) > 1:
-            row.prop(context.window_manager, "saddleback_all_selected")
+        column.label(text=item.name, icon="OUTLINER_OB_MESH")
         draw_text(column, context, f"{len(item.data.vertices):,} vertices, {len(item.data.polygons):,} faces", "BLANK1")
+        if sum(other.type == "MESH" for other in context.view_layer.objects.selected) > 1:
+            layout.prop(context.window_manager, "saddleback_all_selected")
         row = layout.row()
         if context.window_manager.saddleback_running:
             compat.draw_progress(row, context.window_manager)
@@ -89,7 +88,9 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
             layout.prop(shading, "color_type", text="Color")
 
 
-def _draw_button(layout: bpy.types.UILayout, context: bpy.types.Context, operator: str, icon: str) -> None:
+def _draw_button(
+    layout: bpy.types.UILayout, context: bpy.types.Context, operator: str, icon: str, live: str = ""
+) -> None:
     """The button that starts a run, always in the same place: while one goes on its progress stands there.
 
     A button that is gray under the mouse stays dead in Blender after it could be pressed again; a new one does not.
@@ -100,6 +101,8 @@ def _draw_button(layout: bpy.types.UILayout, context: bpy.types.Context, operato
         compat.draw_progress(row, context.window_manager)
     else:
         row.operator(operator, icon=icon)
+        if live:
+            row.operator(live, text="", icon="PLAY")
 
 
 def _draw_state(layout: bpy.types.UILayout, context: bpy.types.Context, kind: str) -> None:
@@ -138,9 +141,7 @@ class SADDLEBACK_PT_tessellate(SaddlebackSubPanel, bpy.types.Panel):
         """Draws the panel."""
         settings = active_object(context).saddleback.tessellate
         layout = self.split_layout(context)
-        _draw_button(layout, context, "saddleback.tessellate", "MOD_EXPLODE")
-        if not context.window_manager.saddleback_running:
-            layout.operator("saddleback.relax_live", icon="PLAY")
+        _draw_button(layout, context, "saddleback.tessellate", "MOD_EXPLODE", "saddleback.relax_live")
         _draw_state(layout, context, "tessellate")
         rows.draw_sites(layout.column(), settings)
 
