@@ -42,6 +42,9 @@ class Layout:
     def operator(self, *_, **__):
         return type("Button", (), {})()
 
+    def template_list(self, *_, **__):
+        pass
+
     def label(self, **_):
         pass
 

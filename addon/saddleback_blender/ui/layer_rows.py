@@ -10,7 +10,6 @@ from ..looks import LOOKS, NO_LOOK
 from ..props import LAYER_KINDS
 from ..props.layers import active_layer, layers_of
 
-
 FEWEST_ROWS, MOST_ROWS = 2, 5  # of the list; buttons below it stay where they are while layers are few
 
 
@@ -52,7 +51,7 @@ def draw_region(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
     column.use_property_split = True
     column.use_property_decorate = False
     row = column.row(align=True)
-    row.prop(props, "region")
+    row.prop(props, "region", text="")
     row.prop(props, "mirror_x", text="", icon="MOD_MIRROR")
     if props.region == "VERTEX_GROUP":
         column.prop_search(props, "region_name", item, "vertex_groups", text="Group", icon="GROUP_VERTEX")

@@ -71,9 +71,7 @@ class SADDLEBACK_PT_main(SaddlebackPanel, bpy.types.Panel):
         layer_rows.draw_layers(column, item)
         layer_rows.draw_region(column, item)
         look_rows.draw_looks(layout, item)
-        column = layout.column(align=True)
-        column.label(text=item.name, icon="OUTLINER_OB_MESH")
-        draw_text(column, context, f"{len(item.data.vertices):,} vertices, {len(item.data.polygons):,} faces", "BLANK1")
+        layout.label(text=item.name, icon="OUTLINER_OB_MESH")
         if sum(other.type == "MESH" for other in context.view_layer.objects.selected) > 1:
             layout.prop(context.window_manager, "saddleback_all_selected")
         row = layout.row()
