@@ -39,6 +39,8 @@ def test_random_input_meets_the_truths():
         ("cells.places_in_cells", 66001587),  # a site seen straight that claims nothing of the face
         ("cell_parts.boundaries_are_midway", 20329483),  # a third cell between two, told from two corners alone
         ("cell_parts.boundaries_among_needles", 795778662590),
+        ("relaxation.centers_of_the_plane", 20280198),  # a place within rounding of a vertex saw all in its direction
+        ("relaxation.centers_of_the_plane", 777013576),  # an obtuse corner nearer than both ends of the side across
     ],
 )
 def test_what_a_search_found_stays_mended(name, seed):

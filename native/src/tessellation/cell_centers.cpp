@@ -135,6 +135,16 @@ class CellMass {
   double mass_ = 0;
 };
 
+/// The vertex that a point of a face is as good as at: past one as near as that the ways to all others are told apart
+/// from those by it by rounding alone, and would take its direction. The point where there is none.
+SurfacePoint at_vertex_within(const Mesh& mesh, const SurfacePoint& point, double reach) {
+  const FaceChart chart(mesh, point.face);
+  const Vec2 at = chart.to_plane(point.barycentric);
+  for (int i = 0; i < 3; ++i)
+    if ((chart.corner[i] - at).norm() <= reach) return {point.face, Vec3::Unit(i)};
+  return point;
+}
+
 /// A vector in space, as the face's plane has it, in the face's chart. Zero where the face has no plane.
 Vec2 in_chart(const Mesh& mesh, Index face, const Vec3& vector) {
   const Triangle& t = mesh.triangles()[face];
@@ -160,7 +170,8 @@ SurfacePoint first_place(const Mesh& mesh, const CellMass& cell, const SurfacePo
 SurfacePoint center_of(const Mesh& mesh, const CellMass& cell, PatchLog& log, const SurfacePoint& site, double size) {
   if (!(cell.mass() > 0)) return site;
   log.begin(cell.faces());
-  SurfacePoint place = first_place(mesh, cell, site, size);
+  const double reach = k_tolerance * size / 2;
+  SurfacePoint place = at_vertex_within(mesh, first_place(mesh, cell, site, size), reach);
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < k_most_steps; ++i) {
     const bool is_near = before <= k_short_step * size;
@@ -172,7 +183,7 @@ SurfacePoint center_of(const Mesh& mesh, const CellMass& cell, PatchLog& log, co
     before = length;
     const SurfacePoint next = move_sites(mesh, {place}, {step}, 1).sites.front();
     if (!std::ranges::binary_search(cell.faces(), next.face)) break;  // the cell bends round what is not its own
-    place = next;
+    place = at_vertex_within(mesh, next, reach);
     if (i > 0 && next_length <= k_tolerance * size) break;
   }
   return place;

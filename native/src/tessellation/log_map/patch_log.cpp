@@ -42,7 +42,8 @@ void PatchLog::begin(std::span<const Index> faces) {
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
       const double length = mesh_.length(h), right = mesh_.length(Mesh::next(h)), left = mesh_.length(Mesh::prev(h));
       const double share = 1 / (2 * length), x = (left * left - right * right + length * length) * share;
-      edges_.push_back({length, share, left, right, {x, std::sqrt(std::max(0.0, left * left - x * x))}});
+      const bool is_obtuse = left * left + right * right < length * length;
+      edges_.push_back({length, share, left, right, is_obtuse, {x, std::sqrt(std::max(0.0, left * left - x * x))}});
     }
   }
 }
@@ -175,18 +176,18 @@ void PatchLog::offer(const Way& way, const Vec2& place, double distance) {
 }
 
 /// Goes from a vertex across its two edges of a face, unless that was done from their other ends, from the same places,
-/// or the corner beyond is nearer than both ends.
+/// or the corner beyond is nearer than both ends, which only an obtuse one can be that is seen across.
 void PatchLog::visit_face(Index local, Index vertex) {
   const auto& corners = corners_[local];
   const int at = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2, next = (at + 1) % 3, last = (at + 2) % 3;
   const Index after = corners[next], before = corners[last];
   const double nearest = distances_[vertex];
-  const auto serves = [&](Index other, Index beyond) {
-    return distances_[beyond] > std::min(nearest, distances_[other]) &&
+  const auto serves = [&](int edge, Index other, Index beyond) {
+    return (distances_[beyond] > std::min(nearest, distances_[other]) || edges_[3 * local + edge].is_obtuse) &&
            visited_[other] <= std::max(changed_[other], changed_[vertex]);
   };
-  if (serves(after, before)) see_across(local, at);
-  if (serves(before, after)) see_across(local, last);
+  if (serves(at, after, before)) see_across(local, at);
+  if (serves(last, before, after)) see_across(local, last);
 }
 
 /// Straight on along an edge, in the direction of its start.

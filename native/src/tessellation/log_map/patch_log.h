@@ -37,6 +37,7 @@ class PatchLog {
   struct EdgeShape {
     double length, share;  ///< share: 1 / (2 length)
     double left, right;    ///< from the corner to the edge's start and end
+    bool is_obtuse;        ///< whether the corner is
     Vec2 apex;
   };
   struct Foot {
