@@ -221,26 +221,49 @@ def centers_of_the_plane(mesh: sb.Mesh, rng: Random) -> None:
             assert missed <= 2e-6 * area**0.5, f"center {i} is {missed} off"
 
 
+def room_of_corner(corner: Floats, sites: Floats, rim: Floats) -> float:
+    """How far a corner of cells moves if each difference of two of its sites' distances is off by 1: infinitely far
+    where boundaries touch.
+    """
+    toward = corner - sites
+    toward /= np.linalg.norm(toward, axis=1)[:, None]
+    along = np.roll(rim, -1, axis=0) - rim
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    normal = np.column_stack([along[:, 1], -along[:, 0]])
+    on_side = np.abs(((corner - rim) * normal).sum(axis=1)).argmin()
+    rows = [*(toward[1:] - toward[0]), *([normal[on_side]] if len(sites) == 2 else [])]
+    return 1 / max(float(np.linalg.svd(np.array(rows), compute_uv=False).min()), 1e-300)
+
+
 @guards("GeodesicVoronoi.corners", "GeodesicVoronoi.centers")
 def corners_of_the_plane(mesh: sb.Mesh, rng: Random) -> None:
     """On flat convex pieces of the plane: corners of exact cells against polygons in fractions; centers lie in their
     cells.
+
+    Faces are divided until distances are right to 5e-6 of a cell's size (to a tenth of it where all known ways are
+    straight): corners are as far off as their boundaries make of that.
     """
     found = exact_plane_cells(mesh, rng)
     if found is None:
         return
     (cells, places, polygons), size = found, longest_edge(mesh)
     centers = cells.centers(threads=1).positions(mesh)[:, :2]
+    rim = mesh.vertices[mesh.boundary_loops[0], :2]
+    tolerance = 5e-6 * (mesh.area / len(places)) ** 0.5
     # Corners of the domain are none of a cell, unless a boundary between cells ends there.
     for i, polygon in enumerate(polygons):
         wanted = rounded(polygon)
         corners = cells.corners(i).positions(mesh)[:, :2]
-        for corner in corners:
-            assert np.hypot(*(wanted - corner).T).min() <= 1e-6 * size, f"cell {i} has no corner at {corner}"
         distances = np.linalg.norm(wanted[:, None] - places, axis=2)
-        between = (distances - distances[:, [i]] < 1e-9 * size).sum(axis=1) > 1
-        for corner in wanted[between]:
-            assert np.hypot(*(corners - corner).T).min(initial=np.inf) <= 1e-6 * size, f"cell {i} lacks {corner}"
+        near = distances - distances[:, [i]] < 1e-9 * size
+        between = near.sum(axis=1) > 1
+        wanted, near = wanted[between], near[between]
+        rooms = np.array([room_of_corner(p, places[of], rim) for p, of in zip(wanted, near, strict=True)])
+        off = np.linalg.norm(corners[:, None] - wanted, axis=2) / (tolerance * rooms)
+        for corner, best in zip(corners, off.min(axis=1, initial=np.inf), strict=True):
+            assert best <= 1, f"cell {i} has no corner at {corner}"
+        for corner, best in zip(wanted, off.min(axis=0, initial=np.inf), strict=True):
+            assert best <= 1, f"cell {i} lacks {corner}"
         to_sites = np.linalg.norm(centers[i] - places, axis=1)
         assert to_sites[i] <= to_sites.min() + 1e-2 * size, f"center {i} is in another cell"
 

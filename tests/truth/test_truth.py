@@ -41,6 +41,8 @@ def test_random_input_meets_the_truths():
         ("cell_parts.boundaries_among_needles", 795778662590),
         ("relaxation.centers_of_the_plane", 20280198),  # a place within rounding of a vertex saw all in its direction
         ("relaxation.centers_of_the_plane", 777013576),  # an obtuse corner nearer than both ends of the side across
+        ("relaxation.centers_of_the_plane", 555000955),  # a millionth of the size beside an edge, seen end-on
+        ("relaxation.corners_of_the_plane", 20407879),  # a corner of flat angles: three times the tolerance
     ],
 )
 def test_what_a_search_found_stays_mended(name, seed):

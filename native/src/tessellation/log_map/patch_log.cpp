@@ -14,14 +14,21 @@ namespace saddleback {
 namespace {
 
 constexpr double k_far = std::numeric_limits<double>::infinity();
-// Barycentric: nearer to an edge a point is seen end-on from beyond it.
-constexpr double k_on_edge = 1e-9;
+// Relative to the edge: nearer to it a point is seen end-on from beyond it, where rounding of the distances to its ends
+// leaves too little of how near.
+constexpr double k_on_edge = 1e-6;
 // A vertex that is placed already is placed again when another way is shorter by more than rounding. That is more where
 // an edge is short beside its distance, and makes vertices beside it nearer in turn without end: from the eighth time
 // on each has to gain twice as much as the last.
 constexpr double k_rounding = 1e-12, k_first_gain = k_rounding / 256;
 // Odd, so that vertices next to each other in number fall into slots of their own.
 constexpr std::uint32_t k_spread = 2654435761U;
+
+/// Tells whether a point is as good as on one of the edges of its face.
+bool is_on_edge(const Mesh& mesh, const SurfacePoint& point, int edge) {
+  const double length = mesh.length(3 * point.face + edge);
+  return 2 * mesh.face_area(point.face) * point.barycentric[(edge + 2) % 3] <= k_on_edge * length * length;
+}
 
 Vec2 polar(double length, double angle) { return {length * std::cos(angle), length * std::sin(angle)}; }
 
@@ -120,11 +127,13 @@ void PatchLog::start_in_face(const SurfacePoint& center, Index local) {
   const FaceChart chart(mesh_, center.face);
   const Vec2 at = chart.to_plane(center.barycentric);
   for (int i = 0; i < 3; ++i) begin_with(corners_[local][i], chart.corner[i] - at, (chart.corner[i] - at).norm());
-  if (center.barycentric.minCoeff() > k_on_edge) first_face_ = local;
+  first_face_ = local;
   // On an edge, the face beyond lies just as near.
   for (int i = 0; i < 3; ++i) {
+    if (!is_on_edge(mesh_, center, i)) continue;
+    first_face_ = k_none;
     const Index h = 3 * center.face + i, twin = mesh_.twin(h);
-    if (center.barycentric[(i + 2) % 3] > k_on_edge || twin == k_none) continue;
+    if (twin == k_none) continue;
     const Index beyond = local_face(Mesh::face_of(twin));
     if (beyond == k_none) continue;
     const FaceChart other(mesh_, Mesh::face_of(twin));
@@ -132,7 +141,9 @@ void PatchLog::start_in_face(const SurfacePoint& center, Index local) {
     const Vec2 apex = other.corner[(twin + 2) % 3] - from;
     const Vec2 &here = chart.corner[(i + 1) % 3], back = (chart.corner[i] - here) / mesh_.length(h);
     const Vec2 turned = along.dot(apex) * back + cross(along, apex) * Vec2(-back.y(), back.x());
-    begin_with(corners_[beyond][(twin + 2) % 3], here + turned - at, (here + turned - at).norm());
+    const Vec2 place = here + turned - at;
+    if (cross(chart.corner[i] - at, place) >= 0 && cross(place, here - at) >= 0)
+      begin_with(corners_[beyond][(twin + 2) % 3], place, place.norm());
   }
 }
 
@@ -233,8 +244,9 @@ void PatchLog::see_across(Index local, int edge) {
 }
 
 bool PatchLog::run_again(const SurfacePoint& center) {
-  if (first_face_ == k_none || faces_[first_face_] != center.face || center.barycentric.minCoeff() <= k_on_edge)
-    return false;
+  if (first_face_ == k_none || faces_[first_face_] != center.face) return false;
+  for (int i = 0; i < 3; ++i)
+    if (is_on_edge(mesh_, center, i)) return false;
   const FaceChart chart(mesh_, center.face);
   const Vec2 at = chart.to_plane(center.barycentric);
   for (int i = 0; i < 3; ++i) {
