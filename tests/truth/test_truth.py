@@ -39,6 +39,8 @@ def test_random_input_meets_the_truths():
         ("cells.places_in_cells", 66001587),  # a site seen straight that claims nothing of the face
         ("cell_parts.boundaries_are_midway", 20329483),  # a third cell between two, told from two corners alone
         ("cell_parts.boundaries_among_needles", 795778662590),
+        ("sweeps.ties_of_a_circle", 31001546),  # six arcs vanish in the moment in which a site is touched
+        ("sweeps.ties_of_a_circle", 31000843),  # twins an ulp apart, touched in the wrong order
         ("relaxation.centers_of_the_plane", 20280198),  # a place within rounding of a vertex saw all in its direction
         ("relaxation.centers_of_the_plane", 777013576),  # an obtuse corner nearer than both ends of the side across
         ("relaxation.centers_of_the_plane", 555000955),  # a millionth of the size beside an edge, seen end-on

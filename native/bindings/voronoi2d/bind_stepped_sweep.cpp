@@ -64,8 +64,8 @@ py::list line_list(std::vector<std::vector<Vec2>> lines) {
 constexpr const char* k_doc = R"(A sweep circle, one event at a time, to be looked at.
 
 The same step computes `voronoi_2d`, from centers of its own choice. Positions are rounded, and so is the order of nearly
-simultaneous events. With weights the events are told from the diagram; hidden sites have none, and a vertex of many
-cells is one event.
+simultaneous events. With weights, and where rounding would lose a vertex, the events are told from the diagram; hidden
+sites have none, and a vertex of many cells is one event.
 
 Parameters
 ----------

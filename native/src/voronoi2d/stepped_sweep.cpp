@@ -26,12 +26,12 @@ using namespace voronoi2d;
 
 namespace {
 
-/// The sweep of weighted sites.
-struct WeightedSweep {
+/// A sweep told from the diagram: of weighted sites, and of the rare ones that no sweep in doubles gets through.
+struct ToldSweep {
   Voronoi2d diagram;
   DiagramSweep sweep;
   std::size_t next = 0;  ///< event
-  WeightedSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights)
+  ToldSweep(std::span<const Vec2> sites, const Vec2& center, std::span<const double> weights)
       : diagram(weighted_diagram(sites, weights)), sweep(diagram, center) {}
 };
 
@@ -45,7 +45,7 @@ struct SteppedSweep::State {
     bool operator>(const Vanishing& other) const { return radius > other.radius; }
   };
 
-  std::unique_ptr<WeightedSweep> weighted;  ///< then only `center` and `radius` are used of the rest
+  std::unique_ptr<ToldSweep> told;  ///< then only `center` and `radius` are used of the rest
   OrderedSites ordered;
   std::vector<double> x, y, radii;  ///< from near to far
   std::vector<Index> original;
@@ -60,8 +60,12 @@ struct SteppedSweep::State {
 
   void sort_sites(const Vec2& scaled_center);
   void start_sweep();
+  bool is_triangulation() const;
   SweptSite swept(Index k) const { return {x[k], y[k], k}; }
-  void touch_site(Index k);
+  bool is_started() const { return touched >= std::max<Index>(1, nearest < 3 ? 1 : nearest); }
+  double next_touch() const { return touched < static_cast<Index>(x.size()) ? radii[touched] : k_never; }
+  Index touch_next();
+  void run();
   void note(Index arc);
   double vanish_next(double up_to);
   Vec2 site(Index k) const { return {x[k] - sweep.center_x, y[k] - sweep.center_y}; }
@@ -103,6 +107,9 @@ void SteppedSweep::State::sort_sites(const Vec2& scaled_center) {
 
 void SteppedSweep::State::start_sweep() {
   const std::size_t count = x.size();
+  radius = 0;
+  touched = 0;
+  vanishing.clear();
   arcs.resize(2 * count);
   near.resize(256);
   triangles.resize(8 * count);
@@ -116,11 +123,47 @@ void SteppedSweep::State::start_sweep() {
            .twins = twins.data()};
 }
 
-// Here events are in the order of the radius, so that no arc is overdue when a site is touched.
-void SteppedSweep::State::touch_site(Index k) {
-  const Index arc = touch(sweep, swept(k), -1);
-  note(arcs[arc].previous);
-  note(arcs[arc].next);
+/// Tells of a finished sweep whether rounding has led it astray. Triangles turn counter-clockwise and are joined, and
+/// no arc is left whose site lies within the border: if that turns once they are a triangulation. Exact.
+bool SteppedSweep::State::is_triangulation() const {
+  const auto goes_up = [&](Index arc) {
+    const voronoi2d::Arc &from = sweep.arcs[arc], &to = sweep.arcs[from.next];
+    return to.y > from.y || (to.y == from.y && to.x > from.x);
+  };
+  if (x.size() < 2) return true;
+  Index changes = 0, arc = sweep.latest;
+  do {
+    changes += goes_up(arc) != goes_up(sweep.arcs[arc].next);
+    arc = sweep.arcs[arc].next;
+  } while (arc != sweep.latest);
+  return changes == 2;
+}
+
+/// Touches the next site; of several that are nearest all with the last of them. Here events are in the order of the
+/// radius, so that no arc is overdue when a site is touched.
+Index SteppedSweep::State::touch_next() {
+  const Index site = touched++;
+  if (nearest >= 3 && touched <= nearest) {
+    if (touched < nearest) return site;
+    std::vector<SweptSite> all;
+    for (Index k = 0; k < nearest; ++k) all.push_back(swept(k));
+    start_about_vertex(sweep, all.data(), nearest);
+  } else if (site == 0) {
+    start(sweep, swept(0));
+  } else {
+    const Index arc = touch(sweep, swept(site), -1);
+    note(arcs[arc].previous);
+    note(arcs[arc].next);
+  }
+  return site;
+}
+
+void SteppedSweep::State::run() {
+  while (next_touch() != k_never) {
+    while (is_started() && vanish_next(next_touch()) != k_never) {}
+    touch_next();
+  }
+  while (vanish_next(k_latest) != k_never) {}
 }
 
 void SteppedSweep::State::note(Index arc) {
@@ -150,17 +193,21 @@ SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& center, std:
     throw InputError(message("center: wanted finite numbers, got (", center.x(), ", ", center.y(), ")"));
   State& s = *state_;
   s.center = center;
-  if (!weights.empty()) {
-    s.weighted = std::make_unique<WeightedSweep>(sites, center, weights);
-    const auto& events = s.weighted->sweep.events();
-    if (!events.empty()) s.radius = std::min(0.0, events[0].radius);
-    return;
+  if (weights.empty()) {
+    s.ordered = order_sites(sites, 1, {});
+    s.sweep.center_x = center.x() * s.ordered.scale;
+    s.sweep.center_y = center.y() * s.ordered.scale;
+    s.sort_sites({s.sweep.center_x, s.sweep.center_y});
+    s.start_sweep();
+    s.run();
+    if (s.is_triangulation()) {
+      s.start_sweep();
+      return;
+    }
   }
-  s.ordered = order_sites(sites, 1, {});
-  s.sweep.center_x = center.x() * s.ordered.scale;
-  s.sweep.center_y = center.y() * s.ordered.scale;
-  s.sort_sites({s.sweep.center_x, s.sweep.center_y});
-  if (!s.x.empty()) s.start_sweep();
+  s.told = std::make_unique<ToldSweep>(sites, center, weights);
+  const auto& events = s.told->sweep.events();
+  s.radius = events.empty() ? 0 : std::min(0.0, events[0].radius);
 }
 
 SteppedSweep::~SteppedSweep() = default;
@@ -172,19 +219,16 @@ const Vec2& SteppedSweep::center() const { return state_->center; }
 
 std::optional<SteppedSweep::Event> SteppedSweep::step() {
   State& s = *state_;
-  if (s.weighted) {
-    const auto& events = s.weighted->sweep.events();
-    if (s.weighted->next == events.size()) return std::nullopt;
-    const Event& event = events[s.weighted->next++];
+  if (s.told) {
+    const auto& events = s.told->sweep.events();
+    if (s.told->next == events.size()) return std::nullopt;
+    const Event& event = events[s.told->next++];
     s.radius = std::max(s.radius, event.radius);
     return event;
   }
-  const Index count = static_cast<Index>(s.x.size());
-  const bool is_started = s.touched >= std::max<Index>(1, s.nearest < 3 ? 1 : s.nearest);
-  const double next_touch = s.touched < count ? s.radii[s.touched] : k_latest;
-  if (count == 0) return std::nullopt;
-  if (is_started) {
-    const double radius = s.vanish_next(next_touch);
+  if (s.x.empty()) return std::nullopt;
+  if (s.is_started()) {
+    const double radius = s.vanish_next(std::min(s.next_touch(), k_latest));
     if (radius != k_never) {
       const Index triangle = s.sweep.triangle_count - 1;
       std::vector<Index> sites;
@@ -193,20 +237,9 @@ std::optional<SteppedSweep::Event> SteppedSweep::step() {
       return Event{false, s.radius, std::move(sites), s.vertex(triangle)};
     }
   }
-  if (s.touched == count) return std::nullopt;
-  const Index site = s.touched++;
-  s.radius = std::max(s.radius, next_touch / s.ordered.scale);
-  if (s.nearest >= 3 && s.touched <= s.nearest) {
-    if (s.touched == s.nearest) {
-      std::vector<SweptSite> nearest;
-      for (Index k = 0; k < s.nearest; ++k) nearest.push_back(s.swept(k));
-      start_about_vertex(s.sweep, nearest.data(), s.nearest);
-    }
-  } else if (site == 0) {
-    start(s.sweep, s.swept(0));
-  } else {
-    s.touch_site(site);
-  }
+  if (s.next_touch() == k_never) return std::nullopt;
+  s.radius = std::max(s.radius, s.next_touch() / s.ordered.scale);
+  const Index site = s.touch_next();
   return Event{true, s.radius, {s.original[site]}, s.outside(s.site(site))};
 }
 
@@ -214,19 +247,17 @@ void SteppedSweep::grow(double radius) {
   if (!std::isfinite(radius) || radius < 0)
     throw InputError(message("radius: wanted a finite number, 0 or more, got ", radius));
   State& s = *state_;
-  if (s.weighted) {
-    const auto& events = s.weighted->sweep.events();
-    std::size_t& next = s.weighted->next;
+  if (s.told) {
+    const auto& events = s.told->sweep.events();
+    std::size_t& next = s.told->next;
     while (next < events.size() && events[next].radius <= radius) ++next;
     s.radius = std::max(s.radius, radius);
     return;
   }
   const double scaled = radius * s.ordered.scale;
   while (true) {
-    const bool may_vanish = s.touched > 0 && (s.nearest < 3 || s.touched >= s.nearest);
-    const double next_touch = s.touched < static_cast<Index>(s.x.size()) ? s.radii[s.touched] : k_never;
-    if (may_vanish && s.vanish_next(std::min(scaled, next_touch)) != k_never) continue;
-    if (next_touch > scaled) break;
+    if (s.is_started() && s.vanish_next(std::min(scaled, s.next_touch())) != k_never) continue;
+    if (s.next_touch() > scaled) break;
     step();
   }
   s.radius = std::max(s.radius, radius);
@@ -260,7 +291,7 @@ double SteppedSweep::State::breakpoint(const voronoi2d::Arc& arc) const {
 
 std::vector<SteppedSweep::Arc> SteppedSweep::arcs() const {
   const State& s = *state_;
-  if (s.weighted) return s.weighted->sweep.arcs(s.radius);
+  if (s.told) return s.told->sweep.arcs(s.radius);
   constexpr double k_turn = 2 * std::numbers::pi;
   std::vector<Arc> result;
   s.for_each_arc([&](const voronoi2d::Arc& arc) {
@@ -279,7 +310,7 @@ std::vector<SteppedSweep::Arc> SteppedSweep::arcs() const {
 std::vector<Vec2> SteppedSweep::beach_curve(Index samples) const {
   if (samples < 1) throw InputError(message("samples: wanted 1 or more, got ", samples));
   const State& s = *state_;
-  if (s.weighted) return s.weighted->sweep.beach_curve(s.radius, samples);
+  if (s.told) return s.told->sweep.beach_curve(s.radius, samples);
   std::vector<Index> sites;
   s.for_each_arc([&](const voronoi2d::Arc& arc) { sites.push_back(arc.site); });
   std::vector<Vec2> result;
@@ -305,7 +336,7 @@ Vec2 SteppedSweep::State::vertex(Index triangle) const {
 
 std::vector<SteppedSweep::Edge> SteppedSweep::edges() const {
   const State& s = *state_;
-  if (s.weighted) return s.weighted->sweep.edges(s.radius);
+  if (s.told) return s.told->sweep.edges(s.radius);
   std::vector<Edge> result;
   for (Index half = 0; half < 4 * s.sweep.triangle_count; ++half) {
     if ((half & 3) == 3 || s.twins[half] < half) continue;
@@ -333,7 +364,7 @@ std::vector<SteppedSweep::Edge> SteppedSweep::edges() const {
 
 std::vector<std::vector<Vec2>> SteppedSweep::edge_polylines(double tolerance) const {
   if (!(tolerance > 0)) throw InputError(message("tolerance: wanted a positive length, got ", tolerance));
-  if (state_->weighted) return state_->weighted->sweep.polylines(state_->radius, tolerance);
+  if (state_->told) return state_->told->sweep.polylines(state_->radius, tolerance);
   std::vector<std::vector<Vec2>> result;
   for (const Edge& edge : edges()) result.push_back({edge.begin, edge.end});
   return result;

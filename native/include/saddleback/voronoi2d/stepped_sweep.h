@@ -15,14 +15,15 @@ class DiagramSweep;
 namespace saddleback {
 
 /// The step that computes Voronoi diagrams, one event at a time and from any center. Positions are rounded and so is
-/// the order of nearly simultaneous events; `voronoi_2d` gives the exact diagram. With weights the events are derived
-/// from that diagram; hidden sites have none, and a vertex of many cells is one event.
+/// the order of nearly simultaneous events; `voronoi_2d` gives the exact diagram. With weights, and where rounding
+/// would lose a vertex, the events are derived from that diagram; hidden sites have none, and a vertex of many cells is
+/// one event.
 class SteppedSweep {
  public:
   struct Event {
     bool is_touch;             ///< a site is touched; else an arc vanishes
     double radius;             ///< of the circle; less than 0 for a site whose disk holds the center
-    std::vector<Index> sites;  ///< the one touched, or the three (with weights: or more) whose vertex is found
+    std::vector<Index> sites;  ///< the one touched, or the three (of derived events: or more) whose vertex is found
     Vec2 point;                ///< the site, or the vertex
   };
   struct Arc {
