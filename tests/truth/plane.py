@@ -235,17 +235,18 @@ def clipped_cells(sites: Floats, rng: Random) -> None:
     vertices = voronoi_vertices(sites)
     for site in range(len(sites)):
         mine = [k for k, owner in enumerate(clipped.loop_sites) if owner == site]
-        points = np.concatenate(
-            [np.zeros((0, 2)), *(clipped.points[clipped.loop_offsets[k] : clipped.loop_offsets[k + 1]] for k in mine)]
-        )
+        own = [clipped.points[clipped.loop_offsets[k] : clipped.loop_offsets[k + 1]] for k in mine]
+        points = np.concatenate([np.zeros((0, 2)), *own])
         distances = np.sqrt([[float(squared(p, q)) for q in exact(sites)] for p in exact(points)]).reshape(
             -1, len(sites)
         )
         assert (distances[:, site] <= distances.min(axis=1) + 4 * ROUNDINGS * size).all()
+        sides = [(a, b) for loop in own for a, b in zip(loop, np.roll(loop, -1, axis=0), strict=True)]
         for about, vertex in vertices.items():
             if site in about and depth_within(loops, vertex) > 1e-9 * size:
-                off = np.abs(points - rounded([vertex])).max(axis=1).min()
-                assert off <= VERTEX_ROUNDINGS * size, f"{vertex} is no corner"
+                # At its place to rounding: where twins an ulp apart meet a cell its sides are in line, to rounding.
+                off = min(distance_to_segment(rounded([vertex])[0], a, b) for a, b in sides)
+                assert off <= VERTEX_ROUNDINGS * size, f"{vertex} is not on the border"
 
 
 @guards("Voronoi2d.locate", on="plane")
