@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 import saddleback as sb
 from tests import meshes
-from tests.truth.outlines import distance_to_side, exact_area
+from tests.truth.outlines import distance_to_side, exact_area, least_distance
 from tests.truth.registry import guards
 from tests.truth.shapes import Floats, Layout, Random, Unrolled, contains, overlap, random_layout, regular, sure_overlap
 
@@ -336,17 +336,6 @@ def laid_copies(rng: Random) -> None:
             if gap > 0:
                 between = least_distance(loops, layout.loops(j))
                 assert between >= gap - ROUNDING, f"copies {j} and {i} are {between} apart, not {gap}"
-
-
-def least_distance(one: list[Floats], other: list[Floats]) -> float:
-    """Between outlines that do not cross: of corners to sides."""
-    return min(
-        distance_to_side(p, a, b)
-        for first, second in ((one, other), (other, one))
-        for p in np.vstack(first)
-        for loop in second
-        for a, b in zip(loop, np.roll(loop, -1, axis=0), strict=True)
-    )
 
 
 @guards("Certificate", "distribute", on="nothing")

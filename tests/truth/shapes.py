@@ -229,8 +229,8 @@ def plant(layout: Layout, sort: str, rng: Random) -> bool:
         small = 0.3 * float(np.linalg.norm(ends[1] - ends[0]))
         tip = 0.5 * (ends[0] + ends[1]) - 1e-6 * small * out
         layout.add(1, tip + small * out, float(np.arctan2(-out[1], -out[0])), small)
-    else:  # across the outline
-        layout.add(int(rng.integers(0, 5)), loop[0], float(rng.uniform(0, 6)), scale * float(rng.uniform(0.1, 1)))
+    else:  # across the outline: one that holds its own center
+        layout.add(int(rng.choice([0, 1, 3, 4])), loop[0], float(rng.uniform(0, 6)), scale * float(rng.uniform(0.1, 1)))
     if layout.is_inside(len(layout.poses) - 1):
         return True
     layout.poses.pop()

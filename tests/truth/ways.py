@@ -191,7 +191,7 @@ def map_of_a_disk(mesh: sb.Mesh, rng: Random) -> None:
     assert not found.shadowed.any() or len(mesh.saddle_vertices)
     wanted, turned = wanted[found.vertices], turned[found.vertices]
     np.testing.assert_allclose(found.distance, wanted, rtol=1e-9, atol=1e-12 * size)
-    # A way round a vertex that is h beside the line, first bent at a of d, is longer by d h^2 / 2 a (d - a) at least and
+    # A way first bent at a of d, by a vertex that is h beside the line, is longer by d h^2 / 2 a (d - a) at least and
     # begins h / a beside the direction: its place is off by the root of 2 d^2 / a times what it is longer, at most.
     longer = np.where(found.shadowed, abs(found.distance - wanted) + 1e-15 * size, 0)
     room = 1e-7 * size + np.sqrt(2 * wanted**2 / wanted.min() * longer)
