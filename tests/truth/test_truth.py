@@ -39,6 +39,8 @@ def test_random_input_meets_the_truths():
         ("cells.places_in_cells", 66001587),  # a site seen straight that claims nothing of the face
         ("cell_parts.boundaries_are_midway", 20329483),  # a third cell between two, told from two corners alone
         ("cell_parts.boundaries_among_needles", 795778662590),
+        ("relaxation.least_sums_of_squares", 72000214),  # to and fro across a valley, between ways that bend
+        ("relaxation.least_sums_of_squares", 72000855),  # held by the border, a hundred times
         ("outlines.safe_distances", 20301927),  # needles side by side, told apart by the tables' angles
         ("ways.map_of_a_disk", 168109),  # seen past a ring of 1e-5, longer by 2e-12
         ("plane.clipped_cells", 20567684),  # sides of twins in line to rounding: no corner between them

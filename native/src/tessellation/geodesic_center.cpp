@@ -18,6 +18,8 @@ namespace {
 
 // A step is done when it is this short, relative to the spread of the points.
 constexpr double k_tolerance = 1e-9;
+// The least share that a step must bring of what it would if the sum fell on as at its start.
+constexpr double k_least_gain = 0.1;
 // The sum is known to such a share of it.
 constexpr double k_rounding = 1e-12;
 // Positive curvature makes steps fall short by less than a half where a center is unique; far fewer are made.
@@ -91,9 +93,11 @@ class Gathering {
       sum += weights_[i] * log;
       mass += weights_[i];
     }
+    energy_ /= mass;
     return sum / mass;
   }
-  /// Return, for the place of the last step, the distance of the farthest point, and the sum that is to be least.
+  /// Return, for the place of the last step, the distance of the farthest point, and the mean that is to be least:
+  /// its gradient is the step twice, back.
   double spread() const { return spread_; }
   double energy() const { return energy_; }
 
@@ -150,6 +154,22 @@ void check_points(const Mesh& mesh, const SurfacePoints& points) {
   }
 }
 
+/// A vector of the place that was moved to, in the tangent plane of the place before.
+Vec2 carried_back(const Vec2& vector, const Moved& moved) {
+  const Vec2& turn = moved.turns.front();
+  return {turn.x() * vector.x() + turn.y() * vector.y(), turn.x() * vector.y() - turn.y() * vector.x()};
+}
+
+/// After a step along a share of the mean that led too far, by the mean from there: as far along it as where both would
+/// agree, and across it as the other says. So a valley is gone along that would be crossed to and fro; of a sharp one
+/// the share across shrinks more slowly.
+Vec2 shorter_step(const Vec2& mean, double share, const Vec2& beyond) {
+  const double on = mean.squaredNorm(), back = -beyond.dot(mean);
+  if (!(back > 0)) return share / 2 * mean;
+  const Vec2 across = beyond + back / on * mean;
+  return on / (on + back) * (share * mean + std::sqrt(share) * across);
+}
+
 }  // namespace
 
 SurfacePoint geodesic_center(const SaddleVertexGraph& graph, const SurfacePoints& points,
@@ -159,20 +179,26 @@ SurfacePoint geodesic_center(const SaddleVertexGraph& graph, const SurfacePoints
   Gathering gathering(graph, points, checked_weights(weights, points.size()));
   const JobStage stage(job, "Finding a center");
   SurfacePoint center = gathering.start();
-  Vec2 step = gathering.step_at(center, stage.part(0, 0));
-  double energy = gathering.energy();
+  Vec2 mean = gathering.step_at(center, stage.part(0, 0)), step = mean;
+  double energy = gathering.energy(), share = 1;
+  bool is_along = true;
   for (int i = 0; i < k_most_steps && step.norm() > k_tolerance * gathering.spread(); ++i) {
     const double done = 1 - 1.0 / (i + 1);
     stage.update(done);
-    const SurfacePoint next = move_sites(mesh, {center}, {step}, 1).sites.front();
-    const Vec2 next_step = gathering.step_at(next, stage.part(done, done));
-    if (gathering.energy() > energy * (1 + k_rounding)) {  // too far: round saddles the sum bends more than in a plane
-      step /= 2;
+    const Moved moved = move_sites(mesh, {center}, {step}, 1);
+    const Vec2 next_mean = gathering.step_at(moved.sites.front(), stage.part(done, done));
+    const bool is_held = !(moved.steps.front().norm() > k_tolerance * gathering.spread());  // by the border
+    const double least = energy * (1 + k_rounding) - k_least_gain * 2 * mean.dot(step);
+    if (is_held || gathering.energy() > least) {  // round saddles the mean bends more than in a plane
+      step = is_along ? shorter_step(mean, share, carried_back(next_mean, moved)) : Vec2((share /= 2) * mean);
+      is_along = !is_along;
       continue;
     }
-    center = next;
-    step = next_step;
+    center = moved.sites.front();
+    step = mean = next_mean;
     energy = gathering.energy();
+    share = 1;
+    is_along = true;
   }
   stage.update(1);
   return center;
