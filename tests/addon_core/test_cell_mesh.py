@@ -284,3 +284,29 @@ def test_an_empty_mesh_gives_an_empty_mesh() -> None:
 def test_a_length_that_is_none_is_refused_by_name(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=f"^{name} is {value}"):
         CellShape(**{name: value})
+
+
+def test_domes_are_round_from_the_rim_to_the_middle():
+    """A cell's dome is half an ellipse across, as high as the thickness in the middle; the rim stands on the ground."""
+    vertices, triangles, cell = squares()
+    made = build_cell_mesh(vertices, triangles, cell, CellShape(gap=0.1, thickness=0.2, dome=1.0))
+    x, y, z = made.vertices[np.unique(made.triangles[made.triangle_cell == 4])].T
+    away = np.maximum(np.minimum(0.45 - abs(x - 1.5), 0.45 - abs(y - 1.5)), 0.0) / 0.45
+    assert z.max() == pytest.approx(0.2, rel=0.05) and z[away < 1e-9].max() < 1e-9
+    side = (abs(y - 1.5) < 0.11) & (abs(x - 1.5) > 0.25)  # off the ridges, which are rounded
+    np.testing.assert_allclose(z[side], 0.2 * np.sqrt(away * (2.0 - away))[side], atol=0.02)
+    flat = build_cell_mesh(vertices, triangles, cell, CellShape(gap=0.1, inset=0.1, thickness=0.2, dome=0.5))
+    assert 0.15 < np.median(flat.vertices[:, 2]) <= 0.2 + 1e-9
+    for wrong in (-0.1, 1.5, np.nan):
+        with pytest.raises(ValueError, match="between 0 and 1"):
+            CellShape(dome=wrong)
+
+
+def test_domes_of_a_sphere_do_not_cross_and_are_closed():
+    cells = sphere_cells()
+    made = build(cells, gap=0.05, thickness=0.1, dome=1.0, underside=True)
+    assert (edge_uses(made.triangles) == 2).all() and not len(made.crossing)
+    height = np.linalg.norm(made.vertices, axis=1) - 1.0
+    tallest = np.full(30, -1.0)
+    np.maximum.at(tallest, np.repeat(made.triangle_cell, 3), height[made.triangles].ravel())
+    assert tallest.min() > 0.07 and tallest.max() < 0.101

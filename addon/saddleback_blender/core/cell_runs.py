@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import astuple
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,8 @@ MOST_SMOOTHING = 40  # rounds; more change next to nothing where a mesh is that 
 
 def shape_of(settings: TessellateSettings | Voronoi2dSettings) -> CellShape:
     """Takes the lengths from settings that have them in world units."""
-    return CellShape(settings.gap, settings.inset, settings.thickness, settings.underside)
+    dome = settings.dome if isinstance(settings, TessellateSettings) else 0.0
+    return CellShape(settings.gap, settings.inset, settings.thickness, settings.underside, dome)
 
 
 def cells_of(
@@ -38,10 +40,10 @@ def cells_of(
         return cell_pieces(split.vertices, split.triangles, split.triangle_cell, way, shape)
 
     def raised() -> CellMesh:
-        part = ("cell pieces", *key, digest(shape.gap, shape.inset, reach))
+        part = ("cell pieces", *key, digest(shape.gap, shape.inset, shape.is_round, reach))
         return raise_cells(cache.get(part, pieces, lambda found: found.nbytes), shape, progress)
 
-    whole = ("cell mesh", *key, digest(shape.gap, shape.inset, shape.thickness, shape.underside))
+    whole = ("cell mesh", *key, digest(*astuple(shape)))
     return cache.get(whole, raised, lambda made: made.nbytes)
 
 

@@ -77,6 +77,7 @@ class TessellateSettings(DensitySettings, PatternSettings):
     inset_share: float = 10.0
     thickness: float = 0.0
     thickness_share: float = 8.0
+    dome: float = 0.0  # 0: a plateau; 1: round from the rim to the middle
     underside: bool = False
     local_uv: bool = False
     make_centers: bool = False

@@ -58,7 +58,7 @@ LOOKS: dict[str, Look] = {
         "Pebbles", "Round stones side by side, like leather or a riverbed", "MESH_ICOSPHERE", "tessellate",
         {
             "count": 800, "iterations": 12, "make_edges": False, "make_cells": True, "gap_share": 8.0,
-            "inset_share": 24.0, "thickness_share": 18.0,
+            "inset_share": 24.0, "thickness_share": 24.0, "dome": 1.0,
         },
         Finish("Pebbles", ("#6f675d", "#8c8273", "#a59a88", "#574f49", "#7d6a58", "#949087"), 0.55, contrast=0.2),
         ground="#2b2622",

@@ -130,6 +130,8 @@ def draw_cells(layout: bpy.types.UILayout, settings: Any) -> None:
     column = layout.column()
     column.active = (settings.thickness_share if is_relative(settings) else settings.thickness) > 0.0
     draw_length(column, settings, "inset")
+    if hasattr(settings, "dome"):  # cells of the plane have a plateau
+        column.prop(settings, "dome")
     column.prop(settings, "underside")
     if hasattr(settings, "local_uv"):  # cells of the plane have none
         layout.prop(settings, "local_uv")

@@ -49,7 +49,8 @@ def write_cells(
     if result.twin is not None:
         colors = colors[result.twin]
     place = level_place(source)
-    mesh = _mesh(to_place(place, cells.vertices), cells, colors, compat.is_shaded_smooth(source.data))
+    is_smooth = compat.is_shaded_smooth(source.data) or (isinstance(settings, TessellateSettings) and settings.dome > 0)
+    mesh = _mesh(to_place(place, cells.vertices), cells, colors, is_smooth)
     if isinstance(settings, TessellateSettings) and settings.local_uv:
         places = local_uv(
             cells.vertices, cells.triangles, cells.triangle_cell, result.sites_position, result.sites_normal

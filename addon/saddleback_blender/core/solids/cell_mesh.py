@@ -7,7 +7,7 @@ the triangles; the mesh is cut where it equals half the gap, and again one inset
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +18,18 @@ from ..results import CellMesh
 from .boundary_distance import find_boundary
 from .cell_solid import raise_surface
 from .crossings import find_crossings
-from .level_cut import cut_at_level, open_chords
+from .directions import Neighbors
+from .level_cut import Cut, cut_at_level, open_chords, split_edges
 from .room import Solid, fit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
-POSITION, DIRECTION, DISTANCE = slice(0, 3), slice(3, 6), 6
+POSITION, DIRECTION, DISTANCE, WITHIN = slice(0, 3), slice(3, 6), 6, 7
+# Of the way from a cell's rim to its middle: where a dome has lines of vertices, close together where it is steep.
+DOME_LINES = (0.04, 0.13, 0.27, 0.45, 0.68)
+DOME_STEP = 0.6  # as long as edges are at most, of half a cell's size
+DOME_SMOOTHING = 8  # rounds, which take the ridges from where two sides of a cell are equally near
 # A level line is off by this share of its distance from the boundary at most.
 LEVEL_TOLERANCE = 0.2
 END = 0.99  # of the run's progress
@@ -42,12 +47,20 @@ class CellShape:
     inset: float = 0.0
     thickness: float = 0.0
     underside: bool = False  # close each cell from below
+    dome: float = 0.0  # 0: a plateau; 1: round from the rim to the middle
 
     def __post_init__(self) -> None:
         for name in ("gap", "inset", "thickness"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0.0):
                 raise ValueError(f"{name} is {value}: it must be a length of zero or more")
+        if not 0.0 <= self.dome <= 1.0:
+            raise ValueError(f"dome is {self.dome}: it must be between 0 and 1")
+
+    @property
+    def is_round(self) -> bool:
+        """Tells whether there is anything of a dome."""
+        return self.dome > 0.0 and self.thickness > 0.0
 
     @property
     def rim_start(self) -> float:
@@ -62,7 +75,7 @@ class CellShape:
     @property
     def cuts(self) -> bool:
         """Tells whether the cells differ from the split mesh before raising."""
-        return self.gap > 0.0 or self.inset > 0.0
+        return self.gap > 0.0 or self.inset > 0.0 or self.is_round
 
 
 @dataclass(frozen=True)
@@ -89,7 +102,7 @@ def cell_pieces(
     vertices: Floats, triangles: Ints, triangle_cell: Ints, direction: Floats, shape: CellShape
 ) -> CellPieces:
     """Drop what lies within half the gap of a boundary from a split mesh: vertices (V,3), triangles (T,3), cells (T,),
-    and which way (V,3) the surface is raised. Of the shape only its `gap` and `inset` matter. O(T).
+    and which way (V,3) the surface is raised. Of the shape `gap` and `inset` matter, and whether it is round. O(T).
     """
     triangles = np.ascontiguousarray(triangles, dtype=np.int32)
     cells = np.ascontiguousarray(triangle_cell, dtype=np.int32)
@@ -99,6 +112,10 @@ def cell_pieces(
         segments, _ = find_boundary(len(fields), triangles, cells)
         opened = open_chords(fields, triangles, segments)
         levels = [level for level in (shape.rim_start, shape.rim_end) if level > 0.0]
+        if shape.is_round:
+            middle = 0.5 * math.sqrt(_doubled_areas(fields[:, POSITION], triangles).sum() / (2 * len(present)))
+            levels = sorted({*levels, *(shape.rim_start + share * middle for share in DOME_LINES)})
+            opened = _split_long(opened, DOME_STEP * middle)
         fields, triangles, cells = native.load().refine_to_cell_boundary(
             opened.fields, opened.triangles, cells[opened.parent], levels, LEVEL_TOLERANCE
         )
@@ -110,14 +127,32 @@ def cell_pieces(
     return CellPieces(*drop_unused(fields, triangles), cells, present)
 
 
+def _doubled_areas(positions: Floats, triangles: Ints) -> Floats:
+    """Twice the area of each triangle (m,)."""
+    corners = positions[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    doubled: Floats = np.sqrt(np.einsum("ij,ij->i", normals, normals))
+    return doubled
+
+
+def _split_long(cut: Cut, longest: float) -> Cut:
+    """Halves edges until none is longer, so that what is flat in a coarse mesh can be round. O(m) for each round."""
+    parent = cut.parent
+    while True:
+        places = cut.fields[cut.triangles, POSITION]
+        sides = np.linalg.norm(np.roll(places, -1, axis=1) - places, axis=2)
+        if not (sides > longest).any():
+            return replace(cut, parent=parent)
+        cut = split_edges(cut.fields, cut.triangles, sides > longest)
+        parent = parent[cut.parent]
+
+
 def _is_crumb(positions: Floats, triangles: Ints, cells: Ints) -> NDArray[np.bool_]:
     """Tells which triangles (m,) belong to a piece that is tiny beside the largest of its cell. O(m)."""
     if not len(triangles):
         return np.zeros(0, np.bool_)
     part = native.load().connected_parts(triangles, len(positions))
-    corners = positions[triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.bincount(part, np.sqrt(np.einsum("ij,ij->i", normals, normals)))
+    area = np.bincount(part, _doubled_areas(positions, triangles))
     largest = np.zeros(int(cells.max()) + 1)
     np.maximum.at(largest, cells, area[part])
     crumb: NDArray[np.bool_] = area[part] < CRUMB * largest[cells]
@@ -131,14 +166,21 @@ def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress) -> Cel
     thickness but no inset the sides are upright walls.
     """
     fields, triangles, cells = pieces.fields, pieces.triangles, pieces.cells
-    if shape.inset > 0.0 and len(triangles):
-        inner = cut_at_level(fields, triangles, DISTANCE, shape.rim_end)
+    cuts = [(DISTANCE, shape.rim_end)] if shape.inset > 0.0 else []
+    if shape.is_round:
+        fields = np.column_stack([fields, _way_to_middle(fields[:, DISTANCE], triangles, cells, shape)])
+        cuts += [(WITHIN, share) for share in DOME_LINES]
+    for column, level in cuts if len(triangles) else []:
+        inner = cut_at_level(fields, triangles, column, level)
         fields, triangles, cells = inner.fields, inner.triangles, cells[inner.parent]
     is_left = np.zeros(pieces.present.max(initial=-1) + 1, dtype=np.bool_)
     is_left[cells] = True
     vanished = pieces.present[~is_left[pieces.present]]
     if shape.thickness > 0.0:
         height = shape.thickness * _plateau_share(fields[:, DISTANCE], shape)
+        if shape.is_round:
+            round_share = _dome_share(fields[:, WITHIN], triangles, progress)
+            height = (1.0 - shape.dome) * height + shape.dome * shape.thickness * round_share
         raised = raise_surface(fields[:, :6], triangles, height, shape.underside)
         solid = Solid(raised.triangles, raised.place, len(raised.base), raised.at, THINNER, LEAST_SHARE, PATIENCE)
         fitted = fit(solid, find_crossings, END, "making room for the cells", progress)
@@ -151,6 +193,27 @@ def raise_cells(pieces: CellPieces, shape: CellShape, progress: Progress) -> Cel
     positions, triangles = drop_unused(fields[:, POSITION], triangles)
     none = np.empty(0, np.int32)
     return CellMesh(positions, positions, triangles, cells, vanished, none, none)
+
+
+def _way_to_middle(distance: Floats, triangles: Ints, cells: Ints, shape: CellShape) -> Floats:
+    """How far (V,) from its cell's rim to the place farthest from it each vertex is: 0 to 1. O(m)."""
+    farthest = np.full(int(cells.max(initial=0)) + 1, shape.rim_start)
+    np.maximum.at(farthest, np.repeat(cells, 3), distance[triangles].ravel())
+    own = np.zeros(len(distance), np.int32)
+    own[triangles] = cells[:, None]
+    within: Floats = (distance - shape.rim_start) / np.maximum(farthest[own] - shape.rim_start, 1e-300)
+    return np.clip(within, 0.0, 1.0)
+
+
+def _dome_share(within: Floats, triangles: Ints, progress: Progress) -> Floats:
+    """The height (V,) of a half ellipsoid as a part of the thickness, its ridges smoothed; the rim stays. O(m)."""
+    neighbors = Neighbors(triangles, len(within), progress)
+    share = within * (2.0 - within)
+    for _ in range(DOME_SMOOTHING):
+        progress.check()
+        share = np.where(within > 0.0, 0.5 * (share + neighbors.mean(share[:, None])[:, 0]), share)
+    round_share: Floats = np.sqrt(np.clip(share, 0.0, 1.0))
+    return round_share
 
 
 def _plateau_share(distance: Floats, shape: CellShape) -> Floats:

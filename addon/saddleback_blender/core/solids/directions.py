@@ -60,9 +60,9 @@ class Neighbors:
         self.count = count
 
     def mean(self, values: Reals) -> Reals:
-        """Mean (n, 3) of the neighbors' values; zero where there are none."""
-        means = np.zeros((self.count, 3))
-        for axis in range(3):
+        """Mean (n, k) of the neighbors' values; zero where there are none."""
+        means = np.zeros((self.count, values.shape[1]))
+        for axis in range(values.shape[1]):
             means[self.used, axis] = np.add.reduceat(values[:, axis][self.other], self.first) / self.times
         return means
 
