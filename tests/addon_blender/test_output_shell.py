@@ -6,6 +6,7 @@ import pytest
 from output_scenes import HARD_PLACE, sphere_source, triangles_of, world_positions
 from scenes import add_object, grid
 
+from saddleback_blender import jobs
 from saddleback_blender.core import cache
 from saddleback_blender.core.solids.crossings import find_crossings
 
@@ -124,3 +125,30 @@ def test_crossings_are_found_and_neighbors_are_none():
     places = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0.2, 0.2, -1), (0.3, 0.2, 1), (0.2, 0.3, 1)], float)
     triangles = np.array([(0, 1, 2), (1, 3, 2), (4, 5, 6)], np.int32)
     assert {tuple(sorted(pair)) for pair in find_crossings(places, triangles).tolist()} == {(0, 2)}
+
+
+def test_walls_and_volume_are_told_and_painted_and_the_shell_is_saved_for_a_printer(tmp_path):
+    source = sphere_source(levels=3)
+    source.scale = (1, 1, 0.02)
+    bpy.context.view_layer.update()
+    item = shell_of(source, rib_width=0.2, rib_thickness=0.08)
+    wall = np.empty(len(item.data.vertices), np.float32)
+    item.data.attributes["saddleback_wall"].data.foreach_get("value", wall)
+    assert wall.max() == pytest.approx(0.08, rel=1e-5) and 0 < wall.min() < 0.07
+    color = np.empty(4 * len(wall), np.float32)
+    item.data.color_attributes["saddleback_color"].data.foreach_get("color_srgb", color)
+    is_red = color.reshape(-1, 4)[:, 1] < 0.5
+    assert (wall[~is_red] > 0.0799).all() and 0 < is_red.mean() < 1
+    text = jobs.state.line
+    assert "walls 8 cm thick" in text and "at the least" in text and "volume" in text
+    bpy.context.scene.unit_settings.scale_length = 0.001  # a unit is a millimeter
+    path = tmp_path / "lamp.stl"
+    assert bpy.ops.saddleback.export_stl(filepath=str(path)) == {"FINISHED"}
+    places, triangles = world_positions(item), triangles_of(item.data)
+    facets = np.frombuffer(path.read_bytes()[84:], [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("end", "<u2")])
+    np.testing.assert_allclose(facets["corners"], places[triangles], atol=1e-6)
+    assert list(tmp_path.iterdir()) == [path]
+    with pytest.raises(RuntimeError, match="cannot be saved"):
+        bpy.ops.saddleback.export_stl(filepath=str(tmp_path / "none" / "lamp.stl"))
+    bpy.ops.saddleback.tessellate(**{**QUICK, "make_shell": False})
+    assert not bpy.ops.saddleback.export_stl.poll()

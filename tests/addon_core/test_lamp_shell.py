@@ -151,4 +151,4 @@ def test_without_lines_or_with_ribs_like_hairs_there_is_a_sentence():
 
 
 def test_a_sound_shell_has_nothing_to_tell():
-    assert shell_faults_of(LampShell(np.empty((0, 3)), np.empty((0, 3), np.int32), 1, 0.1, 0)) == []
+    assert shell_faults_of(LampShell(np.empty((0, 3)), np.empty((0, 3), np.int32), 1, 0.1, np.zeros(0, bool), 0)) == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from .results import CellMesh, Dual, Figures, LampShell
 
@@ -31,6 +32,16 @@ def faults_of(dual: Dual) -> list[str]:
     rest = len(dual.issues) - MOST_TOLD
     more = f"; and {rest} more" if rest > 0 else ""
     return [f"The dual mesh has faults where cells are too large ({told}{more}): ask for more cells, or choose Repair"]
+
+
+def shell_of(shell: LampShell, length: Callable[[float], str], volume: Callable[[float], str]) -> str:
+    """Says how thick a lamp shell is and how much a printer fills; both numbers as the file's units want them."""
+    text = f", walls {length(shell.thickness)} thick"
+    if shell.thinner:
+        text += (
+            f" ({length(float(shell.wall.min()))} at the least, {100 * shell.thinner:.2g} % thinned for want of room)"
+        )
+    return text + f", volume {volume(shell.volume)}"
 
 
 def shell_faults_of(shell: LampShell) -> list[str]:

@@ -44,8 +44,26 @@ class LampShell:
     vertices: Reals  # (n, 3)
     triangles: Indices  # (t, 3)
     pieces: int  # so many that hang together
-    thinner: float  # share of the surface's vertices where there was no room for the whole thickness
+    thickness: float  # that was asked for
+    is_thinner: NDArray[np.bool_]  # (n,) where there was no room for the whole thickness
     crossing: int  # triangles that still pass through others; not 0 only where the surface itself does
+
+    @property
+    def thinner(self) -> float:
+        """The share of places that are thinner than was asked for."""
+        return float(self.is_thinner.mean())
+
+    @property
+    def wall(self) -> Reals:
+        """(n,) how thick the solid is at each vertex."""
+        outside, inside = np.split(self.vertices, 2)
+        return np.tile(np.linalg.norm(outside - inside, axis=1), 2)
+
+    @property
+    def volume(self) -> float:
+        """What a printer fills."""
+        a, b, c = (self.vertices[corner] for corner in self.triangles.T)
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
     @property
     def feet(self) -> Reals:

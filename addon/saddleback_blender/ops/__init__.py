@@ -11,6 +11,7 @@ from . import (
     direction_field,
     distance,
     distribute,
+    export_stl,
     layers,
     look_presets,
     paint,
@@ -32,6 +33,7 @@ CLASSES = (
     *distribute.CLASSES,
     *paint.CLASSES,
     *repair.CLASSES,
+    *export_stl.CLASSES,
     *clear.CLASSES,
     *asset_library.CLASSES,
 )

@@ -28,7 +28,7 @@ from ..bridge.outputs.out_shell import SHELL_ROLE, write_shell
 from ..bridge.outputs.output_surface import check_attribute_names, output_surface
 from ..core import mirrored_runs, runs
 from ..core.errors import BadInputError
-from ..core.figures import cell_faults_of, faults_of, lines_of, lost_of, shell_faults_of
+from ..core.figures import cell_faults_of, faults_of, lines_of, lost_of, shell_faults_of, shell_of
 from ..core.lengths import count_of_size
 from ..core.live_cells import LiveCells
 from ..core.mirrored_runs import halved
@@ -119,7 +119,8 @@ class CellsOperator(SurfaceOperator):
         keep_settings(chosen, "tessellate", source)
         if warning:
             self.report({"WARNING"}, warning)
-        return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(result)}{_added(result)}"
+        shell = "" if result.shell is None else shell_of(result.shell, *_units(context.scene))
+        return f"'{source.name}': {result.count} cells{_steps(result)}{_lost(result)}{_added(result)}{shell}"
 
     def lying(self) -> dict[str, bool]:
         """Cells without a height do."""
@@ -225,6 +226,18 @@ def _added(result: CellsResult) -> str:
 
 def _lost(result: CellsResult) -> str:
     return "" if result.mesh is None else lost_of(len(result.mesh.vanished), len(result.mesh.thinner))
+
+
+def _units(scene: bpy.types.Scene) -> tuple[Callable[[float], str], Callable[[float], str]]:
+    """What writes lengths and volumes of the world as the scene's units are."""
+    settings = scene.unit_settings
+
+    def written(kind: str, power: int, value: float) -> str:
+        scaled = value * settings.scale_length**power
+        text: str = bpy.utils.units.to_string(settings.system, kind, scaled, precision=3)
+        return text
+
+    return partial(written, "LENGTH", 1), partial(written, "VOLUME", 3)
 
 
 def _check(source: bpy.types.Object, settings: TessellateSettings) -> None:

@@ -164,6 +164,7 @@ def draw_shell(layout: bpy.types.UILayout, settings: Any) -> None:
             draw_length(layout, settings, name, text)
         else:
             draw_automatic(layout, settings, name, text)
+    layout.operator("saddleback.export_stl", icon="EXPORT")
 
 
 def draw_attributes(layout: bpy.types.UILayout, settings: Any) -> None:

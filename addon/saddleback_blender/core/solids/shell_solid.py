@@ -54,7 +54,8 @@ def thicken(ribs: RibSurface, thickness: float, find_crossings: FindCrossings, p
         fitted.vertices,
         faces,
         int(native.load().connected_parts(triangles, count).max()) + 1,
-        float((fitted.share < 1.0).mean()),
+        thickness,
+        np.tile(fitted.share < 1.0, 2),
         len(fitted.crossing),
     )
 

@@ -1,0 +1,81 @@
+"""`saddleback.export_stl`: the lamp shell as a file for 3D printers."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import bpy
+import numpy as np
+from bpy.props import StringProperty
+
+from .. import compat
+from ..bridge.inputs.mesh_in import read_triangles
+from ..bridge.inputs.source import active_object
+from ..bridge.outputs.out_collection import find_output
+from ..bridge.outputs.out_shell import SHELL_ROLE
+from ..core.results import Indices, Reals
+from ..core.solids.stl import stl_bytes
+
+MILLIMETERS = 1000.0
+
+
+class SADDLEBACK_OT_export_stl(bpy.types.Operator):
+    """Writes what can be printed."""
+
+    bl_idname = "saddleback.export_stl"
+    bl_label = "Export STL"
+    bl_description = "Save the lamp shell of the active object for a 3D printer, in millimeters by the scene's units"
+    bl_options = {"REGISTER"}
+    __annotations__ = {
+        "filepath": StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"}),
+        "filter_glob": StringProperty(default="*.stl", options={"HIDDEN", "SKIP_SAVE"}),
+    }
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether there is anything to print."""
+        item = active_object(context)
+        if item is None or find_output(item, SHELL_ROLE) is None:
+            cls.poll_message_set("The active object has no lamp shell; press Tessellate with Lamp Shell on")
+            return False
+        return True
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Asks for the file."""
+        self.filepath = self.filepath or f"{bpy.path.clean_name(active_object(context).name)} Lamp.stl"
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Writes the file whole or not at all."""
+        shell = find_output(active_object(context), SHELL_ROLE)
+        if not self.filepath:
+            self.report({"ERROR"}, "Name a file to save the lamp shell in")
+            return {"CANCELLED"}
+        path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".stl"))
+        points, triangles = _solid(context, shell)
+        part = path.with_name(path.name + ".part")
+        try:
+            part.write_bytes(stl_bytes(points, triangles))
+            os.replace(part, path)
+        except OSError as error:
+            part.unlink(missing_ok=True)
+            self.report({"ERROR"}, f"'{path.name}' cannot be saved: {error.strerror}")
+            return {"CANCELLED"}
+        size = " x ".join(f"{side:.4g}" for side in np.ptp(points, axis=0))
+        self.report({"INFO"}, f"Saved '{path.name}': {size} mm")
+        return {"FINISHED"}
+
+
+def _solid(context: bpy.types.Context, item: bpy.types.Object) -> tuple[Reals, Indices]:
+    """Points (n, 3) in millimeters and triangles of an object as it is seen."""
+    shown = item.evaluated_get(context.evaluated_depsgraph_get())
+    mesh = shown.to_mesh()
+    places, triangles = compat.read_positions(mesh), read_triangles(mesh).copy()
+    shown.to_mesh_clear()
+    unit, world = MILLIMETERS * context.scene.unit_settings.scale_length, np.array(item.matrix_world)
+    return unit * (places @ world[:3, :3].T + world[:3, 3]), triangles
+
+
+CLASSES = (SADDLEBACK_OT_export_stl,)
