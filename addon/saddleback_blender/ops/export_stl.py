@@ -27,6 +27,7 @@ class SADDLEBACK_OT_export_stl(bpy.types.Operator):
     bl_label = "Export STL"
     bl_description = "Save the lamp shell of the active object for a 3D printer, in millimeters by the scene's units"
     bl_options = {"REGISTER"}
+    filepath: str
     __annotations__ = {
         "filepath": StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"}),
         "filter_glob": StringProperty(default="*.stl", options={"HIDDEN", "SKIP_SAVE"}),

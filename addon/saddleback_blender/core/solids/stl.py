@@ -17,4 +17,4 @@ def stl_bytes(vertices: Reals, triangles: Indices) -> bytes:
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     facets["corners"] = corners
     facets["normal"] = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0)
-    return bytes(80) + np.uint32(len(triangles)).astype("<u4").tobytes() + facets.tobytes()
+    return bytes(80) + len(triangles).to_bytes(4, "little") + facets.tobytes()
