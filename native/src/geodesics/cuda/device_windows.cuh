@@ -226,9 +226,10 @@ class WarpWaves {
     if (active) put_arc(number, {{length, 0}, {0, 0}, 0, 0, Sighting::pack(root, to), near_label});
     if (boundary) put_arc(number + 1, {{other, 0}, {0, 0}, 1, 0, Sighting::pack(root, apex), far_label});
     const bool opens = active && record.right >= 0;
+    if (active && is_too_thin(record.a, record.b)) overflow_ = 1;  // the processor looks in double precision
     if (opens && corner.x < 0) {
       const double2 beyond = apex_of(mesh_.records[record.right], corner, {length, 0});
-      if (is_on_both_rays(length, 0, corner.x, corner.y, beyond.x, beyond.y)) overflow_ = 1;  // the processor passes it
+      if (is_on_both_rays(length, 0, corner.x, corner.y, beyond.x, beyond.y)) overflow_ = 1;
     }
     const unsigned opening = __ballot_sync(k_warp, opens);
     const int opened = __popc(opening);

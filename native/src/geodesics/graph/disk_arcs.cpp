@@ -1,19 +1,74 @@
 #include "geodesics/graph/disk_arcs.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "geodesics/unfolding/unfolded_corner.h"
 
 namespace saddleback {
 namespace {
 
-int to_sector(float sector) { return std::clamp(static_cast<int>(sector), 0, ArcCodec::k_sectors - 1); }
+template <class Number>
+int to_sector(Number sector) {
+  return std::clamp(static_cast<int>(sector), 0, ArcCodec::k_sectors - 1);
+}
+int sector_of(double angle, double total_angle) { return to_sector(angle / total_angle * ArcCodec::k_sectors); }
 
 }  // namespace
+
+void append_arc(const ArcSearch& search, const ArcCodec& codec, Index vertex, const DirectArc& arc, FoundArcs& found) {
+  const Mesh& mesh = search.unfolding.mesh();
+  const int sector = sector_of(arc.start_angle, mesh.total_angle(vertex));
+  found.words.push_back(codec.pack(search.nodes[arc.vertex], sector, arc.length));
+  found.back_sectors.push_back(static_cast<std::uint8_t>(sector_of(arc.end_angle, mesh.total_angle(arc.vertex))));
+}
 
 void DiskRows::find(Index first, Index count, FoundArcs& found, const JobStage& stage) {
   finder_.begin(GeodesicDisks::Sources::nodes);
   for (int lane = 0; lane < count; ++lane) finder_.add_node(lane, first + lane);
   finder_.run(stage);
-  for (int lane = 0; lane < count; ++lane) write_row(first + lane, lane, found);
+  for (int lane = 0; lane < count; ++lane) {
+    write_row(first + lane, lane, found);
+    if (is_at_thin_face(first + lane)) add_near(first + lane, found, stage);
+  }
+}
+
+bool DiskRows::is_at_thin_face(Index node) const {
+  const EdgeRecord* const records = mesh_.records();
+  return std::any_of(records + mesh_.begin(node), records + mesh_.end(node),
+                     [](const EdgeRecord& record) { return is_too_thin(record.a, record.b); });
+}
+
+/// Adds arcs to vertices that are far nearer than the longest edge is long, found in double precision, to the last row;
+/// of two to one vertex the shorter stays.
+void DiskRows::add_near(Index node, FoundArcs& found, const JobStage& stage) {
+  constexpr Index k_nearest = 200;
+  constexpr double k_far_nearer = 1.0 / (1 << 10);
+  if (!visible_) visible_ = std::make_unique<VisibleVertices>(search_.unfolding);
+  const Index vertex = search_.vertices[node];
+  visible_->from_vertex(vertex, std::min(k_nearest, static_cast<Index>(search_.vertices.size())), near_, stage);
+  const auto end = static_cast<Index>(found.words.size());
+  std::vector<std::pair<Index, Index>> known;  // targets, and where they are
+  for (Index i = end - found.counts.back(); i < end; ++i) known.emplace_back(codec_.target(found.words[i]), i);
+  std::ranges::sort(known);
+  double longest = 0;
+  for (Index e = mesh_.begin(node); e < mesh_.end(node); ++e) longest = std::max(longest, mesh_.length(e));
+  for (const DirectArc& arc : near_) {
+    if (arc.length > k_far_nearer * longest * mesh_.unit()) continue;
+    append_arc(search_, codec_, vertex, arc, found);
+    const Index target = search_.nodes[arc.vertex];
+    const auto at = std::ranges::lower_bound(known, std::pair(target, Index(0)));
+    if (at == known.end() || at->first != target) {
+      ++found.counts.back();
+      continue;
+    }
+    if (codec_.length_bits(found.words.back()) < codec_.length_bits(found.words[at->second])) {
+      found.words[at->second] = found.words.back();
+      found.back_sectors[at->second] = found.back_sectors.back();
+    }
+    found.words.pop_back();
+    found.back_sectors.pop_back();
+  }
 }
 
 void DiskRows::write_row(Index node, int lane, FoundArcs& found) {
@@ -24,7 +79,7 @@ void DiskRows::write_row(Index node, int lane, FoundArcs& found) {
   lengths_.resize(room);
   leaving_.resize(room);
   back_.resize(room);
-  kernel_.aim(rows, chosen.data(), static_cast<int>(count), lengths_.data(), leaving_.data(), back_.data());
+  search_.kernel.aim(rows, chosen.data(), static_cast<int>(count), lengths_.data(), leaving_.data(), back_.data());
   const std::size_t before = found.words.size();
   found.words.resize(before + count);
   found.back_sectors.resize(found.words.size());

@@ -63,21 +63,6 @@ std::vector<KeptArcs> find_by_blocks(const ArcSearch& search, const JobStage& st
 // Shares of the time in which tables for waves are laid, until the end of each.
 constexpr double k_with_edges = 0.08, k_with_mesh = 0.87;
 
-int sector_of(double angle, double total_angle) {
-  return std::clamp(static_cast<int>(angle / total_angle * ArcCodec::k_sectors), 0, ArcCodec::k_sectors - 1);
-}
-
-void append_row(const ArcSearch& search, const ArcCodec& codec, Index vertex, const std::vector<DirectArc>& row,
-                FoundArcs& found) {
-  const Mesh& mesh = search.unfolding.mesh();
-  found.counts.push_back(static_cast<std::int32_t>(row.size()));
-  for (const DirectArc& arc : row) {
-    const int sector = sector_of(arc.start_angle, mesh.total_angle(vertex));
-    found.words.push_back(codec.pack(search.nodes[arc.vertex], sector, arc.length));
-    found.back_sectors.push_back(static_cast<std::uint8_t>(sector_of(arc.end_angle, mesh.total_angle(arc.vertex))));
-  }
-}
-
 std::string in_gigabytes(double bytes) { return message(std::max(0.1, std::round(bytes / 1e8) / 10), " GB"); }
 
 /// Vertices in sight of one, in the mean of a few all over the mesh. Their number grows like a power of that of the
@@ -141,8 +126,7 @@ std::vector<KeptArcs> disk_arcs(const ArcSearch& search, const ArcCodec& codec, 
                                 const DiskRule& rule, const JobStage& stage) {
   std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search.threads));
   return find_by_blocks(search, stage, [&](FoundArcs& found, Index count, int thread, WorkDone& done) {
-    if (!finders[thread])
-      finders[thread] = std::make_unique<DiskRows>(tables.mesh, tables.sectors, codec, search.kernel, rule);
+    if (!finders[thread]) finders[thread] = std::make_unique<DiskRows>(search, tables, codec, rule);
     for (Index i = 0; i < count; i += k_batch) {
       const Index batch = std::min(k_batch, count - i);
       finders[thread]->find(found.first_node + i, batch, found, stage);
@@ -161,7 +145,8 @@ std::vector<KeptArcs> exact_arcs(const ArcSearch& search, const ArcCodec& codec,
     for (Index i = 0; i < count; ++i) {
       const Index vertex = search.vertices[found.first_node + i];
       propagators[thread]->from_vertex(vertex, static_cast<Index>(search.vertices.size()), rows[thread], stage);
-      append_row(search, codec, vertex, rows[thread], found);
+      found.counts.push_back(static_cast<std::int32_t>(rows[thread].size()));
+      for (const DirectArc& arc : rows[thread]) append_arc(search, codec, vertex, arc, found);
       done.add(1);
     }
   });

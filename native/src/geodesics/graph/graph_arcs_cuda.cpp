@@ -73,8 +73,7 @@ class Caller {
     std::vector<FoundArcs> found(batches.size());
     std::vector<std::unique_ptr<DiskRows>> finders(thread_count(search_.threads));
     parallel_for(static_cast<Index>(batches.size()), search_.threads, 1, [&](Index b, int thread) {
-      if (!finders[thread])
-        finders[thread] = std::make_unique<DiskRows>(tables_->mesh, tables_->sectors, *codec_, search_.kernel, rule_);
+      if (!finders[thread]) finders[thread] = std::make_unique<DiskRows>(search_, *tables_, *codec_, rule_);
       const Index first = batches[b].front() / k_batch * k_batch;
       const Index count = std::min(k_batch, static_cast<Index>(search_.vertices.size()) - first);
       found[b].first_node = first;

@@ -19,6 +19,14 @@ SADDLEBACK_HOST_DEVICE inline double corner_along(double base, double left, doub
 /// Returns how far off it. From the area, which the mesh computes stably.
 SADDLEBACK_HOST_DEVICE inline double corner_off(double base, double area) { return 2 * area / base; }
 
+/// Tells whether a face is so much longer than it is high that single precision does not tell what is near across it
+/// from what is not: (a, b) is its far corner where an edge is from (0, 0) to (1, 0).
+SADDLEBACK_HOST_DEVICE inline bool is_too_thin(double a, double b) {
+  constexpr double k_most = 1 << 19;
+  const double left = a * a + b * b, right = (1 - a) * (1 - a) + b * b, longer = left > right ? left : right;
+  return k_most * b <= (longer > 1 ? longer : 1.0);
+}
+
 /// Tells whether the far corner of the face behind a cone is on both of its rays as far as single precision tells, and
 /// the cone is wide: waves would lose it. So is a source in a needle, or at the blunt end of one, beside another
 /// needle.
