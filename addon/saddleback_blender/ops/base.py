@@ -375,4 +375,4 @@ def _settle_look(source: bpy.types.Object, settings_name: str, look: str) -> Non
         keep_texts(source, other, [], [])
         rollback.remember_setting(group, "look")
         group.look = NO_LOOK
-    set_stage(source, look if look != NO_LOOK else look_of(source))
+    set_stage(source, look_of(source))

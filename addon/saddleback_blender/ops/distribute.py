@@ -74,6 +74,7 @@ class SADDLEBACK_OT_distribute(SurfaceOperator, bpy.types.Operator):
         if settings.mirror_x:
             with mesh_of(context, source, settings.use_modifiers) as mesh:
                 mirror = read_mirror(source, mesh, request.surface)
+            self._surface = mirror.whole  # on which all of it lies
             return partial(mirrored_runs.distribute, shapes_halved(request, mirror), mirror)
         return partial(distribute_runs.distribute, request)
 

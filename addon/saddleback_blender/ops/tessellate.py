@@ -84,6 +84,7 @@ class CellsOperator(SurfaceOperator):
             )
             mirror = read_mirror(source, mesh, surface) if settings.mirror_x else None
         if mirror is not None:
+            self._surface = mirror.whole  # on which all of it lies
             return partial(mirrored_runs.tessellate, halved(request, mirror), mirror)
         return partial(runs.tessellate, request)
 

@@ -161,8 +161,13 @@ def name_after(source: bpy.types.Object, name: str) -> None:
 
 
 def look_of(source: bpy.types.Object) -> str:
-    """The look of the active layer, or else of the first that has one."""
-    owners = [source.saddleback, *source.saddleback.layers] if source.is_property_set("saddleback") else []
+    """The look that the body below is seen with: of the active layer, or else of the first that has one.
+
+    What covers a part of the body leaves the rest of it as it is.
+    """
+    every = [source.saddleback, *source.saddleback.layers] if source.is_property_set("saddleback") else []
+    word = source.saddleback.layer_word if every else ""
+    owners = [owner for owner in every if owner.region == "WHOLE" and getattr(owner, "word", None) != word]
     groups = [getattr(owner, kind) for owner in owners for kind in _kinds() if owner.is_property_set(kind)]
     looks = (getattr(group, "look", NO_LOOK) for group in groups)
     return next((look for look in looks if look != NO_LOOK), NO_LOOK)

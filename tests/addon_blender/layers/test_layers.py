@@ -249,3 +249,79 @@ def test_what_a_person_unticks_is_hidden_and_comes_back():
     assert cells.hide_viewport and cells.hide_render and len(outputs_of(item)) == 2
     told(SADDLEBACK_OT_tessellate, TessellateSettings(), **options)
     assert not cells.hide_viewport and cells.hide_render and "Mine" in cells.modifiers
+
+
+def test_layers_of_a_library_override_survive_reopening(tmp_path):
+    sphere("Body", 2)
+    collection = bpy.data.collections.new("Character")
+    collection.objects.link(bpy.data.objects["Body"])
+    library = str(tmp_path / "character.blend")
+    bpy.data.libraries.write(library, {collection})
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    with bpy.data.libraries.load(library, link=True) as (there, here):
+        here.collections = there.collections
+    own = here.collections[0].override_create(remap_local_usages=True)
+    bpy.context.scene.collection.children.link(own)
+    body = own.objects["Body"].override_create(remap_local_usages=True)
+    bpy.context.view_layer.objects.active = body
+    bpy.ops.saddleback.tessellate(count=7, **QUICK)
+    bpy.ops.saddleback.layer_add()
+    bpy.ops.saddleback.tessellate(count=9, make_edges=False, make_cells=True, **QUICK)
+    body.saddleback.layers[0].show_render = False
+    path = str(tmp_path / "shot.blend")
+    for _ in range(2):
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.open_mainfile(filepath=path)
+        body = next(item for item in bpy.data.objects if item.override_library is not None and item.name == "Body")
+        bpy.context.view_layer.objects.active = body
+        first, second = layers_of(body)
+        assert (first.name, first.word, first.show_render) == ("Tessellate", "", False)
+        assert second.name == "Tessellate 2" and body.saddleback.layer_word == second.word
+        assert body.saddleback.tessellate.count == 9 and first.tessellate.count == 7
+        bpy.ops.saddleback.tessellate()
+        assert names(body) == ["Body Edges", "Body Surface", "Body Tessellate 2 Cells"]
+    surface = bpy.data.objects["Body Surface"]
+    assert {"saddleback_cell", "saddleback_cell_2"} <= set(surface.data.attributes.keys())
+    assert not surface.override_library and not surface.library
+    bpy.ops.saddleback.layer_delete()
+    assert names(body) == ["Body Edges", "Body Surface"] and body.saddleback.tessellate.count == 7
+    assert "saddleback_cell_2" not in surface.data.attributes
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    body = next(item for item in bpy.data.objects if item.override_library is not None and item.name == "Body")
+    assert [layer.name for layer in layers_of(body)] == ["Tessellate"]
+
+
+def test_a_file_without_layers_opens_with_one(tmp_path):
+    item = sphere("Ball")
+    bpy.ops.saddleback.tessellate(count=20, **QUICK)
+    item.saddleback.layers.clear()  # as older versions left it
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "old.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "old.blend"))
+    item = bpy.data.objects["Ball"]
+    bpy.context.view_layer.objects.active = item
+    (layer,) = layers_of(item)
+    assert layer.word == "" and active_layer(item).word == ""
+    bpy.ops.saddleback.tessellate()
+    assert names(item) == ["Ball Edges"]
+
+
+def test_two_layers_cannot_write_the_same_attribute():
+    item = two_layers()
+    cells = attribute(item, "saddleback_cell")
+    with pytest.raises(RuntimeError, match="the attribute 'saddleback_cell' is another layer's: choose another name"):
+        bpy.ops.saddleback.tessellate(cell_attribute="saddleback_cell")
+    np.testing.assert_array_equal(attribute(item, "saddleback_cell"), cells)
+
+
+def test_a_look_on_a_part_leaves_the_rest_of_the_body_as_it_is():
+    item = sphere("Ball")
+    item.vertex_groups.new(name="Up").add([v.index for v in item.data.vertices if v.co.z > 0], 1.0, "REPLACE")
+    item.saddleback.region, item.saddleback.region_name = "VERTEX_GROUP", "Up"
+    bpy.ops.saddleback.apply_look(look="LAMP")
+    assert item.display_type == "TEXTURED" and not item.hide_render
+    bpy.ops.saddleback.layer_add()
+    bpy.ops.saddleback.apply_look(look="REMESH")
+    assert item.display_type == "BOUNDS" and item.hide_render
+    bpy.ops.saddleback.layer_delete()
+    assert item.display_type == "TEXTURED" and not item.hide_render

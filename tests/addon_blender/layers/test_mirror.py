@@ -183,3 +183,17 @@ def test_partners_are_found_exactly_and_nearly():
     np.testing.assert_array_equal(partners(places + rng.uniform(-2e-6, 2e-6, places.shape)), expected)
     places[7, 2] += 0.01
     assert np.flatnonzero(partners(places) < 0).tolist() == [7, 507]
+
+
+def test_a_region_on_one_side_is_covered_on_both():
+    item = creature()
+    up = [v.index for v in item.data.vertices if v.co.x > 0.3]
+    item.vertex_groups.new(name="Left").add(up, 1.0, "REPLACE")
+    bpy.ops.saddleback.tessellate(
+        count=60, mirror_x=True, region="VERTEX_GROUP", region_name="Left", make_cells=True, make_dual=True, k=30
+    )
+    cells = bpy.data.objects["Creature Cells"]
+    assert is_mirrored(cells.data) and np.abs(positions(cells.data)[:, 0]).min() > 0
+    bpy.context.view_layer.update()
+    shown = cells.evaluated_get(bpy.context.evaluated_depsgraph_get()).data  # as it follows
+    np.testing.assert_allclose(positions(shown), positions(cells.data), atol=1e-5)

@@ -9,10 +9,12 @@ from ... import compat
 from ...core.requests import Surface
 from ...core.surfaces.mirrors import Mirror
 from ..outputs.out_collection import level_place
+from .mesh_in import read_surface
 
 
-def read_mirror(source: bpy.types.Object, mesh: bpy.types.Mesh, surface: Surface) -> Mirror:
-    """The mirror of a surface that was read from `mesh`. Raises BadInputError where it has none."""
+def read_mirror(source: bpy.types.Object, mesh: bpy.types.Mesh, part: Surface) -> Mirror:
+    """The mirror of a part of the surface that was read from `mesh`. Raises BadInputError where it has none."""
+    whole = part if part.kept is None else read_surface(source, mesh)
     places = compat.read_positions(mesh).astype(np.float64)
     matrices = (np.array(matrix, np.float64) for matrix in (source.matrix_world, level_place(source)))
-    return Mirror.of(surface, places, *matrices)
+    return Mirror.of(whole, part, places, *matrices)

@@ -111,6 +111,12 @@ def recorded(mesh: bpy.types.Mesh) -> list[str]:
     return list(_writers(mesh))
 
 
+def belongs_to_other_layer(source: bpy.types.Object, name: str) -> bool:
+    """Tells whether another layer of the object wrote an attribute of its mesh."""
+    token, _, layer = _writers(source.data).get(name, "").partition("/")
+    return bool(token) and token == token_of(source) and layer != layer_of(source) and owns(source, token)
+
+
 def clear_attributes(source: bpy.types.Object, layer: str | None = None) -> int:
     """Removes the attributes that we wrote for the object, or in one layer of it; returns how many there were.
 

@@ -11,7 +11,7 @@ from ...core.errors import BadInputError
 from ..inputs.mesh_in import mesh_of
 from .following import Follower
 from .lifting import lift
-from .out_attributes import recorded
+from .out_attributes import belongs_to_other_layer, recorded
 from .out_collection import SURFACE_ROLE, find_output, replace_object
 
 
@@ -68,6 +68,10 @@ def check_attribute_names(
         seen.add(name)
         if name in source.vertex_groups:
             raise BadInputError(f"'{source.name}' has a vertex group '{name}': choose another name for the {label}")
+        if belongs_to_other_layer(source, name):
+            raise BadInputError(
+                f"'{source.name}': the attribute '{name}' is another layer's: choose another name for the {label}"
+            )
         old = source.data.attributes.get(name)
         if (
             old is not None

@@ -14,7 +14,7 @@ from ..results import Anchors, Indices, Reals
 from .seen_places import seen_from
 
 SAME_PLACE = 1e-5  # of the mesh's extent: vertices that are nearer to each other's mirror are partners
-ON_PLANE = 1e-6  # of the mesh's extent: points that are nearer to the plane are on it
+ON_PLANE = 2e-5  # of the mesh's extent: points that are nearer to the plane are on it
 FLIP = np.array([-1.0, 1.0, 1.0])
 SINGLE_BITS = 22
 SKEW = 1e-5  # cosine of the angle by which the plane may lean
@@ -54,9 +54,10 @@ class Mirror:
     reach: float  # how far from the plane points are on it
 
     @classmethod
-    def of(cls, whole: Surface, places: Reals, matrix: Reals, frame: Reals) -> Mirror:
+    def of(cls, whole: Surface, part: Surface, places: Reals, matrix: Reals, frame: Reals) -> Mirror:
         """Raises BadInputError where the mesh with vertices (V, 3) at `places`, in the object's space, has no mirror.
 
+        `part` of the whole is what patterns are to cover.
         `matrix` and `frame` (4, 4) lead into the world: from the object's space, and from that without its scale.
         """
         axes = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
@@ -72,7 +73,7 @@ class Mirror:
                 f"'{whole.name}' is not the same to both sides of X: {alone:,} of its {len(vertices):,} vertices have "
                 "no partner there; mirror the mesh (Mesh > Symmetrize), or switch X Mirror off"
             )
-        side = places[:, 0][whole.triangles if whole.used is None else whole.used[whole.triangles]]
+        side = places[:, 0][part.triangles if part.used is None else part.used[part.triangles]]
         near = SAME_PLACE * float(np.ptp(places, axis=0).max())
         crossing = int(((side > near).any(axis=1) & (side < -near).any(axis=1)).sum())
         if crossing:
@@ -82,14 +83,14 @@ class Mirror:
             )
         kept = np.flatnonzero((side >= -near).all(axis=1) & (side > near).any(axis=1)).astype(np.int32)
         if not len(kept):
-            raise BadInputError(f"'{whole.name}' has no faces where X is above 0; switch X Mirror off")
-        return cls(whole, _part(whole, kept), partner, frame, ON_PLANE * whole.extent)
+            raise BadInputError(f"'{whole.name}' has no faces to cover where X is above 0; switch X Mirror off")
+        return cls(whole, _half(part, kept), partner, frame, ON_PLANE * whole.extent)
 
     def plane_edges(self) -> Indices:
         """(n, 2) vertices of the Blender mesh: edges of the half at the plane."""
         half = self.half
         local = self.seen(half.vertices)
-        on = np.abs(local[:, 0]) <= 2.0 * SAME_PLACE * self.whole.extent
+        on = np.abs(local[:, 0]) <= self.reach
         pairs = np.concatenate([half.triangles[:, (i, (i + 1) % 3)] for i in range(3)])
         pairs = pairs[on[pairs].all(axis=1)]
         edges: Indices = (pairs if half.used is None else half.used[pairs]).astype(np.int32)
@@ -162,7 +163,7 @@ class Mirror:
         )
 
 
-def _part(whole: Surface, kept: Indices) -> Surface:
+def _half(whole: Surface, kept: Indices) -> Surface:
     used, triangles = np.unique(whole.triangles[kept], return_inverse=True)
     numbers = used.astype(np.int32) if whole.used is None else whole.used[used]
     return replace(
