@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import platform
+import shutil
+import subprocess
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -288,6 +292,30 @@ def test_the_same_for_any_instruction_set(case: meshes.Case, how: dict[str, obje
         except sb.InputError:  # not on this machine
             continue
         assert arcs_of(graph, tmp_path) == expected, instructions
+
+
+OLD_PROCESSOR = """
+import saddleback as sb
+from tests.digests import main
+try:
+    sb.SaddleVertexGraph(sb.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), k=3, instructions="avx2")
+except sb.InputError:
+    raise SystemExit(main())
+"""
+
+
+@pytest.mark.skipif(
+    platform.machine() != "x86_64" or not shutil.which("qemu-x86_64-static"),
+    reason="older processors are emulated by qemu-user-static, on x86-64",
+)
+def test_a_processor_without_avx_answers_the_same() -> None:
+    """Nothing that is compiled for newer ones may run there, in whichever file the linker found it."""
+    qemu = ["qemu-x86_64-static", "-cpu", "Nehalem", sys.executable, "-c", OLD_PROCESSOR]
+    options = ["--portable", "--threads", "1", "--only", "icosphere/"]
+    root = Path(__file__).resolve().parents[3]
+    done = subprocess.run([*qemu, *options], cwd=root, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, f"{done.returncode}: {done.stdout}{done.stderr}"
+    assert " 0 of them different" in done.stdout
 
 
 def test_progress_rises_and_cancel_is_quick() -> None:
