@@ -91,27 +91,22 @@ class Wiring:
 
     def boolean(self, operation: str, one: Any, other: Any) -> Any:
         """Tells whether both, or one, of two are true."""
-        made = self.node("FunctionNodeBooleanMath")
-        made.operation = operation
-        self.link(one, made.inputs[0])
-        self.link(other, made.inputs[1])
-        return made.outputs["Boolean"]
+        return self._operation("FunctionNodeBooleanMath", operation, (one, other), "Boolean")
 
     def math(self, operation: str, *operands: Any) -> Any:
         """Mathematics with sockets or constants."""
-        made = self.node("ShaderNodeMath")
-        made.operation = operation
-        for socket, operand in zip(made.inputs, operands, strict=False):
-            self._give(socket, operand)
-        return made.outputs["Value"]
+        return self._operation("ShaderNodeMath", operation, operands, "Value")
 
     def vector(self, operation: str, *operands: Any) -> Any:
         """Vector mathematics with sockets or constants."""
-        made = self.node("ShaderNodeVectorMath")
+        return self._operation("ShaderNodeVectorMath", operation, operands, "Vector")
+
+    def _operation(self, kind: str, operation: str, operands: tuple[Any, ...], output: str) -> Any:
+        made = self.node(kind)
         made.operation = operation
         for socket, operand in zip(made.inputs, operands, strict=False):
             self._give(socket, operand)
-        return made.outputs["Vector"]
+        return made.outputs[output]
 
     def combined(self, factors: Any, vectors: Any) -> Any:
         """The sum of three vectors, each times a component of `factors`."""
