@@ -83,7 +83,7 @@ InputError
 
 Notes
 -----
-O(n log n) to make, O(1) expected for a step.)";
+O(n log n) to make and for the first step, O(1) expected for another.)";
 
 constexpr const char* k_circles_doc = R"(Sweep circles that grow together, to be looked at.
 

@@ -35,9 +35,8 @@ struct ToldSweep {
       : diagram(weighted_diagram(sites, weights)), sweep(diagram, center) {}
 };
 
-}  // namespace
-
-struct SteppedSweep::State {
+/// What a sweep has come to.
+struct Progress {
   /// An arc vanishes.
   struct Vanishing {
     double radius;
@@ -45,17 +44,32 @@ struct SteppedSweep::State {
     bool operator>(const Vanishing& other) const { return radius > other.radius; }
   };
 
-  std::unique_ptr<ToldSweep> told;  ///< then only `center` and `radius` are used of the rest
-  OrderedSites ordered;
-  std::vector<double> x, y, radii;  ///< from near to far
-  std::vector<Index> original;
   std::vector<voronoi2d::Arc> arcs;
   std::vector<Vanishing> vanishing;  ///< a heap, the soonest first; out of date where the arc has another radius
   std::vector<Index> near, triangles, twins;
   SweepState sweep{};
+  Index touched = 0;  ///< sites
+
+  /// To be called when it was copied.
+  void attach() {
+    sweep.arcs = arcs.data();
+    sweep.near = near.data();
+    sweep.triangles = triangles.data();
+    sweep.twins = twins.data();
+  }
+};
+
+}  // namespace
+
+struct SteppedSweep::State : Progress {
+  std::unique_ptr<ToldSweep> told;  ///< then only `center` and `radius` are used of the rest
+  bool is_checked = false;          ///< whether `told` is known to be needed or not
+  std::vector<Vec2> given;          ///< sites
+  OrderedSites ordered;
+  std::vector<double> x, y, radii;  ///< from near to far
+  std::vector<Index> original;
   Vec2 center;
   double radius = 0;
-  Index touched = 0;  ///< sites
   Index nearest = 0;  ///< how many sites are equally near and nearest
 
   void sort_sites(const Vec2& scaled_center);
@@ -65,7 +79,8 @@ struct SteppedSweep::State {
   bool is_started() const { return touched >= std::max<Index>(1, nearest < 3 ? 1 : nearest); }
   double next_touch() const { return touched < static_cast<Index>(x.size()) ? radii[touched] : k_never; }
   Index touch_next();
-  void run();
+  void run(double up_to);
+  void check(double wanted);
   void note(Index arc);
   double vanish_next(double up_to);
   Vec2 site(Index k) const { return {x[k] - sweep.center_x, y[k] - sweep.center_y}; }
@@ -107,7 +122,6 @@ void SteppedSweep::State::sort_sites(const Vec2& scaled_center) {
 
 void SteppedSweep::State::start_sweep() {
   const std::size_t count = x.size();
-  radius = 0;
   touched = 0;
   vanishing.clear();
   arcs.resize(2 * count);
@@ -158,12 +172,29 @@ Index SteppedSweep::State::touch_next() {
   return site;
 }
 
-void SteppedSweep::State::run() {
-  while (next_touch() != k_never) {
-    while (is_started() && vanish_next(next_touch()) != k_never) {}
+/// Goes through all events up to a radius.
+void SteppedSweep::State::run(double up_to) {
+  while (true) {
+    while (is_started() && vanish_next(std::min(up_to, next_touch())) != k_never) {}
+    if (next_touch() > up_to) return;
     touch_next();
   }
-  while (vanish_next(k_latest) != k_never) {}
+}
+
+/// Before the first event is told the sweep is run to its end, and then taken back to `wanted`. Where rounding leads it
+/// astray, events are told from the diagram.
+void SteppedSweep::State::check(double wanted) {
+  start_sweep();
+  run(wanted);
+  Progress then = *this;
+  run(k_latest);
+  if (is_triangulation()) {
+    static_cast<Progress&>(*this) = std::move(then);
+    attach();
+  } else {
+    told = std::make_unique<ToldSweep>(given, center, std::span<const double>{});
+  }
+  is_checked = true;
 }
 
 void SteppedSweep::State::note(Index arc) {
@@ -193,21 +224,18 @@ SteppedSweep::SteppedSweep(std::span<const Vec2> sites, const Vec2& center, std:
     throw InputError(message("center: wanted finite numbers, got (", center.x(), ", ", center.y(), ")"));
   State& s = *state_;
   s.center = center;
-  if (weights.empty()) {
-    s.ordered = order_sites(sites, 1, {});
-    s.sweep.center_x = center.x() * s.ordered.scale;
-    s.sweep.center_y = center.y() * s.ordered.scale;
-    s.sort_sites({s.sweep.center_x, s.sweep.center_y});
-    s.start_sweep();
-    s.run();
-    if (s.is_triangulation()) {
-      s.start_sweep();
-      return;
-    }
+  if (!weights.empty()) {
+    s.told = std::make_unique<ToldSweep>(sites, center, weights);
+    const auto& events = s.told->sweep.events();
+    if (!events.empty()) s.radius = std::min(0.0, events[0].radius);
+    return;
   }
-  s.told = std::make_unique<ToldSweep>(sites, center, weights);
-  const auto& events = s.told->sweep.events();
-  s.radius = events.empty() ? 0 : std::min(0.0, events[0].radius);
+  s.given.assign(sites.begin(), sites.end());
+  s.ordered = order_sites(sites, 1, {});
+  s.sweep.center_x = center.x() * s.ordered.scale;
+  s.sweep.center_y = center.y() * s.ordered.scale;
+  s.sort_sites({s.sweep.center_x, s.sweep.center_y});
+  s.start_sweep();
 }
 
 SteppedSweep::~SteppedSweep() = default;
@@ -219,6 +247,7 @@ const Vec2& SteppedSweep::center() const { return state_->center; }
 
 std::optional<SteppedSweep::Event> SteppedSweep::step() {
   State& s = *state_;
+  if (!s.told && !s.is_checked) s.check(-1);
   if (s.told) {
     const auto& events = s.told->sweep.events();
     if (s.told->next == events.size()) return std::nullopt;
@@ -247,6 +276,8 @@ void SteppedSweep::grow(double radius) {
   if (!std::isfinite(radius) || radius < 0)
     throw InputError(message("radius: wanted a finite number, 0 or more, got ", radius));
   State& s = *state_;
+  const double scaled = std::min(radius * s.ordered.scale, k_latest);
+  if (!s.told && !s.is_checked) s.check(scaled);
   if (s.told) {
     const auto& events = s.told->sweep.events();
     std::size_t& next = s.told->next;
@@ -254,12 +285,7 @@ void SteppedSweep::grow(double radius) {
     s.radius = std::max(s.radius, radius);
     return;
   }
-  const double scaled = radius * s.ordered.scale;
-  while (true) {
-    if (s.is_started() && s.vanish_next(std::min(scaled, s.next_touch())) != k_never) continue;
-    if (s.next_touch() > scaled) break;
-    step();
-  }
+  s.run(scaled);
   s.radius = std::max(s.radius, radius);
 }
 

@@ -82,6 +82,19 @@ def test_a_finished_sweep_has_the_diagrams_edges():
     assert pairs == {frozenset(pair) for pair in sb.voronoi_2d(sites).edge_sites.tolist()}
 
 
+@pytest.mark.parametrize("radius", [0.0, 0.2, 0.7, 1e3, 1e308])
+def test_what_is_grown_over_is_what_steps_go_through(radius):
+    sites = plane_sites.uniform(100, np.random.default_rng(5))
+    stepped, grown = sb.SweepCircle(sites, [0.5, 0.4]), sb.SweepCircle(sites, [0.5, 0.4])
+    grown.grow(radius)
+    later = [event for event in run(stepped) if event.radius > radius]
+    rest = run(grown)
+    assert [(event.kind, *event.sites, *event.point) for event in rest] == [
+        (event.kind, *event.sites, *event.point) for event in later
+    ]
+    assert np.array_equal(grown.edges[1], stepped.edges[1])
+
+
 @pytest.mark.parametrize("corners", [2, 3, 4, 12])
 def test_several_nearest_sites_meet_in_the_center(corners):
     directions = [

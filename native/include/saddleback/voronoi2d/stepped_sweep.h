@@ -42,7 +42,7 @@ class SteppedSweep {
   SteppedSweep(SteppedSweep&&) noexcept;
   SteppedSweep& operator=(SteppedSweep&&) noexcept;
 
-  /// Goes on to the next event; none after the last. O(1) expected.
+  /// Goes on to the next event; none after the last. O(1) expected, the first O(n log n).
   std::optional<Event> step();
   /// Grows the circle to a radius, through all events on the way; a smaller radius changes nothing.
   void grow(double radius);
