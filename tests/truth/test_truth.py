@@ -42,10 +42,12 @@ def test_random_input_meets_the_truths():
         ("relaxation.least_sums_of_squares", 72000214),  # to and fro across a valley, between ways that bend
         ("relaxation.least_sums_of_squares", 72000855),  # held by the border, a hundred times
         ("outlines.safe_distances", 20301927),  # needles side by side, told apart by the tables' angles
+        ("outlines.safe_distances", 892871),  # a strip before the other's first
         ("ways.map_of_a_disk", 168109),  # seen past a ring of 1e-5, longer by 2e-12
         ("plane.clipped_cells", 20567684),  # sides of twins in line to rounding: no corner between them
         ("sweeps.ties_of_a_circle", 31001546),  # six arcs vanish in the moment in which a site is touched
         ("sweeps.ties_of_a_circle", 31000843),  # twins an ulp apart, touched in the wrong order
+        ("sweeps.ties_of_a_circle", 893636),  # begun in a vertex, whose event was not told
         ("relaxation.centers_of_the_plane", 20280198),  # a place within rounding of a vertex saw all in its direction
         ("relaxation.centers_of_the_plane", 777013576),  # an obtuse corner nearer than both ends of the side across
         ("relaxation.centers_of_the_plane", 555000955),  # a millionth of the size beside an edge, seen end-on

@@ -37,8 +37,9 @@ double largest_sum(const FrontProfiles& a, Index alpha, double scale_a, const Fr
   const std::span<const float> fronts_a = a.columns(alpha), fronts_b = b.columns(beta);
   const double width_a = scale_a * 2 * a.half_width() / k_columns, width_b = scale_b * 2 * b.half_width() / k_columns;
   const double reach = std::min(scale_a * a.half_width(), scale_b * b.half_width());
+  // The first strip that both shapes have. One before it, which meets none of the other's, would be summed as well.
   const auto first = [&](double width) {
-    return std::max<Index>(0, static_cast<Index>(std::floor(k_columns / 2.0 - reach / width)) - 1);
+    return std::max<Index>(0, static_cast<Index>(std::floor(k_columns / 2.0 - reach / width - k_rounding)));
   };
   Index i = first(width_a), j = first(width_b);
   double best = -std::numeric_limits<double>::infinity();

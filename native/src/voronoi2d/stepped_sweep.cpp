@@ -49,6 +49,7 @@ struct Progress {
   std::vector<Index> near, triangles, twins;
   SweepState sweep{};
   Index touched = 0;  ///< sites
+  Index untold = 0;   ///< triangles about the center, where that is a vertex, whose events are still to be told
 
   /// To be called when it was copied.
   void attach() {
@@ -90,6 +91,7 @@ struct SteppedSweep::State : Progress {
   Vec2 point_in(Index k, const Vec2& direction) const;
   double breakpoint(const voronoi2d::Arc& arc) const;
   Vec2 vertex(Index triangle) const;
+  Event vanished(Index triangle) const;
   template <class Visit>
   void for_each_arc(Visit&& visit) const;
 };
@@ -122,7 +124,7 @@ void SteppedSweep::State::sort_sites(const Vec2& scaled_center) {
 
 void SteppedSweep::State::start_sweep() {
   const std::size_t count = x.size();
-  touched = 0;
+  touched = untold = 0;
   vanishing.clear();
   arcs.resize(2 * count);
   near.resize(256);
@@ -162,6 +164,7 @@ Index SteppedSweep::State::touch_next() {
     std::vector<SweptSite> all;
     for (Index k = 0; k < nearest; ++k) all.push_back(swept(k));
     start_about_vertex(sweep, all.data(), nearest);
+    untold = sweep.triangle_count;
   } else if (site == 0) {
     start(sweep, swept(0));
   } else {
@@ -256,14 +259,12 @@ std::optional<SteppedSweep::Event> SteppedSweep::step() {
     return event;
   }
   if (s.x.empty()) return std::nullopt;
+  if (s.untold > 0) return s.vanished(s.sweep.triangle_count - s.untold--);
   if (s.is_started()) {
     const double radius = s.vanish_next(std::min(s.next_touch(), k_latest));
     if (radius != k_never) {
-      const Index triangle = s.sweep.triangle_count - 1;
-      std::vector<Index> sites;
-      for (Index k = 0; k < 3; ++k) sites.push_back(s.original[s.triangles[4 * triangle + k]]);
       if (radius < k_latest) s.radius = std::max(s.radius, radius / s.ordered.scale);
-      return Event{false, s.radius, std::move(sites), s.vertex(triangle)};
+      return s.vanished(s.sweep.triangle_count - 1);
     }
   }
   if (s.next_touch() == k_never) return std::nullopt;
@@ -286,6 +287,7 @@ void SteppedSweep::grow(double radius) {
     return;
   }
   s.run(scaled);
+  if (radius >= s.radius) s.untold = 0;
   s.radius = std::max(s.radius, radius);
 }
 
@@ -358,6 +360,12 @@ Vec2 SteppedSweep::State::vertex(Index triangle) const {
     return predicates::Point2{x[triangles[4 * triangle + k]], y[triangles[4 * triangle + k]]};
   };
   return circumcenter(point(0), point(1), point(2)) / ordered.scale;
+}
+
+SteppedSweep::Event SteppedSweep::State::vanished(Index triangle) const {
+  std::vector<Index> sites;
+  for (Index k = 0; k < 3; ++k) sites.push_back(original[triangles[4 * triangle + k]]);
+  return {false, radius, std::move(sites), vertex(triangle)};
 }
 
 std::vector<SteppedSweep::Edge> SteppedSweep::edges() const {

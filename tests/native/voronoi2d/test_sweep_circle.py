@@ -115,6 +115,13 @@ def test_several_nearest_sites_meet_in_the_center(corners):
     sweep = sb.SweepCircle(sites, [0, 0])
     events = run(sweep)
     assert [event.kind for event in events].count("touch") == len(sites)
+    about_center = [event for event in events if event.kind == "vanish" and not event.point.any()]
+    assert len(about_center) == max(0, corners - 2)
+    assert all(event.radius == 5 and set(event.sites) <= set(range(corners)) for event in about_center)
+    assert [event.kind for event in events].count("vanish") == len(sb.voronoi_2d(sites).delaunay)
+    grown = sb.SweepCircle(sites, [0, 0])
+    grown.grow(5)
+    assert repr(grown.step()) == repr(events[corners + len(about_center)])
     pairs = {frozenset(pair) for pair in sweep.edges[1].tolist()}
     assert pairs >= {frozenset(pair) for pair in sb.voronoi_2d(sites).edge_sites.tolist()}
     assert len(sweep.edges[0]) == len(sb.voronoi_2d(sites).delaunay) + len(sites) - 1
