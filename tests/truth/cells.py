@@ -81,6 +81,18 @@ def check_vertices(mesh: sb.Mesh, graph: sb.SaddleVertexGraph, sites: sb.Surface
     assert (cells.areas >= 0).all()
 
 
+def check_exact_vertices(mesh: sb.Mesh, graph: sb.SaddleVertexGraph, sites: sb.SurfacePoints) -> None:
+    """Labels and distances of exact cells are those of brute force."""
+    cells = sb.geodesic_voronoi(graph, sites, exact=True)
+    table = exact_table(mesh, sites)
+    least = table.min(axis=0)
+    slack = ROUNDING * float(least.max())
+    of_label = table[cells.vertex_cell, np.arange(mesh.vertex_count)]
+    assert (of_label <= least * (1 + ROUNDING) + slack).all(), "vertices in another exact cell than the nearest's"
+    np.testing.assert_allclose(cells.vertex_distance, least, rtol=ROUNDING, atol=slack)
+    assert abs(cells.areas.sum() - mesh.area) <= 1e-9 * mesh.area
+
+
 def check_points(mesh: sb.Mesh, graph: sb.SaddleVertexGraph, sites: sb.SurfacePoints, accuracy: float) -> None:
     """Distances of points between the exact ones and those within the accuracy."""
     cells = sb.geodesic_voronoi(graph, sites)
@@ -106,6 +118,12 @@ def cells_of_few_sites(mesh: sb.Mesh, rng: Random) -> None:
     check_vertices(mesh, graph, random_sites(mesh, rng, 6), accuracy)
 
 
+@guards("geodesic_voronoi")
+def exact_cells_of_few_sites(mesh: sb.Mesh, rng: Random) -> None:
+    """Exact cells and brute force over exact fields agree about the vertices."""
+    check_exact_vertices(mesh, sb.SaddleVertexGraph(mesh, k=3), random_sites(mesh, rng, 6))
+
+
 @guards("GeodesicVoronoi.locate", "GeodesicVoronoi.cells_at")
 def places_in_cells(mesh: sb.Mesh, rng: Random) -> None:
     """`locate` against exact fields, on coarse faces, too."""
@@ -119,9 +137,10 @@ def rough_torus(rng: Random) -> sb.Mesh:
 
 
 def finding(mesh: sb.Mesh, graph: sb.SaddleVertexGraph, sites: sb.SurfacePoints, accuracy: float) -> str:
-    """What is wrong, or nothing."""
+    """What is wrong about the graph's cells and exact ones, or nothing."""
     try:
         check_vertices(mesh, graph, sites, accuracy)
+        check_exact_vertices(mesh, graph, sites)
     except AssertionError as error:
         return str(error).splitlines()[0]
     return ""
